@@ -1,0 +1,152 @@
+"""Scene: everything that determines a run.  SCENES: the ones worth watching, with what to watch."""
+
+import math
+from dataclasses import dataclass, replace
+
+LIMITS = {  # inclusive; beyond them a value is a slip of the keyboard, not a pendulum
+    "theta": (-1e9, 1e9),
+    "omega": (-1e9, 1e9),
+    "length": (1e-6, 1e6),
+    "gravity": (1e-6, 1e6),
+}
+UNITS = {"theta": "rad", "omega": "rad/s", "length": "m", "gravity": "m/s²", "h": "s"}
+Z_LIMITS = (1e-9, 1e3)  # z = h·w0; the methods' own limits lie at 2 and 2√2
+
+
+class SceneError(ValueError):
+    """A scene that cannot be run; its text is a sentence for the user."""
+
+
+def check_h(h: float, w0: float) -> None:
+    """Raise SceneError unless |h| is a step that this pendulum can be given."""
+    low, high = Z_LIMITS
+    if not math.isfinite(h) or not low <= abs(h) * w0 <= high:
+        raise SceneError(
+            f"h = {h:g} s is no usable step: give one from {low / w0:.2g} to {high / w0:.2g} s, "
+            f"{0.15 / w0:.1g} for example."
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """Everything that determines a run, with a name and what to watch."""
+
+    name: str = "custom"
+    theta: float = 1.0  # rad from the downward vertical
+    omega: float = 0.0  # rad/s
+    length: float = 1.0  # m
+    gravity: float = 9.81  # m/s²
+    h: float = 0.05  # s, the step size; positive at a start
+    watch: str = ""
+
+    def __post_init__(self) -> None:
+        for field, (low, high) in LIMITS.items():
+            value = getattr(self, field)
+            if not low <= value <= high:  # also refuses nan
+                raise SceneError(
+                    f"{field} = {value:g} {UNITS[field]} is out of range: give {low:g} to {high:g} {UNITS[field]}."
+                )
+        if self.h <= 0:
+            raise SceneError(
+                f"h = {self.h:g} s is no usable step: give a positive one, {0.15 / self.w0:.1g} for example."
+            )
+        check_h(self.h, self.w0)
+
+    @property
+    def w0_squared(self) -> float:
+        """g/L [s⁻²], the only parameter of the motion."""
+        return self.gravity / self.length
+
+    @property
+    def w0(self) -> float:
+        """Natural frequency sqrt(g/L) [rad/s]."""
+        return math.sqrt(self.w0_squared)
+
+    @property
+    def z(self) -> float:
+        """h·w0, the only number that linear stability depends on."""
+        return self.h * self.w0
+
+    def altered(self, **changes: float) -> "Scene":
+        """This scene with other numbers; it keeps its name only if nothing changes."""
+        other = replace(self, **changes)  # type: ignore[arg-type]
+        return self if other == self else replace(other, name="custom", watch="")
+
+
+_SLOW = 9.81  # m: makes w0 = 1 s⁻¹, so that z reads like h
+
+SCENES: dict[str, Scene] = {
+    scene.name: scene
+    for scene in (
+        Scene("drift", watch="Explicit Euler gains energy, the symplectic ones keep it, RK4 loses a little."),
+        Scene(
+            "gentle",
+            theta=0.1,
+            watch="Nearly linear: a step gains explicit Euler z² of its energy, costs RK4 z⁶/72.",
+        ),
+        Scene(
+            "large-swing",
+            theta=2.5,
+            watch="A swing of 143° takes 1.64 small ones; explicit Euler never ends its first.",
+        ),
+        Scene(
+            "crossover", h=0.2, watch="RK4 starts far ahead of Verlet in energy and falls behind after half a minute."
+        ),
+        Scene(
+            "near-separatrix",
+            theta=math.radians(179.9),
+            h=0.02,
+            watch="RK4's energy error is smallest, yet from 30 s on it falls at the wrong time.",
+        ),
+        Scene(
+            "spin",
+            theta=0.0,
+            omega=8.0,
+            h=0.02,
+            watch="A turn a second: symplectic Euler is half a kick from Verlet, the angles agree.",
+        ),
+        Scene(
+            "verlet-limit",
+            theta=0.1,
+            length=_SLOW,
+            h=1.98,
+            watch="Just below z = 2: Verlet loses 98 % of its energy, has it back every 11 steps.",
+        ),
+        Scene(
+            "verlet-limit-above",
+            theta=0.1,
+            length=_SLOW,
+            h=2.02,
+            watch="Just above z = 2: Verlet leaves the bottom, the pendulum holds it at 0.48 rad.",
+        ),
+        Scene(
+            "rk4-limit",
+            theta=0.1,
+            length=_SLOW,
+            h=2.80,
+            watch="Just below z = 2√2: RK4 loses half its energy in 4 steps, the others go over.",
+        ),
+        Scene(
+            "rk4-limit-above",
+            theta=0.1,
+            length=_SLOW,
+            h=2.86,
+            watch="Just above z = 2√2: RK4 gains energy till the pendulum catches it at 0.2 rad.",
+        ),
+        Scene(
+            "chaos-fenced",
+            theta=3.14,
+            length=_SLOW,
+            h=math.sqrt(0.95),
+            watch="K = z² = 0.95: the symplectic ones tumble in chaos, yet |omega| stays < pi/h.",
+        ),
+        Scene(
+            "chaos-loose",
+            theta=3.14,
+            length=_SLOW,
+            h=math.sqrt(1.1),
+            watch="K = z² = 1.1: no fence is left, |omega| passes 2 pi/h within a million steps.",
+        ),
+    )
+}
+DEFAULT_SCENE = SCENES["drift"]

@@ -1,0 +1,1 @@
+"""Sittings in and out of MCAP files.  The only package that imports `mcap`; never Textual."""

@@ -1,0 +1,32 @@
+"""What can go wrong with a recording, and how a recording's text becomes safe to print."""
+
+from collections.abc import Mapping
+
+TEXT_LIMIT = 200  # characters of one text from a file; a mark or a scene's name is shorter
+
+
+class RecordingError(Exception):
+    """A recording that cannot be read; its text is a sentence for the user."""
+
+
+class DiskError(OSError):
+    """A recording that can no longer be written; its text is a sentence for the user."""
+
+    def __init__(self, why: str, path: object, errno: int = 0) -> None:
+        super().__init__(errno, why, str(path))
+
+    def __str__(self) -> str:
+        return f"{printable(str(self.filename))}: {self.strerror}"
+
+
+def printable(text: str, limit: int = TEXT_LIMIT) -> str:
+    """`text` with nothing in it that a terminal would obey: no escapes, line ends or bidirectional overrides."""
+    text = text if len(text) <= limit else text[: limit - 1] + "…"
+    if text.isprintable():
+        return text
+    return "".join(character if character.isprintable() else "\N{REPLACEMENT CHARACTER}" for character in text)
+
+
+def printable_items(texts: Mapping[str, str]) -> dict[str, str]:
+    """A file's names and values, likewise."""
+    return {printable(name): printable(value) for name, value in texts.items()}

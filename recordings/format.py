@@ -1,0 +1,210 @@
+"""The format: topics, schemas and version; samples and events to bytes and back, side by side.
+
+One topic a method, one message a reading: scalars that Foxglove, PlotJuggler and pandas plot at once.
+The messages of one sample are consecutive, in the order of the run's methods, and share their clock.
+What is read is checked field by field; anything else than what is written here raises RecordingError.
+"""
+
+import hashlib
+import json
+import math
+import struct
+from dataclasses import replace
+from functools import cache
+from typing import Any, NoReturn, cast
+
+from engine.lockstep import Reading, Sample
+from engine.methods import METHODS
+from engine.scenes import Scene, SceneError
+from recordings.errors import RecordingError, printable
+from recordings.events import Event
+
+FORMAT_VERSION = 1
+PROFILE = "pendu"  # in the file's header
+EVENTS = "/pendu/events"
+METADATA = "pendu.recording"
+CLOCK_OFFSET = 1_000_000_000  # ns: the clock's zero in log_time; several readers mishandle a time of 0
+CLOCK_LIMIT = 1e9  # s, 30 years
+MESSAGE_LIMIT = 1 << 16  # bytes; ours stay below 1 kB
+STEP_LIMIT = 1 << 53
+
+_READING_NUMBERS = ("t", "theta", "omega", "energy", "energy_error", "max_energy_error")
+_SCENE_NUMBERS = ("theta", "omega", "length", "gravity", "h")
+_KNOWN_METHODS = frozenset(method.key for method in METHODS)
+
+
+def topic(method: str) -> str:
+    """The topic of a method's readings."""
+    return f"/pendu/{method}"
+
+
+@cache
+def sin_fingerprint() -> str:
+    """A checksum of this machine's sin over 4096 arguments from 1e-8 to 1e8: bits can be demanded only where it agrees.
+
+    Another libm, or the same one on another processor, rounds one value in 1500 the other way.
+    """
+    values = (math.sin((-1) ** i * 10 ** (i / 256 - 8) * 1.1) for i in range(4096))
+    return hashlib.sha256(struct.pack("<4096d", *values)).hexdigest()[:16]
+
+
+def without_extremes(sample: Sample) -> Sample:
+    """The sample as the first of its run, or after a gap: nothing is known of the steps before."""
+    return replace(
+        sample,
+        readings=tuple(
+            replace(reading, energy_error_low=reading.energy_error, energy_error_high=reading.energy_error)
+            for reading in sample.readings
+        ),
+    )
+
+
+def encode_readings(sample: Sample) -> list[bytes]:
+    """One message a method, in order.  An extreme that is the energy error itself is left out."""
+    messages = []
+    for reading in sample.readings:
+        fields = {
+            "run": sample.run,
+            "step": sample.step,
+            "t": sample.t,
+            "theta": reading.theta,
+            "omega": reading.omega,
+            "energy": reading.energy,
+            "energy_error": reading.energy_error,
+            "max_energy_error": reading.max_energy_error,
+        }
+        if reading.energy_error_low != reading.energy_error:
+            fields["energy_error_low"] = reading.energy_error_low
+        if reading.energy_error_high != reading.energy_error:
+            fields["energy_error_high"] = reading.energy_error_high
+        if reading.diverged_at is not None:
+            fields["diverged_at"] = reading.diverged_at
+        messages.append(_dumps(fields))
+    return messages
+
+
+def decode_reading(data: bytes) -> tuple[int, int, float, Reading]:
+    """(run, step, t, reading) of one message."""
+    fields = _loads(data)
+    values = [fields.get(name) for name in _READING_NUMBERS]
+    for value in values:
+        if type(value) is not float or value - value != 0.0:  # not finite; done so because it is an hour's decoding
+            values = [_number(fields, name) for name in _READING_NUMBERS]
+    t, theta, omega, energy, energy_error, max_energy_error = cast(list[float], values)
+    low = _number(fields, "energy_error_low") if "energy_error_low" in fields else energy_error
+    high = _number(fields, "energy_error_high") if "energy_error_high" in fields else energy_error
+    diverged_at = _number(fields, "diverged_at") if "diverged_at" in fields else None
+    reading = Reading(theta, omega, energy, energy_error, max_energy_error, low, high, diverged_at)
+    return _count(fields, "run"), _count(fields, "step"), t, reading
+
+
+def encode_event(event: Event) -> bytes:
+    """One message."""
+    fields: dict[str, Any] = {"run": event.run, "step": event.step, "t": event.t, "kind": event.kind}
+    if event.scene is not None:
+        fields["scene"] = event.scene.name
+        fields |= {"watch": event.scene.watch} if event.scene.watch else {}
+        fields |= {name: float(getattr(event.scene, name)) for name in _SCENE_NUMBERS}
+        fields["methods"] = event.methods
+    fields |= {name: value for name in ("h", "speed") if (value := getattr(event, name)) is not None}
+    if event.text is not None:
+        fields["text"] = printable(event.text)
+    if event.equal_cost:
+        fields["equal_cost"] = True
+    return _dumps(fields)
+
+
+def decode_event(data: bytes) -> Event:
+    """The event of one message."""
+    fields = _loads(data)
+    run, step, t, kind = _count(fields, "run"), _count(fields, "step"), _number(fields, "t"), _text(fields, "kind")
+    match kind:
+        case "start":
+            numbers = {name: _number(fields, name) for name in _SCENE_NUMBERS}
+            try:
+                scene = Scene(name=_text(fields, "scene"), watch=_text(fields, "watch", ""), **numbers)
+            except SceneError as error:
+                raise RecordingError(f"run {run} cannot have been recorded: {error}") from error
+            return Event("start", run, step, t, scene=scene, methods=_methods(fields))
+        case "set_h":
+            return Event("set_h", run, step, t, h=_number(fields, "h"), equal_cost=_flag(fields, "equal_cost"))
+        case "speed":
+            return Event("speed", run, step, t, speed=_number(fields, "speed"))
+        case "mark":
+            return Event("mark", run, step, t, text=_text(fields, "text", "") or None)
+        case "pause" | "resume" | "stop":
+            return Event(kind, run, step, t)
+    raise RecordingError(f"there is no event {kind!r}")
+
+
+_dumps_text = json.JSONEncoder(separators=(",", ":"), allow_nan=False).encode
+
+
+def _dumps(fields: dict[str, Any]) -> bytes:
+    data = _dumps_text(fields).encode()
+    if len(data) > MESSAGE_LIMIT:
+        raise ValueError(f"a message of {len(data)} bytes is longer than any reader accepts")
+    return data
+
+
+def _not_a_number(literal: str) -> NoReturn:
+    raise RecordingError(f"{literal} is no number that a recording can hold")
+
+
+_loads_text = json.JSONDecoder(parse_constant=_not_a_number).raw_decode
+
+
+def _loads(data: bytes) -> dict[str, Any]:
+    if len(data) > MESSAGE_LIMIT:
+        raise RecordingError(f"a message of {len(data)} bytes is none of ours")
+    try:
+        fields, end = _loads_text(text := data.decode())
+    except (ValueError, RecursionError) as error:
+        raise RecordingError("a message is not JSON") from error
+    if type(fields) is not dict or text[end:].strip():
+        raise RecordingError("a message is no JSON object")
+    if "nonfinite" in fields:
+        raise RecordingError("a message holds numbers that are not finite")
+    return fields
+
+
+def _number(fields: dict[str, Any], name: str) -> float:
+    value = fields.get(name)
+    if type(value) is int and abs(value) < STEP_LIMIT:  # other writers drop the ".0"
+        value = float(value)
+    if type(value) is not float or not math.isfinite(value):
+        raise RecordingError(f"a message has no finite number {name!r}")
+    return value
+
+
+def _count(fields: dict[str, Any], name: str) -> int:
+    value = fields.get(name)
+    if type(value) is not int or not 0 <= value < STEP_LIMIT:
+        raise RecordingError(f"a message has no count {name!r}")
+    return value
+
+
+def _text(fields: dict[str, Any], name: str, default: str | None = None) -> str:
+    value = fields.get(name, default)
+    if type(value) is not str:
+        raise RecordingError(f"a message has no text {name!r}")
+    return printable(value)
+
+
+def _flag(fields: dict[str, Any], name: str) -> bool:
+    value = fields.get(name, False)
+    if type(value) is not bool:
+        raise RecordingError(f"a message has {name!r} neither true nor false")
+    return value
+
+
+def _methods(fields: dict[str, Any]) -> tuple[str, ...]:
+    methods = fields.get("methods")
+    if type(methods) is not list or not methods:
+        raise RecordingError("a start names no methods")
+    for method in methods:
+        if type(method) is not str or method not in _KNOWN_METHODS:
+            raise RecordingError(f"this version knows no method {printable(str(method))!r}")
+    if len(set(methods)) < len(methods):
+        raise RecordingError("a start names a method twice")
+    return tuple(methods)

@@ -1,0 +1,72 @@
+"""Runs without a screen: the clock of their recordings is the simulated time, so the same run gives the same bytes."""
+
+from collections.abc import Callable, Iterator, Sequence
+
+from engine.lockstep import Lockstep, Sample
+from engine.loops import Loops, plain
+from engine.methods import METHODS, Method
+from engine.scenes import Scene
+from recordings.events import Event
+from recordings.recorder import Recorder
+
+SAMPLE_EVERY = 1 / 30  # s of simulated time, as often as the live lab paints
+
+Changes = Sequence[tuple[int, float]]
+"""(step, h): from this step on, this step size [s].  Steps ascend."""
+
+
+def segments(scene: Scene, time: float, changes: Changes = ()) -> Iterator[tuple[int, int, float]]:
+    """(first step, last step, h) of each stretch of constant h.  Backwards or forwards, |h| adds to the time [s]."""
+    first, h, left = 0, scene.h, time
+    for change, following in changes:
+        if first + round(left / abs(h)) <= change:
+            break
+        yield first, change, h
+        left -= (change - first) * abs(h)
+        first, h = change, following
+    yield first, first + max(0, round(left / abs(h))), h
+
+
+def steps_for(scene: Scene, time: float, changes: Changes = ()) -> int:
+    """How many steps make up this much simulated time [s]."""
+    return [last for _, last, _ in segments(scene, time, changes)][-1]
+
+
+def simulate(
+    scene: Scene,
+    time: float,
+    recorder: Recorder | None = None,
+    sample_every: int | None = None,
+    changes: Changes = (),
+    loops: Callable[[Method], Loops] = plain,
+) -> Iterator[Sample]:
+    """Run a scene for `time` [s] and yield its samples, the last one being the result; record them as they come.
+
+    Samples are `sample_every` steps apart, or 1/30 s rounded to whole steps; always the first and the
+    last step and the step of each change.  Memory does not grow.  The recorder is the caller's to close;
+    give it no wall clock and the recording has the same bytes each time.
+    """
+    lockstep = Lockstep(scene, loops=loops)
+    clock = 0.0  # s, simulated; goes up while t goes down
+
+    def record(value: Sample | Event) -> None:
+        if isinstance(value, Sample) and recorder:
+            recorder.sample(value, clock)
+        elif isinstance(value, Event) and recorder:
+            recorder.event(value, clock)
+
+    methods = tuple(method.key for method in METHODS)
+    record(Event("start", 1, 0, 0.0, scene=scene, methods=methods))
+    record(sample := lockstep.sample())
+    yield sample
+    for first, last, h in segments(scene, time, changes):
+        if h != lockstep.h:
+            record(Event("set_h", 1, first, lockstep.t, h=h))
+            lockstep.set_h(h)
+        begin = clock
+        every = sample_every or max(1, round(SAMPLE_EVERY / abs(h)))
+        while lockstep.step < last:
+            lockstep.advance(min(every, last - lockstep.step))
+            clock = begin + (lockstep.step - first) * abs(h)
+            record(sample := lockstep.sample())
+            yield sample

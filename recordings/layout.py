@@ -1,0 +1,93 @@
+"""Layout: what a file's channels are for.  Messages -> samples and events."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from mcap.records import Channel
+
+from engine.lockstep import Reading, Sample
+from engine.methods import METHODS
+from recordings.errors import RecordingError
+from recordings.events import Entry
+from recordings.format import CLOCK_LIMIT, CLOCK_OFFSET, EVENTS, FORMAT_VERSION, decode_event, decode_reading, topic
+from recordings.framing import Message
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """Which channel holds what.  All runs of a file have the same methods, in the order of METHODS."""
+
+    events: int
+    methods: tuple[str, ...]
+    places: dict[int, int]  # channel -> place of its method
+    version: int
+    sin: str  # fingerprint of the sin it was made with
+
+    def samples(self, messages: Mapping[int, int]) -> int:
+        """How many samples so many messages of each channel make."""
+        return max(messages.get(channel, 0) for channel in self.places)
+
+    def entries(self, messages: Iterable[Message], only_events: bool = False) -> Iterator[tuple[list[Message], Entry]]:
+        """What the messages of a chunk say, each entry with its messages.  Channels of others are passed over.
+
+        Raises RecordingError for messages that are none of ours, and for a sample that is not whole.
+        """
+        parts: list[Message] = []  # of a sample
+        readings: list[Reading] = []
+        for message in messages:
+            if message.channel == self.events and not readings:
+                event = decode_event(message.data)
+                if event.methods and event.methods != self.methods:
+                    raise RecordingError("a run has other methods than the file")
+                yield [message], Entry(clock_of(message), event)
+            elif message.channel in self.places and not only_events:
+                run, step, t, reading = decode_reading(message.data)
+                if not readings:
+                    head = run, step, t
+                if self.places[message.channel] != len(readings) or (run, step, t) != head:
+                    raise RecordingError("a sample is not whole")
+                parts.append(message)
+                readings.append(reading)
+                if len(readings) == len(self.methods):
+                    yield parts, Entry(clock_of(parts[0]), Sample(*head, tuple(readings)))
+                    parts, readings = [], []
+            elif message.channel == self.events:
+                raise RecordingError("a sample is not whole")
+        if readings:
+            raise RecordingError("a sample is not whole")
+
+
+def layout_of(channels: Iterable[Channel]) -> Layout:
+    """The layout that these channels declare.  Raises RecordingError if it is none of ours, or a newer one."""
+    by_topic = {channel.topic: channel for channel in channels}
+    if EVENTS not in by_topic:
+        raise RecordingError("this is an MCAP file, but no recording of pendu-tui")
+    facts = by_topic[EVENTS].metadata
+    version = facts.get("format", "")
+    if not version.isdecimal() or not version.isascii() or len(version) > 9:
+        raise RecordingError("this is no recording of pendu-tui, or one without the version of its format")
+    if int(version) > FORMAT_VERSION:
+        raise RecordingError(
+            f"it has format {version}, and this pendu-tui knows formats up to {FORMAT_VERSION}; install a newer one"
+        )
+    methods = tuple(method.key for method in METHODS if topic(method.key) in by_topic)
+    if not methods:
+        raise RecordingError("it has no method that this version knows")
+    return Layout(
+        events=by_topic[EVENTS].id,
+        methods=methods,
+        places={by_topic[topic(method)].id: place for place, method in enumerate(methods)},
+        version=int(version),
+        sin=facts.get("sin", ""),
+    )
+
+
+def check_times(before: int, start: int, end: int) -> None:
+    """Raise RecordingError unless a chunk from `start` to `end` [ns] can follow one that ended at `before`."""
+    if not max(before, CLOCK_OFFSET) <= start <= end <= CLOCK_OFFSET + CLOCK_LIMIT * 1e9:
+        raise RecordingError("its clock runs backwards, or for centuries")
+
+
+def clock_of(message: Message) -> float:
+    """The recording clock [s]."""
+    return (message.log_time - CLOCK_OFFSET) / 1e9

@@ -1,0 +1,118 @@
+"""Library: where recordings live; list, find, name and prune them."""
+
+import os
+import time
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from difflib import get_close_matches
+from pathlib import Path
+
+import platformdirs
+
+from recordings.errors import RecordingError, printable
+from recordings.lock import in_use
+from recordings.names import MARKS, PART, SUFFIX, free_path
+
+GOLDEN = Path(__file__).parent / "golden"
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """A finished recording in the library."""
+
+    path: Path
+    bytes: int
+    modified: float  # s since 1970
+
+
+def folder() -> Path:
+    """$PENDU_RECORDINGS, or recordings in the user's data folder.  It need not exist."""
+    chosen = os.environ.get("PENDU_RECORDINGS")
+    return Path(chosen).expanduser() if chosen else platformdirs.user_data_path("pendu-tui", False) / "recordings"
+
+
+def new_path(where: Path | None = None, now: time.struct_time | None = None) -> Path:
+    """A name that no recording has yet, by date and time."""
+    return free_path((where or folder()) / (time.strftime("%Y-%m-%dT%H-%M-%S", now or time.localtime()) + SUFFIX))
+
+
+def listing(where: Path | None = None) -> list[Item]:
+    """The finished recordings, newest first.  None, where there is no folder."""
+    items = []
+    for path in _files(where or folder(), SUFFIX):
+        with suppress(OSError):  # deleted meanwhile
+            status = path.stat()
+            items.append(Item(path, status.st_size, status.st_mtime))
+    return sorted(items, key=lambda item: (item.modified, item.path.name), reverse=True)
+
+
+def resolve(name: str, where: Path | None = None) -> Path:
+    """The recording that `name` means: a file, `latest`, one of the library, or one that came with the program.
+
+    Raises RecordingError, a sentence, if there is none.
+    """
+    path, where = Path(name), where or folder()
+    if path.exists() and not path.is_dir():
+        return path
+    if name == "latest":
+        items = listing(where)
+        if not items:
+            raise RecordingError(f"There is no recording in {printable(str(where))} yet; pendu-tui makes one.")
+        return items[0].path
+    golden = golden_names()
+    if name in golden:
+        return GOLDEN / (name + SUFFIX)
+    if path.name == name:
+        for candidate in (where / name, where / (name + SUFFIX)):
+            if candidate.is_file():
+                return candidate
+    names = ["latest", *golden, *(item.path.name for item in listing(where))]
+    close = get_close_matches(name, names, n=1)
+    advice = (
+        f"did you mean {printable(close[0])}?" if close else f"choose a file, or one of latest, {', '.join(golden)}."
+    )
+    raise RecordingError(f"There is no recording {printable(name)!r}: {advice}")
+
+
+def golden_names() -> list[str]:
+    """The recordings that come with the program."""
+    return sorted(path.stem for path in GOLDEN.glob("*" + SUFFIX))
+
+
+def leftovers(where: Path | None = None) -> list[Path]:
+    """Recordings that were begun and not finished, and that nobody is working on."""
+    return [path for path in _files(where or folder(), SUFFIX + PART) if not in_use(path)]
+
+
+def to_prune(items: Sequence[Item], keep: int | None = None, size: int | None = None) -> list[Item]:
+    """Which to delete so that only the `keep` newest are left, with no more than `size` bytes in all."""
+    newest_first = sorted(items, key=lambda item: item.modified, reverse=True)
+    total = 0
+    for place, item in enumerate(newest_first):
+        total += item.bytes
+        if (keep is not None and place >= keep) or (size is not None and total > size):
+            return newest_first[place:]
+    return []
+
+
+def prune(items: Iterable[Item]) -> list[Item]:
+    """Delete these recordings, and the marks beside them; return what was deleted.
+
+    What somebody is replaying stays, and what cannot be deleted.
+    """
+    deleted = []
+    for item in items:
+        with suppress(OSError):
+            if not in_use(item.path):
+                item.path.unlink()
+                deleted.append(item)
+                item.path.with_name(item.path.name + MARKS).unlink(missing_ok=True)
+    return deleted
+
+
+def _files(where: Path, suffix: str) -> list[Path]:
+    try:
+        return [path for path in where.iterdir() if path.name.endswith(suffix) and path.is_file()]
+    except FileNotFoundError:
+        return []

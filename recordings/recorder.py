@@ -1,0 +1,237 @@
+"""Recorder: a sitting into a file, so that at most the last second is lost whatever happens to the process.
+
+Everything goes to NAME.mcap.part, which is renamed to NAME.mcap when it is finished.
+"""
+
+import os
+import platform
+import time
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from mcap.writer import CompressionType, Writer
+
+from engine.lockstep import Sample
+from recordings.errors import DiskError
+from recordings.events import Event
+from recordings.format import (
+    CLOCK_LIMIT,
+    CLOCK_OFFSET,
+    EVENTS,
+    FORMAT_VERSION,
+    METADATA,
+    PROFILE,
+    encode_event,
+    encode_readings,
+    sin_fingerprint,
+    topic,
+    without_extremes,
+)
+from recordings.lock import hold
+from recordings.names import part_of
+from recordings.schemas import EVENT_SCHEMA, SAMPLE_SCHEMA, encode_schema
+
+FLUSH_EVERY = 0.9  # s of the recording clock; with a frame's delay the loss at kill -9 stays below 1 s
+FLUSH_EVENTS_EVERY = 0.25  # s; a key held down gives 30 events a second
+FLUSH_BYTES = 1 << 17  # of messages in one chunk, however dense the samples; all that counts where nobody sits
+
+WallClock = Callable[[], int]  # ns since 1970
+
+
+class Recorder:
+    """Writes one recording.  The first thing it is given is a start.
+
+    Clocks are in seconds since the recording began, pauses excluded.  Headless recordings have no
+    `wall` clock: nothing in them tells when or where they were made, so the same run gives the same
+    bytes.  `facts` are the metadata of the recording of which this one is a copy.  Any trouble with the
+    disk raises DiskError; after one, only `abandon` is of use.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        wall: WallClock | None = time.time_ns,
+        overwrite: bool = False,
+        facts: Mapping[str, str] | None = None,
+    ) -> None:
+        self.path = path
+        self.part = part_of(path)
+        self.seconds = 0.0  # length so far
+        self.bytes = 0  # size of the file so far
+        self.samples = 0
+        self._wall, self._facts = wall, facts
+        self._sits = wall is not None and facts is None  # or its seconds are none that somebody waited for
+        self._last: Sample | None = None
+        self._channels: dict[str, int] = {}
+        self._log_time = CLOCK_OFFSET
+        self._paused = self._stopped = False
+        self._event_waits = False
+        self._flushed_at, self._unflushed = 0.0, 0
+        try:
+            if path.exists() and not overwrite:
+                raise DiskError("a file of this name exists already; choose another name", path)
+            self._file = self.part.open("xb", buffering=1 << 20)
+        except FileExistsError as error:
+            raise DiskError(
+                "is being recorded, or left over from a recording that was not finished; choose another name", self.part
+            ) from error
+        except OSError as error:
+            raise trouble(error, self.part) from error
+        hold(self._file)
+        self._writer = Writer(self._file, chunk_size=1 << 62, compression=CompressionType.ZSTD, enable_data_crcs=True)
+        self._writer.start(PROFILE, f"pendu-tui {_version()}")
+
+    def event(self, event: Event, clock: float) -> None:
+        """Write an event; what it changes is on disk a quarter of a second later at the latest."""
+        if event.kind == "start":
+            self._last = None  # or a recording that ends here would have a stop of the run before
+            if not self._channels:
+                self._begin(event)
+        self._add([(EVENTS, encode_event(event))], clock)
+        self._stopped = event.kind == "stop"
+        self._paused = event.kind == "pause" or (self._paused and event.kind != "resume")
+        self._event_waits = True
+        self._flush_if_due(urgent=self._paused)
+
+    def sample(self, sample: Sample, clock: float, encoded: Sequence[bytes] | None = None) -> None:
+        """Write a sample, unless it is the last one again.  A copy passes on the messages that it has `encoded`.
+
+        Steps ascend within a run.  Extremes are those since the sample before, so a run's first has none.
+        """
+        last = self._last
+        if last is None or last.run != sample.run:
+            encoded = encode_readings(without_extremes(sample))
+        elif last.step == sample.step:
+            return
+        elif last.step > sample.step:
+            raise ValueError(f"step {sample.step} of run {sample.run} comes after step {last.step}")
+        self._add(list(zip(self._topics, encoded or encode_readings(sample), strict=True)), clock)
+        self.samples += 1
+        self._last = sample
+        self._flush_if_due(urgent=self._paused or last is None or last.run != sample.run)
+
+    def flush(self) -> None:
+        """Bring everything so far to the disk's cache, where it survives the death of this process."""
+        try:
+            self._writer.flush()  # type: ignore[no-untyped-call]
+            there = self.part.stat()
+        except OSError as error:
+            raise trouble(error, self.part) from error
+        if not os.path.samestat(there, os.fstat(self._file.fileno())):
+            raise DiskError("another file has taken its place", self.part)
+        self.bytes = self._file.tell()
+        self._flushed_at, self._unflushed, self._event_waits = self.seconds, 0, False
+
+    def close(self) -> None:
+        """Finish the recording: a stop, the summary, and its own name.  A recording without a start leaves no file."""
+        if self._file.closed:
+            return
+        if not self._channels:
+            self.abandon()
+            return
+        try:
+            if self._last is not None and not self._stopped:
+                last = self._last
+                self._add([(EVENTS, encode_event(Event("stop", last.run, last.step, last.t)))], self.seconds)
+            self.flush()
+            self._writer.finish()  # type: ignore[no-untyped-call]
+            self._file.flush()
+            os.fsync(self._file.fileno())
+            self.bytes = self._file.tell()
+            if os.name == "nt":
+                self._file.close()  # Windows renames no open file; elsewhere the lock is kept until the name is right
+            self.part.replace(self.path)
+            self._file.close()
+        except OSError as error:
+            self.abandon()
+            raise trouble(error, self.part) from error
+
+    def abandon(self) -> None:
+        """Let go of the file as it is.  What was flushed stays in NAME.mcap.part; an empty one is removed."""
+        if self._file.closed:
+            return
+        with suppress(OSError):
+            self._file.close()
+        with suppress(OSError):
+            if not self._channels:
+                self.part.unlink()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        if isinstance(error, DiskError):
+            self.abandon()
+        else:
+            self.close()
+
+    def _begin(self, start: Event) -> None:
+        metadata = self._facts if self._facts is not None else _metadata(start, self._wall)
+        facts = {"format": str(FORMAT_VERSION), "sin": metadata["sin"]}
+        self._writer.add_metadata(METADATA, dict(metadata))
+        schema = self._writer.register_schema("pendu.Event", "jsonschema", encode_schema(EVENT_SCHEMA))
+        self._channels[EVENTS] = self._writer.register_channel(EVENTS, "json", schema, facts)
+        schema = self._writer.register_schema("pendu.Sample", "jsonschema", encode_schema(SAMPLE_SCHEMA))
+        for method in start.methods:
+            self._channels[topic(method)] = self._writer.register_channel(topic(method), "json", schema, {})
+        self._topics = [topic(method) for method in start.methods]
+
+    def _add(self, messages: list[tuple[str, bytes]], clock: float) -> None:
+        """Hand messages to the writer: all checked before the first, because a rejected one spoils its chunk."""
+        if not self._channels:
+            raise ValueError("a recording begins with a start")
+        if not 0 <= clock <= CLOCK_LIMIT:  # nor nan
+            raise ValueError(f"{clock} is no reading of a recording clock")
+        self._log_time = max(self._log_time, CLOCK_OFFSET + round(clock * 1e9))
+        self.seconds = max(self.seconds, clock)
+        publish_time = self._log_time if self._wall is None else self._wall()
+        sequence = self.samples % (1 << 32)
+        try:
+            for name, data in messages:
+                self._writer.add_message(self._channels[name], self._log_time, data, publish_time, sequence)
+                self._unflushed += len(data)
+        except OSError as error:
+            raise trouble(error, self.part) from error
+
+    def _flush_if_due(self, urgent: bool = False) -> None:
+        age = self.seconds - self._flushed_at
+        every = FLUSH_EVENTS_EVERY if self._event_waits else FLUSH_EVERY
+        if urgent or (self._sits and age >= every) or self._unflushed > FLUSH_BYTES:
+            self.flush()
+
+
+@cache
+def _version() -> str:
+    return version("pendu-tui")
+
+
+def _metadata(start: Event, wall: WallClock | None) -> dict[str, str]:
+    """For people; verification needs none of it but the fingerprint, which stands under a checksum as well."""
+    assert start.scene is not None
+    metadata = {
+        "format": str(FORMAT_VERSION),
+        "sin": sin_fingerprint(),
+        "pendu-tui": _version(),
+        "scene": start.scene.name,
+    }
+    for name in ("theta", "omega", "length", "gravity", "h"):
+        metadata[f"{name}.hex"] = float.hex(float(getattr(start.scene, name)))
+    if wall is not None:
+        metadata["started"] = time.strftime("%Y-%m-%dT%H:%M:%S%z", time.localtime(wall() / 1e9))
+        metadata["python"] = platform.python_version()
+        metadata["platform"] = f"{platform.system()} {platform.machine()}"
+    return metadata
+
+
+def trouble(error: OSError, path: Path) -> DiskError:
+    """The error as ours."""
+    if isinstance(error, DiskError):
+        return error
+    return DiskError(error.strerror or str(error), path, error.errno or 0)

@@ -1,0 +1,210 @@
+"""Recording: what is in a file, and any moment of it, without reading the rest.
+
+An unfinished or damaged file opens with what is intact.
+"""
+
+from bisect import bisect_left, bisect_right
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from io import SEEK_END
+from pathlib import Path
+from types import TracebackType
+from typing import BinaryIO, NamedTuple, Self
+
+from mcap.opcode import Opcode
+
+from engine.lockstep import Sample
+from engine.scenes import Scene
+from recordings.errors import RecordingError
+from recordings.events import Entry, Event
+from recordings.format import CLOCK_LIMIT, CLOCK_OFFSET
+from recordings.framing import named, open_file, read_chunk, record_at
+from recordings.index import Index, index_of
+from recordings.walk import Progress
+
+EVENT_LIMIT = 100_000  # in memory all at once, 30 MB; a lesson has a few hundred, but every step back repeats changes
+CHUNKS_KEPT = 2  # decoded; playing meets the same one thirty times, stepping to and fro about an edge two
+
+
+class Place(NamedTuple):
+    """Where a sample is.  Several may share a clock: while paused, the clock stands and steps go on."""
+
+    chunk: int
+    entry: int
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """One run of a recording."""
+
+    number: int
+    scene: Scene
+    begin: float  # s of the recording clock
+    end: float  # s, at its last sample
+    steps: int  # at its last sample
+    t: float  # s simulated, at its last sample
+    events: int  # besides start and stop
+
+
+class Recording:
+    """A recording that is open for reading.
+
+    `complete`: it was finished and nothing is wrong with it; `damaged`: something was changed or lost;
+    `reason`: what is wrong, a clause, or None.  A file too long to be checked as it is opened may turn
+    out damaged while it plays.  Clocks are in s, from 0 to `length`.
+    """
+
+    def __init__(self, path: Path, stream: BinaryIO, index: Index) -> None:
+        self.path = path
+        self.bytes = stream.seek(0, SEEK_END)
+        self.metadata = index.metadata
+        self.version, self.methods, self.sin = index.layout.version, index.layout.methods, index.layout.sin
+        self.samples = index.samples
+        self.complete, self.damaged, self.reason = index.complete, index.damaged, index.reason
+        self.length = (index.chunks[-1].end - CLOCK_OFFSET) / 1e9 if index.chunks else 0.0
+        self._stream, self._layout, self._chunks = stream, index.layout, index.chunks
+        self._entries = lru_cache(CHUNKS_KEPT)(self._known_entries)
+        events = list(self._read_events())
+        starts = {event.run: (chunk, clock, event) for chunk, clock, event in events if event.kind == "start"}
+        if list(starts) != sorted(starts):
+            raise RecordingError("its runs are not in order")
+        if not starts:
+            raise RecordingError("no start of a run is left in it")
+        self.events: tuple[tuple[float, Event], ...] = tuple(
+            (clock, event) for _, clock, event in events if event.run in starts
+        )
+        self._known = frozenset(starts)
+        self.runs = tuple(self._runs([(chunk, clock, event) for chunk, clock, event in starts.values()]))
+
+    @classmethod
+    def open(cls, path: Path, check: bool = False, progress: Progress | None = None) -> Self:
+        """Open a recording; with `check`, every byte of it is looked at.
+
+        Raises RecordingError, a sentence, for what is no recording of ours or has no run in it.
+        """
+        with named(path):
+            stream = open_file(path)
+            try:
+                return cls(path, stream, index_of(stream, check, progress))
+            except BaseException:
+                stream.close()
+                raise
+
+    def close(self) -> None:
+        """Let go of the file."""
+        self._stream.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def run_at(self, clock: float) -> Run:
+        """The run that is under way at that time."""
+        return self.runs[max(0, bisect_right(self.runs, clock, key=lambda run: run.begin) - 1)]
+
+    def at(self, clock: float) -> Place | None:
+        """The last sample at or before that time, or else the first one; None where there are no samples."""
+        clock, log_time = _as_recorded(clock)
+        chunk = bisect_right(self._chunks, log_time, key=lambda chunk: chunk.start) - 1
+        entries = self._entries(chunk) if chunk >= 0 else ()
+        later = bisect_right(entries, clock, key=lambda entry: entry.clock)
+        return self.previous(Place(chunk, later)) or self.next(Place(-1, 0))
+
+    def sample(self, place: Place) -> Entry:
+        """The sample there, and its time."""
+        return self._entries(place.chunk)[place.entry]
+
+    def next(self, place: Place) -> Place | None:
+        """The next sample; None after the last."""
+        index = place.entry + 1
+        for chunk in range(place.chunk, len(self._chunks)):
+            entries = self._entries(chunk) if chunk >= 0 else ()
+            for at in range(index, len(entries)):
+                if isinstance(entries[at].value, Sample):
+                    return Place(chunk, at)
+            index = 0
+        return None
+
+    def previous(self, place: Place) -> Place | None:
+        """The sample before; None before the first."""
+        index = place.entry
+        for chunk in range(min(place.chunk, len(self._chunks) - 1), -1, -1):
+            entries = self._entries(chunk)
+            for at in range(min(index, len(entries)) - 1, -1, -1):
+                if isinstance(entries[at].value, Sample):
+                    return Place(chunk, at)
+            index = 1 << 62
+        return None
+
+    def entries(self, start: float = 0.0, end: float = CLOCK_LIMIT) -> Iterator[Entry]:
+        """All samples and events from `start` to `end`, both included, in the order in which they were recorded."""
+        (start, log_time), (end, _) = _as_recorded(start), _as_recorded(end)
+        for chunk in range(bisect_left(self._chunks, log_time, key=lambda chunk: chunk.end), len(self._chunks)):
+            for entry in self._entries(chunk):
+                if entry.clock > end:
+                    return
+                if entry.clock >= start:
+                    yield entry
+
+    def _read_entries(self, chunk: int, only_events: bool = False) -> tuple[Entry, ...]:
+        """A chunk's entries; none if it turns out to be damaged."""
+        index = self._chunks[chunk]
+        try:
+            record = record_at(self._stream, index.offset)
+            if record is None or record[0] != Opcode.CHUNK:
+                raise RecordingError("a chunk is not where its summary says")
+            read = read_chunk(record[1])
+            if (read.start, read.end) != (index.start, index.end):
+                raise RecordingError("a chunk is not the one of its summary")
+            return tuple(entry for _, entry in self._layout.entries(read.messages, only_events))
+        except (RecordingError, OSError) as error:
+            self.complete, self.damaged, self.reason = False, True, self.reason or str(error)
+            return ()
+
+    def _known_entries(self, chunk: int) -> tuple[Entry, ...]:
+        """A chunk's entries without those of runs whose start is lost."""
+        return tuple(entry for entry in self._read_entries(chunk) if entry.value.run in self._known)
+
+    def _read_events(self) -> Iterator[tuple[int, float, Event]]:
+        """(chunk, clock, event) of all events, from the chunks that have any; of too many, the first."""
+        count = 0
+        for chunk, index in enumerate(self._chunks):
+            if self._layout.events not in index.channels:
+                continue
+            for clock, event in self._read_entries(chunk, only_events=True):
+                if not isinstance(event, Event):
+                    continue
+                if count == EVENT_LIMIT:
+                    self.complete, self.reason = False, self.reason or f"only its first {count} events are taken in"
+                    return
+                yield chunk, clock, event
+                count += 1
+
+    def _runs(self, starts: list[tuple[int, float, Event]]) -> Iterator[Run]:
+        made = Counter(event.run for _, event in self.events if event.kind not in ("start", "stop"))
+        for (_, begin, start), following in zip(starts, [*starts[1:], None], strict=True):
+            chunk, entry = len(self._chunks) - 1, 1 << 62
+            if following:
+                chunk = following[0]
+                entries = enumerate(self._entries(chunk))
+                entry = next((at for at, (_, value) in entries if value.run == following[2].run), 0)
+            last = self.previous(Place(chunk, entry))
+            end, sample = self.sample(last) if last else (begin, None)
+            if not isinstance(sample, Sample) or sample.run != start.run:
+                end, step, t = begin, start.step, start.t
+            else:
+                step, t = sample.step, sample.t
+            assert start.scene is not None
+            yield Run(start.run, start.scene, begin, end, step, t, made[start.run])
+
+
+def _as_recorded(clock: float) -> tuple[float, int]:
+    """The nearest clock that a file can hold, in s and as log_time in ns: files round to nanoseconds."""
+    nanoseconds = round(min(max(clock, 0.0), CLOCK_LIMIT) * 1e9)
+    return nanoseconds / 1e9, CLOCK_OFFSET + nanoseconds

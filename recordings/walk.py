@@ -1,0 +1,178 @@
+"""Walk: a file from its first byte to its last, past whatever is damaged.  It is checked, not trusted."""
+
+import zlib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from io import SEEK_END
+from operator import eq
+from typing import BinaryIO
+
+from mcap.opcode import Opcode
+from mcap.records import Channel, DataEnd, Header, Metadata
+
+from recordings.errors import RecordingError, printable_items
+from recordings.format import METADATA, PROFILE
+from recordings.framing import (
+    CHANNEL_LIMIT,
+    MAGIC,
+    RECORD,
+    Chunk,
+    Search,
+    read_chunk,
+    read_record,
+    record_at,
+)
+from recordings.layout import Layout, check_times, layout_of
+from recordings.summary import SUMMARY_LIMIT, Summary, find_summary, read_summary
+
+Progress = Callable[[int, int], None]
+"""Called with bytes done and bytes in all."""
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """A stretch of a file that is unreadable."""
+
+    offset: int  # where it begins
+
+
+@dataclass(frozen=True, slots=True)
+class Intact:
+    """A chunk that is as it was written."""
+
+    offset: int
+    layout: Layout
+    chunk: Chunk
+
+
+class Walk:
+    """The intact chunks of a file and the gaps between them, in order.  What was found out is known at the end.
+
+    Raises RecordingError for what is no recording of ours, and for chunks whose clock runs backwards.
+
+    `complete`: finished by the recorder, and every checksum right.  `damaged`: something was changed or
+    lost; a recording that merely was not finished is not.  `reason`: the first thing wrong, a clause.
+    """
+
+    def __init__(self, stream: BinaryIO, progress: Progress | None = None) -> None:
+        self.complete = self.damaged = False
+        self.reason: str | None = None
+        self._profile = PROFILE
+        self.metadata: dict[str, str] = {}
+        self.size = stream.seek(0, SEEK_END)
+        self._stream, self._progress = stream, progress
+        stream.seek(0)
+        start = stream.read(len(MAGIC))
+        if not start:
+            raise RecordingError("the file is empty")
+        if sum(map(eq, start, MAGIC)) < len(start) / 2:  # less would be damage, which the walk then finds
+            raise RecordingError("this is no MCAP file")
+        self._begins_right = start == MAGIC[: len(start)]
+        found = find_summary(stream)
+        self.summary: Summary | None = found[0] if found else None
+        self._data_end = found[1] if found else None
+        self._offsets: list[int] = []
+        self._messages = self._time = 0
+        self.layout: Layout | None = None  # once a chunk was met
+        self.channels: dict[int, Channel] = dict(self.summary.channels) if self.summary else {}
+
+    @property
+    def chunks(self) -> int:
+        """How many intact chunks were found so far."""
+        return len(self._offsets)
+
+    def nothing(self, done: str) -> RecordingError:
+        """Why nothing in it can be read, verified or saved."""
+        if self._profile != PROFILE:
+            return RecordingError("this is an MCAP file, but no recording of pendu-tui")
+        return RecordingError(f"nothing in it can be {done}: {self.reason or 'it has no samples'}")
+
+    def __iter__(self) -> Iterator[Intact | Gap]:
+        offset, crc = len(MAGIC), zlib.crc32(MAGIC)
+        search = Search(self._stream)
+        if not self._begins_right:
+            self.damaged, self.reason = True, "it does not begin as an MCAP file does"
+        while True:
+            if self._progress:
+                self._progress(offset, self.size)
+            chunk = None
+            try:
+                record = record_at(self._stream, offset)
+                if record is None:
+                    if search.next_chunk(offset + 1) is None:
+                        self.reason = self.reason or "the recording was not finished"
+                        if offset < self.size:
+                            yield Gap(offset)
+                        return
+                    raise RecordingError("a record's length is wrong")
+                opcode, content = record
+                if opcode == Opcode.CHUNK:
+                    chunk = read_chunk(content)
+                    self._declare(chunk.channels)
+                else:
+                    match read_record(opcode, content):
+                        case Channel() as channel:
+                            self._declare([channel])
+                        case Metadata(name=name, metadata=metadata) if name == METADATA:
+                            self.metadata = printable_items(metadata)
+                        case Header(profile=profile):
+                            self._profile = profile
+                        case DataEnd(data_section_crc=expected):
+                            self._end(offset, expected == crc)
+                            return
+            except RecordingError as error:
+                following = search.next_chunk(offset + 1)
+                self.damaged, self.reason = True, self.reason or f"{error} (at byte {offset})"
+                yield Gap(offset)
+                if following is None:
+                    return
+                offset = following
+                continue
+            if chunk:
+                if self.layout is None:
+                    self.layout = self._layout()
+                check_times(self._time, chunk.start, chunk.end)
+                self._time = chunk.end
+                self._offsets.append(offset)
+                self._messages += len(chunk.messages)
+                yield Intact(offset, self.layout, chunk)
+            crc = zlib.crc32(content, zlib.crc32(RECORD.pack(opcode, len(content)), crc))
+            offset += RECORD.size + len(content)
+
+    def _declare(self, channels: list[Channel]) -> None:
+        for channel in channels:
+            self.channels[channel.id] = channel
+            self.layout = None
+        if len(self.channels) > CHANNEL_LIMIT:
+            raise RecordingError("it declares more channels than any recording of ours has")
+
+    def _layout(self) -> Layout:
+        if self.damaged and not self.channels:
+            raise self.nothing("read")
+        return layout_of(self.channels.values())
+
+    def _end(self, offset: int, right: bool) -> None:
+        """Check what follows the data; all that is wrong there is damage without a gap."""
+        if not right:
+            self.damaged, self.reason = True, self.reason or "its checksum is wrong"
+        elif self.summary is None or offset != self._data_end:
+            self._stream.seek(start := offset + RECORD.size + 4)
+            try:
+                whole = read_summary(self._stream.read(SUMMARY_LIMIT), start) is not None
+                self.damaged = self.damaged or whole  # and yet not where the footer says
+                self.reason = self.reason or "the file ends within its summary"
+            except RecordingError as error:
+                self.damaged, self.reason = True, self.reason or str(error)
+        elif not self.damaged and not self._agrees(self.summary):
+            self.damaged, self.reason = True, "its summary contradicts what is in it"
+        else:
+            self.complete = not self.damaged
+
+    def _agrees(self, summary: Summary) -> bool:
+        statistics = summary.statistics
+        return (
+            statistics is not None
+            and statistics.message_count == sum(statistics.channel_message_counts.values()) == self._messages
+            and [index.offset for index in summary.chunks] == self._offsets
+            and summary.channels == self.channels
+        )

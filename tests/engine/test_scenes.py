@@ -1,0 +1,192 @@
+"""A scene is validated where it is made, and what it tells people to watch is measured."""
+
+import math
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from engine.exact import Swing
+from engine.lockstep import Lockstep, Sample
+from engine.scenes import DEFAULT_SCENE, LIMITS, SCENES, Z_LIMITS, Scene, SceneError, check_h
+
+EXPLICIT, SYMPLECTIC, VERLET, RK4 = range(4)
+
+
+def watch(name: str, seconds: float) -> list[Sample]:
+    """A sample at every step."""
+    lockstep = Lockstep(SCENES[name])
+    samples = [lockstep.sample()]
+    while lockstep.t < seconds:
+        lockstep.advance(1)
+        samples.append(lockstep.sample())
+    return samples
+
+
+def over_the_top(samples: list[Sample], method: int) -> float:
+    """When it first was above the pivot [s]; inf: never."""
+    return next((sample.t for sample in samples if abs(sample.readings[method].theta) > math.pi), math.inf)
+
+
+def worst(samples: list[Sample], method: int) -> float:
+    return max(abs(sample.readings[method].energy_error) for sample in samples)
+
+
+@pytest.mark.parametrize("field", LIMITS)
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 1e10, -1e10])
+def test_a_value_that_is_no_pendulum_is_refused_in_a_sentence(field: str, value: float) -> None:
+    with pytest.raises(SceneError, match=rf"^{field} = .* is out of range: give .* to .*\.$"):
+        Scene(**{field: value})
+
+
+@pytest.mark.parametrize("field", ["length", "gravity"])
+@pytest.mark.parametrize("value", [0.0, -1.0, 1e-7, 1e7])
+def test_length_and_gravity_are_positive_and_of_this_world(field: str, value: float) -> None:
+    with pytest.raises(SceneError, match=field):
+        Scene(**{field: value})
+
+
+@pytest.mark.parametrize("h", [0.0, -0.05, math.nan, math.inf, -math.inf, 1e9, 1e-12])
+def test_a_step_size_that_leads_nowhere_is_refused_and_a_good_one_is_named(h: float) -> None:
+    with pytest.raises(SceneError, match=r"^h = .* is no usable step: give .* 0\.05 for example\.$"):
+        Scene(h=h)
+
+
+@given(length=st.floats(*LIMITS["length"]), gravity=st.floats(*LIMITS["gravity"]))
+def test_the_step_size_that_the_sentence_names_is_usable(length: float, gravity: float) -> None:
+    w0 = math.sqrt(gravity / length)
+    with pytest.raises(SceneError) as refusal:
+        Scene(length=length, gravity=gravity, h=1e3 * Z_LIMITS[1] / w0)
+    example = float(str(refusal.value).split()[-3])
+    assert Scene(length=length, gravity=gravity, h=example).h == example
+
+
+@given(**{name: st.floats(*limits) for name, limits in LIMITS.items()}, z=st.floats(1e-8, 999))
+def test_everything_within_the_limits_is_a_scene(
+    theta: float, omega: float, length: float, gravity: float, z: float
+) -> None:
+    scene = Scene(theta=theta, omega=omega, length=length, gravity=gravity, h=z / math.sqrt(gravity / length))
+    assert scene.z == pytest.approx(z, rel=1e-15)  # a quotient and a product
+    check_h(-scene.h, scene.w0)  # time may run backwards later
+
+
+def test_a_scene_keeps_its_name_only_while_nothing_is_changed() -> None:
+    scene = SCENES["spin"]
+    assert scene.altered(omega=scene.omega) is scene
+    changed = scene.altered(omega=9.0)
+    assert (changed.name, changed.watch, changed.omega, changed.h) == ("custom", "", 9.0, scene.h)
+
+
+def test_every_scene_has_its_name_and_says_what_to_watch() -> None:
+    assert SCENES["drift"] == DEFAULT_SCENE
+    for name, scene in SCENES.items():
+        assert scene.name == name
+        assert 20 < len(scene.watch) <= 79  # a line of the smallest terminal, and the blank before it
+        assert scene.watch.endswith(".")
+
+
+# What the scenes tell people to watch.
+
+
+def test_drift_explicit_euler_gains_the_symplectic_ones_keep_rk4_loses() -> None:
+    samples = watch("drift", 120)
+    last = samples[-1].readings
+    assert over_the_top(samples, EXPLICIT) == pytest.approx(7.15)
+    assert worst(samples, SYMPLECTIC) < 0.08
+    assert worst(samples, VERLET) < 0.006
+    middle = samples[len(samples) // 2].readings
+    assert last[EXPLICIT].energy_error > middle[EXPLICIT].energy_error > 10
+    assert last[RK4].energy_error == pytest.approx(2 * middle[RK4].energy_error, rel=0.05)  # steadily
+    assert -4e-4 < last[RK4].energy_error < -3e-4
+
+
+def test_gentle_the_textbooks_formulas_hold() -> None:
+    scene, samples = SCENES["gentle"], watch("gentle", 60)
+    z, first, last = scene.z, samples[1].readings, samples[-1].readings
+    assert Swing(scene).period == pytest.approx(2 * math.pi / scene.w0, rel=1e-3)  # theta²/16 longer
+    assert samples[40].readings[EXPLICIT].energy_error == pytest.approx((1 + z**2) ** 40 - 1, rel=0.02)
+    assert first[EXPLICIT].energy_error == pytest.approx(z**2, rel=0.01)
+    assert last[RK4].energy_error / samples[-1].step == pytest.approx(-(z**6) / 72, rel=0.02)
+    assert worst(samples, VERLET) == pytest.approx(z**2 / 4, rel=0.02)
+
+
+def test_large_swing_is_slow_and_explicit_euler_never_finishes_its_first() -> None:
+    scene, samples = SCENES["large-swing"], watch("large-swing", 10)
+    period = Swing(scene).period
+    assert period is not None
+    assert period * scene.w0 / (2 * math.pi) == pytest.approx(1.643, abs=1e-3)
+    assert math.degrees(scene.theta) == pytest.approx(143, abs=0.5)
+    assert over_the_top(samples, EXPLICIT) < period
+    assert all(over_the_top(samples, method) == math.inf for method in (SYMPLECTIC, VERLET, RK4))
+
+
+def test_crossover_rk4_starts_far_ahead_of_verlet_and_falls_behind_after_half_a_minute() -> None:
+    samples = watch("crossover", 60)
+    behind = [s.readings[RK4].max_energy_error > s.readings[VERLET].max_energy_error for s in samples]
+    assert samples[behind.index(True)].t == pytest.approx(33.4)
+    assert all(behind[behind.index(True) :])
+    early = [sample for sample in samples if sample.t < 2.2]  # a swing
+    assert worst(early, RK4) < worst(early, VERLET) / 10
+
+
+def test_near_separatrix_the_best_energy_does_not_mean_the_right_time() -> None:
+    swing, samples = Swing(SCENES["near-separatrix"]), watch("near-separatrix", 120)
+
+    def late(method: int) -> float:
+        return next((s.t for s in samples if abs(s.readings[method].theta - swing.at(s.t).theta) > 1), math.inf)
+
+    assert worst(samples, RK4) < 1e-6 < 1e-4 < worst(samples, VERLET) < worst(samples, SYMPLECTIC)
+    assert late(RK4) == pytest.approx(29.4, abs=0.1)
+    assert late(VERLET) == late(SYMPLECTIC) == math.inf
+
+
+def test_spin_symplectic_euler_and_verlet_show_the_same_angle_a_turn_a_second() -> None:
+    """Half a kick apart they are one method; at the bottom, where this starts, the kick is 0."""
+    samples = watch("spin", 60)
+    last = samples[-1].readings
+    for sample in samples:
+        readings = sample.readings
+        assert readings[SYMPLECTIC].theta == pytest.approx(readings[VERLET].theta, abs=1e-10)  # 3000 roundings
+    assert abs(last[SYMPLECTIC].omega - last[VERLET].omega) > 1e-3
+    assert Swing(SCENES["spin"]).period == pytest.approx(1, abs=0.02)
+    assert [round(reading.theta / math.tau) for reading in last] == [94, 61, 61, 61]
+
+
+def test_verlet_limit_verlet_loses_98_percent_and_has_it_back_every_11_steps() -> None:
+    samples = watch("verlet-limit", 2000)
+    errors = [sample.readings[VERLET].energy_error for sample in samples]
+    assert -0.981 < min(errors) < -0.97
+    assert max(errors) == 0
+    for start in range(0, 990, 11):  # a swing back to the full energy within any 11 steps, to 6 %
+        assert max(errors[start : start + 11]) > -0.06
+
+
+def test_verlet_limit_above_verlet_leaves_the_bottom_and_is_caught() -> None:
+    samples = watch("verlet-limit-above", 20_000)
+    amplitudes = [abs(sample.readings[VERLET].theta) for sample in samples]
+    assert max(amplitudes) == pytest.approx(0.48, abs=0.005)
+    assert max(amplitudes[:20]) > 0.45
+
+
+def test_rk4_limit_rk4_loses_half_its_energy_in_four_steps_and_the_others_go_over_the_top() -> None:
+    samples = watch("rk4-limit", 300)
+    assert samples[4].readings[RK4].energy_error == pytest.approx(-0.5, abs=0.01)
+    assert all(over_the_top(samples, method) < 20 for method in (EXPLICIT, SYMPLECTIC, VERLET))
+    assert samples[-1].readings[RK4].energy_error < -0.999
+
+
+def test_rk4_limit_above_rk4_gains_energy_until_it_is_caught_at_0_2_rad() -> None:
+    samples = watch("rk4-limit-above", 20_000)
+    late = [sample.readings[RK4] for sample in samples[100:]]
+    assert max(abs(reading.theta) for reading in late) == pytest.approx(0.196, abs=0.002)
+    assert min(reading.energy_error for reading in late) > 2
+
+
+@pytest.mark.parametrize(
+    ("below", "above", "limit"),
+    [("verlet-limit", "verlet-limit-above", 2.0), ("rk4-limit", "rk4-limit-above", 2 * math.sqrt(2))],
+)
+def test_the_limit_scenes_stand_on_either_side_of_their_limit(below: str, above: str, limit: float) -> None:
+    assert SCENES[below].z < limit < SCENES[above].z
+    assert replace(SCENES[below], name="", watch="", h=1.0) == replace(SCENES[above], name="", watch="", h=1.0)

@@ -1,0 +1,55 @@
+"""A lab on which somebody presses keys until it is killed: python -m tests.recordings.killed FILE LOG.
+
+Each frame it appends to LOG the time and the last sample that its recorder has taken: that is what it knew.
+"""
+
+import os
+import random
+import sys
+import time
+from pathlib import Path
+
+from engine.lockstep import Sample
+from recordings.sitting import SittingRecorder
+from tests.recordings.sittings import SCENE
+from tui.live import Live
+
+FRAME = 1 / 30  # s
+KEYS = (
+    *4 * [lambda live: live.pause(not live.playhead.paused)],
+    *8 * [lambda live: live.step(1)],
+    lambda live: live.step(10),
+    lambda live: live.step(-3),
+    lambda live: live.set_h(0.02),
+    lambda live: live.set_h(-0.05),
+    lambda live: live.mark("here"),
+    lambda live: live.restart(),
+)
+
+
+class Noting(SittingRecorder):
+    """Keeps in mind what it was given last."""
+
+    last = 0, 0
+
+    def sample(self, sample: Sample, clock: float) -> None:
+        super().sample(sample, clock)
+        self.last = sample.run, sample.step
+
+
+def main(path: Path, log: Path) -> None:
+    """Play at 30 frames a second of the machine's clock; press a key every third of a second or so."""
+    recorder, live = Noting(path), Live(SCENE)
+    live.record(recorder)
+    knew = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+    while True:
+        live.tick(time.monotonic())
+        if random.random() < 0.1:
+            random.choice(KEYS)(live)
+        run, step = recorder.last
+        os.write(knew, f"{time.monotonic()} {run} {step}\n".encode())
+        time.sleep(FRAME)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), Path(sys.argv[2]))

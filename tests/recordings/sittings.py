@@ -1,0 +1,82 @@
+"""Recordings made for tests: tiny, and the same each time."""
+
+from dataclasses import replace
+from pathlib import Path
+
+from engine.lockstep import Lockstep, Sample
+from engine.methods import METHODS
+from engine.scenes import Scene
+from recordings.events import Entry, Event
+from recordings.recorder import FLUSH_EVERY, Recorder
+
+METHOD_KEYS = tuple(method.key for method in METHODS)
+SCENE = Scene("test", theta=2.0, h=0.1)
+
+
+def start(run: int = 1, scene: Scene = SCENE) -> Event:
+    return Event("start", run, 0, 0.0, scene=scene, methods=METHOD_KEYS)
+
+
+def two_runs() -> list[Entry]:
+    """Everything that a sitting can hold: two runs, the second going on from the past of the first, and all events."""
+    entries = []
+
+    def note(clock: float, value: Sample | Event) -> None:
+        entries.append(Entry(clock, value))
+
+    first = Lockstep(SCENE, run=1)
+    note(0.0, start())
+    note(0.0, first.sample())
+    for clock in (0.5, 1.0, 1.5):
+        first.advance(3)
+        note(clock, first.sample())
+    note(1.5, Event("set_h", 1, 9, first.t, h=0.05))
+    first.set_h(0.05)
+    note(1.5, Event("speed", 1, 9, first.t, speed=2.0))
+    for clock in (2.0, 2.5):
+        first.advance(3)
+        note(clock, first.sample())
+    note(2.5, Event("pause", 1, 15, first.t))
+    note(2.5, Event("mark", 1, 15, first.t, text="what is this?"))
+    first.advance(1)
+    note(2.5, first.sample())  # a step while paused: the clock stands
+    note(2.5, Event("resume", 1, 16, first.t))
+    second = Lockstep(SCENE, run=2)
+    second.advance(9)
+    second.set_h(0.05)
+    second.advance(3)
+    note(2.75, start(2))
+    note(2.75, Event("set_h", 2, 9, 0.9, h=0.05))
+    note(2.75, Event("set_h", 2, 12, second.t, h=-0.1, equal_cost=True))
+    second.set_h(-0.1, equal_cost=True)
+    note(2.75, second.sample())
+    for clock in (3.5, 4.0):
+        second.advance(2)
+        note(clock, second.sample())
+    return entries
+
+
+def record(path: Path, entries: list[Entry], wall=None) -> Path:
+    """Write entries, a chunk a second as in the lab; headless unless there is a `wall` clock."""
+    flushed_at = 0.0
+    with Recorder(path, wall) as recorder:
+        for clock, value in entries:
+            if isinstance(value, Event):
+                recorder.event(value, clock)
+            else:
+                recorder.sample(value, clock)
+            if clock >= flushed_at + FLUSH_EVERY:
+                recorder.flush()
+                flushed_at = clock
+    return path
+
+
+def tiny(path: Path) -> Path:
+    """As small as a recording gets: one method, three samples, two chunks and one for the stop."""
+    verlet = METHODS[2]
+    lockstep = Lockstep(SCENE, methods=[verlet])
+    entries = [Entry(0.0, replace(start(), methods=(verlet.key,))), Entry(0.0, lockstep.sample())]
+    for clock in (0.5, 1.0):
+        lockstep.advance(3)
+        entries.append(Entry(clock, lockstep.sample()))
+    return record(path, entries)

@@ -1,0 +1,200 @@
+"""The format: what is written reads back the same, and nothing else is read."""
+
+import json
+import math
+from dataclasses import replace
+
+import jsonschema
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from engine.lockstep import Reading, Sample
+from engine.scenes import LIMITS, Scene
+from recordings.errors import TEXT_LIMIT, RecordingError, printable
+from recordings.events import Event
+from recordings.format import (
+    decode_event,
+    decode_reading,
+    encode_event,
+    encode_readings,
+    sin_fingerprint,
+    without_extremes,
+)
+from recordings.schemas import EVENT_SCHEMA, SAMPLE_SCHEMA
+from tests.recordings.sittings import METHOD_KEYS, SCENE, start
+
+finite = st.floats(allow_nan=False, allow_infinity=False)
+counts = st.integers(0, 2**53 - 1)
+readings = st.builds(
+    Reading,
+    theta=finite,
+    omega=finite,
+    energy=finite,
+    energy_error=finite,
+    max_energy_error=finite,
+    energy_error_low=finite,
+    energy_error_high=finite,
+    diverged_at=st.none() | finite,
+)
+samples = st.builds(Sample, run=counts, step=counts, t=finite, readings=st.tuples(readings, readings))
+letters = st.characters(categories=("L", "M", "N", "P", "S"), include_characters=" ")
+texts = st.text(letters, max_size=TEXT_LIMIT).filter(str.isprintable)
+scenes = st.builds(
+    Scene,
+    name=texts,
+    watch=texts,
+    theta=st.floats(*LIMITS["theta"]),
+    omega=st.floats(*LIMITS["omega"]),
+    length=st.floats(0.1, 10),
+    gravity=st.floats(0.1, 10),
+    h=st.floats(1e-6, 1),
+)
+events = st.one_of(
+    st.builds(Event, st.just("start"), counts, counts, finite, scene=scenes, methods=st.just(METHOD_KEYS)),
+    st.builds(Event, st.just("set_h"), counts, counts, finite, h=finite, equal_cost=st.booleans()),
+    st.builds(Event, st.just("speed"), counts, counts, finite, speed=finite),
+    st.builds(Event, st.just("mark"), counts, counts, finite, text=st.none() | texts.filter(bool)),
+    st.builds(Event, st.sampled_from(["pause", "resume", "stop"]), counts, counts, finite),
+)
+
+
+@given(samples)
+def test_every_finite_double_of_a_sample_survives_to_the_bit(sample):
+    messages = encode_readings(sample)
+    for message, reading in zip(messages, sample.readings, strict=True):
+        run, step, t, again = decode_reading(message)
+        assert (run, step, t) == (sample.run, sample.step, sample.t)
+        assert again == reading
+        for name in (
+            "theta",
+            "omega",
+            "energy",
+            "energy_error",
+            "max_energy_error",
+        ):  # -0.0 == 0.0, but their hex differs
+            assert float.hex(getattr(again, name)) == float.hex(getattr(reading, name))
+        jsonschema.validate(json.loads(message), SAMPLE_SCHEMA)
+
+
+@given(events)
+def test_every_event_survives(event):
+    message = encode_event(event)
+    assert decode_event(message) == event
+    jsonschema.validate(json.loads(message), EVENT_SCHEMA)
+
+
+@pytest.mark.parametrize("schema", [SAMPLE_SCHEMA, EVENT_SCHEMA])
+def test_a_schema_is_as_simple_as_the_simplest_viewer_needs(schema):
+    jsonschema.Draft202012Validator.check_schema(schema)
+    assert schema["type"] == "object"
+    for name, declared in schema["properties"].items():
+        assert declared["type"] in ("integer", "number", "string", "boolean", "array"), name
+        assert not {"anyOf", "oneOf", "$ref"} & set(declared), name
+    assert set(schema["required"]) <= set(schema["properties"])
+
+
+def test_a_number_that_is_not_finite_is_never_written():
+    reading = Reading(1.0, math.nan, 0.0, 0.0, 0.0, 0.0, 0.0)
+    with pytest.raises(ValueError, match="JSON compliant"):
+        encode_readings(Sample(1, 0, 0.0, (reading,)))
+
+
+def test_extremes_that_say_nothing_new_take_no_room():
+    plain = Reading(1.0, 0.0, 4.0, 0.5, 0.5, 0.5, 0.5)
+    assert b"low" not in encode_readings(Sample(1, 0, 0.0, (plain,)))[0]
+    wide = replace(plain, energy_error_low=-0.5)
+    assert b"low" in encode_readings(Sample(1, 0, 0.0, (wide,)))[0]
+    assert without_extremes(Sample(1, 0, 0.0, (wide,))).readings == (plain,)
+
+
+GOOD = json.loads(encode_readings(Sample(1, 2, 0.5, (Reading(1.0, 0.0, 4.0, 0.5, 0.5, 0.5, 0.5),)))[0])
+
+
+@pytest.mark.parametrize("name", list(SAMPLE_SCHEMA["properties"]))
+@pytest.mark.parametrize("value", ["null", '"1.0"', "NaN", "Infinity", "1e999", "true", "[1.0]", "{}", "1" + 400 * "0"])
+def test_a_field_that_is_no_finite_number_is_refused(name, value):
+    text = json.dumps(GOOD | {name: "HERE"}).replace('"HERE"', value)
+    with pytest.raises(RecordingError):
+        decode_reading(text.encode())
+
+
+@pytest.mark.parametrize("name", SAMPLE_SCHEMA["required"])
+def test_a_field_that_is_missing_is_refused(name):
+    with pytest.raises(RecordingError, match=name):
+        decode_reading(json.dumps({key: value for key, value in GOOD.items() if key != name}).encode())
+
+
+@pytest.mark.parametrize("name", ["run", "step"])
+@pytest.mark.parametrize("value", [-1, 2**53, 1.0])
+def test_a_count_is_a_whole_number_that_can_be_reached(name, value):
+    with pytest.raises(RecordingError, match=name):
+        decode_reading(json.dumps(GOOD | {name: value}).encode())
+
+
+def test_numbers_of_writers_that_drop_the_fraction_are_read():
+    assert decode_reading(json.dumps(GOOD | {"theta": 1}).encode())[3].theta == 1.0
+
+
+@pytest.mark.parametrize(
+    "data",
+    [b"", b"{", b"[]", b"null", b"\xff", b"{} {}", b"[" * 60_000, b'{"run": 1, "nonfinite": {}}', b" " * 70_000],
+    ids=["empty", "cut", "list", "null", "not text", "two", "deep", "nonfinite", "long"],
+)
+def test_what_is_no_message_of_ours_is_refused(data):
+    with pytest.raises(RecordingError):
+        decode_reading(data)
+    with pytest.raises(RecordingError):
+        decode_event(data)
+
+
+START = json.loads(encode_event(start()))
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"kind": "explode"},
+        {"kind": None},
+        {"h": 0.0},
+        {"h": -0.1},
+        {"length": -1.0},
+        {"gravity": 1e300},
+        {"theta": None},
+        {"scene": 3},
+        {"methods": []},
+        {"methods": "rk4"},
+        {"methods": ["rk5"]},
+        {"methods": [["rk4"]]},
+        {"methods": ["rk4", "rk4"]},
+    ],
+)
+def test_a_start_that_no_lab_can_have_made_is_refused(wrong):
+    with pytest.raises(RecordingError):
+        decode_event(json.dumps(START | wrong).encode())
+
+
+@pytest.mark.parametrize("text", ["\x1b[2J", "\x9b31m", "a\nb", "\u202egpj.exe", "\ud800", "\x00", "é\u0301\x7f"])
+def test_texts_of_a_file_cannot_steer_a_terminal(text):
+    assert printable(text).isprintable()
+    mark = Event("mark", 1, 0, 0.0, text=text)
+    assert decode_event(encode_event(mark)).text == printable(text)
+    named = decode_event(encode_event(start(scene=replace(SCENE, name=text, watch=text)))).scene
+    assert named.name == named.watch == printable(text)
+
+
+def test_a_text_of_a_file_is_cut_to_what_a_screen_has_room_for():
+    assert len(printable("x" * 10_000)) == 200
+    assert printable("x" * 200) == "x" * 200
+
+
+def test_the_fingerprint_of_sin_is_the_same_each_time_and_differs_where_one_value_does(monkeypatch):
+    here = sin_fingerprint()
+    sin_fingerprint.cache_clear()
+    assert sin_fingerprint() == here
+    sin_fingerprint.cache_clear()
+    sine, calls = math.sin, iter(range(10_000))
+    monkeypatch.setattr(math, "sin", lambda x: math.nextafter(sine(x), 2) if next(calls) == 1234 else sine(x))
+    assert sin_fingerprint() != here
+    monkeypatch.undo()
+    sin_fingerprint.cache_clear()

@@ -1,0 +1,132 @@
+"""The recordings that come with the program are what every later version of the methods is measured against."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from engine.lockstep import Sample
+from engine.methods import METHODS
+from recordings import export
+from recordings.events import Event
+from recordings.format import sin_fingerprint, without_extremes
+from recordings.library import GOLDEN, golden_names
+from recordings.recording import Recording
+from recordings.verify import verify
+from tests.recordings.make_golden import RECORDINGS, make
+from tests.recordings.sittings import two_runs
+
+ROOM = 64_000  # bytes; they are in every installation
+
+
+@pytest.mark.parametrize("name", golden_names())
+def test_a_golden_recording_verifies(name):
+    verification = verify(GOLDEN / f"{name}.mcap")
+    assert verification.complete
+    assert verification.identical
+    assert verification.first_difference is None
+    assert verification.samples > 50
+
+
+@pytest.mark.parametrize("name", golden_names())
+def test_a_golden_recording_comes_out_the_same_when_it_is_made_again(name, tmp_path):
+    make(name, tmp_path / "again.mcap")
+    make(name, tmp_path / "and again.mcap")
+    again = (tmp_path / "again.mcap").read_bytes()
+    assert (tmp_path / "and again.mcap").read_bytes() == again
+    with Recording.open(GOLDEN / f"{name}.mcap") as golden, Recording.open(tmp_path / "again.mcap") as made:
+        if golden.sin == sin_fingerprint():  # bytes depend on zstd's version, too, entries do not
+            assert list(golden.entries()) == list(made.entries())
+
+
+def test_they_are_the_ones_that_are_made_and_small():
+    assert set(golden_names()) == set(RECORDINGS)
+    assert {"drift", "changes-of-h", "reversed-time", "near-separatrix", "spin"} <= set(RECORDINGS)
+    assert all(path.stat().st_size < ROOM for path in GOLDEN.iterdir())
+
+
+def test_a_recording_of_format_1_stays_readable():
+    path = Path(__file__).with_name("format-1.mcap")  # of two_runs(), made when the format was new
+    with Recording.open(path, check=True) as recording:
+        assert recording.complete
+        assert recording.version == 1
+        entries = list(recording.entries())
+    kinds = {value.kind for _, value in entries if isinstance(value, Event)}
+    assert kinds == {"start", "set_h", "mark", "pause", "resume", "speed", "stop"}
+    for (clock, value), (then, was) in zip(two_runs(), entries[:-1], strict=True):  # the last one is the stop
+        assert clock == then
+        if isinstance(value, Event):
+            assert value == was
+        elif recording.sin == sin_fingerprint():
+            assert without_extremes(value) == without_extremes(was)
+    assert verify(path).identical
+
+
+def last_readings(name):
+    with Recording.open(GOLDEN / f"{name}.mcap") as recording:
+        sample = recording.sample(recording.at(recording.length)).value
+        (run,) = recording.runs
+        return run.scene, dict(zip(recording.methods, sample.readings, strict=True))
+
+
+def test_each_shows_what_it_says_is_to_be_watched():
+    scene, end = last_readings("drift")
+    assert end["explicit_euler"].theta < -7  # over the top
+    assert end["velocity_verlet"].max_energy_error < 0.01
+    scene, end = last_readings("reversed-time")
+    assert abs(end["velocity_verlet"].theta - scene.theta) < 1e-13  # round-off of 200 steps
+    assert 1e-6 < abs(end["rk4"].theta - scene.theta) < 1e-3
+    assert abs(end["symplectic_euler"].theta - scene.theta) > 0.01
+    assert abs(end["explicit_euler"].theta - scene.theta) > 1
+    scene, end = last_readings("spin")
+    assert all(reading.theta > 20 for reading in end.values())
+    with Recording.open(GOLDEN / "changes-of-h.mcap") as recording:
+        assert [(clock, event.h) for clock, event in recording.events if event.kind == "set_h"] == [
+            (pytest.approx(3.0), 0.1),  # sums of steps
+            (pytest.approx(6.0), 0.025),
+            (pytest.approx(9.0), 0.05),
+        ]
+
+
+def test_the_shipped_layout_shows_what_is_in_a_recording():
+    layout = json.loads((GOLDEN.parent / "foxglove_layout.json").read_text())
+    panels = layout["configById"]
+
+    def shown(node):
+        return [node] if isinstance(node, str) else [*shown(node["first"]), *shown(node["second"])]
+
+    assert sorted(shown(layout["layout"])) == sorted(panels)
+    errors = [path["value"] for path in panels["Plot!energyerror"]["paths"]]
+    assert errors == [f"/pendu/{method.key}.energy_error" for method in METHODS]
+    phases = [panel for panel in panels.values() if panel.get("xAxisVal") == "custom"]
+    assert [(panel["xAxisPath"]["value"], panel["paths"][0]["value"]) for panel in phases] == [
+        (f"/pendu/{method.key}.theta", f"/pendu/{method.key}.omega") for method in METHODS
+    ]
+    assert panels["RawMessages!events"]["topicPath"] == "/pendu/events"
+
+
+def test_the_table_has_a_row_for_each_sample_and_method_and_every_number_reads_back_the_same(tmp_path):
+    path = tmp_path / "drift.csv"
+    with Recording.open(GOLDEN / "drift.mcap") as recording, path.open("w", newline="") as out:
+        assert export.write_csv(recording, out) == recording.samples
+        samples = [entry for entry in recording.entries() if isinstance(entry.value, Sample)]
+    head, *rows = (line.split(",") for line in path.read_text().splitlines())
+    assert tuple(head) == export.COLUMNS
+    assert len(rows) == 4 * len(samples)
+    for row, (clock, sample, place) in zip(
+        rows, ((clock, sample, place) for clock, sample in samples for place in range(4)), strict=True
+    ):
+        reading = sample.readings[place]
+        assert (float(row[0]), int(row[1]), int(row[2]), float(row[3])) == (clock, sample.run, sample.step, sample.t)
+        assert row[4] == METHODS[place].key
+        numbers = [float(text) for text in row[5:12]]
+        assert numbers == [
+            reading.theta,
+            reading.omega,
+            reading.energy,
+            reading.energy_error,
+            reading.max_energy_error,
+            reading.energy_error_low,
+            reading.energy_error_high,
+        ]
+        assert row[12] == ("" if reading.diverged_at is None else repr(reading.diverged_at))

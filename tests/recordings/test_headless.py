@@ -1,0 +1,89 @@
+"""Headless runs: which samples they take, and how long they last."""
+
+import tracemalloc
+from dataclasses import replace
+from itertools import pairwise
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from engine.lockstep import Lockstep
+from recordings.headless import segments, simulate, steps_for
+from recordings.recorder import Recorder
+from recordings.recording import Recording
+from recordings.recover import recover
+from recordings.verify import verify
+from tests.recordings.sittings import SCENE
+
+
+def test_samples_are_a_thirtieth_of_a_second_apart_with_the_first_and_the_last():
+    steps = [sample.step for sample in simulate(replace(SCENE, h=0.004), 0.1)]
+    assert steps == [0, 8, 16, 24, 25]  # 1/30 s are 8.3 steps
+
+
+def test_samples_are_as_far_apart_as_asked_with_the_first_the_last_and_every_change():
+    steps = [sample.step for sample in simulate(SCENE, 2.0, sample_every=6, changes=[(10, 0.05)])]
+    assert steps == [0, 6, 10, 16, 22, 28, 30]  # one second at 0.1 s and one at 0.05 s
+
+
+def test_no_step_is_sampled_more_often_than_it_is_taken():
+    assert [sample.step for sample in simulate(SCENE, 0.5)] == [0, 1, 2, 3, 4, 5]
+
+
+def test_the_last_sample_is_the_result():
+    lockstep = Lockstep(SCENE)
+    lockstep.advance(70)
+    *_, last = simulate(SCENE, 7.0, sample_every=9)
+    assert [reading.theta for reading in last.readings] == [reading.theta for reading in lockstep.sample().readings]
+
+
+@given(
+    time=st.floats(0, 100),
+    changes=st.lists(st.tuples(st.integers(0, 300), st.sampled_from([0.1, -0.1, 0.02, -0.5])), max_size=4).map(sorted),
+)
+def test_stretches_of_constant_h_follow_each_other_and_make_up_the_time(time, changes):
+    stretches = list(segments(SCENE, time, changes))
+    assert stretches[0][0] == 0
+    for (_, last, _), (first, _, _) in pairwise(stretches):
+        assert first == last
+    passed = sum((last - first) * abs(h) for first, last, h in stretches)
+    longest = max(abs(h) for _, _, h in stretches)
+    assert abs(passed - time) <= longest / 2 + 1e-9  # half a step, and round-off of the sum
+    assert steps_for(SCENE, time, changes) == stretches[-1][1]
+
+
+def test_the_clock_of_a_recording_goes_on_while_time_runs_backwards(tmp_path):
+    with Recorder(tmp_path / "a.mcap", wall=None) as recorder:
+        *_, last = simulate(SCENE, 4.0, recorder, changes=[(20, -0.1)])
+    assert last.t == 0.0
+    with Recording.open(tmp_path / "a.mcap") as recording:
+        assert recording.length == pytest.approx(4.0)  # a sum of steps
+        clocks = [clock for clock, _ in recording.entries()]
+    assert clocks == sorted(clocks)
+    assert verify(tmp_path / "a.mcap").identical
+
+
+def test_a_run_of_an_hour_has_no_chunk_for_each_of_its_seconds(tmp_path):
+    with Recorder(tmp_path / "a.mcap", wall=None) as recorder:
+        samples = sum(1 for _ in simulate(SCENE, 3600.0, recorder, sample_every=10))
+    with Recording.open(tmp_path / "a.mcap") as recording:
+        assert recording.samples == samples == 3601
+        assert len(recording._chunks) < 50  # of 128 kB; readers refuse more than 250 000
+    recover(tmp_path / "a.mcap", tmp_path / "copy.mcap")
+    with Recording.open(tmp_path / "copy.mcap") as recording:
+        assert recording.samples == samples
+        assert len(recording._chunks) < 50
+
+
+def test_memory_does_not_grow_with_the_length_of_a_run():
+    def peak(time):
+        tracemalloc.start()
+        for _ in simulate(SCENE, time):
+            pass
+        peak = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        return peak
+
+    peak(200.0)  # whatever is made once
+    assert peak(200.0) < peak(20.0) + 20_000  # bytes; the samples of the longer one would be 3 MB

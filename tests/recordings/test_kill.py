@@ -1,0 +1,85 @@
+"""kill -9 at any moment, whatever was pressed: what is left plays, verifies, and lacks less than the last second."""
+
+import random
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+
+from recordings.library import leftovers
+from recordings.recording import Recording
+from recordings.rescue import rescue
+from recordings.verify import verify
+from tests.tui.pty_lab import PtyLab
+
+KILLS = 12
+
+
+def whole_lines(log):
+    return log.read_text().rpartition("\n")[0].splitlines()
+
+
+def last_sample(recording):
+    sample = recording.sample(recording.at(recording.length)).value
+    return sample.run, sample.step
+
+
+def kill_one(folder, after):
+    """Start a lab, kill it so many seconds after its first sample, and return (loss, verification of the rescue)."""
+    folder.mkdir()
+    log = folder / "log"
+    command = [sys.executable, "-m", "tests.recordings.killed", str(folder / "a.mcap"), str(log)]
+    lab = subprocess.Popen(command, cwd=Path(__file__).parents[2])
+    try:
+        while not log.exists() or not whole_lines(log):
+            assert lab.poll() is None
+            time.sleep(0.01)
+        time.sleep(after)
+    finally:
+        lab.kill()
+        lab.wait()
+    knew = [(float(when), int(run), int(step)) for when, run, step in map(str.split, whole_lines(log))]
+    (part,) = leftovers(folder)
+    with Recording.open(part) as recording:
+        assert not recording.complete
+        assert not recording.damaged
+        there = last_sample(recording)
+    lost = [when for when, run, step in knew if (run, step) > there]
+    loss = knew[-1][0] - lost[0] if lost else 0.0
+    assert verify(part).identical
+    saved = rescue(part).saved
+    assert saved is not None
+    return loss, verify(saved)
+
+
+def test_what_a_killed_lab_leaves_plays_verifies_and_lacks_less_than_a_second(tmp_path):
+    chance = random.Random()
+    moments = [chance.uniform(0.0, 2.5) for _ in range(KILLS)]
+    with ThreadPoolExecutor(4) as pool:  # labs sleep most of the time
+        outcomes = list(pool.map(kill_one, (tmp_path / str(i) for i in range(KILLS)), moments))
+    for loss, verification in outcomes:
+        assert loss < 1.0
+        assert verification.complete
+        assert verification.identical
+
+
+@pytest.mark.parametrize("after", [0.0, 0.7])
+def test_the_real_lab_that_is_killed_while_paused_has_every_single_step_on_disk(tmp_path, after):
+    with PtyLab("live", "--record", str(tmp_path / "a.mcap")) as lab:
+        lab.wait_for("RK4")
+        lab.run(after)
+        lab.type(" ")
+        lab.run(0.3)
+        lab.type("." * 7)
+        lab.run(1.0)
+        lab.signal(signal.SIGKILL)
+        assert lab.end() == -signal.SIGKILL
+    (part,) = leftovers(tmp_path)
+    assert verify(part).identical
+    with Recording.open(part) as recording:
+        paused_at = next(event.step for _, event in recording.events if event.kind == "pause")
+        assert last_sample(recording) == (1, paused_at + 7)

@@ -1,0 +1,158 @@
+"""The library: where recordings are, which one a name means, and which may go."""
+
+import os
+import time
+from pathlib import Path
+
+import pytest
+
+from recordings import library
+from recordings.errors import RecordingError
+from recordings.library import GOLDEN, Item, leftovers, listing, new_path, prune, resolve, to_prune
+from recordings.names import free_path
+from recordings.recorder import Recorder
+from recordings.recording import Recording
+from tests.recordings.sittings import start, tiny
+from tui.marks import Mark, Marks
+
+NOON = time.struct_time((2026, 11, 20, 12, 0, 0, 4, 324, 0))
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path / "library"))
+    return tmp_path / "library"
+
+
+def fill(folder, **ages):
+    """Recordings of these names, so many seconds old."""
+    folder.mkdir(exist_ok=True)
+    for name, age in ages.items():
+        path = tiny(folder / f"{name}.mcap")
+        os.utime(path, (1_700_000_000 - age,) * 2)
+    return [folder / f"{name}.mcap" for name in ages]
+
+
+def test_recordings_live_where_the_environment_says_or_in_the_users_data(folder, monkeypatch):
+    assert library.folder() == folder
+    monkeypatch.delenv("PENDU_RECORDINGS")
+    assert library.folder().parts[-2:] == ("pendu-tui", "recordings")
+
+
+def test_a_new_recording_is_named_by_its_time_and_never_like_another(folder):
+    assert new_path(now=NOON) == folder / "2026-11-20T12-00-00.mcap"
+    folder.mkdir()
+    (folder / "2026-11-20T12-00-00.mcap.part").touch()
+    assert new_path(now=NOON) == folder / "2026-11-20T12-00-00-2.mcap"
+    (folder / "2026-11-20T12-00-00-2.mcap").touch()
+    assert new_path(now=NOON) == folder / "2026-11-20T12-00-00-3.mcap"
+
+
+def test_a_name_that_ends_in_a_number_keeps_it(folder):
+    folder.mkdir()
+    (folder / "lesson-1.mcap").touch()
+    assert free_path(folder / "lesson-1.mcap") == folder / "lesson-1-2.mcap"
+    (folder / "lesson-1-2.mcap").touch()
+    assert free_path(folder / "lesson-1.mcap") == folder / "lesson-1-3.mcap"
+
+
+def test_the_list_is_newest_first_and_empty_without_a_folder(folder):
+    assert listing() == []
+    old, new = fill(folder, old=100, new=1)
+    (folder / "notes.txt").touch()
+    (folder / "folder.mcap").mkdir()
+    (folder / "unfinished.mcap.part").touch()
+    assert [item.path for item in listing()] == [new, old]
+    assert listing()[0].bytes == new.stat().st_size
+
+
+def test_a_name_means_a_file_or_the_latest_or_one_of_the_library_or_one_that_came_with_the_program(folder, tmp_path):
+    old, new = fill(folder, old=100, new=1)
+    elsewhere = tiny(tmp_path / "elsewhere.mcap")
+    assert resolve(str(elsewhere)) == elsewhere
+    assert resolve("latest") == new
+    assert resolve("old") == resolve("old.mcap") == old
+    assert resolve("drift") == GOLDEN / "drift.mcap"
+
+
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        ("latest", "There is no recording in .*library yet"),
+        ("drfit", "did you mean drift?"),
+        ("/no/such.mcap", "choose a file, or one of latest, changes-of-h, drift"),
+        ("../../etc/passwd.mcap", "choose a file"),
+        ("\x1b[2J", "There is no recording '�"),
+    ],
+)
+def test_a_name_that_means_nothing_is_answered_with_what_might_be_meant(name, why):
+    with pytest.raises(RecordingError, match=why) as caught:
+        resolve(name)
+    assert str(caught.value).isprintable()
+
+
+def test_a_recording_in_progress_is_no_leftover(folder):
+    folder.mkdir()
+    (folder / "killed.mcap.part").touch()
+    with Recorder(folder / "running.mcap") as recorder:
+        recorder.event(start(), 0.0)
+        assert leftovers() == [folder / "killed.mcap.part"]
+
+
+def test_pruning_keeps_the_newest_by_number_and_by_size(folder):
+    items = [Item(folder / f"{age}.mcap", 100, -age) for age in range(5)]
+    assert to_prune(items, keep=2) == items[2:]
+    assert to_prune(items, size=250) == items[2:]
+    assert to_prune(items, keep=3, size=150) == items[1:]
+    assert to_prune(items, keep=9, size=10_000) == []
+    assert to_prune(items, keep=0) == items
+    assert to_prune(items) == []
+
+
+def test_a_large_recording_does_not_make_room_for_older_ones(folder):
+    items = [Item(folder / "new", 100, 3.0), Item(folder / "large", 10_000, 2.0), Item(folder / "old", 100, 1.0)]
+    assert [item.path.name for item in to_prune(items, size=500)] == ["large", "old"]
+
+
+def test_what_is_in_use_is_never_deleted(folder):
+    replayed, idle = fill(folder, replayed=2, idle=1)
+    with Recorder(folder / "running.mcap") as recorder, Recording.open(replayed):
+        recorder.event(start(), 0.0)
+        assert [item.path for item in prune(to_prune(listing(), keep=0))] == [idle]
+        assert recorder.part.exists()
+    assert [path.name for path in sorted(folder.iterdir())] == ["replayed.mcap", "running.mcap"]
+
+
+def test_a_recording_that_is_gone_already_is_no_trouble(folder):
+    fill(folder, gone=1)
+    items = listing()
+    items[0].path.unlink()
+    assert prune(items) == []
+
+
+def test_marks_go_with_their_recording(folder):
+    (path,) = fill(folder, a=1)
+    Marks(path).add(Mark(0.5, 1, 3))
+    assert len(list(folder.iterdir())) == 2
+    assert [item.path for item in prune(listing())] == [path]
+    assert not list(folder.iterdir())
+
+
+def test_what_cannot_be_deleted_does_not_keep_the_others(folder, monkeypatch):
+    stubborn, other = fill(folder, stubborn=1, other=2)
+    unlink = Path.unlink
+
+    def refuse(path, missing_ok=False):
+        if path == stubborn:
+            raise PermissionError(13, "Permission denied")
+        unlink(path, missing_ok)
+
+    monkeypatch.setattr(Path, "unlink", refuse)
+    assert [item.path for item in prune(listing())] == [other]
+    assert list(folder.iterdir()) == [stubborn]
+
+
+def test_a_folder_does_not_hide_what_has_its_name(folder, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "drift").mkdir()
+    assert resolve("drift") == GOLDEN / "drift.mcap"

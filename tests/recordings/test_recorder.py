@@ -1,0 +1,359 @@
+"""The recorder: valid files for every reader, in time, whatever the disk does."""
+
+import errno
+import json
+import os
+from dataclasses import replace
+
+import jsonschema
+import pytest
+from mcap.reader import make_reader
+from mcap.records import Chunk, DataEnd, Footer, Message, Metadata, Statistics
+from mcap.stream_reader import StreamReader
+
+from engine.lockstep import Lockstep
+from recordings.errors import DiskError
+from recordings.events import Event
+from recordings.format import decode_event
+from recordings.headless import simulate
+from recordings.lock import in_use
+from recordings.names import free_path, part_of
+from recordings.recorder import FLUSH_EVERY, Recorder
+from recordings.recording import Recording
+from recordings.verify import verify
+from tests.recordings.sittings import METHOD_KEYS, SCENE, record, start, tiny, two_runs
+
+FRAME = 1 / 30
+
+
+@pytest.fixture
+def recorder(tmp_path):
+    recorder = Recorder(tmp_path / "live.mcap")
+    recorder.event(start(), 0.0)
+    recorder.sample(Lockstep(SCENE).sample(), 0.0)
+    yield recorder
+    recorder.abandon()
+
+
+def left_by(recorder):
+    """What a reader finds if the process dies here."""
+    with Recording.open(recorder.part) as recording:
+        return list(recording.entries())
+
+
+def play(recorder, seconds, begin=0.0):
+    """Record 30 samples a second."""
+    lockstep = Lockstep(SCENE)
+    for frame in range(round(begin / FRAME) + 1, round((begin + seconds) / FRAME) + 1):
+        lockstep.advance(frame - lockstep.step)
+        recorder.sample(lockstep.sample(), frame * FRAME)
+
+
+def test_a_recording_is_valid_to_a_strict_reader_that_we_did_not_write(tmp_path):
+    path = record(tmp_path / "a.mcap", two_runs(), wall=lambda: 1_700_000_000_000_000_000)
+    with path.open("rb") as file:
+        records = list(StreamReader(file, validate_crcs=True).records)
+    assert next(record for record in records if isinstance(record, DataEnd)).data_section_crc
+    assert isinstance(records[-1], Footer)
+    assert records[-1].summary_crc
+    with path.open("rb") as file:
+        chunks = [record for record in StreamReader(file, emit_chunks=True).records if isinstance(record, Chunk)]
+    assert all(chunk.uncompressed_crc and chunk.compression == "zstd" for chunk in chunks)
+    statistics = next(record for record in records if isinstance(record, Statistics))
+    messages = [record for record in records if isinstance(record, Message)]
+    assert statistics.message_count == len(messages) == sum(statistics.channel_message_counts.values())
+    assert statistics.chunk_count == len(chunks) > 3
+    assert (statistics.message_start_time, statistics.message_end_time) == (1_000_000_000, 5_000_000_000)
+
+
+def test_every_message_is_valid_against_its_schema_and_found_through_the_index(tmp_path):
+    path = record(tmp_path / "a.mcap", two_runs())
+    entries = two_runs()
+    with path.open("rb") as file:
+        reader = make_reader(file, validate_crcs=True)
+        count = 0
+        for schema, channel, message in reader.iter_messages():
+            assert schema.encoding == "jsonschema"
+            assert schema.name == ("pendu.Event" if channel.topic == "/pendu/events" else "pendu.Sample")
+            jsonschema.validate(json.loads(message.data), json.loads(schema.data))
+            count += 1
+        assert count == reader.get_summary().statistics.message_count
+        theta = [json.loads(message.data)["theta"] for _, _, message in reader.iter_messages("/pendu/rk4")]
+        events = [decode_event(message.data) for _, _, message in reader.iter_messages("/pendu/events")]
+        window = list(reader.iter_messages("/pendu/rk4", starting_at=2_500_000_000, ending_before=3_500_000_000))
+    assert theta == [entry.value.readings[3].theta for entry in entries if not isinstance(entry.value, Event)]
+    assert events[:-1] == [entry.value for entry in entries if isinstance(entry.value, Event)]
+    assert events[-1].kind == "stop"
+    assert [json.loads(message.data)["step"] for _, _, message in window] == [9, 12]  # at 1.5 and 2.0 s
+
+
+def test_log_times_never_decrease_and_are_never_zero_even_if_the_clock_jumps_back(tmp_path):
+    lockstep = Lockstep(SCENE)
+    with Recorder(tmp_path / "a.mcap") as recorder:
+        recorder.event(start(), 0.0)
+        for clock in (0.0, 1.0, 0.5, 2.0):
+            recorder.sample(lockstep.sample(), clock)
+            lockstep.advance(1)
+    with (tmp_path / "a.mcap").open("rb") as file:
+        times = [record.log_time for record in StreamReader(file).records if isinstance(record, Message)]
+    assert times[0] == 1_000_000_000
+    assert times == sorted(times)
+
+
+def test_live_messages_carry_the_wall_clock_and_headless_ones_the_clock_of_the_simulation(tmp_path):
+    for wall, expected in ((lambda: 42, {42}), (None, {1_000_000_000, 1_500_000_000, 2_000_000_000})):
+        path = tmp_path / f"{wall is None}.mcap"
+        record(path, two_runs()[:4], wall)
+        with path.open("rb") as file:
+            messages = [record for record in StreamReader(file).records if isinstance(record, Message)]
+        assert {message.publish_time for message in messages} == expected
+
+
+def test_the_same_headless_run_gives_the_same_bytes(tmp_path):
+    def run(name):
+        with Recorder(tmp_path / name, wall=None) as recorder:
+            for _ in simulate(SCENE, 5.0, recorder, changes=[(20, -0.05)]):
+                pass
+        return (tmp_path / name).read_bytes()
+
+    assert run("a.mcap") == run("b.mcap")
+
+
+def test_metadata_tell_people_what_made_a_live_recording_and_nothing_of_the_machine_in_a_headless_one(tmp_path):
+    def metadata(path):
+        with path.open("rb") as file:
+            (found,) = [record for record in StreamReader(file).records if isinstance(record, Metadata)]
+        assert found.name == "pendu.recording"
+        return found.metadata
+
+    live = metadata(record(tmp_path / "live.mcap", two_runs(), wall=lambda: 1_700_000_000_000_000_000))
+    headless = metadata(record(tmp_path / "headless.mcap", two_runs()))
+    assert float.fromhex(headless["theta.hex"]) == SCENE.theta
+    assert headless["format"] == "1"
+    assert set(live) - set(headless) == {"started", "python", "platform"}
+    assert live["started"].startswith("2023-11-1")
+
+
+def test_a_sample_at_the_step_of_the_last_one_is_not_written_twice(recorder):
+    lockstep = Lockstep(SCENE)
+    recorder.sample(lockstep.sample(), 0.1)
+    assert recorder.samples == 1
+    lockstep.advance(1)
+    recorder.sample(lockstep.sample(), 0.2)
+    assert recorder.samples == 2
+
+
+def test_the_first_sample_of_a_run_knows_no_extremes(tmp_path):
+    lockstep = Lockstep(SCENE, run=2)
+    lockstep.advance(7)
+    sample = lockstep.sample()
+    assert sample.readings[0].energy_error_low < sample.readings[0].energy_error
+    with Recorder(tmp_path / "a.mcap") as recorder:
+        recorder.event(start(2), 0.0)
+        recorder.sample(sample, 0.0)
+    with Recording.open(tmp_path / "a.mcap") as recording:
+        reading = recording.sample(recording.at(0.0)).value.readings[0]
+    assert reading == replace(sample.readings[0], energy_error_low=reading.energy_error)
+
+
+@pytest.mark.parametrize(
+    ("write", "why"),
+    [
+        (lambda recorder, sample: recorder.sample(sample, -1.0), "clock"),
+        (lambda recorder, sample: recorder.sample(sample, float("nan")), "clock"),
+        (lambda recorder, sample: recorder.event(Event("mark", 1, 0, float("inf")), 0.0), "JSON"),
+        (lambda recorder, sample: recorder.event(start(scene=replace(SCENE, watch=70_000 * "x")), 0.0), "bytes"),
+    ],
+)
+def test_what_cannot_be_written_is_refused_before_it_spoils_a_chunk(recorder, write, why):
+    lockstep = Lockstep(SCENE)
+    lockstep.advance(1)
+    sample = lockstep.sample()
+    with pytest.raises(ValueError, match=why):
+        write(recorder, sample)
+    recorder.sample(sample, 0.5)
+    recorder.close()
+    with Recording.open(recorder.path, check=True) as recording:
+        assert recording.complete
+        assert [clock for clock, _ in recording.entries()] == [0.0, 0.0, 0.5, 0.5]
+    assert verify(recorder.path).identical
+
+
+def test_a_recording_begins_with_a_start_and_steps_ascend(tmp_path, recorder):
+    with Recorder(tmp_path / "b.mcap") as empty, pytest.raises(ValueError, match="start"):
+        empty.event(Event("pause", 1, 0, 0.0), 0.0)
+    lockstep = Lockstep(SCENE)
+    lockstep.advance(2)
+    recorder.sample(lockstep.sample(), 0.1)
+    with pytest.raises(ValueError, match="step 1"):
+        recorder.sample(replace(lockstep.sample(), step=1), 0.2)
+
+
+def test_a_recording_without_a_start_leaves_no_file(tmp_path):
+    with Recorder(tmp_path / "a.mcap"):
+        assert part_of(tmp_path / "a.mcap").exists()
+    assert not list(tmp_path.iterdir())
+
+
+def test_at_most_a_second_is_lost_whenever_the_process_dies(recorder):
+    lockstep = Lockstep(SCENE)
+    for frame in range(1, 200):
+        clock = frame * FRAME
+        lockstep.advance(1)
+        recorder.sample(lockstep.sample(), clock)
+        if frame % 7 == 0:
+            assert clock - left_by(recorder)[-1].clock <= FLUSH_EVERY + FRAME < 1.0
+
+
+def test_a_change_is_on_disk_within_a_quarter_of_a_second_and_a_pause_at_once(recorder):
+    play(recorder, 1.0)
+    recorder.event(Event("set_h", 1, 30, 3.0, h=0.05), 1.0)
+    lockstep = Lockstep(SCENE)
+    lockstep.advance(30)
+    lockstep.set_h(0.05)
+    for frame in range(31, 40):
+        lockstep.advance(1)
+        recorder.sample(lockstep.sample(), frame * FRAME)
+    assert any(getattr(value, "kind", "") == "set_h" for _, value in left_by(recorder))
+    recorder.event(Event("pause", 1, 39, lockstep.t), 1.3)
+    assert left_by(recorder)[-1].value.kind == "pause"
+    recorder.event(Event("mark", 1, 39, lockstep.t, text="now"), 1.3)  # while paused no sample comes that could flush
+    assert left_by(recorder)[-1].value.text == "now"
+
+
+def test_a_single_step_while_paused_is_on_disk_at_once_because_the_clock_stands(recorder):
+    play(recorder, 1.0)
+    lockstep = Lockstep(SCENE)
+    lockstep.advance(30)
+    recorder.event(Event("pause", 1, 30, lockstep.t), 1.0)
+    for step in range(31, 40):
+        lockstep.advance(1)
+        recorder.sample(lockstep.sample(), 1.0)
+        assert left_by(recorder)[-1].value.step == step
+
+
+def test_a_key_held_down_does_not_flush_thirty_times_a_second(recorder):
+    play(recorder, 1.0)
+    recorder.flush()
+    size = recorder.bytes
+    for i in range(30):
+        recorder.event(Event("speed", 1, 30, 3.0, speed=2.0), 1.0 + i * FRAME)
+    with recorder.part.open("rb") as file:
+        file.seek(size)
+        rest = file.read()
+    assert 3 <= rest.count(b"\x04\x00\x00\x00zstd") <= 4  # chunks
+
+
+def test_the_status_line_finds_path_size_and_length(recorder):
+    play(recorder, 2.0)
+    recorder.flush()
+    assert recorder.bytes == recorder.part.stat().st_size
+    assert recorder.seconds == pytest.approx(2.0)  # sums of thirtieths
+    recorder.close()
+    assert recorder.bytes == recorder.path.stat().st_size
+
+
+def test_a_recording_in_progress_is_in_use_and_a_finished_one_is_not(recorder):
+    assert in_use(recorder.part)
+    recorder.close()
+    assert not recorder.part.exists()
+    assert not in_use(recorder.path)
+
+
+def test_closing_twice_is_closing_once(recorder):
+    recorder.close()
+    data = recorder.path.read_bytes()
+    recorder.close()
+    assert recorder.path.read_bytes() == data
+
+
+def test_no_recording_is_overwritten_unless_that_is_asked_for(tmp_path):
+    path = tiny(tmp_path / "a.mcap")
+    before = path.read_bytes()
+    with pytest.raises(DiskError, match="exists already"):
+        Recorder(path)
+    assert path.read_bytes() == before
+    with Recorder(path, overwrite=True) as recorder:
+        recorder.event(start(), 0.0)
+        recorder.sample(Lockstep(SCENE).sample(), 0.0)
+        assert path.read_bytes() == before  # until the new one is finished
+    assert path.read_bytes() != before
+
+
+def test_two_labs_never_write_into_one_file(tmp_path, recorder):
+    with pytest.raises(DiskError, match="is being recorded"):
+        Recorder(recorder.path)
+    assert free_path(recorder.path).name == "live-2.mcap"
+    part_of(tmp_path / "live-2.mcap").touch()
+    assert free_path(recorder.path).name == "live-3.mcap"
+
+
+def test_a_folder_that_is_not_there_is_said_in_a_sentence(tmp_path):
+    with pytest.raises(DiskError, match="No such file or directory"):
+        Recorder(tmp_path / "no" / "a.mcap")
+
+
+class FullDisk:
+    """A file on a disk with room for so many bytes."""
+
+    def __init__(self, file, room):
+        self._file, self.room = file, room
+
+    def write(self, data):
+        if len(data) > self.room:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        self.room -= len(data)
+        return self._file.write(data)
+
+    def __getattr__(self, name):
+        return getattr(self._file, name)
+
+
+@pytest.mark.parametrize("room", [0, 10, 500, 3_000])
+def test_a_full_disk_is_one_error_of_ours_and_what_was_written_stays_readable(recorder, room, monkeypatch):
+    play(recorder, 2.0)
+    recorder.flush()
+    written = left_by(recorder)
+    full = FullDisk(recorder._file, room)
+    monkeypatch.setattr(recorder, "_file", full)
+    monkeypatch.setattr(recorder._writer, "_Writer__stream", full)
+    with pytest.raises(DiskError, match="No space left on device") as caught:
+        play(recorder, 20.0, begin=2.0)
+    assert caught.value.errno == errno.ENOSPC
+    recorder.abandon()
+    kept = left_by(recorder)
+    assert kept[: len(written)] == written
+    assert verify(recorder.part).identical
+
+
+def test_a_file_that_was_removed_or_replaced_is_noticed_within_a_second(recorder):
+    play(recorder, 1.0)
+    recorder.part.unlink()
+    with pytest.raises(DiskError, match="No such file"):
+        play(recorder, 1.0, begin=1.0)
+    recorder.part.touch()
+    with pytest.raises(DiskError, match="another file"):
+        recorder.flush()
+
+
+def test_a_run_that_is_interrupted_leaves_a_whole_recording_of_what_was_run(tmp_path):
+    path = tmp_path / "a.mcap"
+
+    def interrupted_run():
+        with Recorder(path, wall=None) as recorder:
+            for sample in simulate(SCENE, 100.0, recorder):
+                if sample.step == 50:
+                    raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted_run()
+    verification = verify(path)
+    assert verification.complete
+    assert verification.samples == 51
+
+
+def test_all_methods_are_topics(tmp_path):
+    path = record(tmp_path / "a.mcap", two_runs())
+    with path.open("rb") as file:
+        topics = {channel.topic for channel in make_reader(file).get_summary().channels.values()}
+    assert topics == {"/pendu/events", *(f"/pendu/{method}" for method in METHOD_KEYS)}

@@ -1,0 +1,239 @@
+"""Reading: any moment of a recording, whole or not."""
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from engine.lockstep import Lockstep, Sample
+from recordings.errors import RecordingError
+from recordings.events import Entry, Event
+from recordings.headless import simulate
+from recordings.index import CHECK_LIMIT
+from recordings.recorder import Recorder
+from recordings.recording import Recording
+from tests.recordings.sittings import METHOD_KEYS, SCENE, record, start, tiny, two_runs
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    return record(tmp_path_factory.mktemp("reading") / "sitting.mcap", two_runs())
+
+
+@pytest.fixture(params=[False, True], ids=["by its summary", "checked"])
+def recording(request, path):
+    with Recording.open(path, check=request.param) as recording:
+        yield recording
+
+
+def expected():
+    """What was recorded, as it reads back: a run's first sample knows no extremes, and there is a stop at the end."""
+    entries = two_runs()
+    last = entries[-1].value
+    return [*entries, Entry(4.0, Event("stop", last.run, last.step, last.t))]
+
+
+def nanoseconds(clock):
+    """The nearest clock that a file can hold."""
+    return round(clock, 9)
+
+
+def places(recording):
+    place = recording.at(0.0)
+    while recording.previous(place):
+        place = recording.previous(place)
+    while place:
+        yield place
+        place = recording.next(place)
+
+
+def test_everything_that_was_recorded_is_read_in_order(recording):
+    entries = list(recording.entries())
+    assert [clock for clock, _ in entries] == [clock for clock, _ in expected()]
+    for (_, value), (_, was) in zip(entries, expected(), strict=True):
+        if isinstance(was, Event):
+            assert value == was
+        else:
+            assert [reading.theta for reading in value.readings] == [reading.theta for reading in was.readings]
+            assert (value.run, value.step, value.t) == (was.run, was.step, was.t)
+
+
+def test_what_is_in_it_is_known_at_once(recording):
+    assert recording.complete
+    assert not recording.damaged
+    assert recording.reason is None
+    assert recording.length == 4.0
+    assert recording.samples == 10
+    assert recording.methods == METHOD_KEYS
+    assert recording.version == 1
+    assert recording.bytes == recording.path.stat().st_size
+    assert recording.metadata["scene"] == "test"
+
+
+def test_runs_are_the_chapters(recording):
+    first, second = recording.runs
+    assert (first.number, first.scene, first.begin, first.end, first.steps) == (1, SCENE, 0.0, 2.5, 16)
+    assert first.events == 5  # set_h, speed, pause, mark, resume
+    assert (second.number, second.begin, second.end, second.steps) == (2, 2.75, 4.0, 16)
+    assert [recording.run_at(clock).number for clock in (-1.0, 0.0, 2.7, 2.75, 99.0)] == [1, 1, 1, 2, 2]
+
+
+def test_events_come_with_their_time(recording):
+    assert recording.events == tuple((clock, value) for clock, value in expected() if isinstance(value, Event))
+
+
+def test_stepping_meets_every_sample_both_ways_also_those_at_which_the_clock_stands(recording):
+    forth = list(places(recording))
+    samples = [recording.sample(place) for place in forth]
+    assert [entry for entry in recording.entries() if isinstance(entry.value, Sample)] == samples
+    assert [clock for clock, _ in samples].count(2.5) == 2
+    back = [forth[-1]]
+    while before := recording.previous(back[-1]):
+        back.append(before)
+    assert back[::-1] == forth
+
+
+@given(clock=st.floats(-1, 6).map(nanoseconds) | st.sampled_from([clock for clock, _ in two_runs()]))
+def test_a_moment_is_the_last_sample_at_or_before_it_or_else_the_first(path, clock):
+    with Recording.open(path) as recording:
+        samples = [entry for entry in recording.entries() if isinstance(entry.value, Sample)]
+        before = [entry for entry in samples if entry.clock <= clock]
+        assert recording.sample(recording.at(clock)) == (before or samples[:1])[-1]
+
+
+@given(st.floats(0, 6).map(nanoseconds), st.floats(0, 6).map(nanoseconds))
+def test_a_window_of_time_holds_what_lies_in_it(path, start, end):
+    with Recording.open(path) as recording:
+        assert list(recording.entries(start, end)) == [
+            entry for entry in recording.entries() if start <= entry.clock <= end
+        ]
+
+
+@given(st.integers(1, 1_000_000))
+def test_a_moment_that_a_file_cannot_hold_is_the_nearest_nanosecond(tmp_path_factory, frame):
+    clock = frame / 30  # what a lab's frames may have
+    path = tmp_path_factory.mktemp("moment") / "a.mcap"
+    record(path, [*two_runs()[:2], Entry(clock, two_runs()[2].value)])
+    with Recording.open(path) as recording:
+        assert recording.sample(recording.at(clock)).value.step == 3
+        assert len(list(recording.entries(clock, clock))) == 2  # the sample and the stop
+
+
+def test_the_entries_of_a_window_need_not_all_be_read(recording):
+    assert next(iter(recording.entries(2.0))).clock == 2.0
+
+
+def test_a_recording_in_progress_opens_with_what_is_on_disk(tmp_path):
+    with Recorder(tmp_path / "a.mcap") as recorder:
+        for _ in simulate(SCENE, 2.0, recorder):
+            pass
+        with Recording.open(recorder.part) as recording:
+            assert not recording.complete
+            assert not recording.damaged
+            assert recording.reason == "the recording was not finished"
+            assert 1.0 <= recording.length <= 2.0
+            assert recording.sample(recording.at(1.0)).value.t == pytest.approx(1.0)  # ten steps of 0.1
+
+
+def test_a_recording_without_samples_opens_and_has_no_moment(tmp_path):
+    path = record(tmp_path / "a.mcap", two_runs()[:1])
+    with Recording.open(path) as recording:
+        assert recording.at(0.0) is None
+        assert recording.samples == 0
+        assert recording.runs[0].steps == 0
+
+
+def test_a_run_without_samples_has_no_length(tmp_path):
+    path = record(tmp_path / "a.mcap", [*two_runs()[:4], Entry(1.0, start(2)), Entry(1.0, start(3))])
+    with Recording.open(path) as recording:
+        assert [(run.steps, run.begin, run.end) for run in recording.runs] == [
+            (6, 0.0, 1.0),
+            (0, 1.0, 1.0),
+            (0, 1.0, 1.0),
+        ]
+
+
+def damaged_chunk(path, chunk):
+    """The file with a byte of this chunk changed."""
+    data = bytearray(path.read_bytes())
+    at = -1
+    for _ in range(chunk + 1):
+        at = data.index(b"\x04\x00\x00\x00zstd", at + 1)
+    data[at + 60] ^= 1
+    return bytes(data)
+
+
+def test_a_damaged_recording_opens_without_what_is_damaged_and_says_so(path, tmp_path):
+    (tmp_path / "a.mcap").write_bytes(damaged_chunk(path, 2))
+    with Recording.open(path) as whole, Recording.open(tmp_path / "a.mcap") as recording:
+        assert recording.damaged
+        assert "checksum" in recording.reason or "decompressed" in recording.reason
+        kept, all_of_it = list(recording.entries()), list(whole.entries())
+        assert 0 < len(kept) < len(all_of_it)
+        assert all(entry in all_of_it for entry in kept)
+
+
+def test_damage_in_a_file_too_long_to_be_checked_when_it_opens_shows_as_it_is_played(path, tmp_path, monkeypatch):
+    monkeypatch.setattr("recordings.index.CHECK_LIMIT", 0)
+    assert CHECK_LIMIT > 10_000_000
+    (tmp_path / "a.mcap").write_bytes(damaged_chunk(path, 2))
+    with Recording.open(tmp_path / "a.mcap") as recording:
+        entries = list(recording.entries())
+        assert recording.damaged
+        assert not recording.complete
+        assert recording.reason
+        assert 0 < len(entries) < len(expected())
+
+
+def test_a_run_whose_start_is_lost_is_not_shown(path, tmp_path):
+    for chunk in range(12):
+        (tmp_path / "a.mcap").write_bytes(damaged_chunk(path, chunk))
+        try:
+            with Recording.open(tmp_path / "a.mcap") as recording:
+                known = {run.number for run in recording.runs}
+                assert {value.run for _, value in recording.entries()} <= known
+        except RecordingError:
+            continue
+        if known != {1, 2}:
+            break
+    else:
+        pytest.fail("no chunk held a start")
+
+
+@pytest.mark.parametrize("check", [False, True])
+def test_a_newer_format_is_refused_in_a_sentence(tmp_path, monkeypatch, check):
+    monkeypatch.setattr("recordings.recorder.FORMAT_VERSION", 2)
+    path = tiny(tmp_path / "newer.mcap")
+    with pytest.raises(RecordingError, match="has format 2, and this pendu-tui knows formats up to 1; install a newer"):
+        Recording.open(path, check)
+
+
+def test_methods_are_those_that_were_recorded(tmp_path):
+    with Recording.open(tiny(tmp_path / "a.mcap")) as recording:
+        assert recording.methods == ("velocity_verlet",)
+        assert len(recording.sample(recording.at(0.0)).value.readings) == 1
+
+
+def test_an_open_recording_may_be_closed_twice(path):
+    recording = Recording.open(path)
+    recording.close()
+    recording.close()
+
+
+def test_a_long_recording_is_read_in_pieces(tmp_path):
+    with Recorder(tmp_path / "a.mcap") as recorder:
+        for _ in simulate(replace(SCENE, h=1 / 30), 60.0, recorder):
+            pass
+    with Recording.open(tmp_path / "a.mcap") as recording:
+        read = []
+        recording._entries.cache_clear()
+        reading, recording._stream.read = recording._stream.read, lambda size: read.append(size) or reading(size)
+        assert recording.sample(recording.at(30.0)).value.step == pytest.approx(900, abs=1)  # round-off of 30 · 1/30
+        assert sum(read) < recording.bytes / 20
+        lockstep = Lockstep(replace(SCENE, h=1 / 30))
+        lockstep.advance(900)
+        sample = recording.sample(recording.at(30.0 + 1e-6)).value
+        assert [reading.theta for reading in sample.readings] == [
+            reading.theta for reading in lockstep.sample().readings
+        ]

@@ -1,0 +1,213 @@
+"""Verify: what was recorded comes out again to the last bit, or it is said where it does not."""
+
+import math
+from dataclasses import replace
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from engine import loops
+from engine.lockstep import Lockstep, Sample
+from engine.pendulum import acceleration
+from engine.scenes import SCENES
+from recordings import rerun
+from recordings.errors import RecordingError
+from recordings.events import Entry, Event
+from recordings.headless import simulate
+from recordings.recorder import Recorder
+from recordings.rerun import Difference
+from recordings.verify import verify
+from tests.recordings.sittings import SCENE, record, start, tiny, two_runs
+
+
+def altered(entries, at, method, **numbers):
+    """The entries with other numbers in the sample there."""
+    clock, sample = entries[at]
+    readings = list(sample.readings)
+    readings[method] = replace(readings[method], **numbers)
+    return [*entries[:at], Entry(clock, replace(sample, readings=tuple(readings))), *entries[at + 1 :]]
+
+
+def reading_of(entries, at, method):
+    return entries[at].value.readings[method]
+
+
+def test_a_sitting_of_several_runs_and_changes_of_h_verifies(tmp_path):
+    path = record(tmp_path / "a.mcap", two_runs(), wall=lambda: 5)
+    verification = verify(path)
+    assert verification.complete
+    assert verification.reason is None
+    assert (verification.runs, verification.samples) == (2, 10)
+    assert verification.same_sin
+    assert verification.identical
+    assert verification.max_difference == 0.0
+    assert verification.first_difference is None
+
+
+@settings(max_examples=40)
+@given(
+    scene=st.sampled_from(sorted(SCENES)),
+    time=st.floats(0.01, 3),
+    sample_every=st.integers(1, 20),
+    change=st.tuples(st.integers(0, 100), st.sampled_from([0.1, -0.05, 1e-3])),
+)
+def test_every_scene_verifies_however_it_is_sampled(tmp_path_factory, scene, time, sample_every, change):
+    path = tmp_path_factory.mktemp("verify") / "a.mcap"
+    with Recorder(path, wall=None) as recorder:
+        for _ in simulate(SCENES[scene], time, recorder, sample_every, [change]):
+            pass
+    assert verify(path).identical
+
+
+@pytest.mark.parametrize("field", ["theta", "omega", "energy", "energy_error", "max_energy_error", "energy_error_low"])
+@pytest.mark.parametrize("method", [0, 3])
+def test_one_unit_in_the_last_place_is_found_and_told_so_that_someone_can_act(tmp_path, field, method):
+    entries, at = two_runs(), 3
+    right = getattr(reading_of(entries, at, method), field)
+    wrong = math.nextafter(right, math.inf)
+    verification = verify(record(tmp_path / "a.mcap", altered(entries, at, method, **{field: wrong})))
+    assert verification.complete
+    assert not verification.identical
+    difference = verification.first_difference
+    assert (difference.run, difference.step, difference.t) == (1, 6, entries[at].value.t)
+    assert difference.method == ["explicit_euler", "symplectic_euler", "velocity_verlet", "rk4"][method]
+    assert (difference.field, difference.recorded, difference.computed) == (field, wrong, right)
+    assert difference.ulps == 1
+    assert verification.max_difference == difference.size == abs(wrong - right)
+
+
+def test_a_time_that_is_not_the_steps_is_found(tmp_path):
+    entries = two_runs()
+    clock, sample = entries[3]
+    entries[3] = Entry(clock, replace(sample, t=0.61))
+    difference = verify(record(tmp_path / "a.mcap", entries)).first_difference
+    assert (difference.method, difference.field, difference.recorded) == ("", "t", 0.61)
+
+
+def test_minus_zero_is_not_zero(tmp_path):
+    entries = [Entry(0.0, start(scene=replace(SCENE, theta=0.0)))]
+    lockstep = Lockstep(replace(SCENE, theta=0.0))
+    entries.append(Entry(0.0, lockstep.sample()))
+    assert verify(record(tmp_path / "a.mcap", entries)).identical
+    difference = verify(record(tmp_path / "b.mcap", altered(entries, 1, 0, omega=-0.0))).first_difference
+    assert (difference.field, difference.ulps) == ("omega", 1)
+
+
+def test_a_method_that_is_said_to_have_diverged_and_has_not_is_found(tmp_path):
+    difference = verify(record(tmp_path / "a.mcap", altered(two_runs(), 3, 1, diverged_at=0.5))).first_difference
+    assert (difference.field, difference.recorded, difference.computed) == ("diverged_at", 0.5, None)
+    assert difference.ulps is None
+    assert difference.size == math.inf
+
+
+def test_a_change_of_h_that_is_missing_is_found(tmp_path):
+    entries = [entry for entry in two_runs() if getattr(entry.value, "kind", "") != "set_h"]
+    assert not verify(record(tmp_path / "a.mcap", entries)).identical
+
+
+def test_the_first_difference_is_told_and_the_largest_measured(tmp_path):
+    entries = altered(altered(two_runs(), 3, 0, theta=1.0), 8, 2, theta=500.0)
+    verification = verify(record(tmp_path / "a.mcap", entries))
+    assert verification.first_difference.step == 6
+    assert verification.max_difference == abs(500.0 - reading_of(two_runs(), 8, 2).theta)
+
+
+@given(st.floats(-1e300, 1e300) | st.floats(-1e-322, 1e-322), st.integers(0, 50))
+def test_ulps_count_doubles_also_across_zero(value, n):
+    other = value
+    for _ in range(n):
+        other = math.nextafter(other, -math.inf)
+    passed_minus_zero = math.copysign(1, value) > 0 > other  # nextafter goes from 0.0 to the double below -0.0
+    assert Difference(1, 0, 0.0, "rk4", "theta", value, other).ulps == n + passed_minus_zero
+
+
+@pytest.mark.parametrize(
+    ("entries", "why"),
+    [
+        (two_runs()[:1], "it has no samples"),
+        ([*two_runs()[:4], Entry(1.0, replace(two_runs()[3].value, run=7, step=9))], "run 7 lies outside"),
+        ([*two_runs()[:4], Entry(1.0, Event("set_h", 1, 2, 0.2, h=0.2)), *two_runs()[4:5]], "not in order"),
+        ([*two_runs()[:4], Entry(1.0, Event("set_h", 1, 6, 0.6, h=0.0))], "cannot have been recorded: h = 0 s"),
+        ([*two_runs()[:4], Entry(1.0, Event("set_h", 1, 10**15, 0.6, h=0.1))], "more than can be simulated again"),
+        ([Entry(0.0, replace(start(), step=5)), *two_runs()[1:3]], "does not begin at its start"),
+        ([*two_runs()[:4], Entry(1.0, start(1))], "runs are not in order"),
+    ],
+)
+def test_what_no_lab_can_have_recorded_is_refused_in_a_sentence(tmp_path, entries, why):
+    path = record(tmp_path / "a.mcap", entries)
+    with pytest.raises(RecordingError, match=why) as caught:
+        verify(path)
+    assert str(caught.value).startswith(str(path))
+
+
+def foreign_loops(monkeypatch, every):
+    """The methods' loops with another libm's sin: every so many values, it is rounded the other way."""
+    calls = 0
+
+    def sin(x):
+        nonlocal calls
+        calls += 1
+        value = math.sin(x)
+        return math.nextafter(value, math.inf) if calls % every == 0 else value
+
+    def loops_of(method):
+        def advance(w0_squared, *rest):
+            return loops.advance(method.step, acceleration(w0_squared, sin), w0_squared, *rest)
+
+        return loops.plain(method)._replace(advance=advance)
+
+    monkeypatch.setattr(loops, "sin", sin)
+    monkeypatch.setattr("recordings.recorder.sin_fingerprint", lambda: "another")
+    return loops_of
+
+
+@pytest.mark.parametrize("scene", sorted(SCENES))
+def test_a_recording_from_a_machine_with_another_sin_verifies_within_the_tolerance(tmp_path, monkeypatch, scene):
+    path = tmp_path / "a.mcap"
+    with monkeypatch.context() as elsewhere, Recorder(path, wall=None) as recorder:
+        foreign = foreign_loops(elsewhere, every=2)  # much worse than any libm
+        for _ in simulate(SCENES[scene], 1500 * SCENES[scene].h, recorder, sample_every=5, loops=foreign):
+            pass
+    verification = verify(path)
+    assert not verification.same_sin
+    assert verification.identical
+    monkeypatch.setattr("recordings.verify.sin_fingerprint", lambda: "another")
+    assert not verify(path).identical  # or it was no other sin
+
+
+def test_beyond_the_tolerance_a_difference_is_a_difference_also_where_sin_differs(tmp_path, monkeypatch):
+    entries = two_runs()
+    right = reading_of(entries, 7, 2).theta
+    monkeypatch.setattr("recordings.recorder.sin_fingerprint", lambda: "another")
+    near = right * (1 + rerun.TOLERANCE / 2)
+    verification = verify(record(tmp_path / "a.mcap", altered(entries, 7, 2, theta=near)))
+    assert verification.identical
+    assert verification.max_difference == abs(near - right)
+    outside = altered(entries, 7, 2, theta=right * (1 + 1e3 * rerun.TOLERANCE))
+    difference = verify(record(tmp_path / "b.mcap", outside)).first_difference
+    assert (difference.method, difference.field, difference.computed) == ("velocity_verlet", "theta", right)
+
+
+def test_another_formula_is_found_also_where_sin_differs(tmp_path, monkeypatch):
+    path = tmp_path / "a.mcap"
+    monkeypatch.setattr("recordings.recorder.sin_fingerprint", lambda: "another")
+    with Recorder(path, wall=None) as recorder:
+        for sample in simulate(SCENES["drift"], 2.0):
+            readings = tuple(replace(reading, theta=reading.theta * (1 + 1e-9)) for reading in sample.readings)
+            if sample.step == 0:
+                recorder.event(start(scene=SCENES["drift"]), 0.0)
+            recorder.sample(Sample(1, sample.step, sample.t, readings), sample.t)
+    assert not verify(path).identical
+
+
+def test_progress_is_told_in_bytes(tmp_path):
+    path = record(tmp_path / "a.mcap", two_runs())
+    told = []
+    verify(path, lambda done, size: told.append((done, size)))
+    assert [done for done, _ in told] == sorted({done for done, _ in told})
+    assert {size for _, size in told} == {path.stat().st_size}
+
+
+def test_a_recording_of_one_method_verifies(tmp_path):
+    assert verify(tiny(tmp_path / "a.mcap")).identical

@@ -1,0 +1,56 @@
+"""Rules of the architecture, each executable."""
+
+import pkgutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import tui.commands
+from tui.cli import COMMANDS
+
+ROOT = Path(__file__).parent.parent
+MODULES = [path for package in ("engine", "recordings", "tui") for path in (ROOT / package).rglob("*.py")]
+HEAVY = {"textual", "numpy", "rich", "plotext", "mcap", "numba", "distributed"}
+
+LOADED = f"""
+import sys
+from tui.cli import main
+sys.stdout = sys.stderr
+code = main(sys.argv[1:])
+print(code, *sorted({HEAVY!r} & set(sys.modules)), file=sys.__stdout__)
+"""
+
+
+def loaded_by(*arguments: str) -> str:
+    """The exit code and the heavy packages that this command line imports."""
+    done = subprocess.run([sys.executable, "-c", LOADED, *arguments], capture_output=True, text=True, check=True)
+    return done.stdout.strip()
+
+
+@pytest.mark.parametrize("option", ["--help", "--version"])
+def test_help_and_version_load_nothing_heavy(option):
+    assert loaded_by(option) == "0"
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_help_of_a_command_loads_nothing_heavy(name):
+    assert loaded_by(name, "--help") == "0"
+
+
+def test_every_command_in_the_table_has_a_module_and_every_module_is_in_the_table():
+    assert {module.name for module in pkgutil.iter_modules(tui.commands.__path__)} == set(COMMANDS)
+
+
+def test_the_import_contracts_hold():
+    lint = Path(sys.executable).with_name("lint-imports")
+    done = subprocess.run([lint, "--no-cache"], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout
+    assert "0 broken" in done.stdout
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_a_module_is_one_idea_on_at_most_250_lines(path):
+    lines = path.read_text(encoding="utf-8").splitlines()
+    assert len(lines) <= 250

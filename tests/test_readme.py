@@ -1,0 +1,210 @@
+"""Everything that the README says is run."""
+
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+from engine.lockstep import Lockstep
+from engine.methods import METHODS
+from engine.scenes import DEFAULT_SCENE
+from recordings.export import COLUMNS
+from tests.tui.command_line import pendu
+from tui.cli import COMMANDS, command_of
+from tui.keys import COMMON, LIVE, REPLAY, Key
+from tui.options import joined
+
+ROOT = Path(__file__).parent.parent
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+ON_SCREEN = {"live", "replay"}
+
+
+def blocks(language: str) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```", README, re.MULTILINE | re.DOTALL)
+
+
+def block_with(language: str, word: str) -> str:
+    (block,) = (block for block in blocks(language) if word in block)
+    return block
+
+
+def test_the_test_command_is_the_one_of_ci():
+    (extraction,) = re.findall(r"grep .* '(.*)' README.md", (ROOT / ".ci" / "run").read_text(encoding="utf-8"))
+    assert re.search(extraction, README)[0] == (
+        "python3 -m venv .venv && .venv/bin/pip install '.[test]' && .venv/bin/pytest"
+    )
+
+
+def test_the_install_commands_are_one_line_each():
+    assert "`python3 -m venv .venv && .venv/bin/pip install . && .venv/bin/pendu-tui`" in README
+    assert "`uv venv --allow-existing && uv pip install . && .venv/bin/pendu-tui`" in README
+    assert "`uv venv --allow-existing && uv pip install '.[test]' && .venv/bin/pytest`" in README
+
+
+@pytest.mark.parametrize("target", re.findall(r"\]\((?!http)(.*?)\)", README))
+def test_what_is_linked_is_there(target):
+    assert (ROOT / target).is_file()
+
+
+@pytest.mark.parametrize("command", re.findall(r"`(pendu-tui(?: [^`]*)?)`", README))
+def test_every_command_that_is_mentioned_exists_with_its_options(command):
+    words = [word for word in shlex.split(command)[1:] if word != "FOLDER"]
+    if "COMMAND" in words:
+        return
+    name = words.pop(0) if words and not words[0].startswith("-") else "live"
+    parser, _ = command_of(name)
+    parser.parse_args(joined(words + ["."] * (name == "verify")))
+
+
+@pytest.fixture
+def shell(tmp_path):
+    """Run a line as a reader would, in a folder of its own."""
+    environment = {
+        **os.environ,
+        "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
+        "PENDU_RECORDINGS": str(tmp_path / "library"),
+    }
+
+    def run(line: str) -> str:
+        done = subprocess.run(
+            ["bash", "-c", line], cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
+        )
+        assert (done.returncode, done.stderr) == (0, ""), line
+        return done.stdout
+
+    return run
+
+
+def test_the_commands_of_the_blocks_do_what_they_say(shell, tmp_path):
+    for line in "".join(blocks("sh")).splitlines():
+        shell(line)
+    assert {"crossover.mcap", "crossover.csv", "saved.mcap"} <= {path.name for path in tmp_path.iterdir()}
+
+
+@pytest.mark.parametrize("command", re.findall(r"^\$ (.*)$", README, re.MULTILINE))
+def test_what_is_shown_of_a_command_is_what_it_prints(shell, command):
+    shown = README.partition(f"$ {command}\n")[2].partition("```")[0].partition("\n$ ")[0]
+    assert without_seconds(shell(command)) == without_seconds(shown)
+
+
+def without_seconds(text: str) -> list[str]:
+    return [re.sub(r"in [\d.]+ s$", "", line.rstrip()) for line in text.splitlines()]
+
+
+def test_the_five_lines_for_pytest_are_a_test(tmp_path):
+    lines = block_with("python", "import pytest")
+    assert len(lines.splitlines()) == 5
+    (tmp_path / "test_numbers.py").write_text(lines)
+    shutil.copy(ROOT / "recordings" / "golden" / "drift.mcap", tmp_path)
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "--rootdir", ".", "test_numbers.py"]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    assert "1 passed" in done.stdout, done.stdout
+    data = bytearray((tmp_path / "drift.mcap").read_bytes())
+    data[len(data) // 2] ^= 1
+    (tmp_path / "drift.mcap").write_bytes(data)
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    assert "1 failed" in done.stdout, done.stdout
+
+
+def test_the_recipes_name_columns_that_the_csv_has():
+    recipes = block_with("python", "read_csv")
+    assert set(re.findall(r"\w*(?:energy|method|theta|omega|_s\b)\w*", recipes)) <= set(COLUMNS)
+
+
+@pytest.mark.parametrize("package", ["pandas", "duckdb"])
+def test_the_recipe_reads_the_csv(package, tmp_path, monkeypatch):
+    if find_spec(package) is None:
+        pytest.skip(f"{package} is not installed")
+    (recipe,) = (line for line in block_with("python", "read_csv").splitlines() if line.startswith(package))
+    assert pendu("export", "drift", "-o", tmp_path / "crossover.csv").code == 0
+    monkeypatch.chdir(tmp_path)
+    answer = eval(recipe, {package: __import__(package)})
+    assert "explicit_euler" in str(answer)
+
+
+def test_the_keys_are_those_of_the_lab():
+    assert table_of([*COMMON, *LIVE]) in README
+    assert table_of(REPLAY) in README
+
+
+def table_of(keys: list[Key]) -> str:
+    rows = "".join(f"| `{key.shown}` | {key.does} |\n" for key in keys)
+    return f"| key | does |\n|---|---|\n{rows}"
+
+
+def test_every_command_is_in_the_list():
+    rows = "".join(f"| `{name}` | {does} |\n" for name, does in COMMANDS.items())
+    assert f"| command | does |\n|---|---|\n{rows}" in README
+
+
+def test_a_method_is_added_in_two_steps_as_described(tmp_path):
+    for package in ("engine", "recordings", "tui"):
+        shutil.copytree(ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("__pycache__"))
+    methods = tmp_path / "engine" / "methods.py"
+    source = methods.read_text(encoding="utf-8")
+    step, entry = block_with("python", "def position_verlet"), block_with("python", "Method(")
+    source = source.replace("\n\n@dataclass", f"\n\n{step}\n\n@dataclass", 1)
+    source = re.sub(r"(?ms)(^METHODS: .*?)^\)", lambda match: f"{match[1]}{entry})", source)
+    methods.write_text(source, encoding="utf-8")
+    program = [sys.executable, "-P", "-c", "import sys; from tui.cli import main; sys.exit(main())"]
+    environment = {**os.environ, "PYTHONPATH": str(tmp_path)}
+    for arguments, word in [
+        (["methods"], "position_verlet"),
+        (["run", "--time", "60", "--record", "five.mcap"], "Position Verlet   bounded"),
+        (["verify", "five.mcap", "golden"], "6 recordings, 6 identical"),
+        (["snapshot", "--time", "1", "-o", "five.svg"], ""),
+    ]:
+        done = subprocess.run(
+            [*program, *arguments], cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
+        )
+        assert (done.returncode, done.stderr) == (0, "")
+        assert word in done.stdout
+    assert "Position" in (tmp_path / "five.svg").read_text(encoding="utf-8")
+    claims = [str(ROOT / "tests" / "engine" / "test_methods.py"), "-k", "position_verlet"]
+    pytest_alone = [sys.executable, "-P", "-m", "pytest", "-c", os.devnull, "--rootdir", ".", "-p", "no:cacheprovider"]
+    done = subprocess.run(
+        [*pytest_alone, *claims], cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
+    )
+    assert re.search(r"= \d{2} passed, \d+ deselected", done.stdout), done.stdout
+
+
+def methods_after(seconds: float, scene: str) -> dict[str, dict]:
+    """What `run` says of each method."""
+    return {row["method"]: row for row in pendu("run", "--scene", scene, "--time", seconds, "--json").json["methods"]}
+
+
+def test_rk4_falls_behind_verlet_after_half_a_minute_in_crossover():
+    for seconds, rk4_is_ahead in [(5, True), (20, True), (40, False), (100, False)]:
+        rows = methods_after(seconds, "crossover")
+        assert (rows["rk4"]["max_energy_error"] < rows["velocity_verlet"]["max_energy_error"]) == rk4_is_ahead
+
+
+def test_next_to_the_separatrix_rk4_has_the_best_energy_and_falls_at_the_wrong_time():
+    rows = methods_after(100, "near-separatrix")
+    assert rows["rk4"]["max_energy_error"] == min(row["max_energy_error"] for row in rows.values())
+    assert rows["rk4"]["theta_error"] > 1
+
+
+def test_beyond_z_2_the_pendulum_catches_verlet():
+    (verlet,) = (row for key, row in methods_after(1e5, "verlet-limit-above").items() if key == "velocity_verlet")
+    assert abs(verlet["theta"]) < 1  # it started at 0.1
+
+
+def test_with_time_reversed_verlet_comes_back_and_symplectic_euler_does_not():
+    lockstep = Lockstep(DEFAULT_SCENE)
+    for h in (DEFAULT_SCENE.h, -DEFAULT_SCENE.h):
+        lockstep.set_h(h)
+        lockstep.advance(200)
+    missed = {
+        method.key: abs(reading.theta - DEFAULT_SCENE.theta)
+        for method, reading in zip(METHODS, lockstep.sample().readings, strict=True)
+    }
+    assert missed["velocity_verlet"] < 1e-12
+    assert missed["symplectic_euler"] > 1e-3

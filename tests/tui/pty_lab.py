@@ -1,0 +1,119 @@
+"""The real program on a pseudo-terminal: type, read what it sends, wait for it."""
+
+import fcntl
+import os
+import pty
+import resource
+import select
+import signal
+import struct
+import sys
+import termios
+import time
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+PENDU = [sys.executable, "-c", "import sys; from tui.cli import main; sys.exit(main())"]
+ROOT = Path(__file__).parents[2]
+
+
+class PtyLab:
+    """A running `pendu-tui` with its terminal."""
+
+    def __init__(self, *arguments: str, size: tuple[int, int] = (120, 40), **environment: str) -> None:
+        columns, rows = size
+        self.began = time.monotonic()
+        self.pid, self.terminal = pty.fork()
+        if self.pid == 0:
+            fcntl.ioctl(0, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
+            os.chdir(ROOT)
+            terminal = {"TERM": "xterm-256color", "COLORTERM": "truecolor", "PYTHONUTF8": "1"}
+            os.execvpe(PENDU[0], [*PENDU, *arguments], {**os.environ, **terminal, **environment})
+        self.output = bytearray()
+        self.reads: list[tuple[float, int]] = []
+        """When how many bytes came, in s since the start."""
+        self.code: int | None = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        if self.code is None:
+            os.kill(self.pid, signal.SIGKILL)
+            os.waitpid(self.pid, 0)
+        self.hang_up()
+
+    @property
+    def now(self) -> float:
+        """s since the start."""
+        return time.monotonic() - self.began
+
+    def read(self, seconds: float) -> bytes:
+        """What comes within `seconds`, at most one piece; empty if nothing does or the program is gone."""
+        ready, _, _ = select.select([self.terminal], [], [], max(seconds, 0))
+        try:
+            piece = os.read(self.terminal, 1 << 16) if ready else b""
+        except OSError:  # Linux: nobody has the other end open any more
+            time.sleep(0.01)
+            return b""
+        if piece:
+            self.output += piece
+            self.reads.append((self.now, len(piece)))
+        return piece
+
+    def run(self, seconds: float) -> bytes:
+        """Read for a while."""
+        end, start = self.now + seconds, len(self.output)
+        while self.now < end:
+            self.read(end - self.now)
+        return bytes(self.output[start:])
+
+    def wait_for(self, text: str, seconds: float = 20.0) -> float:
+        """Read until a text comes; returns when it came, in s since the start."""
+        start, end = len(self.output), self.now + seconds
+        while text.encode() not in self.output[max(0, start - len(text)) :]:
+            if self.now > end:
+                raise TimeoutError(f"{text!r} did not come within {seconds} s: {bytes(self.output[-2000:])!r}")
+            self.read(end - self.now)
+        return self.now
+
+    def type(self, keys: str) -> None:
+        """Press keys."""
+        os.write(self.terminal, keys.encode())
+
+    def signal(self, number: int) -> None:
+        """Send a signal."""
+        os.kill(self.pid, number)
+
+    def hang_up(self) -> None:
+        """Close the terminal."""
+        if self.terminal >= 0:
+            os.close(self.terminal)
+            self.terminal = -1
+
+    def end(self, seconds: float = 20.0) -> int:
+        """Read until the program has ended; returns its exit code, negative for a signal."""
+        end = self.now + seconds
+        while self.code is None:
+            pid, status, self.usage = os.wait4(self.pid, os.WNOHANG)
+            if pid:
+                self.code = os.waitstatus_to_exitcode(status)
+            elif self.now > end:
+                raise TimeoutError(f"it did not end within {seconds} s")
+            elif self.terminal >= 0:
+                self.read(0.02)
+            else:
+                time.sleep(0.02)
+        while self.terminal >= 0 and self.read(0.05):
+            pass
+        return self.code
+
+    def cpu_seconds(self) -> float:
+        """Processor time used so far."""
+        fields = Path(f"/proc/{self.pid}/stat").read_text().rpartition(")")[2].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    usage: resource.struct_rusage

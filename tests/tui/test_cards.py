@@ -1,0 +1,66 @@
+"""Cards say what METHODS and SCENES say, and nothing else."""
+
+import pytest
+
+from engine.methods import METHODS
+from engine.scenes import SCENES
+from tests.tui.stage import lab
+from tui.cards import WIDTH, method_card, scene_card
+from tui.keys import COMMON, LIVE
+from tui.screens.help import help_text
+from tui.widgets.phase import PhasePane
+
+
+def words(card: str) -> str:
+    """The card on one line."""
+    return " ".join(card.split())
+
+
+@pytest.mark.parametrize("index", range(len(METHODS)), ids=[method.key for method in METHODS])
+def test_a_method_card_has_every_claim(index):
+    method, card = METHODS[index], words(method_card(index))
+    for claim in (method.label, *method.other_names, method.formula, method.reference, method.used):
+        assert words(claim) in card
+    assert f"order {method.order}: half the step makes the error {2**method.order} times smaller" in card
+    assert f"costs {method.force_evaluations} force evaluation" in card
+    assert ("symplectic yes" in card, "reversible yes" in card) == (method.symplectic, method.reversible)
+    assert (f"up to {method.linear_limit:.4g}" in card) if method.linear_limit else ("stable none" in card)
+
+
+@pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
+def test_a_scene_card_says_what_to_watch_and_has_the_numbers(scene):
+    card = words(scene_card(scene))
+    assert words(scene.watch) in card
+    for number in (scene.omega, scene.length, scene.gravity, scene.h):
+        assert f"{number:.5g}" in card
+
+
+def test_a_scene_that_has_nothing_to_watch_says_so_by_silence():
+    assert "watch" not in scene_card(SCENES["drift"].altered(theta=2.0))
+
+
+def test_no_line_is_longer_than_the_reader_is_wide():
+    for card in (*map(method_card, range(len(METHODS))), *map(scene_card, SCENES.values())):
+        assert max(map(len, card.splitlines())) <= WIDTH
+
+
+def test_the_help_begins_with_what_to_watch_and_ends_with_the_methods():
+    text = help_text((*LIVE, *COMMON), SCENES["drift"])
+    assert text.startswith(scene_card(SCENES["drift"]))
+    assert text.endswith(method_card(len(METHODS) - 1))
+    assert text.index("Time\n") < text.index("What is shown\n") < text.index(METHODS[0].formula)
+
+
+async def test_the_help_begins_with_the_keys_of_what_has_the_focus():
+    async with lab() as theatre:
+        for view, pane, first in ((None, None, "The run"), (None, PhasePane, "Phase space"), ("f5", None, "Stability")):
+            if view:
+                await theatre.press(view)
+                await theatre.pilot.pause()
+            if pane:
+                theatre.stage.query_one(pane).focus()
+            await theatre.press("question_mark")
+            groups = [part.partition("\n")[0] for part in theatre.app.screen.text.split("\n\n")]
+            assert groups[1] == first
+            assert {"The run", "Time", "What is shown", "The program"} < set(groups)
+            await theatre.press("escape")

@@ -1,0 +1,74 @@
+import pytest
+
+from tests.tui.command_line import pendu
+from tui.commands.doctor import colours, encoding, folder, size, unfinished
+
+
+def test_doctor_reports_and_never_fails():
+    outcome = pendu("doctor")
+    assert (outcome.code, outcome.err) == (0, "")
+    lines = outcome.out.splitlines()
+    for what in ("lab", "size", "encoding", "colours", "mouse", "recordings", "unfinished", "sin", "python", "numba"):
+        assert any(line.startswith(what) for line in lines), what
+
+
+def test_doctor_as_json_has_the_same_findings():
+    answer = pendu("doctor", "--json").json
+    assert answer["schema"] == "pendu.doctor/1"
+    assert {"what", "found", "advice"} == set(answer["findings"][0])
+
+
+def test_doctor_names_the_folder_of_the_recordings(monkeypatch, tmp_path):
+    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
+    assert str(tmp_path) in pendu("doctor").out
+
+
+@pytest.mark.parametrize(("columns", "rows", "word"), [(59, 16, "too small"), (80, 24, "120x40"), (120, 40, "")])
+def test_the_advice_on_size_is_the_layouts(columns, rows, word):
+    advice = size(columns, rows).advice
+    assert word in advice
+    assert bool(advice) == bool(word)
+
+
+@pytest.mark.parametrize("name", ["utf-8", "UTF-8", "utf8"])
+def test_utf_8_is_fine_however_it_is_spelt(name):
+    assert not encoding(name).advice
+
+
+def test_an_encoding_without_braille_is_answered_with_how_to_change_it():
+    assert "LANG=C.UTF-8" in encoding("ascii").advice
+
+
+@pytest.mark.parametrize(
+    ("environment", "found", "advice"),
+    [
+        ({"TERM": "xterm-256color", "COLORTERM": "truecolor"}, "16 million", ""),
+        ({"TERM": "xterm-256color"}, "256", "COLORTERM"),
+        ({"TERM": "xterm"}, "16", "COLORTERM"),
+        ({"TERM": "dumb"}, "none", "set TERM"),
+        ({}, "none", "set TERM"),
+        ({"TERM": "xterm", "NO_COLOR": "1"}, "NO_COLOR", "as you asked"),
+    ],
+)
+def test_colours_are_read_from_the_environment(environment, found, advice):
+    finding = colours(environment)
+    assert found in finding.found
+    assert advice in finding.advice
+    assert bool(finding.advice) == bool(advice)
+
+
+def test_a_folder_that_is_not_there_yet_is_fine_and_one_below_a_file_is_not(tmp_path):
+    assert not folder(tmp_path / "a" / "b").advice
+    (tmp_path / "file").touch()
+    assert "PENDU_RECORDINGS" in folder(tmp_path / "file" / "a").advice
+
+
+def test_leftovers_are_counted_and_answered_with_what_saves_them():
+    assert not unfinished(0).advice
+    assert "recover" in unfinished(2).advice
+
+
+def test_without_a_terminal_the_lab_does_not_start_and_doctor_says_so():
+    (finding,) = [f for f in pendu("doctor", "--json").json["findings"] if f["what"] == "lab"]
+    assert finding["found"] == "does not start here"
+    assert "pendu-tui run needs none" in finding["advice"]

@@ -1,0 +1,183 @@
+import csv
+import io
+import os
+import struct
+
+import pytest
+
+from recordings.library import GOLDEN
+from recordings.recording import Recording
+from recordings.verify import verify
+from tests.recordings.sittings import record, two_runs
+from tests.tui.command_line import pendu
+
+
+@pytest.fixture
+def library(tmp_path, monkeypatch):
+    """Three recordings of known age: c is the newest."""
+    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
+    for age, name in enumerate("cba"):
+        path = record(tmp_path / f"{name}.mcap", two_runs())
+        os.utime(path, (1e9 - age, 1e9 - age))
+    return tmp_path
+
+
+def names(folder):
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_info_tells_what_is_in_a_recording(tmp_path):
+    path = record(tmp_path / "sitting.mcap", two_runs())
+    answer = pendu("info", path, "--json").json
+    assert answer["schema"] == "pendu.info/1"
+    assert (answer["complete"], answer["damaged"], answer["reason"]) == (True, False, None)
+    assert (answer["samples"], answer["bytes"]) == (10, path.stat().st_size)
+    first, second = answer["runs"]
+    assert (first["scene"]["theta"], first["scene"]["h"], first["steps"]) == (2.0, 0.1, 16)
+    assert first["events"] == 5  # set_h, speed, pause, mark, resume
+    assert (second["steps"], second["seconds"]) == (16, 1.25)
+    out = pendu("info", path).out
+    assert "complete" in out
+    assert "explicit_euler, symplectic_euler, velocity_verlet, rk4" in out
+
+
+def test_info_tells_what_is_wrong_with_a_recording(tmp_path):
+    path = record(tmp_path / "sitting.mcap", two_runs())
+    path.write_bytes(path.read_bytes()[:-40])
+    answer = pendu("info", path, "--json").json
+    assert (answer["complete"], answer["damaged"]) == (False, False)
+    assert answer["reason"] in pendu("info", path).out
+
+
+def test_recover_makes_a_whole_recording_of_a_cut_one_and_says_what_is_lost(tmp_path):
+    path, out = record(tmp_path / "sitting.mcap", two_runs()), tmp_path / "saved.mcap"
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+    answer = pendu("recover", path, "-o", out, "--json").json
+    assert answer["schema"] == "pendu.recover/1"
+    assert {"samples_kept", "chunks_lost", "seconds_lost"} <= answer.keys()
+    assert 0 < answer["samples_kept"] == verify(out).samples < 10
+    assert verify(out).complete
+    told = pendu("recover", path, "-o", out, "--force").out
+    assert f"{answer['samples_kept']} samples saved" in told
+
+
+def test_recover_overwrites_nothing_unless_by_force(tmp_path):
+    path, out = record(tmp_path / "sitting.mcap", two_runs()), tmp_path / "saved.mcap"
+    out.write_bytes(b"precious")
+    assert pendu("recover", path, "-o", out).refused(5, "exists")
+    assert out.read_bytes() == b"precious"
+
+
+def test_export_writes_numbers_that_read_back_to_the_last_bit(tmp_path):
+    out = tmp_path / "drift.csv"
+    assert pendu("export", "drift", "--format", "csv", "-o", out).code == 0
+    rows = list(csv.DictReader(out.open(newline="")))
+    with Recording.open(GOLDEN / "drift.mcap") as recording:
+        samples = [entry.value for entry in recording.entries() if hasattr(entry.value, "readings")]
+    assert len(rows) == 4 * len(samples)
+    for row, reading in zip(rows, (reading for sample in samples for reading in sample.readings), strict=True):
+        assert struct.pack("d", float(row["theta_rad"])) == struct.pack("d", reading.theta)
+        assert float(row["max_energy_error"]) == reading.max_energy_error
+
+
+def test_export_to_stdout_is_the_file(tmp_path):
+    pendu("export", "spin", "-o", tmp_path / "spin.csv")
+    assert pendu("export", "spin").out == (tmp_path / "spin.csv").read_text()
+
+
+def test_export_overwrites_nothing_unless_by_force_and_leaves_nothing_half_written(tmp_path):
+    out = tmp_path / "drift.csv"
+    out.write_text("precious")
+    assert pendu("export", "drift", "-o", out).refused(5, "--force")
+    assert out.read_text() == "precious"
+    assert pendu("export", "drift", "-o", out, "--force").code == 0
+    assert pendu("export", "drift", "-o", tmp_path / "missing" / "drift.csv").refused(5, "create the folder")
+    assert names(tmp_path) == ["drift.csv"]
+
+
+def test_an_export_that_fails_half_way_leaves_no_file(tmp_path, monkeypatch):
+    def full(*_: object) -> int:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("recordings.export.write_csv", full)
+    assert pendu("export", "drift", "-o", tmp_path / "drift.csv").refused(5, "No space")
+    assert names(tmp_path) == []
+
+
+def test_the_library_is_listed_newest_first(library):
+    answer = pendu("recordings", "--json").json
+    assert answer["schema"] == "pendu.recordings/1"
+    assert [told["file"] for told in answer["recordings"]] == [str(library / f"{name}.mcap") for name in "cba"]
+    assert (answer["recordings"][0]["seconds"], answer["recordings"][0]["scenes"]) == (4.0, ["test"])
+    out = pendu("recordings").out
+    assert out.index("c.mcap") < out.index("b.mcap") < out.index("a.mcap")
+
+
+def test_a_damaged_recording_in_the_library_is_listed_with_what_is_wrong(library):
+    (library / "a.mcap").write_bytes(b"")
+    assert "the file is empty" in pendu("recordings").out
+    assert pendu("recordings", "--json").json["recordings"][0]["reason"]  # it is the newest now
+
+
+def test_an_empty_library_is_no_error(tmp_path, monkeypatch):
+    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path / "nothing"))
+    assert "no recording" in pendu("recordings").out
+    assert pendu("recordings", "prune", "--keep", 1, "--yes").code == 0
+    assert not (tmp_path / "nothing").exists()
+
+
+def test_prune_keeps_the_newest(library):
+    assert pendu("recordings", "prune", "--keep", 2, "--yes").out.startswith("deleted 1 recordings")
+    assert names(library) == ["b.mcap", "c.mcap"]
+
+
+def test_prune_keeps_what_fits(library):
+    size = (library / "c.mcap").stat().st_size
+    assert pendu("recordings", "prune", "--size", 2 * size, "--yes").code == 0
+    assert names(library) == ["b.mcap", "c.mcap"]
+
+
+def test_prune_deletes_nothing_without_a_yes(library):
+    outcome = pendu("recordings", "prune", "--keep", 1)
+    assert outcome.refused(2, "--yes")
+    assert len(names(library)) == 3
+
+
+@pytest.mark.parametrize(("answer", "left"), [("y\n", 1), ("\n", 3), ("no\n", 3), ("", 3)])
+def test_prune_asks_who_can_be_asked(library, monkeypatch, answer, left):
+    class Keyboard(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    monkeypatch.setattr("sys.stdin", Keyboard(answer))
+    outcome = pendu("recordings", "prune", "--keep", 1)
+    assert "Delete these 2 recordings?" in outcome.err
+    assert "a.mcap" in outcome.err
+    assert len(names(library)) == left
+
+
+def test_prune_touches_no_file_in_use(library):
+    with Recording.open(library / "a.mcap"):
+        outcome = pendu("recordings", "prune", "--keep", 1, "--yes")
+    assert names(library) == ["a.mcap", "c.mcap"]
+    assert "1 more are in use" in outcome.out
+
+
+def test_prune_as_json_names_what_is_gone(library):
+    assert pendu("recordings", "prune", "--keep", 2, "--yes", "--json").json["deleted"] == [str(library / "a.mcap")]
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [("prune",), ("--keep", "1"), ("prune", "--keep", "0"), ("prune", "--size", "lots"), ("prune", "--size", "-1")],
+)
+def test_prune_without_a_measure_deletes_nothing(library, arguments):
+    assert pendu("recordings", *arguments, "--yes").refused(2)
+    assert len(names(library)) == 3
+
+
+@pytest.mark.parametrize(("text", "bytes_"), [("2000", 2000), ("500MB", 5e8), ("1.5 GB", 1.5e9), ("3k", 3000)])
+def test_sizes_are_read_with_their_units(text, bytes_):
+    from tui.commands.recordings import size
+
+    assert size(text) == bytes_

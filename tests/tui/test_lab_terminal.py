@@ -1,0 +1,191 @@
+"""The real program on a real pseudo-terminal, and what it leaves behind however it ends."""
+
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+from recordings.recording import Recording
+from recordings.verify import verify
+from tests.tui.command_line import pendu
+from tests.tui.pty_lab import PENDU, PtyLab
+
+ON_SCREEN = "Quit"  # of the key line, which is painted last
+RECORDING = "REC 0 s"
+
+
+@pytest.fixture
+def library(tmp_path: Path) -> Path:
+    return tmp_path / "library"
+
+
+def lab(library: Path, *arguments: str, **environment: str) -> PtyLab:
+    return PtyLab(*arguments, PENDU_RECORDINGS=str(library), **environment)
+
+
+def whole(library: Path) -> Recording:
+    """The only recording in the library, finished and verified."""
+    (path,) = library.iterdir()
+    assert path.suffix == ".mcap"
+    assert verify(path).identical
+    recording = Recording.open(path, check=True)
+    assert recording.complete
+    return recording
+
+
+def test_the_program_starts_follows_the_keys_quits_and_leaves_a_recording_that_verifies(library):
+    with lab(library) as session:
+        session.wait_for(RECORDING)
+        session.type("+")
+        session.wait_for("h 0.1 s")
+        session.type(" ")
+        session.wait_for("paused")
+        session.type(".")
+        session.type("p")
+        session.wait_for("gentle")
+        session.type("q")
+        assert session.end() == 0
+        (path,) = library.iterdir()
+        assert f"recorded: {path}" in session.output.decode()
+        assert f"pendu-tui replay {path}" in session.output.decode()
+    kinds = [event.kind for _, event in whole(library).events]
+    assert kinds == ["start", "set_h", "pause", "start", "stop"]
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_finishes_the_recording(library, number):
+    with lab(library) as session:
+        session.wait_for(RECORDING)
+        session.signal(number)
+        assert session.end() == 130
+        assert b"\x1b[?1049l" in session.output  # the terminal is as it was
+    assert whole(library).samples
+
+
+def test_ctrl_c_finishes_the_recording(library):
+    with lab(library) as session:
+        session.wait_for(RECORDING)
+        session.type("\x03")
+        assert session.end() == 130
+    assert whole(library).samples
+
+
+def test_a_closed_terminal_finishes_the_recording(library):
+    with lab(library) as session:
+        session.wait_for(RECORDING)
+        session.hang_up()
+        assert session.end() == 130
+    assert whole(library).samples
+
+
+def test_what_a_killed_sitting_leaves_is_recovered_at_the_next_start_and_told(library):
+    with lab(library) as session:
+        session.wait_for("REC 2 s")
+        session.signal(signal.SIGKILL)
+        assert session.end() == -signal.SIGKILL
+    assert [path.suffix for path in library.iterdir()] == [".part"]
+    with lab(library) as session:
+        session.wait_for("was recovered")
+        session.wait_for(RECORDING)
+        session.type("q")
+        assert session.end() == 0
+    recovered, latest = sorted(library.iterdir())
+    assert {recovered.suffix, latest.suffix} == {".mcap"}
+    assert Recording.open(recovered).length > 1
+
+
+def test_without_recording_nothing_is_written(library):
+    with lab(library, "live", "--no-record") as session:
+        session.wait_for("not recorded")
+        session.type("q")
+        assert session.end() == 0
+        assert "recorded:" not in session.output.decode()
+    assert not library.exists()
+
+
+def test_a_replay_plays_and_goes_on_live(library):
+    with lab(library, "replay", "drift", "--start-at", "5") as session:
+        session.wait_for("REPLAY")
+        session.wait_for("run 1/1")
+        session.type("f")
+        session.wait_for(RECORDING)
+        session.type("q")
+        assert session.end() == 0
+    assert whole(library).samples
+
+
+def test_a_terminal_that_cannot_move_its_cursor_is_told_so(library):
+    with lab(library, TERM="dumb") as session:
+        assert session.end() == 4
+        said = session.output.decode()
+    assert said.startswith("pendu-tui: ")
+    assert "TERM=dumb" in said
+    assert said.count("\n") == 1
+    assert not library.exists()
+
+
+@pytest.mark.parametrize("command", [["live"], ["replay", "drift"]])
+def test_without_a_terminal_there_is_a_sentence_and_exit_4(command):
+    done = subprocess.run([*PENDU, *command], capture_output=True, text=True, stdin=subprocess.DEVNULL, check=False)
+    assert (done.returncode, done.stdout) == (4, "")
+    assert "no terminal" in done.stderr
+    assert done.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("content", [b"", b"\x89MCAP0\r\n", b"not a recording at all" * 99])
+def test_a_file_that_is_no_recording_is_a_sentence_and_exit_3(tmp_path, content):
+    path = tmp_path / "odd.mcap"
+    path.write_bytes(content)
+    with lab(tmp_path / "library", "replay", str(path)) as session:
+        assert session.end() == 3
+        said = session.output.decode()
+    assert said.startswith("pendu-tui: ")
+    assert "odd.mcap" in said.replace("\r\n", "")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "words"),
+    [
+        (("live", "--h", "0"), 2, "h = 0 s"),
+        (("live", "--speed", "-1"), 2, "above zero"),
+        (("live", "--scene", "drfit"), 2, "did you mean drift"),
+        (("live", "--record", "x.mcap", "--no-record"), 2, "not allowed"),
+        (("replay", "no-such"), 3, "no recording"),
+        (("replay", "drift", "--speed", "fast"), 2, "no number"),
+    ],
+)
+def test_bad_input_is_refused_before_the_terminal_is_looked_at(arguments, code, words):
+    assert pendu(*arguments).refused(code, words)
+
+
+def test_a_folder_that_cannot_be_made_is_a_sentence_and_exit_5(tmp_path):
+    (tmp_path / "file").write_text("in the way")
+    with lab(tmp_path / "file" / "library") as session:
+        assert session.end() == 5
+        assert session.output.decode().startswith("pendu-tui: ")
+
+
+def test_a_file_is_not_overwritten(tmp_path):
+    path = tmp_path / "kept.mcap"
+    path.write_text("kept")
+    with lab(tmp_path, "live", "--record", str(path)) as session:
+        assert session.end() == 5
+        assert "exists already" in session.output.decode()
+    assert path.read_text() == "kept"
+
+
+def test_when_the_folder_goes_away_the_lab_goes_on_says_so_and_records_again(library):
+    with lab(library) as session:
+        session.wait_for(RECORDING)
+        for path in library.iterdir():
+            path.unlink()
+        library.rmdir()
+        session.wait_for("NOT RECORDED")
+        began = time.monotonic()
+        session.wait_for(RECORDING)
+        assert time.monotonic() - began > 1  # it is another file, begun at the next try
+        session.type("q")
+        assert session.end() == 0
+    assert whole(library).samples

@@ -1,0 +1,140 @@
+"""Every key of the replay does what the help says, and so does the mouse on its bar."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from engine.scenes import DEFAULT_SCENE
+from recordings.recording import Recording
+from tests.tui.sitting import eventful
+from tests.tui.stage import on_stage, player
+from tui.errors import UserError
+from tui.keys import COMMON, REPLAY
+from tui.live import Live
+from tui.marks import Marks
+from tui.replay import Replay
+from tui.screens.help import help_text
+from tui.screens.lab import Lab
+from tui.screens.player import Player
+from tui.widgets.seekbar import SeekBar
+from tui.widgets.status import StatusLine
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    return eventful(tmp_path / "eventful.mcap")
+
+
+async def test_seeking_with_arrows_home_end_and_page_keys_and_stepping(path):
+    async with player(path) as theatre:
+        replay = theatre.source
+        assert " REPLAY " in theatre.text(StatusLine)
+        bar = theatre.stage.query_one(SeekBar)
+        assert "of 12.00 s" in bar.render_line(0).text
+        for keys, position in (
+            (["right", "right"], 2),
+            (["left"], 1),
+            (["shift+right"], 11),
+            (["shift+left"], 1),
+            (["end"], 12),
+            (["home"], 0),
+            (["pagedown", "pagedown"], 2.4),
+            (["pageup"], 1.2),
+        ):
+            await theatre.press(*keys)
+            assert replay.playhead.position == pytest.approx(position)
+        await theatre.press("full_stop", "full_stop", "comma")
+        assert replay.sample.step == 25
+        assert "paused" in theatre.text(StatusLine)
+
+
+async def test_events_speed_direction_and_space_at_the_end(path):
+    async with player(path) as theatre:
+        replay = theatre.source
+        await theatre.press("right_square_bracket")
+        assert replay.playhead.position == pytest.approx(2)
+        await theatre.press("right_square_bracket", "right_square_bracket", "left_square_bracket")
+        assert replay.playhead.position == pytest.approx(4)
+        await theatre.press("b", "greater_than_sign")
+        assert replay.playhead.speed == -2
+        assert "-2×" in theatre.text(StatusLine)
+        await theatre.run(1)
+        assert replay.playhead.position == pytest.approx(2)
+        await theatre.press("b", "0", "end")
+        await theatre.run(0.5)
+        assert replay.playhead.paused
+        await theatre.press("space")
+        await theatre.run(1)
+        assert replay.playhead.position == pytest.approx(1)
+
+
+async def test_a_loop_is_set_and_left_and_a_mark_becomes_a_tick(path):
+    async with player(path) as theatre:
+        replay = theatre.source
+        await theatre.press("right", "A", "right", "B")
+        assert replay.loop == (1, 2)
+        assert "loop" in theatre.text(SeekBar)
+        await theatre.run(1.5)
+        assert 1 <= replay.playhead.position <= 2
+        await theatre.press("L")
+        assert replay.loop is None
+        await theatre.press("home", "shift+right", "m")
+        assert 10 in replay.ticks
+
+
+async def test_a_click_and_a_drag_on_the_bar_go_there(path):
+    async with player(path) as theatre:
+        replay, bar = theatre.source, theatre.stage.query_one(SeekBar)
+        half = 1 + bar._columns // 2
+        cell = replay.length / bar._columns
+        await theatre.pilot.mouse_down(SeekBar, offset=(half, 0))
+        await theatre.pilot.pause()
+        assert replay.playhead.position == pytest.approx(6, abs=cell)
+        await theatre.pilot.hover("#pendulums", offset=(1 + bar._columns // 4, 3))  # far off the bar
+        await theatre.pilot.pause()
+        assert replay.playhead.position == pytest.approx(3, abs=cell)
+        await theatre.pilot.hover("KeyLine", offset=(119, 0))
+        await theatre.pilot.pause()
+        assert replay.playhead.position == pytest.approx(12)
+        await theatre.pilot.mouse_up("KeyLine", offset=(119, 0))
+        await theatre.pilot.hover(SeekBar, offset=(half, 0))
+        await theatre.pilot.pause()
+        assert replay.playhead.position == pytest.approx(12)
+
+
+async def test_f_goes_on_live_from_the_replayed_moment(path):
+    async with player(path) as theatre:
+        await theatre.press("right", "right", "right")
+        here = theatre.source.sample
+        await theatre.press("f")
+        await theatre.pilot.pause(0.1)
+        assert isinstance(theatre.stage, Lab)
+        assert theatre.source.sample.step == here.step
+        assert theatre.source.sample.readings[3].theta == here.readings[3].theta
+        assert " LIVE " in theatre.text(StatusLine)
+
+
+async def test_f_stays_in_the_replay_where_the_lab_could_not_record(path):
+    def go_live(live: Live) -> Lab:
+        raise UserError("/nowhere is no folder that can be written: choose another one.")
+
+    def make(clock: Callable[[], float]) -> Player:
+        return Player(Replay(Recording.open(path), Marks(path), clock=lambda: 0.0), go_live, clock)
+
+    async with on_stage(make, (120, 40)) as theatre:
+        await theatre.press("right", "f")
+        await theatre.pilot.pause(0.1)
+        assert isinstance(theatre.stage, Player)
+        await theatre.press("right")
+        assert theatre.source.playhead.position == pytest.approx(2.0)
+        assert any("/nowhere" in notice.message for notice in theatre.app._notifications)
+
+
+def test_the_help_names_every_key_and_no_key_has_two_meanings():
+    keys = (*REPLAY, *COMMON)
+    said = help_text(keys, DEFAULT_SCENE)
+    for key in keys:
+        assert f"  {key.shown:<14}{key.does}" in said
+    names = [name for key in keys for name in key.names.split(",")]
+    assert len(names) == len(set(names))

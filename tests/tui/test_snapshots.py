@@ -1,0 +1,67 @@
+"""The lab as it looks: the README's pictures are these."""
+
+import pytest
+
+from engine.scenes import DEFAULT_SCENE, SCENES
+from tests.tui.command_line import pendu
+from tests.tui.conftest import SNAPSHOTS
+from tui.display import Display
+from tui.still import still
+
+SIZES = {"80x24": (80, 24), "120x40": (120, 40), "200x60": (200, 60)}
+SECONDS = 12.0
+
+
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("theme", ["dark", "light"])
+async def test_the_lab(snapshot, size, theme):
+    snapshot(f"lab-{size}-{theme}", await still(DEFAULT_SCENE, SECONDS, SIZES[size], Display(theme)))
+
+
+async def test_on_a_narrow_terminal_there_is_one_pane_and_the_table(snapshot):
+    snapshot("lab-60x16", await still(DEFAULT_SCENE, SECONDS, (60, 16)))
+
+
+async def test_on_a_terminal_too_small_there_is_a_message_with_have_and_need(snapshot):
+    snapshot("lab-50x12", await still(DEFAULT_SCENE, SECONDS, (50, 12)))
+
+
+async def test_the_exact_swing_is_a_ghost_and_hidden_methods_leave_their_room(snapshot):
+    snapshot("lab-ghost", await still(SCENES["crossover"], SECONDS, (120, 40), keys=["5", "1", "2"]))
+
+
+async def test_the_form_and_the_help_lie_over_the_lab(snapshot):
+    snapshot("lab-form", await still(DEFAULT_SCENE, SECONDS, (80, 24), keys=["i", *"abc"]))
+    snapshot("lab-help", await still(DEFAULT_SCENE, SECONDS, (80, 24), keys=["question_mark"]))
+
+
+def test_the_command_writes_the_same_picture(tmp_path):
+    out = tmp_path / "lab.svg"
+    outcome = pendu("snapshot", "--time", SECONDS, "--size", "80x24", "-o", out)
+    assert (outcome.code, outcome.out, outcome.err) == (0, "", "")
+    assert out.read_text(encoding="utf-8") == (SNAPSHOTS / "lab-80x24-dark.svg").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--size", "10x10"], "60x16"),
+        (["--size", "big"], "120x40"),
+        (["--time", "nan"], "no time"),
+        (["--time", "-1"], "no time"),
+        (["--theme", "pink"], "dark"),
+        (["--scene", "drfit"], "did you mean drift"),
+    ],
+)
+def test_what_cannot_be_drawn_is_refused_in_a_sentence(tmp_path, arguments, words):
+    assert pendu("snapshot", *arguments, "-o", tmp_path / "x.svg").refused(2, words)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_folder_that_is_not_there_is_refused_before_anything_is_drawn(tmp_path):
+    assert pendu("snapshot", "-o", tmp_path / "no" / "x.svg").refused(5, "there is no folder")
+
+
+async def test_a_still_is_the_same_to_the_letter_whenever_it_is_made():
+    one, other = [await still(DEFAULT_SCENE, 3.0, (120, 40)) for _ in range(2)]
+    assert one == other

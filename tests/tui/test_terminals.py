@@ -1,0 +1,122 @@
+"""The real program on terminals that have less, and on those that are taken away for a while."""
+
+import itertools
+import re
+import signal
+import time
+from pathlib import Path
+
+import pytest
+
+from engine.lockstep import Sample
+from recordings.recording import Recording
+from recordings.verify import verify
+from tests.tui.pty_lab import PtyLab
+
+RECORDING = "REC 0 s"
+AWAY = 2.0  # s
+SGR = re.compile(rb"\x1b\[([\d;]*)m")
+
+
+def session(library: Path, *arguments: str, **environment: str) -> PtyLab:
+    return PtyLab(*arguments, PENDU_RECORDINGS=str(library), **environment)
+
+
+def seen(library: Path, *arguments: str, keys: str = "", **environment: str) -> bytes:
+    """What the lab sends in its first second and with some keys."""
+    with session(library, *arguments, **environment) as pendu:
+        pendu.wait_for(RECORDING)
+        for key in keys:
+            pendu.type(key)
+            pendu.run(0.3)
+        pendu.type("q")
+        assert pendu.end() == 0
+        return bytes(pendu.output)
+
+
+def codes(output: bytes) -> set[str]:
+    """The numbers of all colours and attributes."""
+    return {
+        code
+        for sequence in SGR.findall(output)
+        for code in re.findall(r"[34]8;[25];[\d;]+?(?=;[34]8|$)|\d+", sequence.decode())
+    }
+
+
+def test_without_utf_8_the_whole_lab_is_ascii(tmp_path):
+    output = seen(tmp_path, keys="v?q", PYTHONUTF8="0", PYTHONIOENCODING="latin-1")
+    assert output.isascii()
+    assert b"1x" in output  # 1×
+    assert b"-----" in output  # a frame
+
+
+def test_pixels_can_be_chosen_and_changed_with_a(tmp_path):
+    assert seen(tmp_path / "ascii", "--pixels", "ascii").isascii()
+    output = seen(tmp_path / "half", "live", "--pixels", "half", keys="aa").decode()
+    half, braille = "▀", "⣿"
+    assert half in output
+    assert any(0x2800 < ord(character) <= ord(braille) for character in output)
+    assert not any(0x2800 <= ord(character) <= ord(braille) for character in output[: output.index(RECORDING)])
+
+
+def test_no_color_is_no_colour_at_all(tmp_path):
+    assert codes(seen(tmp_path, NO_COLOR="1")) <= {"0", "1", "2", "7", "39", "49", "22", "27"}
+
+
+def test_with_16_colours_there_are_no_others(tmp_path):
+    found = codes(seen(tmp_path, TERM="xterm", COLORTERM=""))
+    assert {"91", "94", "96", "93"} <= found  # the methods
+    assert not [code for code in found if code.startswith(("38;", "48;"))]
+
+
+def test_with_256_colours_there_are_no_others(tmp_path):
+    found = codes(seen(tmp_path, COLORTERM=""))
+    assert [code for code in found if code.startswith("38;5;")]
+    assert not [code for code in found if code.startswith(("38;2;", "48;2;"))]
+
+
+@pytest.mark.parametrize("arguments", [[], ["--no-mouse"]])
+def test_the_mouse_is_left_alone_if_that_is_asked_for(tmp_path, arguments):
+    assert (b"\x1b[?1000h" in seen(tmp_path, *arguments)) == (not arguments)
+
+
+def test_frames_come_as_often_as_is_asked_for(tmp_path):
+    with session(tmp_path, "--fps", "5", "--h", "0.001") as pendu:
+        pendu.wait_for(RECORDING)
+        began, count = pendu.now, len(pendu.reads)
+        pendu.run(3)
+        times = [at for at, _ in pendu.reads[count:]]
+        bursts = 1 + sum(after - before > 0.05 for before, after in itertools.pairwise(times))
+        assert 3 * 5 * 0.5 < bursts <= (pendu.now - began) * 5 + 2  # late ones are not made up for
+        pendu.type("q")
+        assert pendu.end() == 0
+
+
+def state(pid: int) -> str:
+    return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+
+
+@pytest.mark.parametrize("how", ["ctrl+z", "a signal that cannot be caught"])
+def test_a_lab_that_was_stopped_goes_on_where_it_was(tmp_path, how):
+    with session(tmp_path) as pendu:
+        pendu.wait_for(RECORDING)
+        if how == "ctrl+z":
+            pendu.type("\x1a")
+            assert b"\x1b[?1049l" in pendu.run(1.0)  # the terminal is the shell's
+        else:
+            pendu.signal(signal.SIGSTOP)
+            pendu.run(0.5)
+        assert state(pendu.pid) == "T"
+        time.sleep(AWAY)
+        pendu.signal(signal.SIGCONT)
+        pendu.run(1.0)
+        pendu.type("q")
+        assert pendu.end() == 0
+        present = pendu.now - AWAY
+    assert pendu.output.count(b"\x1b[?1049h") == 2  # painted anew
+    (path,) = tmp_path.iterdir()
+    assert verify(path).identical
+    recording = Recording.open(path)
+    assert recording.length < present
+    times = [entry.value.t for entry in recording.entries() if isinstance(entry.value, Sample)]
+    assert max(after - before for before, after in itertools.pairwise(times)) < 1.0

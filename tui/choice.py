@@ -1,0 +1,21 @@
+"""What views ask of the lab."""
+
+from dataclasses import dataclass
+
+from textual.message import Message
+
+from engine.scenes import Scene
+
+
+@dataclass
+class SceneChosen(Message):
+    """The user wants a run of this scene."""
+
+    scene: Scene
+
+
+@dataclass
+class StepSizeChosen(Message):
+    """The user wants to go on with this step size."""
+
+    h: float  # s, without the sign of time's direction

@@ -1,0 +1,165 @@
+"""Chart speed against accuracy over a ladder of h, and find the cheapest method and h for a target or a budget."""
+
+import argparse
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from engine.methods import METHODS
+from engine.scenes import Scene, check_h
+from tui.errors import Exit, UserError
+from tui.options import add_scene_options, count, positive, scene_of
+from tui.output import progress
+from tui.whole_file import whole_file
+
+if TYPE_CHECKING:
+    from engine.accuracy import ErrorKind, Study
+    from engine.recommend import Attempt
+
+EXAMPLES = """\
+examples:
+  pendu-tui accuracy
+  pendu-tui accuracy --target 1e-6 --time 100
+  pendu-tui accuracy --budget 2e4 --theta 150deg
+  pendu-tui accuracy --target 1e-3 --error energy --time 10,100,1000
+  pendu-tui accuracy --cost seconds --h-values 0.1:0.001:8
+  pendu-tui accuracy --json | jq '.points[] | select(.method == "rk4" and .valid)'
+"""
+
+LONGEST = 1e9  # s
+MOST_RUNGS = 1000
+MOST_STEPS = 10**10  # of the finest rung: half an hour, compiled
+MOST_BUDGET = 10**9  # force evaluations of a run; minutes for each method, compiled
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add this command's options."""
+    add_scene_options(parser)
+    parser.add_argument("--time", metavar="S[,S...]", type=times, help="simulated time; the chart is of the last one")
+    parser.add_argument("--h-values", metavar="A:B:N", type=h_values, help="N step sizes from A to B s, equal ratios")
+    parser.add_argument("--error", choices=("theta", "energy", "final"), default="theta", help="(%(default)s)")
+    parser.add_argument("--cost", choices=("evaluations", "seconds"), default="evaluations", help="(%(default)s)")
+    parser.add_argument(
+        "--target", metavar="ERROR", type=positive, help="find the cheapest method and h for this error"
+    )
+    parser.add_argument(
+        "--budget", metavar="N", type=positive, help="force evaluations: find the smallest error, or stay within it"
+    )
+    parser.add_argument("--no-compiled", action="store_true", help="do without Numba; the errors are the same")
+    form = parser.add_mutually_exclusive_group()
+    form.add_argument("--json", action="store_true", help="one JSON object, SI units")
+    form.add_argument("--csv", metavar="FILE", nargs="?", const="-", help="the points as CSV, to stdout or a file")
+    parser.add_argument("--force", action="store_true", help="overwrite FILE")
+
+
+def times(text: str) -> list[float]:
+    """One time or several [s], ascending."""
+    values = sorted({positive(part) for part in text.split(",")})
+    if values[-1] > LONGEST:
+        raise argparse.ArgumentTypeError(f"{text!r} is out of range: give {LONGEST:g} s or less")
+    return values
+
+
+def h_values(text: str) -> tuple[float, float, int]:
+    """The ends of a ladder [s] and its rungs, from A:B:N."""
+    match text.split(":"):
+        case [first, last, many] if count(many) <= MOST_RUNGS:
+            return max(positive(first), positive(last)), min(positive(first), positive(last)), count(many)
+    raise argparse.ArgumentTypeError(f"{text!r} is no ladder of step sizes: give A:B:N, such as 0.2:0.001:10")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Measure, recommend, print.  Ctrl+C keeps what is done."""
+    from engine.accuracy import Order, Point, Study, orders, timed, usual
+
+    scene = scene_of(options)
+    times = options.time or [usual(scene)[0]]
+    rungs = _ladder(scene, times[-1], options.h_values)
+    budget = None if options.budget is None else int(options.budget)
+    if budget is not None and budget > MOST_BUDGET:
+        raise UserError(f"--budget {options.budget:g} would take hours: give {MOST_BUDGET:g} evaluations or less.")
+    if budget == 0:
+        raise UserError(f"--budget {options.budget:g} buys nothing: give 1 force evaluation or more.")
+    from engine import compiled, loops
+    from engine.recommend import Attempt, cheapest, most_accurate
+    from tui.accuracy_report import Advice, Findings, print_json, print_text, write_csv
+
+    fast = not options.no_compiled and compiled.available()
+    study = Study(scene, times[-1], compiled.tiered if fast else loops.plain)
+    points: list[Point] = []
+    measured: list[Order] = []
+    advice: list[Advice] = []
+    interrupted = False
+    with whole_file(Path(options.csv), options.force) if options.csv not in (None, "-") else nullcontext() as file:
+        try:
+            with progress("measuring") as show:
+                for point in study.points(rungs):
+                    if options.cost == "seconds":
+                        point = timed(point, scene, time.perf_counter, compiled.compiled if fast else loops.plain)
+                    points.append(point)
+                    show(sum(point.steps for point in points), len(METHODS) * sum(rungs))
+            measured = orders(scene, times[-1], study.loops)
+            if options.target or budget:
+                with progress("searching") as show:
+                    for duration in times:
+                        there = study if duration == study.time else Study(scene, duration, study.loops)
+                        attempts: list[Attempt] = []
+                        for attempt in _attempts(there, options.error, options.target, budget):
+                            attempts.append(attempt)
+                            show(len(METHODS) * len(advice) + len(attempts), len(METHODS) * len(times))
+                        best = cheapest(attempts) if options.target else most_accurate(attempts, options.error)
+                        advice.append(Advice(duration, attempts, best))
+        except KeyboardInterrupt:
+            interrupted = True
+        found = Findings(
+            scene,
+            study.time,
+            options.error,
+            options.cost,
+            options.target,
+            budget,
+            points,
+            measured,
+            advice,
+            interrupted,
+        )
+        if file:
+            if not points:
+                raise KeyboardInterrupt
+            with file.open("w", encoding="utf-8", newline="") as out:
+                write_csv(found, out)
+    if options.json:
+        print_json(found)
+    elif options.csv == "-":
+        write_csv(found, sys.stdout)
+    elif options.csv:
+        print(f"{options.csv}: {len(points)} points.")
+    else:
+        print_text(found)
+    if interrupted:
+        print("pendu-tui: interrupted; what was done is kept.", file=sys.stderr)
+        return Exit.INTERRUPTED
+    return Exit.FINE
+
+
+def _ladder(scene: Scene, time: float, given: tuple[float, float, int] | None) -> list[int]:
+    """The numbers of steps to measure."""
+    from engine.accuracy import Z_LADDER, ladder
+
+    largest, smallest, rungs = given or (Z_LADDER[0] / scene.w0, Z_LADDER[1] / scene.w0, Z_LADDER[2])
+    for h in (largest, smallest):
+        check_h(h, scene.w0)
+    if given and largest > time:
+        raise UserError(f"h = {largest:g} s is longer than the time of {time:g} s: give a longer --time.")
+    if time / smallest > MOST_STEPS:
+        raise UserError(f"{time:g} s in steps of {smallest:.2g} s take hours: give --h-values, such as 0.2:0.01:8.")
+    return ladder(time, largest, smallest, rungs)
+
+
+def _attempts(study: "Study", kind: "ErrorKind", target: float | None, budget: int | None) -> "Iterator[Attempt]":
+    from engine.recommend import MOST_EVALUATIONS, reach, spend
+
+    return reach(study, kind, target, budget or MOST_EVALUATIONS) if target else spend(study, kind, budget or 0)

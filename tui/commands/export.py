@@ -1,0 +1,43 @@
+"""Write a recording as CSV: one row for each sample and method, units in the header."""
+
+import argparse
+import sys
+from contextlib import ExitStack
+from pathlib import Path
+
+from recordings.errors import printable
+from tui.errors import Exit
+from tui.output import progress
+from tui.whole_file import whole_file
+
+EXAMPLES = """\
+examples:
+  pendu-tui export latest --format csv -o sitting.csv
+  pendu-tui export drift --format csv | head -3
+"""
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add this command's options."""
+    parser.add_argument("file", metavar="FILE", help="a file, latest, or a name such as drift")
+    parser.add_argument("--format", choices=("csv",), default="csv", help="(%(default)s)")
+    parser.add_argument("-o", "--output", metavar="OUT", type=Path, help="write here, not to stdout")
+    parser.add_argument("--force", action="store_true", help="overwrite OUT")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Export."""
+    from recordings import library
+    from recordings.export import write_csv
+    from recordings.recording import Recording
+
+    path = library.resolve(options.file)
+    with Recording.open(path) as recording, progress(printable(path.name)) as show, ExitStack() as stack:
+        out = sys.stdout
+        if options.output:
+            part = stack.enter_context(whole_file(options.output, options.force))
+            out = stack.enter_context(part.open("w", encoding="utf-8", newline=""))
+        write_csv(recording, out, show)
+        if recording.reason:
+            print(f"pendu-tui: {printable(str(path))}: {recording.reason}; the rest is exported.", file=sys.stderr)
+    return Exit.FINE

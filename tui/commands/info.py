@@ -1,0 +1,95 @@
+"""Say what is in a recording: when, how long, which runs, and whether it is whole."""
+
+import argparse
+from typing import TYPE_CHECKING, Any
+
+from recordings.errors import printable
+from tui.errors import Exit
+from tui.numbers import file_size, seconds
+from tui.output import print_table, progress, scene_fields, write_json
+
+if TYPE_CHECKING:
+    from recordings.recording import Recording
+
+EXAMPLES = """\
+examples:
+  pendu-tui info latest
+  pendu-tui info drift --json
+"""
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add this command's options."""
+    parser.add_argument("file", metavar="FILE", help="a file, latest, or a name such as drift")
+    parser.add_argument("--json", action="store_true", help="one JSON object")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Look at every byte and say what was found."""
+    from recordings import library
+    from recordings.recording import Recording
+
+    path = library.resolve(options.file)
+    with progress(printable(path.name)) as show, Recording.open(path, check=True, progress=show) as recording:
+        if options.json:
+            write_json("info", _fields(recording, path.stat().st_size))
+        else:
+            _print(recording, path.stat().st_size)
+    return Exit.FINE
+
+
+def _fields(recording: "Recording", size: int) -> dict[str, Any]:
+    return {
+        "file": str(recording.path),
+        "format": recording.version,
+        "complete": recording.complete,
+        "damaged": recording.damaged,
+        "reason": recording.reason,
+        "runs": [
+            {
+                "scene": scene_fields(run.scene),
+                "steps": run.steps,
+                "time": run.t,
+                "seconds": run.end - run.begin,
+                "events": run.events,
+            }
+            for run in recording.runs
+        ],
+        "methods": recording.methods,
+        "samples": recording.samples,
+        "seconds": recording.length,
+        "bytes": size,
+        "metadata": recording.metadata,
+    }
+
+
+def _print(recording: "Recording", size: int) -> None:
+    health = "complete" if recording.complete else f"{recording.reason}"
+    facts = {
+        "file": str(recording.path),
+        "health": ("damaged: " if recording.damaged else "") + health,
+        "length": seconds(recording.length),
+        "size": f"{file_size(size)}, {recording.samples} samples",
+        "methods": ", ".join(recording.methods),
+        **{name: value for name, value in recording.metadata.items() if not name.endswith(".hex")},
+    }
+    print_table("ll", ("", ""), facts.items())
+    print()
+    print_table(
+        "rlrrrrrrr",
+        ("run", "scene", "theta [rad]", "omega [rad/s]", "h [s]", "steps", "t [s]", "seconds", "events"),
+        (
+            (
+                str(run.number),
+                run.scene.name,
+                f"{run.scene.theta:g}",
+                f"{run.scene.omega:g}",
+                f"{run.scene.h:g}",
+                str(run.steps),
+                f"{run.t:g}",
+                f"{run.end - run.begin:.2f}",
+                str(run.events),
+            )
+            for run in recording.runs
+        ),
+    )

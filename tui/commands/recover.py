@@ -1,0 +1,55 @@
+"""Save what is intact of a damaged or unfinished recording, and say what is lost."""
+
+import argparse
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from recordings.errors import printable
+from tui.errors import Exit
+from tui.numbers import seconds
+from tui.output import progress, write_json
+
+if TYPE_CHECKING:
+    from recordings.recover import Recovery
+
+EXAMPLES = """\
+examples:
+  pendu-tui recover sitting.mcap.part -o sitting.mcap
+  pendu-tui recover damaged.mcap -o saved.mcap --json
+"""
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add this command's options."""
+    parser.add_argument("file", metavar="FILE", type=Path, help="what is left of a recording")
+    parser.add_argument("-o", "--output", metavar="OUT", type=Path, required=True, help="the recording to make of it")
+    parser.add_argument("--force", action="store_true", help="overwrite OUT")
+    parser.add_argument("--json", action="store_true", help="one JSON object")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Recover."""
+    from recordings.recover import recover
+
+    with progress(printable(options.file.name)) as show:
+        recovery = recover(options.file, options.output, show, options.force)
+    if options.json:
+        paths = {"file": str(recovery.file), "out": str(recovery.out)}
+        write_json("recover", asdict(recovery) | paths)
+    else:
+        print(_sentence(recovery))
+    return Exit.FINE
+
+
+def _sentence(recovery: "Recovery") -> str:
+    lines = [f"{printable(str(recovery.out))}: {recovery.samples_kept} samples saved."]
+    if recovery.reason:
+        lines.append(f"What was wrong: {recovery.reason}.")
+    lost = f"{recovery.samples_lost} samples, {recovery.chunks_lost} chunks, {seconds(recovery.seconds_lost)}"
+    lines.append(f"Lost, as far as the file tells: {lost}.")
+    if recovery.runs_lost:
+        lines.append(f"Runs without their start, and so not saved: {recovery.runs_lost}.")
+    if recovery.runs_broken:
+        lines.append(f"Lost a change of h, so they play but do not verify: runs {str(recovery.runs_broken)[1:-1]}.")
+    return "\n".join(lines)

@@ -1,0 +1,72 @@
+"""A recording on the lab's screen: pause, step, seek, loop, play backwards, go on live from any moment."""
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tui.commands.live import place_of, recording_lab, say, show
+from tui.display import add_display_options
+from tui.errors import Exit, UserError
+from tui.options import number, positive
+
+if TYPE_CHECKING:
+    from tui.live import Live
+    from tui.screens.player import Player
+    from tui.screens.stage import Stage
+
+EXAMPLES = """\
+examples:
+  pendu-tui replay latest
+  pendu-tui replay drift
+  pendu-tui replay sitting.mcap --start-at 12 --speed 0.5 --loop
+"""
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add this command's options."""
+    parser.add_argument("file", metavar="FILE|latest|NAME", help="a file, the latest sitting, or one that came along")
+    parser.add_argument("--start-at", metavar="S", type=number, default=0.0, help="s of the recording")
+    parser.add_argument("--speed", metavar="X", type=positive, default=1.0, help="times the recorded one (%(default)s)")
+    parser.add_argument("--loop", action="store_true", help="begin again at the end")
+    parser.add_argument("--paused", action="store_true", help="wait for the space key")
+    parser.add_argument("--no-record", action="store_true", help="record nothing when going on live")
+    add_display_options(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Replay."""
+    from recordings.library import resolve
+    from tui.terminal import check_terminal
+
+    path = resolve(options.file)
+    if not options.plain:
+        check_terminal()
+    stage = player(path, options.no_record)
+    replay = stage.replay
+    if not 0 <= options.start_at <= replay.length:
+        raise UserError(f"--start-at {options.start_at:g} is outside: give a time from 0 to {replay.length:.2f} s.")
+    replay.set_speed(options.speed)
+    replay.looping = options.loop
+    replay.seek(options.start_at)
+    replay.pause(options.paused)
+    return say(replay) if options.plain else show(stage, options)
+
+
+def player(path: Path, no_record: bool) -> "Player":
+    """The stage for a recording; a lab that goes on from it is recorded, or not."""
+    from recordings.recording import Recording
+    from tui.marks import Marks
+    from tui.output import progress
+    from tui.replay import Replay
+    from tui.screens.player import Player
+
+    with progress(f"looking through {path.name}") as tell:
+        recording = Recording.open(path, progress=tell)
+    if recording.at(0.0) is None:
+        raise UserError(f"{path}: no samples are left in it, so there is nothing to see.", Exit.INPUT_UNREADABLE)
+
+    def go_live(live: "Live") -> "Stage":
+        return recording_lab(live, None if no_record else place_of(None))
+
+    notices = [f"This recording is not whole: {recording.reason}. What is intact is shown."] if recording.reason else []
+    return Player(Replay(recording, Marks(path)), go_live, notices=notices)

@@ -1,0 +1,174 @@
+"""Run a scene without a screen, as fast as it goes, and judge each method."""
+
+import argparse
+import math
+import sys
+import time
+from contextlib import nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from engine.methods import METHODS
+from engine.scenes import Scene
+from tui.errors import Exit, UserError
+from tui.options import add_scene_options, count, positive, scene_of
+from tui.output import print_table, progress, scene_fields, write_json
+
+if TYPE_CHECKING:
+    from engine.lockstep import Sample
+    from engine.verdict import Trend
+    from tui.gate import Gate
+
+EXAMPLES = """\
+examples:
+  pendu-tui run --time 100
+  pendu-tui run --scene crossover --time 100 --record crossover.mcap
+  pendu-tui run --theta 170deg --time 60 --json | jq '.methods[] | {method, verdict}'
+  pendu-tui run --time 60 --fail-if 'velocity_verlet.max_energy_error > 1e-2 or rk4.drift_per_second < -1e-5'
+  pendu-tui run --time 600 --fail-if 'velocity_verlet.verdict != bounded'
+"""
+
+LONGEST = 1e9  # s, 30 years; a recording's clock ends there, too
+MOST_SAMPLES = 20_000  # of a run that is not recorded: enough for every verdict, and constant work beside the steps
+COMPILED_FROM = 1_000_000  # steps: below, compiling takes longer than it saves
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add this command's options."""
+    add_scene_options(parser)
+    parser.add_argument("--time", metavar="S", type=positive, required=True, help="simulated time, in whole steps")
+    parser.add_argument("--record", metavar="FILE", type=Path, help="record it: the same run gives the same bytes")
+    parser.add_argument("--force", action="store_true", help="overwrite FILE")
+    parser.add_argument("--sample-every", metavar="STEPS", type=count, help="cadence of samples (1/30 s of the run)")
+    parser.add_argument(
+        "--fail-if",
+        metavar="EXPR",
+        help="exit 1 if METHOD.FIELD > NUMBER or METHOD.verdict == WORD, fields as in --json",
+    )
+    parser.add_argument("--no-compiled", action="store_true", help="do without Numba; the numbers are the same")
+    parser.add_argument("--json", action="store_true", help="one JSON object, SI units")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Simulate, record, judge, print."""
+    scene, gate = scene_of(options), _gate(options.fail_if)
+    from recordings.headless import SAMPLE_EVERY, steps_for
+
+    if options.time > LONGEST:
+        raise UserError(f"--time {options.time:g} is out of range: give {LONGEST:g} s or less.")
+    steps = steps_for(scene, options.time)
+    if steps == 0:
+        raise UserError(f"--time {options.time:g} s is not even one step of {scene.h:g} s: give a longer time.")
+    every = max(1, round(SAMPLE_EVERY / scene.h), 0 if options.record else steps // MOST_SAMPLES)
+    began = time.perf_counter()
+    sample, trends, stopped = _simulate(scene, options, steps, options.sample_every or every)
+    wall_seconds = time.perf_counter() - began
+    rows = _rows(scene, sample, trends)
+    if options.json:
+        fields = {"scene": scene_fields(scene), "time": sample.t, "steps": sample.step, "wall_seconds": wall_seconds}
+        write_json("run", {**fields, "methods": rows})
+    else:
+        _print(scene, sample, wall_seconds, rows)
+    if stopped:
+        print(
+            f"pendu-tui: interrupted at t = {sample.t:g} s; the result is that of the time until then.", file=sys.stderr
+        )
+        return Exit.INTERRUPTED
+    if gate and gate.holds({row["method"]: row for row in rows}):
+        print(f"pendu-tui: the check failed: {options.fail_if}", file=sys.stderr)
+        return Exit.CHECK_FAILED
+    return Exit.FINE
+
+
+def _gate(expression: str | None) -> "Gate | None":
+    from tui.gate import GateError, parse
+
+    try:
+        return parse(expression) if expression is not None else None
+    except GateError as error:
+        raise UserError(f"--fail-if: {error}") from error
+
+
+def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int) -> "tuple[Sample, list[Trend], bool]":
+    """The last sample, each method's trend, and whether somebody stopped it before its end."""
+    from engine import compiled, loops
+    from engine.exact import Swing
+    from engine.verdict import Trend
+    from recordings.headless import simulate
+    from tui.interrupt import stop_requests
+
+    recorder: Any = nullcontext()
+    if options.record:
+        from recordings.recorder import Recorder
+
+        recorder = Recorder(options.record, wall=None, overwrite=options.force)
+    swing = Swing(scene)
+    trends = [Trend(period := swing.period or math.tau / scene.w0) for _ in METHODS]
+    per_turn = period / scene.h if swing.regime == "rotation" else math.inf
+    fast = not options.no_compiled and steps >= COMPILED_FROM and compiled.available()
+    with stop_requests() as stopped, progress(f"{steps} steps") as show, recorder as recording:
+        for sample in simulate(scene, options.time, recording, every, loops=compiled.compiled if fast else loops.plain):
+            for trend, reading in zip(trends, sample.readings, strict=True):
+                trend.read(sample.t, reading, per_turn)
+            show(sample.step, steps)
+            if stopped() and sample.step < steps:
+                return sample, trends, True
+    return sample, trends, False
+
+
+def _rows(scene: Scene, sample: "Sample", trends: "list[Trend]") -> list[dict[str, Any]]:
+    """What became of each method.  A method that diverged has no theta to compare."""
+    from engine.accuracy import evaluations
+    from engine.exact import Swing
+
+    exact = Swing(scene).at(sample.t).theta
+    rows = []
+    for method, reading, trend in zip(METHODS, sample.readings, trends, strict=True):
+        judgement, end = trend.judge(), reading.diverged_at
+        rows.append(
+            {
+                "method": method.key,
+                "theta": reading.theta,
+                "omega": reading.omega,
+                "energy": reading.energy,
+                "energy_error": reading.energy_error,
+                "max_energy_error": reading.max_energy_error,
+                "theta_error": abs(reading.theta - exact) if end is None else None,
+                "drift_per_second": judgement.slope,
+                "verdict": judgement.verdict,
+                "force_evaluations": evaluations(method, sample.step if end is None else round(end / scene.h)),
+                "diverged_at": end,
+            }
+        )
+    return rows
+
+
+def _print(scene: Scene, sample: "Sample", wall_seconds: float, rows: list[dict[str, Any]]) -> None:
+    numbers = ", ".join(f"{name} {getattr(scene, name):g}" for name in ("theta", "omega", "length", "gravity", "h"))
+    print(f"{scene.name}: {numbers} (SI units), z = h·w0 = {scene.z:.4g}")
+    pace = f", {sample.step / wall_seconds / 1e6:.3g} million a second" if wall_seconds > 1 else ""
+    print(f"{sample.step} steps to t = {sample.t:g} s in {wall_seconds:.2f} s{pace}\n")
+
+    def number(value: float | None, form: str) -> str:
+        return "-" if value is None else format(value, form)
+
+    def verdict(row: dict[str, Any]) -> str:
+        end = row["diverged_at"]
+        return row["verdict"] if end is None else f"diverged at {end:g} s"
+
+    print_table(
+        "llrrrrr",
+        ("method", "verdict", "energy error", "largest", "per second", "theta error [rad]", "force evaluations"),
+        (
+            (
+                method.label,
+                verdict(row),
+                number(row["energy_error"], "+.2e"),
+                number(row["max_energy_error"], ".2e"),
+                number(row["drift_per_second"], "+.1e"),
+                number(row["theta_error"], ".2e"),
+                str(row["force_evaluations"]),
+            )
+            for method, row in zip(METHODS, rows, strict=True)
+        ),
+    )

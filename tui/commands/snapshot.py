@@ -1,0 +1,65 @@
+"""A still of the lab as an SVG picture, the same to the letter whenever it is made."""
+
+import argparse
+import os
+import re
+from pathlib import Path
+
+from tui.display import add_picture_options, display_of
+from tui.errors import Exit
+from tui.options import add_scene_options, scene_of
+from tui.whole_file import whole_file
+
+EXAMPLES = """\
+examples:
+  pendu-tui snapshot --time 12 -o lab.svg
+  pendu-tui snapshot --scene crossover --time 40 --size 200x60 --theme light -o crossover.svg
+"""
+LIMITS = (60, 16), (400, 200)
+LONGEST = 3600.0  # s
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add this command's options."""
+    add_scene_options(parser)
+    parser.add_argument("--time", metavar="S", type=moment, default=12.0, help="s since the start (%(default)s)")
+    parser.add_argument("--size", metavar="CxR", type=size, default=(120, 40), help="columns x rows (120x40)")
+    add_picture_options(parser, "dark", "braille")
+    parser.add_argument("-o", "--output", metavar="FILE.svg", type=Path, required=True)
+    parser.add_argument("--force", action="store_true", help="overwrite FILE.svg")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Write the picture."""
+    scene = scene_of(options)
+    import asyncio
+
+    from tui.still import still
+
+    display = display_of(options, os.environ, "utf-8")
+    with whole_file(options.output, options.force) as file:
+        file.write_text(asyncio.run(still(scene, options.time, options.size, display)), encoding="utf-8")
+    return Exit.FINE
+
+
+def size(text: str) -> tuple[int, int]:
+    """A size as `120x40`."""
+    match = re.fullmatch(r"(\d{1,4})[x×](\d{1,4})", text)
+    columns, rows = (int(match[1]), int(match[2])) if match else (0, 0)
+    (least_columns, least_rows), (most_columns, most_rows) = LIMITS
+    if not (least_columns <= columns <= most_columns and least_rows <= rows <= most_rows):
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is no size: give columns x rows such as 120x40, from 60x16 to {most_columns}x{most_rows}"
+        )
+    return columns, rows
+
+
+def moment(text: str) -> float:
+    """A time since the start [s]."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0 <= value <= LONGEST:
+        raise argparse.ArgumentTypeError(f"{text!r} is no time for a still: give 0 to {LONGEST:g} s")
+    return value

@@ -1,0 +1,137 @@
+"""Find where each method stops holding a swing: theory beside measurement, oscillator and pendulum."""
+
+import argparse
+import math
+import os
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from engine.scenes import Z_LIMITS
+from tui.errors import UserError
+from tui.options import add_scene_options, angle, count, number, scene_of
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
+EXAMPLES = """\
+examples:
+  pendu-tui stability
+  pendu-tui stability --theta 120deg --h 0.3
+  pendu-tui stability --map --workers 4
+  pendu-tui stability --json | jq '.pendulum[] | select(.method == "velocity_verlet")'
+  pendu-tui stability --z-values 0.005:3:600 --theta-values 1deg:179deg:300 --workers 8 -o map.npz
+"""
+
+LONGEST = 1_000_000  # values of an axis
+MOST_ROWS = 10_000  # amplitudes of a table
+LARGEST = 2_000_000  # swings of a map that is kept in memory
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add this command's options."""
+    add_scene_options(parser)
+    parser.add_argument(
+        "--theta-values",
+        metavar="LIST",
+        type=values(angle),
+        help="amplitudes: 0.5,1,2 or 10deg:170deg:17, which is FIRST:LAST:HOW_MANY",
+    )
+    parser.add_argument(
+        "--z-values", metavar="LIST", type=values(number), help="z = h·w0, ascending, such as 0.01:3:300"
+    )
+    parser.add_argument("--steps", metavar="N", type=count, default=10_000, help="steps of each swing (%(default)s)")
+    parser.add_argument("--map", action="store_true", help="draw the map: z across, amplitude up")
+    form = parser.add_mutually_exclusive_group()
+    form.add_argument("--json", action="store_true", help="one JSON object; with --map every swing of it")
+    form.add_argument("--csv", action="store_true", help="a row for each amplitude; with --map for each swing")
+    form.add_argument(
+        "-o", metavar="FILE.npz", dest="file", type=Path, help="write only the map, however large, to a file"
+    )
+    parser.add_argument("--force", action="store_true", help="overwrite FILE.npz")
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument("--workers", metavar="N", type=count, default=1, help="processes on this machine (%(default)s)")
+    where.add_argument("--dask", metavar="ADDRESS", help="a Dask scheduler, such as tcp://10.0.0.1:8786")
+
+
+def values(element: Callable[[str], float]) -> Callable[[str], list[float]]:
+    """A reader of values, `1,2,3` or FIRST:LAST:HOW_MANY, each read by `element`."""
+
+    def read(text: str) -> list[float]:
+        match text.split(":"):
+            case [_]:
+                return sorted({element(part) for part in text.split(",")})
+            case [first, last, many] if 2 <= count(many) <= LONGEST and element(first) < element(last):
+                low, high, gaps = element(first), element(last), count(many) - 1
+                return [low + (high - low) * i / gaps for i in range(gaps)] + [high]
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is no list of values: give 0.5,1,2 or FIRST:LAST:HOW_MANY, such as 0.1:3:30"
+        )
+
+    return read
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print the tables and, with --map, the map; with -o, write the map."""
+    scene = scene_of(options)
+    _check("amplitude", options.theta_values, 0, math.pi)
+    if len(options.theta_values or ()) > MOST_ROWS and not options.file:
+        raise UserError(
+            f"{len(options.theta_values)} amplitudes are too many to show: give up to {MOST_ROWS}, or -o FILE.npz."
+        )
+    _check("z", options.z_values, *Z_LIMITS)
+    _check("number of steps", [options.steps], 0, 2**31)
+    from tui.stability_report import print_csv, print_json, print_text, write_file
+    from tui.stability_study import Study
+
+    with _workers(options) as executor:
+        study = Study(scene, options.theta_values, options.z_values, options.steps, executor)
+        if options.file:
+            return write_file(study, options.file, options.force)
+        if options.map and (swings := math.prod(study.grid().shape)) > LARGEST:
+            raise UserError(f"a map of {swings} swings is too large to show: write it with -o FILE.npz.")
+        if options.json:
+            return print_json(study, options.map)
+        if options.csv:
+            return print_csv(study, options.map)
+        return print_text(study, options.map)
+
+
+def _check(what: str, given: list[float] | None, low: float, high: float) -> None:
+    for value in given or ():
+        if not low < value < high:  # also refuses nan
+            raise UserError(f"{what} {value:g} is out of range: it must lie between {low:g} and {high:g}.")
+
+
+@contextmanager
+def _workers(options: argparse.Namespace) -> "Iterator[Executor | None]":
+    """What runs the strips; None for this process.  Ctrl+C is this process's business, not the workers'."""
+    if options.dask:
+        with _dask(options.dask) as executor:
+            yield executor
+    elif options.workers > 1:
+        from concurrent.futures import ProcessPoolExecutor
+        from multiprocessing import get_context
+
+        most = min(options.workers, os.cpu_count() or 1)
+        ignore = (signal.SIGINT, signal.SIG_IGN)
+        with ProcessPoolExecutor(most, get_context("spawn"), signal.signal, ignore) as executor:
+            yield executor
+    else:
+        yield None
+
+
+@contextmanager
+def _dask(address: str) -> "Iterator[Executor]":
+    try:
+        import distributed
+    except ImportError:
+        raise UserError("--dask needs the extra `cluster`: pip install 'pendu-tui[cluster]'.") from None
+    try:
+        client = distributed.Client(address, timeout="10s")
+    except (OSError, ValueError) as error:
+        raise UserError(f"no Dask scheduler answers at {address!r}: {type(error).__name__}; is it running?") from None
+    with client:
+        yield client.get_executor()

@@ -1,0 +1,52 @@
+"""Whatever goes wrong becomes one sentence and an exit code, here."""
+
+import errno
+from enum import IntEnum
+
+
+class Exit(IntEnum):
+    """What the process returns."""
+
+    FINE = 0
+    CHECK_FAILED = 1
+    USAGE = 2
+    INPUT_UNREADABLE = 3
+    TERMINAL_UNSUITABLE = 4
+    DISK = 5
+    INTERRUPTED = 130
+    PIPE_CLOSED = 141  # what every program returns that writes into a closed pipe
+
+
+class UserError(Exception):
+    """Something the user can mend.  Its text says in one sentence what, why and what to do."""
+
+    def __init__(self, message: str, code: Exit = Exit.USAGE) -> None:
+        super().__init__(message)
+        self.code = code
+
+
+def explained(error: Exception) -> UserError:
+    """The error as a sentence for the user; an error that is ours, not the user's, is raised again."""
+    if isinstance(error, UserError):
+        return error
+    from engine.scenes import SceneError  # here, because --help and --version need neither
+    from recordings.errors import RecordingError
+
+    match error:
+        case SceneError():
+            return UserError(str(error), Exit.USAGE)
+        case RecordingError():
+            return UserError(str(error), Exit.INPUT_UNREADABLE)
+        case OSError():  # recordings.errors.DiskError among them
+            return UserError(f"{error.filename or 'output'}: {_why(error)}.", Exit.DISK)
+    raise error
+
+
+def _why(error: OSError) -> str:
+    advice = {
+        errno.ENOSPC: "; free some space or write elsewhere",
+        errno.EACCES: "; choose a place where you may write",
+        errno.EROFS: "; choose a place where you may write",
+        errno.ENOENT: "; create the folder first",
+    }
+    return (error.strerror or str(error)) + advice.get(error.errno or 0, "")

@@ -1,0 +1,15 @@
+"""What is said of a step beyond a method's linear limit."""
+
+from engine.methods import METHODS
+
+
+def limit_warning(z: float) -> str:
+    """As "beyond limit 2 of s, v", the methods by their letters; "" below all limits.
+
+    Explicit Euler has no limit to be beyond.
+    """
+    letters: dict[float, list[str]] = {}
+    for method in METHODS:
+        if 0 < method.linear_limit < z:
+            letters.setdefault(method.linear_limit, []).append(method.letter)
+    return ", ".join(f"beyond limit {limit:.3g} of {', '.join(who)}" for limit, who in letters.items())

@@ -1,0 +1,79 @@
+"""Marks that are made while a recording is replayed.  They are kept beside it; the recording itself is not touched.
+
+Those of a recording that came with the program are kept in the library: its own folder is the program's.
+"""
+
+import json
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from recordings import library
+from recordings.errors import printable
+from recordings.events import Event
+from recordings.names import MARKS
+
+SCHEMA = "pendu.marks/1"
+SIZE_LIMIT = 1 << 20  # bytes
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """A mark at a moment of a recording."""
+
+    clock: float  # s, the recording clock
+    run: int
+    step: int
+    text: str | None = None
+
+
+class Marks:
+    """The marks of one recording, in FILE.marks.json."""
+
+    def __init__(self, recording: Path) -> None:
+        folder = library.folder() if recording.parent == library.GOLDEN else recording.parent
+        self.path = folder / (recording.name + MARKS)
+        self._marks = _read(self.path)
+
+    def __iter__(self) -> Iterator[Mark]:
+        return iter(self._marks)
+
+    def add(self, mark: Mark) -> None:
+        """Add a mark and save them all.  Raises OSError where that is impossible; the mark is there nevertheless."""
+        self._marks = sorted([*self._marks, mark], key=lambda each: each.clock)
+        text = json.dumps({"schema": SCHEMA, "marks": [asdict(each) for each in self._marks]}, indent=1)
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        beside = self.path.with_name(self.path.name + ".new")
+        beside.write_text(text, encoding="utf-8")
+        beside.replace(self.path)
+
+
+def mark_event(mark: Mark, events: Iterable[Event]) -> Event:
+    """The mark as an event, at the simulated time that the starts and changes among `events` give its step."""
+    t, h, since = 0.0, 0.0, 0
+    for event in events:
+        if event.run == mark.run and event.step <= mark.step and event.kind in ("start", "set_h"):
+            t, since = event.t, event.step
+            h = event.scene.h if event.scene is not None else event.h or h
+    return Event("mark", mark.run, mark.step, t + (mark.step - since) * h, text=mark.text)
+
+
+def _read(path: Path) -> list[Mark]:
+    """The marks in a file; none, where it is not there or not ours."""
+    try:
+        if path.stat().st_size > SIZE_LIMIT:
+            return []
+        content = json.loads(path.read_text(encoding="utf-8"))
+        marks = [_mark(fields) for fields in content["marks"]] if content["schema"] == SCHEMA else []
+    except (OSError, ValueError, LookupError, TypeError, RecursionError):
+        return []
+    return sorted(marks, key=lambda mark: mark.clock)
+
+
+def _mark(fields: dict[str, Any]) -> Mark:
+    clock, run, step, text = float(fields["clock"]), int(fields["run"]), int(fields["step"]), fields["text"]
+    if not math.isfinite(clock):
+        raise ValueError("a mark needs a time")
+    return Mark(clock, run, step, None if text is None else printable(str(text)))

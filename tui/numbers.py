@@ -1,0 +1,59 @@
+"""Numbers -> text of a fixed width, for tables and the status line.
+
+Never wider than asked, and never "nan" or "inf": what is not a number is a hyphen.
+"""
+
+import math
+
+
+def decimal(value: float | None, width: int, decimals: int = 3) -> str:
+    """With a sign and as many decimals as fit, else in scientific notation: " +1.000", "+1.2e+09"."""
+    if value is None or not math.isfinite(value):
+        return "-".rjust(width)
+    for places in range(decimals, -1, -1):
+        text = f"{value:+.{places}f}"
+        if len(text) <= width:
+            return text.rjust(width)
+    return scientific(value, width)
+
+
+def scientific(value: float | None, width: int, digits: int = 1, sign: str = "+") -> str:
+    """As "+3.3e+00", with fewer digits where the exponent needs the room.  `sign` "-": only if negative."""
+    if value is None or not math.isfinite(value):
+        return "-".rjust(width)
+    for places in range(digits, -1, -1):
+        text = f"{value:{sign}.{places}e}"
+        if len(text) <= width:
+            return text.rjust(width)
+    return "#" * width  # as spreadsheets do
+
+
+def seconds(value: float) -> str:
+    """A time or a duration: "12.34 s", "3 min 05 s", "1 h 02 min", "3 d 04 h"."""
+    if not math.isfinite(value):
+        return "-"
+    sign, value = "-" if round(value, 2) < 0 else "", abs(value)
+    if round(value, 2) < 60:
+        return f"{sign}{value:.2f} s"
+    minutes, rest = divmod(round(value), 60)
+    if minutes < 60:
+        return f"{sign}{minutes} min {rest:02d} s"
+    hours, rest = divmod(round(value / 60), 60)
+    if hours < 24:
+        return f"{sign}{hours} h {rest:02d} min"
+    days, rest = divmod(round(value / 3600), 24)
+    return f"{sign}{days} d {rest:02d} h" if days < 10_000 else f"{sign}{value:.1e} s"
+
+
+def file_size(count: int) -> str:
+    """Bytes as "640 B", "96 kB", "1.2 MB"."""
+    if count < 1000:
+        return f"{count} B"
+    power = next((power for power in (1, 2, 3) if round(count / 1000**power) < 1000), 4)
+    value, unit = count / 1000**power, ("kB", "MB", "GB", "TB")[power - 1]
+    return f"{value:.1f} {unit}" if round(value, 1) < 10 else f"{value:.0f} {unit}"
+
+
+def percent(share: float) -> str:
+    """A share of 1 as "62 %"."""
+    return f"{100 * share:.0f} %" if math.isfinite(share) else "-"

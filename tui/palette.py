@@ -1,0 +1,101 @@
+"""Who a character belongs to, and the colours of a theme.
+
+Pictures name an owner for every character; only here does an owner become a colour.  Colour is
+never alone: methods also have a digit and a letter.
+"""
+
+from dataclasses import dataclass
+
+from engine.methods import METHODS
+
+EXACT, FRAME, TEXT, WARN, NOBODY = -1, -2, -3, -4, -5
+"""Owners besides the methods, which are their index in METHODS: the exact swing, axes, words, alarms, nothing."""
+
+FAINT = 64
+"""Added to a method's index: the same method, faintly, as in trails."""
+
+
+@dataclass(frozen=True, slots=True)
+class Palette:
+    """The colours of a theme as #rrggbb, or as Rich's names of the terminal's own 16."""
+
+    methods: tuple[str, ...]  # in the order of METHODS
+    exact: str
+    frame: str
+    text: str
+    warn: str
+    background: str
+
+    def colour(self, owner: int) -> str:
+        """The colour of an owner.  A fifth method gets the first one's colour in another shade, and so on."""
+        if owner >= FAINT:
+            return mixed(self.colour(owner - FAINT), self.background, 0.5)
+        if owner >= 0:
+            lap, index = divmod(owner, len(self.methods))
+            return mixed(self.methods[index], self.text, 1 - 0.6**lap)
+        return {EXACT: self.exact, FRAME: self.frame, WARN: self.warn}.get(owner, self.text)
+
+
+# The methods' colours are computed for contrast and for separation under all kinds of colour blindness:
+# their worst pair is 19.5 (dark), 16.0 (light) and 21.6 (high-contrast, where all have 7:1) apart in OKLab,
+# where red, green, yellow and blue reach 3.5.  The terminal's own colours are 14.4 apart on black in the
+# palettes of xterm, VGA, Tango and Windows.
+PALETTES = {
+    "dark": Palette(
+        methods=("#DF9F20", "#8888DD", "#4CE5E5", "#FBFB51"),
+        exact="#A0A0A0",
+        frame="#606468",
+        text="#D8D8D8",
+        warn="#FF6B6B",
+        background="#121212",
+    ),
+    "light": Palette(
+        methods=("#AE3D04", "#5139C6", "#101070", "#631D1D"),
+        exact="#686868",
+        frame="#84888C",
+        text="#202020",
+        warn="#C00000",
+        background="#F4F4F4",
+    ),
+    "high-contrast": Palette(
+        methods=("#EE7766", "#8888FF", "#77FFFF", "#FFDD00"),
+        exact="#C0C0C0",
+        frame="#A0A0A0",
+        text="#FFFFFF",
+        warn="#FF9C9C",
+        background="#000000",
+    ),
+    "ansi": Palette(
+        methods=("bright_red", "bright_blue", "bright_cyan", "bright_yellow"),
+        exact="white",
+        frame="white",
+        text="bright_white",
+        warn="bright_magenta",
+        background="black",
+    ),
+}
+
+
+def palette(theme: str) -> Palette:
+    """The palette of this name; of a theme that is not ours, the one that its name comes nearest to."""
+    return PALETTES.get(theme) or PALETTES["ansi" if "ansi" in theme else "light" if "light" in theme else "dark"]
+
+
+def faint(owner: int) -> int:
+    """The owner of a method's trail; the others have no fainter shade."""
+    return owner + FAINT if owner >= 0 else owner
+
+
+def mark(index: int) -> str:
+    """A method's digit and letter, as "1 e"."""
+    return f"{index + 1} {METHODS[index].letter}"
+
+
+def mixed(colour: str, other: str, share: float) -> str:
+    """`colour` with a share of `other`; of the terminal's own colours, the darker one of the pair."""
+    if not colour.startswith("#"):
+        return colour if share < 0.2 else colour.removeprefix("bright_")
+    parts = (
+        round((1 - share) * int(colour[at : at + 2], 16) + share * int(other[at : at + 2], 16)) for at in (1, 3, 5)
+    )
+    return "#" + "".join(f"{part:02X}" for part in parts)

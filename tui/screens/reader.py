@@ -1,0 +1,30 @@
+"""Reader: a text over the lab, to scroll in."""
+
+from typing import ClassVar
+
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import VerticalScroll
+from textual.widgets import Static
+
+from tui.screens.modal import Modal
+
+
+class Reader(Modal[None]):
+    """A text.  Esc closes it, and so do the keys that open one."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("escape,question_mark,q,space,enter,d,E,shift+e", "dismiss(None)", "close"),
+    ]
+
+    def __init__(self, title: str, text: str) -> None:
+        super().__init__()
+        self.text = text
+        self._title = title
+
+    def compose(self) -> ComposeResult:
+        """The text, with a frame."""
+        with VerticalScroll(id="reader") as scroll:
+            scroll.border_title = self._title
+            scroll.border_subtitle = "arrows scroll, Esc closes"
+            yield Static(self.text, markup=False)

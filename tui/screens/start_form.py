@@ -1,0 +1,90 @@
+"""StartForm: the start values, checked as they are typed."""
+
+import argparse
+from collections.abc import Callable
+from typing import ClassVar
+
+from textual import events, on
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Container, Horizontal
+from textual.widgets import Input, Label
+
+from engine.scenes import Scene
+from tui.options import angle, number
+from tui.screens.modal import Modal
+
+FIELDS: dict[str, tuple[str, Callable[[str], float]]] = {
+    "theta": ("rad, or 115deg", angle),
+    "omega": ("rad/s, or 90deg", angle),
+    "h": ("s, the step size", number),
+    "length": ("m", number),
+    "gravity": ("m/s²", number),
+}
+
+
+def scene_from(texts: dict[str, str], before: Scene) -> Scene:
+    """The scene that the form describes.  Raises ValueError with a sentence if there is none."""
+    values = {}
+    for name, text in texts.items():
+        try:
+            values[name] = FIELDS[name][1](text.strip())
+        except argparse.ArgumentTypeError as error:
+            raise ValueError(f"{name}: {error}.") from None
+    return before.altered(**values)
+
+
+class StartForm(Modal[Scene | None]):
+    """Returns the scene to start, or None."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("escape", "dismiss(None)", "cancel"),
+        Binding("down", "app.focus_next", show=False),
+        Binding("up", "app.focus_previous", show=False),
+    ]
+
+    def __init__(self, scene: Scene) -> None:
+        super().__init__()
+        self._before = scene
+        self._scene: Scene | None = scene
+
+    def compose(self) -> ComposeResult:
+        """A line for each value."""
+        with Container(id="form") as form:
+            form.border_title = "Start values"
+            form.border_subtitle = "Enter starts, Esc cancels"
+            for name, (unit, _) in FIELDS.items():
+                with Horizontal():
+                    yield Label(name)
+                    yield Input(f"{getattr(self._before, name)!r}", id=name, compact=True, select_on_focus=True)
+                    yield Label(unit, classes="unit")
+            yield Label(self._summary(), id="verdict", markup=False)
+
+    @on(Input.Changed)
+    def check(self) -> None:
+        """Say whether that can be started."""
+        texts = {name: self.query_one(f"#{name}", Input).value for name in FIELDS}
+        verdict = self.query_one("#verdict", Label)
+        try:
+            self._scene = scene_from(texts, self._before)
+        except ValueError as error:
+            self._scene = None
+            verdict.update(str(error))
+        else:
+            verdict.update(self._summary())
+        verdict.set_class(self._scene is None, "-wrong")
+
+    @on(Input.Submitted)
+    def submit(self) -> None:
+        """Start, if that is possible."""
+        if self._scene is not None:
+            self.dismiss(self._scene)
+
+    def on_click(self, event: events.Click) -> None:
+        """A click beside the form cancels."""
+        if event.widget is self:
+            self.dismiss(None)
+
+    def _summary(self) -> str:
+        scene = self._scene
+        return "" if scene is None else f"w0 = {scene.w0:.4g} 1/s, z = h w0 = {scene.z:.3g}"

@@ -1,0 +1,46 @@
+"""A still of the lab, the same to the letter whenever it is made: its clock is moved by hand."""
+
+import asyncio
+import re
+from collections.abc import Sequence
+
+from engine.scenes import Scene
+from tui.app import PenduApp
+from tui.display import FPS, USUAL, Display
+from tui.live import Live
+from tui.screens.lab import Lab
+from tui.widgets.chart import TimeChart
+from tui.widgets.phase_display import PhaseDisplay
+
+PATIENCE = 30.0  # s for the charts to be built
+
+
+async def still(
+    scene: Scene, seconds: float, size: tuple[int, int], display: Display = USUAL, keys: Sequence[str] = ()
+) -> str:
+    """The lab as an SVG picture, `seconds` after the start and `keys` pressed since."""
+    now = 0.0
+    live = Live(scene, clock=lambda: 0.0)
+    stage = Lab(live, clock=lambda: now)
+    app = PenduApp(stage, display=display)
+    async with app.run_test(size=size) as pilot:
+        for frame in range(round(seconds * FPS) + 1):
+            now = frame / FPS
+            live.tick(now)
+        stage.show_now()
+        await pilot.press(*keys)
+        await settled(app)
+        await pilot.pause()
+        return normalised(app.export_screenshot())
+
+
+async def settled(app: PenduApp) -> None:
+    """Wait until all charts and rings show the newest data."""
+    async with asyncio.timeout(PATIENCE):
+        while not all(pane.settled for pane in (*app.stage.query(TimeChart), *app.stage.query(PhaseDisplay))):
+            await asyncio.sleep(0.01)
+
+
+def normalised(svg: str) -> str:
+    """The picture without the number that makes its names unique in a page."""
+    return re.sub(r"terminal-\d+-", "terminal-", svg)

@@ -1,0 +1,43 @@
+"""The terminal: whether the lab can be shown on it, and whether it keeps up."""
+
+import os
+import sys
+from typing import Any
+
+from tui.errors import Exit, UserError
+
+
+def check_terminal() -> None:
+    """Raise UserError unless the lab can be shown: Textual itself would print garbage."""
+    if not all(stream is not None and stream.isatty() for stream in (sys.__stdin__, sys.__stdout__, sys.__stderr__)):
+        raise UserError(
+            "this is no terminal: the lab needs one for its input and its output; pendu-tui run needs none,"
+            " nor does --plain.",
+            Exit.TERMINAL_UNSUITABLE,
+        )
+    term = os.environ.get("TERM", "")
+    if term in ("", "dumb", "unknown"):
+        raise UserError(
+            f"the terminal (TERM={term}) cannot move its cursor: set TERM to what it is, such as xterm-256color.",
+            Exit.TERMINAL_UNSUITABLE,
+        )
+
+
+def is_gone() -> bool:
+    """Whether the terminal has been closed: who writes to it then fails, or waits forever."""
+    try:
+        os.get_terminal_size(0)
+    except OSError:
+        return True
+    return False
+
+
+def is_behind(app: Any) -> bool:
+    """Whether frames are still waiting to be sent: on a slow line one more only adds to the delay.
+
+    Textual blocks once 30 writes are waiting, and tells nobody how many there are.
+    """
+    try:
+        return app._driver._writer_thread._queue.qsize() > 0  # type: ignore[no-any-return]
+    except AttributeError:  # another version, or no terminal
+        return False

@@ -1,0 +1,37 @@
+"""The views.  A view is a module here with a widget, and its entry in VIEWS."""
+
+from importlib import import_module
+from typing import NamedTuple
+
+from tui.views.view import View
+
+
+class Entry(NamedTuple):
+    """Where a view is, and how one gets there."""
+
+    key: str  # as Textual calls it
+    title: str
+    module: str  # imported when the view is first shown
+    widget: str
+
+
+VIEWS: dict[str, Entry] = {
+    "lab": Entry("f2", "Lab", "tui.views.lab", "LabView"),
+    "phase": Entry("f3", "Phase space", "tui.views.phase", "PhaseView"),
+    "accuracy": Entry("f4", "Accuracy", "tui.views.accuracy", "AccuracyView"),
+    "stability": Entry("f5", "Stability", "tui.views.stability", "StabilityView"),
+}
+"""In the order in which v goes through them."""
+
+
+def create(name: str) -> View:
+    """The view of this name."""
+    entry = VIEWS[name]
+    widget: type[View] = getattr(import_module(entry.module), entry.widget)
+    return widget(id=name)
+
+
+def following(name: str) -> str:
+    """The view after this one."""
+    names = list(VIEWS)
+    return names[(names.index(name) + 1) % len(names)]

@@ -1,0 +1,27 @@
+"""View: what fills the screen between the status line and the key line."""
+
+from typing import ClassVar
+
+from textual.containers import Container
+from textual.reactive import var
+
+from engine.lockstep import Sample
+from tui.keys import Key
+from tui.look import Look
+from tui.source import Source
+
+
+class View(Container):
+    """A view gets these from the screen, and hands them on to its widgets with data_bind."""
+
+    KEYS: ClassVar[tuple[Key, ...]] = ()
+    """What the help says besides the screen's keys."""
+
+    source: var[Source | None] = var(None)
+    sample: var[Sample | None] = var(None)
+    """Every frame, 30 a second."""
+    reading: var[Sample | None] = var(None)
+    """The sample as often as people can read it, 10 times a second."""
+    past: var[Sample | None] = var(None)
+    """The sample as often as a chart is worth building, 5 times a second."""
+    look: var[Look] = var(Look())

@@ -1,0 +1,164 @@
+"""StabilityDisplay: the map of stability, a panel a method, and in words what becomes of one swing."""
+
+import textwrap
+from collections.abc import Sequence
+from itertools import zip_longest
+
+from rich.segment import Segment
+from textual.geometry import Region
+from textual.reactive import var
+from textual.strip import Strip
+from textual.widget import Widget
+
+from engine.lockstep import Sample
+from engine.methods import METHODS
+from engine.stability import Cells
+from engine.stability_map import Grid
+from tui.look import Look
+from tui.palette import Palette, palette
+from tui.source import Source
+from tui.stability_picture import MARGIN, Line, legend, panel, side_by_side, title
+from tui.stability_study import amplitude
+from tui.stability_words import note, verdict
+
+WORDS = 2  # lines
+ROOMY = 28  # rows from which on there is room for all of the legend
+
+
+class StabilityDisplay(Widget, can_focus=True):
+    """Draws what is known of the map; who derives from it sets the cursor, the pointer and the method in words."""
+
+    ALLOW_SELECT = False
+    DEFAULT_CSS = """
+    StabilityDisplay { border: round $panel-lighten-2; border-title-color: $foreground; width: 1fr; height: 1fr; }
+    StabilityDisplay:focus { border: round $primary; }
+    """
+
+    source: var[Source | None] = var(None)
+    sample: var[Sample | None] = var(None)
+    look: var[Look] = var(Look())
+
+    def __init__(self, grid: Grid) -> None:
+        super().__init__()
+        self.grid = grid
+        self.cells: Cells = grid.unknown()
+        self.cursor: tuple[int, int] | None = None  # indices of z and theta
+        self.pointer: tuple[int, int] | None = None
+        self.index = 2  # the method that is spoken of
+        self._panels: list[list[Line]] = [[]] * len(METHODS)  # as large as they were last drawn
+        self._filled: set[int] = set()  # methods with something new to draw
+        self._lines: list[Line] = []
+        self._drawn_for: object = None
+
+    def watch_sample(self) -> None:
+        """Follow the scene and the step; of what has been computed, draw a panel at a time, 5 ms each."""
+        if self.source is not None and self._state(self.source) != self._drawn_for:
+            self.draw()
+        elif self._filled:
+            self.draw([self._filled.pop()])
+
+    def on_resize(self) -> None:
+        """Draw for the new size."""
+        self.draw()
+
+    def on_show(self) -> None:
+        """Draw what has been computed in the meantime."""
+        self.draw()
+
+    def fill(self, z: slice, method: int, cells: Cells) -> None:
+        """Take in some of the map; it is drawn with one of the next samples."""
+        self.cells[z, method] = cells
+        self._filled.add(method)
+
+    @property
+    def here(self) -> tuple[float, float] | None:
+        """The scene's (z, amplitude), if it swings."""
+        if self.source is None or (theta := amplitude(self.source.scene)) is None:
+            return None
+        return abs(self.source.h) * self.source.scene.w0, theta
+
+    @property
+    def aim(self) -> tuple[int, int] | None:
+        """The cell that is spoken of: at the cursor, under the pointer, or nearest to here."""
+        if self.cursor or self.pointer:
+            return self.cursor or self.pointer
+        if (here := self.here) is None or here[0] > self.grid.z[-1]:
+            return None
+        return int(abs(self.grid.z - here[0]).argmin()), int(abs(self.grid.theta - here[1]).argmin())
+
+    @property
+    def text(self) -> str:
+        """What is shown, without colours."""
+        return "\n".join("".join(segment.text for segment in line).rstrip() for line in self._lines)
+
+    def draw(self, changed: Sequence[int] = range(len(METHODS))) -> None:
+        """Draw the panels of the methods that changed, and the words."""
+        source = self.source
+        if source is None or not self.size or not self.is_on_screen:
+            return
+        columns, rows = self.panel_size()
+        if columns <= 2 * MARGIN:
+            return
+        self._drawn_for = self._state(source)
+        marked = (self.grid.z[self.cursor[0]], self.grid.theta[self.cursor[1]]) if self.cursor else self.here
+        for index in changed:
+            self._panels[index] = panel(
+                self.grid, self.cells, index, columns, rows, self._colours, here=marked, w0=source.scene.w0
+            )
+        self.tell()
+
+    def tell(self) -> None:
+        """Say what becomes of the swing that is spoken of, above each panel and below all."""
+        aim, columns = self.aim, self.panel_size()[0]
+        panels = [
+            [
+                title(index, columns, self._colours, "" if aim is None else self._note(index, *aim)),
+                *self._panels[index][1:],
+            ]
+            for index in self.look.indices
+        ]
+        words = "" if aim is None else self._verdict(*aim)
+        said = [*textwrap.wrap(words, max(self.size.width - 1, 1)), "", ""][:WORDS]
+        lines = [
+            *side_by_side(panels, 2),
+            *([Segment(f" {line}")] for line in said),
+            *self._legend(),
+        ]
+        before, self._lines = self._lines, lines
+        changed = [y for y, (old, new) in enumerate(zip_longest(before, lines)) if old != new]
+        if changed:
+            self.refresh(*(Region(0, y, self.size.width, 1) for y in changed))
+
+    def render_line(self, y: int) -> Strip:
+        """One row."""
+        style = self.rich_style
+        line = self._lines[y] if y < len(self._lines) else []
+        return Strip(Segment.apply_style(line, style)).adjust_cell_length(self.size.width, style)
+
+    def _state(self, source: Source) -> object:
+        """What the picture depends on besides the map."""
+        return source.scene, source.h, self.look, self.app.theme
+
+    @property
+    def _colours(self) -> Palette | None:
+        return None if self.app.no_color or self.app.native_ansi_color else palette(self.app.theme)
+
+    def panel_size(self) -> tuple[int, int]:
+        """Columns of a panel, and rows of its map: two panels in a row, below them words and the legend."""
+        lines = -(-len(self.look.indices) // 2) or 1
+        return (self.size.width - 2) // 2, max(1, (self.size.height - WORDS - len(self._legend())) // lines - 2)
+
+    def _legend(self) -> list[Line]:
+        lines = legend(self.grid.steps, self._colours, self.size.width + 2)  # as if the frame were part of it
+        return lines if self.size.height >= ROOMY else lines[:1]
+
+    def _note(self, index: int, z: int, theta: int) -> str:
+        return note(METHODS[index], self.grid.theta[theta], self.grid.z[z], self.cells[z, index, theta])
+
+    def _verdict(self, z: int, theta: int) -> str:
+        shown = self.look.indices
+        if self.source is None or not shown:
+            return ""
+        index = self.index if self.index in shown else shown[0]
+        cells, w0 = self.cells[:, index, theta], self.source.scene.w0
+        return verdict(METHODS[index], self.grid.theta[theta], self.grid.z, cells, z, w0)

@@ -1,0 +1,89 @@
+"""StatusLine: what runs, how fast, from where, and what becomes of the recording."""
+
+import math
+from typing import NamedTuple
+
+from rich.style import Style
+from textual.reactive import var
+
+from engine.lockstep import Sample
+from tui.limits import limit_warning
+from tui.numbers import file_size, percent, seconds
+from tui.palette import FRAME, TEXT, WARN
+from tui.source import Source
+from tui.widgets.rows import Row, Rows
+
+BADGE = -10
+"""The owner of LIVE and REPLAY."""
+
+
+class _Part(NamedTuple):
+    keep: int  # the smallest go first where there is no room
+    text: str
+    owner: int = TEXT
+
+
+def speed_text(speed: float) -> str:
+    """As "1×", "1/8×", "1024×", "-2×"."""
+    sign, size = "-" if speed < 0 else "", abs(speed)
+    return f"{sign}{size:.4g}×" if size >= 1 else f"{sign}1/{1 / size:.4g}×"
+
+
+def whole_seconds(value: float) -> str:
+    """As "12 s", "3 min 05 s"."""
+    return f"{int(value)} s" if value < 60 else seconds(value)
+
+
+def status_row(source: Source, width: int) -> Row:
+    """The line, as far as there is room."""
+    scene, playhead, pace, tape = source.scene, source.playhead, source.pace, source.tape
+    z = abs(source.h) * scene.w0
+    warning = limit_warning(z)
+    parts = [
+        _Part(12, "paused " if playhead.paused else "running"),
+        _Part(10, speed_text(playhead.speed)),
+        _Part(11, f"t {seconds(source.sample.t)}"),
+        _Part(9, f"equal cost: h {source.h:.4g} s or parts" if source.equal_cost else f"h {source.h:.4g} s"),
+        _Part(10, f"z {z:.3g} {warning}", WARN) if warning else _Part(6, f"z {z:.3g}"),
+        _Part(3, scene.name, FRAME),
+        _Part(7, f"{math.degrees(scene.theta):.4g}° {scene.omega:.4g} rad/s"),
+    ]
+    if pace.share < 0.99:
+        parts.insert(2, _Part(10, f"real-time {percent(pace.share)}", WARN))
+    if tape is None:
+        parts.append(_Part(5, "not recorded", FRAME))
+    elif tape.failed:
+        parts.append(_Part(8, "NOT RECORDED", WARN))
+    else:
+        verb = "REC " if source.kind == "LIVE" else ""
+        parts.append(_Part(5, f"{verb}{whole_seconds(tape.seconds)}"))
+        parts.append(_Part(2, file_size(tape.bytes), FRAME))
+        parts.append(_Part(1, tape.name, FRAME))
+    badge = f" {source.kind} "
+    while parts and len(badge) + sum(len(part.text) + 2 for part in parts) > width:
+        parts.remove(min(parts))
+    return [(badge, BADGE), *((text, owner) for part in parts for text, owner in (("  ", TEXT), part[1:]))]
+
+
+class StatusLine(Rows):
+    """The line."""
+
+    source: var[Source | None] = var(None)
+    sample: var[Sample | None] = var(None)
+
+    def watch_sample(self) -> None:
+        """Follow the sample."""
+        self.draw()
+
+    def draw(self) -> None:
+        """Draw the line."""
+        if self.source is not None and self.drawable:
+            self.show([status_row(self.source, self.room.width)])
+
+    def style_of(self, owner: int, base: Style) -> Style:
+        """LIVE and REPLAY stand out."""
+        return (
+            super().style_of(WARN, base) + Style(reverse=True, bold=True)
+            if owner == BADGE
+            else super().style_of(owner, base)
+        )
