@@ -20,7 +20,7 @@ from tui.palette import PALETTES, Palette
 from tui.pixels import PixelFilter
 from tui.screens.modal import Commands
 from tui.screens.stage import SMALLEST, Stage
-from tui.terminal import is_gone
+from tui.terminal import come_back_whole, is_gone
 from tui.widgets.rows import PRESENT
 
 WIDTHS = [(0, "-tiny"), (SMALLEST[0], "-narrow"), (80, "-normal"), (120, "-wide")]
@@ -72,7 +72,9 @@ class PenduApp(App[Exit | OSError]):
             self.stages.append(message.stage)
 
     def on_mount(self) -> None:
-        """Leave in order when asked to by a signal."""
+        """Leave in order when asked to by a signal, and come back from one."""
+        come_back_whole(self)
+        self.app_resume_signal.subscribe(self, lambda _: self.refresh())
         loop = asyncio.get_running_loop()
         for name in ("SIGINT", "SIGTERM", "SIGHUP"):
             if number := getattr(signal, name, None):
@@ -129,8 +131,11 @@ class PenduApp(App[Exit | OSError]):
         self.pixels = PIXELS[(PIXELS.index(self.pixels) + 1) % len(PIXELS)]
 
     def watch_pixels(self) -> None:
-        """Draw everything anew."""
+        """Draw everything anew: no widget knows that its characters have become others."""
         self.refresh_css(animate=False)
+        for screen in self.screen_stack:
+            for node in screen.walk_children(with_self=True):
+                node.refresh()
 
     def get_line_filters(self) -> Sequence[LineFilter]:
         """What all lines pass through before they are shown."""

@@ -1,6 +1,7 @@
 """The terminal: whether the lab can be shown on it, and whether it keeps up."""
 
 import os
+import signal
 import sys
 from typing import Any
 
@@ -41,3 +42,22 @@ def is_behind(app: Any) -> bool:
         return app._driver._writer_thread._queue.qsize() > 0  # type: ignore[no-any-return]
     except AttributeError:  # another version, or no terminal
         return False
+
+
+def come_back_whole(app: Any) -> None:
+    """Take the terminal again as a whole after a stop that nobody announced (SIGSTOP), as after Ctrl+Z.
+
+    Textual would have two threads read the keys: one that is never joined, so that the program never ends.
+    """
+    driver = app._driver
+    resume = getattr(driver, "_sigcont_application", None)
+    if resume is None:  # no terminal, another system, or another version
+        return
+
+    def resumed(*_: object) -> None:
+        if driver._key_thread is not None and driver._key_thread.is_alive():
+            driver.suspend_application_mode()
+        driver._must_signal_resume = True
+        resume()
+
+    signal.signal(signal.SIGCONT, resumed)

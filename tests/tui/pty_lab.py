@@ -29,7 +29,8 @@ class PtyLab:
             fcntl.ioctl(0, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
             os.chdir(ROOT)
             terminal = {"TERM": "xterm-256color", "COLORTERM": "truecolor", "PYTHONUTF8": "1"}
-            os.execvpe(PENDU[0], [*PENDU, *arguments], {**os.environ, **terminal, **environment})
+            ours = {name: value for name, value in os.environ.items() if name not in ("COLUMNS", "LINES")}
+            os.execvpe(PENDU[0], [*PENDU, *arguments], {**ours, **terminal, **environment})
         self.output = bytearray()
         self.reads: list[tuple[float, int]] = []
         """When how many bytes came, in s since the start."""

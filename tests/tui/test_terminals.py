@@ -14,6 +14,7 @@ from recordings.verify import verify
 from tests.tui.pty_lab import PtyLab
 
 RECORDING = "REC 0 s"
+NEVER_CHANGES = "Phase space"  # once painted
 AWAY = 2.0  # s
 SGR = re.compile(rb"\x1b\[([\d;]*)m")
 
@@ -48,6 +49,15 @@ def test_without_utf_8_the_whole_lab_is_ascii(tmp_path):
     assert output.isascii()
     assert b"1x" in output  # 1×
     assert b"-----" in output  # a frame
+
+
+def test_with_new_pixels_all_is_sent_anew_even_what_stands_still(tmp_path):
+    with session(tmp_path) as pendu:
+        pendu.wait_for(RECORDING)
+        pendu.type(" a")
+        pendu.wait_for(NEVER_CHANGES)
+        pendu.type("q")
+        assert pendu.end() == 0
 
 
 def test_pixels_can_be_chosen_and_changed_with_a(tmp_path):
@@ -109,7 +119,7 @@ def test_a_lab_that_was_stopped_goes_on_where_it_was(tmp_path, how):
         assert state(pendu.pid) == "T"
         time.sleep(AWAY)
         pendu.signal(signal.SIGCONT)
-        pendu.run(1.0)
+        pendu.wait_for(NEVER_CHANGES)
         pendu.type("q")
         assert pendu.end() == 0
         present = pendu.now - AWAY
