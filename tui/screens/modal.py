@@ -12,8 +12,8 @@ class _Once(Screen[ScreenResultType]):
     _dismissed = False
 
     def dismiss(self, result: ScreenResultType | None = None) -> AwaitComplete:
-        """Close, with a result.  Asked a second time, Textual would close what lies below."""
-        if self._dismissed:
+        """Close, with a result.  Asked again, or while something lies over it, Textual would close another screen."""
+        if self._dismissed or self.app.screen is not self:
             return AwaitComplete()
         self._dismissed = True
         return super().dismiss(result)
