@@ -10,29 +10,28 @@ import math
 
 from engine.methods import Step
 from engine.pendulum import acceleration
+from engine.state import Phase
+from engine.tangent import tangent_map
 
 GREENE_K = 0.971635
 GREENE_Z = math.sqrt(GREENE_K)  # 0.985716
 
-_TINY = 1e-100  # as in engine.tangent
-
 
 def lyapunov(step: Step, theta: float, omega: float, z: float, steps: int) -> float:
-    """Mean growth per step of ln |a small displacement| along an orbit of `steps` steps, with w0 = 1.
+    """Largest Lyapunov exponent per step, with w0 = 1: mean growth of ln |a small displacement| along an orbit.
 
-    The tangent map goes along as the imaginary part: step(x + i·tiny·v) = step(x) + i·tiny·J v.
+    The displacement is brought back to length 1 after each step: Benettin et al., Meccanica 15 (1980) 9.
     Regular orbits tend to 0 as ln(steps)/steps, chaotic ones to a positive number; for K >= 10 that
-    is ln(K/2).
+    is ln(K/2): Chirikov, Phys. Rep. 52 (1979) 263.
     """
     force = acceleration(1.0, cmath.sin)
-    along_theta, along_omega, total = 1.0, 0.0, 0.0
+    phase: Phase = theta, omega
+    along: Phase = 1.0, 0.0
+    total = 0.0
     for _ in range(steps):
-        phase = complex(theta, _TINY * along_theta), complex(omega, _TINY * along_omega)
-        new_theta, new_omega = step(force, phase, z)
-        theta, omega = new_theta.real, new_omega.real
-        along_theta, along_omega = new_theta.imag / _TINY, new_omega.imag / _TINY
-        growth = math.hypot(along_theta, along_omega)
-        along_theta, along_omega = along_theta / growth, along_omega / growth
+        phase, along = tangent_map(step, force, phase, along, z)
+        growth = math.hypot(*along)
+        along = along[0] / growth, along[1] / growth
         total += math.log(growth)
     return total / steps
 
@@ -40,7 +39,7 @@ def lyapunov(step: Step, theta: float, omega: float, z: float, steps: int) -> fl
 def is_chaotic(step: Step, theta: float, z: float, steps: int = 10_000) -> bool:
     """Whether a swing from rest at theta [rad] is chaotic, judged from `steps` steps.
 
-    The threshold is ten times what a regular orbit shows, ln(steps)/steps; chaotic swings that
-    leave the band show a hundred times it.
+    The threshold is ten times what a regular orbit shows at most, ln(steps)/steps.  Of the swings that leave
+    the band of engine.stability in 10 000 steps, chaotic ones showed 31 to 930 times it.
     """
     return lyapunov(step, theta, 0.0, z, steps) > 10 * math.log(steps) / steps

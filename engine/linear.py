@@ -40,12 +40,12 @@ def _spring(theta: Number) -> Number:
     return -theta
 
 
-def linear_limit(step: Step, highest: int = 8) -> float:
+def linear_limit(step: Step) -> float:
     """The z up to which the step is stable, by bisection to 1e-9; 0.0 where no step is small enough.
 
-    Takes it that the step, once unstable, stays so up to z = `highest`.
+    Takes it that the step, once unstable, stays so.
     """
-    stable, unstable = Fraction(0), Fraction(highest)
+    stable, unstable = Fraction(0), Fraction(8)  # beyond any method's limit: 2√2 is the largest of ours
     while unstable - stable > Fraction(1, 2**33):  # 1.2e-10
         middle = (stable + unstable) / 2
         if is_stable(step, middle):
@@ -59,9 +59,9 @@ def wobble(step: Step, z: float) -> tuple[float, float]:
     """Lowest and highest energy, over the start's, that a linear swing from rest is taken to by this step.
 
     A symplectic step keeps a quadratic form, not the energy: the swing stays on the ellipse
-    -c theta² + (a - d) theta omega + b omega² = constant, where ((a, b), (c, d)) is its Jacobian at
-    w0 = 1.  The half axes are the extremes: (1 - z²/4, 1) for velocity Verlet, for symplectic Euler
-    (1/(1 + z/2), 1/(1 - z/2)).  Explicit Euler and RK4 do not wobble: (1, 1).  Beyond the limit of a
+    -c theta² + (a - d) theta omega + b omega² = -c theta0², where ((a, b), (c, d)) is its Jacobian at
+    w0 = 1.  The half axes, squared, are the extremes: (1 - z²/4, 1) for velocity Verlet, for symplectic
+    Euler (1/(1 + z/2), 1/(1 - z/2)).  Explicit Euler and RK4 do not wobble: (1, 1).  Beyond the limit of a
     symplectic step there is no ellipse, and (0, 1) is what velocity Verlet's has become there.
     """
     a, b, c, d = jacobian(step, 1.0, 0.0, 0.0, z)

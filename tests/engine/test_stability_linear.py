@@ -70,6 +70,12 @@ def test_the_wobble_bounds_the_energy_of_a_linear_swing_and_is_reached(z: float,
             assert max(energies) == pytest.approx(highest, rel=0.05)
 
 
+@given(z=st.floats(0.05, 1.9))
+def test_the_wobble_of_the_symplectic_steps_has_a_closed_form(z: float) -> None:
+    assert wobble(BY_KEY["velocity_verlet"].step, z) == pytest.approx((1 - z**2 / 4, 1), rel=1e-12)
+    assert wobble(BY_KEY["symplectic_euler"].step, z) == pytest.approx((1 / (1 + z / 2), 1 / (1 - z / 2)), rel=1e-12)
+
+
 @given(z=st.floats(0.01, 2.8))
 def test_explicit_euler_and_rk4_do_not_wobble(z: float) -> None:
     for key in ("explicit_euler", "rk4"):
