@@ -3,16 +3,20 @@
 A method is a plain function (acceleration, phase, h) -> phase with only + and * on the phase.  It
 therefore runs unchanged on floats, NumPy arrays, complex numbers, mpmath numbers and under Numba.
 To add a method, write its function and add its entry to METHODS.  Every field of an entry is a
-claim, and tests/engine/test_methods.py measures each of them.
+claim, and tests/engine/test_methods.py measures each of them (test_shadow.py that of the shadow).
 """
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from engine.shadow import symplectic_euler_shadow, velocity_verlet_shadow
 from engine.state import Acceleration, Phase
 
 Step = Callable[[Acceleration, Phase, float], Phase]
+
+Shadow = Callable[[float, float, float, float], float]
+"""(w0_squared [s⁻²], theta [rad], omega [rad/s], h [s]) -> shadow energy [s⁻²]."""
 
 
 def explicit_euler(acceleration: Acceleration, phase: Phase, h: float) -> Phase:
@@ -87,6 +91,7 @@ class Method:
     other_names: tuple[str, ...]
     reference: str
     used: str  # where, and in brackets who says so
+    shadow: Shadow | None = None  # energy of which it keeps all but O(h⁴); None: none is known, or there is none
 
 
 METHODS: tuple[Method, ...] = (
@@ -121,6 +126,7 @@ METHODS: tuple[Method, ...] = (
         other_names=("semi-implicit Euler", "Euler-Cromer"),
         reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), I.1.2",
         used="games and robots: the default of MuJoCo [mujoco.readthedocs.io, Computation]",
+        shadow=symplectic_euler_shadow,
     ),
     Method(
         key="velocity_verlet",
@@ -137,6 +143,7 @@ METHODS: tuple[Method, ...] = (
         other_names=("Störmer-Verlet", "leapfrog (kick-drift-kick)"),
         reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), I.1.4",
         used="molecular dynamics: the default of LAMMPS [docs.lammps.org, run_style]",
+        shadow=velocity_verlet_shadow,
     ),
     Method(
         key="rk4",

@@ -5,17 +5,13 @@ a nearby energy.  The energy itself then wobbles and comes back; the shadow ener
 Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), IX.3 and IX.8.
 """
 
-from collections.abc import Callable
 from math import cos, sin
 
 from engine.pendulum import energy
 
-Shadow = Callable[[float, float, float, float], float]
-"""(w0_squared [s⁻²], theta [rad], omega [rad/s], h [s]) -> shadow energy [s⁻²]."""
-
 
 def velocity_verlet_shadow(w0_squared: float, theta: float, omega: float, h: float) -> float:
-    """H + h² (w0²/24) (2 omega² cos theta - w0² sin² theta); what it leaves wobbles with h⁴."""
+    """H + h² (w0²/24) (2 omega² cos theta - w0² sin² theta) [s⁻²]; what it leaves wobbles with h⁴."""
     correction = 2 * omega * omega * cos(theta) - w0_squared * sin(theta) ** 2
     return float(energy(w0_squared, theta, omega)) + h * h * w0_squared / 24 * correction
 
@@ -23,10 +19,3 @@ def velocity_verlet_shadow(w0_squared: float, theta: float, omega: float, h: flo
 def symplectic_euler_shadow(w0_squared: float, theta: float, omega: float, h: float) -> float:
     """Verlet's shadow energy half a kick later: symplectic Euler is Verlet seen between its kicks."""
     return velocity_verlet_shadow(w0_squared, theta, omega - h / 2 * w0_squared * sin(theta), h)
-
-
-SHADOWS: dict[str, Shadow] = {
-    "symplectic_euler": symplectic_euler_shadow,
-    "velocity_verlet": velocity_verlet_shadow,
-}
-"""By method key; a method without an entry has no shadow energy to show."""

@@ -5,10 +5,7 @@ from collections.abc import Sequence
 
 from engine.lockstep import parts
 from engine.methods import METHODS
-from engine.shadow import SHADOWS
 from engine.state import State
-
-_SHADOWS = tuple(SHADOWS.get(method.key) for method in METHODS)
 
 
 class ShadowErrors:
@@ -34,8 +31,8 @@ class ShadowErrors:
     def _energies(self, states: Sequence[State]) -> list[float]:
         cuts = parts() if self._equal_cost else (1,) * len(METHODS)
         energies = [
-            math.nan if shadow is None else shadow(self._w0_squared, *state, self._h / cut)
-            for shadow, state, cut in zip(_SHADOWS, states, cuts, strict=True)
+            math.nan if method.shadow is None else method.shadow(self._w0_squared, *state, self._h / cut)
+            for method, state, cut in zip(METHODS, states, cuts, strict=True)
         ]
         return [
             energy if math.isfinite(energy) else math.nan for energy in energies
