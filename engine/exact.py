@@ -11,7 +11,6 @@ Carlson, Numer. Algorithms 10 (1995) 13.  Bulirsch, Numer. Math. 7 (1965) 78.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from decimal import Context, Decimal, localcontext
 from typing import Literal
 
@@ -22,32 +21,28 @@ Regime = Literal["libration", "rotation", "separatrix", "equilibrium"]
 Motion = Callable[[float], State]
 
 
-@dataclass(frozen=True, slots=True)
 class Swing:
     """The exact motion of a scene's pendulum: where it is at any time, its period and its regime."""
 
-    scene: Scene
-    regime: Regime = field(init=False)
-    period: float | None = field(init=False)  # s, per swing or, in rotation, per turn; None: not periodic
-    _motion: Motion = field(init=False, repr=False, compare=False)
+    regime: Regime
+    period: float | None = None  # s, per swing or, in rotation, per turn; None: not periodic
 
-    def __post_init__(self) -> None:
-        scene = self.scene
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
         with localcontext(Context(prec=100)):
             k_squared = _k_squared(scene.theta, scene.omega, scene.w0_squared)
             d = 1 - k_squared
             k, k_prime = float(k_squared.sqrt()), float(abs(d).sqrt())
-        period: float | None = None
         if k == 0:
-            regime, motion = "equilibrium", _rest(scene)
+            self.regime, self._motion = "equilibrium", _rest(scene)
         elif d > 0:
-            regime, motion, period = "libration", *_libration(scene, k, k_prime)
+            self.regime = "libration"
+            self._motion, self.period = _libration(scene, k, k_prime)
         elif d < 0:
-            regime, motion, period = "rotation", *_rotation(scene, k, k_prime)
+            self.regime = "rotation"
+            self._motion, self.period = _rotation(scene, k, k_prime)
         else:
-            regime, motion = "separatrix", _separatrix(scene)
-        for name, value in (("regime", regime), ("period", period), ("_motion", motion)):
-            object.__setattr__(self, name, value)
+            self.regime, self._motion = "separatrix", _separatrix(scene)
 
     def at(self, t: float) -> State:
         """The state at time t [s], negative times included; theta continues from the start, unwrapped."""
@@ -153,7 +148,7 @@ def _carlson_rf(x: float, y: float, z: float) -> float:
 
 
 def _jacobi(k_prime: float) -> tuple[float, Callable[[float], tuple[float, float]]]:
-    """K, and u -> (sn u, cn u) for |u| <= K, from k' by the arithmetic-geometric mean (Bulirsch's sncndn)."""
+    """K(k), and u -> (sn u, cn u) for |u| <= K, from k' by the arithmetic-geometric mean (Bulirsch's sncndn)."""
     means: list[tuple[float, float]] = []
     a, b = 1.0, k_prime
     while True:

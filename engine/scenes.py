@@ -73,7 +73,7 @@ class Scene:
         return self if other == self else replace(other, name="custom", watch="")
 
 
-_SLOW = 9.81  # m: makes w0 = 1 s⁻¹, so that z reads like h
+_UNIT_W0 = 9.81  # m, the length with which w0 = 1 s⁻¹, so that z reads like h
 
 SCENES: dict[str, Scene] = {
     scene.name: scene
@@ -108,42 +108,42 @@ SCENES: dict[str, Scene] = {
         Scene(
             "verlet-limit",
             theta=0.1,
-            length=_SLOW,
+            length=_UNIT_W0,
             h=1.98,
             watch="Just below z = 2: Verlet loses 98 % of its energy, has it back every 11 steps.",
         ),
         Scene(
             "verlet-limit-above",
             theta=0.1,
-            length=_SLOW,
+            length=_UNIT_W0,
             h=2.02,
             watch="Just above z = 2: Verlet leaves the bottom, the pendulum holds it at 0.48 rad.",
         ),
         Scene(
             "rk4-limit",
             theta=0.1,
-            length=_SLOW,
+            length=_UNIT_W0,
             h=2.80,
             watch="Just below z = 2√2: RK4 loses half its energy in 4 steps, the others go over.",
         ),
         Scene(
             "rk4-limit-above",
             theta=0.1,
-            length=_SLOW,
+            length=_UNIT_W0,
             h=2.86,
             watch="Just above z = 2√2: RK4 gains energy till the pendulum catches it at 0.2 rad.",
         ),
         Scene(
             "chaos-fenced",
             theta=3.14,
-            length=_SLOW,
+            length=_UNIT_W0,
             h=math.sqrt(0.95),
             watch="K = z² = 0.95: the symplectic ones tumble in chaos, yet |omega| stays < pi/h.",
         ),
         Scene(
             "chaos-loose",
             theta=3.14,
-            length=_SLOW,
+            length=_UNIT_W0,
             h=math.sqrt(1.1),
             watch="K = z² = 1.1: no fence is left, |omega| passes 2 pi/h within a million steps.",
         ),

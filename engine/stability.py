@@ -31,8 +31,6 @@ CELL = np.dtype([("steps", "<i4"), ("error", "<f8"), ("fate", "u1")])
 """Steps survived; largest relative energy error |E - E0|/E0 up to the step that lost the swing; index into FATES."""
 
 Floats = NDArray[np.float64]
-
-
 Cells = NDArray[Any]  # of CELL
 
 

@@ -61,25 +61,11 @@ class _Bin(NamedTuple):
 class Trend:
     """One method's energy error over time.  Another h or another start needs another Trend."""
 
-    __slots__ = (
-        "_beats",
-        "_bins",
-        "_cut",
-        "_first",
-        "_high",
-        "_judgement",
-        "_low",
-        "_period",
-        "_samples",
-        "_start",
-        "_width",
-    )
-
     def __init__(self, period: float) -> None:
         """`period` [s] is that of the exact swing, or 2 pi/w0 where that has none."""
         self._period = self._width = period
         self._bins: list[_Bin] = []
-        self._judgement = Judgement()
+        self.judgement = Judgement()  # what is known by now
         self._start = self._first = math.nan  # s, and the energy error there
         self._cut = 0.0  # s since the start; where the open bin begins
         self._low, self._high = math.inf, -math.inf
@@ -113,11 +99,7 @@ class Trend:
         self._beats = steps_per_turn < _LEAST_STEPS
         self.add(t, reading.energy_error, reading.energy_error_low, reading.energy_error_high)
         if reading.diverged_at is not None:
-            self._judgement = Judgement("grows", None, None, abs(t - self._start) / self._period)
-
-    def judge(self) -> Judgement:
-        """What is known by now."""
-        return self._judgement
+            self.judgement = Judgement("grows", None, None, abs(t - self._start) / self._period)
 
     def _close(self, now: float) -> None:
         self._bins.append(_Bin((self._cut + now) / 2, self._low, self._high))
@@ -134,7 +116,7 @@ class Trend:
             [bin_.time for bin_ in self._bins], [(low + high) / 2 for _, low, high in self._bins]
         )
         periods = self._cut / self._period
-        verdict = self._judgement.verdict
+        verdict = self.judgement.verdict
         if verdict in ("too early", "bounded"):
             width = max(median(high - low for _, low, high in self._bins), _ROUNDING)
             reach = (abs(slope) + 3 * uncertainty) * self._cut
@@ -143,7 +125,7 @@ class Trend:
             elif periods >= _LEAST_PERIODS and reach < width / 2 * min(1, periods / _HORIZON):
                 verdict = "bounded"
         finite = math.isfinite(slope) and math.isfinite(uncertainty)
-        self._judgement = Judgement(verdict, slope if finite else None, uncertainty if finite else None, periods)
+        self.judgement = Judgement(verdict, slope if finite else None, uncertainty if finite else None, periods)
 
     def _left(self) -> Verdict | None:
         """Where to the last quarter has left the start for good, if it has."""
@@ -163,7 +145,11 @@ class Trend:
 
 
 def _line(times: list[float], values: list[float]) -> tuple[float, float]:
-    """Slope of the least-squares line and its standard deviation, residuals taken as correlated with the next."""
+    """Slope of the least-squares line and its standard deviation.
+
+    A residual is taken to be correlated with the next one, which leaves n (1 - r)/(1 + r) of n values that
+    count: Santer et al., J. Geophys. Res. 105 (2000) 7337.
+    """
     n = len(times)
     mean_time, mean_value = sum(times) / n, sum(values) / n
     spread = sum((time - mean_time) ** 2 for time in times)

@@ -56,7 +56,7 @@ class Witness:
     @property
     def judgements(self) -> list[Judgement]:
         """The verdicts on the run since the last change of the step size."""
-        return [trend.judge() for trend in self._trends]
+        return [trend.judgement for trend in self._trends]
 
     def happenings(self, step: int) -> list[Happening]:
         """What happened up to a step, in its order."""
@@ -82,9 +82,9 @@ class Witness:
             self._x += passed
             per_turn = self._turn * (sample.step - before.step) / passed
         for index, (trend, reading) in enumerate(zip(self._trends, sample.readings, strict=True)):
-            known = trend.judge().verdict
+            known = trend.judgement.verdict
             trend.read(self._x, reading, per_turn)
-            verdict = trend.judge().verdict
+            verdict = trend.judgement.verdict
             if reading.diverged_at is not None:
                 self._note(Happening("failed", index, sample.step, reading.diverged_at, reading.energy_error))
             elif verdict != known:

@@ -8,8 +8,11 @@ tenth of the run,
 - `bounded`: neither.
 
 Then a Trend is fed with the run's first periods, 30 samples a second as the lab does.  It is wrong if the
-first verdict it gives is not the truth, and it flickers if it gives a second one.  The chaos scenes are
-left out: whether an orbit in a chaotic sea stays is known from the sea's fences, not from its past.
+first verdict it gives is not the truth, and it flickers if it gives a second one.
+
+The grid's one rotation is the scene `spin`, a turn a second; faster ones, and those that beat with their
+steps, stand in tests/engine/test_verdict.py.  The chaos scenes are left out: whether an orbit in a chaotic
+sea stays is known from the sea's fences, not from its past.
 """
 
 import json
@@ -71,7 +74,7 @@ def verdicts(scene: Scene, period: float) -> list[list[tuple[str, float]]]:
         sample = lockstep.sample()
         for trend, reading, list_ in zip(trends, sample.readings, given, strict=True):
             trend.read(sample.t, reading)
-            judgement = trend.judge()
+            judgement = trend.judgement
             list_.append((judgement.verdict, judgement.periods))
         lockstep.advance(steps)
     return [[next(group) for _, group in groupby(list_, key=lambda pair: pair[0])][1:] for list_ in given]

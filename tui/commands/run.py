@@ -124,7 +124,7 @@ def _rows(scene: Scene, sample: "Sample", trends: "list[Trend]") -> list[dict[st
     exact = Swing(scene).at(sample.t).theta
     rows = []
     for method, reading, trend in zip(METHODS, sample.readings, trends, strict=True):
-        judgement, end = trend.judge(), reading.diverged_at
+        judgement, end = trend.judgement, reading.diverged_at
         rows.append(
             {
                 "method": method.key,
