@@ -19,6 +19,10 @@ class DiskError(OSError):
         return f"{printable(str(self.filename))}: {self.strerror}"
 
 
+class NameTakenError(DiskError):
+    """A recording that cannot be made under this name, because there is another one."""
+
+
 def printable(text: str, limit: int = TEXT_LIMIT) -> str:
     """`text` with nothing in it that a terminal would obey: no escapes, line ends or bidirectional overrides."""
     text = text if len(text) <= limit else text[: limit - 1] + "…"

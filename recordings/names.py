@@ -1,6 +1,7 @@
 """Names of recordings, finished and not."""
 
 from itertools import chain, count
+from os.path import lexists
 from pathlib import Path
 
 SUFFIX = ".mcap"
@@ -16,4 +17,4 @@ def part_of(path: Path) -> Path:
 def free_path(path: Path) -> Path:
     """`path`, or the first of NAME-2, NAME-3, … that no recording has, finished or not."""
     numbered = (path.with_name(f"{path.stem}-{n}{path.suffix}") for n in count(2))
-    return next(free for free in chain([path], numbered) if not free.exists() and not part_of(free).exists())
+    return next(free for free in chain([path], numbered) if not lexists(free) and not lexists(part_of(free)))

@@ -17,7 +17,7 @@ from typing import Self
 from mcap.writer import CompressionType, Writer
 
 from engine.lockstep import Sample
-from recordings.errors import DiskError
+from recordings.errors import DiskError, NameTakenError
 from recordings.events import Event
 from recordings.format import (
     CLOCK_LIMIT,
@@ -74,10 +74,10 @@ class Recorder:
         self._flushed_at, self._unflushed = 0.0, 0
         try:
             if path.exists() and not overwrite:
-                raise DiskError("a file of this name exists already; choose another name", path)
+                raise NameTakenError("a file of this name exists already; choose another name", path)
             self._file = self.part.open("xb", buffering=1 << 20)
         except FileExistsError as error:
-            raise DiskError(
+            raise NameTakenError(
                 "is being recorded, or left over from a recording that was not finished; choose another name", self.part
             ) from error
         except OSError as error:

@@ -1,10 +1,11 @@
 """SittingRecorder: records a sitting whatever becomes of the disk."""
 
 import time
+from contextlib import suppress
 from pathlib import Path
 
 from engine.lockstep import Sample
-from recordings.errors import DiskError
+from recordings.errors import DiskError, NameTakenError
 from recordings.events import Entry, Event
 from recordings.names import free_path
 from recordings.recorder import Recorder, WallClock, trouble
@@ -15,18 +16,19 @@ RETRY_EVERY = 5.0  # s of the recording clock
 class SittingRecorder:
     """A recorder that survives trouble with the disk: the sitting goes on, and so does the recording, in a new file.
 
-    Opening the first file may raise DiskError; nothing after that does.  `failed` says in a sentence
-    why nothing is being recorded right now.  Every file begins with the start and the changes of h
-    of its run, so each replays and verifies by itself.
+    Opening the first file may raise DiskError; nothing after that does.  With `or_next`, a name that another
+    sitting has taken meanwhile becomes the next free one.  `failed` says in a sentence why nothing is being
+    recorded right now.  Every file begins with the start and the changes of h of its run, so each replays and
+    verifies by itself.
     """
 
-    def __init__(self, path: Path, wall: WallClock = time.time_ns) -> None:
+    def __init__(self, path: Path, wall: WallClock = time.time_ns, or_next: bool = False) -> None:
         self.failed: str | None = None
         self.files: list[Path] = []  # that hold something and are no longer written to
         self._path, self._wall = path, wall
         self._course: list[Event] = []  # of the run: its start and its changes of h
         self._zero = self._failed_at = 0.0  # s of the sitting's clock: where the file begins, the last failure
-        self._recorder = Recorder(path, wall)
+        self._recorder = self._opened() if or_next else Recorder(path, wall)
 
     @property
     def path(self) -> Path:
@@ -87,10 +89,15 @@ class SittingRecorder:
         if path.exists() and path not in self.files:
             self.files.append(path)
 
+    def _opened(self) -> Recorder:
+        while True:
+            with suppress(NameTakenError):  # since it was found to be free
+                return Recorder(free_path(self._path), self._wall)
+
     def _reopen(self, clock: float) -> None:
         try:
             self._path.parent.mkdir(parents=True, exist_ok=True)
-            recorder = Recorder(free_path(self._path), self._wall)
+            recorder = self._opened()
         except OSError as error:
             raise trouble(error, self._path) from error
         self._recorder, self._zero = recorder, clock

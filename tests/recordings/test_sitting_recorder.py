@@ -10,6 +10,7 @@ import pytest
 from engine.lockstep import Lockstep
 from recordings.errors import DiskError
 from recordings.events import Event
+from recordings.names import free_path
 from recordings.recording import Recording
 from recordings.sitting import RETRY_EVERY, SittingRecorder
 from recordings.verify import verify
@@ -110,6 +111,36 @@ def test_a_restart_while_nothing_is_recorded_is_what_the_new_file_begins_with(la
     with Recording.open(lab.recorder.files[-1]) as recording:
         assert [run.number for run in recording.runs] == [2]
     assert verify(lab.recorder.files[-1]).identical
+
+
+def test_two_sittings_that_chose_the_same_name_are_two_recordings(tmp_path, monkeypatch):
+    monkeypatch.setattr("recordings.sitting.free_path", Looks(free_path))
+    path = tmp_path / "now.mcap"
+    recorders = [SittingRecorder(path, or_next=True) for _ in range(2)]
+    for recorder in recorders:
+        recorder.event(start(), 0.0)
+        recorder.sample(Lockstep(SCENE).sample(), 0.0)
+        recorder.close()
+    assert [recorder.path.name for recorder in recorders] == ["now.mcap", "now-2.mcap"]
+    assert all(verify(recorder.path).identical for recorder in recorders)
+
+
+class Looks:
+    """Two sittings look for a free name before either takes it: the second look finds what the first did."""
+
+    def __init__(self, look):
+        self.look, self.found = look, []
+
+    def __call__(self, path):
+        self.found.append(self.found[0] if len(self.found) == 1 else self.look(path))
+        return self.found[-1]
+
+
+def test_a_name_that_somebody_gave_is_not_changed(tmp_path):
+    recorder = SittingRecorder(tmp_path / "mine.mcap")
+    with pytest.raises(DiskError, match="choose another name"):
+        SittingRecorder(tmp_path / "mine.mcap")
+    recorder.close()
 
 
 def test_trouble_that_lasts_is_tried_again_now_and_then_and_leaves_no_rubbish(lab, tmp_path, monkeypatch):

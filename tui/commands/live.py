@@ -35,9 +35,9 @@ examples:
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add this command's options."""
     add_scene_options(parser)
-    parser.add_argument("--speed", metavar="X", type=positive, default=1.0, help="times real time (%(default)s)")
+    parser.add_argument("--speed", metavar="X", type=positive, default=1.0, help="times real time (%(default)g)")
     recording = parser.add_mutually_exclusive_group()
-    recording.add_argument("--record", metavar="FILE", type=Path, help="record here, not into the library")
+    recording.add_argument("--record", metavar="FILE", type=Path, help="record here, not in the data folder")
     recording.add_argument("--no-record", action="store_true", help="record nothing")
     add_display_options(parser)
 
@@ -55,7 +55,7 @@ def run(options: argparse.Namespace) -> int:
     told = [] if path is None else tell_of_leftovers(path.parent)
     from tui.live import Live
 
-    return show(recording_lab(Live(scene, options.speed), path, told), options)
+    return show(recording_lab(Live(scene, options.speed), path, told, or_next=options.record is None), options)
 
 
 def plain_lab(scene: Scene, options: argparse.Namespace) -> int:
@@ -69,7 +69,7 @@ def plain_lab(scene: Scene, options: argparse.Namespace) -> int:
     if path is not None:
         from recordings.sitting import SittingRecorder
 
-        live.record(SittingRecorder(path))
+        live.record(SittingRecorder(path, or_next=options.record is None))
     return say(live)
 
 
@@ -87,15 +87,15 @@ def say(source: "Source") -> int:
     return Exit.FINE
 
 
-def recording_lab(live: "Live", path: Path | None, notices: Sequence[str] = ()) -> "Lab":
-    """The lab's screen, and a recording at that place."""
+def recording_lab(live: "Live", path: Path | None, notices: Sequence[str] = (), or_next: bool = True) -> "Lab":
+    """The lab's screen, and a recording at that place, or at the next free one."""
     from tui.screens.lab import Lab
 
     def prepare() -> None:
         if path is not None:
             from recordings.sitting import SittingRecorder  # brings mcap, which can wait for the first paint
 
-            live.record(SittingRecorder(path))
+            live.record(SittingRecorder(path, or_next=or_next))
 
     return Lab(live, prepare=prepare, notices=notices)
 
