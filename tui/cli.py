@@ -28,6 +28,7 @@ COMMANDS = {
     "scenes": "the scenes, with what to watch",
     "methods": "the methods, with what is claimed and what is measured",
     "doctor": "what the lab finds here, and what to do about it",
+    "completion": "what makes the tab key of bash, zsh or fish know all this",
 }
 """Name of the command -> what it does.  Its module is tui.commands.NAME."""
 
@@ -40,6 +41,8 @@ commands (pendu-tui COMMAND --help tells more):
 {commands}
 
 pendu-tui alone is pendu-tui live.  pendu-tui --version prints the version.
+
+exit codes: 0 fine, 1 a check failed, 2 usage, 3 input unreadable, 4 terminal unsuitable, 5 disk, 130 interrupted.
 
 examples:
   pendu-tui
@@ -86,9 +89,11 @@ def _drop_output() -> None:
 
 def _dispatch(arguments: list[str]) -> int:
     match arguments:
-        case ["-h" | "--help" | "help", *_]:
+        case ["-h" | "--help", *_] | ["help"]:
             print(USAGE.format(commands="\n".join(f"  {name:<12}{does}" for name, does in COMMANDS.items())), end="")
             return Exit.FINE
+        case ["help", name]:
+            return _run(name, ["--help"])
         case ["--version", *_]:
             from importlib.metadata import version
 
@@ -103,22 +108,34 @@ def _run(name: str, arguments: list[str]) -> int:
     from tui.options import joined
 
     parser, command = command_of(name)
+    arguments = joined(arguments)
     try:
-        options = parser.parse_args(joined(arguments))
+        options = parser.parse_args(arguments)
     except SystemExit:  # --help, printed
         return Exit.FINE
+    except UserError as error:
+        raise _misplaced(name, arguments) or parser.unknown_option(arguments) or error from None
     code: int = command.run(options)
     return code
+
+
+def _misplaced(name: str, arguments: Sequence[str]) -> UserError | None:
+    """What to say to one who gave the command after its options, for which it was taken for live."""
+    late = next((argument for argument in arguments if argument in COMMANDS), None)
+    return UserError(f"the command comes first: pendu-tui {late}.") if late and name == "live" else None
 
 
 def command_of(name: str) -> tuple["Parser", ModuleType]:
     """A command's parser and module.  Raises UserError if there is none."""
     from argparse import RawDescriptionHelpFormatter
 
+    from engine.scenes import SCENES
     from tui.options import Parser, did_you_mean
 
     if name not in COMMANDS:
         hint = did_you_mean(name, COMMANDS) or "; pendu-tui --help lists them."
+        if name in SCENES:
+            hint = f", but a scene: pendu-tui --scene {name}"
         raise UserError(f"there is no command {name!r}{hint}")
     command = import_module(f"tui.commands.{name}")
     parser = Parser(

@@ -45,7 +45,7 @@ def add_picture_options(parser: argparse.ArgumentParser, theme: str, pixels: str
     group = parser.add_argument_group(
         "display", "auto: as the terminal says it can; pendu-tui doctor tells what that is"
     )
-    group.add_argument("--theme", choices=("auto", *PALETTES), default=theme, help="(%(default)s)")
+    group.add_argument("--theme", choices=("auto", *PALETTES), default=theme, help="colours (%(default)s)")
     group.add_argument("--pixels", choices=("auto", *PIXELS), default=pixels, help="what is drawn with (%(default)s)")
     group.add_argument("--present", action="store_true", help="large numbers and thick lines, for a projector")
     return group

@@ -4,6 +4,7 @@ import argparse
 import difflib
 import math
 import re
+import sys
 from collections.abc import Iterable, Sequence
 from typing import NoReturn
 
@@ -18,6 +19,17 @@ class Parser(argparse.ArgumentParser):
         """Raise UserError instead of printing the usage."""
         raise UserError(f"{message.removeprefix('argument ')}; {self.prog} --help shows the options.")
 
+    def unknown_option(self, arguments: Sequence[str]) -> UserError | None:
+        """What to say of the first option that there is none of: argparse would name what is missing for it."""
+        for argument in arguments:
+            name = argument.partition("=")[0] if argument.startswith("--") else argument[:2]
+            if argument == "--" or " " in name or name in self._option_string_actions:
+                continue
+            if re.match(r"--?[a-z]", name, re.IGNORECASE):
+                hint = did_you_mean(name, self._option_string_actions) or f"; {self.prog} --help shows the options."
+                return UserError(f"{self.prog.rpartition(' ')[2]} has no option {name}{hint}")
+        return None
+
 
 def joined(arguments: Sequence[str]) -> list[str]:
     """The arguments with negative numbers tied to their options: argparse takes -1e-3 for an option."""
@@ -30,8 +42,12 @@ def joined(arguments: Sequence[str]) -> list[str]:
     return tied
 
 
+class Bare(float):
+    """An angle that was given without its unit."""
+
+
 def angle(text: str) -> float:
-    """An angle [rad] from `2`, `2rad`, `115deg` or `115°`."""
+    """An angle [rad] from `2`, `2rad`, `115deg` or `115°`; a Bare one from `2`."""
     number = re.sub(r"(deg|°|rad)$", "", text)
     try:
         value = float(number)
@@ -39,7 +55,9 @@ def angle(text: str) -> float:
         raise argparse.ArgumentTypeError(
             f"{text!r} is no angle: give radians such as 2, or degrees such as 115deg"
         ) from None
-    return math.radians(value) if text.endswith(("deg", "°")) else value
+    if number == text:
+        return Bare(value)
+    return value if text.endswith("rad") else math.radians(value)
 
 
 def number(text: str) -> float:
@@ -73,19 +91,19 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
 
 def add_scene_options(parser: argparse.ArgumentParser) -> None:
     """Add the options that determine a scene; `scene_of` reads them."""
-    group = parser.add_argument_group("scene", "a scene from the list, or its numbers, or both: numbers win")
+    group = parser.add_argument_group("scene", "numbers win over those of the scene, which hold where none are given")
     group.add_argument("--scene", metavar="NAME", default=DEFAULT_SCENE.name, help="see pendu-tui scenes (%(default)s)")
     group.add_argument(
-        "--theta", metavar="RAD|DEGdeg", type=angle, help="start angle from straight down, such as 115deg"
+        "--theta", metavar="RAD|DEGdeg", type=angle, help="start angle from straight down, in rad, or such as 115deg"
     )
-    group.add_argument("--omega", metavar="RAD_S", type=angle, help="start angular velocity")
-    group.add_argument("--length", metavar="M", type=number)
-    group.add_argument("--gravity", metavar="M_S2", type=number)
-    group.add_argument("--h", metavar="S", type=number, help="step size")
+    group.add_argument("--omega", metavar="RAD_S", type=angle, help="start angular velocity in rad/s, or such as 30deg")
+    group.add_argument("--length", metavar="M", type=number, help="length in m")
+    group.add_argument("--gravity", metavar="M_S2", type=number, help="gravity in m/s²")
+    group.add_argument("--h", metavar="S", type=number, help="step size in s")
 
 
 def scene_of(options: argparse.Namespace) -> Scene:
-    """The scene that the options describe.
+    """The scene that the options describe; whoever seems to have meant degrees is told.
 
     Raises UserError for an unknown name and SceneError for numbers that cannot be run.
     """
@@ -93,4 +111,11 @@ def scene_of(options: argparse.Namespace) -> Scene:
         hint = did_you_mean(options.scene, SCENES) or "; pendu-tui scenes lists them."
         raise UserError(f"there is no scene {options.scene!r}{hint}")
     given = {name: getattr(options, name) for name in (*LIMITS, "h")}
-    return SCENES[options.scene].altered(**{name: value for name, value in given.items() if value is not None})
+    scene = SCENES[options.scene].altered(**{name: float(value) for name, value in given.items() if value is not None})
+    if isinstance(options.theta, Bare) and abs(options.theta) > math.tau:
+        bare, turns = f"{options.theta:g}", abs(options.theta) / math.tau
+        print(
+            f"pendu-tui: --theta {bare} is {bare} rad, {turns:.3g} turns; for degrees write {bare}deg.",
+            file=sys.stderr,
+        )
+    return scene

@@ -22,9 +22,7 @@ def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
     if path.exists() and not path.is_file() and not path.is_dir():
         yield path
         return
-    if path.exists() and (not force or path.is_dir()):
-        advice = "choose another name" if path.is_dir() else "choose another name, or --force to overwrite it"
-        raise UserError(f"{path} exists already: {advice}.", Exit.DISK)
+    check_free(path, force)
     if not path.parent.is_dir():
         raise UserError(f"{path}: there is no folder {path.parent}; create the folder first.", Exit.DISK)
     part = path.with_name(path.name + ".part")
@@ -37,6 +35,13 @@ def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
         part.unlink(missing_ok=True)
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+def check_free(path: Path, force: bool) -> None:
+    """Raise UserError if something has this name and must not be overwritten, or cannot."""
+    if path.exists() and (not force or path.is_dir()):
+        advice = "choose another name" if path.is_dir() else "choose another name, or --force to overwrite it"
+        raise UserError(f"{path} exists already: {advice}.", Exit.DISK)
 
 
 def _stop(number: int, frame: FrameType | None) -> None:

@@ -1,7 +1,9 @@
+from types import SimpleNamespace
+
 import pytest
 
 from tests.tui.command_line import pendu
-from tui.commands.doctor import colours, encoding, folder, size, unfinished
+from tui.commands.doctor import colours, encoding, folder, mouse, size, unfinished
 
 
 def test_doctor_reports_and_never_fails():
@@ -59,8 +61,37 @@ def test_colours_are_read_from_the_environment(environment, found, advice):
 
 def test_a_folder_that_is_not_there_yet_is_fine_and_one_below_a_file_is_not(tmp_path):
     assert not folder(tmp_path / "a" / "b").advice
+    assert not list(tmp_path.iterdir())
     (tmp_path / "file").touch()
     assert "PENDU_RECORDINGS" in folder(tmp_path / "file" / "a").advice
+
+
+def test_a_link_to_nowhere_and_a_name_too_long_are_no_folders_either(tmp_path):
+    (tmp_path / "link").symlink_to(tmp_path / "no" / "where")
+    assert "cannot be written" in folder(tmp_path / "link").advice
+    assert "cannot be written" in folder(tmp_path / ("x" * 300)).advice
+
+
+def test_a_folder_is_said_to_be_nearly_full(tmp_path, monkeypatch):
+    assert "GB free" in folder(tmp_path).found
+    monkeypatch.setattr("tui.commands.doctor.shutil.disk_usage", lambda _: SimpleNamespace(free=5_000_000))
+    finding = folder(tmp_path)
+    assert "5.0 MB free" in finding.found
+    assert "prune" in finding.advice
+
+
+def test_where_no_folder_can_be_read_doctor_says_the_rest(monkeypatch, tmp_path):
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path / "file"))
+    outcome = pendu("doctor")
+    assert (outcome.code, outcome.err) == (0, "")
+    assert "cannot be written" in outcome.out
+    assert "numba" in outcome.out
+
+
+def test_without_a_mouse_there_are_keys():
+    assert "key" in mouse({"TERM": "linux"}).advice
+    assert not mouse({"TERM": "xterm-256color"}).advice
 
 
 def test_leftovers_are_counted_and_answered_with_what_saves_them():

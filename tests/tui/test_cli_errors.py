@@ -19,6 +19,40 @@ def test_a_mistyped_command_is_answered_with_the_nearest_one():
     assert pendu("scenez").refused(2, "did you mean scenes?")
 
 
+def test_a_scene_given_as_a_command_is_answered_with_how_to_see_it():
+    assert pendu("crossover").refused(2, "but a scene: pendu-tui --scene crossover")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("run", "--tiem", "10"), "run has no option --tiem: did you mean --time?"),
+        (("run", "--tiem=10"), "--time?"),
+        (("snapshot", "-x", "lab.svg"), "snapshot has no option -x; pendu-tui snapshot --help"),
+        (("--nonsense",), "live has no option --nonsense"),
+    ],
+)
+def test_an_unknown_option_is_named_before_one_that_is_missing(arguments, words):
+    assert pendu(*arguments).refused(2, words)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("run",), "required: --time"),
+        (("run", "--time", "1", "--theta", "-abc"), "has no option -a"),
+        (("run", "--time", "--h", "0.1"), "--time: expected one argument"),
+        (("run", "--time", "1", "more"), "unrecognized arguments: more"),
+    ],
+)
+def test_a_slip_with_options_that_exist_is_said_as_it_is(arguments, words):
+    assert pendu(*arguments).refused(2, words)
+
+
+def test_a_command_behind_its_options_is_asked_to_come_first():
+    assert pendu("--scene", "drift", "run", "--time", "10").refused(2, "the command comes first: pendu-tui run.")
+
+
 def test_a_bug_is_not_hidden_behind_a_sentence(monkeypatch):
     monkeypatch.setattr("tui.commands.scenes.run", lambda _: 1 / 0)
     with pytest.raises(ZeroDivisionError):

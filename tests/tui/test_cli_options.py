@@ -39,6 +39,18 @@ def test_degrees_become_radians():
     assert angle("2") == angle("2rad") == 2.0
 
 
+@pytest.mark.parametrize("theta", ["170", "-170"])
+def test_who_gives_many_radians_is_told_how_degrees_are_given(theta, capsys):
+    assert scene_from("--theta", theta).theta == float(theta)
+    assert f"for degrees write {theta}deg." in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("theta", ["170deg", "1000deg", "170rad", "6.28", "-6.28"])
+def test_who_gives_a_unit_or_up_to_a_turn_is_told_nothing(theta, capsys):
+    scene_from("--theta", theta)
+    assert capsys.readouterr().err == ""
+
+
 @given(st.floats(-1e9, 1e9))
 def test_every_finite_theta_and_omega_can_be_given_negative_ones_too(value):
     scene = scene_from("--theta", repr(value), "--omega", repr(value))

@@ -64,8 +64,13 @@ def test_recover_makes_a_whole_recording_of_a_cut_one_and_says_what_is_lost(tmp_
 def test_recover_overwrites_nothing_unless_by_force(tmp_path):
     path, out = record(tmp_path / "sitting.mcap", two_runs()), tmp_path / "saved.mcap"
     out.write_bytes(b"precious")
-    assert pendu("recover", path, "-o", out).refused(5, "exists")
+    assert pendu("recover", path, "-o", out).refused(5, "exists", "--force")
     assert out.read_bytes() == b"precious"
+
+
+def test_recover_knows_recordings_by_the_names_that_replay_knows(tmp_path):
+    assert "samples saved" in pendu("recover", "drift", "-o", tmp_path / "saved.mcap").out
+    assert pendu("recover", "drfit", "-o", tmp_path / "other.mcap").refused(3, "did you mean drift?")
 
 
 def test_export_writes_numbers_that_read_back_to_the_last_bit(tmp_path):

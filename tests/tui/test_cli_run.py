@@ -14,6 +14,7 @@ from engine.scenes import DEFAULT_SCENE, SCENES
 from recordings.recording import Recording
 from recordings.verify import verify
 from tests.tui.command_line import pendu
+from tui.commands.run import SAMPLE_BYTES
 from tui.gate import FIELDS
 
 
@@ -83,10 +84,16 @@ def test_samples_are_as_far_apart_as_asked(tmp_path):
 def test_a_recording_is_not_overwritten_unless_by_force(tmp_path):
     path = tmp_path / "run.mcap"
     path.write_bytes(b"precious")
-    assert pendu("run", "--time", 1, "--record", path).refused(5, "exists", str(path))
+    assert pendu("run", "--time", 1, "--record", path).refused(5, "exists", "--force", str(path))
     assert path.read_bytes() == b"precious"
     assert pendu("run", "--time", 1, "--record", path, "--force").code == 0
     assert verify(path).identical
+
+
+def test_the_size_of_a_large_recording_is_known_before_it_is_made(tmp_path):
+    path, steps = tmp_path / "run.mcap", 4000
+    assert pendu("run", "--time", steps * DEFAULT_SCENE.h, "--record", path).err == ""  # it is not large
+    assert steps * SAMPLE_BYTES == pytest.approx(path.stat().st_size, rel=0.1)
 
 
 @pytest.mark.parametrize("place", ["missing/run.mcap", "file/run.mcap"])
@@ -160,7 +167,8 @@ def test_a_run_that_is_stopped_finishes_its_recording(tmp_path, number):
     os.kill(process.pid, number)
     out, err = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert err.startswith("pendu-tui: interrupted at t = ")
+    assert "with --sample-every 320 it has 200 MB." in err
+    assert "pendu-tui: interrupted at t = " in err
     assert "RK4" in out  # what was done is told
     result = verify(path)
     assert result.complete

@@ -79,7 +79,7 @@ def test_a_device_is_written_to_and_not_replaced():
 
 @each_writer
 def test_no_command_overwrites_but_by_force(tmp_path, command):
-    file = tmp_path / "file"
+    file = tmp_path / "file.svg"
     file.write_text("older")
     assert pendu(*command, file).refused(5, str(file), "exists already", "--force")
     assert file.read_text() == "older"
@@ -93,7 +93,7 @@ def test_a_missing_folder_is_known_before_anything_is_computed(tmp_path, command
     monkeypatch.setattr("engine.accuracy.Study.points", None)
     monkeypatch.setattr("engine.stability_map.Grid.compute", None)
     monkeypatch.setattr("recordings.export.write_csv", None)
-    assert pendu(*command, tmp_path / "no" / "file").refused(5, "no folder", "create the folder")
+    assert pendu(*command, tmp_path / "no" / "file.svg").refused(5, "no folder", "create the folder")
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])

@@ -38,12 +38,32 @@ MOST_BUDGET = 10**9  # force evaluations of a run; minutes for each method, comp
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add this command's options."""
     add_scene_options(parser)
-    parser.add_argument("--time", metavar="S[,S...]", type=times, help="simulated time; the chart is of the last one")
-    parser.add_argument("--h-values", metavar="A:B:N", type=h_values, help="N step sizes from A to B s, equal ratios")
-    parser.add_argument("--error", choices=("theta", "energy", "final"), default="theta", help="(%(default)s)")
-    parser.add_argument("--cost", choices=("evaluations", "seconds"), default="evaluations", help="(%(default)s)")
     parser.add_argument(
-        "--target", metavar="ERROR", type=positive, help="find the cheapest method and h for this error"
+        "--time",
+        metavar="S[,S...]",
+        type=times,
+        help="simulated time in s, or several, of which the last is charted (ten small swings)",
+    )
+    parser.add_argument(
+        "--h-values",
+        metavar="A:B:N",
+        type=h_values,
+        help="N step sizes from A to B in s, in equal ratios (12 with z = h·w0 from 0.6 to 0.0015)",
+    )
+    parser.add_argument(
+        "--error",
+        choices=("theta", "energy", "final"),
+        default="theta",
+        help="largest in theta in rad, largest in energy, relative, or final in theta (%(default)s)",
+    )
+    parser.add_argument(
+        "--cost",
+        choices=("evaluations", "seconds"),
+        default="evaluations",
+        help="force evaluations, or seconds, which are measured then (%(default)s)",
+    )
+    parser.add_argument(
+        "--target", metavar="ERROR", type=positive, help="find the cheapest method and h for this --error"
     )
     parser.add_argument(
         "--budget", metavar="N", type=positive, help="force evaluations: find the smallest error, or stay within it"
@@ -76,6 +96,8 @@ def run(options: argparse.Namespace) -> int:
     from engine.accuracy import Order, Point, Study, orders, timed, usual
 
     scene = scene_of(options)
+    if scene.theta == scene.omega == 0:
+        raise UserError("the pendulum hangs at rest, so there is no error to measure: give another --theta or --omega.")
     times = options.time or [usual(scene)[0]]
     rungs = _ladder(scene, times[-1], options.h_values)
     budget = None if options.budget is None else int(options.budget)

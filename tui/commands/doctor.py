@@ -6,11 +6,14 @@ import platform
 import shutil
 import sys
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from tempfile import TemporaryFile
 
 from tui.errors import Exit, UserError
+from tui.numbers import file_size
 from tui.output import print_table, write_json
 
 EXAMPLES = """\
@@ -20,6 +23,7 @@ examples:
 """
 
 PACKAGES = ("pendu-tui", "textual", "rich", "plotext", "numpy", "mcap")
+ROOMY = 1_000_000_000  # bytes free: a day of sittings
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,9 +58,10 @@ def _findings() -> Iterator[Finding]:
     yield size(columns, rows) if sys.stdout.isatty() else Finding("size", "unknown: the output is a file or a pipe")
     yield encoding(sys.stdout.encoding)
     yield colours(os.environ)
-    yield Finding("mouse", "not looked for", "every click has a key")
+    yield mouse(os.environ)
     yield folder(library.folder())
-    yield unfinished(len(library.leftovers()))
+    with suppress(OSError):  # which the finding before tells of
+        yield unfinished(len(library.leftovers()))
     yield sine(library.resolve("drift"))
     yield Finding("python", f"{platform.python_version()}, {platform.system()} {platform.machine()}")
     yield Finding("versions", ", ".join(f"{package} {version(package)}" for package in PACKAGES))
@@ -104,12 +109,32 @@ def colours(environment: Mapping[str, str]) -> Finding:
     return Finding("colours", f"TERM={term}, {'256' if '256color' in term else '16'}", advice)
 
 
+def mouse(environment: Mapping[str, str]) -> Finding:
+    """Whether clicks can be expected: nothing tells it but the terminal's name."""
+    if environment.get("TERM", "") in ("", "dumb", "linux", "vt100", "vt220"):
+        return Finding("mouse", "none is known of this terminal", "every click has a key")
+    return Finding("mouse", "used where the terminal reports it; --no-mouse leaves it to the terminal")
+
+
 def folder(path: Path) -> Finding:
-    """Whether recordings can be kept."""
-    nearest = next(parent for parent in (path, *path.parents) if parent.exists())
-    if os.access(nearest, os.W_OK | os.X_OK) and nearest.is_dir():
-        return Finding("recordings", str(path))
-    return Finding("recordings", str(path), "cannot be written: set PENDU_RECORDINGS to a folder that can")
+    """Whether recordings can be kept: tried out, since rights alone do not tell, and nothing is left of it."""
+    made: list[Path] = []
+    try:
+        for each in (*reversed(path.parents), path):
+            if not each.exists():
+                each.mkdir()
+                made.append(each)
+        with TemporaryFile(dir=path):
+            free = shutil.disk_usage(path).free
+    except OSError as error:
+        advice = f"cannot be written ({error.strerror}): set PENDU_RECORDINGS to a folder that can"
+        return Finding("recordings", str(path), advice)
+    finally:
+        for each in reversed(made):
+            with suppress(OSError):  # somebody has put something there
+                each.rmdir()
+    little = free < ROOMY and "there is little room: pendu-tui recordings prune --keep 20 makes some"
+    return Finding("recordings", f"{path}, {file_size(free)} free", little or "")
 
 
 def unfinished(count: int) -> Finding:

@@ -20,7 +20,7 @@ examples:
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add this command's options."""
     parser.add_argument("file", metavar="FILE", help="a file, latest, or a name such as drift")
-    parser.add_argument("--format", choices=("csv",), default="csv", help="(%(default)s)")
+    parser.add_argument("--format", choices=("csv",), default="csv", help="the only one there is (%(default)s)")
     parser.add_argument("-o", "--output", metavar="OUT", type=Path, help="write here, not to stdout")
     parser.add_argument("--force", action="store_true", help="overwrite OUT")
 

@@ -41,8 +41,8 @@ def run(options: argparse.Namespace) -> int:
                 str(method["force_evaluations"]),
                 "yes" if method["symplectic"] else "no",
                 "yes" if method["reversible"] else "no",
-                f"{method['linear_limit']:.3f}",
-                f"{method['measured_linear_limit']:.3f}",
+                _limit(method["linear_limit"]),
+                _limit(method["measured_linear_limit"]),
                 ", ".join(method["other_names"]),
             )
             for method in methods
@@ -55,6 +55,10 @@ def run(options: argparse.Namespace) -> int:
         + (f"Numba: used in runs of {COMPILED_FROM:,} steps and more." if available() else "Numba is not installed.")
     )
     return Exit.FINE
+
+
+def _limit(z: float) -> str:
+    return f"{z:.3f}" if z else "none"
 
 
 def _measured() -> list[dict[str, Any]]:

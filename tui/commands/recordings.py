@@ -25,7 +25,14 @@ examples:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add this command's options."""
-    parser.add_argument("action", nargs="?", choices=("list", "prune"), default="list", help="(%(default)s)")
+    parser.add_argument(
+        "action",
+        metavar="list|prune",
+        nargs="?",
+        choices=("list", "prune"),
+        default="list",
+        help="what to do (%(default)s)",
+    )
     parser.add_argument("--json", action="store_true", help="one JSON object")
     group = parser.add_argument_group("prune")
     group.add_argument("--keep", metavar="N", type=count, help="keep the N newest")

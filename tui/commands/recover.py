@@ -9,6 +9,7 @@ from recordings.errors import printable
 from tui.errors import Exit
 from tui.numbers import seconds
 from tui.output import progress, write_json
+from tui.whole_file import check_free
 
 if TYPE_CHECKING:
     from recordings.recover import Recovery
@@ -22,7 +23,9 @@ examples:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add this command's options."""
-    parser.add_argument("file", metavar="FILE", type=Path, help="what is left of a recording")
+    parser.add_argument(
+        "file", metavar="FILE", help="what is left of a recording: a file, latest, or a name such as drift"
+    )
     parser.add_argument("-o", "--output", metavar="OUT", type=Path, required=True, help="the recording to make of it")
     parser.add_argument("--force", action="store_true", help="overwrite OUT")
     parser.add_argument("--json", action="store_true", help="one JSON object")
@@ -30,10 +33,13 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Recover."""
+    from recordings.library import resolve
     from recordings.recover import recover
 
-    with progress(printable(options.file.name)) as show:
-        recovery = recover(options.file, options.output, show, options.force)
+    path = resolve(options.file)
+    check_free(options.output, options.force)
+    with progress(printable(path.name)) as show:
+        recovery = recover(path, options.output, show, options.force)
     if options.json:
         paths = {"file": str(recovery.file), "out": str(recovery.out)}
         write_json("recover", asdict(recovery) | paths)

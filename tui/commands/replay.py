@@ -25,8 +25,10 @@ examples:
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add this command's options."""
     parser.add_argument("file", metavar="FILE|latest|NAME", help="a file, the latest sitting, or one that came along")
-    parser.add_argument("--start-at", metavar="S", type=number, default=0.0, help="s of the recording")
-    parser.add_argument("--speed", metavar="X", type=positive, default=1.0, help="times the recorded one (%(default)s)")
+    parser.add_argument(
+        "--start-at", metavar="S", type=number, default=0.0, help="begin at this many s of the recording (%(default)g)"
+    )
+    parser.add_argument("--speed", metavar="X", type=positive, default=1.0, help="times the recorded one (%(default)g)")
     parser.add_argument("--loop", action="store_true", help="begin again at the end")
     parser.add_argument("--paused", action="store_true", help="wait for the space key")
     parser.add_argument("--no-record", action="store_true", help="record nothing when going on live")

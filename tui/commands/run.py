@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING, Any
 from engine.methods import METHODS
 from engine.scenes import Scene
 from tui.errors import Exit, UserError
+from tui.numbers import file_size
 from tui.options import add_scene_options, count, positive, scene_of
 from tui.output import print_table, progress, scene_fields, write_json
+from tui.whole_file import check_free
 
 if TYPE_CHECKING:
     from engine.lockstep import Sample
@@ -29,6 +31,8 @@ examples:
 """
 
 LONGEST = 1e9  # s, 30 years; a recording's clock ends there, too
+LARGE = 200e6  # bytes of a recording that nobody expects; half a minute to write
+SAMPLE_BYTES = 320  # of a recording, measured with h from 0.01 to 0.05 s
 MOST_SAMPLES = 20_000  # of a run that is not recorded: enough for every verdict, and constant work beside the steps
 COMPILED_FROM = 1_000_000  # steps: below, compiling takes longer than it saves
 
@@ -36,10 +40,14 @@ COMPILED_FROM = 1_000_000  # steps: below, compiling takes longer than it saves
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add this command's options."""
     add_scene_options(parser)
-    parser.add_argument("--time", metavar="S", type=positive, required=True, help="simulated time, in whole steps")
+    parser.add_argument(
+        "--time", metavar="S", type=positive, required=True, help="simulated time in s, rounded to whole steps"
+    )
     parser.add_argument("--record", metavar="FILE", type=Path, help="record it: the same run gives the same bytes")
     parser.add_argument("--force", action="store_true", help="overwrite FILE")
-    parser.add_argument("--sample-every", metavar="STEPS", type=count, help="cadence of samples (1/30 s of the run)")
+    parser.add_argument(
+        "--sample-every", metavar="STEPS", type=count, help="steps from sample to sample (those of 1/30 s)"
+    )
     parser.add_argument(
         "--fail-if",
         metavar="EXPR",
@@ -60,8 +68,12 @@ def run(options: argparse.Namespace) -> int:
     if steps == 0:
         raise UserError(f"--time {options.time:g} s is not even one step of {scene.h:g} s: give a longer time.")
     every = max(1, round(SAMPLE_EVERY / scene.h), 0 if options.record else steps // MOST_SAMPLES)
+    every = options.sample_every or every
+    if options.record:
+        check_free(options.record, options.force)
+        _announce(steps, every)
     began = time.perf_counter()
-    sample, trends, stopped = _simulate(scene, options, steps, options.sample_every or every)
+    sample, trends, stopped = _simulate(scene, options, steps, every)
     wall_seconds = time.perf_counter() - began
     rows = _rows(scene, sample, trends)
     if options.json:
@@ -78,6 +90,17 @@ def run(options: argparse.Namespace) -> int:
         print(f"pendu-tui: the check failed: {options.fail_if}", file=sys.stderr)
         return Exit.CHECK_FAILED
     return Exit.FINE
+
+
+def _announce(steps: int, every: int) -> None:
+    """Say so before a recording gets large."""
+    if (size := steps / every * SAMPLE_BYTES) > LARGE:
+        enough = math.ceil(steps * SAMPLE_BYTES / LARGE)
+        print(
+            f"pendu-tui: the recording will have about {file_size(round(size))};"
+            f" with --sample-every {enough} it has {file_size(round(LARGE))}.",
+            file=sys.stderr,
+        )
 
 
 def _gate(expression: str | None) -> "Gate | None":

@@ -22,10 +22,10 @@ LONGEST = 3600.0  # s
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add this command's options."""
     add_scene_options(parser)
-    parser.add_argument("--time", metavar="S", type=moment, default=12.0, help="s since the start (%(default)s)")
+    parser.add_argument("--time", metavar="S", type=moment, default=12.0, help="s since the start (%(default)g)")
     parser.add_argument("--size", metavar="CxR", type=size, default=(120, 40), help="columns x rows (120x40)")
     add_picture_options(parser, "dark", "braille")
-    parser.add_argument("-o", "--output", metavar="FILE.svg", type=Path, required=True)
+    parser.add_argument("-o", "--output", metavar="FILE.svg", type=picture, required=True, help="the picture to write")
     parser.add_argument("--force", action="store_true", help="overwrite FILE.svg")
 
 
@@ -52,6 +52,14 @@ def size(text: str) -> tuple[int, int]:
             f"{text!r} is no size: give columns x rows such as 120x40, from 60x16 to {most_columns}x{most_rows}"
         )
     return columns, rows
+
+
+def picture(text: str) -> Path:
+    """A file that may be named as what it will be, or a device."""
+    path = Path(text)
+    if path.suffix.lower() != ".svg" and (path.is_file() or not path.exists()):
+        raise argparse.ArgumentTypeError(f"a still is an SVG picture: write it to {path.stem}.svg instead of {text!r}")
+    return path
 
 
 def moment(text: str) -> float:

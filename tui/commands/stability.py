@@ -37,7 +37,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--theta-values",
         metavar="LIST",
         type=values(angle),
-        help="amplitudes: 0.5,1,2 or 10deg:170deg:17, which is FIRST:LAST:HOW_MANY",
+        help="amplitudes in rad or deg: 0.5,1,2 or 10deg:170deg:17, which is FIRST:LAST:HOW_MANY",
     )
     parser.add_argument(
         "--z-values", metavar="LIST", type=values(number), help="z = h·w0, ascending, such as 0.01:3:300"
