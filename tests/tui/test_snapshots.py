@@ -58,6 +58,12 @@ def test_what_cannot_be_drawn_is_refused_in_a_sentence(tmp_path, arguments, word
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize("name", ["lab.png", "lab.txt", "lab"])
+def test_a_still_is_not_written_under_a_name_that_says_it_were_something_else(tmp_path, name):
+    assert pendu("snapshot", "-o", tmp_path / name).refused(2, "SVG", "lab.svg")
+    assert not list(tmp_path.iterdir())
+
+
 def test_a_folder_that_is_not_there_is_refused_before_anything_is_drawn(tmp_path):
     assert pendu("snapshot", "-o", tmp_path / "no" / "x.svg").refused(5, "there is no folder")
 
