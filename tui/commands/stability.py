@@ -37,10 +37,14 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--theta-values",
         metavar="LIST",
         type=values(angle),
-        help="amplitudes in rad or deg: 0.5,1,2 or 10deg:170deg:17, which is FIRST:LAST:HOW_MANY",
+        help="amplitudes in rad or deg: 0.5,1,2 or 10deg:170deg:17, which is FIRST:LAST:HOW_MANY"
+        " (0.1, 0.5, 1, 2, 3 and the scene's; on the map 100)",
     )
     parser.add_argument(
-        "--z-values", metavar="LIST", type=values(number), help="z = h·w0, ascending, such as 0.01:3:300"
+        "--z-values",
+        metavar="LIST",
+        type=values(number),
+        help="z = h·w0, such as 0.01:3:300 (one every 1 %% up to 3.2; on the map 200 up to 3)",
     )
     parser.add_argument("--steps", metavar="N", type=count, default=10_000, help="steps of each swing (%(default)s)")
     parser.add_argument("--map", action="store_true", help="draw the map: z across, amplitude up")
