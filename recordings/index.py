@@ -1,7 +1,7 @@
 """Index: which chunks a file has and whether it is whole, from its summary or, failing that, from all of it."""
 
 import zlib
-from collections import Counter
+from collections import deque
 from dataclasses import dataclass
 from typing import BinaryIO
 
@@ -12,8 +12,8 @@ from recordings.errors import RecordingError, printable_items
 from recordings.format import METADATA
 from recordings.framing import read_record, record_at
 from recordings.layout import Layout, check_times, layout_of
-from recordings.summary import CHUNK_LIMIT, ChunkIndex, find_summary
-from recordings.walk import Gap, Progress, Walk
+from recordings.summary import Chunks, find_summary
+from recordings.walk import Progress, Walk
 
 CHECK_LIMIT = 1 << 26  # bytes checked whenever a file is opened: the first two hours, in 50 ms
 _BLOCK = 1 << 20
@@ -24,7 +24,7 @@ class Index:
     """What is where.  `reason`: what is wrong, a clause; None if nothing is, or nothing was found so far."""
 
     layout: Layout
-    chunks: list[ChunkIndex]
+    chunks: Chunks
     samples: int
     metadata: dict[str, str]
     complete: bool
@@ -35,11 +35,7 @@ class Index:
 def index_of(stream: BinaryIO, check: bool, progress: Progress | None) -> Index:
     """The index of a file.  With `check` every byte is looked at; without, only where the summary does not hold."""
     index = None if check else _by_summary(stream)
-    index = index or _by_walk(stream, progress)
-    before = 0
-    for chunk in index.chunks:
-        check_times(before, chunk.start, before := chunk.end)
-    return index
+    return index or _by_walk(stream, progress)
 
 
 def _by_summary(stream: BinaryIO) -> Index | None:
@@ -50,13 +46,13 @@ def _by_summary(stream: BinaryIO) -> Index | None:
     if summary.statistics is None or (data_end <= CHECK_LIMIT and _crc(stream, data_end) != crc):
         return None
     layout = layout_of(summary.channels.values())
-    metadata: dict[str, str] = {}
-    for offset in summary.metadata_offsets:
-        record = record_at(stream, offset)
-        if record and record[0] == Opcode.METADATA:
-            found_there = read_record(*record)
-            if isinstance(found_there, Metadata) and found_there.name == METADATA:
-                metadata = printable_items(found_there.metadata)
+    before = 0
+    for start, end in zip(summary.chunks.starts, summary.chunks.ends, strict=True):
+        check_times(before, start, before := end)
+    try:
+        metadata = _metadata(stream, summary.metadata_offsets)
+    except RecordingError:
+        return None
     return Index(
         layout=layout,
         chunks=summary.chunks,
@@ -68,26 +64,26 @@ def _by_summary(stream: BinaryIO) -> Index | None:
     )
 
 
+def _metadata(stream: BinaryIO, offsets: list[int]) -> dict[str, str]:
+    metadata: dict[str, str] = {}
+    for offset in offsets:
+        record = record_at(stream, offset)
+        match read_record(*record) if record and record[0] == Opcode.METADATA else None:
+            case Metadata(name=name, metadata=found) if name == METADATA:
+                metadata = printable_items(found)
+    return metadata
+
+
 def _by_walk(stream: BinaryIO, progress: Progress | None) -> Index:
     walk = Walk(stream, progress)
-    chunks: list[ChunkIndex] = []
-    counts: Counter[int] = Counter()
-    for piece in walk:
-        if isinstance(piece, Gap):
-            continue
-        chunk = piece.chunk
-        channels = Counter(message.channel for message in chunk.messages)
-        counts += channels
-        chunks.append(ChunkIndex(piece.offset, chunk.start, chunk.end, frozenset(channels)))
-        if len(chunks) > CHUNK_LIMIT:
-            raise RecordingError("it is longer than any recording of ours")
+    deque(walk, maxlen=0)
     layout = walk.layout
     if layout is None:
         raise walk.nothing("read")
     return Index(
         layout=layout,
-        chunks=chunks,
-        samples=layout.samples(counts),
+        chunks=walk.chunks,
+        samples=layout.samples(walk.messages),
         metadata=walk.metadata,
         complete=walk.complete,
         damaged=walk.damaged,

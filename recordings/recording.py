@@ -26,6 +26,7 @@ from recordings.walk import Progress
 
 EVENT_LIMIT = 100_000  # in memory all at once, 30 MB; a lesson has a few hundred, but every step back repeats changes
 CHUNKS_KEPT = 2  # decoded; playing meets the same one thirty times, stepping to and fro about an edge two
+_BEYOND = 1 << 62  # the last entry of any chunk
 
 
 class Place(NamedTuple):
@@ -63,7 +64,7 @@ class Recording:
         self.version, self.methods, self.sin = index.layout.version, index.layout.methods, index.layout.sin
         self.samples = index.samples
         self.complete, self.damaged, self.reason = index.complete, index.damaged, index.reason
-        self.length = (index.chunks[-1].end - CLOCK_OFFSET) / 1e9 if index.chunks else 0.0
+        self.length = (index.chunks.ends[-1] - CLOCK_OFFSET) / 1e9 if index.chunks else 0.0
         self._stream, self._layout, self._chunks = stream, index.layout, index.chunks
         self._entries = lru_cache(CHUNKS_KEPT)(self._known_entries)
         events = list(self._read_events())
@@ -76,7 +77,7 @@ class Recording:
             (clock, event) for _, clock, event in events if event.run in starts
         )
         self._known = frozenset(starts)
-        self.runs = tuple(self._runs([(chunk, clock, event) for chunk, clock, event in starts.values()]))
+        self.runs = tuple(self._runs(list(starts.values())))
 
     @classmethod
     def open(cls, path: Path, check: bool = False, progress: Progress | None = None) -> Self:
@@ -104,14 +105,10 @@ class Recording:
     ) -> None:
         self.close()
 
-    def run_at(self, clock: float) -> Run:
-        """The run that is under way at that time."""
-        return self.runs[max(0, bisect_right(self.runs, clock, key=lambda run: run.begin) - 1)]
-
     def at(self, clock: float) -> Place | None:
         """The last sample at or before that time, or else the first one; None where there are no samples."""
         clock, log_time = _as_recorded(clock)
-        chunk = bisect_right(self._chunks, log_time, key=lambda chunk: chunk.start) - 1
+        chunk = bisect_right(self._chunks.starts, log_time) - 1
         entries = self._entries(chunk) if chunk >= 0 else ()
         later = bisect_right(entries, clock, key=lambda entry: entry.clock)
         return self.previous(Place(chunk, later)) or self.next(Place(-1, 0))
@@ -139,13 +136,13 @@ class Recording:
             for at in range(min(index, len(entries)) - 1, -1, -1):
                 if isinstance(entries[at].value, Sample):
                     return Place(chunk, at)
-            index = 1 << 62
+            index = _BEYOND
         return None
 
     def entries(self, start: float = 0.0, end: float = CLOCK_LIMIT) -> Iterator[Entry]:
         """All samples and events from `start` to `end`, both included, in the order in which they were recorded."""
         (start, log_time), (end, _) = _as_recorded(start), _as_recorded(end)
-        for chunk in range(bisect_left(self._chunks, log_time, key=lambda chunk: chunk.end), len(self._chunks)):
+        for chunk in range(bisect_left(self._chunks.ends, log_time), len(self._chunks)):
             for entry in self._entries(chunk):
                 if entry.clock > end:
                     return
@@ -154,13 +151,12 @@ class Recording:
 
     def _read_entries(self, chunk: int, only_events: bool = False) -> tuple[Entry, ...]:
         """A chunk's entries; none if it turns out to be damaged."""
-        index = self._chunks[chunk]
         try:
-            record = record_at(self._stream, index.offset)
+            record = record_at(self._stream, self._chunks.offsets[chunk])
             if record is None or record[0] != Opcode.CHUNK:
                 raise RecordingError("a chunk is not where its summary says")
             read = read_chunk(record[1])
-            if (read.start, read.end) != (index.start, index.end):
+            if (read.start, read.end) != (self._chunks.starts[chunk], self._chunks.ends[chunk]):
                 raise RecordingError("a chunk is not the one of its summary")
             return tuple(entry for _, entry in self._layout.entries(read.messages, only_events))
         except (RecordingError, OSError) as error:
@@ -174,8 +170,8 @@ class Recording:
     def _read_events(self) -> Iterator[tuple[int, float, Event]]:
         """(chunk, clock, event) of all events, from the chunks that have any; of too many, the first."""
         count = 0
-        for chunk, index in enumerate(self._chunks):
-            if self._layout.events not in index.channels:
+        for chunk, eventful in enumerate(self._chunks.eventful):
+            if not eventful:
                 continue
             for clock, event in self._read_entries(chunk, only_events=True):
                 if not isinstance(event, Event):
@@ -189,7 +185,7 @@ class Recording:
     def _runs(self, starts: list[tuple[int, float, Event]]) -> Iterator[Run]:
         made = Counter(event.run for _, event in self.events if event.kind not in ("start", "stop"))
         for (_, begin, start), following in zip(starts, [*starts[1:], None], strict=True):
-            chunk, entry = len(self._chunks) - 1, 1 << 62
+            chunk, entry = len(self._chunks) - 1, _BEYOND
             if following:
                 chunk = following[0]
                 entries = enumerate(self._entries(chunk))

@@ -164,7 +164,7 @@ class _Salvage:
         if summary and summary.statistics:  # which tells of all that was there
             layout = layout_of(summary.channels.values())
             self._lost = layout.samples(summary.statistics.channel_message_counts) - self.kept
-            self._chunks_lost = len(summary.chunks) - self._walk.chunks
+            self._chunks_lost = len(summary.chunks) - len(self._walk.chunks)
             self._end = (summary.statistics.message_end_time - CLOCK_OFFSET) / 1e9
         return Recovery(
             file=path,

@@ -24,6 +24,7 @@ class SittingRecorder:
 
     def __init__(self, path: Path, wall: WallClock = time.time_ns, or_next: bool = False) -> None:
         self.failed: str | None = None
+        self._closed = False
         self.files: list[Path] = []  # that hold something and are no longer written to
         self._path, self._wall = path, wall
         self._course: list[Event] = []  # of the run: its start and its changes of h
@@ -58,7 +59,8 @@ class SittingRecorder:
         self._write(Entry(clock, sample))
 
     def close(self) -> None:
-        """Finish the file; `failed` says if that was impossible."""
+        """Finish the file; `failed` says if that was impossible.  What still happens then is not recorded."""
+        self._closed = True
         if self.failed is None:
             try:
                 self._recorder.close()
@@ -68,6 +70,8 @@ class SittingRecorder:
 
     def _write(self, entry: Entry) -> None:
         clock, value = entry
+        if self._closed:
+            return
         try:
             if self.failed is not None:
                 if clock < self._failed_at + RETRY_EVERY:

@@ -2,32 +2,46 @@
 
 import struct
 import zlib
-from collections.abc import Iterator
+from array import array
 from dataclasses import dataclass, field
 from io import SEEK_END
-from typing import BinaryIO, NamedTuple
+from typing import BinaryIO
 
 from mcap.opcode import Opcode
 from mcap.records import Channel, Statistics
 
 from recordings.errors import RecordingError
-from recordings.framing import CHANNEL_LIMIT, MAGIC, RECORD, read_record
+from recordings.format import EVENTS
+from recordings.framing import CHANNEL_LIMIT, MAGIC, RECORD, SMALL_LIMIT, read_record, record_at
 
-SUMMARY_LIMIT = 1 << 25  # bytes; eight hours have 4 MB
-CHUNK_LIMIT = 250_000  # a chunk a second for nearly three days
+CHUNK_LIMIT = 2_000_000  # a chunk every 0.9 s for three weeks; 50 MB of Chunks
+OTHER_LIMIT = 4 * CHANNEL_LIMIT  # records in a summary besides chunk indexes; ours have 15
 _FOOTER = struct.Struct("<QQI")  # summary start, summary offsets' start, CRC
 _INDEX = struct.Struct("<QQQQI")  # start [ns], end [ns], offset, length, bytes of the map from channel to offset
 _CHANNEL_OFFSET = struct.Struct("<HQ")
 _DATA_END = struct.Struct("<BQI")
 
 
-class ChunkIndex(NamedTuple):
-    """Where a chunk is."""
+@dataclass(slots=True)
+class Chunks:
+    """Where the chunks of a file are, by columns: 25 bytes a chunk where objects would take 200."""
 
-    offset: int
-    start: int  # ns, log_time
-    end: int  # ns
-    channels: frozenset[int]  # that have messages in it
+    offsets: "array[int]" = field(default_factory=lambda: array("Q"))
+    starts: "array[int]" = field(default_factory=lambda: array("Q"))  # ns, log_time
+    ends: "array[int]" = field(default_factory=lambda: array("Q"))  # ns
+    eventful: bytearray = field(default_factory=bytearray)  # 1 where there are events in it
+
+    def __len__(self) -> int:
+        return len(self.offsets)
+
+    def add(self, offset: int, start: int, end: int, eventful: bool) -> None:
+        """Add the next one.  Raises RecordingError where they are too many to be held."""
+        if len(self) == CHUNK_LIMIT:
+            raise RecordingError("it is longer than any recording of ours")
+        self.offsets.append(offset)
+        self.starts.append(start)
+        self.ends.append(end)
+        self.eventful.append(eventful)
 
 
 @dataclass(slots=True)
@@ -36,48 +50,64 @@ class Summary:
 
     channels: dict[int, Channel] = field(default_factory=dict)
     statistics: Statistics | None = None
-    chunks: list[ChunkIndex] = field(default_factory=list)
+    chunks: Chunks = field(default_factory=Chunks)
     metadata_offsets: list[int] = field(default_factory=list)
 
+    def take(self, opcode: int, content: bytes) -> None:
+        """Take in a record.  Raises RecordingError for one that is damaged."""
+        match opcode:
+            case Opcode.CHUNK_INDEX:
+                self._take_index(content)
+            case Opcode.METADATA_INDEX:
+                self.metadata_offsets.append(int.from_bytes(content[:8], "little"))
+            case Opcode.CHANNEL | Opcode.STATISTICS:
+                match read_record(opcode, content):
+                    case Channel() as channel:
+                        self.channels[channel.id] = channel
+                    case Statistics() as statistics:
+                        self.statistics = statistics
 
-def read_summary(data: bytes, start: int) -> Summary | None:
-    """The summary in `data`, what follows DataEnd up to the file's end, beginning at `start` of the file.
+    def _take_index(self, content: bytes) -> None:
+        try:
+            start, end, offset, _, length = _INDEX.unpack_from(content)
+            channels = [at[0] for at in _CHANNEL_OFFSET.iter_unpack(content[_INDEX.size : _INDEX.size + length])]
+        except struct.error as error:
+            raise RecordingError("its index is damaged") from error
+        if len(content) > SMALL_LIMIT or end < start:
+            raise RecordingError("its index is damaged")
+        known = self.channels  # all of them: every writer puts channels before chunk indexes
+        eventful = any(channel not in known or known[channel].topic == EVENTS for channel in channels)
+        self.chunks.add(offset, start, end, eventful)
+
+
+def read_summary(stream: BinaryIO, start: int) -> Summary | None:
+    """The summary that begins at `start`, where DataEnd ends, and ends with the file.
 
     None if it is cut off; RecordingError if it is damaged.
     """
-    summary, at = Summary(), 0
-    same: dict[frozenset[int], frozenset[int]] = {}  # nearly all chunks have the same channels
-    for opcode, content in _records(data):
-        at += RECORD.size + len(content)
-        match opcode:
-            case Opcode.CHANNEL:
-                channel = read_record(opcode, content)
-                assert isinstance(channel, Channel)
-                summary.channels[channel.id] = channel
-            case Opcode.STATISTICS:
-                statistics = read_record(opcode, content)
-                assert isinstance(statistics, Statistics)
-                summary.statistics = statistics
-            case Opcode.CHUNK_INDEX:
-                index = _chunk_index(content)
-                summary.chunks.append(index._replace(channels=same.setdefault(index.channels, index.channels)))
-            case Opcode.METADATA_INDEX:
-                summary.metadata_offsets.append(int.from_bytes(content[:8], "little"))
-            case Opcode.FOOTER:
-                break
-        few = (summary.channels, summary.metadata_offsets)
-        if len(summary.chunks) > CHUNK_LIMIT or max(map(len, few)) > CHANNEL_LIMIT:
+    summary, offset, crc, others = Summary(), start, 0, 0
+    while record := record_at(stream, offset):
+        opcode, content = record
+        header = RECORD.pack(opcode, len(content))
+        if opcode == Opcode.FOOTER:
+            break
+        summary.take(opcode, content)
+        others += opcode != Opcode.CHUNK_INDEX
+        if others > OTHER_LIMIT:
             raise RecordingError("its summary lists more than any recording of ours has")
+        crc = zlib.crc32(content, zlib.crc32(header, crc))
+        offset += len(header) + len(content)
     else:
         return None
-    if data[at:] != MAGIC:
-        if MAGIC.startswith(data[at:]):
+    after = stream.read(len(MAGIC) + 1)
+    if after != MAGIC:
+        if MAGIC.startswith(after):
             return None
         raise RecordingError("it goes on after its end")
     if len(content) != _FOOTER.size or _FOOTER.unpack(content)[0] != start:
         raise RecordingError("its footer is damaged")
-    crc = _FOOTER.unpack(content)[2]
-    if crc == 0 or crc != zlib.crc32(data[: at - 4]):
+    expected = _FOOTER.unpack(content)[2]
+    if expected == 0 or expected != zlib.crc32(content[:-4], zlib.crc32(header, crc)):
         raise RecordingError("its summary is damaged")
     return summary
 
@@ -92,36 +122,12 @@ def find_summary(stream: BinaryIO) -> tuple[Summary, int, int] | None:
         return None
     start = _FOOTER.unpack_from(footer, RECORD.size)[0]
     data_end = start - _DATA_END.size
-    if not len(MAGIC) <= data_end < size - tail or size - start > SUMMARY_LIMIT:
+    if not len(MAGIC) <= data_end < size - tail:
         return None
     stream.seek(data_end)
     opcode, length, crc = _DATA_END.unpack(stream.read(_DATA_END.size))
     try:
-        summary = read_summary(stream.read(SUMMARY_LIMIT), start)
+        summary = read_summary(stream, start)
     except RecordingError:
         return None
     return (summary, data_end, crc) if summary and (opcode, length) == (Opcode.DATA_END, 4) and crc else None
-
-
-def _records(data: bytes) -> Iterator[tuple[int, bytes]]:
-    at = 0
-    while at + RECORD.size <= len(data):
-        opcode, length = RECORD.unpack_from(data, at)
-        at += RECORD.size
-        if at + length > len(data):
-            return
-        yield opcode, data[at : at + length]
-        at += length
-
-
-def _chunk_index(content: bytes) -> ChunkIndex:
-    try:
-        start, end, offset, _, length = _INDEX.unpack_from(content)
-        channels = frozenset(
-            channel for channel, _ in _CHANNEL_OFFSET.iter_unpack(content[_INDEX.size : _INDEX.size + length])
-        )
-    except struct.error as error:
-        raise RecordingError("its index is damaged") from error
-    if len(channels) > CHANNEL_LIMIT or end < start:
-        raise RecordingError("its index is damaged")
-    return ChunkIndex(offset, start, end, channels)

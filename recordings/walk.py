@@ -1,6 +1,7 @@
 """Walk: a file from its first byte to its last, past whatever is damaged.  It is checked, not trusted."""
 
 import zlib
+from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from io import SEEK_END
@@ -23,10 +24,10 @@ from recordings.framing import (
     record_at,
 )
 from recordings.layout import Layout, check_times, layout_of
-from recordings.summary import SUMMARY_LIMIT, Summary, find_summary, read_summary
+from recordings.summary import Chunks, Summary, find_summary, read_summary
 
 Progress = Callable[[int, int], None]
-"""Called with bytes done and bytes in all."""
+"""Called with what is done and what there is in all: bytes, or samples."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,15 +72,11 @@ class Walk:
         found = find_summary(stream)
         self.summary: Summary | None = found[0] if found else None
         self._data_end = found[1] if found else None
-        self._offsets: list[int] = []
-        self._messages = self._time = 0
+        self.chunks = Chunks()  # the intact ones so far
+        self.messages: Counter[int] = Counter()  # in them, by channel
+        self._time = 0
         self.layout: Layout | None = None  # once a chunk was met
         self.channels: dict[int, Channel] = dict(self.summary.channels) if self.summary else {}
-
-    @property
-    def chunks(self) -> int:
-        """How many intact chunks were found so far."""
-        return len(self._offsets)
 
     def nothing(self, done: str) -> RecordingError:
         """Why nothing in it can be read, verified or saved."""
@@ -133,8 +130,9 @@ class Walk:
                     self.layout = self._layout()
                 check_times(self._time, chunk.start, chunk.end)
                 self._time = chunk.end
-                self._offsets.append(offset)
-                self._messages += len(chunk.messages)
+                found = Counter(message.channel for message in chunk.messages)
+                self.messages += found
+                self.chunks.add(offset, chunk.start, chunk.end, self.layout.events in found)
                 yield Intact(offset, self.layout, chunk)
             crc = zlib.crc32(content, zlib.crc32(RECORD.pack(opcode, len(content)), crc))
             offset += RECORD.size + len(content)
@@ -156,9 +154,8 @@ class Walk:
         if not right:
             self.damaged, self.reason = True, self.reason or "its checksum is wrong"
         elif self.summary is None or offset != self._data_end:
-            self._stream.seek(start := offset + RECORD.size + 4)
             try:
-                whole = read_summary(self._stream.read(SUMMARY_LIMIT), start) is not None
+                whole = read_summary(self._stream, offset + RECORD.size + 4) is not None
                 self.damaged = self.damaged or whole  # and yet not where the footer says
                 self.reason = self.reason or "the file ends within its summary"
             except RecordingError as error:
@@ -172,7 +169,8 @@ class Walk:
         statistics = summary.statistics
         return (
             statistics is not None
-            and statistics.message_count == sum(statistics.channel_message_counts.values()) == self._messages
-            and [index.offset for index in summary.chunks] == self._offsets
+            and statistics.message_count == self.messages.total()
+            and Counter(statistics.channel_message_counts) == self.messages
+            and summary.chunks == self.chunks
             and summary.channels == self.channels
         )

@@ -20,10 +20,12 @@ from recordings.errors import RecordingError
 from recordings.events import Event
 from recordings.format import EVENTS, encode_event, encode_readings, topic
 from recordings.framing import read_chunk
-from recordings.recorder import Recorder
+from recordings.recorder import FLUSH_EVERY, Recorder
 from recordings.recording import EVENT_LIMIT, Recording
 from recordings.recover import recover
+from recordings.summary import CHUNK_LIMIT, Chunks
 from recordings.verify import verify
+from recordings.walk import Walk
 from tests.recordings.sittings import METHOD_KEYS, record, start, two_runs
 
 SECOND = 1_000_000_000
@@ -278,11 +280,12 @@ def test_runs_whose_samples_are_none_do_not_keep_the_player_from_opening(tmp_pat
         assert recording.damaged
 
 
-def test_metadata_without_end_are_not_taken_in(tmp_path):
+@pytest.mark.parametrize("records", [1, 70, 1000])
+def test_metadata_without_end_are_not_taken_in(tmp_path, records):
     forger = Forger(tmp_path / "x.mcap")
     forger.event(start())
     forger.writer.flush()
-    for i in range(70):
+    for i in range(records):
         forger.writer.add_metadata("pendu.recording", {f"{i}": "x" * 100_000})
     path = forger.done()
     for check in (False, True):
@@ -337,6 +340,26 @@ def test_a_sitting_with_many_changes_and_many_steps_back_opens_whole(tmp_path):
     with Recording.open(path) as recording:
         assert recording.complete
         assert len(recording.events) == 119 * 201 + 1  # the stop
+
+
+def test_three_weeks_of_a_sitting_are_within_the_limit_of_chunks_and_that_takes_little_memory():
+    assert CHUNK_LIMIT * FLUSH_EVERY > 20 * 86_400
+    chunks = Chunks()
+    for second in range(10_000):
+        chunks.add(second, second, second, eventful=False)
+    columns = (chunks.offsets, chunks.starts, chunks.ends, chunks.eventful)
+    a_chunk = sum(map(sys.getsizeof, columns)) / len(chunks)
+    assert a_chunk * CHUNK_LIMIT < 60e6  # bytes, twice where a summary is compared with what is in the file
+
+
+def test_a_recording_of_more_chunks_than_can_be_held_is_refused_in_a_sentence(tmp_path, monkeypatch):
+    path = record(tmp_path / "a.mcap", two_runs())
+    with path.open("rb") as stream:
+        found = len(list(Walk(stream)))
+    monkeypatch.setattr("recordings.summary.CHUNK_LIMIT", found)
+    assert verify(path).complete
+    monkeypatch.setattr("recordings.summary.CHUNK_LIMIT", found - 1)
+    assert refused(path, tmp_path) == [f"{path}: it is longer than any recording of ours."] * 4
 
 
 def test_texts_of_a_stranger_are_harmless_wherever_they_come_out(tmp_path):
