@@ -1,6 +1,8 @@
 """What can go wrong with a recording, and how a recording's text becomes safe to print."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
 
 TEXT_LIMIT = 200  # characters of one text from a file; a mark or a scene's name is shorter
 
@@ -21,6 +23,19 @@ class DiskError(OSError):
 
 class NameTakenError(DiskError):
     """A recording that cannot be made under this name, because there is another one."""
+
+
+@contextmanager
+def named(path: Path) -> Iterator[None]:
+    """Name the file in what goes wrong with it."""
+    try:
+        yield
+    except RecordingError as error:
+        raise RecordingError(f"{printable(str(path))}: {error}.") from error
+    except DiskError:
+        raise
+    except OSError as error:  # while reading: what is written raises the one above
+        raise RecordingError(f"{printable(str(path))}: {error.strerror or error}.") from error
 
 
 def printable(text: str, limit: int = TEXT_LIMIT) -> str:

@@ -29,7 +29,7 @@ MESSAGE_LIMIT = 1 << 16  # bytes; ours stay below 1 kB
 STEP_LIMIT = 1 << 53
 
 _READING_NUMBERS = ("t", "theta", "omega", "energy", "energy_error", "max_energy_error")
-_SCENE_NUMBERS = ("theta", "omega", "length", "gravity", "h")
+SCENE_NUMBERS = ("theta", "omega", "length", "gravity", "h")
 _KNOWN_METHODS = frozenset(method.key for method in METHODS)
 
 
@@ -104,7 +104,7 @@ def encode_event(event: Event) -> bytes:
     if event.scene is not None:
         fields["scene"] = event.scene.name
         fields |= {"watch": event.scene.watch} if event.scene.watch else {}
-        fields |= {name: float(getattr(event.scene, name)) for name in _SCENE_NUMBERS}
+        fields |= {name: float(getattr(event.scene, name)) for name in SCENE_NUMBERS}
         fields["methods"] = event.methods
     fields |= {name: value for name in ("h", "speed") if (value := getattr(event, name)) is not None}
     if event.text is not None:
@@ -120,7 +120,7 @@ def decode_event(data: bytes) -> Event:
     run, step, t, kind = _count(fields, "run"), _count(fields, "step"), _number(fields, "t"), _text(fields, "kind")
     match kind:
         case "start":
-            numbers = {name: _number(fields, name) for name in _SCENE_NUMBERS}
+            numbers = {name: _number(fields, name) for name in SCENE_NUMBERS}
             try:
                 scene = Scene(name=_text(fields, "scene"), watch=_text(fields, "watch", ""), **numbers)
             except SceneError as error:

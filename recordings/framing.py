@@ -7,10 +7,8 @@ without a summary they return nothing, and they decompress whatever a file decla
 
 import struct
 import zlib
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from io import BytesIO
-from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
 import zstandard
@@ -19,8 +17,7 @@ from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.records import Channel, DataEnd, Header, McapRecord, Metadata, Schema, Statistics
 
-from recordings.errors import DiskError, RecordingError, printable
-from recordings.lock import hold
+from recordings.errors import RecordingError
 
 MAGIC = b"\x89MCAP0\r\n"
 RECORD_LIMIT = 1 << 23  # bytes of a record, and of what a chunk decompresses to; ours have 1 MB at most
@@ -62,32 +59,6 @@ class Chunk(NamedTuple):
     end: int  # ns, of the last
     channels: list[Channel]  # declared in it
     messages: list[Message]
-
-
-@contextmanager
-def named(path: Path) -> Iterator[None]:
-    """Name the file in what goes wrong with it."""
-    try:
-        yield
-    except RecordingError as error:
-        raise RecordingError(f"{printable(str(path))}: {error}.") from error
-    except DiskError:
-        raise
-    except OSError as error:  # while reading: what is written raises the one above
-        raise RecordingError(f"{printable(str(path))}: {error.strerror or error}.") from error
-
-
-def open_file(path: Path) -> BinaryIO:
-    """The file to read, marked as in use until it is closed."""
-    try:
-        file = path.open("rb")
-    except OSError as error:
-        raise RecordingError(error.strerror or str(error)) from error
-    if not file.seekable():
-        file.close()
-        raise RecordingError("this is a pipe, which can be read only once; save it as a file first")
-    hold(file, shared=True)
-    return file
 
 
 def read_chunk(content: bytes) -> Chunk:

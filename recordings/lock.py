@@ -7,7 +7,9 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, Any, BinaryIO
+
+from recordings.errors import RecordingError
 
 if sys.platform == "win32":  # where a file that is open can be neither renamed nor deleted anyway
 
@@ -51,3 +53,16 @@ else:
             hold(file)
             path.stat()
             yield
+
+
+def open_file(path: Path) -> BinaryIO:
+    """The file to read, marked as in use until it is closed."""
+    try:
+        file = path.open("rb")
+    except OSError as error:
+        raise RecordingError(error.strerror or str(error)) from error
+    if not file.seekable():
+        file.close()
+        raise RecordingError("this is a pipe, which can be read only once; save it as a file first")
+    hold(file, shared=True)
+    return file

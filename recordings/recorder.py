@@ -26,6 +26,7 @@ from recordings.format import (
     FORMAT_VERSION,
     METADATA,
     PROFILE,
+    SCENE_NUMBERS,
     encode_event,
     encode_readings,
     sin_fingerprint,
@@ -221,7 +222,7 @@ def _metadata(start: Event, wall: WallClock | None) -> dict[str, str]:
         "pendu-tui": _version(),
         "scene": start.scene.name,
     }
-    for name in ("theta", "omega", "length", "gravity", "h"):
+    for name in SCENE_NUMBERS:
         metadata[f"{name}.hex"] = float.hex(float(getattr(start.scene, name)))
     if wall is not None:
         metadata["started"] = time.strftime("%Y-%m-%dT%H:%M:%S%z", time.localtime(wall() / 1e9))

@@ -17,11 +17,12 @@ from mcap.opcode import Opcode
 
 from engine.lockstep import Sample
 from engine.scenes import Scene
-from recordings.errors import RecordingError
+from recordings.errors import RecordingError, named
 from recordings.events import Entry, Event
 from recordings.format import CLOCK_LIMIT, CLOCK_OFFSET
-from recordings.framing import named, open_file, read_chunk, record_at
+from recordings.framing import read_chunk, record_at
 from recordings.index import Index, index_of
+from recordings.lock import open_file
 from recordings.walk import Progress
 
 EVENT_LIMIT = 100_000  # in memory all at once, 30 MB; a lesson has a few hundred, but every step back repeats changes

@@ -12,11 +12,12 @@ from mcap.opcode import Opcode
 
 from engine.lockstep import Lockstep, Sample
 from engine.scenes import SceneError
-from recordings.errors import DiskError, RecordingError
+from recordings.errors import DiskError, RecordingError, named
 from recordings.events import Event
 from recordings.format import CLOCK_OFFSET, encode_readings, without_extremes
-from recordings.framing import Message, named, open_file
+from recordings.framing import Message
 from recordings.layout import Layout, layout_of
+from recordings.lock import open_file
 from recordings.names import free_path, part_of
 from recordings.recorder import Recorder, trouble
 from recordings.walk import Gap, Progress, Walk

@@ -23,7 +23,7 @@ from recordings.events import Event
 
 TOLERANCE = 1e-11
 LOST = 1e-3  # rad, or rad/s
-STEP_LIMIT = 10**10  # hours of computing
+MOST_STEPS = 10**10  # of a run that is simulated again; hours of computing
 NUMBERS = ("theta", "omega", "energy", "energy_error", "max_energy_error")
 EXTREMES = ("energy_error_low", "energy_error_high")
 
@@ -97,7 +97,7 @@ class Rerun:
         locksteps = [self._lockstep, *([self._astray] if self._astray else [])]
         if step < self._lockstep.step:
             raise RecordingError(f"the steps of run {self.run} are not in order")
-        if step > STEP_LIMIT:
+        if step > MOST_STEPS:
             raise RecordingError(f"run {self.run} has {step} steps, more than can be simulated again")
         for lockstep in locksteps:
             lockstep.advance(step - lockstep.step)

@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from recordings.errors import RecordingError
+from recordings.errors import RecordingError, named
 from recordings.events import Event
 from recordings.format import sin_fingerprint
-from recordings.framing import named, open_file
+from recordings.lock import open_file
 from recordings.rerun import Difference, Rerun
 from recordings.walk import Gap, Progress, Walk
 

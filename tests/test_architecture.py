@@ -1,8 +1,10 @@
 """Rules of the architecture, each executable."""
 
 import pkgutil
+import re
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -54,3 +56,10 @@ def test_the_import_contracts_hold():
 def test_a_module_is_one_idea_on_at_most_250_lines(path):
     lines = path.read_text(encoding="utf-8").splitlines()
     assert len(lines) <= 250
+
+
+@pytest.mark.parametrize("package", ["engine", "recordings"])
+def test_the_map_of_a_package_has_all_of_its_modules(package):
+    words = set(re.findall(r"\w+", import_module(package).__doc__))
+    modules = {module.name for module in pkgutil.iter_modules([ROOT / package])}
+    assert modules - words == set()
