@@ -69,7 +69,7 @@ class Trend:
         self._start = self._first = math.nan  # s, and the energy error there
         self._cut = 0.0  # s since the start; where the open bin begins
         self._low, self._high = math.inf, -math.inf
-        self._samples = -1
+        self._samples = -1  # in the open bin; the first one of all only begins it
         self._beats = False
 
     def add(self, t: float, energy_error: float, low: float | None = None, high: float | None = None) -> None:

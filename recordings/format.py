@@ -42,7 +42,7 @@ def topic(method: str) -> str:
 def sin_fingerprint() -> str:
     """A checksum of this machine's sin over 4096 arguments from 1e-8 to 1e8: bits can be demanded only where it agrees.
 
-    Another libm, or the same one on another processor, rounds one value in 1500 the other way.
+    Another libm, or the same one on another processor, rounds one value in 1400 the other way.
     """
     values = (math.sin((-1) ** i * 10 ** (i / 256 - 8) * 1.1) for i in range(4096))
     return hashlib.sha256(struct.pack("<4096d", *values)).hexdigest()[:16]

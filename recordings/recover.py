@@ -96,7 +96,7 @@ class _Salvage:
         """Note what the header of a lost chunk still tells."""
         self._broken = True
         stream.seek(gap.offset)
-        header = stream.read(25)
+        header = stream.read(25)  # opcode, length, start, end
         if header[:1] == bytes([Opcode.CHUNK]):
             self._chunks_lost += 1
             if len(header) == 25:

@@ -3,7 +3,7 @@
 Where this machine's sin is not the one of the recording, bits cannot be demanded.  What can be is that
 a sample lies within a tolerance: as far as the same run strays when its start is off by one part in
 10^11 (measured, by simulating that, too), and at least one part in 10^11 of the number.  Another libm's
-sin is off by 1e-16 in one value of 1500; tested is one that is off in every other.  Where a run is so
+sin is off by 1e-16 in one value of 1400; tested is one that is off in every other.  Where a run is so
 chaotic that its strayed twin has lost it, by a thousandth of a radian, nothing can be demanded of that
 method any more.
 """

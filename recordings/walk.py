@@ -13,16 +13,7 @@ from mcap.records import Channel, DataEnd, Header, Metadata
 
 from recordings.errors import RecordingError, printable_items
 from recordings.format import METADATA, PROFILE
-from recordings.framing import (
-    CHANNEL_LIMIT,
-    MAGIC,
-    RECORD,
-    Chunk,
-    Search,
-    read_chunk,
-    read_record,
-    record_at,
-)
+from recordings.framing import CHANNEL_LIMIT, MAGIC, RECORD, Chunk, Search, read_chunk, read_record, record_at
 from recordings.layout import Layout, check_times, layout_of
 from recordings.summary import Chunks, Summary, find_summary, read_summary
 
@@ -69,9 +60,7 @@ class Walk:
         if sum(map(eq, start, MAGIC)) < len(start) / 2:  # less would be damage, which the walk then finds
             raise RecordingError("this is no MCAP file")
         self._begins_right = start == MAGIC[: len(start)]
-        found = find_summary(stream)
-        self.summary: Summary | None = found[0] if found else None
-        self._data_end = found[1] if found else None
+        self.summary, self._data_end, _ = find_summary(stream) or (None, None, None)
         self.chunks = Chunks()  # the intact ones so far
         self.messages: Counter[int] = Counter()  # in them, by channel
         self._time = 0
