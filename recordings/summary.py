@@ -29,7 +29,7 @@ class Chunks:
     offsets: "array[int]" = field(default_factory=lambda: array("Q"))
     starts: "array[int]" = field(default_factory=lambda: array("Q"))  # ns, log_time
     ends: "array[int]" = field(default_factory=lambda: array("Q"))  # ns
-    eventful: bytearray = field(default_factory=bytearray)  # 1 where there are events in it
+    eventful: bytearray = field(default_factory=bytearray)  # 0 where no events are in it, 1 where some may be
 
     def __len__(self) -> int:
         return len(self.offsets)
@@ -76,7 +76,7 @@ class Summary:
         if len(content) > SMALL_LIMIT or end < start:
             raise RecordingError("its index is damaged")
         known = self.channels  # all of them: every writer puts channels before chunk indexes
-        eventful = any(channel not in known or known[channel].topic == EVENTS for channel in channels)
+        eventful = not channels or any(channel not in known or known[channel].topic == EVENTS for channel in channels)
         self.chunks.add(offset, start, end, eventful)
 
 

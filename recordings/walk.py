@@ -5,7 +5,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from io import SEEK_END
-from operator import eq
+from operator import eq, ge
 from typing import BinaryIO
 
 from mcap.opcode import Opcode
@@ -60,7 +60,9 @@ class Walk:
         if sum(map(eq, start, MAGIC)) < len(start) / 2:  # less would be damage, which the walk then finds
             raise RecordingError("this is no MCAP file")
         self._begins_right = start == MAGIC[: len(start)]
-        self.summary, self._data_end, _ = find_summary(stream) or (None, None, None)
+        found = find_summary(stream)
+        self.summary: Summary | None = found[0] if found else None
+        self._data_end = found[1] if found else None
         self.chunks = Chunks()  # the intact ones so far
         self.messages: Counter[int] = Counter()  # in them, by channel
         self._time = 0
@@ -160,6 +162,8 @@ class Walk:
             statistics is not None
             and statistics.message_count == self.messages.total()
             and Counter(statistics.channel_message_counts) == self.messages
-            and summary.chunks == self.chunks
+            and (summary.chunks.offsets, summary.chunks.starts, summary.chunks.ends)
+            == (self.chunks.offsets, self.chunks.starts, self.chunks.ends)
+            and all(map(ge, summary.chunks.eventful, self.chunks.eventful))
             and summary.channels == self.channels
         )

@@ -13,7 +13,7 @@ import pytest
 import zstandard
 from hypothesis import given
 from hypothesis import strategies as st
-from mcap.writer import CompressionType, Writer
+from mcap.writer import CompressionType, IndexType, Writer
 
 from recordings import framing
 from recordings.errors import RecordingError
@@ -374,6 +374,17 @@ def test_texts_of_a_stranger_are_harmless_wherever_they_come_out(tmp_path):
         texts = [run.scene.name, run.scene.watch, *recording.metadata, *recording.metadata.values()]
     assert len(texts) == 4
     assert all(text.isprintable() for text in texts)
+
+
+@pytest.mark.parametrize("check", [False, True])
+def test_a_file_that_another_program_wrote_without_message_indexes_plays(tmp_path, check):
+    forger = Forger(tmp_path / "x.mcap", index_types=IndexType.ALL & ~IndexType.MESSAGE)
+    forger.event(start())
+    forger.writer.flush()
+    forger.sample(two_runs()[1].value)
+    with Recording.open(forger.done(), check) as recording:
+        assert recording.complete
+        assert [run.number for run in recording.runs] == [1]
 
 
 def test_a_summary_that_lies_is_found_by_a_check_and_does_not_mislead_the_player(tmp_path):
