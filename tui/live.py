@@ -5,17 +5,16 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal
 
-from engine.exact import Swing
 from engine.lockstep import Sample
 from engine.methods import METHODS
 from engine.scenes import Scene, check_h
 from engine.verdict import Judgement
 from recordings.events import Event, EventKind
 from tui.course import Course, Pitch
-from tui.history import History
+from tui.past import Past
 from tui.playhead import Pace, Playhead
-from tui.source import EQUAL_PARTS, Tape, least_h
-from tui.witness import Happening, Witness
+from tui.source import EQUAL_PARTS, Tape, is_marked, least_h
+from tui.witness import Happening
 
 if TYPE_CHECKING:
     from recordings.sitting import SittingRecorder
@@ -36,8 +35,12 @@ class Live:
         clock: Callable[[], float] = time.perf_counter,
         changes: Iterable[tuple[int, Pitch]] = (),
         step: int = 0,
+        past: Past | None = None,
     ) -> None:
-        """With `changes` of how it steps, as (step, pitch), and a `step`, go on from there, not from the start."""
+        """With `changes` of how it steps, as (step, pitch), and a `step`, go on from there, not from the start.
+
+        `past`: what is known of the way there.
+        """
         self.playhead = Playhead(speed=speed)
         self.pace = Pace()
         self.events: list[Event] = []
@@ -45,7 +48,7 @@ class Live:
         self._recorded = Playhead()  # the recording clock: it stands while the lab is paused, whatever the speed
         self._clock = clock
         self._runs = 1
-        self._enter(Course.at(scene, changes, step))
+        self._enter(Course.at(scene, changes, step), past)
 
     @property
     def scene(self) -> Scene:
@@ -131,12 +134,11 @@ class Live:
         if equal_cost:
             self.set_h(whole, equal_cost)
 
-    def _enter(self, course: Course) -> None:
+    def _enter(self, course: Course, past: Past | None = None) -> None:
+        past = past or Past(course.scene)
         self._course = course
-        self.swing = Swing(course.scene)
-        self.history = History(course.scene)
+        self.swing, self.history, self._witness = past.swing, past.history, past.witness
         self.playhead = self.playhead.moved_to(course.x)
-        self._witness = Witness(course.scene, self.swing)
         self._note_start()
         self._take_sample()
 
@@ -175,8 +177,9 @@ class Live:
             self._note_here("speed", speed=speed)
 
     def mark(self, text: str | None = None) -> None:
-        """Leave a mark in the recording."""
-        self._note_here("mark", text=text)
+        """Leave a mark among the events, unless the sample has one."""
+        if not is_marked(self):
+            self._note_here("mark", text=text)
 
     def close(self) -> None:
         """Finish the recording."""

@@ -4,6 +4,7 @@ import math
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
+from operator import itemgetter
 from typing import TYPE_CHECKING
 
 from engine.exact import Swing
@@ -18,12 +19,13 @@ if TYPE_CHECKING:
 
 DENSE = 60.0  # s of the past that are read completely; what lies before,
 PIECES = 300  # in at most so many pieces of a second, evenly spread
+_step = itemgetter(0)
 
 
 class Past:
-    """A run up to a moment: its history, and what is known of it.  `events` are all of the run's."""
+    """A run up to a moment: its history, and what is known of it.  `events` are all of a recorded run's."""
 
-    def __init__(self, scene: Scene, events: Iterable[Event]) -> None:
+    def __init__(self, scene: Scene, events: Iterable[Event] = ()) -> None:
         self._changes = [(event.step, event.equal_cost) for event in events if event.kind == "set_h"]
         self.swing = Swing(scene)
         self.history = History(scene)
@@ -31,19 +33,19 @@ class Past:
 
     def add(self, sample: Sample) -> None:
         """Add a sample; an earlier one takes back what came after it, except from the verdicts."""
-        last = bisect_left(self._changes, sample.step, key=lambda change: change[0])  # what it was reached with
+        first, last = (bisect_left(self._changes, step, key=_step) for step in (self.witness.seen, sample.step))
+        for step, _ in self._changes[first:last]:
+            self.witness.judge_anew(step)
         self.history.add(sample, self.swing.at(sample.t), last > 0 and self._changes[last - 1][1])
         self.witness.add(sample)
 
-    def read(self, recording: "Recording", run: int, pieces: list[tuple[float, float]], last: int) -> Iterator[None]:
-        """Add what pieces of the recording clock hold of a run before step `last`; yields between samples."""
+    def read(self, recording: "Recording", run: int, pieces: list[tuple[float, float]], last: int) -> Iterator[float]:
+        """Add what pieces of the recording clock hold of a run before step `last`; yields each sample's clock."""
         for start, end in pieces:
-            for _, value in recording.entries(start, end):
-                if value.run == run and self.witness.seen < value.step < last and isinstance(value, Sample):
+            for clock, value in recording.entries(start, end):
+                if value.run == run and isinstance(value, Sample) and self.witness.seen < value.step < last:
                     self.add(value)
-                    yield
-                elif value.run == run and isinstance(value, Event) and value.kind == "set_h" and value.step < last:
-                    self.witness.judge_anew(value.step)
+                    yield clock
 
 
 def pieces(start: float, end: float) -> list[tuple[float, float]]:

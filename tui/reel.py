@@ -1,6 +1,5 @@
 """Reel: where in a recording a replay stands, and what is known of the past of that moment."""
 
-from bisect import bisect_left
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
@@ -64,18 +63,18 @@ class Reel:
             if next(self._filling, self) is self:
                 self._filling = None
 
+    @property
+    def filled(self) -> bool:
+        """Whether the past is known as far as it can be."""
+        return self._filling is None and not self._stale
+
     def _move(self, place: "Place") -> None:
         """Show the sample at a place that is close to the last one."""
-        events = self.recording.events
         clock, value = self.recording.sample(place)
         assert isinstance(value, Sample)
         if value.run != self.sample.run:
             self._jump(place)
             return
-        first, end = (bisect_left(events, when, key=lambda pair: pair[0]) for when in (self.clock, clock))
-        for _, event in events[first:end]:
-            if event.kind == "set_h":
-                self.past.witness.judge_anew(event.step)
         self._place, self.clock, self.sample = place, clock, value
         self.past.add(value)
 

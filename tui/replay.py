@@ -12,12 +12,13 @@ from engine.scenes import Scene
 from engine.verdict import Judgement
 from recordings.events import Event
 from tui.course import Pitch
+from tui.highlights import Highlights
 from tui.history import History
 from tui.live import Live
 from tui.marks import Mark, Marks, mark_event
 from tui.playhead import Pace, Playhead
 from tui.reel import Reel
-from tui.source import Tape
+from tui.source import Tape, is_marked
 from tui.witness import Happening
 
 if TYPE_CHECKING:
@@ -41,6 +42,7 @@ class Replay:
         self.looping = False
         self._clock = clock
         self._reel = Reel(recording)
+        self._highlights = Highlights(recording)
 
     @property
     def sample(self) -> Sample:
@@ -138,7 +140,8 @@ class Replay:
             self._stay_inside()
             self._reel.go_to(self.playhead.position)
         until = self._clock() + FILL_BUDGET
-        self._reel.fill(lambda: self._clock() < until)
+        for known in (self._reel.fill, self._highlights.find):
+            known(lambda: self._clock() < until)
         return self.sample
 
     def pause(self, paused: bool) -> None:
@@ -165,7 +168,7 @@ class Replay:
         self._reel.go_to(self.playhead.position)
 
     def seek_event(self, direction: int) -> None:
-        """Go to the next event or mark, or to the one before."""
+        """Go to the next event, mark or highlight, or to the one before."""
         position = self.playhead.position
         if direction > 0:
             self.seek(min((tick for tick in self.ticks if tick > position + 1e-6), default=self.length))
@@ -174,18 +177,23 @@ class Replay:
 
     @property
     def ticks(self) -> list[float]:
-        """Where on the recording clock something was done or marked [s]."""
-        return [clock for clock, event in self.recording.events if event.kind != "stop"] + [
-            mark.clock for mark in self.marks
-        ]
+        """Where on the recording clock something was done, marked, or happened as far as that is known by now [s]."""
+        done = (clock for clock, event in self.recording.events if event.kind != "stop")
+        return sorted({*done, *(mark.clock for mark in self.marks), *self._highlights.clocks})
 
     def mark(self, text: str | None = None) -> None:
-        """Leave a mark at the sample; it is kept beside the recording, which is not touched."""
-        self.marks.add(Mark(self.playhead.position, self.sample.run, self.sample.step, text))
+        """Leave a mark at the sample, unless it has one; it is kept beside the recording, which is not touched."""
+        if not is_marked(self):
+            self.marks.add(Mark(self.playhead.position, self.sample.run, self.sample.step, text))
+
+    @property
+    def filled(self) -> bool:
+        """Whether the past of the sample is known as far as it can be; after a jump that takes some frames."""
+        return self._reel.filled
 
     def live(self) -> Live:
-        """A lab that goes on from here with the same bits."""
-        return Live(self.scene, changes=self.changes, step=self.sample.step)
+        """A lab that goes on from here with the same bits, and with what is known of the past."""
+        return Live(self.scene, changes=self.changes, step=self.sample.step, past=self._reel.past)
 
     def close(self) -> None:
         """Let go of the file."""

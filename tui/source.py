@@ -116,3 +116,10 @@ def own_h(source: Source) -> tuple[float, ...]:
 def least_h(source: Source) -> float:
     """The smallest of them, without its sign [s]: what a scene's `h` is at equal cost."""
     return min(abs(h) for h in own_h(source))
+
+
+def is_marked(source: Source) -> bool:
+    """Whether the sample on screen has a mark."""
+    here = source.sample.run, source.sample.step
+    events = (*source.events, *source.later_marks)
+    return any(event.kind == "mark" and (event.run, event.step) == here for event in events)

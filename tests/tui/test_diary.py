@@ -46,6 +46,7 @@ def test_changes_and_marks_are_there_and_pauses_are_not():
     live.pause(False)
     live.set_speed(2)
     live.set_h(0.1)
+    live.step(1)
     live.mark("question 2")
     live.set_h(-0.1)
     live.set_h(0.4, equal_cost=True)

@@ -8,10 +8,15 @@ import numpy as np
 import pytest
 
 from engine.lockstep import Sample
+from engine.scenes import DEFAULT_SCENE
 from recordings.events import Entry
 from recordings.recording import Recording
+from recordings.sitting import SittingRecorder
 from tests.tui.sitting import FPS, eventful, recorded
+from tui.diary import diary
+from tui.live import Live
 from tui.marks import Marks
+from tui.past import DENSE, PIECES, pieces
 from tui.replay import Replay
 
 NANOSECOND = 1e-9  # what clocks in a file are rounded to
@@ -155,6 +160,23 @@ def test_the_next_event_and_the_one_before_are_found(table):
         assert table.replay.playhead.position == place
 
 
+def test_the_next_event_is_also_what_a_method_does_as_the_diary_lists_it(tmp_path):
+    table = Table(recorded(tmp_path / "drift.mcap", 20.0))
+    listed = []
+    for _ in range(3):
+        table.replay.seek_event(1)
+        table.replay.pause(True)
+        table.run(1 / FPS)
+        listed.append([line.text for line in diary(table.replay)][sum(map(len, listed)) + 1 :])
+    assert listed == [
+        ["Explicit Euler over the top, 5.1 E0"],
+        ["Explicit Euler: grows", "RK4: drifts"],
+        ["Symplectic Euler: bounded", "Verlet: bounded"],
+    ]
+    table.replay.seek_event(1)
+    assert table.replay.playhead.position == table.replay.length
+
+
 def test_a_loop_goes_round_both_ways(table):
     table.replay.ends, table.replay.looping = (2.0, 3.0), True
     table.replay.seek(2.5)
@@ -191,6 +213,36 @@ def test_a_lab_that_goes_on_from_here_has_the_same_bits(table, seconds):
         assert [(r.theta, r.omega) for r in live.sample.readings] == [(r.theta, r.omega) for r in ahead.readings]
 
 
+def test_a_lab_that_goes_on_from_here_knows_what_was_known(tmp_path):
+    table = Table(recorded(tmp_path / "drift.mcap", 22.0))
+    table.replay.seek(18.0)
+    table.run(1 / FPS)
+    assert table.replay.filled
+    known = table.replay.happenings, table.replay.judgements, table.replay.history.window().t
+    live = table.replay.live()
+    assert [judgement.verdict for judgement in live.judgements] == ["grows", "bounded", "bounded", "drifts"]
+    assert (live.happenings, live.judgements) == known[:2]
+    np.testing.assert_array_equal(live.history.window().t, known[2])
+    while table.replay.sample.step < table.samples[-1].value.step:
+        table.replay.step(1)
+        live.step(table.replay.sample.step - live.sample.step)
+    assert live.judgements == table.replay.judgements
+
+
+def test_a_moment_has_one_mark(tmp_path):
+    path = recorded(tmp_path / "marked.mcap", 2.0, lambda live: live.mark(), lambda live: live.mark(), 1.0)
+    table = Table(path)
+    marks = [event for _, event in table.recording.events if event.kind == "mark"]
+    assert len(marks) == 1
+    table.replay.seek(2.0)
+    table.replay.mark()
+    assert list(table.replay.marks) == []
+    table.replay.seek(2.5)
+    table.replay.mark()
+    table.replay.mark()
+    assert len(list(table.replay.marks)) == 1
+
+
 def test_marks_are_kept_beside_the_recording_which_is_not_touched(tmp_path):
     path = recorded(tmp_path / "marked.mcap", 3.0)
     before = path.read_bytes()
@@ -213,8 +265,6 @@ def test_a_file_of_marks_that_is_not_ours_is_no_marks(tmp_path, content):
 
 
 def test_a_long_past_is_read_in_pieces_of_which_the_last_minute_is_whole():
-    from tui.past import DENSE, PIECES, pieces
-
     short, long = pieces(0.0, 30.0), pieces(100.0, 30_000.0)
     assert short == [(0.0, 30.0)]
     assert long[-1] == (30_000.0 - DENSE, 30_000.0)
@@ -222,3 +272,26 @@ def test_a_long_past_is_read_in_pieces_of_which_the_last_minute_is_whole():
     assert len(long) == PIECES + 1
     whole = pieces(0.0, DENSE + 200)
     assert all(end == begin for (_, end), (begin, _) in itertools.pairwise(whole))
+
+
+@pytest.mark.parametrize("place", ["begin", "end", "gap"])
+def test_a_change_of_the_step_is_known_of_wherever_the_pieces_of_a_long_past_begin_and_end(tmp_path, place):
+    length, frame = 800.0, 0.25
+    begin, end = pieces(0.0, length)[100]
+    changed = {"begin": begin, "end": end, "gap": end + 0.7}[place]
+    assert end + 1 < pieces(0.0, length)[101][0]
+    live = Live(DEFAULT_SCENE, clock=lambda: 0.0)
+    live.record(SittingRecorder(tmp_path / "long.mcap"))
+    for now in np.arange(0.0, length + frame / 2, frame):
+        live.tick(now)
+        if changed <= now < changed + frame:
+            live.set_h(0.02)
+    live.close()
+    table = Table(tmp_path / "long.mcap")
+    table.replay.seek(length)
+    table.replay.pause(True)
+    table.run(1 / FPS)
+    assert table.replay.filled
+    for seen, was in zip(table.replay.judgements, live.judgements, strict=True):
+        assert seen.verdict == was.verdict
+        assert seen.periods == pytest.approx(was.periods, abs=table.replay.swing.period * 5)  # a bin, and a gap

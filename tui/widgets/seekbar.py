@@ -1,5 +1,6 @@
 """SeekBar: where the replay stands, and what was done when."""
 
+from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import groupby
@@ -38,14 +39,14 @@ def bar(position: float, length: float, ticks: Sequence[float], ends: Sequence[t
 
 
 def facts(replay: Replay, room: int) -> str:
-    """Position and length; loop, run, step and event as far as there is room."""
-    runs = [run.number for run in replay.recording.runs]
-    text = f"{seconds(replay.playhead.position)} of {seconds(replay.length)}"
+    """Position and length, of the recording clock; loop, run, step and event as far as there is room."""
+    runs, ticks = [run.number for run in replay.recording.runs], replay.ticks
+    text = f"recording {seconds(replay.playhead.position)} of {seconds(replay.length)}"
     for part in (
         "loop" if replay.loop else "",
         f"run {runs.index(replay.run.number) + 1}/{len(runs)}",
         f"step {replay.sample.step}/{replay.run.steps}",
-        f"event {replay.events_done}/{len(replay.recording.events)}",
+        f"event {bisect_right(ticks, replay.playhead.position)}/{len(ticks)}",
     ):
         if part and len(text) + len(part) + 2 <= room:
             text += "  " + part
