@@ -6,6 +6,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterable
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -19,6 +20,7 @@ from tests.tui.command_line import pendu
 from tui.cli import COMMANDS, command_of
 from tui.keys import COMMON, LIVE, REPLAY, Key
 from tui.options import joined
+from tui.widgets import accuracy, phase, stability
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -129,13 +131,17 @@ def test_the_recipe_reads_the_csv(package, tmp_path, monkeypatch):
     assert "explicit_euler" in str(answer)
 
 
-def test_the_keys_are_those_of_the_lab():
-    assert table_of([*COMMON, *LIVE]) in README
-    assert table_of(REPLAY) in README
+@pytest.mark.parametrize(
+    "keys",
+    [(*COMMON, *LIVE), REPLAY, phase.KEYS, accuracy.KEYS, stability.KEYS],
+    ids=["lab", "replay", "phase", "accuracy", "stability"],
+)
+def test_the_keys_are_those_of_the_lab_the_replay_and_the_views(keys):
+    assert table_of(keys) in README
 
 
-def table_of(keys: list[Key]) -> str:
-    rows = "".join(f"| `{key.shown}` | {key.does} |\n" for key in keys)
+def table_of(keys: Iterable[Key]) -> str:
+    rows = "".join(f"| `{key.shown}` | {key.does} |\n" for key in keys if key.shown)
     return f"| key | does |\n|---|---|\n{rows}"
 
 

@@ -9,7 +9,7 @@ from engine.scenes import Scene
 from tui.palette import mark
 from tui.phase_words import swing_text
 
-WIDTH = 76  # characters
+WIDTH = 72  # characters; what 80 columns leave beside frame and scroll bar
 _HEAD = 14
 
 
@@ -37,8 +37,8 @@ def method_card(index: int) -> str:
     )
 
 
-def scene_card(scene: Scene) -> str:
-    """What a scene is, and what to watch."""
+def scene_card(scene: Scene, now: str = "") -> str:
+    """What a scene is, and what to watch; `now`: the step in force, where that is another one."""
     return _card(
         f"Scene {scene.name}",
         {
@@ -46,6 +46,7 @@ def scene_card(scene: Scene) -> str:
             "start": f"theta {math.degrees(scene.theta):.5g}°, omega {scene.omega:.5g} rad/s",
             "pendulum": f"length {scene.length:.5g} m, gravity {scene.gravity:.5g} m/s², w0 = {scene.w0:.4g} 1/s",
             "step": f"h = {scene.h:.5g} s, z = h w0 = {scene.z:.4g}",
+            "now": now,
             "motion": swing_text(Swing(scene)),
         },
     )

@@ -5,7 +5,7 @@ import math
 from engine.methods import METHODS
 from tui.findings import about, failed, leaving, over_the_top
 from tui.numbers import seconds
-from tui.source import Source, own_h
+from tui.source import Source
 
 
 def description(source: Source) -> list[str]:
@@ -19,14 +19,19 @@ def _run(source: Source) -> list[str]:
     state = "is paused" if playhead.paused else f"runs at {playhead.speed:.4g} times real time"
     regime = {"libration": "swings", "rotation": "turns over and over"}.get(source.swing.regime)
     motion = f"; it {regime}, once in {about(source.swing.period)}" if regime and source.swing.period else ""
-    parts = "; at equal cost, some take it in parts" if len(set(own_h(source))) > 1 else ""
-    backwards = "; time runs backwards" if source.h < 0 else ""
     return [
         f"{kind} {state}, at {seconds(sample.t)} of run {sample.run}, scene {scene.name}.",
         f"The pendulum is {scene.length:.4g} m long and started at {math.degrees(scene.theta):.4g} degrees "
         f"with {scene.omega:.4g} radians per second{motion}.",
-        f"The step size is {abs(source.h):.4g} s, z = {abs(source.h) * scene.w0:.3g}{parts}{backwards}.",
+        f"The step size is {step_text(source)}.",
     ]
+
+
+def step_text(source: Source) -> str:
+    """The step in force: "0.2 s, z = 0.626; at equal cost, some take it in parts; time runs backwards"."""
+    parts = "; at equal cost, some take it in parts" if source.equal_cost else ""
+    backwards = "; time runs backwards" if source.h < 0 else ""
+    return f"{abs(source.h):.4g} s, z = {abs(source.h) * source.scene.w0:.3g}{parts}{backwards}"
 
 
 def method_sentence(source: Source, index: int) -> str:
@@ -36,7 +41,7 @@ def method_sentence(source: Source, index: int) -> str:
     if "failed" in happened:
         return failed(happened["failed"])
     if "over the top" in happened:
-        return over_the_top(source, happened["over the top"])
+        return over_the_top(happened["over the top"])
     if source.judgements[index].verdict == "bounded":
         return f"{method.label} stays within a band: its energy is off by {reading.max_energy_error:.2g} at most."
     return leaving(source, index) or (

@@ -3,11 +3,13 @@
 from collections.abc import Iterable
 from typing import NamedTuple
 
+from textual.binding import Binding, BindingType
+
 from engine.methods import METHODS
 
 
 class Key(NamedTuple):
-    """A key or two, and what it does."""
+    """A key or two, and what it does; or what the mouse does, which has neither names nor an action."""
 
     names: str  # as Textual calls them, separated by commas
     shown: str  # as people read it
@@ -17,13 +19,12 @@ class Key(NamedTuple):
     hint: str = ""  # on the key line, if it is there
 
 
-_TIME, _SHOW, _RUN, _PLAY, _PROGRAM = "time", "what is shown", "the run", "the recording", "the program"
+_TIME, _SHOW, _VIEWS, _PROGRAM = "time", "what is shown", "the views", "the program"
+_RUN, _PLAY = "the run", "the recording"
 _EXACT = len(METHODS) + 1
 
 COMMON = (
     Key("space", "space", "pause, go on", "pause", _TIME, "Pause"),
-    Key("full_stop", ".", "one step on", "step(1)", _TIME),
-    Key("comma", ",", "one step back", "step(-1)", _TIME),
     Key("less_than_sign", "<", "half the speed", "speed(-1)", _TIME),
     Key("greater_than_sign", ">", "double speed", "speed(1)", _TIME, "Faster"),
     Key("0", "0", "real time", "real_time", _TIME),
@@ -37,7 +38,11 @@ COMMON = (
     Key("e", "e", "chart's quantity: energy, theta or shadow energy error, energy", "quantity", _SHOW, "Quantity"),
     Key("w", "w", "chart shows more of the past", "window(1)", _SHOW, "Window"),
     Key("W,shift+w", "W", "chart shows less of the past", "window(-1)", _SHOW),
-    Key("v", "v", "next view", "view", _SHOW, "View"),
+    Key("v", "v", "next view", "view", _VIEWS, "View"),
+    Key("f2", "F2", "view: lab", "view('lab')", _VIEWS),
+    Key("f3", "F3", "view: phase space", "view('phase')", _VIEWS),
+    Key("f4", "F4", "view: accuracy", "view('accuracy')", _VIEWS),
+    Key("f5", "F5", "view: stability", "view('stability')", _VIEWS),
     Key("E,shift+e", "E", "all events", "app.aid('diary')", _SHOW, "Events"),
     Key("d", "d", "describe the screen in words", "app.aid('describe')", _SHOW, "Describe"),
     Key(
@@ -49,6 +54,7 @@ COMMON = (
     Key("ctrl+p", "ctrl+p", "command palette", "command_palette", _PROGRAM),
     Key("ctrl+z", "ctrl+z", "to the shell, where fg comes back", "app.suspend_process", _PROGRAM),
     Key("q", "q", "quit", "quit", _PROGRAM, "Quit"),
+    Key("", "click", "on a key of the last line: as if it were pressed", "", _PROGRAM),
 )
 
 LIVE = (
@@ -60,9 +66,10 @@ LIVE = (
     Key("r", "r", "restart", "restart", _RUN, "Restart"),
     Key("b", "b", "reverse time", "reverse", _RUN, "Reverse"),
     Key("n", "n", "equal cost: a step of RK4 while the others do four", "equal_cost", _RUN, "Equal cost"),
-    Key("m", "m", "leave a mark in the recording", "mark", _RUN, "Mark"),
+    Key("m", "m", "mark this moment among the events", "mark", _RUN, "Mark"),
+    Key("full_stop", ".", "one step on", "step(1)", _TIME),
+    Key("comma", ",", "one step back", "step(-1)", _TIME),
 )
-
 
 REPLAY = (
     Key("left", "left", "1 s back", "seek(-1)", _PLAY),
@@ -73,18 +80,26 @@ REPLAY = (
     Key("end", "end", "to the end", "part(1)", _PLAY, "End"),
     Key("pageup", "pgup", "10 % back", "part(-0.1)", _PLAY),
     Key("pagedown", "pgdn", "10 % on", "part(0.1)", _PLAY),
-    Key("left_square_bracket", "[", "to the event before", "event(-1)", _PLAY),
-    Key("right_square_bracket", "]", "to the next event", "event(1)", _PLAY, "Event"),
+    Key("left_square_bracket", "[", "to the event before, or what a method did", "event(-1)", _PLAY),
+    Key("right_square_bracket", "]", "to the next event, or to what a method does next", "event(1)", _PLAY, "Event"),
+    Key("full_stop", ".", "to the next recorded sample, some steps on", "step(1)", _PLAY),
+    Key("comma", ",", "to the sample before", "step(-1)", _PLAY),
     Key("b", "b", "play the other way", "reverse", _PLAY, "Reverse"),
-    Key("m", "m", "leave a mark beside the recording", "mark", _PLAY, "Mark"),
+    Key("m", "m", "mark this moment, beside the recording", "mark", _PLAY, "Mark"),
     Key("A,shift+a", "A", "the loop begins here", "loop_end(0)", _PLAY),
     Key("B,shift+b", "B", "the loop ends here", "loop_end(1)", _PLAY),
     Key("L,shift+l", "L", "loop on, off", "loop", _PLAY, "Loop"),
     Key("f", "f", "go on live from here", "live", _PLAY, "Live"),
+    Key("", "click, drag", "on the bar: to that moment", "", _PLAY),
 )
 
 HINTS = ("space", "+", "right", "i", "p", "]", "?", "q", "v", ">", "f", "home", "end", "L", "r", *"yewbnmudEs")
 """The keys on the key line, those that matter most first: at the end they are cut off."""
+
+
+def bindings(*keys: Key) -> list[BindingType]:
+    """The keys as Textual takes them."""
+    return [Binding(key.names, key.action, key.does, show=False) for key in keys if key.names]
 
 
 def hints(keys: Iterable[Key]) -> list[Key]:

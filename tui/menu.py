@@ -8,7 +8,6 @@ from engine.methods import METHODS
 from engine.scenes import SCENES
 from tui.keys import Key
 from tui.palette import PALETTES
-from tui.views import VIEWS
 
 
 class Entry(NamedTuple):
@@ -24,7 +23,6 @@ def menu(keys: Iterable[Key], live: bool, recordings: Iterable[Path]) -> list[En
     return [
         *(Entry(f"{key.does} ({key.shown})", key.group, key.action) for key in keys if _offered(key)),
         *(Entry(f"scene {name}", scene.watch, f"start_scene({name!r})") for name, scene in SCENES.items() if live),
-        *(Entry(f"view: {view.title} ({view.key.upper()})", "", f"view({name!r})") for name, view in VIEWS.items()),
         *(
             Entry(f"method {method.label}", "its card", f"app.aid('card', {index})")
             for index, method in enumerate(METHODS)
@@ -37,4 +35,4 @@ def menu(keys: Iterable[Key], live: bool, recordings: Iterable[Path]) -> list[En
 
 
 def _offered(key: Key) -> bool:
-    return bool(key.does) and key.action != "command_palette"
+    return bool(key.does and key.action) and key.action != "command_palette"

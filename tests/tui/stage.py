@@ -11,6 +11,7 @@ from engine.scenes import DEFAULT_SCENE, Scene
 from recordings.recording import Recording
 from tui.app import PenduApp
 from tui.display import FPS
+from tui.keys import COMMON
 from tui.live import Live
 from tui.marks import Marks
 from tui.replay import Replay
@@ -54,6 +55,11 @@ class Theatre:
 
     async def settled(self) -> None:
         await settled(self.app)
+
+
+def key_of(view: str) -> str:
+    """The key that shows a view, as Textual calls it."""
+    return next(key.names for key in COMMON if key.action == f"view({view!r})")
 
 
 @asynccontextmanager

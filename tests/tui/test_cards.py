@@ -7,6 +7,7 @@ from engine.scenes import SCENES
 from tests.tui.stage import lab
 from tui.cards import WIDTH, method_card, scene_card
 from tui.keys import COMMON, LIVE
+from tui.live import Live
 from tui.screens.help import help_text
 from tui.widgets.phase import PhasePane
 
@@ -45,10 +46,19 @@ def test_no_line_is_longer_than_the_reader_is_wide():
 
 
 def test_the_help_begins_with_what_to_watch_and_ends_with_the_methods():
-    text = help_text((*LIVE, *COMMON), SCENES["drift"])
+    text = help_text((*LIVE, *COMMON), Live(SCENES["drift"]))
     assert text.startswith(scene_card(SCENES["drift"]))
     assert text.endswith(method_card(len(METHODS) - 1))
     assert text.index("Time\n") < text.index("What is shown\n") < text.index(METHODS[0].formula)
+
+
+def test_the_help_has_the_step_in_force_beside_the_one_of_the_scene():
+    live = Live(SCENES["drift"])
+    assert "now" not in words(scene_card(live.scene))
+    live.set_h(-0.4, equal_cost=True)
+    text = words(help_text(LIVE, live))
+    assert "step h = 0.05 s, z = h w0 = 0.1566 now h = 0.4 s, z = 1.25; at equal cost" in text
+    assert "time runs backwards" in text
 
 
 async def test_the_help_begins_with_the_keys_of_what_has_the_focus():

@@ -6,7 +6,7 @@ import pytest
 from rich.color import Color
 
 from tests.tui.conftest import lines_of
-from tests.tui.stage import lab
+from tests.tui.stage import key_of, lab
 from tui.display import PIXELS
 from tui.keys import COMMON
 from tui.palette import PALETTES, TEXT
@@ -25,7 +25,7 @@ async def picture(theatre) -> str:
 async def test_a_theme_changes_all_colours_and_no_character(theme, view):
     async with lab() as theatre:
         await theatre.run(1)
-        await theatre.press("space", VIEWS[view].key)
+        await theatre.press("space", key_of(view))
         before = await picture(theatre)
         theatre.app.action_use_theme(theme)
         after = await picture(theatre)
@@ -40,8 +40,8 @@ async def test_a_draws_with_half_blocks_then_ascii_then_braille_again_in_every_v
     async with lab() as theatre:
         await theatre.run(1)
         await theatre.press("space")
-        for entry in VIEWS.values():
-            await theatre.press(entry.key)
+        for name in VIEWS:
+            await theatre.press(key_of(name))
             before = "".join(lines_of(await picture(theatre)))
             await theatre.press("a")
             half = "".join(lines_of(await picture(theatre)))
@@ -75,7 +75,7 @@ async def test_the_theme_ansi_uses_the_terminals_own_colours_and_no_others():
     async with lab() as theatre:
         theatre.app.action_use_theme("ansi")
         await theatre.run(1)
-        for key in (*(entry.key for entry in VIEWS.values()), "i"):
+        for key in (*map(key_of, VIEWS), "i"):
             await theatre.press(key)
             await theatre.pilot.pause(0.3)
             assert len(colours(theatre.app)) > 3

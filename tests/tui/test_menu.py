@@ -54,11 +54,11 @@ def titles(keys=(*LIVE, *COMMON), live=True, recordings=(DRIFT,)) -> list[str]:
 def test_it_has_every_key_scene_view_method_theme_and_recording():
     all_titles = titles()
     for key in (*LIVE, *COMMON):
-        assert (f"{key.does} ({key.shown})" in all_titles) == (key.shown != "ctrl+p")
+        assert (f"{key.does} ({key.shown})" in all_titles) == (key.shown != "ctrl+p" and bool(key.action))
     for name in SCENES:
         assert f"scene {name}" in all_titles
     for view in VIEWS.values():
-        assert f"view: {view.title} ({view.key.upper()})" in all_titles
+        assert any(title.startswith(f"view: {view.title.lower()} (F") for title in all_titles)
     for method in METHODS:
         assert f"method {method.label}" in all_titles
     for name in PALETTES:

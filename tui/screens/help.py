@@ -3,15 +3,17 @@
 from collections.abc import Sequence
 
 from engine.methods import METHODS
-from engine.scenes import Scene
 from tui.cards import method_card, scene_card
+from tui.describe import step_text
 from tui.keys import Key
 from tui.screens.reader import Reader
+from tui.source import Source
 
 
-def help_text(keys: Sequence[Key], scene: Scene) -> str:
+def help_text(keys: Sequence[Key], source: Source) -> str:
     """What the help says: what to watch, the keys, those of the view first, and the methods."""
-    parts = [scene_card(scene)]
+    scene = source.scene
+    parts = [scene_card(scene, "" if source.h == scene.h else f"h = {step_text(source)}")]
     for group in dict.fromkeys(key.group for key in keys):
         lines = [f"  {key.shown:<14}{key.does}" for key in keys if key.group == group and key.shown]
         parts.append("\n".join([group.capitalize(), *lines]))
@@ -21,5 +23,5 @@ def help_text(keys: Sequence[Key], scene: Scene) -> str:
 class Help(Reader):
     """The help."""
 
-    def __init__(self, keys: Sequence[Key], scene: Scene) -> None:
-        super().__init__("Help", help_text(keys, scene))
+    def __init__(self, keys: Sequence[Key], source: Source) -> None:
+        super().__init__("Help", help_text(keys, source))

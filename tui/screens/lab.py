@@ -8,10 +8,10 @@ from textual.binding import BindingType
 
 from engine.scenes import SCENES, Scene, SceneError
 from tui.choice import SceneChosen, StepSizeChosen
-from tui.keys import COMMON, LIVE, Key
+from tui.keys import COMMON, LIVE, Key, bindings
 from tui.live import Live
 from tui.playhead import next_h
-from tui.screens.stage import Stage, bindings
+from tui.screens.stage import Stage
 from tui.source import EQUAL_PARTS, least_h
 
 

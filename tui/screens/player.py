@@ -9,10 +9,10 @@ from textual.binding import BindingType
 from textual.widget import Widget
 
 from tui.errors import UserError, explained
-from tui.keys import COMMON, REPLAY, Key
+from tui.keys import COMMON, REPLAY, Key, bindings
 from tui.live import Live
 from tui.replay import Replay
-from tui.screens.stage import Stage, bindings
+from tui.screens.stage import Stage
 from tui.widgets.seekbar import SeekBar
 
 LONG = 100_000  # steps; a quarter of a second
@@ -95,8 +95,10 @@ class Player(Stage):
         self.show_now()
 
     async def action_live(self) -> None:
-        """Go on live from here, when the way here has been simulated again."""
+        """Go on live from here, when the past is known and the way here has been simulated again."""
         self.replay.pause(True)
+        while not self.replay.filled:
+            await asyncio.sleep(0.01)
         if self.replay.sample.step > LONG:
             self.notify(f"Simulating {self.replay.sample.step} steps ...", timeout=2)
         live = await asyncio.to_thread(self.replay.live)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.containers import Container
 from textual.message import Message
 from textual.reactive import Initialize, var
@@ -15,12 +15,12 @@ from textual.screen import Screen
 from textual.widget import Widget
 
 from engine.lockstep import Sample
-from tui.keys import COMMON, Key, hints
+from tui.keys import COMMON, Key, bindings, hints
 from tui.look import Look
 from tui.playhead import doubled
 from tui.source import Source
 from tui.terminal import is_behind
-from tui.views import VIEWS, create, following
+from tui.views import create, following
 from tui.views.view import View
 from tui.widgets.keyline import Hint, KeyLine
 from tui.widgets.line import InsightLine
@@ -38,11 +38,6 @@ SMALLEST = (60, 16)
 """Columns and rows below which there is only a message."""
 
 
-def bindings(*keys: Key) -> list[BindingType]:
-    """The keys as Textual takes them."""
-    return [Binding(key.names, key.action, key.does, show=False) for key in keys]
-
-
 def _first_source(stage: Any) -> Source:
     source: Source = stage.first_source
     return source
@@ -57,10 +52,7 @@ class Stage(Screen[None]):
 
         stage: "Stage"
 
-    BINDINGS: ClassVar[list[BindingType]] = [
-        *bindings(*COMMON),
-        *(Binding(entry.key, f"view({name!r})", entry.title, show=False) for name, entry in VIEWS.items()),
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = bindings(*COMMON)
     AUTO_FOCUS = ""  # keys belong to the screen until a pane is clicked
     KEYS: ClassVar[tuple[Key, ...]] = COMMON
 
@@ -238,7 +230,7 @@ class Stage(Screen[None]):
 
         panes = self.query_one(f"#{self.view}", View).KEYS
         keys = (*panes, *self.KEYS) if self.focused is not None else (*self.KEYS, *panes)
-        self.app.push_screen(Help(keys, self.source.scene))
+        self.app.push_screen(Help(keys, self.source))
 
     def action_quit(self) -> None:
         """Leave the program."""

@@ -9,17 +9,16 @@ from tui.views.view import View
 class Entry(NamedTuple):
     """Where a view is, and how one gets there."""
 
-    key: str  # as Textual calls it
     title: str
     module: str  # imported when the view is first shown
     widget: str
 
 
 VIEWS: dict[str, Entry] = {
-    "lab": Entry("f2", "Lab", "tui.views.lab", "LabView"),
-    "phase": Entry("f3", "Phase space", "tui.views.phase", "PhaseView"),
-    "accuracy": Entry("f4", "Accuracy", "tui.views.accuracy", "AccuracyView"),
-    "stability": Entry("f5", "Stability", "tui.views.stability", "StabilityView"),
+    "lab": Entry("Lab", "tui.views.lab", "LabView"),
+    "phase": Entry("Phase space", "tui.views.phase", "PhaseView"),
+    "accuracy": Entry("Accuracy", "tui.views.accuracy", "AccuracyView"),
+    "stability": Entry("Stability", "tui.views.stability", "StabilityView"),
 }
 """In the order in which v goes through them."""
 

@@ -3,12 +3,12 @@
 from typing import ClassVar
 
 from textual import events
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 
 from engine.scenes import SceneError
 from engine.state import State
 from tui.choice import SceneChosen
-from tui.keys import Key
+from tui.keys import Key, bindings
 from tui.neighbours import RADII
 from tui.source import least_h
 from tui.widgets.phase_display import PhaseDisplay
@@ -17,6 +17,7 @@ BIG_STEP = 8  # dots
 
 _GROUP = "phase space"
 KEYS = (
+    Key("", "tab", "in the lab: to this pane, for its keys", "", _GROUP),
     Key("left", "arrows", "crosshair, to choose a start", "move(-1, 0)", _GROUP),
     Key("right", "", "", "move(1, 0)", _GROUP),
     Key("up", "", "", "move(0, -1)", _GROUP),
@@ -33,6 +34,9 @@ KEYS = (
     Key("c", "c", "angles within a turn, or unwrapped", "wrap", _GROUP),
     Key("g", "g", "a ring of neighbours, of another radius", "radius(1)", _GROUP),
     Key("G,shift+g", "G", "a smaller ring, or none", "radius(-1)", _GROUP),
+    Key("", "click, drag", "start there; a drag shows the orbit first", "", _GROUP),
+    Key("", "wheel", "zoom at the pointer", "", _GROUP),
+    Key("", "shift+drag", "move the picture, as arrows do at its edge", "", _GROUP),
 )
 
 
@@ -42,7 +46,7 @@ class PhasePane(PhaseDisplay):
     The wheel zooms; a drag with a modifier or another button moves the picture.
     """
 
-    BINDINGS: ClassVar[list[BindingType]] = [Binding(key.names, key.action, key.does, show=False) for key in KEYS]
+    BINDINGS: ClassVar[list[BindingType]] = bindings(*KEYS)
 
     def __init__(self, id: str | None = None, radius: float | None = None) -> None:
         super().__init__(id, radius)

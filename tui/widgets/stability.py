@@ -3,10 +3,10 @@
 from typing import ClassVar
 
 from textual import events
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 
 from tui.choice import SceneChosen
-from tui.keys import Key
+from tui.keys import Key, bindings
 from tui.stability_picture import MARGIN, place_at
 from tui.widgets.stability_display import StabilityDisplay
 
@@ -25,13 +25,14 @@ KEYS = (
     Key("enter", "enter", "start with the cursor's h and amplitude", "choose", _GROUP),
     Key("tab", "tab", "the next method in words", "next_method", _GROUP),
     Key("escape", "esc", "leave the cursor", "cancel", _GROUP),
+    Key("", "click", "start with that h and amplitude", "", _GROUP),
 )
 
 
 class StabilityPane(StabilityDisplay):
     """A click, or Enter at the cursor, starts a run at rest; the pointer and the cursor say what is there."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [Binding(key.names, key.action, key.does, show=False) for key in KEYS]
+    BINDINGS: ClassVar[list[BindingType]] = bindings(*KEYS)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """A recording has no start to choose; its arrows, enter and esc are not the pane's."""
