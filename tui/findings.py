@@ -8,7 +8,6 @@ from engine.methods import METHODS, Method
 from tui.source import Source
 from tui.witness import Happening
 
-WIDTH = 79  # characters, of the smallest layout with everything in it
 LARGEST_BAND = 0.2
 """Of the energy: beyond, what is lost on the way there changes the drift itself."""
 LONGEST = 1000 * 86400.0  # s; further ahead nobody waits
@@ -80,11 +79,10 @@ def failed(happening: Happening) -> str:
     return f"{happening.method.label} failed at {happening.t:.4g} s: its numbers are no longer finite."
 
 
-def over_the_top(source: Source, happening: Happening) -> str:
+def over_the_top(happening: Happening) -> str:
     """A method that went where the exact swing never comes."""
-    ratio = times(1 + source.sample.readings[happening.index].energy_error)
-    text = f"{happening.method.label} went over the top at {happening.t:.3g} s: its energy is {ratio} times the start."
-    return text if len(text) <= WIDTH else text.replace("its energy is", "energy")
+    ratio = times(1 + happening.energy_error)
+    return f"{happening.method.label} went over the top at {happening.t:.3g} s with {ratio} times the start's energy."
 
 
 def staying(source: Source) -> str:

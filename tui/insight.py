@@ -40,7 +40,7 @@ def _told(source: Source, happening: Happening) -> str:
     if happening.kind == "failed":
         return failed(happening)
     if happening.kind == "over the top":
-        return over_the_top(source, happening)
+        return over_the_top(happening)
     return staying(source) if happening.verdict == "bounded" else leaving(source, happening.index)
 
 
@@ -49,7 +49,7 @@ def lasting(source: Source) -> list[str]:
     happened = {(each.kind, each.index): each for each in source.happenings}
     failures = [failed(each) for (kind, _), each in happened.items() if kind == "failed"]
     tops = [
-        over_the_top(source, each)
+        over_the_top(each)
         for (kind, index), each in happened.items()
         if kind == "over the top" and ("failed", index) not in happened
     ]

@@ -12,4 +12,5 @@ def limit_warning(z: float) -> str:
     for method in METHODS:
         if 0 < method.linear_limit < z:
             letters.setdefault(method.linear_limit, []).append(method.letter)
-    return ", ".join(f"beyond limit {limit:.3g} of {', '.join(who)}" for limit, who in letters.items())
+    each = "; ".join(f"{limit:.3g} of {', '.join(who)}" for limit, who in letters.items())
+    return f"beyond limit {each}" if each else ""

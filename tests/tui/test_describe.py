@@ -22,12 +22,11 @@ def after(name: str, seconds: float, **changes: float) -> Live:
 
 def test_the_default_scene_after_twenty_seconds():
     live = after("drift", 20)
-    ratio = 1 + live.sample.readings[EXPLICIT].energy_error
     assert description(live) == [
         "The lab runs at 1 times real time, at 20.00 s of run 1, scene drift.",
         "The pendulum is 1 m long and started at 57.3 degrees with 0 radians per second; it swings, once in 2.1 s.",
         "The step size is 0.05 s, z = 0.157.",
-        f"Explicit Euler went over the top at 7.15 s: its energy is {ratio:.0f} times the start.",
+        "Explicit Euler went over the top at 7.15 s with 5.1 times the start's energy.",
         "Symplectic Euler stays within a band: its energy is off by 0.079 at most.",
         "Velocity Verlet stays within a band: its energy is off by 0.0057 at most.",
         "RK4 loses 2.9e-06 per second: at this h it leaves Verlet's band in about 32 min.",
@@ -76,6 +75,6 @@ async def test_d_describes_the_screen_and_closes_again():
         text = theatre.app.screen.text
         assert text.startswith("\n".join(description(theatre.source)))
         assert "On screen" in text
-        assert "energy error dE/E0" in text.splitlines()[-1]
+        assert "dE/E0" in text.splitlines()[-1]
         await theatre.press("d")
         assert theatre.app.screen is theatre.stage

@@ -47,7 +47,7 @@ def taped(**changes) -> Taped:
 def test_the_status_line_says_all_where_there_is_room():
     line = text(status_row(taped(), 120))
     assert line == (
-        " LIVE   running  1×  t 0.00 s  h 0.05 s  z 0.157  drift  57.3° 0 rad/s  REC 1 min 12 s  96 kB"
+        " LIVE   running  1×  t 0.00 s  h 0.05 s  z 0.157  drift  57.3° 0 rad/s  REC 1 min  96 kB"
         "  2026-11-20T10-14-03.mcap"
     )
 
@@ -56,10 +56,29 @@ def test_the_status_line_says_all_where_there_is_room():
 def test_the_status_line_leaves_out_what_matters_least_and_never_runs_over(width):
     line = text(status_row(taped(), width))
     assert len(line) <= width
-    for word in ("LIVE", "running", "1×", "t 0.00 s", "h 0.05 s"):
+    for word in ("LIVE", "running", "1×", "t 0.00 s", "h 0.05 s", "z 0.157"):
         assert word in line
     if "10-14-03.mcap" in line:
         assert "96 kB" in line
+
+
+def test_at_80_columns_it_says_which_run_it_is_at_which_step_and_whether_that_is_recorded():
+    live = taped()
+    assert "  z 0.157  drift  REC 1 min" in text(status_row(live, 80))
+    live.set_h(-0.2, equal_cost=True)
+    live.set_speed(0.25)
+    live.playhead = live.playhead.moved_to(0.0)
+    live.sample = replace(live.sample, t=725.0)
+    assert text(status_row(live, 80)) == (
+        " LIVE   reversed  1/4×  t 12 min 05 s  h -0.2 s equal cost  z 0.626  REC 1 min"
+    )
+
+
+def test_a_start_that_has_no_name_is_told_in_numbers():
+    live = taped()
+    live.start(DEFAULT_SCENE.altered(theta=3.0))
+    assert "171.9° 0 rad/s" in text(status_row(live, 80))
+    assert "custom" not in text(status_row(live, 80))
 
 
 def test_what_is_dropped_is_told_and_so_is_trouble():
@@ -138,11 +157,13 @@ def test_the_bar_tells_position_length_run_step_and_event(tmp_path):
     path = eventful(tmp_path / "eventful.mcap")
     replay = Replay(Recording.open(path), Marks(path), clock=lambda: 0.0)
     replay.seek(6.0)
-    assert facts(replay, 80) == "6.00 s of 12.00 s  run 2/3  step 50/200  event 5/10"
+    here = "recording 6.00 s of 12.00 s"
+    assert facts(replay, 80) == f"{here}  run 2/3  step 50/200  event 4/5"
     replay.looping = True
-    assert facts(replay, 80) == "6.00 s of 12.00 s  loop  run 2/3  step 50/200  event 5/10"
-    assert facts(replay, 40) == "6.00 s of 12.00 s  loop  run 2/3"
-    assert facts(replay, 0) == "6.00 s of 12.00 s"
+    assert facts(replay, 80) == f"{here}  loop  run 2/3  step 50/200  event 4/5"
+    assert facts(replay, 50) == f"{here}  loop  run 2/3"
+    assert facts(replay, 0) == here
+    assert " t 1.00 s simulated  " in text(status_row(replay, 80))
 
 
 def test_a_sentence_that_does_not_fit_ends_in_an_ellipsis():

@@ -205,7 +205,8 @@ async def test_e_comes_by_the_shadow_energies():
             await bench.pilot.press("e")
             if "shadow" in chart.border_title:
                 break
-        assert "shadow energy error" in chart.border_title
+        assert "shadow error" in chart.border_title
+        assert chart.border_subtitle == "only s and v have a shadow energy"
         for _ in range(200):
             await bench.pilot.pause(0.01)
             if chart.settled:

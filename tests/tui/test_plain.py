@@ -63,7 +63,7 @@ def test_every_second_has_a_sentence_and_every_event_one_more():
 def test_what_happened_is_explained_within_a_second():
     sentences = said(lab(), 10)
     at = sentences.index("7.15 s: Explicit Euler over the top, 5.1 E0.")
-    assert sentences[at + 1].startswith("Explicit Euler went over the top at 7.15 s: its energy is ")
+    assert sentences[at + 1].startswith("Explicit Euler went over the top at 7.15 s with ")
 
 
 def test_the_numbers_are_those_of_the_sample():

@@ -64,7 +64,7 @@ def test_a_symplectic_swing_is_lost_to_a_resonance_or_to_chaos(theta: float, z: 
         (2.0, ""),
         (2.05, "beyond limit 2 of s, v"),
         (2.82, "beyond limit 2 of s, v"),
-        (2.9, "beyond limit 2 of s, v, beyond limit 2.83 of r"),
+        (2.9, "beyond limit 2 of s, v; 2.83 of r"),
     ],
 )
 def test_a_step_beyond_a_linear_limit_is_warned_of(z: float, warning: str):

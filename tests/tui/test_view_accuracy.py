@@ -12,6 +12,7 @@ from engine.methods import METHODS
 from engine.scenes import SCENES, Scene
 from recordings.library import resolve
 from recordings.recording import Recording
+from tui.accuracy_chart import MARKS
 from tui.app import PenduApp
 from tui.live import Live
 from tui.marks import Marks
@@ -19,7 +20,7 @@ from tui.replay import Replay
 from tui.screens.lab import Lab
 from tui.screens.player import Player
 from tui.screens.stage import Stage
-from tui.widgets.accuracy import AccuracyPane
+from tui.widgets.accuracy import HERE, AccuracyPane
 
 RUNGS = ladder(5.0, 0.2, 0.01, 4)
 VERLET = 2
@@ -72,6 +73,8 @@ async def test_the_points_fill_in_and_are_the_engines():
         assert "energy error, the largest of all steps" in pane.text
         assert all(pane.text.count(letter) for letter in "esvr")
         assert pane.border_title == "Accuracy over 5 s: energy error up, force evaluations across"
+        assert pane.border_subtitle == "X you are here; x failed; ~ only rounding; dotted: error as h, h², h⁴"
+        assert set(MARKS.values()) | {HERE} == {"X", "x", "~"}
 
 
 async def test_it_says_where_you_are():

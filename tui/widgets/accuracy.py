@@ -6,15 +6,15 @@ from functools import partial
 from textwrap import wrap
 from typing import ClassVar
 
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.reactive import var
 
 from engine.accuracy import REASONS, ErrorKind, Point
 from engine.lockstep import Sample
 from engine.methods import METHODS
-from tui.accuracy_chart import accuracy_chart
+from tui.accuracy_chart import POWERS, accuracy_chart
 from tui.choice import StepSizeChosen
-from tui.keys import Key
+from tui.keys import Key, bindings
 from tui.look import Look
 from tui.palette import TEXT
 from tui.source import EQUAL_PARTS, Source
@@ -22,6 +22,8 @@ from tui.widgets.rows import Rows
 
 WORDS = 2  # lines
 HERE, CURSOR = "X", "O"
+POWERS_OF_H = ", ".join(POWERS[order] for order in sorted({method.order for method in METHODS}))
+LEGEND = f"{HERE} you are here; x failed; ~ only rounding; dotted: error as {POWERS_OF_H}"
 
 _GROUP = "accuracy"
 KEYS = (
@@ -39,10 +41,11 @@ class AccuracyPane(Rows, can_focus=True):
     """Draws the points that there are, "you are here" for each method, and one of them in words."""
 
     DEFAULT_CSS = """
-    AccuracyPane { border: round $panel-lighten-2; border-title-color: $foreground; width: 1fr; height: 1fr; }
+    AccuracyPane { border: round $panel-lighten-2; width: 1fr; height: 1fr; }
+    AccuracyPane { border-title-color: $foreground; border-subtitle-color: $foreground; }
     AccuracyPane:focus { border: round $primary; }
     """
-    BINDINGS: ClassVar[list[BindingType]] = [Binding(key.names, key.action, key.does, show=False) for key in KEYS]
+    BINDINGS: ClassVar[list[BindingType]] = bindings(*KEYS)
 
     source: var[Source | None] = var(None)
     sample: var[Sample | None] = var(None)
@@ -50,6 +53,7 @@ class AccuracyPane(Rows, can_focus=True):
 
     def __init__(self) -> None:
         super().__init__()
+        self.border_subtitle = LEGEND
         self.index = 2  # the method that is spoken of
         self.cursor: int | None = None  # a rung
         self.time, self.rungs = 0.0, list[int]()

@@ -5,19 +5,35 @@ from functools import partial
 
 from textual.reactive import var
 
+from engine.exact import Swing
 from engine.lockstep import Sample
+from engine.methods import METHODS
 from tui.charts import time_chart
+from tui.findings import about
 from tui.history import Quantity
 from tui.look import Look
 from tui.source import Source
 from tui.widgets.rows import Rows
 
-NAMES: dict[Quantity, str] = {
-    "energy_error": "energy error dE/E0",
-    "theta_error": "theta - exact theta [rad]",
-    "shadow_error": "shadow energy error",
-    "energy": "energy per m L² [1/s²]",
+NAMES: dict[Quantity, tuple[str, str]] = {
+    "energy_error": ("energy error dE/E0", "|dE/E0|"),
+    "theta_error": ("theta - exact theta [rad]", "theta error [rad]"),
+    "shadow_error": ("shadow energy error", "|shadow error|"),
+    "energy": ("energy per m L² [1/s²]", "energy [1/s²]"),
 }
+"""Of the quantity itself, and of its magnitude, which is charted logarithmically."""
+
+NO_SHADOW = f"only {' and '.join(m.letter for m in METHODS if m.shadow)} have a shadow energy"
+
+
+def title(look: Look, swing: Swing) -> str:
+    """What the chart shows, and of how much of the past."""
+    name, magnitude = NAMES[look.quantity]
+    span = "all" if look.seconds is None else about(look.seconds)
+    if not look.log:
+        return f"{name}, {span}"
+    each = {"libration": " per half swing", "rotation": " per turn"}.get(swing.regime, "")
+    return f"max {magnitude}{each}, {span}"
 
 
 class TimeChart(Rows):
@@ -50,15 +66,16 @@ class TimeChart(Rows):
 
     def watch_look(self) -> None:
         """Follow the settings."""
-        look = self.look
-        name, span = NAMES[look.quantity], "whole run" if look.seconds is None else f"{look.seconds:g} s"
-        self.border_title = f"{f'|{name}|, log' if look.log else name} - {span}"
         self.draw()
 
     def draw(self) -> None:
         """Ask for a chart."""
         if self.source is not None and self.drawable:
             self._wanted.set()
+            text = title(self.look, self.source.swing)
+            if text != self.border_title:  # setting it paints all of the pane
+                self.border_title = text
+                self.border_subtitle = NO_SHADOW if self.look.quantity == "shadow_error" else ""
 
     async def _build_on_demand(self) -> None:
         while True:

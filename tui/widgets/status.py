@@ -29,34 +29,35 @@ def speed_text(speed: float) -> str:
     return f"{sign}{size:.4g}×" if size >= 1 else f"{sign}1/{1 / size:.4g}×"
 
 
-def whole_seconds(value: float) -> str:
-    """As "12 s", "3 min 05 s"."""
-    return f"{int(value)} s" if value < 60 else seconds(value)
+def coarse(value: float) -> str:
+    """As "12 s", "3 min", "1 h 02 min"."""
+    return f"{int(value)} s" if value < 60 else f"{int(value / 60)} min" if value < 3600 else seconds(value)
 
 
 def status_row(source: Source, width: int) -> Row:
     """The line, as far as there is room."""
     scene, playhead, pace, tape = source.scene, source.playhead, source.pace, source.tape
-    z = abs(source.h) * scene.w0
+    z, live, named = abs(source.h) * scene.w0, source.kind == "LIVE", bool(scene.watch)
     warning = limit_warning(z)
     parts = [
-        _Part(12, "paused " if playhead.paused else "running"),
-        _Part(10, speed_text(playhead.speed)),
-        _Part(11, f"t {seconds(source.sample.t)}"),
-        _Part(9, f"equal cost: h {source.h:.4g} s or parts" if source.equal_cost else f"h {source.h:.4g} s"),
-        _Part(10, f"z {z:.3g} {warning}", WARN) if warning else _Part(6, f"z {z:.3g}"),
-        _Part(3, scene.name, FRAME),
-        _Part(7, f"{math.degrees(scene.theta):.4g}° {scene.omega:.4g} rad/s"),
+        _Part(12, "paused " if playhead.paused else "reversed" if source.h < 0 else "running"),
+        _Part(7, speed_text(playhead.speed)),
+        _Part(11, f"t {seconds(source.sample.t)}{'' if live else ' simulated'}"),
+        _Part(11, f"h {source.h:.4g} s{' equal cost' if source.equal_cost else ''}"),
+        _Part(10, f"z {z:.3g}", WARN if warning else TEXT),
+        *([_Part(9, warning, WARN)] if warning else []),
+        _Part(6 if named else 3, scene.name, FRAME),
+        _Part(4 if named else 6, f"{math.degrees(scene.theta):.4g}° {scene.omega:.4g} rad/s"),
     ]
     if pace.share < 0.99:
         parts.insert(2, _Part(10, f"real-time {percent(pace.share)}", WARN))
     if tape is None:
-        parts.append(_Part(5, "not recorded", FRAME))
+        parts.append(_Part(8, "not recorded", FRAME))
     elif tape.failed:
-        parts.append(_Part(8, "NOT RECORDED", WARN))
+        parts.append(_Part(10, "NOT RECORDED", WARN))
     else:
-        verb = "REC " if source.kind == "LIVE" else ""
-        parts.append(_Part(5, f"{verb}{whole_seconds(tape.seconds)}"))
+        if live:
+            parts.append(_Part(8, f"REC {coarse(tape.seconds)}"))
         parts.append(_Part(2, file_size(tape.bytes), FRAME))
         parts.append(_Part(1, tape.name, FRAME))
     badge = f" {source.kind} "

@@ -1,0 +1,22 @@
+"""Notices lie where they cover no number."""
+
+import asyncio
+
+from textual.widgets._toast import Toast
+
+from engine.scenes import DEFAULT_SCENE
+from tui.app import PenduApp
+from tui.live import Live
+from tui.screens.lab import Lab
+from tui.widgets.line import InsightLine
+
+
+async def test_the_notice_of_a_mark_lies_on_the_insight_line():
+    app = PenduApp(Lab(Live(DEFAULT_SCENE, clock=lambda: 0.0), lambda: 0.0))
+    async with app.run_test(size=(80, 24), notifications=True) as pilot:
+        await pilot.press("m")
+        async with asyncio.timeout(20):
+            while not (toasts := app.screen.query(Toast)) or not toasts.first().region:
+                await pilot.pause(0.01)
+        assert toasts.first().region.height == 1
+        assert app.screen.query_one(InsightLine).region.contains_region(toasts.first().region)
