@@ -76,7 +76,7 @@ def _metadata(stream: BinaryIO, offsets: list[int]) -> dict[str, str]:
 
 def _by_walk(stream: BinaryIO, progress: Progress | None) -> Index:
     walk = Walk(stream, progress)
-    deque(walk, maxlen=0)
+    deque(walk, maxlen=0)  # to its end
     layout = walk.layout
     if layout is None:
         raise walk.nothing("read")
