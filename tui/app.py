@@ -20,8 +20,9 @@ from tui.palette import PALETTES, Palette
 from tui.pixels import PixelFilter
 from tui.screens.modal import Commands
 from tui.screens.stage import SMALLEST, Stage
-from tui.terminal import come_back_whole, is_gone
+from tui.terminal import come_back_whole, is_gone, send_less
 from tui.widgets.rows import PRESENT
+from tui.wire import Wire
 
 WIDTHS = [(0, "-tiny"), (SMALLEST[0], "-narrow"), (80, "-normal"), (120, "-wide")]
 HEIGHTS = [(0, "-flat"), (SMALLEST[1], "-low"), (24, "-middle"), (36, "-high")]
@@ -56,6 +57,7 @@ class PenduApp(App[Exit | OSError]):
         self.set_reactive(PenduApp.pixels, display.pixels)
         self.set_class(display.present, PRESENT)
         self.stages = [stage]
+        self.wire = Wire()
 
     @property
     def stage(self) -> Stage:
@@ -73,6 +75,7 @@ class PenduApp(App[Exit | OSError]):
 
     def on_mount(self) -> None:
         """Leave in order when asked to by a signal, and come back from one."""
+        send_less(self)
         come_back_whole(self)
         self.app_resume_signal.subscribe(self, lambda _: self.refresh())
         loop = asyncio.get_running_loop()

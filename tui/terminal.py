@@ -3,9 +3,11 @@
 import os
 import signal
 import sys
+import time
 from typing import Any
 
 from tui.errors import Exit, UserError
+from tui.lean import lean
 
 
 def check_terminal() -> None:
@@ -34,14 +36,30 @@ def is_gone() -> bool:
 
 
 def is_behind(app: Any) -> bool:
-    """Whether frames are still waiting to be sent: on a slow line one more only adds to the delay.
+    """Whether frames are still on their way: on a slow line one more only adds to the delay.
 
     Textual blocks once 30 writes are waiting, and tells nobody how many there are.
     """
     try:
-        return app._driver._writer_thread._queue.qsize() > 0  # type: ignore[no-any-return]
+        waiting = app._driver._writer_thread._queue.qsize() > 0
     except AttributeError:  # another version, or no terminal
         return False
+    return app.wire.is_busy(waiting, time.monotonic())  # type: ignore[no-any-return]
+
+
+def send_less(app: Any) -> None:
+    """Leave out colours that are in force already: over a slow line, what is sent is what one waits for."""
+    if sys.platform == "win32":  # there Textual cuts what it sends anywhere
+        return
+    driver = app._driver
+    write = driver.write
+
+    def write_less(text: str) -> None:
+        less = lean(text)
+        app.wire.send(len(less.encode()))
+        write(less)
+
+    driver.write = write_less
 
 
 def come_back_whole(app: Any) -> None:

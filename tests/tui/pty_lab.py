@@ -15,13 +15,17 @@ from types import TracebackType
 from typing import Self
 
 PENDU = [sys.executable, "-c", "import sys; from tui.cli import main; sys.exit(main())"]
+PACKET = 512  # bytes on a slow line; 8 ms at 64 KiB/s
 ROOT = Path(__file__).parents[2]
 
 
 class PtyLab:
-    """A running `pendu-tui` with its terminal."""
+    """A running `pendu-tui` with its terminal, which is behind a line of `rate` bytes a second if that is given."""
 
-    def __init__(self, *arguments: str, size: tuple[int, int] = (120, 40), **environment: str) -> None:
+    def __init__(
+        self, *arguments: str, size: tuple[int, int] = (120, 40), rate: float | None = None, **environment: str
+    ) -> None:
+        self.rate = rate
         columns, rows = size
         self.began = time.monotonic()
         self.pid, self.terminal = pty.fork()
@@ -31,6 +35,7 @@ class PtyLab:
             terminal = {"TERM": "xterm-256color", "COLORTERM": "truecolor", "PYTHONUTF8": "1"}
             ours = {name: value for name, value in os.environ.items() if name not in ("COLUMNS", "LINES")}
             os.execvpe(PENDU[0], [*PENDU, *arguments], {**ours, **terminal, **environment})
+        self._arrival = 0.0  # of the last packet, s since the start
         self.output = bytearray()
         self.reads: list[tuple[float, int]] = []
         """When how many bytes came, in s since the start."""
@@ -56,11 +61,14 @@ class PtyLab:
         """What comes within `seconds`, at most one piece; empty if nothing does or the program is gone."""
         ready, _, _ = select.select([self.terminal], [], [], max(seconds, 0))
         try:
-            piece = os.read(self.terminal, 1 << 16) if ready else b""
+            piece = os.read(self.terminal, 1 << 16 if self.rate is None else PACKET) if ready else b""
         except OSError:  # Linux: nobody has the other end open any more
             time.sleep(0.01)
             return b""
         if piece:
+            if self.rate is not None:
+                self._arrival = max(self.now, self._arrival) + len(piece) / self.rate
+                time.sleep(max(0.0, self._arrival - self.now))
             self.output += piece
             self.reads.append((self.now, len(piece)))
         return piece

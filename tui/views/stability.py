@@ -48,8 +48,10 @@ class StabilityView(View):
                 self.post_message(self.Computed(piece))
 
     def on_stability_view_computed(self, message: Computed) -> None:
-        """Show it."""
+        """Show it, and how far it is in tenths: with a new title, Textual sends all of the pane again."""
         piece, pane = message.piece, self.query_one(StabilityPane)
-        state = "" if piece.done == 1 and piece.steps == PASSES[-1] else f", computing {piece.done:.0%}"
-        pane.border_title = f"Stability: h across, amplitude up; {piece.steps} steps{state}"
         pane.fill(piece.z, piece.method, piece.cells)
+        state = "" if piece.done == 1 and piece.steps == PASSES[-1] else f", computing {int(10 * piece.done) / 10:.0%}"
+        title = f"Stability: h across, amplitude up; {piece.steps} steps{state}"
+        if title != pane.border_title:
+            pane.border_title = title
