@@ -216,3 +216,13 @@ def test_a_real_limit_of_the_system_is_survived_too(tmp_path):
     assert finished
     for name in files.split():
         assert verify(tmp_path / name).identical
+
+
+def test_what_happens_after_the_end_is_not_recorded_and_does_no_harm(lab):
+    lab.run(1.0)
+    lab.recorder.close()
+    samples = Recording.open(lab.recorder.path).samples
+    lab.set_h(0.1)
+    lab.run(3.0)
+    assert Recording.open(lab.recorder.path).samples == samples
+    assert lab.recorder.failed is None
