@@ -1,9 +1,14 @@
-"""A monkey at the keyboard and the mouse of the real program: random, and the same for the same seed."""
+"""A monkey at the keyboard and the mouse: random, and the same for the same seed."""
 
 import random
+from collections.abc import Iterator
 from contextlib import suppress
 
+from textual._xterm_parser import XTermParser
+from textual.events import Key
+
 from tests.tui.pty_lab import PtyLab
+from tests.tui.stage import Theatre
 from tui.keys import COMMON, LIVE, REPLAY
 from tui.widgets import accuracy, phase, stability
 
@@ -29,14 +34,16 @@ VIEWS = ["\x1bOQ", "\x1bOR", "\x1bOS", "\x1b[15~"]  # F2 to F5
 KEYS = [
     SENT.get(key.shown or key.names, key.shown or key.names)
     for key in (*COMMON, *LIVE, *REPLAY, *phase.KEYS, *stability.KEYS, *accuracy.KEYS)
-    if key.shown not in ("q", "ctrl+z", "ctrl+p", "esc", "arrows", "shift+arrows")
+    if key.shown not in ("q", "ctrl+z", "ctrl+p", "f", "esc", "arrows", "shift+arrows")
 ]
 CALMING = "<<00++rp   "  # else the lab would soon stand still, or run fast with tiny steps and take long to verify
 TYPED = "0123456789.-edg\x7f"
 BATCH, EPISODE = 10, 60  # presses at once; and until what lies over the lab is closed
 PAUSE = 0.03  # s after a batch
 ESCDELAY = "20"  # ms; Textual's name for how long it waits after an escape, which may begin something longer
-ESCAPE = 0.05  # s after one
+ESC, PALETTE = "\x1b", "\x10"
+ESCAPE = 0.15  # s after one; Textual looks every 0.1 s whether there is more to come
+STRIDES = (0.0, 1 / 30, 1 / 30, 0.2)  # s of the clock from one press to the next, on a stage
 
 
 def press(chance: random.Random) -> str:
@@ -64,23 +71,57 @@ def press(chance: random.Random) -> str:
             return mouse(chance.choice((64, 65)), "M")
 
 
-def play(pendu: PtyLab, presses: int, seed: int) -> int:
-    """Let the monkey play, then quit; returns the exit code."""
+def presses(number: int, seed: int) -> Iterator[str]:
+    """All that it does, one after the other; now and then it closes what lies over the lab."""
     chance = random.Random(seed)
-    for number in range(0, presses, BATCH):
-        pendu.type("".join(press(chance) for _ in range(BATCH)))
-        pendu.run(PAUSE)
-        if number % EPISODE == 0:
-            if number % (10 * EPISODE) == 0:
-                pendu.type("\x10" + "".join(chance.choices("aemnstv ", k=3)))  # the palette finds, but does nothing
-                pendu.run(ESCAPE)
-            for _ in range(2):
-                pendu.type("\x1b")
-                pendu.run(ESCAPE)
+    for done in range(number):
+        if done % EPISODE == 0:
+            if done % (10 * EPISODE) == 0:
+                yield PALETTE
+                yield "".join(chance.choices("aemnstv ", k=3))  # the palette finds, but does nothing
+            yield ESC
+            yield ESC
+        if done == number // 2:
+            yield from (ESC, ESC, "f")  # a replay goes on live
+        yield press(chance)
+
+
+def play(pendu: PtyLab, number: int, seed: int) -> int:
+    """Let the monkey play on the real program, then quit; returns the exit code."""
+    for done, typed in enumerate(presses(number, seed)):
+        pendu.type(typed)
+        if typed in (ESC, PALETTE):
+            pendu.run(ESCAPE)
+        elif done % BATCH == 0:
+            pendu.run(PAUSE)
     for _ in range(20):
-        pendu.type("\x1b")
+        pendu.type(ESC)
         pendu.run(ESCAPE)
         pendu.type("q")
         with suppress(TimeoutError):
             return pendu.end(1.0)
     raise TimeoutError("it does not quit")
+
+
+async def play_on_stage(theatre: Theatre, number: int, seed: int) -> None:
+    """Let the monkey play where nothing depends on how fast the machine is."""
+    app, parser, chance = theatre.app, XTermParser(), random.Random(-seed)
+    driver = app._driver
+    assert driver is not None
+    for typed in presses(number, seed):
+        for message in [Key("escape", None)] if typed == ESC else parser.feed(typed):
+            driver.process_message(message)
+        await still(theatre)
+        if stride := chance.choice(STRIDES):
+            theatre.now += stride
+            theatre.stage.frame()
+            await still(theatre)
+        if app._exception is not None:  # leaving the stage raises it
+            return
+
+
+async def still(theatre: Theatre) -> None:
+    """Wait for what was asked for, in other threads, too."""
+    await theatre.pilot.pause(0)
+    while not all(worker.is_finished for worker in theatre.app.workers if worker.group != "chart"):
+        await theatre.pilot.pause(0.001)
