@@ -5,10 +5,8 @@ import math
 SYSTEMS = 12_000  # bytes that the system takes for a terminal before one has to wait; nobody tells how many wait there
 LEAST = 4_000  # bytes/s; what looks slower has come to a stand
 SLACK = 0.02  # s of what is on its way that are as good as nothing
-BACK, FORTH = (
-    0.85,
-    0.05,
-)  # of the rate: what is tried where it was too much, and how much more a second where it was not
+BACK = 0.7  # of what was too much
+FORTH = 0.03  # more every second where it is not
 
 
 class Wire:
