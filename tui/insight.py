@@ -11,12 +11,15 @@ from tui.witness import Happening
 
 WATCH = 8.0  # s of the clock during which a run's beginning says what to watch
 FRESH = 6.0  # s of the clock for which something is news
+RESTING = "Nothing moves: the pendulum started at rest where no force acts on it."
 TURN = 8.0  # s of the clock for which one of the lasting sentences stays
 
 
 def insight(source: Source) -> str:
-    """The sentence: time is back at its start, or news, or what to watch, or what is known, in turn."""
+    """The sentence: nothing moves, or time is back at its start, or news, or what to watch, or what is known, in turn."""
     sample, scene, returned = source.sample, source.scene, source.history.returned
+    if source.swing.regime == "equilibrium":
+        return RESTING
     if returned is not None and abs(sample.t) < WATCH:
         return return_text(scene, returned)
     pace = abs(source.playhead.speed)

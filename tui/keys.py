@@ -35,7 +35,7 @@ COMMON = (
     Key(str(_EXACT), str(_EXACT), "show or hide the exact swing", f"show({_EXACT - 1})", _SHOW),
     Key("t", "t", "trails on, off", "trails", _SHOW),
     Key("y", "y", "chart logarithmic, linear", "log", _SHOW, "Log"),
-    Key("e", "e", "chart's quantity: energy, theta or shadow energy error, energy", "quantity", _SHOW, "Quantity"),
+    Key("e", "e", "chart energy error, theta error, shadow error, energy", "quantity", _SHOW, "Quantity"),
     Key("w", "w", "chart shows more of the past", "window(1)", _SHOW, "Window"),
     Key("W,shift+w", "W", "chart shows less of the past", "window(-1)", _SHOW),
     Key("v", "v", "next view", "view", _VIEWS, "View"),
@@ -45,9 +45,7 @@ COMMON = (
     Key("f5", "F5", "view: stability", "view('stability')", _VIEWS),
     Key("E,shift+e", "E", "all events", "app.aid('diary')", _SHOW, "Events"),
     Key("d", "d", "describe the screen in words", "app.aid('describe')", _SHOW, "Describe"),
-    Key(
-        "s", "s", "save the screen beside the recordings, as SVG and text", "app.aid('picture')", _PROGRAM, "Screenshot"
-    ),
+    Key("s", "s", "screenshot beside the recordings, as SVG and text", "app.aid('picture')", _PROGRAM, "Screenshot"),
     Key("a", "a", "draw with braille, half blocks, or ASCII", "app.next_pixels", _PROGRAM),
     Key("u", "u", "undo the last setting", "undo", _PROGRAM, "Undo"),
     Key("question_mark", "?", "help", "help", _PROGRAM, "Help"),

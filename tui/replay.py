@@ -139,10 +139,15 @@ class Replay:
         if not self.playhead.paused:
             self._stay_inside()
             self._reel.go_to(self.playhead.position)
-        until = self._clock() + FILL_BUDGET
-        for known in (self._reel.fill, self._highlights.find):
-            known(lambda: self._clock() < until)
+        self.fill()
         return self.sample
+
+    def fill(self) -> bool:
+        """Read more of the past, and look further ahead; whether the past of the sample is known by now."""
+        until = self._clock() + FILL_BUDGET
+        for read in (self._reel.fill, self._highlights.find):
+            read(lambda: self._clock() < until)
+        return self._reel.filled
 
     def pause(self, paused: bool) -> None:
         """Stop or go on; from the end, go on from the start."""
@@ -185,11 +190,6 @@ class Replay:
         """Leave a mark at the sample, unless it has one; it is kept beside the recording, which is not touched."""
         if not is_marked(self):
             self.marks.add(Mark(self.playhead.position, self.sample.run, self.sample.step, text))
-
-    @property
-    def filled(self) -> bool:
-        """Whether the past of the sample is known as far as it can be; after a jump that takes some frames."""
-        return self._reel.filled
 
     def live(self) -> Live:
         """A lab that goes on from here with the same bits, and with what is known of the past."""

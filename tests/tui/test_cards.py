@@ -6,9 +6,10 @@ from engine.methods import METHODS
 from engine.scenes import SCENES
 from tests.tui.stage import lab
 from tui.cards import WIDTH, method_card, scene_card
-from tui.keys import COMMON, LIVE
+from tui.keys import COMMON, LIVE, REPLAY
 from tui.live import Live
 from tui.screens.help import help_text
+from tui.widgets import accuracy, phase, stability
 from tui.widgets.phase import PhasePane
 
 
@@ -43,6 +44,8 @@ def test_a_scene_that_has_nothing_to_watch_says_so_by_silence():
 def test_no_line_is_longer_than_the_reader_is_wide():
     for card in (*map(method_card, range(len(METHODS))), *map(scene_card, SCENES.values())):
         assert max(map(len, card.splitlines())) <= WIDTH
+    for keys in ((*LIVE, *COMMON), (*REPLAY, *COMMON), phase.KEYS, accuracy.KEYS, stability.KEYS):
+        assert max(map(len, help_text(keys, Live(SCENES["drift"])).splitlines())) <= WIDTH
 
 
 def test_the_help_begins_with_what_to_watch_and_ends_with_the_methods():

@@ -9,7 +9,7 @@ from engine.methods import METHODS
 from engine.scenes import SCENES, Scene
 from tui.diary import diary
 from tui.findings import about, forecast, leaving, over_the_top, short, so_far, staying, times
-from tui.insight import FRESH, TURN, WATCH, insight, lasting
+from tui.insight import FRESH, RESTING, TURN, WATCH, insight, lasting
 from tui.live import Live
 
 EXPLICIT, SYMPLECTIC, VERLET, RK4 = range(4)
@@ -159,6 +159,12 @@ def test_before_any_verdict_it_is_told_whose_error_is_largest_so_far():
     assert so_far(live) == (
         f"Energy errors so far: {errors[RK4]:.2g} (RK4) to {errors[EXPLICIT]:.2g} (Explicit Euler)."
     )
+
+
+def test_a_pendulum_that_hangs_still_is_said_to():
+    live = after("drift", 30, theta=0.0)
+    assert insight(live) == RESTING
+    assert {(reading.theta, reading.omega) for reading in live.sample.readings} == {(0.0, 0.0)}
 
 
 def test_a_method_that_failed_is_told_of_first_and_of_nothing_else():

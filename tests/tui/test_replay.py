@@ -217,7 +217,7 @@ def test_a_lab_that_goes_on_from_here_knows_what_was_known(tmp_path):
     table = Table(recorded(tmp_path / "drift.mcap", 22.0))
     table.replay.seek(18.0)
     table.run(1 / FPS)
-    assert table.replay.filled
+    assert table.replay.fill()
     known = table.replay.happenings, table.replay.judgements, table.replay.history.window().t
     live = table.replay.live()
     assert [judgement.verdict for judgement in live.judgements] == ["grows", "bounded", "bounded", "drifts"]
@@ -291,7 +291,7 @@ def test_a_change_of_the_step_is_known_of_wherever_the_pieces_of_a_long_past_beg
     table.replay.seek(length)
     table.replay.pause(True)
     table.run(1 / FPS)
-    assert table.replay.filled
+    assert table.replay.fill()
     for seen, was in zip(table.replay.judgements, live.judgements, strict=True):
         assert seen.verdict == was.verdict
         assert seen.periods == pytest.approx(was.periods, abs=table.replay.swing.period * 5)  # a bin, and a gap

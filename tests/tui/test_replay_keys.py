@@ -1,5 +1,7 @@
 """Every key of the replay does what the help says, and so does the mouse on its bar."""
 
+import asyncio
+import itertools
 from collections.abc import Callable
 from pathlib import Path
 
@@ -7,7 +9,7 @@ import pytest
 
 from engine.scenes import DEFAULT_SCENE
 from recordings.recording import Recording
-from tests.tui.sitting import eventful
+from tests.tui.sitting import eventful, recorded
 from tests.tui.stage import on_stage, player
 from tui.errors import UserError
 from tui.keys import COMMON, REPLAY
@@ -17,6 +19,7 @@ from tui.replay import Replay
 from tui.screens.help import help_text
 from tui.screens.lab import Lab
 from tui.screens.player import Player
+from tui.widgets.diary import DiaryPane
 from tui.widgets.seekbar import SeekBar
 from tui.widgets.status import StatusLine
 
@@ -113,6 +116,24 @@ async def test_f_goes_on_live_from_the_replayed_moment(path):
         assert theatre.source.sample.step == here.step
         assert theatre.source.sample.readings[3].theta == here.readings[3].theta
         assert " LIVE " in theatre.text(StatusLine)
+
+
+async def test_the_lab_that_goes_on_knows_what_the_replay_knew_even_right_after_a_jump(tmp_path):
+    path = recorded(tmp_path / "drift.mcap", 20.0)
+
+    def make(clock: Callable[[], float]) -> Player:
+        slowly = itertools.count(0.0, 0.003).__next__  # so that a frame has time for some samples only
+        return Player(Replay(Recording.open(path), Marks(path), slowly), lambda live: Lab(live, clock), clock)
+
+    async with on_stage(make, (120, 40)) as theatre:
+        theatre.stage.seek(theatre.source.length)
+        await theatre.pilot.click("KeyLine", offset=(theatre.text("KeyLine").index("Live"), 0))
+        async with asyncio.timeout(20):
+            while not isinstance(theatre.stage, Lab):
+                await theatre.pilot.pause(0.01)
+        verdicts = [judgement.verdict for judgement in theatre.source.judgements]
+        assert verdicts == ["grows", "bounded", "bounded", "drifts"]
+        assert "over the top" in theatre.text(DiaryPane)
 
 
 async def test_f_stays_in_the_replay_where_the_lab_could_not_record(path):

@@ -97,8 +97,8 @@ class Player(Stage):
     async def action_live(self) -> None:
         """Go on live from here, when the past is known and the way here has been simulated again."""
         self.replay.pause(True)
-        while not self.replay.filled:
-            await asyncio.sleep(0.01)
+        while not self.replay.fill():
+            await asyncio.sleep(0)
         if self.replay.sample.step > LONG:
             self.notify(f"Simulating {self.replay.sample.step} steps ...", timeout=2)
         live = await asyncio.to_thread(self.replay.live)
