@@ -1,6 +1,7 @@
 """The real program on terminals that have less, and on those that are taken away for a while."""
 
 import itertools
+import random
 import re
 import signal
 import time
@@ -11,11 +12,15 @@ import pytest
 from engine.lockstep import Sample
 from recordings.recording import Recording
 from recordings.verify import verify
+from tests.tui.emulator import Emulator
 from tests.tui.pty_lab import PtyLab
 
 RECORDING = "REC 0 s"
 NEVER_CHANGES = "Phase space"  # once painted
 AWAY = 2.0  # s
+VIEWS = {"Phase space": "\x1bOR", "Accuracy": "\x1bOS", "Stability": "\x1b[15~", "Events": "\x1bOQ"}
+"""What one sees of a view, and its key."""
+
 SGR = re.compile(rb"\x1b\[([\d;]*)m")
 
 
@@ -130,3 +135,65 @@ def test_a_lab_that_was_stopped_goes_on_where_it_was(tmp_path, how):
     assert recording.length < present
     times = [entry.value.t for entry in recording.entries() if isinstance(entry.value, Sample)]
     assert max(after - before for before, after in itertools.pairwise(times)) < 1.0
+
+
+def standing(pendu: PtyLab) -> list[str]:
+    """Pause; returns what is on the screen then."""
+    pendu.wait_for("REC 1 s")
+    pendu.type(" ")
+    pendu.wait_for("paused")
+    emulator = Emulator(pendu)
+    pendu.type("aaa")  # three kinds of pixels, painted anew each time
+    return still(emulator)
+
+
+def still(emulator: Emulator) -> list[str]:
+    """The screen once it is whole, without the insight line, which goes on."""
+
+    def whole(lines: list[str]) -> bool:
+        panes = [line for line in lines if line.startswith("╭") and line.endswith("╮")]
+        return "paused" in lines[0] and bool(panes) and "Quit" in lines[-1] and emulator.lines == lines
+
+    return without_insight(emulator.wait_until(whole))
+
+
+def without_insight(lines: list[str]) -> list[str]:
+    return [*lines[:-3], lines[-1]]
+
+
+@pytest.mark.parametrize("what", ["a", "ctrl+z", "stop"])
+def test_what_stood_on_the_screen_stands_there_again_to_the_letter(tmp_path, what):
+    with session(tmp_path) as pendu:
+        before = standing(pendu)
+        emulator = Emulator(pendu)
+        if what == "a":
+            pendu.type("aaa")
+        else:
+            if what == "ctrl+z":
+                pendu.type("\x1a")
+            else:
+                pendu.signal(signal.SIGSTOP)
+            while state(pendu.pid) != "T":
+                pendu.run(0.05)
+            emulator = Emulator(pendu)
+            pendu.signal(signal.SIGCONT)
+        emulator.wait_until(lambda lines: without_insight(lines) == before)
+        pendu.type("q")
+        assert pendu.end() == 0
+
+
+def test_a_storm_of_200_sizes_leaves_every_view_whole(tmp_path):
+    storm = random.Random(200)
+    with session(tmp_path) as pendu:
+        before = standing(pendu)
+        for title, key in VIEWS.items():
+            pendu.type(key)
+            for _ in range(50):
+                pendu.resize(storm.randint(1, 220), storm.randint(1, 70))
+                pendu.run(0.05)
+            emulator = Emulator(pendu)
+            pendu.resize(120, 40)
+            assert title in "".join(still(emulator))
+        emulator.wait_until(lambda lines: without_insight(lines) == before)
+        pendu.type("q")
+        assert pendu.end() == 0

@@ -51,13 +51,17 @@ class Rows(Widget):
 
     def on_resize(self) -> None:
         """Draw for the new size."""
-        self.room = self.size
-        self.draw()
+        self._fit()
 
     def on_show(self) -> None:
         """Draw what has changed meanwhile."""
         self._visible = True
-        self.room = self.size
+        self._fit()
+
+    def _fit(self) -> None:
+        if self.room != self.size:
+            self.room = self.size
+            self.refresh()  # Textual may have painted it already, in the room that it had before
         self.draw()
 
     def on_hide(self) -> None:
