@@ -1,5 +1,6 @@
 """F4: speed against accuracy for the pendulum on screen."""
 
+import asyncio
 import math
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -24,6 +25,7 @@ from tui.widgets.accuracy import HERE, AccuracyPane
 
 RUNGS = ladder(5.0, 0.2, 0.01, 4)
 VERLET = 2
+PATIENCE = 120  # s; a program that ended would be waited for in vain
 
 
 @pytest.fixture(autouse=True)
@@ -38,8 +40,9 @@ def said(pane: AccuracyPane) -> str:
 
 async def complete(pilot: Pilot[object], pane: AccuracyPane) -> None:
     """Wait for the points of another process, for those here, and for the chart."""
-    while not (pane.settled and set(enumerate(pane.here)) <= set(pane.points)):
-        await pilot.pause(0.05)
+    async with asyncio.timeout(PATIENCE):
+        while not (pane.settled and set(enumerate(pane.here)) <= set(pane.points)):
+            await pilot.pause(0.05)
 
 
 @asynccontextmanager
@@ -47,8 +50,9 @@ async def view_of(stage: Stage, size: tuple[int, int]) -> AsyncIterator[tuple[Pi
     app = PenduApp(stage)
     async with app.run_test(size=size) as pilot:
         await pilot.press("f4")
-        while not app.screen.query(AccuracyPane):
-            await pilot.pause(0.01)
+        async with asyncio.timeout(PATIENCE):
+            while not app.screen.query(AccuracyPane):
+                await pilot.pause(0.01)
         pane = app.screen.query_one(AccuracyPane)
         await complete(pilot, pane)
         yield pilot, pane

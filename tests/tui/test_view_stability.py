@@ -1,3 +1,4 @@
+import asyncio
 import math
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -38,11 +39,12 @@ async def view_of(stage: Stage, size: tuple[int, int]) -> AsyncIterator[tuple[Pi
     app = PenduApp(stage)
     async with app.run_test(size=size) as pilot:
         await pilot.press("f5")
-        while not app.screen.query(StabilityPane):
-            await pilot.pause(0.01)
-        pane = app.screen.query_one(StabilityPane)
-        while "computing" in (pane.border_title or "computing"):
-            await pilot.pause(0.05)
+        async with asyncio.timeout(120):  # a program that ended would be waited for in vain
+            while not app.screen.query(StabilityPane):
+                await pilot.pause(0.01)
+            pane = app.screen.query_one(StabilityPane)
+            while "computing" in (pane.border_title or "computing"):
+                await pilot.pause(0.05)
         pane.draw()
         yield pilot, pane
 
