@@ -78,7 +78,7 @@ class Player(Stage):
         except OSError as error:
             self.notify(f"The mark cannot be saved: {error.strerror}.", severity="warning", markup=False)
         else:
-            self.notify(f"Mark at {self.replay.playhead.position:.2f} s", timeout=2)
+            self.notify(f"Mark at {self.replay.sample.t:.2f} s simulated", timeout=2)
         self.show_now()
 
     def action_loop_end(self, number: int) -> None:
