@@ -9,8 +9,6 @@ from tui.app import PenduApp
 from tui.display import FPS, USUAL, Display
 from tui.live import Live
 from tui.screens.lab import Lab
-from tui.widgets.chart import TimeChart
-from tui.widgets.phase_display import PhaseDisplay
 
 PATIENCE = 30.0  # s for the charts to be built
 
@@ -35,9 +33,9 @@ async def still(
 
 
 async def settled(app: PenduApp) -> None:
-    """Wait until all charts and rings show the newest data."""
+    """Wait until every pane that takes its time shows the newest data."""
     async with asyncio.timeout(PATIENCE):
-        while not all(pane.settled for pane in (*app.stage.query(TimeChart), *app.stage.query(PhaseDisplay))):
+        while not all(getattr(pane, "settled", True) for pane in app.stage.query("#views *")):
             await asyncio.sleep(0.01)
 
 

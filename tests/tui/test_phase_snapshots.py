@@ -2,22 +2,8 @@
 
 import math
 
-import pytest
-
 from engine.scenes import SCENES, Scene
-from tui.display import Display
 from tui.still import still
-
-DRIFT = SCENES["drift"]
-
-
-@pytest.mark.parametrize(
-    ("size", "theme"),
-    [((80, 24), "dark"), ((120, 40), "light"), ((200, 60), "dark")],
-    ids=["80x24", "120x40", "200x60"],
-)
-async def test_phase_space_over_the_whole_screen_with_rings_and_the_exact_point(snapshot, size, theme):
-    snapshot(f"phase-{size[0]}x{size[1]}-{theme}", await still(DRIFT, 6.0, size, Display(theme), ["f3", "5"]))
 
 
 async def test_the_neighbourhood_of_the_unstable_point_under_a_crosshair(snapshot):

@@ -3,19 +3,48 @@
 import pytest
 
 from engine.scenes import DEFAULT_SCENE, SCENES
+from recordings.library import resolve
 from tests.tui.command_line import pendu
 from tests.tui.conftest import SNAPSHOTS
+from tests.tui.stage import player
 from tui.display import Display
-from tui.still import still
+from tui.still import normalised, still
 
 SIZES = {"80x24": (80, 24), "120x40": (120, 40), "200x60": (200, 60)}
 SECONDS = 12.0
 
 
+VIEWS = {"lab": [], "phase": ["f3", "5"], "accuracy": ["f4"], "stability": ["f5"]}
+DISPLAYS = {
+    "light": Display("light"),
+    "high-contrast": Display("high-contrast"),
+    "ascii": Display(pixels="ascii"),
+    "present": Display(present=True),
+}
+
+
+@pytest.fixture(autouse=True)
+def _few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of many, chaos would make another picture where another processor rounds a sine otherwise."""
+    monkeypatch.setattr("tui.views.stability.PASSES", (20, 300))
+
+
 @pytest.mark.parametrize("size", SIZES)
-@pytest.mark.parametrize("theme", ["dark", "light"])
-async def test_the_lab(snapshot, size, theme):
-    snapshot(f"lab-{size}-{theme}", await still(DEFAULT_SCENE, SECONDS, SIZES[size], Display(theme)))
+@pytest.mark.parametrize("view", VIEWS)
+async def test_every_view_at_every_size(snapshot, view, size):
+    snapshot(f"{view}-{size}-dark", await still(DEFAULT_SCENE, SECONDS, SIZES[size], keys=VIEWS[view]))
+
+
+@pytest.mark.parametrize("display", DISPLAYS)
+async def test_the_lab_in_other_colours_and_characters(snapshot, display):
+    snapshot(f"lab-120x40-{display}", await still(DEFAULT_SCENE, SECONDS, (120, 40), DISPLAYS[display]))
+
+
+async def test_a_replay(snapshot):
+    async with player(resolve("drift")) as theatre:
+        await theatre.run(SECONDS / 2)
+        await theatre.settled()
+        snapshot("replay-120x40-dark", normalised(theatre.app.export_screenshot()))
 
 
 async def test_on_a_narrow_terminal_there_is_one_pane_and_the_table(snapshot):
@@ -32,7 +61,7 @@ async def test_the_exact_swing_is_a_ghost_and_hidden_methods_leave_their_room(sn
 
 async def test_the_form_and_the_help_lie_over_the_lab(snapshot):
     snapshot("lab-form", await still(DEFAULT_SCENE, SECONDS, (80, 24), keys=["i", *"abc"]))
-    snapshot("lab-help", await still(DEFAULT_SCENE, SECONDS, (80, 24), keys=["question_mark"]))
+    snapshot("lab-help", await still(DEFAULT_SCENE, SECONDS, (120, 40), keys=["question_mark"]))
 
 
 def test_the_command_writes_the_same_picture(tmp_path):

@@ -12,9 +12,7 @@ from engine.scenes import Scene
 from tui.elsewhere import elsewhere
 from tui.source import own_h
 from tui.views.view import View
-from tui.widgets.accuracy import KEYS, AccuracyPane
-
-MOST_STEPS = 2_000_000  # of a run for the mark at the present h: some seconds
+from tui.widgets.accuracy import KEYS, MOST_STEPS, AccuracyPane
 
 Start = tuple[float, float, float]
 """theta, omega, w0²: what the chart depends on."""

@@ -21,6 +21,7 @@ from tui.source import EQUAL_PARTS, Source
 from tui.widgets.rows import Rows
 
 WORDS = 2  # lines
+MOST_STEPS = 2_000_000  # of a run for the mark at the present h: some seconds
 HERE, CURSOR = "X", "O"
 POWERS_OF_H = ", ".join(POWERS[order] for order in sorted({method.order for method in METHODS}))
 LEGEND = f"{HERE} you are here; x failed; ~ only rounding; dotted: error as {POWERS_OF_H}"
@@ -84,7 +85,9 @@ class AccuracyPane(Rows, can_focus=True):
     @property
     def settled(self) -> bool:
         """Whether everything is there and drawn."""
-        return bool(self.rungs) and not self.missing and self._drawn == self._state
+        wanted = [(index, steps) for index, steps in enumerate(self.here) if 1 < steps <= MOST_STEPS]
+        known = bool(self.rungs) and not self.missing and all(place in self.points for place in wanted)
+        return known and self._drawn == self._state
 
     @property
     def aim(self) -> Point | None:

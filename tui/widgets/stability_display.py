@@ -50,6 +50,11 @@ class StabilityDisplay(Widget, can_focus=True):
         self._lines: list[Line] = []
         self._drawn_for: object = None
 
+    @property
+    def settled(self) -> bool:
+        """Whether the map is complete and drawn."""
+        return not self._filled and "computing" not in str(self.border_title or "computing")
+
     def watch_sample(self) -> None:
         """Follow the scene and the step; of what has been computed, draw a panel at a time, 5 ms each."""
         if self.source is not None and self._state(self.source) != self._drawn_for:
