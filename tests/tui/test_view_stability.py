@@ -21,6 +21,8 @@ from tui.screens.stage import Stage
 from tui.widgets.stability import StabilityPane
 from tui.widgets.status import StatusLine
 
+VERLET, RK4 = 2, 3  # in METHODS
+
 
 @asynccontextmanager
 async def stability_view(
@@ -60,21 +62,31 @@ async def test_the_map_fills_in_and_is_the_engines(monkeypatch: pytest.MonkeyPat
 
 async def test_it_says_what_becomes_of_the_swing_on_screen(monkeypatch: pytest.MonkeyPatch):
     async with stability_view(monkeypatch) as (_, pane, live):
-        z, theta = pane.here
+        z, theta = pane.here(VERLET)
         assert (z, theta) == (live.scene.z, 1.0)
         assert pane.text.count("X") == 4
         assert "Velocity Verlet at h 0.0539 s, 58.1 deg: holds" in pane.text
 
 
+async def test_at_equal_cost_each_method_is_where_its_own_step_is(monkeypatch: pytest.MonkeyPatch):
+    async with stability_view(monkeypatch) as (pilot, pane, live):
+        await pilot.press("n")
+        pane.draw()
+        z, theta = pane.here(VERLET)
+        assert pane.here(RK4) == (pytest.approx(4 * z), theta)
+        assert z == pytest.approx(live.scene.z)
+        assert "Velocity Verlet at h 0.0539 s" in pane.text  # the cell nearest to 0.05
+
+
 async def test_enter_starts_with_the_cursors_amplitude_and_step(monkeypatch: pytest.MonkeyPatch):
     async with stability_view(monkeypatch) as (pilot, pane, live):
-        z, theta = pane.aim
+        z, theta = pane.aim(VERLET)
         await pilot.press("right", "right", "shift+right", "up", "enter")
         assert live.scene.z == pytest.approx(pane.grid.z[z + 7], rel=1e-12)
         assert live.scene.theta == pane.grid.theta[theta + 1]
         assert live.scene.omega == 0
         assert pane.cursor is None
-        assert pane.aim == (z + 7, theta + 1)
+        assert pane.aim(VERLET) == (z + 7, theta + 1)
         await pilot.press("u")
         assert live.scene == SCENES["drift"]
 
@@ -91,13 +103,13 @@ async def test_a_click_starts_with_what_was_clicked_on(monkeypatch: pytest.Monke
 
 async def test_the_cursor_stays_on_the_map_and_esc_leaves_it(monkeypatch: pytest.MonkeyPatch):
     async with stability_view(monkeypatch) as (pilot, pane, _):
-        before = pane.aim
+        before = pane.aim(VERLET)
         for _ in range(4):
             await pilot.press("shift+left", "shift+down")
         assert pane.cursor == (0, 0)
         await pilot.press("escape")
         assert pane.cursor is None
-        assert pane.aim == before
+        assert pane.aim(VERLET) == before
 
 
 async def test_tab_goes_through_the_methods_in_words(monkeypatch: pytest.MonkeyPatch):
@@ -136,7 +148,7 @@ async def test_another_theme_recolours_it(monkeypatch: pytest.MonkeyPatch):
 
 async def test_a_scene_that_spins_is_not_on_the_map(monkeypatch: pytest.MonkeyPatch):
     async with stability_view(monkeypatch, SCENES["spin"]) as (_, pane, _live):
-        assert pane.here is None
+        assert pane.here(VERLET) is None
         assert "X" not in pane.text
 
 
@@ -165,7 +177,7 @@ async def test_a_larger_step_beyond_a_limit_is_warned_of_and_taken(monkeypatch: 
         await pilot.press("plus")
         assert live.h == 5.0
         assert "z 5  beyond limit 2 of s, v; 2.83 of r" in status.text
-        assert pane.aim is None  # it is beyond the map, too
+        assert pane.aim(VERLET) is None  # it is beyond the map, too
 
 
 async def test_a_replay_says_what_becomes_of_its_swing_and_keeps_its_arrows(monkeypatch: pytest.MonkeyPatch):

@@ -42,7 +42,7 @@ class StabilityPane(StabilityDisplay):
 
     def action_move(self, right: int, up: int) -> None:
         """Move the cursor by cells of the map."""
-        z, theta = self.aim or (0, 0)
+        z, theta = self.aim(self.index) or (0, 0)
         self.cursor = min(max(z + right, 0), len(self.grid.z) - 1), min(max(theta + up, 0), len(self.grid.theta) - 1)
         self.draw()
 

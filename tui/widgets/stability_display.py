@@ -16,7 +16,7 @@ from engine.stability import Cells
 from engine.stability_map import Grid
 from tui.look import Look
 from tui.palette import Palette, palette
-from tui.source import Source
+from tui.source import Source, own_h
 from tui.stability_picture import MARGIN, Line, legend, panel, side_by_side, title
 from tui.stability_study import amplitude
 from tui.stability_words import note, verdict
@@ -75,19 +75,17 @@ class StabilityDisplay(Widget, can_focus=True):
         self.cells[z, method] = cells
         self._filled.add(method)
 
-    @property
-    def here(self) -> tuple[float, float] | None:
-        """The scene's (z, amplitude), if it swings."""
+    def here(self, index: int) -> tuple[float, float] | None:
+        """The (z, amplitude) of a method on screen, if it swings."""
         if self.source is None or (theta := amplitude(self.source.scene)) is None:
             return None
-        return abs(self.source.h) * self.source.scene.w0, theta
+        return abs(own_h(self.source)[index]) * self.source.scene.w0, theta
 
-    @property
-    def aim(self) -> tuple[int, int] | None:
-        """The cell that is spoken of: at the cursor, under the pointer, or nearest to here."""
+    def aim(self, index: int) -> tuple[int, int] | None:
+        """The cell of a method that is spoken of: at the cursor, under the pointer, or nearest to here."""
         if self.cursor or self.pointer:
             return self.cursor or self.pointer
-        if (here := self.here) is None or here[0] > self.grid.z[-1]:
+        if (here := self.here(index)) is None or here[0] > self.grid.z[-1]:
             return None
         return int(abs(self.grid.z - here[0]).argmin()), int(abs(self.grid.theta - here[1]).argmin())
 
@@ -105,25 +103,20 @@ class StabilityDisplay(Widget, can_focus=True):
         if columns <= 2 * MARGIN:
             return
         self._drawn_for = self._state(source)
-        marked = (self.grid.z[self.cursor[0]], self.grid.theta[self.cursor[1]]) if self.cursor else self.here
+        cursor = (self.grid.z[self.cursor[0]], self.grid.theta[self.cursor[1]]) if self.cursor else None
         for index in changed:
-            self._panels[index] = panel(
-                self.grid, self.cells, index, columns, rows, self._colours, here=marked, w0=source.scene.w0
-            )
+            marked, w0 = cursor or self.here(index), source.scene.w0
+            self._panels[index] = panel(self.grid, self.cells, index, columns, rows, self._colours, here=marked, w0=w0)
         self.tell()
 
     def tell(self) -> None:
         """Say what becomes of the swing that is spoken of, above each panel and below all."""
-        aim, columns = self.aim, self.panel_size()[0]
+        columns = self.panel_size()[0]
         panels = [
-            [
-                title(index, columns, self._colours, "" if aim is None else self._note(index, *aim)),
-                *self._panels[index][1:],
-            ]
+            [title(index, columns, self._colours, self._note(index)), *self._panels[index][1:]]
             for index in self.look.indices
         ]
-        words = "" if aim is None else self._verdict(*aim)
-        said = [*textwrap.wrap(words, max(self.size.width - 1, 1)), "", ""][:WORDS]
+        said = [*textwrap.wrap(self._verdict(), max(self.size.width - 1, 1)), "", ""][:WORDS]
         lines = [
             *side_by_side(panels, 2),
             *([Segment(f" {line}")] for line in said),
@@ -142,7 +135,7 @@ class StabilityDisplay(Widget, can_focus=True):
 
     def _state(self, source: Source) -> object:
         """What the picture depends on besides the map."""
-        return source.scene, source.h, self.look, self.app.theme
+        return source.scene, own_h(source), self.look, self.app.theme
 
     @property
     def _colours(self) -> Palette | None:
@@ -157,13 +150,17 @@ class StabilityDisplay(Widget, can_focus=True):
         lines = legend(self.grid.steps, self._colours, self.size.width + 2)  # as if the frame were part of it
         return lines if self.size.height >= ROOMY else lines[:1]
 
-    def _note(self, index: int, z: int, theta: int) -> str:
+    def _note(self, index: int) -> str:
+        if (aim := self.aim(index)) is None:
+            return ""
+        z, theta = aim
         return note(METHODS[index], self.grid.theta[theta], self.grid.z[z], self.cells[z, index, theta])
 
-    def _verdict(self, z: int, theta: int) -> str:
+    def _verdict(self) -> str:
         shown = self.look.indices
-        if self.source is None or not shown:
+        index = self.index if self.index in shown else shown[0] if shown else 0
+        if self.source is None or not shown or (aim := self.aim(index)) is None:
             return ""
-        index = self.index if self.index in shown else shown[0]
+        z, theta = aim
         cells, w0 = self.cells[:, index, theta], self.source.scene.w0
         return verdict(METHODS[index], self.grid.theta[theta], self.grid.z, cells, z, w0)
