@@ -197,3 +197,22 @@ def test_a_storm_of_200_sizes_leaves_every_view_whole(tmp_path):
         emulator.wait_until(lambda lines: without_insight(lines) == before)
         pendu.type("q")
         assert pendu.end() == 0
+
+
+def becomes_silent(pendu: PtyLab, seconds: float = 20.0) -> bool:
+    """Whether nothing is sent any more: a cursor that blinks sends something twice a second."""
+    end = pendu.now + seconds
+    while pendu.now < end:
+        if not pendu.run(1.5):
+            return True
+    return False
+
+
+@pytest.mark.parametrize("key", [" ", " i", " \x10", " ?"])
+def test_with_reduced_motion_a_paused_lab_stands_still_and_what_lies_over_it_does_too(tmp_path, key):
+    with session(tmp_path, TEXTUAL_ANIMATIONS="none") as pendu:
+        pendu.wait_for(RECORDING)
+        for each in key:
+            pendu.type(each)
+            pendu.run(0.3)
+        assert becomes_silent(pendu)

@@ -6,10 +6,16 @@ from textual import work
 from textual.await_complete import AwaitComplete
 from textual.command import CommandList, CommandPalette
 from textual.screen import ModalScreen, Screen, ScreenResultType
+from textual.widgets import Input
 
 
 class _Once(Screen[ScreenResultType]):
     _dismissed = False
+
+    def on_mount(self) -> None:
+        """Let no cursor blink where reduced motion is asked for: Textual would."""
+        for field in self.query(Input):
+            field.cursor_blink = self.app.animation_level != "none"
 
     def dismiss(self, result: ScreenResultType | None = None) -> AwaitComplete:
         """Close, with a result.  Asked again, or while something lies over it, Textual would close another screen."""
