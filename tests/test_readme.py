@@ -145,6 +145,23 @@ def table_of(keys: Iterable[Key]) -> str:
     return f"| key | does |\n|---|---|\n{rows}"
 
 
+def test_the_pictures_are_committed_snapshots():
+    pictures = re.findall(r"!\[[^]]+\]\((.*?)\)", README)
+    assert len(pictures) == 3
+    for picture in pictures:  # which test_what_is_linked_is_there looks for
+        assert Path(picture).parent == Path("tests/tui/snapshots")
+
+
+def test_the_options_of_the_lab_that_are_named_are_there():
+    _, _, section = README.partition("## Your terminal")
+    options = re.findall(r"`(--[^`]+)`", section.partition("\n## ")[0])
+    assert len(options) >= 6
+    for words in options:
+        option, _, choices = words.partition(" ")
+        for choice in choices.split("|"):
+            command_of("live")[0].parse_args([option, choice] if choice else [option])
+
+
 def test_every_command_is_in_the_list():
     rows = "".join(f"| `{name}` | {does} |\n" for name, does in COMMANDS.items())
     assert f"| command | does |\n|---|---|\n{rows}" in README
