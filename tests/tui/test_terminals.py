@@ -125,6 +125,7 @@ def test_a_lab_that_was_stopped_goes_on_where_it_was(tmp_path, how):
         time.sleep(AWAY)
         pendu.signal(signal.SIGCONT)
         pendu.wait_for(NEVER_CHANGES)
+        pendu.wait_for("REC 2 s")
         pendu.type("q")
         assert pendu.end() == 0
         present = pendu.now - AWAY
