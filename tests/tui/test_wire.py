@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from tui.wire import BACK, LEAST, SYSTEMS, Wire
+from tui.wire import SYSTEMS, Wire
 
 FRAME, FPS = 3000, 30  # bytes, 1/s
 
@@ -59,9 +59,17 @@ def test_a_line_that_has_become_better_is_used_again():
 
 
 def test_a_line_that_stands_still_is_not_given_up():
-    wire = Wire()
-    wire.send(100)
-    for n in range(1000):
-        assert wire.is_busy(True, n / FPS)
-    assert wire.rate >= BACK * LEAST
-    assert not wire.is_busy(False, 1000 / FPS + 2 * SYSTEMS / LEAST)
+    line = Line(math.inf)
+    line.run(2)
+    line.wire.send(100)
+    assert all(line.wire.is_busy(True, line.now + n / FPS) for n in range(1000))  # Ctrl+S
+    assert line.wire.rate > 0.5 * FRAME * FPS
+    assert not line.wire.is_busy(False, line.now + 1000)
+
+
+def test_a_while_that_was_not_lived_says_nothing_of_the_line():
+    line = Line(math.inf)
+    line.run(2)
+    line.now += 60  # Ctrl+Z
+    assert line.wire.is_busy(True, line.now)
+    assert line.wire.rate == math.inf
