@@ -16,7 +16,7 @@ TURN = 8.0  # s of the clock for which one of the lasting sentences stays
 
 
 def insight(source: Source) -> str:
-    """The sentence: nothing moves, or time is back at its start, or news, or what to watch, or what is known, in turn."""
+    """The sentence: nothing moves, time is back at its start, news, what to watch, or what is known, in turn."""
     sample, scene, returned = source.sample, source.scene, source.history.returned
     if source.swing.regime == "equilibrium":
         return RESTING

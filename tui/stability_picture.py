@@ -6,7 +6,7 @@ them, so that no failure vanishes.
 
 import math
 from collections.abc import Iterator, Sequence
-from itertools import groupby
+from itertools import groupby, zip_longest
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,6 +55,20 @@ def side_by_side(panels: Sequence[Sequence[Line]], across: int) -> list[Line]:
         for first in range(0, len(panels), across)
         for lines in zip(*panels[first : first + across], strict=True)
     ]
+
+
+def differing(before: Line, after: Line) -> list[tuple[int, int]]:
+    """The columns in which two lines differ: runs of them, each from one to before another."""
+    if before == after:
+        return []
+    cells = [[(character, part.style) for part in line for character in part.text] for line in (before, after)]
+    runs, x = [], 0
+    for differs, run in groupby(old != new for old, new in zip_longest(*cells)):
+        end = x + len(list(run))
+        if differs:
+            runs.append((x, end))
+        x = end
+    return runs
 
 
 def panel(

@@ -23,6 +23,11 @@ class Wire:
         self._tried = False  # whether anything has been sent since less is sent
         self._seen: float | None = None  # s, the clock
 
+    @property
+    def has_been_slow(self) -> bool:
+        """Whether there was ever too much on it."""
+        return self.rate < math.inf
+
     def send(self, size: int) -> None:
         """So many bytes are sent."""
         self._on_its_way += size

@@ -17,7 +17,7 @@ from engine.stability_map import Grid
 from tui.look import Look
 from tui.palette import Palette, palette
 from tui.source import Source, own_h
-from tui.stability_picture import MARGIN, Line, legend, panel, side_by_side, title
+from tui.stability_picture import MARGIN, Line, differing, legend, panel, side_by_side, title
 from tui.stability_study import amplitude
 from tui.stability_words import note, verdict
 
@@ -123,9 +123,10 @@ class StabilityDisplay(Widget, can_focus=True):
             *self._legend(),
         ]
         before, self._lines = self._lines, lines
-        changed = [y for y, (old, new) in enumerate(zip_longest(before, lines)) if old != new]
-        if changed:
-            self.refresh(*(Region(0, y, self.size.width, 1) for y in changed))
+        nothing: Line = []
+        rows = enumerate(zip_longest(before, lines, fillvalue=nothing))
+        if changed := [Region(x, y, end - x, 1) for y, (old, new) in rows for x, end in differing(old, new)]:
+            self.refresh(*changed)
 
     def render_line(self, y: int) -> Strip:
         """One row."""
