@@ -3,12 +3,14 @@
 import asyncio
 import os
 import signal
+import time
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import ClassVar
 
 from textual.app import App, SystemCommand
 from textual.binding import Binding, BindingType
+from textual.driver import Driver
 from textual.filter import LineFilter
 from textual.reactive import var
 from textual.screen import Screen
@@ -20,7 +22,7 @@ from tui.palette import PALETTES, Palette
 from tui.pixels import PixelFilter
 from tui.screens.modal import Commands
 from tui.screens.stage import SMALLEST, Stage
-from tui.terminal import come_back_whole, is_gone, send_less
+from tui.terminal import is_gone
 from tui.widgets.rows import PRESENT
 from tui.wire import Wire
 
@@ -59,6 +61,23 @@ class PenduApp(App[Exit | OSError]):
         self.stages = [stage]
         self.wire = Wire()
 
+    def get_driver_class(self) -> type[Driver]:
+        """Our own for Linux and its kin, unless another was asked for."""
+        usual = super().get_driver_class()
+        if usual.__module__ != "textual.drivers.linux_driver":
+            return usual
+        from tui.driver import LabDriver
+
+        return LabDriver
+
+    def is_behind(self, urgent: bool = False) -> bool:
+        """Whether frames are still on their way: on a slow line one more only adds to the delay.
+
+        What is urgent need not wait for what the system has taken already.
+        """
+        is_busy = self.wire.is_busy(time.monotonic())
+        return self.wire.is_full if urgent else is_busy
+
     @property
     def stage(self) -> Stage:
         """The stage that follows the clock."""
@@ -75,8 +94,6 @@ class PenduApp(App[Exit | OSError]):
 
     def on_mount(self) -> None:
         """Leave in order when asked to by a signal, and come back from one."""
-        send_less(self)
-        come_back_whole(self)
         self.app_resume_signal.subscribe(self, lambda _: self.refresh())
         loop = asyncio.get_running_loop()
         for name in ("SIGINT", "SIGTERM", "SIGHUP"):

@@ -57,18 +57,12 @@ def side_by_side(panels: Sequence[Sequence[Line]], across: int) -> list[Line]:
     ]
 
 
-def differing(before: Line, after: Line) -> list[tuple[int, int]]:
-    """The columns in which two lines differ: runs of them, each from one to before another."""
+def differing(before: Line, after: Line) -> int:
+    """How many columns there are up to the last one in which two lines differ: Textual sends a row from its start."""
     if before == after:
-        return []
+        return 0
     cells = [[(character, part.style) for part in line for character in part.text] for line in (before, after)]
-    runs, x = [], 0
-    for differs, run in groupby(old != new for old, new in zip_longest(*cells)):
-        end = x + len(list(run))
-        if differs:
-            runs.append((x, end))
-        x = end
-    return runs
+    return max((x for x, (old, new) in enumerate(zip_longest(*cells), 1) if old != new), default=0)
 
 
 def panel(

@@ -1,26 +1,29 @@
-"""The wire to the terminal: how much it carries, as far as one can tell from how often one has to wait for it."""
+"""The wire to the terminal: how much it carries, from how long it keeps whoever writes to it waiting."""
 
 import math
+from collections import deque
 
 SYSTEMS = 12_000  # bytes that the system takes for a terminal before one has to wait; nobody tells how many wait there
+WAIT = 0.03  # s that a write takes on a line that is full; less may be this computer's doing
 LEAST = 4_000  # bytes/s; what looks slower has come to a stand
-LONGEST = 0.1  # s of waiting that one look at it can tell of: after Ctrl+Z nobody had looked
+ROOM = 16_000  # bytes that have to go before whoever waits is told that there is room again
 SLACK = 0.02  # s of what is on its way that are as good as nothing
-BACK = 0.7  # of what was too much
-FORTH = 0.03  # more every second where it is not
+CAUTION = 0.8  # of what the line may carry
+FORTH = 0.02  # more every second, until one waits again: the line may have become better
 
 
 class Wire:
-    """Knows what is on its way.  Where one always waits, one has sent too much: every frame comes late by what waits.
+    """Knows what is on its way.  More than the line carries only makes every frame later by what waits.
 
-    So less is sent than has been carried, and a little more again with time: the line may have become better.
+    `written` may be called from another thread.
     """
 
     def __init__(self) -> None:
-        self.rate = math.inf  # bytes/s, at most
-        self._on_its_way = self._last_second = 0.0  # bytes
-        self._waits = 0.0  # share of the time
-        self._tried = False  # whether anything has been sent since less is sent
+        self.rate = math.inf  # bytes/s that are safe
+        self._sent = self._written = 0  # bytes
+        self._on_its_way = 0.0  # bytes, the system's included
+        self._waits: deque[tuple[float, float, int]] = deque()  # until when, bytes/s then, bytes so far; to be looked at
+        self._full = -math.inf, 0  # when the system was last known to have all it takes, and the bytes so far
         self._seen: float | None = None  # s, the clock
 
     @property
@@ -28,21 +31,32 @@ class Wire:
         """Whether there was ever too much on it."""
         return self.rate < math.inf
 
-    def send(self, size: int) -> None:
-        """So many bytes are sent."""
-        self._on_its_way += size
-        self._last_second += size
-        self._tried = True
+    @property
+    def is_full(self) -> bool:
+        """Whether something has not been written yet."""
+        return self._sent > self._written
 
-    def is_busy(self, waiting: bool, now: float) -> bool:
-        """Whether something is on its way at a time [s], when something is waiting to be sent or not."""
+    def send(self, size: int) -> None:
+        """So many bytes are to be written."""
+        self._sent += size
+        self._on_its_way += size
+
+    def written(self, size: int, began: float, now: float) -> None:
+        """So many have been, from one time [s] to another."""
+        self._written += size
+        if now - began > WAIT and size > LEAST * (now - began):
+            self._waits.append((now, (size + ROOM) / (now - began), self._written))
+
+    def is_busy(self, now: float) -> bool:
+        """Whether something is on its way at a time [s]."""
         elapsed, self._seen = 0.0 if self._seen is None else now - self._seen, now
-        self._waits += (waiting - self._waits) * (1 - math.exp(-min(elapsed, LONGEST) / 0.3))
-        self._last_second *= math.exp(-elapsed)
-        self.rate *= 1 + FORTH * elapsed
-        self._on_its_way = max(0.0, self._on_its_way - self.rate * elapsed) if elapsed else self._on_its_way
-        if self._waits > 1 / 3 and self._tried:
-            self._tried, self._waits = False, 0.0
-            self.rate = max(LEAST, BACK * min(self.rate, self._last_second))
-            self._on_its_way = SYSTEMS
-        return waiting or self._on_its_way > SLACK * self.rate
+        if elapsed:
+            self.rate *= 1 + FORTH * elapsed
+            self._on_its_way = max(0.0, self._on_its_way - self.rate * elapsed)
+        while self._waits:
+            at, most, written = self._waits.popleft()  # at most, since some of the write may have found room at once
+            least = (written - self._full[1]) / (at - self._full[0])
+            self.rate = CAUTION * max(least, min(self.rate, most))
+            self._full = at, written
+            self._on_its_way = SYSTEMS + self._sent - self._written
+        return self.is_full or self._on_its_way > SLACK * self.rate

@@ -19,7 +19,6 @@ from tui.keys import COMMON, Key, bindings, hints
 from tui.look import Look
 from tui.playhead import doubled
 from tui.source import Source
-from tui.terminal import is_behind
 from tui.views import create, following
 from tui.views.view import View
 from tui.widgets.keyline import Hint, KeyLine
@@ -129,7 +128,7 @@ class Stage(Screen[None]):
             self._missed += now - seen
             now = seen
         sample = self.source.tick(now)
-        if is_behind(self.app):
+        if cast("PenduApp", self.app).is_behind(urgent=self._late):
             return
         self._frames += 1
         self.sample = sample
@@ -141,7 +140,7 @@ class Stage(Screen[None]):
 
     def show_now(self) -> None:
         """Show everything as it is, without waiting for its turn; on a line that is busy, as soon as it is not."""
-        self._late = is_behind(self.app)
+        self._late = cast("PenduApp", self.app).is_behind(urgent=True)
         if not self._late:
             self.sample = self.reading = self.past = self.source.sample
 

@@ -2,7 +2,7 @@
 
 import textwrap
 from collections.abc import Sequence
-from itertools import zip_longest
+from typing import TYPE_CHECKING, cast
 
 from rich.segment import Segment
 from textual.geometry import Region
@@ -21,7 +21,11 @@ from tui.stability_picture import MARGIN, Line, differing, legend, panel, side_b
 from tui.stability_study import amplitude
 from tui.stability_words import note, verdict
 
+if TYPE_CHECKING:
+    from tui.app import PenduApp
+
 WORDS = 2  # lines
+SOME = 3  # rows; 100 columns of the map are some 2.5 kB
 ROOMY = 28  # rows from which on there is room for all of the legend
 
 
@@ -48,19 +52,27 @@ class StabilityDisplay(Widget, can_focus=True):
         self._panels: list[list[Line]] = [[]] * len(METHODS)  # as large as they were last drawn
         self._filled: set[int] = set()  # methods with something new to draw
         self._lines: list[Line] = []
+        self._painted: list[Line] = []
         self._drawn_for: object = None
 
     @property
     def settled(self) -> bool:
         """Whether the map is complete and drawn."""
-        return not self._filled and "computing" not in str(self.border_title or "computing")
+        return (
+            not self._filled
+            and self._painted == self._lines
+            and "computing" not in str(self.border_title or "computing")
+        )
 
     def watch_sample(self) -> None:
         """Follow the scene and the step; of what has been computed, draw a panel at a time, 5 ms each."""
+        at_once = SOME if cast("PenduApp", self.app).wire.has_been_slow else None  # a key has to wait for what is sent
         if self.source is not None and self._state(self.source) != self._drawn_for:
             self.draw()
+        elif self._painted != self._lines:
+            self._paint(at_once)
         elif self._filled:
-            self.draw([self._filled.pop()])
+            self.draw([self._filled.pop()], at_once)
 
     def on_resize(self) -> None:
         """Draw for the new size."""
@@ -92,10 +104,10 @@ class StabilityDisplay(Widget, can_focus=True):
     @property
     def text(self) -> str:
         """What is shown, without colours."""
-        return "\n".join("".join(segment.text for segment in line).rstrip() for line in self._lines)
+        return "\n".join("".join(segment.text for segment in line).rstrip() for line in self._painted)
 
-    def draw(self, changed: Sequence[int] = range(len(METHODS))) -> None:
-        """Draw the panels of the methods that changed, and the words."""
+    def draw(self, changed: Sequence[int] = range(len(METHODS)), at_once: int | None = None) -> None:
+        """Draw the panels of the methods that changed, and the words; `at_once` limits the rows that are sent."""
         source = self.source
         if source is None or not self.size or not self.is_on_screen:
             return
@@ -107,9 +119,9 @@ class StabilityDisplay(Widget, can_focus=True):
         for index in changed:
             marked, w0 = cursor or self.here(index), source.scene.w0
             self._panels[index] = panel(self.grid, self.cells, index, columns, rows, self._colours, here=marked, w0=w0)
-        self.tell()
+        self.tell(at_once)
 
-    def tell(self) -> None:
+    def tell(self, at_once: int | None = None) -> None:
         """Say what becomes of the swing that is spoken of, above each panel and below all."""
         columns = self.panel_size()[0]
         panels = [
@@ -117,21 +129,22 @@ class StabilityDisplay(Widget, can_focus=True):
             for index in self.look.indices
         ]
         said = [*textwrap.wrap(self._verdict(), max(self.size.width - 1, 1)), "", ""][:WORDS]
-        lines = [
-            *side_by_side(panels, 2),
-            *([Segment(f" {line}")] for line in said),
-            *self._legend(),
-        ]
-        before, self._lines = self._lines, lines
-        nothing: Line = []
-        rows = enumerate(zip_longest(before, lines, fillvalue=nothing))
-        if changed := [Region(x, y, end - x, 1) for y, (old, new) in rows for x, end in differing(old, new)]:
-            self.refresh(*changed)
+        self._lines = [*side_by_side(panels, 2), *([Segment(f" {line}")] for line in said), *self._legend()]
+        self._paint(at_once)
+
+    def _paint(self, at_once: int | None) -> None:
+        self._painted[len(self._lines) :] = [[] for _ in self._lines[len(self._painted) :]]
+        ends = {y: differing(*lines) for y, lines in enumerate(zip(self._painted, self._lines, strict=True))}
+        changed = [(y, end) for y, end in ends.items() if end][:at_once]
+        for y, _ in changed:
+            self._painted[y] = self._lines[y]
+        if changed:
+            self.refresh(*(Region(0, y, end, 1) for y, end in changed))
 
     def render_line(self, y: int) -> Strip:
         """One row."""
         style = self.rich_style
-        line = self._lines[y] if y < len(self._lines) else []
+        line = self._painted[y] if y < len(self._painted) else []
         return Strip(Segment.apply_style(line, style)).adjust_cell_length(self.size.width, style)
 
     def _state(self, source: Source) -> object:
