@@ -22,7 +22,7 @@ class Wire:
         self.rate = math.inf  # bytes/s that are safe
         self._sent = self._written = 0  # bytes
         self._on_its_way = 0.0  # bytes, the system's included
-        self._waits: deque[tuple[float, float, int]] = deque()  # until when, bytes/s then, bytes so far; to be looked at
+        self._waits: deque[tuple[float, float, int]] = deque()  # till when, bytes/s then, bytes so far
         self._full = -math.inf, 0  # when the system was last known to have all it takes, and the bytes so far
         self._seen: float | None = None  # s, the clock
 
