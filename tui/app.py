@@ -93,7 +93,7 @@ class PenduApp(App[Exit | OSError]):
             self.stages.append(message.stage)
 
     def on_mount(self) -> None:
-        """Leave in order when asked to by a signal, and come back from one."""
+        """Leave in order when asked to by a signal, and paint everything anew after Ctrl+Z."""
         self.app_resume_signal.subscribe(self, lambda _: self.refresh())
         loop = asyncio.get_running_loop()
         for name in ("SIGINT", "SIGTERM", "SIGHUP"):

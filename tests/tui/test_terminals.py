@@ -111,6 +111,15 @@ def state(pid: int) -> str:
     return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
 
 
+def test_over_a_slow_line_no_colour_is_sent_twice_and_time_goes_on(tmp_path):
+    with PtyLab("--h", "0.01", rate=64 * 1024, PENDU_RECORDINGS=str(tmp_path)) as pendu:
+        began, start = pendu.wait_for("REC 2 s"), len(pendu.output)
+        assert 3.0 < pendu.wait_for("REC 6 s") - began < 8.0
+        assert pendu.output.count(b"\x1b[0m", start) < (len(pendu.output) - start) / 500  # else one in 50 bytes
+        pendu.type("q")
+        assert pendu.end() == 0
+
+
 @pytest.mark.parametrize("how", ["ctrl+z", "a signal that cannot be caught"])
 def test_a_lab_that_was_stopped_goes_on_where_it_was(tmp_path, how):
     with session(tmp_path) as pendu:
