@@ -75,8 +75,8 @@ class PenduApp(App[Exit | OSError]):
 
         What is urgent need not wait for what the system has taken already.
         """
-        is_busy = self.wire.is_busy(time.monotonic())
-        return self.wire.is_full if urgent else is_busy
+        self.wire.tick(time.monotonic())
+        return self.wire.is_full if urgent else self.wire.is_busy
 
     @property
     def stage(self) -> Stage:

@@ -9,6 +9,11 @@ from tui.lean import lean
 from tui.wire import Wire
 
 
+def _size(text: str) -> int:
+    """Bytes; the name of a file may hold some that are no text."""
+    return len(text.encode(errors="backslashreplace"))
+
+
 class _Metered:
     """A file that tells how long writing took."""
 
@@ -19,7 +24,7 @@ class _Metered:
         began = time.monotonic()
         self._file.write(text)
         self._file.flush()
-        self._wire.written(len(text.encode()), began, time.monotonic())
+        self._wire.written(_size(text), began, time.monotonic())
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._file, name)
@@ -33,10 +38,15 @@ class LabDriver(LinuxDriver):
         self._wire: Wire = app.wire
         self._file: Any = _Metered(self._file, self._wire)
 
+    def start_application_mode(self) -> None:
+        """Take the terminal, with another thread that writes."""
+        self._wire.restart()
+        super().start_application_mode()  # type: ignore[no-untyped-call]
+
     def write(self, data: str) -> None:
         """Send this.  Leaving out colours takes a twentieth of a core, so a line that carries all gets all."""
-        sent = lean(data) if self._wire.has_been_slow else data
-        self._wire.send(len(sent.encode()))
+        sent = lean(data) if self._wire.is_slow else data
+        self._wire.send(_size(sent))
         super().write(sent)
 
     def _sigcont_application(self, *_: object) -> None:

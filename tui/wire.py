@@ -10,6 +10,7 @@ ROOM = 16_000  # bytes that have to go before whoever waits is told that there i
 SLACK = 0.02  # s of what is on its way that are as good as nothing
 CAUTION = 0.8  # of what the line may carry
 FORTH = 0.02  # more every second, until one waits again: the line may have become better
+TWICE, FORGOTTEN = 1.0, 300.0  # s; one wait alone may be a stall of a fast terminal, and two may be chance
 
 
 class Wire:
@@ -22,13 +23,13 @@ class Wire:
         self.rate = math.inf  # bytes/s that are safe
         self._sent = self._written = 0  # bytes
         self._on_its_way = 0.0  # bytes, the system's included
-        self._waits: deque[tuple[float, float, int]] = deque()  # till when, bytes/s then, bytes so far
+        self._waits: deque[tuple[float, float, float, int]] = deque()  # from, to, bytes/s then, bytes so far
         self._full = -math.inf, 0  # when the system was last known to have all it takes, and the bytes so far
         self._seen: float | None = None  # s, the clock
 
     @property
-    def has_been_slow(self) -> bool:
-        """Whether there was ever too much on it."""
+    def is_slow(self) -> bool:
+        """Whether there was too much on it lately."""
         return self.rate < math.inf
 
     @property
@@ -45,18 +46,29 @@ class Wire:
         """So many have been, from one time [s] to another."""
         self._written += size
         if now - began > WAIT and size > LEAST * (now - began):
-            self._waits.append((now, (size + ROOM) / (now - began), self._written))
+            self._waits.append((began, now, (size + ROOM) / (now - began), self._written))
 
-    def is_busy(self, now: float) -> bool:
-        """Whether something is on its way at a time [s]."""
+    @property
+    def is_busy(self) -> bool:
+        """Whether something is on its way still."""
+        return self.is_full or self._on_its_way > SLACK * self.rate
+
+    def restart(self) -> None:
+        """Nothing is waiting: somebody else writes from now on."""
+        self._written = self._sent
+
+    def tick(self, now: float) -> None:
+        """It is so late [s]."""
         elapsed, self._seen = 0.0 if self._seen is None else now - self._seen, now
         if elapsed:
-            self.rate *= 1 + FORTH * elapsed
+            self.rate = self.rate * (1 + FORTH * elapsed) if now - self._full[0] < FORGOTTEN else math.inf
             self._on_its_way = max(0.0, self._on_its_way - self.rate * elapsed)
         while self._waits:
-            at, most, written = self._waits.popleft()  # at most, since some of the write may have found room at once
-            least = (written - self._full[1]) / (at - self._full[0])
-            self.rate = CAUTION * max(least, min(self.rate, most))
-            self._full = at, written
-            self._on_its_way = SYSTEMS + self._sent - self._written
-        return self.is_full or self._on_its_way > SLACK * self.rate
+            began, at, most, written = (
+                self._waits.popleft()
+            )  # at most, since some of the write may have found room at once
+            (before, so_far), self._full = self._full, (at, written)
+            if self.is_slow or began - before < TWICE:
+                least = (written - so_far) / (at - before)
+                self.rate = CAUTION * max(least, min(self.rate, most))
+                self._on_its_way = SYSTEMS + self._sent - self._written

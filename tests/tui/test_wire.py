@@ -30,7 +30,8 @@ class Line:
                 self.wire.written(size, began, self.now)
                 if self.writing:
                     self.writing[0] = self.now, self.writing[0][1]
-            if not self.wire.is_busy(self.now):
+            self.wire.tick(self.now)
+            if not self.wire.is_busy:
                 self.send(FRAME)
                 self.frames += 1
             longest = max(longest, self.held / self.rate)
@@ -73,17 +74,31 @@ def test_a_line_that_has_become_better_is_used_again():
 
 
 @pytest.mark.parametrize("rate", [16_000, 64_000])
-def test_a_large_picture_says_how_fast_the_line_is(rate):
+def test_two_large_pictures_say_how_fast_the_line_is(rate):
     line = Line(rate)
     line.send(60_000)
-    line.run(60_000 / rate)
+    line.send(60_000)
+    line.run(120_000 / rate)
     assert 0.7 * rate < line.wire.rate < 1.4 * rate  # more is known at the next wait
 
 
-def test_a_line_that_stands_still_is_not_given_up():
+@pytest.mark.parametrize(("size", "seconds"), [(100, 33.0), (3000, 0.7), (60_000, 5.0)])
+def test_a_fast_line_that_once_stood_still_is_not_taken_for_a_slow_one(size, seconds):
+    line = Line(math.inf)
+    line.run(2)
+    line.wire.send(size)
+    assert line.wire.is_busy  # Ctrl+S, or a mouse that selects
+    line.wire.written(size, line.now, line.now + seconds)
+    line.now += seconds
+    line.frames = 0
+    line.run(1)
+    assert line.frames == FPS
+    assert not line.wire.is_slow
+
+
+def test_what_another_writer_has_not_written_is_not_waited_for():
     wire = Wire()
-    wire.send(100)
-    assert all(wire.is_busy(n / FPS) for n in range(1000))  # Ctrl+S
-    wire.written(100, 0.0, 1000 / FPS)
-    assert not wire.is_busy(1000 / FPS)
-    assert not wire.has_been_slow
+    wire.send(3000)
+    assert wire.is_busy
+    wire.restart()
+    assert not wire.is_full

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from tui.app import PenduApp
 
 WORDS = 2  # lines
-SOME = 3  # rows; 100 columns of the map are some 2.5 kB
+SOME = 3  # rows
 ROOMY = 28  # rows from which on there is room for all of the legend
 
 
@@ -66,13 +66,12 @@ class StabilityDisplay(Widget, can_focus=True):
 
     def watch_sample(self) -> None:
         """Follow the scene and the step; of what has been computed, draw a panel at a time, 5 ms each."""
-        at_once = SOME if cast("PenduApp", self.app).wire.has_been_slow else None  # a key has to wait for what is sent
         if self.source is not None and self._state(self.source) != self._drawn_for:
             self.draw()
         elif self._painted != self._lines:
-            self._paint(at_once)
+            self._paint()
         elif self._filled:
-            self.draw([self._filled.pop()], at_once)
+            self.draw([self._filled.pop()], wait=True)
 
     def on_resize(self) -> None:
         """Draw for the new size."""
@@ -106,8 +105,8 @@ class StabilityDisplay(Widget, can_focus=True):
         """What is shown, without colours."""
         return "\n".join("".join(segment.text for segment in line).rstrip() for line in self._painted)
 
-    def draw(self, changed: Sequence[int] = range(len(METHODS)), at_once: int | None = None) -> None:
-        """Draw the panels of the methods that changed, and the words; `at_once` limits the rows that are sent."""
+    def draw(self, changed: Sequence[int] = range(len(METHODS)), wait: bool = False) -> None:
+        """Draw the panels of the methods that changed, and the words; over a slow line they may have to wait."""
         source = self.source
         if source is None or not self.size or not self.is_on_screen:
             return
@@ -119,9 +118,9 @@ class StabilityDisplay(Widget, can_focus=True):
         for index in changed:
             marked, w0 = cursor or self.here(index), source.scene.w0
             self._panels[index] = panel(self.grid, self.cells, index, columns, rows, self._colours, here=marked, w0=w0)
-        self.tell(at_once)
+        self.tell(wait)
 
-    def tell(self, at_once: int | None = None) -> None:
+    def tell(self, wait: bool = False) -> None:
         """Say what becomes of the swing that is spoken of, above each panel and below all."""
         columns = self.panel_size()[0]
         panels = [
@@ -130,9 +129,10 @@ class StabilityDisplay(Widget, can_focus=True):
         ]
         said = [*textwrap.wrap(self._verdict(), max(self.size.width - 1, 1)), "", ""][:WORDS]
         self._lines = [*side_by_side(panels, 2), *([Segment(f" {line}")] for line in said), *self._legend()]
-        self._paint(at_once)
+        self._paint(wait)
 
-    def _paint(self, at_once: int | None) -> None:
+    def _paint(self, wait: bool = True) -> None:
+        at_once = SOME if wait and cast("PenduApp", self.app).wire.is_slow else None  # a key waits for what is sent
         self._painted[len(self._lines) :] = [[] for _ in self._lines[len(self._painted) :]]
         ends = {y: differing(*lines) for y, lines in enumerate(zip(self._painted, self._lines, strict=True))}
         changed = [(y, end) for y, end in ends.items() if end][:at_once]
