@@ -5,6 +5,7 @@ import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
+from itertools import pairwise
 from types import ModuleType
 from typing import TYPE_CHECKING
 
@@ -92,7 +93,7 @@ def _dispatch(arguments: list[str]) -> int:
         case ["-h" | "--help", *_] | ["help"]:
             print(USAGE.format(commands="\n".join(f"  {name:<12}{does}" for name, does in COMMANDS.items())), end="")
             return Exit.FINE
-        case ["help", name]:
+        case ["help", name, *_]:
             return _run(name, ["--help"])
         case ["--version", *_]:
             from importlib.metadata import version
@@ -114,14 +115,15 @@ def _run(name: str, arguments: list[str]) -> int:
     except SystemExit:  # --help, printed
         return Exit.FINE
     except UserError as error:
-        raise _misplaced(name, arguments) or parser.unknown_option(arguments) or error from None
+        raise _misplaced(name, arguments, parser) or parser.unknown_option(arguments) or error from None
     code: int = command.run(options)
     return code
 
 
-def _misplaced(name: str, arguments: Sequence[str]) -> UserError | None:
+def _misplaced(name: str, arguments: Sequence[str], parser: "Parser") -> UserError | None:
     """What to say to one who gave the command after its options, for which it was taken for live."""
-    late = next((argument for argument in arguments if argument in COMMANDS), None)
+    places = pairwise(["", *arguments])
+    late = next((each for before, each in places if each in COMMANDS and not parser.takes_value(before)), None)
     return UserError(f"the command comes first: pendu-tui {late}.") if late and name == "live" else None
 
 

@@ -28,10 +28,12 @@ class Highlights:
         for _, event in recording.events:
             events[event.run].append(event)
         for run in recording.runs:
-            past, known = Past(run.scene, events[run.number]), 0
+            past, known, before, then = Past(run.scene, events[run.number]), 0, 0, run.begin
             yield run
             for clock in past.read(recording, run.number, pieces(run.begin, run.end), run.steps + 1):
-                if (count := len(past.witness.happenings(past.witness.seen))) > known:
-                    known = count
-                    self.clocks.append(clock)
+                happenings, step = past.witness.happenings(past.witness.seen), past.witness.seen
+                for each in happenings[known:]:  # of a long run not every sample is read
+                    share = (each.step - before) / (step - before) if step > before else 1.0
+                    self.clocks.append(then + share * (clock - then))
+                known, before, then = len(happenings), step, clock
                 yield clock

@@ -19,6 +19,11 @@ class Parser(argparse.ArgumentParser):
         """Raise UserError instead of printing the usage."""
         raise UserError(f"{message.removeprefix('argument ')}; {self.prog} --help shows the options.")
 
+    def takes_value(self, name: str) -> bool:
+        """Whether this is an option with a value behind it."""
+        action = self._option_string_actions.get(name)
+        return action is not None and action.nargs != 0
+
     def unknown_option(self, arguments: Sequence[str]) -> UserError | None:
         """What to say of the first option that there is none of: argparse would name what is missing for it."""
         for argument in arguments:

@@ -51,6 +51,7 @@ def test_a_slip_with_options_that_exist_is_said_as_it_is(arguments, words):
 
 def test_a_command_behind_its_options_is_asked_to_come_first():
     assert pendu("--scene", "drift", "run", "--time", "10").refused(2, "the command comes first: pendu-tui run.")
+    assert pendu("--record", "run", "--nope").refused(2, "live has no option --nope")
 
 
 def test_a_bug_is_not_hidden_behind_a_sentence(monkeypatch):

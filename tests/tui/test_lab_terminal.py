@@ -1,12 +1,16 @@
 """The real program on a real pseudo-terminal, and what it leaves behind however it ends."""
 
+import os
+import shutil
 import signal
 import subprocess
+import sys
 import time
 from pathlib import Path
 
 import pytest
 
+from recordings.library import GOLDEN
 from recordings.recording import Recording
 from recordings.verify import verify
 from tests.tui.command_line import pendu
@@ -114,6 +118,17 @@ def test_a_replay_plays_and_goes_on_live(library):
         session.type("q")
         assert session.end() == 0
     assert whole(library).samples
+
+
+@pytest.mark.skipif(sys.platform == "darwin", reason="there names are text")
+def test_a_name_that_is_no_text_is_shown_as_far_as_it_is(library):
+    library.mkdir(exist_ok=True)
+    name = os.fsdecode(b"x\xff.mcap")
+    shutil.copy(GOLDEN / "drift.mcap", library / name)
+    with PtyLab("replay", str(library / name), size=(160, 40)) as pendu:
+        pendu.wait_for("x\N{REPLACEMENT CHARACTER}.mcap")
+        pendu.type("q")
+        assert pendu.end() == 0
 
 
 def test_a_terminal_that_cannot_move_its_cursor_is_told_so(library):

@@ -68,4 +68,9 @@ def test_a_symplectic_swing_is_lost_to_a_resonance_or_to_chaos(theta: float, z: 
     ],
 )
 def test_a_step_beyond_a_linear_limit_is_warned_of(z: float, warning: str):
-    assert limit_warning(z) == warning
+    assert limit_warning([z] * 4) == warning
+
+
+def test_at_equal_cost_only_the_dearest_method_may_be_beyond_its_limit():
+    assert limit_warning([0.7, 0.7, 0.7, 2.8]) == ""
+    assert limit_warning([0.725, 0.725, 0.725, 2.9]) == "beyond limit 2.83 of r"

@@ -45,7 +45,7 @@ async def view_of(stage: Stage, size: tuple[int, int]) -> AsyncIterator[tuple[Pi
             while not app.screen.query(StabilityPane):
                 await pilot.pause(0.01)
             pane = app.screen.query_one(StabilityPane)
-            while "computing" in (pane.border_title or "computing"):
+            while not pane.complete:
                 await pilot.pause(0.05)
         pane.draw()
         yield pilot, pane

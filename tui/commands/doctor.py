@@ -133,8 +133,8 @@ def folder(path: Path) -> Finding:
         for each in reversed(made):
             with suppress(OSError):  # somebody has put something there
                 each.rmdir()
-    little = free < ROOMY and "there is little room: pendu-tui recordings prune --keep 20 makes some"
-    return Finding("recordings", f"{path}, {file_size(free)} free", little or "")
+    advice = "there is little room: pendu-tui recordings prune --keep 20 makes some" if free < ROOMY else ""
+    return Finding("recordings", f"{path}, {file_size(free)} free", advice)
 
 
 def unfinished(count: int) -> Finding:

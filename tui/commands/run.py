@@ -34,6 +34,7 @@ LONGEST = 1e9  # s, 30 years; a recording's clock ends there, too
 LARGE = 200e6  # bytes of a recording that nobody expects; half a minute to write
 SAMPLE_BYTES = 320  # of a recording, measured with h from 0.01 to 0.05 s
 MOST_SAMPLES = 20_000  # of a run that is not recorded: enough for every verdict, and constant work beside the steps
+AT_ONCE = 1_000_000  # steps, about a second: nobody is heard in between
 COMPILED_FROM = 1_000_000  # steps: below, compiling takes longer than it saves
 
 
@@ -68,7 +69,7 @@ def run(options: argparse.Namespace) -> int:
     if steps == 0:
         raise UserError(f"--time {options.time:g} s is not even one step of {scene.h:g} s: give a longer time.")
     every = max(1, round(SAMPLE_EVERY / scene.h), 0 if options.record else steps // MOST_SAMPLES)
-    every = options.sample_every or every
+    every = options.sample_every or min(every, AT_ONCE)
     if options.record:
         check_free(options.record, options.force)
         _announce(steps, every)

@@ -97,6 +97,8 @@ class Player(Stage):
     async def action_live(self) -> None:
         """Go on live from here, when the past is known and the way here has been simulated again."""
         self.replay.pause(True)
+        if not self.replay.fill():
+            self.notify("Reading what came before ...", timeout=2)
         while not self.replay.fill():
             await asyncio.sleep(0)
         if self.replay.sample.step > LONG:

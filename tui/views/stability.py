@@ -51,7 +51,8 @@ class StabilityView(View):
         """Show it, and how far it is in tenths: with a new title, Textual sends all of the pane again."""
         piece, pane = message.piece, self.query_one(StabilityPane)
         pane.fill(piece.z, piece.method, piece.cells)
-        state = "" if piece.done == 1 and piece.steps == PASSES[-1] else f", computing {int(10 * piece.done) / 10:.0%}"
+        pane.complete = piece.done == 1 and piece.steps == PASSES[-1]
+        state = "" if pane.complete else f", computing {int(10 * piece.done) / 10:.0%}"
         title = f"Stability: h across, amplitude up; {piece.steps} steps{state}"
         if title != pane.border_title:
             pane.border_title = title

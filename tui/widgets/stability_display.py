@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from tui.app import PenduApp
 
 WORDS = 2  # lines
-SOME = 3  # rows
+SOME = 3  # rows that are sent at once over a slow line
 ROOMY = 28  # rows from which on there is room for all of the legend
 
 
@@ -46,6 +46,7 @@ class StabilityDisplay(Widget, can_focus=True):
         super().__init__()
         self.grid = grid
         self.cells: Cells = grid.unknown()
+        self.complete = False  # nothing will be added to them
         self.cursor: tuple[int, int] | None = None  # indices of z and theta
         self.pointer: tuple[int, int] | None = None
         self.index = 2  # the method that is spoken of
@@ -58,11 +59,7 @@ class StabilityDisplay(Widget, can_focus=True):
     @property
     def settled(self) -> bool:
         """Whether the map is complete and drawn."""
-        return (
-            not self._filled
-            and self._painted == self._lines
-            and "computing" not in str(self.border_title or "computing")
-        )
+        return self.complete and not self._filled and self._painted == self._lines
 
     def watch_sample(self) -> None:
         """Follow the scene and the step; of what has been computed, draw a panel at a time, 5 ms each."""

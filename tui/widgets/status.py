@@ -7,10 +7,11 @@ from rich.style import Style
 from textual.reactive import var
 
 from engine.lockstep import Sample
+from recordings.errors import printable
 from tui.limits import limit_warning
 from tui.numbers import file_size, percent, seconds
 from tui.palette import FRAME, TEXT, WARN
-from tui.source import Source
+from tui.source import Source, own_h
 from tui.widgets.rows import Row, Rows
 
 BADGE = -10
@@ -38,7 +39,7 @@ def status_row(source: Source, width: int) -> Row:
     """The line, as far as there is room."""
     scene, playhead, pace, tape = source.scene, source.playhead, source.pace, source.tape
     z, live, named = abs(source.h) * scene.w0, source.kind == "LIVE", bool(scene.watch)
-    warning = limit_warning(z)
+    warning = limit_warning([abs(h) * scene.w0 for h in own_h(source)])
     parts = [
         _Part(12, "paused " if playhead.paused else "reversed" if source.h < 0 else "running"),
         _Part(7, speed_text(playhead.speed)),
@@ -59,7 +60,7 @@ def status_row(source: Source, width: int) -> Row:
         if live:
             parts.append(_Part(8, f"REC {coarse(tape.seconds)}"))
         parts.append(_Part(2, file_size(tape.bytes), FRAME))
-        parts.append(_Part(1, tape.name, FRAME))
+        parts.append(_Part(1, printable(tape.name), FRAME))
     badge = f" {source.kind} "
     while parts and len(badge) + sum(len(part.text) + 2 for part in parts) > width:
         parts.remove(min(parts))
