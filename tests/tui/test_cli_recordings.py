@@ -61,6 +61,13 @@ def test_recover_makes_a_whole_recording_of_a_cut_one_and_says_what_is_lost(tmp_
     assert f"{answer['samples_kept']} samples saved" in told
 
 
+def test_who_recovers_a_recording_that_was_cut_is_not_told_that_nothing_is_lost(tmp_path):
+    whole, cut = GOLDEN / "drift.mcap", tmp_path / "cut.mcap"
+    cut.write_bytes(whole.read_bytes()[: whole.stat().st_size // 2])
+    told = pendu("recover", cut, "-o", tmp_path / "saved.mcap").out
+    assert "Lost: 1 chunk; how many samples were there, or came after, the file does not tell." in told
+
+
 def test_recover_overwrites_nothing_unless_by_force(tmp_path):
     path, out = record(tmp_path / "sitting.mcap", two_runs()), tmp_path / "saved.mcap"
     out.write_bytes(b"precious")

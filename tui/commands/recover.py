@@ -52,8 +52,12 @@ def _sentence(recovery: "Recovery") -> str:
     lines = [f"{printable(str(recovery.out))}: {recovery.samples_kept} samples saved."]
     if recovery.reason:
         lines.append(f"What was wrong: {recovery.reason}.")
-    lost = f"{recovery.samples_lost} samples, {recovery.chunks_lost} chunks, {seconds(recovery.seconds_lost)}"
-    lines.append(f"Lost, as far as the file tells: {lost}.")
+    chunks = f"{recovery.chunks_lost} chunk{'' if recovery.chunks_lost == 1 else 's'}"
+    if recovery.chunks_lost and not recovery.samples_lost:
+        lines.append(f"Lost: {chunks}; how many samples were there, or came after, the file does not tell.")
+    else:
+        lost = f"{recovery.samples_lost} samples, {chunks}, {seconds(recovery.seconds_lost)}"
+        lines.append(f"Lost, as far as the file tells: {lost}.")
     if recovery.runs_lost:
         lines.append(f"Runs without their start, and so not saved: {recovery.runs_lost}.")
     if recovery.runs_broken:
