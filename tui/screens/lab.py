@@ -11,8 +11,8 @@ from tui.choice import SceneChosen, StepSizeChosen
 from tui.keys import COMMON, LIVE, Key, bindings
 from tui.live import Live
 from tui.playhead import next_h
-from tui.screens.stage import Stage
-from tui.source import EQUAL_PARTS, least_h
+from tui.screens.stage import ALREADY, Stage
+from tui.source import EQUAL_PARTS, is_marked, least_h
 
 
 class Lab(Stage):
@@ -101,5 +101,6 @@ class Lab(Stage):
 
     def action_mark(self) -> None:
         """Leave a mark in the recording."""
+        text = ALREADY if is_marked(self.live) else f"Mark at {self.live.sample.t:.2f} s"
         self.live.mark()
-        self.notify(f"Mark at {self.live.sample.t:.2f} s", timeout=2)
+        self.notify(text, timeout=2)

@@ -12,7 +12,8 @@ from tui.errors import UserError, explained
 from tui.keys import COMMON, REPLAY, Key, bindings
 from tui.live import Live
 from tui.replay import Replay
-from tui.screens.stage import Stage
+from tui.screens.stage import ALREADY, Stage
+from tui.source import is_marked
 from tui.widgets.seekbar import SeekBar
 
 LONG = 100_000  # steps; a quarter of a second
@@ -73,12 +74,13 @@ class Player(Stage):
 
     def action_mark(self) -> None:
         """Leave a mark beside the recording."""
+        text = ALREADY if is_marked(self.replay) else f"Mark at {self.replay.sample.t:.2f} s simulated"
         try:
             self.replay.mark()
         except OSError as error:
             self.notify(f"The mark cannot be saved: {error.strerror}.", severity="warning", markup=False)
         else:
-            self.notify(f"Mark at {self.replay.sample.t:.2f} s simulated", timeout=2)
+            self.notify(text, timeout=2)
         self.show_now()
 
     def action_loop_end(self, number: int) -> None:

@@ -33,6 +33,7 @@ READ, BUILT = 10, 5
 """How often a second what is read is brought up to date, and what has to be built."""
 
 STALL = 1.0  # s; a longer gap between frames was not lived: Ctrl+Z, a computer asleep, a line that was dead
+ALREADY = "There is a mark here already"
 SMALLEST = (60, 16)
 """Columns and rows below which there is only a message."""
 
