@@ -45,11 +45,11 @@ def frames(lab: PtyLab, seconds: float) -> list[float]:
     return times
 
 
-def key_times(lab: PtyLab) -> list[float]:
+def key_times(lab: PtyLab, pause: float = 0.1) -> list[float]:
     """How long it takes from a key to what it does on the screen, in s."""
     times = []
     for n in range(KEYS):
-        lab.run(0.1 + n / 300)  # anywhere in a frame
+        lab.run(pause + n / 300)  # anywhere in a frame
         key, effect = ("+", "h 0.02 s") if n % 2 == 0 else ("-", "h 0.01 s")
         began = lab.now
         lab.type(key)

@@ -12,27 +12,14 @@ from statistics import median
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
+from tests.bench.lab import LAB, key_times
 from tests.tui.pty_lab import PtyLab
 
 RATE = 64 * 1024  # bytes/s
-LAB = ("live", "--h", "0.01")  # more than one step a frame, so that every frame moves
 VIEWS = {"lab": "\x1bOQ", "phase": "\x1bOR", "accuracy": "\x1bOS", "stability": "\x1b[15~"}
-KEYS = 30
 SETTLED, SECONDS = 4.0, 10.0  # s until a view has been painted; and of simulated time that are compared
 BUDGETS = {"key_p95_ms": 300, "key_max_ms": 300, "time_slip_ms": 300}
 TIME = re.compile(rb"t (\d+\.\d+) s")
-
-
-def key_times(lab: PtyLab) -> list[float]:
-    """How long it takes from a key to what it does on the screen, in s."""
-    times = []
-    for n in range(KEYS):
-        lab.run(0.2 + n / 300)  # anywhere in a frame
-        key, effect = ("+", "h 0.02 s") if n % 2 == 0 else ("-", "h 0.01 s")
-        began = lab.now
-        lab.type(key)
-        times.append(lab.wait_for(effect) - began)
-    return sorted(times)
 
 
 def slip(lab: PtyLab) -> float:
@@ -58,7 +45,7 @@ def measure(key: str) -> dict[str, float]:
         began, sent = lab.now, len(lab.output)
         slipped = slip(lab)
         rate = (len(lab.output) - sent) / (lab.now - began)
-        keys = key_times(lab)
+        keys = key_times(lab, 0.2)
         lab.type("q")
         lab.end()
     return {
