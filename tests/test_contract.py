@@ -1,0 +1,93 @@
+"""What people script against: every JSON field with its kind, and every exit code."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.recordings.sittings import record, two_runs
+from tests.tui.command_line import pendu
+
+FIELDS = Path(__file__).with_name("json_fields.json")
+
+COMMANDS = {
+    "accuracy": ["accuracy", "--time", "2", "--h-values", "0.1:0.01:3", "--target", "1e-2", "--json"],
+    "accuracy --cost seconds --budget": [
+        "accuracy", "--time", "2", "--h-values", "0.1:0.01:2", "--cost", "seconds", "--budget", "1e3", "--json",
+    ],
+    "stability": ["stability", "--steps", "30", "--z-values", "0.5,2.5", "--theta-values", "1,2", "--json"],
+    "stability --map": ["stability", "--steps", "30", "--z-values", "0.5,2.5", "--theta-values", "1", "--map", "--json"],
+    "run": ["run", "--time", "2", "--json"],
+    "run of a method that diverges": ["run", "--h", "2", "--length", "0.1", "--time", "4000", "--json"],
+    "verify": ["verify", "whole.mcap", "cut.mcap", "--json"],
+    "info": ["info", "whole.mcap", "--json"],
+    "info of a cut recording": ["info", "cut.mcap", "--json"],
+    "recover": ["recover", "cut.mcap", "-o", "saved.mcap", "--json"],
+    "recordings": ["recordings", "--json"],
+    "recordings prune": ["recordings", "prune", "--keep", "1", "--json"],
+    "scenes": ["scenes", "--json"],
+    "methods": ["methods", "--json"],
+    "doctor": ["doctor", "--json"],
+}  # fmt: skip
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    """A folder with a whole recording and one that was cut, which is the library, too."""
+    whole = record(tmp_path / "whole.mcap", two_runs())
+    (tmp_path / "cut.mcap").write_bytes(whole.read_bytes()[:-700])
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path / "library"))
+    (tmp_path / "library").mkdir()
+    (tmp_path / "library" / "one.mcap").write_bytes(whole.read_bytes())
+
+
+def kinds(value: Any, path: str = "") -> dict[str, set[str]]:
+    """Every path in a JSON value with the kinds of value that stand there."""
+    found: dict[str, set[str]] = {path: {type(value).__name__}} if path else {}
+    inner = [(f"{path}.{key}".lstrip("."), each) for key, each in value.items()] if isinstance(value, dict) else []
+    inner += [(f"{path}[]", each) for each in value] if isinstance(value, list) else []
+    for where, each in inner:
+        for name, kind in kinds(each, where).items():
+            found.setdefault(name, set()).update(kind)
+    return found
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_json_field_is_there_with_its_kind(name, request):
+    seen = {path: " or ".join(sorted(kind)) for path, kind in sorted(kinds(pendu(*COMMANDS[name]).json).items())}
+    stored = json.loads(FIELDS.read_text(encoding="utf-8")) if FIELDS.exists() else {}
+    if request.config.getoption("--snapshot-update"):
+        FIELDS.write_text(json.dumps(stored | {name: seen}, indent=1, sort_keys=True) + "\n", encoding="utf-8")
+    else:
+        assert seen == stored[name]
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_schema_is_that_of_the_command(name):
+    assert pendu(*COMMANDS[name]).json["schema"] == f"pendu.{COMMANDS[name][0]}/1"
+
+
+@pytest.mark.parametrize(
+    ("code", "arguments"),
+    [
+        (0, ["run", "--time", "2"]),
+        (0, ["verify", "whole.mcap"]),
+        (1, ["run", "--time", "2", "--fail-if", "rk4.max_energy_error >= 0"]),
+        (1, ["verify", "cut.mcap"]),
+        (1, ["run", "--time", "2", "--fail-if", "rk4.verdict == grows or rk4.verdict != grows"]),
+        (2, ["run", "--time", "0"]),
+        (2, ["run", "--time", "2", "--fail-if", "rk5.max_energy_error > 0"]),
+        (2, ["nothing"]),
+        (2, ["--scene", "nothing"]),
+        (3, ["info", "absent.mcap"]),
+        (3, ["verify", "absent.mcap"]),
+        (4, ["live", "--no-record"]),
+        (5, ["run", "--time", "2", "--record", "whole.mcap"]),
+        (5, ["export", "whole.mcap", "-o", "absent/whole.csv"]),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else str(value),
+)
+def test_the_exit_code_says_what_happened(code, arguments):
+    assert pendu(*arguments).code == code
