@@ -10,8 +10,8 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from engine.shadow import symplectic_euler_shadow, velocity_verlet_shadow
-from engine.state import Acceleration, Phase
+from engine.models.modified_energy import symplectic_euler_shadow, velocity_verlet_shadow
+from engine.models.state import Acceleration, Phase
 
 Step = Callable[[Acceleration, Phase, float], Phase]
 
@@ -44,7 +44,7 @@ def velocity_verlet(acceleration: Acceleration, phase: Phase, h: float) -> Phase
     """Velocity Verlet: half a kick, a drift, half a kick.
 
     Order 2, symplectic and reversible.  The second half kick's acceleration is the next step's
-    first ("first same as last"), so a loop that keeps it, as engine.loops does, pays one
+    first ("first same as last"), so a loop that keeps it, as engine.run.loops does, pays one
     evaluation a step.  Hairer, Lubich & Wanner (2006), I.1.4.
     """
     theta, omega = phase

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
-from engine.lockstep import Sample
+from engine.run.lockstep import Sample
 from engine.scenes import Scene
 
 EventKind = Literal["start", "set_h", "mark", "pause", "resume", "speed", "stop"]

@@ -3,9 +3,9 @@
 import csv
 from typing import TextIO
 
-from engine.lockstep import Sample
+from engine.run.lockstep import Sample
 from recordings.recording import Recording
-from recordings.walk import Progress
+from recordings.scan import Progress
 
 COLUMNS = (
     "clock_s",

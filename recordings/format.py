@@ -13,8 +13,8 @@ from dataclasses import replace
 from functools import cache
 from typing import Any, NoReturn, cast
 
-from engine.lockstep import Reading, Sample
 from engine.methods import METHODS
+from engine.run.lockstep import Reading, Sample
 from engine.scenes import Scene, SceneError
 from recordings.errors import RecordingError, printable
 from recordings.events import Event

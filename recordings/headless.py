@@ -2,9 +2,9 @@
 
 from collections.abc import Callable, Iterator, Sequence
 
-from engine.lockstep import Lockstep, Sample
-from engine.loops import Loops, plain
 from engine.methods import METHODS, Method
+from engine.run.lockstep import Lockstep, Sample
+from engine.run.loops import Loops, plain
 from engine.scenes import Scene
 from recordings.events import Event
 from recordings.recorder import Recorder

@@ -12,8 +12,8 @@ from recordings.errors import RecordingError, printable_items
 from recordings.format import METADATA
 from recordings.framing import read_record, record_at
 from recordings.layout import Layout, check_times, layout_of
+from recordings.scan import Progress, Walk
 from recordings.summary import Chunks, find_summary
-from recordings.walk import Progress, Walk
 
 CHECK_LIMIT = 1 << 26  # bytes checked whenever a file is opened: the first two hours, in 50 ms
 _BLOCK = 1 << 20

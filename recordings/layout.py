@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 from mcap.records import Channel
 
-from engine.lockstep import Reading, Sample
 from engine.methods import METHODS
+from engine.run.lockstep import Reading, Sample
 from recordings.errors import RecordingError
 from recordings.events import Entry
 from recordings.format import CLOCK_LIMIT, CLOCK_OFFSET, EVENTS, FORMAT_VERSION, decode_event, decode_reading, topic

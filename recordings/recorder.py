@@ -16,7 +16,7 @@ from typing import Self
 
 from mcap.writer import CompressionType, Writer
 
-from engine.lockstep import Sample
+from engine.run.lockstep import Sample
 from recordings.errors import DiskError, NameTakenError
 from recordings.events import Event
 from recordings.format import (

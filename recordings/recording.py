@@ -15,7 +15,7 @@ from typing import BinaryIO, NamedTuple, Self
 
 from mcap.opcode import Opcode
 
-from engine.lockstep import Sample
+from engine.run.lockstep import Sample
 from engine.scenes import Scene
 from recordings.errors import RecordingError, named
 from recordings.events import Entry, Event
@@ -23,7 +23,7 @@ from recordings.format import CLOCK_LIMIT, CLOCK_OFFSET
 from recordings.framing import read_chunk, record_at
 from recordings.index import Index, index_of
 from recordings.lock import open_file
-from recordings.walk import Progress
+from recordings.scan import Progress
 
 EVENT_LIMIT = 100_000  # in memory all at once, 30 MB; a lesson has a few hundred, but every step back repeats changes
 CHUNKS_KEPT = 2  # decoded; playing meets the same one thirty times, stepping to and fro about an edge two

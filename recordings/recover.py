@@ -10,7 +10,7 @@ from typing import BinaryIO
 
 from mcap.opcode import Opcode
 
-from engine.lockstep import Lockstep, Sample
+from engine.run.lockstep import Lockstep, Sample
 from engine.scenes import SceneError
 from recordings.errors import DiskError, RecordingError, named
 from recordings.events import Event
@@ -20,7 +20,7 @@ from recordings.layout import Layout, layout_of
 from recordings.lock import open_file
 from recordings.names import free_path, part_of
 from recordings.recorder import Recorder, trouble
-from recordings.walk import Gap, Progress, Walk
+from recordings.scan import Gap, Progress, Walk
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,9 +14,9 @@ from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from engine.compiled import tiered
-from engine.lockstep import Lockstep, Reading, Sample
 from engine.methods import METHODS
+from engine.run.compiled import tiered
+from engine.run.lockstep import Lockstep, Reading, Sample
 from engine.scenes import SceneError
 from recordings.errors import RecordingError
 from recordings.events import Event

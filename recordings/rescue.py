@@ -7,7 +7,7 @@ from recordings.errors import RecordingError, printable
 from recordings.lock import alone_with
 from recordings.names import PART, free_path
 from recordings.recover import Recovery, recover
-from recordings.walk import Progress
+from recordings.scan import Progress
 
 
 @dataclass(frozen=True, slots=True)

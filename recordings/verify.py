@@ -8,7 +8,7 @@ from recordings.events import Event
 from recordings.format import sin_fingerprint
 from recordings.lock import open_file
 from recordings.rerun import Difference, Rerun
-from recordings.walk import Gap, Progress, Walk
+from recordings.scan import Gap, Progress, Walk
 
 
 @dataclass(frozen=True, slots=True)

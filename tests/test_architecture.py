@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import tui.commands
-from tui.cli import COMMANDS
+from tui.cli.dispatch import COMMANDS
 
 ROOT = Path(__file__).parent.parent
 MODULES = [path for package in ("engine", "recordings", "tui") for path in (ROOT / package).rglob("*.py")]
@@ -18,7 +18,7 @@ HEAVY = {"textual", "numpy", "rich", "plotext", "mcap", "numba", "distributed"}
 
 LOADED = f"""
 import sys
-from tui.cli import main
+from tui.cli.dispatch import main
 sys.stdout = sys.stderr
 code = main(sys.argv[1:])
 print(code, *sorted({HEAVY!r} & set(sys.modules)), file=sys.__stdout__)

@@ -12,15 +12,17 @@ from pathlib import Path
 
 import pytest
 
-from engine.lockstep import Lockstep
 from engine.methods import METHODS
+from engine.run.lockstep import Lockstep
 from engine.scenes import DEFAULT_SCENE
 from recordings.export import COLUMNS
 from tests.tui.command_line import pendu
-from tui.cli import COMMANDS, command_of
-from tui.keys import COMMON, LIVE, REPLAY, Key
-from tui.options import joined
-from tui.widgets import accuracy, phase, stability
+from tui.cli.dispatch import COMMANDS, command_of
+from tui.cli.options import joined
+from tui.views.accuracy import pane as accuracy
+from tui.views.keys import COMMON, LIVE, REPLAY, Key
+from tui.views.phase import pane as phase
+from tui.views.stability import pane as stability
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -176,7 +178,7 @@ def test_a_method_is_added_in_two_steps_as_described(tmp_path):
     source = source.replace("\n\n@dataclass", f"\n\n{step}\n\n@dataclass", 1)
     source = re.sub(r"(?ms)(^METHODS: .*?)^\)", lambda match: f"{match[1]}{entry})", source)
     methods.write_text(source, encoding="utf-8")
-    program = [sys.executable, "-P", "-c", "import sys; from tui.cli import main; sys.exit(main())"]
+    program = [sys.executable, "-P", "-c", "import sys; from tui.cli.dispatch import main; sys.exit(main())"]
     environment = {**os.environ, "PYTHONPATH": str(tmp_path)}
     for arguments, word in [
         (["methods"], "position_verlet"),

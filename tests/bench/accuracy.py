@@ -9,7 +9,7 @@ import sys
 import time
 from pathlib import Path
 
-from engine.compiled import available
+from engine.run.compiled import available
 
 REPEATS = 3
 LIMITS = {"plain": 5.0, "compiled": 2.0}  # s

@@ -9,7 +9,7 @@ from statistics import median
 
 REPEATS = 21
 HEAVY = {"textual", "numpy", "rich", "plotext", "mcap", "numba"}
-LOADED = f"import sys; from tui.cli import main; main(['--help']); print(*{HEAVY} & set(sys.modules))"
+LOADED = f"import sys; from tui.cli.dispatch import main; main(['--help']); print(*{HEAVY} & set(sys.modules))"
 
 
 def seconds(command: list[str]) -> float:

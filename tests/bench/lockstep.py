@@ -14,9 +14,9 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from engine.lockstep import Lockstep
-from engine.loops import plain
 from engine.methods import METHODS, Method
+from engine.run.lockstep import Lockstep
+from engine.run.loops import plain
 from engine.scenes import DEFAULT_SCENE
 
 STEPS, REPEATS = 20_000, 9

@@ -13,12 +13,12 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from engine.scenes import DEFAULT_SCENE
-from recordings.sitting import SittingRecorder
-from tui.app import PenduApp
-from tui.display import FPS
-from tui.live import Live
-from tui.screens.lab import Lab
-from tui.still import settled
+from recordings.live_recorder import SittingRecorder
+from tui.playback.live import Live
+from tui.screens.app import PenduApp
+from tui.screens.live import Lab
+from tui.screens.still import settled
+from tui.terminal.options import FPS
 
 SECONDS = 3600
 SETTLED = 600  # s, after which nothing may grow: histories are full, modules are loaded

@@ -12,12 +12,12 @@ from typing import Any, NamedTuple
 
 import numba
 
-from engine import loops
-from engine.compiled import _pendulum, compiled
-from engine.lockstep import Lockstep
-from engine.loops import Loops, plain
 from engine.methods import METHODS, Method, explicit_euler
-from engine.pendulum import acceleration
+from engine.models.pendulum import acceleration
+from engine.run import loops
+from engine.run.compiled import _pendulum, compiled
+from engine.run.lockstep import Lockstep
+from engine.run.loops import Loops, plain
 from engine.scenes import DEFAULT_SCENE as SCENE
 from tests.bench.lockstep import STEPS, c_rate, rate
 from tests.bench.lockstep import compiled as c_library

@@ -14,11 +14,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from engine.accuracy import Study
-from engine.compiled import compiled
-from engine.exact import Swing
+from engine.accuracy.recommend import cheapest, reach
+from engine.accuracy.study import Study
 from engine.methods import METHODS
-from engine.recommend import cheapest, reach
+from engine.models.exact_pendulum import Swing
+from engine.run.compiled import compiled
 from engine.scenes import Scene
 
 SCENE, TIME = Scene(theta=2.0), 100.0

@@ -10,14 +10,14 @@ from collections.abc import Callable
 
 import numpy as np
 
-from engine.exact import Swing
-from engine.lockstep import Lockstep
 from engine.methods import METHODS
+from engine.models.exact_pendulum import Swing
+from engine.run.lockstep import Lockstep
 from engine.scenes import DEFAULT_SCENE
-from tui.canvas import Canvas, Picture
-from tui.charts import time_chart
-from tui.history import History, Window
-from tui.pendulum_picture import Bob, pendulum_picture
+from tui.drawing.canvas import Canvas, Picture
+from tui.drawing.chart import time_chart
+from tui.playback.history import History, Window
+from tui.views.lab.pendulum_picture import Bob, pendulum_picture
 
 BUDGETS = {  # ms
     "canvas_4x3000_points": 1.0,

@@ -11,8 +11,8 @@ from pathlib import Path
 from statistics import median, quantiles
 from tempfile import TemporaryDirectory
 
-from engine.lockstep import Lockstep
 from engine.methods import METHODS
+from engine.run.lockstep import Lockstep
 from engine.scenes import DEFAULT_SCENE
 from recordings.events import Event
 from recordings.format import encode_event, encode_readings

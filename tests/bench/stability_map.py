@@ -9,8 +9,8 @@ from collections.abc import Callable
 import numpy as np
 
 from engine.methods import METHODS
-from engine.stability import outcomes
-from engine.stability_map import STRIP, default_grid
+from engine.stability.grid import STRIP, default_grid
+from engine.stability.outcomes import outcomes
 
 LIMITS = {"map_seconds": 30.0, "peak_megabytes": 200.0}
 STEPS, REPEATS = 300, 7

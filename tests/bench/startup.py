@@ -50,8 +50,8 @@ if __name__ == "__main__":
                     for name in (
                         "numpy",
                         "textual.app",
-                        "tui.live",
-                        "tui.app, tui.screens.lab",
+                        "tui.playback.live",
+                        "tui.screens.app, tui.screens.live",
                         "plotext",
                         "mcap.writer",
                     )

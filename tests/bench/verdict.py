@@ -11,7 +11,7 @@ Then a Trend is fed with the run's first periods, 30 samples a second as the lab
 first verdict it gives is not the truth, and it flickers if it gives a second one.
 
 The grid's one rotation is the scene `spin`, a turn a second; faster ones, and those that beat with their
-steps, stand in tests/engine/test_verdict.py.  The chaos scenes are left out: whether an orbit in a chaotic
+steps, stand in tests/engine/run/test_verdict.py.  The chaos scenes are left out: whether an orbit in a chaotic
 sea stays is known from the sea's fences, not from its past.
 """
 
@@ -21,12 +21,12 @@ import time
 from itertools import groupby
 from statistics import median
 
-from engine.compiled import compiled
-from engine.exact import Swing
-from engine.lockstep import Lockstep
 from engine.methods import METHODS
+from engine.models.exact_pendulum import Swing
+from engine.run.compiled import compiled
+from engine.run.lockstep import Lockstep
+from engine.run.verdict import Trend
 from engine.scenes import SCENES, Scene
-from engine.verdict import Trend
 
 Z = (0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.63, 0.8)  # h·w0
 GRID = [

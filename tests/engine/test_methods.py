@@ -10,13 +10,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.exact import Swing
-from engine.loops import plain
 from engine.methods import METHODS, Method
-from engine.pendulum import acceleration
+from engine.models.exact_pendulum import Swing
+from engine.models.pendulum import acceleration
+from engine.models.state import Acceleration, Phase
+from engine.phase_space.tangent import jacobian
+from engine.run.loops import plain
 from engine.scenes import Scene
-from engine.state import Acceleration, Phase
-from engine.tangent import jacobian
 
 W0_SQUARED = 9.81
 each_method = pytest.mark.parametrize("method", METHODS, ids=lambda method: method.key)

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.exact import Swing
-from engine.lockstep import Lockstep, Sample
+from engine.models.exact_pendulum import Swing
+from engine.run.lockstep import Lockstep, Sample
 from engine.scenes import DEFAULT_SCENE, LIMITS, SCENES, Z_LIMITS, Scene, SceneError, check_h
 
 EXPLICIT, SYMPLECTIC, VERLET, RK4 = range(4)

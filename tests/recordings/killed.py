@@ -9,10 +9,10 @@ import sys
 import time
 from pathlib import Path
 
-from engine.lockstep import Sample
-from recordings.sitting import SittingRecorder
+from engine.run.lockstep import Sample
+from recordings.live_recorder import SittingRecorder
 from tests.recordings.sittings import SCENE
-from tui.live import Live
+from tui.playback.live import Live
 
 FRAME = 1 / 30  # s
 KEYS = (

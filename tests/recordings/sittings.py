@@ -3,8 +3,8 @@
 from dataclasses import replace
 from pathlib import Path
 
-from engine.lockstep import Lockstep, Sample
 from engine.methods import METHODS
+from engine.run.lockstep import Lockstep, Sample
 from engine.scenes import Scene
 from recordings.events import Entry, Event
 from recordings.recorder import FLUSH_EVERY, Recorder

@@ -8,14 +8,14 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
-from engine.lockstep import Sample
+from engine.run.lockstep import Sample
 from recordings.errors import RecordingError
 from recordings.events import Event
 from recordings.format import without_extremes
 from recordings.recording import Recording
 from recordings.recover import recover
+from recordings.scan import Walk
 from recordings.verify import verify
-from recordings.walk import Walk
 from tests.recordings.sittings import record, tiny, two_runs
 
 

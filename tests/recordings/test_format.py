@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.lockstep import Reading, Sample
+from engine.run.lockstep import Reading, Sample
 from engine.scenes import LIMITS, Scene
 from recordings.errors import TEXT_LIMIT, RecordingError, printable
 from recordings.events import Event

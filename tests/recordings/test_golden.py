@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from engine.lockstep import Sample
 from engine.methods import METHODS
+from engine.run.lockstep import Sample
 from recordings import export
 from recordings.events import Event
 from recordings.format import sin_fingerprint, without_extremes

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.lockstep import Lockstep
+from engine.run.lockstep import Lockstep
 from recordings.headless import segments, simulate, steps_for
 from recordings.recorder import Recorder
 from recordings.recording import Recording

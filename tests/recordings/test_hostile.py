@@ -23,9 +23,9 @@ from recordings.framing import read_chunk
 from recordings.recorder import FLUSH_EVERY, Recorder
 from recordings.recording import EVENT_LIMIT, Recording
 from recordings.recover import recover
+from recordings.scan import Walk
 from recordings.summary import CHUNK_LIMIT, Chunks
 from recordings.verify import verify
-from recordings.walk import Walk
 from tests.recordings.sittings import METHOD_KEYS, record, start, two_runs
 
 SECOND = 1_000_000_000
@@ -132,7 +132,7 @@ def test_a_disk_that_cannot_be_read_is_a_file_that_cannot_be_read(tmp_path, monk
     def broken(*_):
         raise OSError(5, "Input/output error")
 
-    monkeypatch.setattr("recordings.walk.record_at", broken)
+    monkeypatch.setattr("recordings.scan.record_at", broken)
     for attempt in (lambda path: Recording.open(path, check=True), verify):
         with pytest.raises(RecordingError, match=r"a\.mcap: Input/output error\.$"):
             attempt(path)

@@ -13,7 +13,7 @@ from recordings.names import free_path
 from recordings.recorder import Recorder
 from recordings.recording import Recording
 from tests.recordings.sittings import start, tiny
-from tui.marks import Mark, Marks
+from tui.playback.marks import Mark, Marks
 
 NOON = time.struct_time((2026, 11, 20, 12, 0, 0, 4, 324, 0))
 

@@ -11,7 +11,7 @@ from mcap.reader import make_reader
 from mcap.records import Chunk, DataEnd, Footer, Message, Metadata, Statistics
 from mcap.stream_reader import StreamReader
 
-from engine.lockstep import Lockstep
+from engine.run.lockstep import Lockstep
 from recordings.errors import DiskError
 from recordings.events import Event
 from recordings.format import decode_event

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.lockstep import Lockstep, Sample
+from engine.run.lockstep import Lockstep, Sample
 from recordings.errors import RecordingError
 from recordings.events import Entry, Event
 from recordings.headless import simulate

@@ -6,7 +6,7 @@ import pytest
 from mcap.records import Message
 from mcap.stream_reader import StreamReader
 
-from engine.lockstep import Lockstep, Sample
+from engine.run.lockstep import Lockstep, Sample
 from recordings.errors import DiskError, RecordingError
 from recordings.events import Entry, Event
 from recordings.recorder import Recorder

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from engine import loops
-from engine.lockstep import Lockstep, Sample
-from engine.pendulum import acceleration
+from engine.models.pendulum import acceleration
+from engine.run import loops
+from engine.run.lockstep import Lockstep, Sample
 from engine.scenes import SCENES
 from recordings import rerun
 from recordings.errors import RecordingError

@@ -6,7 +6,7 @@ from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from typing import Any
 
-from tui.cli import main
+from tui.cli.dispatch import main
 
 
 @dataclass(frozen=True)

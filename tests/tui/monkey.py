@@ -9,8 +9,10 @@ from textual.events import Key
 
 from tests.tui.pty_lab import PtyLab
 from tests.tui.stage import Theatre
-from tui.keys import COMMON, LIVE, REPLAY
-from tui.widgets import accuracy, phase, stability
+from tui.views.accuracy import pane as accuracy
+from tui.views.keys import COMMON, LIVE, REPLAY
+from tui.views.phase import pane as phase
+from tui.views.stability import pane as stability
 
 SIZE = COLUMNS, ROWS = 120, 40  # the key line is last, where a click on Quit would end it all
 SENT = {  # what a terminal sends for keys that are no characters

@@ -14,7 +14,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-PENDU = [sys.executable, "-c", "import sys; from tui.cli import main; sys.exit(main())"]
+PENDU = [sys.executable, "-c", "import sys; from tui.cli.dispatch import main; sys.exit(main())"]
 PACKET = 512  # bytes on a slow line; 8 ms at 64 KiB/s
 ROOT = Path(__file__).parents[2]
 

@@ -4,8 +4,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from engine.scenes import DEFAULT_SCENE, SCENES, Scene
-from recordings.sitting import SittingRecorder
-from tui.live import Live
+from recordings.live_recorder import SittingRecorder
+from tui.playback.live import Live
 
 FPS = 30
 

@@ -9,17 +9,17 @@ from textual.pilot import Pilot
 
 from engine.scenes import DEFAULT_SCENE, Scene
 from recordings.recording import Recording
-from tui.app import PenduApp
-from tui.display import FPS
-from tui.keys import COMMON
-from tui.live import Live
-from tui.marks import Marks
-from tui.replay import Replay
-from tui.screens.lab import Lab
-from tui.screens.player import Player
-from tui.screens.stage import Stage
-from tui.still import settled
-from tui.widgets.rows import Rows
+from tui.drawing.cells import Rows
+from tui.playback.live import Live
+from tui.playback.marks import Marks
+from tui.playback.replay import Replay
+from tui.screens.app import PenduApp
+from tui.screens.base import Stage
+from tui.screens.live import Lab
+from tui.screens.replay import Player
+from tui.screens.still import settled
+from tui.terminal.options import FPS
+from tui.views.keys import COMMON
 
 
 class Theatre:

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 
 from engine.methods import METHODS
 from engine.scenes import Scene, check_h
-from tui.errors import Exit, UserError
-from tui.options import add_scene_options, count, positive, scene_of
-from tui.output import progress
-from tui.whole_file import whole_file
+from tui.cli.errors import Exit, UserError
+from tui.cli.files import whole_file
+from tui.cli.options import add_scene_options, count, positive, scene_of
+from tui.cli.output import progress
 
 if TYPE_CHECKING:
-    from engine.accuracy import ErrorKind, Study
-    from engine.recommend import Attempt
+    from engine.accuracy.recommend import Attempt
+    from engine.accuracy.study import ErrorKind, Study
 
 EXAMPLES = """\
 examples:
@@ -93,7 +93,7 @@ def h_values(text: str) -> tuple[float, float, int]:
 
 def run(options: argparse.Namespace) -> int:
     """Measure, recommend, print.  Ctrl+C keeps what is done."""
-    from engine.accuracy import Order, Point, Study, orders, timed, usual
+    from engine.accuracy.study import Order, Point, Study, orders, timed, usual
 
     scene = scene_of(options)
     if scene.theta == scene.omega == 0:
@@ -105,9 +105,9 @@ def run(options: argparse.Namespace) -> int:
         raise UserError(f"--budget {options.budget:g} would take hours: give {MOST_BUDGET:g} evaluations or less.")
     if budget == 0:
         raise UserError(f"--budget {options.budget:g} buys nothing: give 1 force evaluation or more.")
-    from engine import compiled, loops
-    from engine.recommend import Attempt, cheapest, most_accurate
-    from tui.accuracy_report import Advice, Findings, print_json, print_text, write_csv
+    from engine.accuracy.recommend import Attempt, cheapest, most_accurate
+    from engine.run import compiled, loops
+    from tui.commands.accuracy_report import Advice, Findings, print_json, print_text, write_csv
 
     fast = not options.no_compiled and compiled.available()
     study = Study(scene, times[-1], compiled.tiered if fast else loops.plain)
@@ -169,7 +169,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _ladder(scene: Scene, time: float, given: tuple[float, float, int] | None) -> list[int]:
     """The numbers of steps to measure."""
-    from engine.accuracy import Z_LADDER, ladder
+    from engine.accuracy.study import Z_LADDER, ladder
 
     largest, smallest, rungs = given or (Z_LADDER[0] / scene.w0, Z_LADDER[1] / scene.w0, Z_LADDER[2])
     for h in (largest, smallest):
@@ -182,6 +182,6 @@ def _ladder(scene: Scene, time: float, given: tuple[float, float, int] | None) -
 
 
 def _attempts(study: "Study", kind: "ErrorKind", target: float | None, budget: int | None) -> "Iterator[Attempt]":
-    from engine.recommend import MOST_EVALUATIONS, reach, spend
+    from engine.accuracy.recommend import MOST_EVALUATIONS, reach, spend
 
     return reach(study, kind, target, budget or MOST_EVALUATIONS) if target else spend(study, kind, budget or 0)

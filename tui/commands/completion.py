@@ -3,8 +3,8 @@
 import argparse
 from importlib import import_module
 
-from tui.errors import Exit
-from tui.options import Parser
+from tui.cli.errors import Exit
+from tui.cli.options import Parser
 
 EXAMPLES = """\
 examples:
@@ -34,7 +34,7 @@ def run(options: argparse.Namespace) -> int:
 
 def whole_parser() -> Parser:
     """All commands in one parser, whose arguments know what they can be completed to."""
-    from tui.cli import COMMANDS
+    from tui.cli.dispatch import COMMANDS
 
     parser = Parser(prog="pendu-tui")
     parser.add_argument("--version", action="store_true", help="print the version")
@@ -55,7 +55,7 @@ def _teach(parser: Parser) -> None:
     from engine.methods import METHODS
     from engine.scenes import SCENES
     from recordings.library import golden_names
-    from tui.gate import FIELDS
+    from tui.cli.fail_if import FIELDS
 
     for action in parser._actions:
         metavar = str(action.metavar or "")

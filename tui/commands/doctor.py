@@ -12,9 +12,9 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from tempfile import TemporaryFile
 
-from tui.errors import Exit, UserError
-from tui.numbers import file_size
-from tui.output import print_table, write_json
+from tui.cli.errors import Exit, UserError
+from tui.cli.output import print_table, write_json
+from tui.words.numbers import file_size
 
 EXAMPLES = """\
 examples:
@@ -70,7 +70,7 @@ def _findings() -> Iterator[Finding]:
 
 def lab() -> Finding:
     """Whether the lab starts here."""
-    from tui.terminal import check_terminal
+    from tui.terminal.check import check_terminal
 
     try:
         check_terminal()

@@ -6,9 +6,9 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from recordings.errors import printable
-from tui.errors import Exit
-from tui.output import progress
-from tui.whole_file import whole_file
+from tui.cli.errors import Exit
+from tui.cli.files import whole_file
+from tui.cli.output import progress
 
 EXAMPLES = """\
 examples:

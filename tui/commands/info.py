@@ -4,9 +4,9 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from recordings.errors import printable
-from tui.errors import Exit
-from tui.numbers import file_size, seconds
-from tui.output import print_table, progress, scene_fields, write_json
+from tui.cli.errors import Exit
+from tui.cli.output import print_table, progress, scene_fields, write_json
+from tui.words.numbers import file_size, seconds
 
 if TYPE_CHECKING:
     from recordings.recording import Recording

@@ -11,16 +11,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from engine.scenes import Scene
-from tui.display import add_display_options, display_of
-from tui.errors import Exit, UserError
-from tui.options import add_scene_options, positive, scene_of
-from tui.output import progress
+from tui.cli.errors import Exit, UserError
+from tui.cli.options import add_scene_options, positive, scene_of
+from tui.cli.output import progress
+from tui.terminal.options import add_display_options, display_of
 
 if TYPE_CHECKING:
-    from tui.live import Live
-    from tui.screens.lab import Lab
-    from tui.screens.stage import Stage
-    from tui.source import Source
+    from tui.playback.live import Live
+    from tui.playback.source import Source
+    from tui.screens.base import Stage
+    from tui.screens.live import Lab
 
 EXAMPLES = """\
 examples:
@@ -47,13 +47,13 @@ def run(options: argparse.Namespace) -> int:
     scene = scene_of(options)
     if options.plain:
         return plain_lab(scene, options)
-    from tui.terminal import check_terminal
+    from tui.terminal.check import check_terminal
 
     check_terminal()
     gc.disable()  # until the stage is set: collections while importing would delay the first paint by a thirtieth
     path = None if options.no_record else place_of(options.record)
     told = [] if path is None else tell_of_leftovers(path.parent)
-    from tui.live import Live
+    from tui.playback.live import Live
 
     return show(recording_lab(Live(scene, options.speed), path, told, or_next=options.record is None), options)
 
@@ -63,11 +63,11 @@ def plain_lab(scene: Scene, options: argparse.Namespace) -> int:
     path = None if options.no_record else place_of(options.record)
     if path is not None:
         tell_of_leftovers(path.parent)
-    from tui.live import Live
+    from tui.playback.live import Live
 
     live = Live(scene, options.speed)
     if path is not None:
-        from recordings.sitting import SittingRecorder
+        from recordings.live_recorder import SittingRecorder
 
         live.record(SittingRecorder(path, or_next=options.record is None))
     return say(live)
@@ -75,8 +75,8 @@ def plain_lab(scene: Scene, options: argparse.Namespace) -> int:
 
 def say(source: "Source") -> int:
     """Tell in sentences what happens, until Ctrl+C or a signal ends it, as it should be ended; so that is fine."""
-    from tui.interrupt import stop_requests
-    from tui.plain import plain
+    from tui.cli.interrupt import stop_requests
+    from tui.words.plain_text import plain
 
     try:
         with stop_requests() as stopped:
@@ -89,11 +89,11 @@ def say(source: "Source") -> int:
 
 def recording_lab(live: "Live", path: Path | None, notices: Sequence[str] = (), or_next: bool = True) -> "Lab":
     """The lab's screen, and a recording at that place, or at the next free one."""
-    from tui.screens.lab import Lab
+    from tui.screens.live import Lab
 
     def prepare() -> None:
         if path is not None:
-            from recordings.sitting import SittingRecorder  # brings mcap, which can wait for the first paint
+            from recordings.live_recorder import SittingRecorder  # brings mcap, which can wait for the first paint
 
             live.record(SittingRecorder(path, or_next=or_next))
 
@@ -102,8 +102,8 @@ def recording_lab(live: "Live", path: Path | None, notices: Sequence[str] = (), 
 
 def show(stage: "Stage", options: argparse.Namespace) -> int:
     """Run the app with this screen first, and say goodbye."""
-    from tui.app import PenduApp
     from tui.commands.replay import player
+    from tui.screens.app import PenduApp
 
     assert sys.__stderr__ is not None  # where Textual draws
     display = display_of(options, os.environ, sys.__stderr__.encoding)
@@ -137,7 +137,7 @@ def place_of(file: Path | None) -> Path:
 
 def tell_of_leftovers(folder: Path) -> list[str]:
     """Recover what an earlier sitting left unfinished, and say so."""
-    from tui.leftovers import recover_leftovers
+    from tui.words.recovered import recover_leftovers
 
     sentences = recover_leftovers(folder, progress)
     for sentence in sentences:
@@ -147,7 +147,7 @@ def tell_of_leftovers(folder: Path) -> list[str]:
 
 def farewell(source: "Source") -> None:
     """Say where the recording is and how to see it again."""
-    from tui.live import Live
+    from tui.playback.live import Live
 
     if not isinstance(source, Live) or source.recorder is None:
         return

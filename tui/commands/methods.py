@@ -6,8 +6,8 @@ from typing import Any
 
 from engine.methods import Method
 from engine.scenes import DEFAULT_SCENE
-from tui.errors import Exit
-from tui.output import print_table, write_json
+from tui.cli.errors import Exit
+from tui.cli.output import print_table, write_json
 
 EXAMPLES = """\
 examples:
@@ -23,7 +23,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """List the methods."""
-    from engine.compiled import available
+    from engine.run.compiled import available
     from tui.commands.run import COMPILED_FROM
 
     methods = _measured()
@@ -63,8 +63,8 @@ def _limit(z: float) -> str:
 
 def _measured() -> list[dict[str, Any]]:
     """The methods with the order that their errors show on the default scene, and their limit by bisection."""
-    from engine.accuracy import orders
-    from engine.linear import linear_limit
+    from engine.accuracy.study import orders
+    from engine.stability.linear import linear_limit
 
     return [
         _claims(method) | {"measured_order": order, "measured_linear_limit": linear_limit(method.step)}

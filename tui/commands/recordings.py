@@ -7,10 +7,10 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from recordings.errors import RecordingError, printable
-from tui.errors import Exit, UserError
-from tui.numbers import file_size, seconds
-from tui.options import count
-from tui.output import print_table, write_json
+from tui.cli.errors import Exit, UserError
+from tui.cli.options import count
+from tui.cli.output import print_table, write_json
+from tui.words.numbers import file_size, seconds
 
 if TYPE_CHECKING:
     from recordings.library import Item

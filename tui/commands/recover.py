@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from recordings.errors import printable
-from tui.errors import Exit
-from tui.numbers import seconds
-from tui.output import progress, write_json
-from tui.whole_file import check_free
+from tui.cli.errors import Exit
+from tui.cli.files import check_free
+from tui.cli.output import progress, write_json
+from tui.words.numbers import seconds
 
 if TYPE_CHECKING:
     from recordings.recover import Recovery

@@ -4,15 +4,15 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tui.cli.errors import Exit, UserError
+from tui.cli.options import number, positive
 from tui.commands.live import place_of, recording_lab, say, show
-from tui.display import add_display_options
-from tui.errors import Exit, UserError
-from tui.options import number, positive
+from tui.terminal.options import add_display_options
 
 if TYPE_CHECKING:
-    from tui.live import Live
-    from tui.screens.player import Player
-    from tui.screens.stage import Stage
+    from tui.playback.live import Live
+    from tui.screens.base import Stage
+    from tui.screens.replay import Player
 
 EXAMPLES = """\
 examples:
@@ -38,7 +38,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Replay."""
     from recordings.library import resolve
-    from tui.terminal import check_terminal
+    from tui.terminal.check import check_terminal
 
     path = resolve(options.file)
     if not options.plain:
@@ -57,10 +57,10 @@ def run(options: argparse.Namespace) -> int:
 def player(path: Path, no_record: bool) -> "Player":
     """The stage for a recording; a lab that goes on from it is recorded, or not."""
     from recordings.recording import Recording
-    from tui.marks import Marks
-    from tui.output import progress
-    from tui.replay import Replay
-    from tui.screens.player import Player
+    from tui.cli.output import progress
+    from tui.playback.marks import Marks
+    from tui.playback.replay import Replay
+    from tui.screens.replay import Player
 
     with progress(f"looking through {path.name}") as tell:
         recording = Recording.open(path, progress=tell)

@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING, Any
 
 from engine.methods import METHODS
 from engine.scenes import Scene
-from tui.errors import Exit, UserError
-from tui.numbers import file_size
-from tui.options import add_scene_options, count, positive, scene_of
-from tui.output import print_table, progress, scene_fields, write_json
-from tui.whole_file import check_free
+from tui.cli.errors import Exit, UserError
+from tui.cli.files import check_free
+from tui.cli.options import add_scene_options, count, positive, scene_of
+from tui.cli.output import print_table, progress, scene_fields, write_json
+from tui.words.numbers import file_size
 
 if TYPE_CHECKING:
-    from engine.lockstep import Sample
-    from engine.verdict import Trend
-    from tui.gate import Gate
+    from engine.run.lockstep import Sample
+    from engine.run.verdict import Trend
+    from tui.cli.fail_if import Gate
 
 EXAMPLES = """\
 examples:
@@ -105,7 +105,7 @@ def _announce(steps: int, every: int) -> None:
 
 
 def _gate(expression: str | None) -> "Gate | None":
-    from tui.gate import GateError, parse
+    from tui.cli.fail_if import GateError, parse
 
     try:
         return parse(expression) if expression is not None else None
@@ -115,11 +115,11 @@ def _gate(expression: str | None) -> "Gate | None":
 
 def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int) -> "tuple[Sample, list[Trend], bool]":
     """The last sample, each method's trend, and whether somebody stopped it before its end."""
-    from engine import compiled, loops
-    from engine.exact import Swing
-    from engine.verdict import Trend
+    from engine.models.exact_pendulum import Swing
+    from engine.run import compiled, loops
+    from engine.run.verdict import Trend
     from recordings.headless import simulate
-    from tui.interrupt import stop_requests
+    from tui.cli.interrupt import stop_requests
 
     recorder: Any = nullcontext()
     if options.record:
@@ -142,8 +142,8 @@ def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int)
 
 def _rows(scene: Scene, sample: "Sample", trends: "list[Trend]") -> list[dict[str, Any]]:
     """What became of each method.  A method that diverged has no theta to compare."""
-    from engine.accuracy import evaluations
-    from engine.exact import Swing
+    from engine.accuracy.study import evaluations
+    from engine.models.exact_pendulum import Swing
 
     exact = Swing(scene).at(sample.t).theta
     rows = []

@@ -4,8 +4,8 @@ import argparse
 import math
 
 from engine.scenes import SCENES
-from tui.errors import Exit
-from tui.output import print_table, scene_fields, write_json
+from tui.cli.errors import Exit
+from tui.cli.output import print_table, scene_fields, write_json
 
 EXAMPLES = """\
 examples:

@@ -5,10 +5,10 @@ import os
 import re
 from pathlib import Path
 
-from tui.display import add_picture_options, display_of
-from tui.errors import Exit
-from tui.options import add_scene_options, scene_of
-from tui.whole_file import whole_file
+from tui.cli.errors import Exit
+from tui.cli.files import whole_file
+from tui.cli.options import add_scene_options, scene_of
+from tui.terminal.options import add_picture_options, display_of
 
 EXAMPLES = """\
 examples:
@@ -34,7 +34,7 @@ def run(options: argparse.Namespace) -> int:
     scene = scene_of(options)
     import asyncio
 
-    from tui.still import still
+    from tui.screens.still import still
 
     display = display_of(options, os.environ, "utf-8")
     with whole_file(options.output, options.force) as file:

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from engine.scenes import Z_LIMITS
-from tui.errors import UserError
-from tui.options import add_scene_options, angle, count, number, scene_of
+from tui.cli.errors import UserError
+from tui.cli.options import add_scene_options, angle, count, number, scene_of
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -87,8 +87,8 @@ def run(options: argparse.Namespace) -> int:
         )
     _check("z", options.z_values, *Z_LIMITS)
     _check("number of steps", [options.steps], 0, 2**31)
-    from tui.stability_report import print_csv, print_json, print_text, write_file
-    from tui.stability_study import Study
+    from engine.stability.study import Study
+    from tui.commands.stability_report import print_csv, print_json, print_text, write_file
 
     with _workers(options) as executor:
         study = Study(scene, options.theta_values, options.z_values, options.steps, executor)

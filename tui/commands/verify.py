@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from recordings.errors import RecordingError, printable
 from recordings.names import PART
-from tui.errors import Exit
-from tui.output import progress, write_json
+from tui.cli.errors import Exit
+from tui.cli.output import progress, write_json
 
 if TYPE_CHECKING:
     from recordings.rerun import Difference

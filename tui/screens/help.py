@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 
 from engine.methods import METHODS
-from tui.cards import method_card, scene_card
-from tui.describe import step_text
-from tui.keys import Key
-from tui.screens.reader import Reader
-from tui.source import Source
+from tui.playback.source import Source
+from tui.screens.text import Reader
+from tui.views.keys import Key
+from tui.words.cards import method_card, scene_card
+from tui.words.describe import step_text
 
 
 def help_text(keys: Sequence[Key], source: Source) -> str:

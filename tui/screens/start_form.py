@@ -11,7 +11,7 @@ from textual.containers import Container, Horizontal
 from textual.widgets import Input, Label
 
 from engine.scenes import Scene
-from tui.options import angle, number
+from tui.cli.options import angle, number
 from tui.screens.modal import Modal
 
 FIELDS: dict[str, tuple[str, Callable[[str], float]]] = {

@@ -15,10 +15,10 @@ class Entry(NamedTuple):
 
 
 VIEWS: dict[str, Entry] = {
-    "lab": Entry("Lab", "tui.views.lab", "LabView"),
-    "phase": Entry("Phase space", "tui.views.phase", "PhaseView"),
-    "accuracy": Entry("Accuracy", "tui.views.accuracy", "AccuracyView"),
-    "stability": Entry("Stability", "tui.views.stability", "StabilityView"),
+    "lab": Entry("Lab", "tui.views.lab.view", "LabView"),
+    "phase": Entry("Phase space", "tui.views.phase.view", "PhaseView"),
+    "accuracy": Entry("Accuracy", "tui.views.accuracy.view", "AccuracyView"),
+    "stability": Entry("Stability", "tui.views.stability.view", "StabilityView"),
 }
 """In the order in which v goes through them."""
 

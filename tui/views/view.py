@@ -5,10 +5,10 @@ from typing import ClassVar
 from textual.containers import Container
 from textual.reactive import var
 
-from engine.lockstep import Sample
-from tui.keys import Key
-from tui.look import Look
-from tui.source import Source
+from engine.run.lockstep import Sample
+from tui.playback.shown import Look
+from tui.playback.source import Source
+from tui.views.keys import Key
 
 
 class View(Container):

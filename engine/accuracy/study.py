@@ -1,0 +1,196 @@
+"""Speed against accuracy: for a scene and a time, each method's errors and costs over a ladder of h.
+
+Every h is a whole fraction of the time, and errors in theta are taken at whole steps, the same for all
+methods, so that nothing is interpolated.  Cost is counted in force evaluations, which are the same on
+every machine, or in seconds by a clock that is passed in.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from statistics import linear_regression
+from typing import Literal, NamedTuple
+
+from engine.accuracy.rounding import rounding_floor
+from engine.methods import METHODS, Method
+from engine.models.exact_pendulum import Swing
+from engine.run.compiled import tiered
+from engine.run.lockstep import Lockstep
+from engine.run.loops import Loops, plain
+from engine.scenes import Z_LIMITS, Scene
+
+ErrorKind = Literal["theta", "energy", "final"]
+Clock = Callable[[], float]
+
+COMPARISONS = 400  # with the exact swing in a run: at least so many, or at every step; never twice as many
+REPEATS = 5  # of a timed run
+TIMED_STEPS = 20_000  # at least, in each of them
+SWINGS = 10
+Z_LADDER = (0.6, 0.0015, 12)  # from about ten steps a small swing to four thousand
+ORDER_STEPS = tuple(2**power for power in range(5, 15))
+ORDER_COMPARISONS = ORDER_STEPS[0]
+FITTED_BELOW = 0.1  # rad; larger errors are not yet proportional to a power of h
+
+
+Flaw = Literal["lost", "rounding", "diverged"]
+REASONS: dict[Flaw, str] = {
+    "lost": "as far off as the swing is wide, or as the energy is large",
+    "rounding": "no larger than what rounding adds up to",
+    "diverged": "the numbers overflowed",
+}
+
+
+class Flaws(NamedTuple):
+    """Why an error says nothing of how the method depends on h; None where it does."""
+
+    theta: Flaw | None
+    energy: Flaw | None
+    final: Flaw | None
+
+
+@dataclass(frozen=True, slots=True)
+class Point:
+    """One run of one method: what it cost and how far off it was."""
+
+    method: Method
+    time: float  # s, simulated
+    steps: int
+    theta_error: float  # rad, the largest against the exact swing
+    energy_error: float  # relative, the largest of all steps
+    final_error: float  # rad, in theta at the end
+    flaws: Flaws
+    seconds: float | None = None  # the shortest of REPEATS runs without errors taken
+    spread: float | None = None  # by how much the longest took longer, relative
+
+    @property
+    def h(self) -> float:
+        """The step size [s]."""
+        return self.time / self.steps
+
+    @property
+    def force_evaluations(self) -> int:
+        """Cost of the run."""
+        return evaluations(self.method, self.steps)
+
+    def error(self, kind: ErrorKind) -> float:
+        """theta_error, energy_error or final_error."""
+        return {"theta": self.theta_error, "energy": self.energy_error, "final": self.final_error}[kind]
+
+    def flaw(self, kind: ErrorKind) -> Flaw | None:
+        """What is wrong with that error."""
+        return {"theta": self.flaws.theta, "energy": self.flaws.energy, "final": self.flaws.final}[kind]
+
+
+class Order(NamedTuple):
+    """A method's order: what theta errors scale with."""
+
+    method: Method
+    measured: float | None  # None: fewer than three errors to fit
+
+
+def evaluations(method: Method, steps: int) -> int:
+    """Force evaluations of a run."""
+    return steps * method.force_evaluations + method.first_same_as_last
+
+
+class Study:
+    """Runs of one scene over one time, with what they share: the exact swing and the rounding floor."""
+
+    def __init__(self, scene: Scene, time: float, loops: Callable[[Method], Loops] = plain) -> None:
+        self.scene, self.time, self.loops = scene, time, loops
+        self.swing = Swing(scene)
+        self._energy_floor, self._theta_floor = rounding_floor(self.swing, time)
+        times = (time * comparison / COMPARISONS for comparison in range(COMPARISONS + 1))
+        self._width = min(math.pi, max(abs(self.swing.at(t).theta) for t in times))
+
+    def run(self, method: Method, steps: int, comparisons: int = COMPARISONS) -> Point:
+        """Take this many steps; at least `comparisons` of them, the last included, meet the exact swing.
+
+        Raises SceneError where time/steps is no usable h.
+        """
+        lockstep = Lockstep(self.scene.altered(h=self.time / steps), methods=(method,), loops=self.loops)
+        stride = max(1, steps // comparisons)
+        theta_error = final_error = 0.0
+        while lockstep.step < steps:
+            lockstep.advance(min(stride, steps - lockstep.step))
+            (reading,) = lockstep.sample().readings
+            final_error = abs(reading.theta - self.swing.at(lockstep.t).theta)
+            theta_error = max(theta_error, final_error)
+        energy_error, energy_floor = reading.max_energy_error, self._energy_floor * math.sqrt(steps)
+        theta_floor = self._theta_floor * math.sqrt(steps)
+        flaws = Flaws(
+            theta=_flaw(theta_error, theta_floor, self._width),
+            energy=_flaw(energy_error, energy_floor, 1.0),
+            final=_flaw(final_error, theta_floor, self._width),
+        )
+        if reading.diverged_at is not None:
+            flaws = Flaws("diverged", "diverged", "diverged")
+        return Point(method, self.time, steps, theta_error, energy_error, final_error, flaws)
+
+    def points(self, ladder: Sequence[int]) -> Iterator[Point]:
+        """A point for every number of steps and every method."""
+        for steps in ladder:
+            for method in METHODS:
+                yield self.run(method, steps)
+
+
+def _flaw(error: float, floor: float, size: float) -> Flaw | None:
+    if error >= size:
+        return "lost"
+    return "rounding" if error <= floor else None
+
+
+def timed(point: Point, scene: Scene, clock: Clock, loops: Callable[[Method], Loops] = plain) -> Point:
+    """The same point with its seconds: the same steps again, without comparisons and energies."""
+    travel, start = loops(point.method).travel, (scene.theta, scene.omega)
+    travel(scene.w0_squared, start, point.h, 1)  # may have to be compiled
+    runs, lengths = max(1, TIMED_STEPS // point.steps), []
+    for _ in range(REPEATS):
+        began = clock()
+        for _ in range(runs):
+            travel(scene.w0_squared, start, point.h, point.steps)
+        lengths.append((clock() - began) / runs)
+    return replace(point, seconds=min(lengths), spread=max(lengths) / min(lengths) - 1)
+
+
+def ladder(time: float, h_max: float, h_min: float, count: int) -> list[int]:
+    """At most `count` numbers of steps, for h from about h_max down to h_min in equal ratios."""
+    ratio = (h_min / h_max) ** (1 / max(1, count - 1))
+    return sorted({max(1, round(time / (h_max * ratio**rung))) for rung in range(count)})
+
+
+def usual(scene: Scene) -> tuple[float, list[int]]:
+    """A time [s] and a ladder for a scene of which nothing else is asked: ten small swings, 20 s for 1 m."""
+    time = float(f"{SWINGS * math.tau / scene.w0:.2g}")
+    largest, smallest, rungs = Z_LADDER
+    return time, ladder(time, largest / scene.w0, smallest / scene.w0, rungs)
+
+
+def measured(scene: Scene, time: float, rungs: Sequence[int]) -> Iterator[Point]:
+    """A point for every number of steps and every method; for another process, which has only the arguments."""
+    return Study(scene, time, tiered).points(rungs)
+
+
+def orders(scene: Scene, time: float, loops: Callable[[Method], Loops] = plain) -> list[Order]:
+    """The order of each method: the slope of log theta error over log h, fitted over one period or less.
+
+    Over longer times RK4 reads 5 and more.  Its phase error at the time t is a·h⁴·t, but it also loses energy
+    at a rate of b·h⁵, so the frequency drifts and the phase with it by b·h⁵·t²/2, which wins in the long
+    run: it reads 5, and more where h is so large that terms of h⁶ count.  Next to the separatrix,
+    where phase hangs steeply on energy, it reads 5 within the first period.  Symplectic Euler reads 2
+    from theta = 0, where its angles are velocity Verlet's.
+    """
+    study = Study(scene, min(time, Swing(scene).period or math.tau / scene.w0), loops)
+    usable = [steps for steps in ORDER_STEPS if study.time / steps * scene.w0 >= Z_LIMITS[0]]
+    return [
+        Order(method, _slope([study.run(method, steps, ORDER_COMPARISONS) for steps in usable])) for method in METHODS
+    ]
+
+
+def _slope(points: Sequence[Point]) -> float | None:
+    """The slope of log theta error over log h, by least squares."""
+    fitted = [p for p in points if p.flaws.theta is None and p.theta_error < FITTED_BELOW]
+    if len(fitted) < 3:
+        return None
+    line = linear_regression([math.log(p.h) for p in fitted], [math.log(p.theta_error) for p in fitted])
+    return line.slope

@@ -1,0 +1,40 @@
+"""The model: a frictionless pendulum, and no more than that.
+
+theta'' = -w0² sin theta.  Mass cancels; energies are per unit m·L², in s⁻².
+"""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from engine.models.state import Acceleration
+
+Sine = Callable[[Any], Any]
+
+
+def acceleration(w0_squared: float, sin: Sine = math.sin) -> Acceleration:
+    """theta -> -w0² sin theta [rad/s²].  Pass the `sin` of your numbers: NumPy's, cmath's, mpmath's."""
+
+    def pendulum_acceleration(theta: Any) -> Any:
+        return -w0_squared * sin(theta)
+
+    return pendulum_acceleration
+
+
+def energy(w0_squared: float, theta: Any, omega: Any, sin: Sine = math.sin) -> Any:
+    """omega²/2 + 2 w0² sin²(theta/2) [s⁻²].
+
+    Equal to omega²/2 + w0² (1 - cos theta), which would cancel to nothing near the bottom.
+    """
+    half = sin(theta / 2)
+    return omega * omega / 2 + 2 * w0_squared * half * half
+
+
+def separatrix_energy(w0_squared: float) -> float:
+    """2 w0² [s⁻²]: below it the pendulum swings (libration), above it spins (rotation)."""
+    return 2 * w0_squared
+
+
+def energy_scale(w0_squared: float, start_energy: float) -> float:
+    """What relative energy errors are relative to: the start's energy, or 2 w0² where that is zero."""
+    return start_energy if start_energy > 0 else separatrix_energy(w0_squared)

@@ -1,0 +1,75 @@
+"""The map of stability: every method at every step z and every amplitude, in strips that any executor can run."""
+
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from engine.methods import METHODS, Method
+from engine.stability.outcomes import CELL, UNKNOWN, Cells, Floats, outcomes
+
+STRIP = 2048
+"""Swings a method in a strip: enough that NumPy's calls cost little, few enough that they stay in the cache."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Grid:
+    """What to try.  A strip of a grid is a grid."""
+
+    theta: Floats  # rad, amplitudes between 0 and pi
+    z: Floats  # h·w0, above 0
+    steps: int
+    methods: tuple[Method, ...] = METHODS
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """(z, methods, theta), the axes of its cells."""
+        return len(self.z), len(self.methods), len(self.theta)
+
+    def cells(self) -> Cells:
+        """The outcome of every swing."""
+        z, theta = (axis.ravel() for axis in np.meshgrid(self.z, self.theta, indexing="ij"))
+        each = [outcomes(m, theta, z, self.steps).reshape(len(self.z), -1) for m in self.methods]
+        return np.stack(each, axis=1)
+
+    def unknown(self) -> Cells:
+        """Cells of which nothing is known yet."""
+        return np.full(self.shape, np.array((0, 0.0, UNKNOWN), CELL))
+
+    def strips(self) -> list["Grid"]:
+        """The grid cut along z.  However it is cut, the cells are the same to the last bit."""
+        width = max(1, STRIP // len(self.theta))
+        return [replace(self, z=self.z[start : start + width]) for start in range(0, len(self.z), width)]
+
+    def compute(self, executor: Executor | None = None) -> Iterator[Cells]:
+        """The cells of strip after strip, z ascending, from the executor's workers or from here.
+
+        The cells depend on `sin` and so on processor and libm: workers of one kind give one picture.
+        """
+        return (executor.map if executor else map)(Grid.cells, self.strips())
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """Some of a map that is computed while somebody watches."""
+
+    z: slice
+    method: int  # index into the grid's
+    cells: Cells  # (z, theta)
+    steps: int
+    done: float  # the part of the map with these steps that is done
+
+
+def pieces(grid: Grid, passes: Sequence[int], width: int = 10) -> Iterator[Piece]:
+    """The map in pieces of `width` z and one method: all of it with few steps a swing, then with more."""
+    places = [(slice(z, z + width), m) for z in range(0, len(grid.z), width) for m in range(len(grid.methods))]
+    for steps in passes:
+        for done, (z, m) in enumerate(places, 1):
+            part = replace(grid, z=grid.z[z], methods=grid.methods[m : m + 1], steps=steps)
+            yield Piece(z, m, part.cells()[:, 0], steps, done / len(places))
+
+
+def default_grid() -> Grid:
+    """The middles of 200 steps z up to 3, beyond every method's limit, and of 100 amplitudes up to pi."""
+    return Grid(theta=(np.arange(100) + 0.5) * np.pi / 100, z=(np.arange(200) + 0.5) * 3 / 200, steps=10_000)

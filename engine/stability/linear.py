@@ -1,0 +1,71 @@
+"""The linear oscillator theta'' = -w0² theta, the limit of small swings: up to which step a method stays bounded.
+
+Everything is read from the method's own step, and depends on z = h·w0 only.
+"""
+
+import cmath
+import math
+from fractions import Fraction
+
+from engine.methods import Step
+from engine.models.state import Number
+from engine.phase_space.tangent import jacobian
+
+
+def amplification(step: Step, z: float) -> float:
+    """Largest |multiplier| of one step at the bottom of the pendulum, from the step's Jacobian.
+
+    Below a symplectic method's limit it is 1 to rounding, 1e-15; at the limit the two multipliers
+    meet and rounding shows as its square root, 1e-8.
+    """
+    a, b, c, d = jacobian(step, 1.0, 0.0, 0.0, z)
+    mean, spread = (a + d) / 2, cmath.sqrt((a - d) ** 2 / 4 + b * c)
+    return max(abs(mean + spread), abs(mean - spread))
+
+
+def is_stable(step: Step, z: Number) -> bool:
+    """Whether neither multiplier of the step is larger than 1, decided without rounding for a Fraction z.
+
+    A step has only + and * on the phase, so rational numbers go through it exactly, and no tolerance
+    has to tell |multiplier| = 1, where symplectic methods live, from growth.
+    Both multipliers lie in the closed unit disc if det <= 1 and |trace| <= 1 + det (Jury's conditions).
+    """
+    a, c = step(_spring, (1, 0), z)
+    b, d = step(_spring, (0, 1), z)
+    determinant = a * d - b * c
+    return bool(determinant <= 1 and abs(a + d) <= 1 + determinant)
+
+
+def _spring(theta: Number) -> Number:
+    return -theta
+
+
+def linear_limit(step: Step) -> float:
+    """The z up to which the step is stable, by bisection to 1e-9; 0.0 where no step is small enough.
+
+    Takes it that the step, once unstable, stays so.
+    """
+    stable, unstable = Fraction(0), Fraction(8)  # beyond any method's limit: 2√2 is the largest of ours
+    while unstable - stable > Fraction(1, 2**33):  # 1.2e-10
+        middle = (stable + unstable) / 2
+        if is_stable(step, middle):
+            stable = middle
+        else:
+            unstable = middle
+    return float(stable)
+
+
+def wobble(step: Step, z: float) -> tuple[float, float]:
+    """Lowest and highest energy, over the start's, that a linear swing from rest is taken to by this step.
+
+    A symplectic step keeps a quadratic form, not the energy: the swing stays on the ellipse
+    -c theta² + (a - d) theta omega + b omega² = -c theta0², where ((a, b), (c, d)) is its Jacobian at
+    w0 = 1.  The half axes, squared, are the extremes: (1 - z²/4, 1) for velocity Verlet, for symplectic
+    Euler (1/(1 + z/2), 1/(1 - z/2)).  Explicit Euler and RK4 do not wobble: (1, 1).  Beyond the limit of a
+    symplectic step there is no ellipse, and (0, 1) is what velocity Verlet's has become there.
+    """
+    a, b, c, d = jacobian(step, 1.0, 0.0, 0.0, z)
+    if (a - d) ** 2 / 4 + b * c >= 0:
+        return 0.0, 1.0
+    mean, spread = (b - c) / 2, math.hypot((b + c) / 2, (a - d) / 2)
+    return -c / (mean + spread), -c / (mean - spread)

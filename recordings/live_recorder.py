@@ -1,0 +1,110 @@
+"""SittingRecorder: records a sitting whatever becomes of the disk."""
+
+import time
+from contextlib import suppress
+from pathlib import Path
+
+from engine.run.lockstep import Sample
+from recordings.errors import DiskError, NameTakenError
+from recordings.events import Entry, Event
+from recordings.names import free_path
+from recordings.recorder import Recorder, WallClock, trouble
+
+RETRY_EVERY = 5.0  # s of the recording clock
+
+
+class SittingRecorder:
+    """A recorder that survives trouble with the disk: the sitting goes on, and so does the recording, in a new file.
+
+    Opening the first file may raise DiskError; nothing after that does.  With `or_next`, a name that another
+    sitting has taken meanwhile becomes the next free one.  `failed` says in a sentence why nothing is being
+    recorded right now.  Every file begins with the start and the changes of h of its run, so each replays and
+    verifies by itself.
+    """
+
+    def __init__(self, path: Path, wall: WallClock = time.time_ns, or_next: bool = False) -> None:
+        self.failed: str | None = None
+        self._closed = False
+        self.files: list[Path] = []  # that hold something and are no longer written to
+        self._path, self._wall = path, wall
+        self._course: list[Event] = []  # of the run: its start and its changes of h
+        self._zero = self._failed_at = 0.0  # s of the sitting's clock: where the file begins, the last failure
+        self._recorder = self._opened() if or_next else Recorder(path, wall)
+
+    @property
+    def path(self) -> Path:
+        """The file that is being written, or was last."""
+        return self._recorder.path
+
+    @property
+    def bytes(self) -> int:
+        """Its size."""
+        return self._recorder.bytes
+
+    @property
+    def seconds(self) -> float:
+        """Its length."""
+        return self._recorder.seconds
+
+    def event(self, event: Event, clock: float) -> None:
+        """Record an event."""
+        if event.kind == "start":
+            self._course = []
+        self._write(Entry(clock, event))
+        if event.kind in ("start", "set_h"):
+            self._course.append(event)
+
+    def sample(self, sample: Sample, clock: float) -> None:
+        """Record a sample."""
+        self._write(Entry(clock, sample))
+
+    def close(self) -> None:
+        """Finish the file; `failed` says if that was impossible.  What still happens then is not recorded."""
+        self._closed = True
+        if self.failed is None:
+            try:
+                self._recorder.close()
+                self._keep(self._recorder.path)
+            except DiskError as error:
+                self._fail(error, self._failed_at)
+
+    def _write(self, entry: Entry) -> None:
+        clock, value = entry
+        if self._closed:
+            return
+        try:
+            if self.failed is not None:
+                if clock < self._failed_at + RETRY_EVERY:
+                    return
+                self._reopen(clock)
+            if isinstance(value, Event):
+                self._recorder.event(value, clock - self._zero)
+            else:
+                self._recorder.sample(value, clock - self._zero)
+        except DiskError as error:
+            self._fail(error, clock)
+
+    def _fail(self, error: DiskError, clock: float) -> None:
+        self.failed, self._failed_at = str(error), clock
+        self._recorder.abandon()
+        self._keep(self._recorder.part)
+
+    def _keep(self, path: Path) -> None:
+        if path.exists() and path not in self.files:
+            self.files.append(path)
+
+    def _opened(self) -> Recorder:
+        while True:
+            with suppress(NameTakenError):  # since it was found to be free
+                return Recorder(free_path(self._path), self._wall)
+
+    def _reopen(self, clock: float) -> None:
+        try:
+            self._path.parent.mkdir(parents=True, exist_ok=True)
+            recorder = self._opened()
+        except OSError as error:
+            raise trouble(error, self._path) from error
+        self._recorder, self._zero = recorder, clock
+        for event in self._course:
+            recorder.event(event, 0.0)
+        self.failed = None

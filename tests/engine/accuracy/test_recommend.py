@@ -1,0 +1,124 @@
+"""What is recommended was found by search and holds when it is run again, compared at every step."""
+
+import math
+
+import pytest
+
+from engine.accuracy.recommend import cheapest, most_accurate, reach, spend
+from engine.accuracy.study import Study
+from engine.methods import METHODS
+from engine.models.exact_pendulum import Swing
+from engine.run import compiled
+from engine.run.lockstep import Lockstep
+from engine.run.loops import plain
+from engine.scenes import SCENES, Z_LIMITS
+
+E, S, V, R = METHODS
+DRIFT = SCENES["drift"]
+LOOPS = compiled.compiled if compiled.available() else plain  # the same bits
+
+
+def recommended(scene, time, kind, target):
+    return cheapest(list(reach(Study(scene, time, LOOPS), kind, target)))
+
+
+def largest_error(scene, point, kind):
+    """Of every step, by the lockstep and the exact swing alone."""
+    lockstep, swing = Lockstep(scene.altered(h=point.h), methods=(point.method,)), Swing(scene)
+    largest = 0.0
+    for _ in range(point.steps):
+        lockstep.advance(1)
+        (reading,) = lockstep.sample().readings
+        error = reading.energy_error if kind == "energy" else reading.theta - swing.at(lockstep.t).theta
+        largest = abs(error) if kind == "final" else max(largest, abs(error))
+    return largest
+
+
+@pytest.mark.parametrize("target", [1e-2, 1e-4, 1e-6])
+@pytest.mark.parametrize("kind", ["theta", "energy", "final"])
+@pytest.mark.parametrize(("name", "time"), [("drift", 10.0), ("large-swing", 20.0), ("spin", 3.0), ("gentle", 0.5)])
+def test_the_recommended_run_reaches_its_target(name, time, kind, target):
+    point = recommended(SCENES[name], time, kind, target)
+    assert point.error(kind) <= target
+    # 10,000 comparisons are every step of these runs, so not even rounding differs
+    assert largest_error(SCENES[name], point, kind) == pytest.approx(point.error(kind), rel=1e-9)
+    assert largest_error(SCENES[name], point, kind) <= target
+
+
+@pytest.mark.parametrize("target", [1e-2, 1e-4, 1e-6])
+@pytest.mark.parametrize("kind", ["theta", "energy"])
+def test_no_method_reaches_it_noticeably_cheaper(kind, target):
+    study = Study(DRIFT, 10.0)
+    cost = recommended(DRIFT, 10.0, kind, target).force_evaluations
+    for method in METHODS:
+        # the fewest steps are found to 2 %, and refined by as much where confirming asks for it
+        steps = int(0.95 * cost) // method.force_evaluations
+        assert study.run(method, steps).error(kind) > target
+
+
+def test_explicit_euler_never_reaches_1e_3_over_100_s():
+    euler = next(a for a in reach(Study(DRIFT, 100.0, LOOPS), "theta", 1e-3, methods=(E,)))
+    assert not euler.succeeded
+    assert euler.point.force_evaluations >= 1_000_000
+    assert euler.point.theta_error > 1e-3
+    assert "still" in euler.why_not
+
+
+def test_where_no_method_gets_there_every_method_says_why():
+    attempts = list(reach(Study(DRIFT, 20.0, LOOPS), "theta", 1e-16, most=400_000))
+    assert cheapest(attempts) is None
+    reasons = {attempt.method: attempt.why_not for attempt in attempts}
+    assert reasons[R].startswith("rounding stops it at ")
+    assert all("400000 evaluations" in reasons[method] for method in (E, S))
+
+
+def test_rk4_is_cheapest_for_a_short_time_and_verlet_for_a_long_one_in_energy():
+    winners = [recommended(DRIFT, time, "energy", 1e-3).method for time in (2.0, 20.0, 100.0, 1000.0)]
+    assert winners == [R, R, V, V]
+
+
+def test_a_method_is_not_searched_beyond_the_cost_of_one_that_got_there():
+    attempts = list(reach(Study(DRIFT, 10.0), "theta", 1e-6))
+    cost = cheapest(attempts).force_evaluations
+    assert attempts[0].method is R
+    assert all(attempt.point.force_evaluations <= cost for attempt in attempts)
+
+
+@pytest.mark.parametrize("kind", ["theta", "energy"])
+@pytest.mark.parametrize("budget", [100, 1_000, 20_000])
+def test_a_budget_is_spent_and_not_exceeded(budget, kind):
+    attempts = list(spend(Study(DRIFT, 10.0), kind, budget))
+    assert [attempt.method for attempt in attempts] == list(METHODS)
+    for attempt in attempts:
+        assert attempt.point.force_evaluations <= budget
+        # a step more would exceed it; these steps are too few for rounding to make fewer of them the better ones
+        assert attempt.point.force_evaluations + attempt.method.force_evaluations > budget
+    best = most_accurate(attempts, kind)
+    assert all(best.error(kind) <= attempt.point.error(kind) for attempt in attempts if attempt.succeeded)
+
+
+def test_a_budget_beyond_what_rounding_allows_is_not_spent():
+    (rk4,) = (attempt for attempt in spend(Study(DRIFT, 2.0), "theta", 1_000_000) if attempt.method is R)
+    assert rk4.point.force_evaluations < 500_000
+    assert rk4.point.theta_error <= Study(DRIFT, 2.0).run(R, 250_000, 10_000).theta_error
+
+
+def test_a_budget_below_one_step_buys_nothing():
+    attempts = {attempt.method: attempt for attempt in spend(Study(DRIFT, 0.1), "theta", 1)}
+    assert attempts[V].point is None
+    assert attempts[R].point is None
+    assert attempts[R].why_not == "no usable h within 1 evaluation"
+    assert attempts[S].point.steps == 1
+
+
+@pytest.mark.parametrize(("time", "budget"), [(1e-6, 10_000), (1e6, 10)])
+def test_an_h_that_no_lab_would_take_is_not_tried(time, budget):
+    study = Study(DRIFT, time)
+    for attempt in [*spend(study, "theta", budget), *reach(study, "theta", 1e-30, budget)]:
+        assert attempt.point is None or Z_LIMITS[0] <= attempt.point.h * DRIFT.w0 <= Z_LIMITS[1]
+
+
+def test_where_every_method_is_lost_nothing_is_recommended():
+    attempts = list(spend(Study(SCENES["spin"], 100.0), "theta", 300))
+    assert most_accurate(attempts, "theta") is None
+    assert all(math.isfinite(attempt.point.theta_error) for attempt in attempts)

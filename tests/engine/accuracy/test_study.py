@@ -1,0 +1,165 @@
+"""Speed against accuracy: errors against the exact swing, costs counted, orders as claimed."""
+
+import itertools
+import math
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from engine.accuracy.rounding import rounding_floor
+from engine.accuracy.study import REPEATS, Study, ladder, orders, timed
+from engine.methods import METHODS
+from engine.models.exact_pendulum import Swing
+from engine.models.pendulum import energy
+from engine.run import compiled
+from engine.scenes import SCENES, SceneError
+from tests.engine.run.test_loops import OVERFLOWING, plain
+
+E, S, V, R = METHODS
+DRIFT = SCENES["drift"]
+STEPS = ladder(20.0, 0.2, 0.0005, 9)
+
+
+@pytest.fixture(scope="module")
+def points():
+    return list(Study(DRIFT, 20.0).points(STEPS))
+
+
+@pytest.mark.parametrize("name", ["drift", "gentle", "large-swing"])
+def test_the_measured_orders_are_the_claimed_ones(name):
+    for order in orders(SCENES[name], 20.0):
+        # 0.05 is the worst of these three scenes; the claim itself is a whole number
+        assert order.measured == pytest.approx(order.method.order, abs=0.1)
+
+
+def test_next_to_the_separatrix_rk4_reads_order_5_within_one_period():
+    assert orders(SCENES["near-separatrix"], 20.0)[METHODS.index(R)].measured == pytest.approx(5, abs=0.1)
+
+
+def test_from_the_bottom_symplectic_euler_has_the_angles_and_the_order_of_verlet():
+    study = Study(SCENES["spin"], 5.0)
+    ours, verlets = study.run(S, 1000), study.run(V, 1000)
+    # the same formula in another order of operations: rounding only
+    assert ours.theta_error == pytest.approx(verlets.theta_error, rel=1e-6)
+    assert orders(SCENES["spin"], 5.0)[METHODS.index(S)].measured == pytest.approx(2, abs=0.1)
+
+
+def test_over_a_hundred_seconds_rk4_reads_more_than_its_order():
+    study = Study(DRIFT, 100.0)
+    coarse, fine = study.run(R, 2000), study.run(R, 4000)
+    # phase error h⁴ t + h⁵ t²: at 50 periods and h = 0.05 the second term leads
+    assert 4.8 < math.log2(coarse.theta_error / fine.theta_error) < 6.6
+
+
+@given(
+    time=st.floats(0.1, 1e4),
+    coarsest=st.floats(1e-3, 1),
+    finest=st.floats(1e-3, 1),
+    count=st.integers(2, 30),
+)
+def test_a_ladder_goes_from_the_first_h_to_the_last_in_whole_fractions_of_the_time(time, coarsest, finest, count):
+    h_max, h_min = coarsest * time, coarsest * finest * time
+    rungs = ladder(time, h_max, h_min, count)
+    assert rungs == sorted(set(rungs))
+    assert 1 <= len(rungs) <= count
+    # half a step is what rounding to a whole number of steps may change
+    assert rungs[0] == pytest.approx(time / h_max, abs=0.51)
+    assert rungs[-1] == pytest.approx(time / h_min, abs=0.51)
+
+
+def test_a_study_has_a_point_for_every_rung_and_method_and_costs_are_counted(points):
+    assert [(p.steps, p.method) for p in points] == list(itertools.product(STEPS, METHODS))
+    for point in points:
+        assert point.h * point.steps == pytest.approx(20.0)
+        assert point.force_evaluations == {E: 1, S: 1, V: 1, R: 4}[point.method] * point.steps + (point.method is V)
+
+
+@pytest.mark.parametrize("method", METHODS, ids=lambda method: method.key)
+def test_more_evaluations_buy_smaller_errors(points, method):
+    ours = [point for point in points if point.method is method]
+    for kind in ("theta", "energy"):
+        valid = [point for point in ours if point.flaw(kind) is None]
+        assert len(valid) >= 2
+        for cheap, dear in itertools.pairwise(valid):
+            assert cheap.force_evaluations < dear.force_evaluations
+            assert cheap.error(kind) > dear.error(kind)
+
+
+@pytest.mark.parametrize("steps", [100, 999, 5000])
+def test_errors_are_the_largest_of_the_run(steps):
+    point = Study(DRIFT, 10.0).run(V, steps, comparisons=steps)
+    swing, w0_squared, phase = Swing(DRIFT), DRIFT.w0_squared, (DRIFT.theta, DRIFT.omega)
+    start, path = energy(w0_squared, *phase), []
+    for _ in range(steps):
+        path.append(phase := plain(V).travel(w0_squared, phase, 10.0 / steps, 1))
+    off = [abs(theta - swing.at(n * (10.0 / steps)).theta) for n, (theta, _) in enumerate(path, 1)]
+    assert point.theta_error == max(off)
+    assert point.final_error == off[-1]
+    assert point.energy_error == max(abs(energy(w0_squared, *y) - start) / start for y in path)
+    sampled = Study(DRIFT, 10.0).run(V, steps)
+    # between two of 400 comparisons in 5 swings the error moves by some percent of its largest value
+    assert 0.97 * point.theta_error <= sampled.theta_error <= point.theta_error
+    assert sampled.energy_error == point.energy_error
+
+
+def test_what_fails_is_kept_and_said_to_be_lost(points):
+    worst = points[0]
+    assert worst.method is E
+    assert worst.theta_error > math.pi
+    assert worst.energy_error > 1
+    assert worst.flaws == ("lost", "lost", "lost")
+
+
+def test_a_method_whose_numbers_overflow_is_said_to_have_diverged():
+    point = Study(DRIFT.altered(theta=1.5), 10.0).run(OVERFLOWING, 100)
+    assert point.flaws == ("diverged", "diverged", "diverged")
+    assert math.isfinite(point.theta_error)
+
+
+@pytest.mark.parametrize("time", [2.0, 20.0])
+@pytest.mark.parametrize("name", ["drift", "gentle", "large-swing", "near-separatrix", "spin"])
+def test_the_rounding_floor_lies_above_what_rounding_does_and_not_far_above(name, time):
+    study, steps = Study(SCENES[name], time), 2**17
+    point = study.run(R, steps)
+    energy_floor, theta_floor = (floor * math.sqrt(steps) for floor in rounding_floor(study.swing, time))
+    # measured 0.005 to 0.6 in theta and 0.001 to 0.5 in energy, for steps from 2^14 to 2^22
+    assert 0.003 * theta_floor < point.theta_error < theta_floor
+    assert 0.0005 * energy_floor < point.energy_error < energy_floor
+    assert point.flaws == ("rounding", "rounding", "rounding")
+
+
+def test_errors_below_the_rounding_floor_are_not_fitted():
+    fitted = orders(DRIFT, 20.0)[METHODS.index(R)].measured
+    study = Study(DRIFT, Swing(DRIFT).period)
+    deep = [study.run(R, 2**power) for power in range(13, 17)]
+    assert {point.flaws.theta for point in deep} == {"rounding"}
+    # with them the slope would be flat: RK4 at 2^13 steps and at 2^16 errs alike
+    assert deep[-1].theta_error > deep[0].theta_error / 10
+    assert fitted == pytest.approx(4, abs=0.02)
+
+
+def test_at_rest_there_is_no_error():
+    point = Study(DRIFT.altered(theta=0.0), 1.0).run(R, 10)
+    assert (point.theta_error, point.energy_error) == (0.0, 0.0)
+    assert [order.measured for order in orders(DRIFT.altered(theta=0.0), 1.0)] == [None] * 4
+
+
+def test_seconds_are_the_shortest_of_several_runs_with_their_spread():
+    ticks = itertools.chain.from_iterable((0.0, length) for length in (5.0, 3.0, 4.0, 6.0, 3.5))
+    study = Study(DRIFT, 10.0)
+    point = study.run(R, 30_000)
+    assert timed(point, DRIFT, lambda: next(ticks)) == replace(point, seconds=3.0, spread=1.0)
+    assert next(ticks, None) is None
+    assert REPEATS == 5
+
+
+def test_a_time_and_steps_that_make_no_usable_h_are_refused():
+    with pytest.raises(SceneError, match="no usable step"):
+        Study(DRIFT, 1e6).run(R, 1)
+
+
+@pytest.mark.skipif(not compiled.available(), reason="Numba is not installed")
+def test_a_study_finds_the_same_points_compiled_and_plain(points):
+    assert list(Study(DRIFT, 20.0, compiled.compiled).points(STEPS)) == points

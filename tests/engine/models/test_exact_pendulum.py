@@ -1,0 +1,163 @@
+"""The closed form against mpmath at 50 digits, which is right and slow, and against the laws of the motion."""
+
+import math
+
+import mpmath as mp
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from engine.models.exact_pendulum import Swing
+from engine.models.state import State
+from engine.scenes import LIMITS, SCENES, Scene
+
+W0 = math.sqrt(9.81)
+JUST = 2 * W0  # rad/s; at the bottom, the speed of the separatrix
+
+STARTS = {
+    "at the default": (1.0, 0.0),
+    "tiny": (1e-8, 0.0),
+    "tiny push": (0.0, 1e-8),
+    "hardly there": (1e-200, 0.0),
+    "large": (2.5, 0.0),
+    "outwards": (1.0, 3.0),
+    "back through the bottom": (-1.0, -3.0),
+    "a micro-radian from upright": (math.pi - 1e-6, 0.0),
+    "a pico-radian from upright": (math.pi - 1e-12, 0.0),
+    "at math.pi, which is not pi": (math.pi, 0.0),
+    "one float beyond": (math.nextafter(math.pi, 4), 0.0),
+    "just below the separatrix": (1.0, JUST * math.cos(0.5) * (1 - 1e-9)),
+    "just above it": (1.0, JUST * math.cos(0.5) * (1 + 1e-9)),
+    "just below it, falling back": (2.0, -JUST * math.cos(1.0) * (1 - 1e-13)),
+    "just above it, falling back": (2.0, -JUST * math.cos(1.0) * (1 + 1e-13)),
+    "within rounding of it": (0.0, JUST),
+    "one float above it": (0.0, math.nextafter(JUST, 7)),
+    "rotation": (0.0, 8.0),
+    "rotation backwards": (3.0, -8.0),
+    "fast": (0.5, 100.0),
+    "swinging a turn up": (5.0, 1.0),
+    "swinging many turns up": (1e6, 1.0),
+    "spinning many turns down": (-1e6, -9.0),
+}
+
+
+def reference(scene: Scene, t: float) -> tuple[mp.mpf, mp.mpf]:
+    theta, omega, w0 = mp.mpf(scene.theta), mp.mpf(scene.omega), mp.sqrt(mp.mpf(scene.w0_squared))
+    turns = 2 * mp.pi * mp.nint(theta / (2 * mp.pi))
+    half = (theta - turns) / 2
+    k2 = mp.sin(half) ** 2 + (omega / (2 * w0)) ** 2
+    k = mp.sqrt(k2)
+    if k2 < 1:
+        u = w0 * t + mp.ellipf(mp.atan2(mp.sin(half), omega / (2 * w0)), k2)
+        sn, cn, dn = (mp.ellipfun(name, u, m=k2) for name in ("sn", "cn", "dn"))
+        return turns + 2 * mp.atan2(k * sn, dn), 2 * w0 * k * cn
+    direction = mp.sign(omega)
+    u = k * w0 * t + mp.ellipf(direction * half, 1 / k2)
+    turn = 2 * mp.ellipk(1 / k2)
+    done = mp.nint(u / turn)
+    sn, cn, dn = (mp.ellipfun(name, u - done * turn, m=1 / k2) for name in ("sn", "cn", "dn"))
+    return turns + direction * 2 * (mp.atan2(sn, cn) + done * mp.pi), direction * 2 * w0 * k * dn
+
+
+def assert_exact(scene: Scene, t: float) -> None:
+    with mp.workdps(50):
+        theta, omega = reference(scene, t)
+        state = Swing(scene).at(t)
+        # 1e-12 is the contract; beyond a turn it is relative, as the float that holds theta is.
+        assert abs(state.theta - theta) <= 1e-12 * max(1.0, abs(state.theta))
+        assert abs(state.omega - omega) <= 1e-12 * max(scene.w0, abs(state.omega))
+
+
+@pytest.mark.parametrize("start", STARTS.values(), ids=STARTS)
+def test_the_swing_is_exact_to_1e_12_forwards_and_backwards(start: tuple[float, float]) -> None:
+    scene = Scene(theta=start[0], omega=start[1])
+    for t in (-100 / W0, -3.3, 0.0, 0.1, 1.234, 7.7, 20.0, 100 / W0):
+        assert_exact(scene, t)
+
+
+@settings(max_examples=60)
+@given(
+    theta=st.floats(-10, 10),
+    omega=st.floats(-20, 20),
+    phase=st.floats(-100, 100),
+    gravity=st.sampled_from([1.62, 9.81, 24.79]),
+)
+def test_the_swing_is_exact_from_any_start(theta: float, omega: float, phase: float, gravity: float) -> None:
+    scene = Scene(theta=theta, omega=omega, gravity=gravity)
+    if Swing(scene).regime in ("libration", "rotation"):
+        assert_exact(scene, phase / scene.w0)
+
+
+def test_the_closed_form_solves_the_equation_of_motion_itself() -> None:
+    """Against a Taylor integration of theta'' = -w0² sin theta: no elliptic function on this side."""
+    for theta, omega in ((2.0, 1.0), (0.0, 7.0)):
+        solution = mp.odefun(lambda _, y: [y[1], -mp.mpf(9.81) * mp.sin(y[0])], 0, [theta, omega], tol=mp.mpf("1e-15"))
+        state = Swing(Scene(theta=theta, omega=omega)).at(2.0)
+        assert state == pytest.approx([float(value) for value in solution(2)], abs=1e-13)  # tol of the integration
+
+
+@pytest.mark.parametrize(
+    ("theta", "omega", "regime"),
+    [
+        (1.0, 0.0, "libration"),
+        (math.pi, 0.0, "libration"),
+        (0.0, 8.0, "rotation"),
+        (0.0, 0.0, "equilibrium"),
+    ],
+)
+def test_the_regime_is_told(theta: float, omega: float, regime: str) -> None:
+    assert Swing(Scene(theta=theta, omega=omega)).regime == regime
+
+
+def test_the_separatrix_climbs_forever() -> None:
+    swing = Swing(Scene(theta=0.0, omega=-2.0, gravity=1.0))  # w0 = 1: the one start exactly on it
+    assert (swing.regime, swing.period) == ("separatrix", None)
+    for t in (-3.0, 0.5, 3.0):
+        # Gudermann: theta = 2 atan sinh u, omega = 2/cosh u; a few roundings.
+        assert swing.at(t) == pytest.approx((-2 * math.atan(math.sinh(t)), -2 / math.cosh(t)), abs=1e-15)
+    assert swing.at(1e5) == State(-math.pi, 0.0)
+
+
+def test_at_rest_at_the_bottom_it_stays() -> None:
+    swing = Swing(Scene(theta=0.0))
+    assert swing.period is None
+    assert swing.at(1e5) == State(0.0, 0.0)
+
+
+def test_math_pi_is_not_upright_and_falls() -> None:
+    swing = Swing(Scene(theta=math.pi))
+    assert swing.period == pytest.approx(49.4470164, abs=1e-6)  # s, 4 K(k)/w0 from mpmath
+    assert abs(swing.at(swing.period / 4).theta) < 1e-14  # a quarter of it later it is at the bottom
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_after_its_period_it_is_back(name: str) -> None:
+    scene = SCENES[name]
+    swing = Swing(scene)
+    assert swing.period is not None
+    turn = math.tau if swing.regime == "rotation" else 0.0
+    later = swing.at(swing.period)
+    # 1e-12: the roundings of one period, as for any other time.
+    assert later.theta - turn == pytest.approx(scene.theta, abs=1e-12)
+    assert later.omega == pytest.approx(scene.omega, abs=1e-12)
+
+
+anything = {name: st.floats(*LIMITS[name]) for name in ("theta", "omega", "length", "gravity")}
+
+
+@given(**anything, t=st.floats(-1e5, 1e5))
+def test_no_legal_start_gives_anything_but_finite_numbers(
+    theta: float, omega: float, length: float, gravity: float, t: float
+) -> None:
+    scene = Scene(theta=theta, omega=omega, length=length, gravity=gravity, h=0.1 * math.sqrt(length / gravity))
+    state = Swing(scene).at(t)
+    assert math.isfinite(state.theta)
+    assert math.isfinite(state.omega)
+
+
+@pytest.mark.parametrize("theta", [0.0, 5e-324, 1e-320, math.pi, 1e6, -1e9])
+@pytest.mark.parametrize("omega", [0.0, 5e-324, 1e-300, JUST, 1e8, -1e9])
+def test_the_ends_of_the_number_line_are_no_trap(theta: float, omega: float) -> None:
+    swing = Swing(Scene(theta=theta, omega=omega))
+    for t in (0.0, 1.0, -1e5):
+        assert all(math.isfinite(value) for value in swing.at(t))

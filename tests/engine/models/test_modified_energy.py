@@ -1,0 +1,58 @@
+"""Shadow energies are what the symplectic methods keep."""
+
+import math
+
+import pytest
+
+from engine.methods import METHODS, Method
+from engine.models.pendulum import acceleration, energy
+
+W0_SQUARED = 9.81
+
+
+def wobble(quantity, method: Method, h: float, time: float = 20.0) -> float:
+    force = acceleration(W0_SQUARED)
+    phase = (1.0, 0.0)
+    values = []
+    for _ in range(round(time / h)):
+        phase = method.step(force, phase, h)
+        values.append(quantity(*phase))
+    return max(values) - min(values)
+
+
+def shadow_of(method: Method, h: float):
+    assert method.shadow is not None
+    return lambda theta, omega: method.shadow(W0_SQUARED, theta, omega, h)
+
+
+def plain_energy(theta: float, omega: float) -> float:
+    return energy(W0_SQUARED, theta, omega)
+
+
+def order(quantity_at, method: Method) -> float:
+    coarse, fine = (wobble(quantity_at(h), method, h) for h in (0.05, 0.025))
+    return math.log2(coarse / fine)
+
+
+with_shadow = pytest.mark.parametrize("method", [m for m in METHODS if m.shadow], ids=lambda m: m.key)
+
+
+def test_only_symplectic_methods_have_one():
+    assert {method.key for method in METHODS if method.shadow} >= {"symplectic_euler", "velocity_verlet"}
+    assert all(method.symplectic for method in METHODS if method.shadow)
+
+
+@with_shadow
+def test_the_energy_wobbles_with_the_order_of_the_method(method: Method):
+    # the sampled extremes of a wobble are a few per cent off the true ones
+    assert order(lambda h: plain_energy, method) == pytest.approx(method.order, abs=0.1)
+
+
+@with_shadow
+def test_the_shadow_energy_wobbles_with_h4(method: Method):
+    assert order(lambda h: shadow_of(method, h), method) == pytest.approx(4, abs=0.1)  # as above
+
+
+@with_shadow
+def test_the_shadow_energy_is_flat_where_the_energy_is_seen_to_wobble(method: Method):
+    assert wobble(shadow_of(method, 0.05), method, 0.05) < wobble(plain_energy, method, 0.05) / 100

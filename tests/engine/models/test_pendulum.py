@@ -1,0 +1,46 @@
+import math
+
+import mpmath as mp
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from engine.models.exact_pendulum import Swing
+from engine.models.pendulum import acceleration, energy, energy_scale, separatrix_energy
+from engine.scenes import Scene
+
+
+@given(theta=st.floats(-1e6, 1e6), omega=st.floats(-1e6, 1e6), w0_squared=st.floats(1e-3, 1e3))
+def test_the_energy_is_right_to_the_last_digits_everywhere(theta: float, omega: float, w0_squared: float) -> None:
+    with mp.workdps(700):  # 1 - cos theta cancels, down to the smallest square that a float holds
+        expected = float(mp.mpf(omega) ** 2 / 2 + mp.mpf(w0_squared) * (1 - mp.cos(mp.mpf(theta))))
+    # A handful of roundings; 1e-300 because the squares of tiny numbers underflow.
+    assert energy(w0_squared, theta, omega) == pytest.approx(expected, rel=1e-15, abs=1e-300)
+
+
+def test_near_the_bottom_it_does_not_cancel() -> None:
+    assert energy(9.81, 1e-8, 0.0) == pytest.approx(9.81 * 1e-16 / 2, rel=1e-15)
+    assert 9.81 * (1 - math.cos(1e-8)) == 0  # what the textbook's form gives
+
+
+@given(theta=st.floats(-3, 3), omega=st.floats(-8, 8), t=st.floats(-10, 10))
+def test_the_exact_swing_keeps_it(theta: float, omega: float, t: float) -> None:
+    start = energy(9.81, theta, omega)
+    # Relative to the energy where it is small: the state is right to 1e-13 of its own size.
+    assert energy(9.81, *Swing(Scene(theta=theta, omega=omega)).at(t)) == pytest.approx(start, rel=1e-12, abs=1e-300)
+
+
+@given(theta=st.floats(-10, 10))
+def test_the_acceleration_is_minus_the_slope_of_the_energy(theta: float) -> None:
+    slope = energy(9.81, complex(theta, 1e-100), 0.0, np.sin).imag / 1e-100
+    assert acceleration(9.81)(theta) == pytest.approx(-slope, abs=1e-14)
+
+
+def test_upright_and_at_rest_it_has_the_energy_of_the_separatrix() -> None:
+    assert energy(9.81, math.pi, 0.0) == separatrix_energy(9.81) == 2 * 9.81
+
+
+def test_errors_are_relative_to_the_start_or_where_that_has_no_energy_to_the_separatrix() -> None:
+    assert energy_scale(9.81, 3.0) == 3.0
+    assert energy_scale(9.81, 0.0) == separatrix_energy(9.81)

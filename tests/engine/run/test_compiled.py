@@ -1,0 +1,100 @@
+"""Compiled loops: the plain ones' bits, or the plain ones themselves."""
+
+import copy
+import importlib
+import math
+import subprocess
+import sys
+
+import pytest
+
+from engine.methods import METHODS
+from engine.run import compiled
+from engine.run.lockstep import Lockstep
+from engine.run.loops import plain
+from engine.scenes import SCENES
+from tests.engine.run.test_loops import OVERFLOWING
+
+needs_numba = pytest.mark.skipif(not compiled.available(), reason="Numba is not installed")
+each_method = pytest.mark.parametrize("method", METHODS, ids=lambda method: method.key)
+
+
+def test_asking_whether_numba_is_installed_does_not_import_it():
+    question = "import sys; from engine.run.compiled import available; available(); print('numba' in sys.modules)"
+    told = subprocess.run([sys.executable, "-c", question], check=True, capture_output=True, text=True)
+    assert told.stdout == "False\n"
+
+
+@needs_numba
+@each_method
+def test_a_million_steps_compiled_and_plain_end_on_the_same_bits(method):
+    fast = compiled.compiled(method)
+    assert fast is not plain(method)
+    start = (9.81, (2.5, 0.3), 0.05, 1_000_000)
+    assert fast.advance(*start, math.inf) == plain(method).advance(*start, math.inf)
+
+
+@needs_numba
+@each_method
+@pytest.mark.parametrize("h", [0.001, -0.02, 0.7, 3.0])
+def test_compiled_and_plain_agree_on_any_pendulum_at_any_step(method, h):
+    for w0_squared in (0.01, 1.0, 98.1):
+        start = (w0_squared, (math.radians(179.9), -0.2), h, 2_000)
+        assert compiled.compiled(method).travel(*start) == plain(method).travel(*start)
+        assert compiled.compiled(method).advance(*start, 1e9) == plain(method).advance(*start, 1e9)
+
+
+@needs_numba
+def test_a_method_that_overflows_ends_at_the_same_step_compiled_and_plain():
+    start = (9.81, (1.7, 0.0), 0.1, 100, math.inf)
+    expected = plain(OVERFLOWING).advance(*start)
+    assert 0 < expected[0] < 100
+    assert compiled.compiled(OVERFLOWING).advance(*start) == expected
+
+
+@needs_numba
+def test_a_lockstep_can_be_copied_and_given_either_loops():
+    start = Lockstep(SCENES["spin"], loops=compiled.compiled)
+    start.advance(1000)
+    copied, slow = copy.deepcopy(start), Lockstep(SCENES["spin"])
+    slow.advance(1000)
+    for lockstep in (start, copied, slow):
+        lockstep.set_h(-0.01)
+        lockstep.advance(500)
+    assert start.sample() == copied.sample() == slow.sample()
+
+
+@each_method
+def test_loops_that_are_compiled_when_it_pays_give_the_same_bits_before_and_after(method, monkeypatch):
+    monkeypatch.setattr(compiled, "COMPILED_FROM", 3_000)
+    loops = compiled.tiered.__wrapped__(method)
+    for n in (1_000, 1_000, 2_000, 500):
+        start = (9.81, (2.0, 0.0), 0.05, n)
+        assert loops.travel(*start) == plain(method).travel(*start)
+        assert loops.advance(*start, math.inf) == plain(method).advance(*start, math.inf)
+
+
+def test_a_few_steps_do_not_import_numba():
+    work = "import sys; from engine.run.compiled import *; from engine.methods import METHODS as m; "
+    work += "tiered(m[0]).travel(9.81, (1.0, 0.0), 0.05, 10_000); print('numba' in sys.modules)"
+    told = subprocess.run([sys.executable, "-c", work], check=True, capture_output=True, text=True)
+    assert told.stdout == "False\n"
+
+
+@needs_numba
+def test_where_the_compiled_sine_has_other_bits_the_plain_loops_are_used():
+    class OtherSine:
+        """Numba where one sine in two thousand is a bit off."""
+
+        @staticmethod
+        def njit(function):
+            return lambda x: math.nextafter(function(x), 2.0) if round(1000 * x) % 2000 == 7 else function(x)
+
+    assert not compiled._same_sine.__wrapped__(OtherSine)
+    assert compiled._same_sine.__wrapped__(importlib.import_module("numba"))
+
+
+def test_the_check_of_the_sine_decides(monkeypatch):
+    monkeypatch.setattr(compiled, "import_module", lambda name: None)
+    monkeypatch.setattr(compiled, "_same_sine", lambda numba: False)
+    assert compiled.compiled.__wrapped__(METHODS[0]) is plain(METHODS[0])

@@ -1,0 +1,216 @@
+"""The lockstep as a machine: the same bits however it is driven, time that is never summed, nothing lost."""
+
+import math
+from dataclasses import astuple, replace
+from itertools import accumulate, repeat
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from engine.methods import METHODS, Step
+from engine.models.pendulum import acceleration, energy
+from engine.models.state import Acceleration, Phase
+from engine.run.lockstep import Lockstep, Reading, Sample
+from engine.scenes import LIMITS, SCENES, Scene, SceneError
+
+scenes = st.builds(
+    Scene,
+    theta=st.floats(-7, 7),
+    omega=st.floats(-20, 20),
+    gravity=st.sampled_from([1.62, 9.81, 24.79]),
+    h=st.floats(1e-3, 2.0),
+)
+h_values = st.floats(1e-3, 2.0) | st.floats(-2.0, -1e-3)
+cuts = st.lists(st.integers(0, 60), min_size=1, max_size=8)
+changes = st.lists(st.tuples(st.integers(0, 60), h_values), max_size=5)  # advance so far, then use this h
+
+
+def one_by_one(scene: Scene, n: int) -> list[Sample]:
+    lockstep = Lockstep(scene)
+    samples = [lockstep.sample()]
+    for _ in range(n):
+        lockstep.advance(1)
+        samples.append(lockstep.sample())
+    return samples
+
+
+def without_extremes(sample: Sample) -> Sample:
+    """What does not depend on when the previous sample was taken."""
+    readings = (replace(reading, energy_error_low=0.0, energy_error_high=0.0) for reading in sample.readings)
+    return replace(sample, readings=tuple(readings))
+
+
+@given(scene=scenes, cuts=cuts)
+def test_the_steps_may_be_cut_anyhow_the_bits_are_the_same(scene: Scene, cuts: list[int]) -> None:
+    whole, pieces = Lockstep(scene), Lockstep(scene)
+    whole.advance(sum(cuts))
+    for n in cuts:
+        pieces.advance(n)
+    assert pieces.sample() == whole.sample()
+
+
+@given(scene=scenes, cuts=cuts)
+def test_looking_changes_nothing_but_since_when_extremes_are_taken(scene: Scene, cuts: list[int]) -> None:
+    watched, alone = Lockstep(scene), Lockstep(scene)
+    for n in cuts:
+        watched.advance(n)
+        watched.sample()
+    alone.advance(sum(cuts))
+    assert without_extremes(watched.sample()) == without_extremes(alone.sample())
+
+
+@given(scene=scenes, changes=changes)
+def test_two_runs_with_the_same_changes_of_h_give_the_same_bits(scene: Scene, changes: list[tuple[int, float]]) -> None:
+    runs = Lockstep(scene), Lockstep(scene)
+    for lockstep in runs:
+        for n, h in changes:
+            lockstep.advance(n)
+            lockstep.set_h(h)
+        lockstep.advance(40)
+    assert runs[0].sample() == runs[1].sample()
+
+
+@given(scene=scenes, n=st.integers(0, 200))
+def test_each_method_goes_where_the_textbooks_loop_goes_to_the_bit(scene: Scene, n: int) -> None:
+    lockstep = Lockstep(scene)
+    lockstep.advance(n)
+    force = acceleration(scene.w0_squared)
+    for method, reading in zip(METHODS, lockstep.sample().readings, strict=True):
+        phase: Phase = (scene.theta, scene.omega)
+        for _ in range(n):
+            phase = method.step(force, phase, scene.h)
+        assert (reading.theta, reading.omega) == phase
+        assert reading.energy == energy(scene.w0_squared, *phase)
+
+
+@given(scene=scenes, changes=changes)
+def test_time_is_counted_from_the_last_change_of_h_and_never_summed(
+    scene: Scene, changes: list[tuple[int, float]]
+) -> None:
+    lockstep, base, h = Lockstep(scene), 0.0, scene.h
+    for n, following in changes:
+        for done in range(1, n + 1):
+            lockstep.advance(1)
+            assert lockstep.t == base + done * h
+        base, h = base + n * h, following
+        lockstep.set_h(h)
+        assert lockstep.t == base
+    assert lockstep.step == sum(n for n, _ in changes)
+
+
+def test_a_tenth_of_a_second_thirty_thousand_times_is_exactly_fifty_minutes() -> None:
+    lockstep = Lockstep(Scene(h=0.1))
+    lockstep.advance(30_000)
+    assert lockstep.t == 3000
+    *_, running_sum = accumulate(repeat(0.1, 30_000))  # not sum(), which compensates from Python 3.12 on
+    assert running_sum != 3000
+
+
+@given(scene=scenes, cuts=cuts)
+def test_no_extreme_of_the_energy_is_lost_between_samples(scene: Scene, cuts: list[int]) -> None:
+    lockstep, steps = Lockstep(scene), one_by_one(scene, sum(cuts))
+    lockstep.sample()
+    done = 0
+    for n in cuts:
+        lockstep.advance(n)
+        for index, reading in enumerate(lockstep.sample().readings):
+            between = [sample.readings[index].energy_error for sample in steps[done : done + n + 1]]
+            so_far = [abs(sample.readings[index].energy_error) for sample in steps[: done + n + 1]]
+            assert (reading.energy_error_low, reading.energy_error_high) == (min(between), max(between))
+            assert reading.max_energy_error == max(so_far)
+        done += n
+
+
+def test_errors_are_relative_to_the_start_and_to_the_separatrix_from_rest() -> None:
+    moving = Lockstep(Scene(theta=0.0, omega=1.0))
+    moving.advance(10)
+    reading = moving.sample().readings[0]
+    assert reading.energy_error == (reading.energy - 0.5) / 0.5
+    resting = Lockstep(Scene(theta=0.0))
+    resting.advance(10)
+    assert {reading.energy_error for reading in resting.sample().readings} == {0.0}
+
+
+def test_time_reversed_verlet_comes_back_and_its_run_counts_on() -> None:
+    scene = SCENES["drift"]
+    lockstep = Lockstep(scene)
+    lockstep.advance(200)
+    lockstep.set_h(-scene.h)
+    lockstep.advance(200)
+    sample = lockstep.sample()
+    explicit, symplectic, verlet, rk4 = (abs(reading.theta - scene.theta) for reading in sample.readings)
+    assert (sample.step, sample.t) == (400, 0)
+    assert verlet < 1e-13  # rounding
+    assert 1e-7 < rk4 < 1e-3 < 0.05 < symplectic < explicit
+
+
+@pytest.mark.parametrize("h", [0.0, math.nan, math.inf, 1e9, -1e9, 1e-12])
+def test_a_useless_step_size_is_refused_and_the_old_one_stays(h: float) -> None:
+    lockstep = Lockstep(SCENES["drift"])
+    lockstep.advance(3)
+    with pytest.raises(SceneError, match="no usable step"):
+        lockstep.set_h(h)
+    assert (lockstep.h, lockstep.t) == (0.05, 3 * 0.05)
+
+
+def exploding(acceleration: Acceleration, phase: Phase, h: float) -> Phase:
+    theta, omega = phase
+    return theta + h * omega, omega + h * acceleration(theta) + omega * omega * omega
+
+
+def falling_into_nan(acceleration: Acceleration, phase: Phase, h: float) -> Phase:
+    theta, omega = phase
+    return theta + h * omega, (omega + h * acceleration(theta)) * (math.nan if abs(theta) < 0.5 else 1.0)
+
+
+@pytest.mark.parametrize("step", [exploding, falling_into_nan])
+@given(cuts=cuts)
+def test_a_method_that_diverges_stays_where_it_last_was_finite_and_the_others_go_on(
+    step: Step, cuts: list[int]
+) -> None:
+    scene, n = SCENES["drift"], sum(cuts) + 100
+    bad = replace(METHODS[0], key="bad", step=step)
+    lockstep, others = Lockstep(scene, methods=(bad, *METHODS)), Lockstep(scene)
+    for cut in (*cuts, 100):
+        lockstep.advance(cut)
+    others.advance(n)
+    sample = lockstep.sample()
+    assert sample.readings[1:] == others.sample().readings
+
+    frozen, phase, force = sample.readings[0], (scene.theta, scene.omega), acceleration(scene.w0_squared)
+    assert frozen.diverged_at is not None
+    last = round(frozen.diverged_at / scene.h) - 1
+    for _ in range(last):
+        phase = bad.step(force, phase, scene.h)
+    assert (frozen.theta, frozen.omega) == phase
+    assert frozen.diverged_at == (last + 1) * scene.h
+    beyond = bad.step(force, phase, scene.h)
+    assert not all(map(math.isfinite, beyond)) or not abs(beyond[1]) < 1e149  # a square beyond 1e300 is out, too
+    assert all(map(math.isfinite, numbers(frozen)))
+
+
+def numbers(reading: Reading) -> list[float]:
+    return [value for value in astuple(reading) if value is not None]
+
+
+@given(**{name: st.floats(*limits) for name, limits in LIMITS.items()}, z=st.floats(1e-8, 999), n=st.integers(1, 60))
+def test_no_legal_start_gives_anything_but_finite_numbers(
+    theta: float, omega: float, length: float, gravity: float, z: float, n: int
+) -> None:
+    h = z / math.sqrt(gravity / length)
+    lockstep = Lockstep(Scene(theta=theta, omega=omega, length=length, gravity=gravity, h=h))
+    for step_size in (h, -h / 2):
+        lockstep.set_h(step_size)
+        lockstep.advance(n)
+        sample = lockstep.sample()
+        assert all(math.isfinite(number) for reading in sample.readings for number in (sample.t, *numbers(reading)))
+
+
+@pytest.mark.parametrize("theta", [0.0, 5e-324, 1e-160, 1e-9, 1e6, -1e9])
+@pytest.mark.parametrize("omega", [0.0, 1e-160, 1e8, -1e9])
+@pytest.mark.parametrize("z", [1e-8, 50.0])
+def test_the_ends_of_the_number_line_are_no_trap(theta: float, omega: float, z: float) -> None:
+    lockstep = Lockstep(Scene(theta=theta, omega=omega, h=z / math.sqrt(9.81)))
+    lockstep.advance(2000)
+    assert all(math.isfinite(number) for reading in lockstep.sample().readings for number in numbers(reading))

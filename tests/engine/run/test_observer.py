@@ -1,0 +1,161 @@
+"""What is seen of a run, against the run looked at step by step."""
+
+import math
+from dataclasses import replace
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from engine.methods import METHODS
+from engine.models.exact_pendulum import Swing
+from engine.run.lockstep import Lockstep, Sample
+from engine.run.observer import Happening, Witness
+from engine.scenes import SCENES, Scene
+
+DRIFT = SCENES["drift"]
+
+
+def watched(scene: Scene, seconds: float, every: int = 1, equal_cost: bool = False) -> Witness:
+    """A witness that has seen one sample in `every` steps."""
+    witness, lockstep = Witness(scene, Swing(scene)), Lockstep(scene)
+    if equal_cost:
+        lockstep.set_h(4 * scene.h, equal_cost=True)
+    witness.add(lockstep.sample())
+    while lockstep.t < seconds:
+        lockstep.advance(every)
+        witness.add(lockstep.sample())
+    return witness
+
+
+def told(witness: Witness, kind: str, step: int = 10**9) -> dict[str, Happening]:
+    return {each.method.key: each for each in witness.happenings(step) if each.kind == kind}
+
+
+def tops(scene: Scene, seconds: float, parts: int = 1) -> dict[str, tuple[float, float]]:
+    """When each method is first over the top, and its energy error there, looking at every step."""
+    lockstep, found = Lockstep(scene.altered(h=scene.h / parts)), {}
+    while lockstep.t < seconds:
+        lockstep.advance(1)
+        sample = lockstep.sample()
+        for method, reading in zip(METHODS, sample.readings, strict=True):
+            if abs(reading.theta) > math.pi:
+                found.setdefault(method.key, (sample.t, reading.energy_error))
+    return found
+
+
+@pytest.mark.parametrize("name", ["drift", "crossover", "near-separatrix", "rk4-limit", "chaos-loose"])
+@pytest.mark.parametrize("every", [1, 7, 400])
+def test_the_step_over_the_top_is_found_however_far_apart_the_samples_are(name, every):
+    seconds = 30.0
+    expected = tops(SCENES[name], seconds)
+    found = told(watched(SCENES[name], seconds, every), "over the top")
+    assert {key for key, (t, _) in expected.items() if t < seconds - 400 * SCENES[name].h} <= set(found)
+    for key, (t, error) in expected.items():
+        if every == 1 or (key in found and name != "chaos-loose"):  # chaos may be back below between two samples
+            # the time is a sum of rounded steps; the energy has the rounding of the steps taken again
+            assert found[key].t == pytest.approx(t, abs=1e-9)
+            assert found[key].energy_error == pytest.approx(error, rel=1e-6)
+
+
+def test_explicit_euler_goes_over_the_top_of_the_default_scene_at_7_15_s():
+    top = told(watched(DRIFT, 10, every=3), "over the top")["explicit_euler"]
+    assert (top.step, round(top.t, 9)) == (143, 7.15)
+    assert 1 + top.energy_error == pytest.approx(5.09, abs=0.01)
+
+
+def test_at_equal_cost_the_parts_of_a_step_count():
+    found = told(watched(DRIFT, 60, every=5, equal_cost=True), "over the top")
+    assert found["explicit_euler"].t == pytest.approx(tops(DRIFT, 60)["explicit_euler"][0], abs=1e-9)
+    assert found["explicit_euler"].step == math.ceil(found["explicit_euler"].t / (4 * DRIFT.h) - 1e-9)
+
+
+def test_where_the_steps_between_samples_cannot_be_taken_again_it_is_the_sample_that_saw_it():
+    lockstep = Lockstep(DRIFT)
+    witness = Witness(DRIFT, Swing(DRIFT))
+    lockstep.advance(100)
+    witness.add(lockstep.sample())
+    lockstep.advance(20)
+    lockstep.set_h(0.02)  # nobody says so
+    lockstep.advance(100)
+    sample = lockstep.sample()
+    witness.add(sample)
+    top = told(witness, "over the top")["explicit_euler"]
+    assert (top.step, top.t, top.energy_error) == (sample.step, sample.t, sample.readings[0].energy_error)
+
+
+def test_a_pendulum_that_spins_goes_over_no_top():
+    assert not told(watched(SCENES["spin"], 20), "over the top")
+
+
+def test_the_witness_of_a_rotation_that_beats_with_its_steps_waits():
+    scene = Scene(theta=0.0, omega=6.2 * Scene().w0 / 0.1, h=0.1 / Scene().w0)
+    witness, lockstep = Witness(scene, Swing(scene)), Lockstep(scene)
+    for _ in range(700):
+        lockstep.advance(1)
+        witness.add(lockstep.sample())
+    assert {judgement.verdict for judgement in witness.judgements[1:3]} <= {"too early", "bounded"}
+
+
+def test_who_is_up_there_already_is_not_said_to_have_gone_there_now():
+    lockstep = Lockstep(DRIFT)
+    lockstep.advance(200)
+    witness = Witness(DRIFT, Swing(DRIFT))
+    witness.add(lockstep.sample())
+    lockstep.advance(1)
+    witness.add(lockstep.sample())
+    assert not told(witness, "over the top")
+
+
+def test_verdicts_happen_when_they_are_given():
+    witness = Witness(DRIFT, Swing(DRIFT))
+    lockstep = Lockstep(DRIFT)
+    changes = []
+    witness.add(lockstep.sample())
+    for _ in range(1200):
+        before = [judgement.verdict for judgement in witness.judgements]
+        lockstep.advance(1)
+        witness.add(lockstep.sample())
+        after = [judgement.verdict for judgement in witness.judgements]
+        changes += [(lockstep.step, i, after[i]) for i in range(len(METHODS)) if after[i] != before[i]]
+    verdicts = [(each.step, each.index, each.verdict) for each in witness.happenings(1200) if each.kind == "verdict"]
+    assert verdicts == changes
+    assert {(METHODS[i].key, verdict) for _, i, verdict in changes} >= {
+        ("explicit_euler", "grows"),
+        ("symplectic_euler", "bounded"),
+        ("velocity_verlet", "bounded"),
+        ("rk4", "drifts"),
+    }
+
+
+def test_a_method_fails_once_at_the_time_at_which_its_numbers_ended():
+    witness = Witness(DRIFT, Swing(DRIFT))
+    samples = [Lockstep(DRIFT).sample()]
+    euler, *others = samples[0].readings
+    failed = (replace(euler, diverged_at=0.15), *others)
+    samples += [Sample(1, step, step * 0.05, failed) for step in (4, 5, 6)]
+    for sample in samples:
+        witness.add(sample)
+    (failure,) = [each for each in witness.happenings(6) if each.kind == "failed"]
+    assert (failure.method.key, failure.step, failure.t) == ("explicit_euler", 4, 0.15)
+    assert not told(witness, "verdict")  # to fail is enough
+
+
+@settings(max_examples=20)
+@given(back=st.integers(0, 240))
+def test_after_a_step_back_only_what_happened_until_then_has_happened(back):
+    witness, lockstep = Witness(DRIFT, Swing(DRIFT)), Lockstep(DRIFT)
+    samples = [lockstep.sample()]
+    for _ in range(240):
+        lockstep.advance(1)
+        samples.append(lockstep.sample())
+    for sample in samples:
+        witness.add(sample)
+    everything = witness.happenings(240)
+    for sample in samples[back:]:
+        witness.add(sample)  # forward again: known already
+    assert witness.happenings(240) == everything
+    assert witness.happenings(back) == [each for each in everything if each.step <= back]
+    witness.judge_anew(back)  # a change there: the future has never been
+    assert witness.happenings(240) == [each for each in everything if each.step <= back]
+    assert all(judgement.verdict == "too early" for judgement in witness.judgements)

@@ -1,0 +1,135 @@
+"""A course goes back and forth to the bit: every state equals the one of a lockstep that only went on."""
+
+import itertools
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from engine.run.lockstep import Lockstep, Sample
+from engine.run.rewindable import COPY_EVERY, Course
+from engine.scenes import DEFAULT_SCENE, SCENES
+
+MOVES = st.lists(st.integers(-1500, 2500), min_size=1, max_size=8)
+H_VALUES = st.sampled_from([0.1, 0.02, -0.05, 0.05])
+
+
+def straight(step: int, changes: dict[int, float]) -> Sample:
+    """The sample of a lockstep that went to `step` without turning."""
+    lockstep = Lockstep(DEFAULT_SCENE)
+    for at in sorted(at for at in changes if at < step):
+        lockstep.advance(at - lockstep.step)
+        lockstep.set_h(changes[at])
+    lockstep.advance(step - lockstep.step)
+    return lockstep.sample()
+
+
+def phases(sample: Sample) -> list[tuple[float, float, float]]:
+    return [(reading.theta, reading.omega, reading.max_energy_error) for reading in sample.readings]
+
+
+def move(course: Course, n: int) -> None:
+    if n >= 0:
+        course.forward(n)
+    else:
+        course.back_to(max(0, course.step + n))
+
+
+@settings(max_examples=25)
+@given(MOVES)
+def test_back_and_forth_ends_where_the_straight_way_does_with_the_same_bits(moves):
+    course = Course(DEFAULT_SCENE, 1)
+    for n in moves:
+        move(course, n)
+        sample = course.sample()
+    expected = straight(course.step, {})
+    assert (sample.step, sample.t, phases(sample)) == (expected.step, expected.t, phases(expected))
+
+
+@settings(max_examples=25)
+@given(MOVES, H_VALUES)
+def test_changes_of_h_are_repeated_on_the_way_there(moves, h):
+    course = Course(DEFAULT_SCENE, 1)
+    course.forward(700)
+    course.set_h(h)
+    course.forward(1900)
+    course.sample()
+    for n in moves:
+        move(course, n)
+    expected = straight(course.step, {700: h})
+    assert course.t == expected.t
+    assert phases(course.sample()) == phases(expected)
+
+
+def test_in_the_past_one_knows_what_comes_next_and_at_the_end_one_does_not():
+    course = Course(DEFAULT_SCENE, 1)
+    course.forward(10)
+    course.sample()
+    assert not course.in_past
+    course.back_to(9)
+    assert course.in_past
+    course.forward(1)
+    assert not course.in_past
+
+
+def test_a_change_made_where_one_steps_back_to_is_still_to_come():
+    course = Course(DEFAULT_SCENE, 1)
+    course.forward(10)
+    course.set_h(0.1)
+    course.forward(5)
+    course.sample()
+    course.back_to(10)
+    assert course.h == DEFAULT_SCENE.h
+    course.forward(1)
+    assert course.h == 0.1
+
+
+def test_a_branch_shares_the_past_and_forgets_what_came_next():
+    course = Course(DEFAULT_SCENE, 1)
+    course.forward(100)
+    course.set_h(0.1)
+    course.forward(5000)
+    course.sample()
+    course.back_to(2000)
+    course.branch(2)
+    course.set_h(0.02)
+    course.forward(3000)
+    sample = course.sample()
+    assert sample.run == 2
+    assert phases(sample) == phases(straight(5000, {100: 0.1, 2000: 0.02}))
+    course.back_to(1500)
+    assert course.sample().run == 2
+
+
+def test_extremes_after_going_back_are_those_since_the_furthest_step_again():
+    ahead, returning = Course(DEFAULT_SCENE, 1), Course(DEFAULT_SCENE, 1)
+    for course in (ahead, returning):
+        course.forward(500)
+        course.sample()
+    returning.back_to(450)
+    returning.sample()
+    ahead.forward(40)
+    returning.forward(90)
+    assert returning.sample() == ahead.sample()
+
+
+def test_the_way_back_is_kept_in_few_copies_the_closer_the_more_recent():
+    course = Course(SCENES["gentle"], 1)
+    for _ in range(400):
+        course.forward(COPY_EVERY)
+    steps = [place.lockstep.step for place in course._copies]
+    gaps = [after - before for before, after in itertools.pairwise(steps)]
+    assert len(steps) < 60  # 400 without thinning; 8 an octave of age with it
+    assert max(gaps[-8:]) <= COPY_EVERY
+    assert all(gap <= max(COPY_EVERY, (steps[-1] - at) / 4) for at, gap in zip(steps, gaps, strict=False))
+
+
+def test_time_run_through_goes_up_even_while_time_runs_backwards():
+    course = Course(DEFAULT_SCENE, 1)
+    course.forward(100)
+    course.set_h(-0.05)
+    course.forward(40)
+    assert course.t == 3.0
+    assert course.x == 7.0
+    assert course.step_at(7.0) == 140
+    assert course.step_at(6.99) == 139
+    assert course.step_at(2.5) == 50

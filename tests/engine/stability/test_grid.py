@@ -1,0 +1,57 @@
+from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+from engine.methods import METHODS
+from engine.stability.grid import Grid, default_grid
+from engine.stability.outcomes import HOLDS, UNKNOWN, outcomes
+from engine.stability import grid as stability_map
+
+GRID = Grid(theta=np.linspace(0.1, 3.1, 7), z=np.linspace(0.1, 3, 13), steps=200)
+
+
+def test_cells_lie_by_z_method_and_amplitude() -> None:
+    cells = GRID.cells()
+    assert cells.shape == GRID.shape == (13, 4, 7)
+    alone = outcomes(METHODS[2], GRID.theta[5:6], GRID.z[4:5], 200)
+    assert cells[4, 2, 5] == alone[0]
+    assert 0 < (cells["fate"] == HOLDS).sum() < cells.size
+
+
+@pytest.mark.parametrize("strip", [1, 7, 8, 20, 50, 10_000])
+def test_the_picture_is_the_same_bit_for_bit_however_it_is_split(strip: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(stability_map, "STRIP", strip)
+    strips = list(GRID.compute())
+    assert len(strips) == -(-13 // max(1, strip // 7))
+    assert np.concatenate(strips).tobytes() == GRID.cells().tobytes()
+
+
+@pytest.mark.parametrize("pool", [ThreadPoolExecutor, ProcessPoolExecutor])
+def test_any_executor_gives_the_same_picture(pool: type[Executor], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(stability_map, "STRIP", 20)
+    with pool(2) as executor:  # type: ignore[call-arg]
+        assert np.concatenate(list(GRID.compute(executor))).tobytes() == GRID.cells().tobytes()
+
+
+def test_a_dask_cluster_gives_the_same_picture(monkeypatch: pytest.MonkeyPatch) -> None:
+    distributed = pytest.importorskip("distributed")
+    monkeypatch.setattr(stability_map, "STRIP", 20)
+    with (
+        distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, host="127.0.0.1", dashboard_address=None
+        ) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        assert np.concatenate(list(GRID.compute(client.get_executor()))).tobytes() == GRID.cells().tobytes()
+
+
+def test_what_is_not_computed_is_not_known() -> None:
+    assert (GRID.unknown()["fate"] == UNKNOWN).all()
+
+
+def test_the_default_grid_reaches_beyond_every_limit() -> None:
+    grid = default_grid()
+    assert grid.shape == (200, 4, 100)
+    assert max(method.linear_limit for method in METHODS) < grid.z[-1] < 3
+    assert 0 < grid.theta[0] < grid.theta[-1] < np.pi

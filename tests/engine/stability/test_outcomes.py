@@ -1,0 +1,178 @@
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from engine.methods import METHODS, Method, Step, explicit_euler, rk4, velocity_verlet
+from engine.models.pendulum import acceleration, energy
+from engine.models.state import Phase
+from engine.stability.linear import wobble
+from engine.stability.outcomes import BAND, FATES, GROWS, first_failure, outcomes
+
+BY_KEY = {method.key: method for method in METHODS}
+FORCE = acceleration(1.0)
+
+
+def after(step: Step, theta: float, z: float, steps: int) -> Phase:
+    phase: Phase = (theta, 0.0)
+    for _ in range(steps):
+        phase = step(FORCE, phase, z)
+    return phase
+
+
+def fate(key: str, theta: float, z: float, steps: int = 2000) -> str:
+    return FATES[outcomes(BY_KEY[key], np.array([theta]), np.array([z]), steps)["fate"][0]]
+
+
+def failure_of(key: str, theta: float, ladder: np.ndarray, steps: int) -> tuple[float, str] | None:
+    cells = outcomes(BY_KEY[key], np.full(len(ladder), theta), ladder, steps)
+    failure = first_failure(BY_KEY[key], theta, ladder, cells)
+    return failure and (failure.z, failure.reason)
+
+
+@given(
+    st.sampled_from(METHODS),
+    st.lists(st.tuples(st.floats(0.01, 3.14), st.floats(0.01, 3.5)), min_size=1, max_size=30),
+    st.integers(1, 60),
+)
+def test_each_swing_of_an_ensemble_is_what_a_plain_loop_says(
+    method: Method, swings: list[tuple[float, float]], steps: int
+) -> None:
+    force = acceleration(1.0, np.sin)  # not libm's: an ulp of difference would be chaos later
+    cells = outcomes(method, *np.array(swings).T, steps)
+    for cell, (theta, z) in zip(cells, swings, strict=True):
+        phase, survived, expected = (theta, 0.0), 0, "holds"
+        start = energy(1.0, *phase, np.sin)
+        lowest, highest = wobble(method.step, z)
+        worst = 0.0
+        while survived < steps and expected == "holds":
+            phase = method.step(force, phase, z)
+            now = energy(1.0, *phase, np.sin)
+            worst = max(worst, abs(now - start) / start)
+            if abs(phase[0]) > math.pi:
+                expected = "over the top"
+            elif now > (1 + BAND) * highest * start:
+                expected = "grows"
+            elif now < (1 - BAND) * lowest * start:
+                expected = "drifts"
+            else:
+                survived += 1
+        assert (cell["steps"], FATES[cell["fate"]], cell["error"]) == (survived, expected, worst)
+
+
+def test_a_swing_knows_nothing_of_the_others() -> None:
+    theta, z = (axis.ravel() for axis in np.meshgrid(np.linspace(0.1, 3.1, 9), np.linspace(0.1, 3, 11)))
+    for method in METHODS:
+        together = outcomes(method, theta, z, 300)
+        alone = np.concatenate([outcomes(method, theta[i : i + 1], z[i : i + 1], 300) for i in range(len(z))])
+        assert np.array_equal(together, alone)
+
+
+@pytest.mark.parametrize("key", ["symplectic_euler", "velocity_verlet"])
+@pytest.mark.parametrize("theta", [0.01, 1.0, 2.0, 2.8])
+def test_symplectic_methods_hold_every_swing_at_small_steps(key: str, theta: float) -> None:
+    ladder = np.linspace(0.05, 0.6, 12)
+    assert not outcomes(BY_KEY[key], np.full(12, theta), ladder, 2000)["fate"].any()
+
+
+@pytest.mark.parametrize("theta", [0.1, 1.0, 2.0, 3.0])
+def test_explicit_euler_always_fails(theta: float) -> None:
+    # Energy grows by about z² a step, so 10/z² steps are plenty.
+    for z in (0.03, 0.1, 1.0):
+        assert fate("explicit_euler", theta, z, round(10 / z**2)) in ("grows", "over the top")
+
+
+def test_explicit_eulers_time_to_the_top_goes_as_one_over_z() -> None:
+    times = []
+    for z in (0.01, 0.005, 0.0025):
+        phase, steps = (2.0, 0.0), 0
+        while abs(phase[0]) <= math.pi:
+            phase, steps = explicit_euler(FORCE, phase, z), steps + 1
+        times.append(steps * z)
+    for slow, fast in pairwise(times):
+        assert fast / slow == pytest.approx(2, rel=0.06)  # it goes over on one swing or the next: 6 of 100 s
+
+
+@pytest.mark.parametrize("theta", [0.5, 1.0, 2.5])
+def test_rk4_loses_energy_as_h_to_the_fifth(theta: float) -> None:
+    start = energy(1.0, theta, 0.0)
+    drifts = [energy(1.0, *after(rk4, theta, z, round(200 / z))) - start for z in (0.05, 0.1, 0.2)]
+    assert all(drift < 0 for drift in drifts)
+    for small, large in pairwise(drifts):
+        assert math.log2(large / small) == pytest.approx(5, abs=0.1)  # measured 4.96 to 5.00
+
+
+@pytest.mark.parametrize("theta", [0.01, 0.05])
+def test_small_swings_fail_at_the_linear_limit(theta: float) -> None:
+    # RK4's growth sets in slowly above its limit, and its decay below is no failure in 60 steps.
+    ladder, steps = np.linspace(1.9, 3, 111), {"rk4": 60}
+    for method in METHODS:
+        if method.linear_limit:
+            cells = outcomes(method, np.full(111, theta), ladder, steps.get(method.key, 500))
+            first = ladder[np.flatnonzero(cells["fate"] == GROWS)[0]]
+            assert method.linear_limit <= first < method.linear_limit + 0.05
+
+
+@pytest.mark.parametrize("z", [2.01, 2.05, 2.5, 3.0])
+def test_beyond_two_velocity_verlet_is_caught_by_an_orbit_of_period_two(z: float) -> None:
+    low, high = 1e-6, math.pi
+    while high - low > 1e-14:  # z² sin q = 4 q
+        q = (low + high) / 2
+        low, high = (q, high) if z**2 * math.sin(q) > 4 * q else (low, q)
+    # A step's rounding is 1e-16; ten steps multiply it by at most 20 each where the orbit is unstable.
+    assert after(velocity_verlet, q, z, 1) == pytest.approx((-q, 0.0), abs=1e-12)
+    assert after(velocity_verlet, q, z, 2) == pytest.approx((q, 0.0), abs=1e-12)
+
+
+@pytest.mark.parametrize(("z", "q"), [(2.01, 0.2444), (2.02, 0.3449), (2.05, 0.5417)])
+def test_a_tiny_swing_just_beyond_two_grows_to_the_catching_orbit_and_stays(z: float, q: float) -> None:
+    assert z**2 * math.sin(q) == pytest.approx(4 * q, rel=1e-4)
+    phase, largest = (1e-3, 0.0), 0.0
+    for _ in range(5000):
+        phase = velocity_verlet(FORCE, phase, z)
+        largest = max(largest, abs(phase[0]))
+    # Away from the unstable bottom and around q it swings as in a double well: out to q times the root of 2.
+    assert largest == pytest.approx(math.sqrt(2) * q, rel=0.02)
+
+
+def test_the_one_to_four_resonance_has_a_bounded_window_above_it() -> None:
+    ladder = np.arange(1.3, 1.8, 0.01)
+    found = failure_of("velocity_verlet", 0.5, ladder, 2000)
+    assert found is not None
+    z, reason = found
+    assert reason == "resonance"
+    assert z == pytest.approx(2 * math.sin(math.pi / 4), abs=0.04)  # the larger the swing, the slower: z is above
+    assert fate("velocity_verlet", 0.5, 1.3) == fate("velocity_verlet", 0.5, 1.6) == "holds"
+
+
+@pytest.mark.parametrize(
+    ("key", "theta", "start", "end", "reason"),
+    [
+        ("explicit_euler", 1.0, 0.005, 0.02, "grows"),
+        ("explicit_euler", 2.0, 0.008, 0.02, "over the top"),
+        ("symplectic_euler", 0.1, 1.5, 2.1, "grows"),
+        ("symplectic_euler", 2.0, 0.9, 1.3, "over the top"),
+        ("velocity_verlet", 0.1, 1.5, 2.1, "grows"),
+        ("velocity_verlet", 3.0, 0.5, 0.8, "over the top"),
+        ("rk4", 1.0, 0.3, 0.6, "drifts"),
+        ("rk4", 3.0, 0.3, 0.6, "drifts"),
+    ],
+)
+def test_methods_fail_each_in_its_way(key: str, theta: float, start: float, end: float, reason: str) -> None:
+    ladder = np.geomspace(start, end, 40)
+    found = failure_of(key, theta, ladder, 10_000)
+    assert found is not None
+    assert found[1] == reason
+    assert ladder[0] < found[0] < ladder[-1]
+
+
+def test_a_symplectic_swing_that_leaves_the_band_in_the_chaotic_sea_is_called_chaotic() -> None:
+    # At theta = 1 the band ends at a third of the energy of the top, so the swing leaves it before it can go over.
+    assert failure_of("velocity_verlet", 1.0, np.array([1.0, 1.535]), 2000) == (1.535, "chaotic")
+
+
+def test_a_swing_that_holds_on_the_whole_ladder_has_no_failure() -> None:
+    assert failure_of("velocity_verlet", 1.0, np.linspace(0.1, 1, 10), 500) is None

@@ -1,0 +1,109 @@
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.tui.command_line import pendu
+
+PENDU = [sys.executable, "-c", "import sys; from tui.cli.dispatch import main; sys.exit(main())"]
+
+
+@pytest.mark.parametrize("arguments", [("scnes",), ("scenes", "--jsn"), ("scenes", "extra"), ("--nonsense",)])
+def test_a_slip_on_the_command_line_is_one_sentence_and_exit_2(arguments):
+    assert pendu(*arguments).refused(2)
+
+
+def test_a_mistyped_command_is_answered_with_the_nearest_one():
+    assert pendu("scenez").refused(2, "did you mean scenes?")
+
+
+def test_a_scene_given_as_a_command_is_answered_with_how_to_see_it():
+    assert pendu("crossover").refused(2, "but a scene: pendu-tui --scene crossover")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("run", "--tiem", "10"), "run has no option --tiem: did you mean --time?"),
+        (("run", "--tiem=10"), "--time?"),
+        (("snapshot", "-x", "lab.svg"), "snapshot has no option -x; pendu-tui snapshot --help"),
+        (("--nonsense",), "live has no option --nonsense"),
+    ],
+)
+def test_an_unknown_option_is_named_before_one_that_is_missing(arguments, words):
+    assert pendu(*arguments).refused(2, words)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("run",), "required: --time"),
+        (("run", "--time", "1", "--theta", "-abc"), "has no option -a"),
+        (("run", "--time", "--h", "0.1"), "--time: expected one argument"),
+        (("run", "--time", "1", "more"), "unrecognized arguments: more"),
+    ],
+)
+def test_a_slip_with_options_that_exist_is_said_as_it_is(arguments, words):
+    assert pendu(*arguments).refused(2, words)
+
+
+def test_a_command_behind_its_options_is_asked_to_come_first():
+    assert pendu("--scene", "drift", "run", "--time", "10").refused(2, "the command comes first: pendu-tui run.")
+    assert pendu("--record", "run", "--nope").refused(2, "live has no option --nope")
+
+
+def test_a_bug_is_not_hidden_behind_a_sentence(monkeypatch):
+    monkeypatch.setattr("tui.commands.scenes.run", lambda _: 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        pendu("scenes")
+
+
+def test_an_interrupt_is_exit_130_and_said(monkeypatch):
+    def interrupted(_: object) -> int:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("tui.commands.scenes.run", interrupted)
+    outcome = pendu("scenes")
+    assert (outcome.code, outcome.err) == (130, "pendu-tui: interrupted.\n")
+
+
+def test_an_interrupt_of_which_a_library_makes_an_error_is_still_one(monkeypatch):
+    def interrupted(_: object) -> int:
+        try:
+            raise KeyboardInterrupt
+        except KeyboardInterrupt:
+            raise ImportError("half imported") from None
+
+    monkeypatch.setattr("tui.commands.scenes.run", interrupted)
+    outcome = pendu("scenes")
+    assert (outcome.code, outcome.err) == (130, "pendu-tui: interrupted.\n")
+
+
+def test_a_reader_that_stops_early_is_no_reason_to_complain():
+    reading, writing = os.pipe()
+    os.close(reading)
+    done = subprocess.run([*PENDU, "scenes"], stdout=writing, stderr=subprocess.PIPE, text=True, check=False)
+    os.close(writing)
+    assert (done.returncode, done.stderr) == (141, "")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device that is always full is Linux's")
+@pytest.mark.parametrize("command", ["methods", "scenes"])  # less than a buffer, and more
+def test_a_full_disk_under_stdout_is_one_sentence_and_exit_5(command):
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run([*PENDU, command], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert done.returncode == 5
+    assert done.stderr == "pendu-tui: output: No space left on device; free some space or write elsewhere.\n"
+
+
+def test_a_terminal_that_knows_only_ascii_gets_question_marks_not_a_traceback():
+    ascii_only = {**os.environ, "PYTHONIOENCODING": "ascii"}
+    done = subprocess.run([*PENDU, "methods"], env=ascii_only, capture_output=True, text=True, check=False)
+    assert done.returncode == 0
+    assert "St?rmer-Verlet" in done.stdout
+
+
+def test_an_escape_sequence_on_the_command_line_is_not_printed_raw():
+    assert "\x1b" not in pendu("\x1b[31mscenes").err

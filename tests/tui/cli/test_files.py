@@ -1,0 +1,115 @@
+"""What a command writes is there whole or not at all, and nothing is overwritten but by force."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from tests.tui.command_line import pendu
+from tui.cli.errors import UserError
+from tui.cli.files import whole_file
+
+WRITERS = {
+    "export": ("export", "drift", "-o"),
+    "accuracy": ("accuracy", "--time", 1, "--h-values", "0.2:0.1:2", "--csv"),
+    "stability": ("stability", "--steps", 5, "--z-values", "0.1,0.2", "--theta-values", "1", "-o"),
+    "snapshot": ("snapshot", "--time", 0, "--size", "60x16", "-o"),
+}
+LONG = {
+    "accuracy": ("accuracy", "--time", "20", "--h-values", "0.1:1e-6:9", "--no-compiled", "--csv"),
+    "stability": ("stability", "--steps", "10000000", "--theta-values", "1,2", "-o"),
+}
+each_writer = pytest.mark.parametrize("command", WRITERS.values(), ids=WRITERS)
+
+
+def test_a_file_appears_when_it_is_whole(tmp_path):
+    file = tmp_path / "data"
+    with whole_file(file) as meanwhile:
+        meanwhile.write_text("half")
+        assert not file.exists()
+    assert file.read_text() == "half"
+    assert list(tmp_path.iterdir()) == [file]
+
+
+@pytest.mark.parametrize("error", [OSError, KeyboardInterrupt])
+def test_whatever_goes_wrong_the_older_file_stays_as_it_was(tmp_path, error):
+    file = tmp_path / "data"
+    file.write_text("older")
+
+    def fail():
+        with whole_file(file, force=True) as meanwhile:
+            meanwhile.write_text("half")
+            raise error
+
+    with pytest.raises(error):
+        fail()
+    assert file.read_text() == "older"
+    assert list(tmp_path.iterdir()) == [file]
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_to_end_leaves_nothing_half_written(tmp_path, number):
+    before = signal.getsignal(number)
+
+    def end_it():
+        with whole_file(tmp_path / "data") as meanwhile:
+            meanwhile.write_text("half")
+            os.kill(os.getpid(), number)
+            time.sleep(1)
+
+    with pytest.raises(KeyboardInterrupt):
+        end_it()
+    assert list(tmp_path.iterdir()) == []
+    assert signal.getsignal(number) is before
+
+
+def test_a_folder_is_not_replaced_by_force_either(tmp_path):
+    with pytest.raises(UserError, match="exists already"), whole_file(tmp_path, force=True):
+        raise AssertionError
+
+
+def test_a_device_is_written_to_and_not_replaced():
+    with whole_file(Path("/dev/null")) as meanwhile:
+        assert str(meanwhile) == "/dev/null"
+
+
+@each_writer
+def test_no_command_overwrites_but_by_force(tmp_path, command):
+    file = tmp_path / "file.svg"
+    file.write_text("older")
+    assert pendu(*command, file).refused(5, str(file), "exists already", "--force")
+    assert file.read_text() == "older"
+    assert pendu(*command, file, "--force").code == 0
+    assert file.read_bytes() != b"older"
+    assert list(tmp_path.iterdir()) == [file]
+
+
+@each_writer
+def test_a_missing_folder_is_known_before_anything_is_computed(tmp_path, command, monkeypatch):
+    monkeypatch.setattr("engine.accuracy.study.Study.points", None)
+    monkeypatch.setattr("engine.stability.grid.Grid.compute", None)
+    monkeypatch.setattr("recordings.export.write_csv", None)
+    assert pendu(*command, tmp_path / "no" / "file.svg").refused(5, "no folder", "create the folder")
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("command", LONG.values(), ids=LONG)
+def test_who_stops_a_command_at_once_finds_the_older_file_or_a_part_that_can_be_read(tmp_path, command, number):
+    file = tmp_path / "file"
+    file.write_text("older")
+    run = [sys.executable, "-c", "import sys; from tui.cli.dispatch import main; sys.exit(main())", *command, str(file)]
+    with subprocess.Popen([*run, "--force"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        while not file.with_name("file.part").exists():
+            time.sleep(0.01)
+        time.sleep(0.2)  # s; libraries are still being imported before that, and may make an error of their own of it
+        process.send_signal(number)
+        _, err = process.communicate(timeout=60)
+    assert (process.returncode, "interrupted" in err) == (130, True), err
+    assert "Traceback" not in err
+    assert list(tmp_path.iterdir()) == [file]
+    if command[0] == "stability":
+        assert file.read_text() == "older"

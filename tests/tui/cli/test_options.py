@@ -1,0 +1,104 @@
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from engine.scenes import DEFAULT_SCENE, SCENES, Scene, SceneError
+from tui.cli.errors import UserError
+from tui.cli.options import Parser, add_scene_options, angle, joined, scene_of
+
+
+def scene_from(*arguments: str) -> Scene:
+    parser = Parser(prog="pendu-tui test")
+    add_scene_options(parser)
+    return scene_of(parser.parse_args(joined(arguments)))
+
+
+def test_without_options_the_scene_is_the_default_one():
+    assert scene_from() == DEFAULT_SCENE
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_every_scene_is_found_by_its_name(name):
+    assert scene_from("--scene", name) == SCENES[name]
+
+
+def test_numbers_win_over_the_scene_and_the_scene_is_then_custom():
+    scene = scene_from("--scene", "spin", "--omega", "7", "--h", "0.01")
+    assert (scene.name, scene.theta, scene.omega, scene.h) == ("custom", 0.0, 7.0, 0.01)
+
+
+def test_numbers_that_change_nothing_leave_the_scene_its_name():
+    assert scene_from("--scene", "crossover", "--h", "0.2") == SCENES["crossover"]
+
+
+def test_degrees_become_radians():
+    assert angle("115deg") == angle("115°") == math.radians(115)
+    assert angle("-90deg") == -math.pi / 2
+    assert angle("2") == angle("2rad") == 2.0
+
+
+@pytest.mark.parametrize("theta", ["170", "-170"])
+def test_who_gives_many_radians_is_told_how_degrees_are_given(theta, capsys):
+    assert scene_from("--theta", theta).theta == float(theta)
+    assert f"for degrees write {theta}deg." in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("theta", ["170deg", "1000deg", "170rad", "6.28", "-6.28"])
+def test_who_gives_a_unit_or_up_to_a_turn_is_told_nothing(theta, capsys):
+    scene_from("--theta", theta)
+    assert capsys.readouterr().err == ""
+
+
+@given(st.floats(-1e9, 1e9))
+def test_every_finite_theta_and_omega_can_be_given_negative_ones_too(value):
+    scene = scene_from("--theta", repr(value), "--omega", repr(value))
+    assert (scene.theta, scene.omega) == (value, value)
+
+
+@pytest.mark.parametrize("text", ["-1", "-1e-3", "-.5", "-0"])
+def test_a_negative_number_after_an_option_is_its_value(text):
+    assert scene_from("--omega", text) == scene_from(f"--omega={text}")
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("--h", "0"),
+        ("--h", "nan"),
+        ("--h", "1e9"),
+        ("--h", "-0.05"),
+        ("--length", "0"),
+        ("--length", "-1"),
+        ("--gravity", "0"),
+        ("--gravity", "-9.81"),
+        ("--theta", "inf"),
+        ("--omega", "nan"),
+    ],
+)
+def test_a_number_that_cannot_be_run_is_refused_with_its_name_and_range(arguments):
+    with pytest.raises(SceneError, match=arguments[0].removeprefix("--")):
+        scene_from(*arguments)
+
+
+@pytest.mark.parametrize("arguments", [("--theta", "abc"), ("--theta", "5grad"), ("--h", "small"), ("--omega", "")])
+def test_what_is_no_number_is_refused_with_an_example(arguments):
+    with pytest.raises(UserError, match=r"is no (angle|number): give .* such as"):
+        scene_from(*arguments)
+
+
+def test_an_unknown_scene_is_answered_with_the_nearest_one():
+    with pytest.raises(UserError, match="did you mean near-separatrix"):
+        scene_from("--scene", "near-seperatrix")
+
+
+def test_a_scene_like_no_other_is_answered_with_where_they_are_listed():
+    with pytest.raises(UserError, match="pendu-tui scenes lists them"):
+        scene_from("--scene", "q")
+
+
+def test_a_scene_name_with_an_escape_sequence_is_not_printed_raw():
+    with pytest.raises(UserError) as refusal:
+        scene_from("--scene", "\x1b[31mred")
+    assert "\x1b" not in str(refusal.value)

@@ -1,0 +1,48 @@
+import io
+import itertools
+import math
+
+import pytest
+
+from tui.cli.output import print_table, progress, write_json
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+def test_json_with_a_number_that_is_not_finite_is_refused_not_written(value, capsys):
+    with pytest.raises(ValueError, match="not JSON compliant"):
+        write_json("test", {"value": value})
+    assert capsys.readouterr().out == ""
+
+
+def test_a_table_in_a_pipe_has_room_for_every_column(capsys):
+    print_table("lr", ("name", "number"), [("x" * 150, "1"), ("y", "23")])
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[1].startswith("x" * 150)
+    assert [line[-2:] for line in lines] == ["er", " 1", "23"]
+
+
+def shown(stream: io.StringIO, seconds_per_call: float, monkeypatch) -> str:
+    clock = itertools.count(0, seconds_per_call)
+    monkeypatch.setattr("sys.stderr", stream)
+    monkeypatch.setattr("tui.cli.output.monotonic", lambda: next(clock))
+    with progress("working") as show:
+        for done in range(5):
+            show(done, 5)
+    return stream.getvalue()
+
+
+def test_what_takes_longer_than_a_second_on_a_terminal_shows_a_bar(monkeypatch):
+    assert "working" in shown(Terminal(), 0.5, monkeypatch)
+
+
+def test_what_is_done_within_a_second_shows_none(monkeypatch):
+    assert shown(Terminal(), 0.1, monkeypatch) == ""
+
+
+def test_in_a_pipe_there_is_no_bar(monkeypatch):
+    assert shown(io.StringIO(), 10.0, monkeypatch) == ""

@@ -1,0 +1,256 @@
+"""`pendu-tui accuracy`: a table, a chart and a recommendation; JSON and CSV with all digits."""
+
+import csv
+import io
+import json
+import signal
+import subprocess
+import sys
+import time
+
+import jsonschema
+import pytest
+
+from engine.accuracy.study import Study, ladder
+from engine.methods import METHODS
+from engine.scenes import SCENES
+from tests.tui.command_line import pendu
+from tui.views.accuracy.chart import accuracy_chart
+
+QUICK = ("accuracy", "--time", "5", "--h-values", "0.2:0.01:4")
+KEYS = [method.key for method in METHODS]
+NUMBER = {"type": "number"}
+MAYBE = {"type": ["number", "null"]}
+
+
+def fields(**types):
+    return {"type": "object", "properties": types, "required": list(types), "additionalProperties": False}
+
+
+def rows(**types):
+    return {"type": "array", "items": fields(**types)}
+
+
+METHOD = {"enum": KEYS}
+ADVICE = {
+    "time": NUMBER,
+    "target": MAYBE,
+    "budget": MAYBE,
+    "method": {"enum": [*KEYS, None]},
+    "h": MAYBE,
+    "force_evaluations": MAYBE,
+    "reached": MAYBE,
+    "reason": {"type": ["string", "null"]},
+    "attempts": rows(
+        method=METHOD, h=MAYBE, force_evaluations=MAYBE, error=MAYBE, why_not={"type": ["string", "null"]}
+    ),
+}
+SCHEMA = fields(
+    schema={"const": "pendu.accuracy/1"},
+    scene={"type": "object"},
+    time=NUMBER,
+    error={"enum": ["theta", "energy", "final"]},
+    points=rows(
+        method=METHOD,
+        h=NUMBER,
+        steps={"type": "integer"},
+        force_evaluations={"type": "integer"},
+        seconds=MAYBE,
+        spread=MAYBE,
+        theta_error=NUMBER,
+        energy_error=NUMBER,
+        final_error=NUMBER,
+        valid={"type": "boolean"},
+        reason={"type": ["string", "null"]},
+    ),
+    orders=rows(method=METHOD, claimed={"type": "integer"}, measured=MAYBE),
+    recommendation={"anyOf": [{"type": "null"}, fields(**ADVICE)]},
+    durations=rows(**ADVICE),
+    interrupted={"type": "boolean"},
+)
+
+TABLE = """\
+  h [s]  z = h·w0     steps  Explicit Euler (1/step)  Symplectic Euler (1/step)  Velocity Verlet (1/step)  RK4 (4/step)
+    0.2     0.626        25                x 1.9e+01                    4.4e-01                   2.1e-01       8.1e-03
+0.07353      0.23        68                x 6.4e+00                    1.3e-01                   2.8e-02       1.9e-04
+0.02717    0.0851       184                x 1.3e+00                    4.3e-02                   3.8e-03       4.1e-06
+   0.01    0.0313       500                  3.4e-01                    1.5e-02                   5.2e-04       7.8e-08
+  order            measured                     1.01                       1.00                      2.00          4.00
+                    claimed                        1                          1                         2             4
+x as far off as the swing is wide, or as the energy is large
+order: of the theta error over one period or less; n/step: force evaluations
+"""
+
+CHART = """\
+theta error [rad], the largest distance from the exact swing
+  1e3┤
+     │        x
+    1┤        s⠍⠍⡉⡑⡒⡒⠒⠢⠤⠤⠤⢄e⣀⣀⡀
+     │        v⡟⡭⡭⢍⣒⣒⠓⠓⠣⠥⠥⠦s⣂⣂⣌⣩⡩⠩⠩⢒⢒⢒⢒e
+ 1e-3┤           ⠁⠁⠂⠆⡍r⣖⡒⡢⠤v⣀⣀  ⠈⠉⠉⠉⠉⠑⠒s⠈⠈⠈⠈⠐⠐h
+     │                ⠁⠂⠋⠖⡣⢅⣂⠂⠍⠩⠱⢒⢒⠤⠤⣀⣀⡀
+ 1e-6┤                     ⠁⠂⠍⡒⠤⢄⡀ ⠈⠈⠐⠐v⠠⠠⢀⢀
+     │                         ⠈⠈⠘r⢒⠤⣀⡀     ⠈⠈h²
+ 1e-9┤                              ⠈⠐⠨⢑⢢⠤⣀
+     │                                   ⠈⠐⠩⢒⠢⢄r
+1e-12┤                                       ⠈h⁴
+     │
+     └┬───────────┬────────────┬───────────┬───────────┬────
+      10         100          1e3         1e4         1e5
+                                           force evaluations
+"""
+
+
+def strip(text):
+    return "\n".join(line.rstrip() for line in text.splitlines())
+
+
+def test_the_table_and_the_chart_are_the_same_each_time():
+    told = pendu(*QUICK)
+    assert told.code == 0
+    assert told.err == ""
+    assert strip(TABLE) in strip(told.out)
+    assert "drift: theta 1, omega 0, length 1, gravity 9.81 (SI units), over 5 s\n" in told.out
+    assert told.out == pendu(*QUICK).out
+
+
+def test_the_chart_has_letters_for_points_and_dotted_lines_for_orders():
+    points = list(Study(SCENES["drift"], 5.0).points(ladder(5.0, 0.1, 0.001, 3)))
+    assert strip(accuracy_chart(points, "theta", "evaluations", 60, 16).text) == strip(CHART)
+
+
+def test_every_point_on_the_chart_is_where_its_cost_and_its_error_are():
+    points = list(Study(SCENES["drift"], 20.0).points(ladder(20.0, 0.1, 0.0002, 4)))
+    lines = accuracy_chart([p for p in points if p.method.key == "rk4"], "theta", "evaluations", 80, 24).text.split(
+        "\n"
+    )
+    assert sum(line.count("r") for line in lines[1:-1]) == 3  # the fourth is only rounding
+    assert sum(line.count("~") for line in lines[1:-1]) == 1
+
+
+def test_as_json_it_holds_points_orders_and_recommendation():
+    answer = pendu(*QUICK, "--target", "1e-4", "--json").json
+    jsonschema.validate(answer, SCHEMA)
+    assert [point["method"] for point in answer["points"]] == KEYS * 4
+    assert [order["claimed"] for order in answer["orders"]] == [method.order for method in METHODS]
+    advice = answer["recommendation"]
+    assert advice == answer["durations"][-1]
+    assert (advice["target"], advice["method"]) == (1e-4, "rk4")
+    assert advice["reached"] <= 1e-4
+    # the recommended run, run again
+    study = Study(SCENES["drift"], 5.0)
+    again = study.run(METHODS[KEYS.index("rk4")], round(5.0 / advice["h"]), 10_000)
+    assert (again.h, again.theta_error) == (advice["h"], advice["reached"])
+
+
+def test_the_numbers_are_the_same_without_numba():
+    assert pendu(*QUICK, "--json").json == pendu(*QUICK, "--json", "--no-compiled").json
+
+
+def test_points_that_say_nothing_are_kept_with_their_reason():
+    points = pendu("accuracy", "--time", "20", "--h-values", "0.2:0.0002:4", "--json").json["points"]
+    assert {(p["method"], p["reason"]) for p in points if not p["valid"]} == {
+        ("explicit_euler", "as far off as the swing is wide, or as the energy is large"),
+        ("rk4", "no larger than what rounding adds up to"),
+    }
+
+
+def test_seconds_are_measured_when_they_are_the_cost():
+    points = pendu(*QUICK, "--cost", "seconds", "--no-compiled", "--json").json["points"]
+    assert all(point["seconds"] > 0 and point["spread"] >= 0 for point in points)
+    assert pendu(*QUICK, "--json").json["points"][0]["seconds"] is None
+
+
+def test_a_budget_is_answered_with_the_smallest_error_for_it():
+    told = pendu(*QUICK, "--budget", "1e3")
+    assert "Over 5 s, smallest theta error within 1000 force evaluations: RK4 at h = 0.02 s\n" in told.out
+    answer = pendu(*QUICK, "--budget", "1e3", "--error", "energy", "--json").json["recommendation"]
+    assert answer["budget"] == 1000
+    assert answer["force_evaluations"] <= 1000
+
+
+def test_it_says_plainly_that_no_method_gets_there():
+    told = pendu(*QUICK, "--target", "1e-9", "--budget", "500")
+    assert told.code == 0
+    assert "No method gets there over 5 s: theta error up to 1e-09 within 500 force evaluations\n" in told.out
+    assert told.out.count("after 500 evaluations") == 4  # Verlet's 499 steps cost one more
+    answer = pendu(*QUICK, "--target", "1e-9", "--budget", "500", "--json").json["recommendation"]
+    assert (answer["method"], answer["h"], answer["reason"]) == (None, None, "no method gets there")
+    assert all(attempt["why_not"] for attempt in answer["attempts"])
+
+
+def test_over_several_times_it_shows_where_the_winner_changes():
+    told = pendu(
+        "accuracy", "--h-values", "0.2:0.05:3", "--target", "1e-3", "--error", "energy", "--time", "10,100,300"
+    )
+    assert "Velocity Verlet instead of RK4 from 100 s on (not yet at 10 s)." in told.out
+    same = pendu("accuracy", "--h-values", "0.2:0.05:3", "--target", "1e-3", "--time", "2,5")
+    assert "RK4 for all these times." in same.out
+
+
+def test_csv_has_a_line_for_each_point_with_all_digits(tmp_path):
+    told = pendu(*QUICK, "--csv")
+    points = pendu(*QUICK, "--json").json["points"]
+    read = list(csv.DictReader(io.StringIO(told.out)))
+    assert [float(row["theta_error"]) for row in read] == [point["theta_error"] for point in points]
+    assert list(read[0]) == list(points[0])
+    file = tmp_path / "points.csv"
+    assert pendu(*QUICK, "--csv", file).out == f"{file}: 16 points.\n"
+    assert file.read_text(encoding="utf-8") == told.out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--h-values", "0.1"], ["no ladder", "0.2:0.001:10"]),
+        (["--h-values", "0.1:0:5"], ["above zero"]),
+        (["--h-values", "0.1:0.01:9999"], ["no ladder"]),
+        (["--h-values", "30:0.1:3", "--time", "20"], ["longer than the time"]),
+        (["--h-values", "1e9:0.1:3"], ["no usable step"]),
+        (["--time", "nan"], ["above zero"]),
+        (["--time", "1e300"], ["out of range"]),
+        (["--time", "1e9"], ["take hours", "--h-values"]),
+        (["--target", "-1"], ["above zero"]),
+        (["--budget", "0.5"], ["buys nothing"]),
+        (["--budget", "1.1e9"], ["would take hours", "1e+09"]),
+        (["--error", "omega"], ["invalid choice"]),
+        (["--json", "--csv"], ["not allowed"]),
+        (["--gravity", "0"], ["out of range"]),
+        (["--theta", "0"], ["at rest", "no error to measure"]),
+    ],
+)
+def test_a_slip_is_one_sentence_and_exit_2(arguments, words):
+    assert pendu("accuracy", *arguments).refused(2, *words)
+
+
+def test_a_folder_that_is_not_there_is_one_sentence_and_exit_5(tmp_path):
+    assert pendu(*QUICK, "--csv", tmp_path / "no" / "where.csv").refused(5, "create the folder")
+
+
+@pytest.mark.parametrize(
+    "extreme",
+    [("--theta", "1e-170"), ("--theta", "1e6"), ("--omega", "1e8"), ("--theta", "180deg")],
+)
+def test_extreme_starts_print_numbers_and_no_nan(extreme):
+    told = pendu("accuracy", "--time", "1", "--h-values", "0.1:0.01:3", *extreme, "--target", "1e-3", "--json")
+    jsonschema.validate(told.json, SCHEMA)
+    text = pendu("accuracy", "--time", "1", "--h-values", "0.1:0.01:3", *extreme)
+    assert text.code == 0
+    assert "nan" not in text.out
+    assert "inf" not in text.out
+
+
+def test_ctrl_c_keeps_what_is_done():
+    program = "import sys; from tui.cli.dispatch import main; sys.exit(main())"
+    minutes = ["--time", "20", "--h-values", "0.1:1e-6:9", "--no-compiled"]
+    command = [sys.executable, "-c", program, "accuracy", *minutes, "--json"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        time.sleep(2)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert err == "pendu-tui: interrupted; what was done is kept.\n"
+    answer = json.loads(out)
+    jsonschema.validate(answer, SCHEMA)
+    assert answer["interrupted"]
+    assert 0 < len(answer["points"]) < 36

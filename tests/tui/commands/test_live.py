@@ -1,0 +1,49 @@
+"""What `pendu-tui live` does before there is a screen, and beside it."""
+
+import pytest
+
+from engine.scenes import DEFAULT_SCENE
+from recordings.errors import DiskError
+from recordings.library import listing
+from recordings.live_recorder import SittingRecorder
+from recordings.verify import verify
+from tests.tui.command_line import pendu
+from tests.tui.pty_lab import PtyLab
+from tui.commands.live import recording_lab
+from tui.playback.live import Live
+
+
+def test_labs_that_are_opened_in_the_same_second_record_each_for_itself(tmp_path):
+    """As tmux does with synchronised panes."""
+    with PtyLab(PENDU_RECORDINGS=str(tmp_path)) as one, PtyLab(PENDU_RECORDINGS=str(tmp_path)) as other:
+        while not all(b"REC " in session.output for session in (one, other)):
+            one.read(0.1)
+            other.read(0.1)
+        for session in (one, other):
+            session.type("q")
+            assert session.end() == 0
+    assert len(listing(tmp_path)) == 2
+    assert all(verify(item.path).complete for item in listing(tmp_path))
+
+
+@pytest.mark.parametrize("or_next", [True, False])
+def test_a_name_that_was_taken_meanwhile_is_replaced_only_if_nobody_gave_it(tmp_path, or_next):
+    path = tmp_path / "now.mcap"
+    live = Live(DEFAULT_SCENE)
+    lab = recording_lab(live, path, or_next=or_next)
+    other = SittingRecorder(path)
+    if or_next:
+        lab._prepare()
+        assert live.recorder.path.name == "now-2.mcap"
+    else:
+        with pytest.raises(DiskError, match="choose another name"):
+            lab._prepare()
+    live.close()
+    other.close()
+
+
+def test_a_file_that_is_there_is_not_recorded_over(tmp_path):
+    path = tmp_path / "mine.mcap"
+    path.write_bytes(b"precious")
+    assert pendu("live", "--plain", "--record", path).refused(5, "exists already", "choose another name")
+    assert path.read_bytes() == b"precious"

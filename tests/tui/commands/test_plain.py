@@ -1,0 +1,83 @@
+"""`--plain` as one uses it: with a pipe instead of a terminal, ended by Ctrl+C."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from recordings.library import listing
+from recordings.verify import verify
+from tests.tui.command_line import pendu
+
+PENDU = [sys.executable, "-c", "import sys; from tui.cli.dispatch import main; sys.exit(main())"]
+ROOT = Path(__file__).parents[3]
+
+
+def started(folder: Path, *arguments: str) -> "subprocess.Popen[str]":
+    environment = {**os.environ, "PENDU_RECORDINGS": str(folder), "TERM": "dumb"}
+    return subprocess.Popen(
+        [*PENDU, *arguments],
+        cwd=ROOT,
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def read_until(process: "subprocess.Popen[str]", words: str) -> list[str]:
+    lines = []
+    assert process.stdout is not None
+    for line in process.stdout:
+        lines.append(line)
+        if words in line:
+            return lines
+    raise AssertionError(f"{words!r} was never said: {lines}")
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=["ctrl+c", "SIGTERM"])
+def test_ended_by_a_signal_the_recording_is_whole_and_that_is_fine(tmp_path, number):
+    with started(tmp_path, "--plain", "--speed", "8") as process:
+        lines = read_until(process, "Explicit Euler over the top")
+        process.send_signal(number)
+        out, err = process.communicate(timeout=30)
+    assert (process.returncode, err) == (0, "")
+    assert lines[0].startswith("The lab runs at 8 times real time")
+    (item,) = listing(tmp_path)
+    assert f"recorded: {item.path}" in out
+    report = verify(item.path)
+    assert (report.identical, report.complete) == (True, True)
+
+
+def test_when_nobody_reads_any_more_the_recording_is_whole_too(tmp_path):
+    with started(tmp_path, "live", "--plain", "--speed", "8") as process:
+        read_until(process, "energy errors")
+        assert process.stdout is not None
+        process.stdout.close()
+        process.wait(timeout=30)
+    assert process.returncode == 141
+    (item,) = listing(tmp_path)
+    assert verify(item.path).complete
+
+
+def test_a_replay_is_told_to_its_end_and_nothing_is_recorded(tmp_path):
+    with started(tmp_path, "replay", "drift", "--plain", "--speed", "20") as process:
+        out, err = process.communicate(timeout=60)
+    assert (process.returncode, err) == (0, "")
+    assert out.startswith("The replay runs at 20 times real time")
+    assert "Explicit Euler over the top" in out
+    assert not list(tmp_path.iterdir())
+
+
+def test_without_a_terminal_the_way_out_is_named():
+    assert pendu("live", "--no-record").refused(4, "--plain")
+
+
+def test_help_names_both_ways_to_show_the_lab_otherwise():
+    for name in ("live", "replay"):
+        assert {"--plain", "--present"} <= set(pendu(name, "--help").out.split())
+    assert "--present" in pendu("snapshot", "--help").out

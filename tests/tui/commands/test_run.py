@@ -1,0 +1,176 @@
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from engine.methods import METHODS
+from engine.run.compiled import available
+from engine.run.lockstep import Lockstep
+from engine.scenes import DEFAULT_SCENE, SCENES
+from recordings.recording import Recording
+from recordings.verify import verify
+from tests.tui.command_line import pendu
+from tui.cli.fail_if import FIELDS
+from tui.commands.run import SAMPLE_BYTES
+
+
+def test_json_has_the_fields_of_the_design_and_the_numbers_of_the_engine():
+    answer = pendu("run", "--time", 10, "--json").json
+    assert answer.keys() == {"schema", "scene", "time", "steps", "wall_seconds", "methods"}
+    assert (answer["schema"], answer["time"], answer["steps"]) == ("pendu.run/1", 10.0, 200)
+    lockstep = Lockstep(DEFAULT_SCENE)
+    lockstep.advance(200)
+    for told, method, reading in zip(answer["methods"], METHODS, lockstep.sample().readings, strict=True):
+        assert told.keys() == {"method", "verdict", *FIELDS}
+        assert told["method"] == method.key
+        assert (told["theta"], told["max_energy_error"]) == (reading.theta, reading.max_energy_error)
+
+
+def test_the_table_tells_who_gains_who_keeps_and_who_loses_energy():
+    lines = pendu("run", "--time", 60).out.splitlines()
+    for label, verdict in [
+        ("Explicit Euler", "grows"),
+        ("Symplectic Euler", "bounded"),
+        ("Velocity Verlet", "bounded"),
+        ("RK4", "drifts"),
+    ]:
+        (line,) = (line for line in lines if line.startswith(label))
+        assert verdict in line
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_every_scene_runs_and_its_json_has_no_nan(name):
+    assert pendu("run", "--scene", name, "--time", 60, "--json").json["scene"]["name"] == name
+
+
+@pytest.mark.parametrize(
+    "start", [("--omega", "1e8"), ("--theta", "1e6"), ("--h", "15.97"), ("--theta", "1e-300"), ("--theta", "0")]
+)
+def test_extreme_but_legal_starts_neither_crash_nor_print_nan(start):
+    assert pendu("run", *start, "--time", "2000", "--json").code == 0
+    out = pendu("run", *start, "--time", "2000").out
+    assert "nan" not in out.replace("nance", "")
+    assert "inf" not in out
+
+
+def test_a_method_that_diverges_is_said_to_have_diverged():
+    arguments = ("run", "--theta", "1e-150", "--time", "2000")  # so small that its growth overflows any relative error
+    euler = pendu(*arguments, "--json").json["methods"][0]
+    assert euler["theta_error"] is None
+    assert 0 < euler["diverged_at"] < 2000
+    assert euler["force_evaluations"] == round(euler["diverged_at"] / DEFAULT_SCENE.h)
+    assert f"diverged at {euler['diverged_at']:g} s" in pendu(*arguments).out
+
+
+def test_a_recording_has_the_same_bytes_each_time_and_verifies(tmp_path):
+    one, two = tmp_path / "one.mcap", tmp_path / "two.mcap"
+    for path in (one, two):
+        assert pendu("run", "--scene", "spin", "--time", 5, "--record", path).code == 0
+    assert one.read_bytes() == two.read_bytes()
+    assert verify(one).identical
+    assert verify(one).complete
+
+
+def test_samples_are_as_far_apart_as_asked(tmp_path):
+    pendu("run", "--time", 10, "--record", tmp_path / "run.mcap", "--sample-every", 50)
+    with Recording.open(tmp_path / "run.mcap") as recording:
+        assert recording.samples == 5  # at steps 0, 50, 100, 150, 200
+
+
+def test_a_recording_is_not_overwritten_unless_by_force(tmp_path):
+    path = tmp_path / "run.mcap"
+    path.write_bytes(b"precious")
+    assert pendu("run", "--time", 1, "--record", path).refused(5, "exists", "--force", str(path))
+    assert path.read_bytes() == b"precious"
+    assert pendu("run", "--time", 1, "--record", path, "--force").code == 0
+    assert verify(path).identical
+
+
+def test_the_size_of_a_large_recording_is_known_before_it_is_made(tmp_path):
+    path, steps = tmp_path / "run.mcap", 4000
+    assert pendu("run", "--time", steps * DEFAULT_SCENE.h, "--record", path).err == ""  # it is not large
+    assert steps * SAMPLE_BYTES == pytest.approx(path.stat().st_size, rel=0.1)
+
+
+@pytest.mark.parametrize("place", ["missing/run.mcap", "file/run.mcap"])
+def test_a_folder_that_cannot_be_written_is_one_sentence_and_exit_5(tmp_path, place):
+    (tmp_path / "file").touch()
+    assert pendu("run", "--time", 1, "--record", tmp_path / place).refused(5, str(tmp_path))
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("--h", "0"),
+        ("--h", "nan"),
+        ("--h", "1e9"),
+        ("--h", "-1"),
+        ("--length", "0"),
+        ("--gravity", "-9.81"),
+        ("--theta", "abc"),
+        ("--scene", "drfit"),
+        ("--time", "0"),
+        ("--time", "nan"),
+        ("--time", "0.01"),
+        ("--time", "1e10"),
+        ("--sample-every", "0"),
+        ("--fail-if", "rk4.theta"),
+        ("--fail-if", "rk5.theta > 1"),
+    ],
+)
+def test_bad_input_is_one_sentence_and_exit_2_and_nothing_is_written(tmp_path, arguments):
+    path = tmp_path / "run.mcap"
+    assert pendu("run", "--time", "1", "--record", path, *arguments).refused(2)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_gate_that_trips_is_exit_1_with_the_numbers_still_printed():
+    outcome = pendu("run", "--time", 10, "--fail-if", "explicit_euler.max_energy_error > 1", "--json")
+    assert outcome.code == 1
+    assert outcome.err == "pendu-tui: the check failed: explicit_euler.max_energy_error > 1\n"
+    assert outcome.json["methods"][0]["max_energy_error"] > 1
+
+
+def test_a_gate_may_ask_for_the_verdict():
+    assert pendu("run", "--time", 100, "--fail-if", "rk4.verdict == drifts").code == 1
+    assert pendu("run", "--time", 100, "--fail-if", "velocity_verlet.verdict != bounded").code == 0
+    assert pendu("run", "--time", 1, "--fail-if", "rk4.verdict == 'too early'").code == 1
+
+
+def test_a_gate_that_holds_back_is_exit_0():
+    assert pendu("run", "--time", 10, "--fail-if", "velocity_verlet.max_energy_error > 1e-2").code == 0
+
+
+@pytest.mark.skipif(not available(), reason="Numba is not installed")
+def test_compiled_and_plain_runs_print_the_same_numbers(monkeypatch):
+    monkeypatch.setattr("tui.commands.run.COMPILED_FROM", 1)
+    arguments = ("run", "--scene", "near-separatrix", "--time", 20, "--json")
+    compiled, plain = pendu(*arguments).json, pendu(*arguments, "--no-compiled").json
+    assert compiled["methods"] == plain["methods"]
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_run_that_is_stopped_finishes_its_recording(tmp_path, number):
+    path = tmp_path / "run.mcap"
+    program = [sys.executable, "-c", "import sys; from tui.cli.dispatch import main; sys.exit(main())"]
+    arguments = ["run", "--time", "1e7", "--no-compiled", "--record", str(path)]
+    process = subprocess.Popen([*program, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    part = Path(f"{path}.part")
+    deadline = time.monotonic() + 60  # s; a second is usual
+    while not (part.exists() and part.stat().st_size > 100_000) and time.monotonic() < deadline:
+        time.sleep(0.02)
+    os.kill(process.pid, number)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "with --sample-every 320 it has 200 MB." in err
+    assert "pendu-tui: interrupted at t = " in err
+    assert "RK4" in out  # what was done is told
+    result = verify(path)
+    assert result.complete
+    assert result.identical
+    assert not part.exists()

@@ -1,0 +1,227 @@
+import csv
+import io
+import math
+import sys
+import tracemalloc
+
+import numpy as np
+import pytest
+
+from engine.methods import METHODS
+from engine.scenes import SCENES, Scene
+from engine.stability.grid import Grid
+from engine.stability.outcomes import FATES, UNKNOWN
+from engine.stability.study import Study, amplitude
+from tests.tui.command_line import pendu
+
+SMALL = ("--steps", 300, "--z-values", "0.1:3:12", "--theta-values", "0.5,2")
+KEYS = [method.key for method in METHODS]
+
+
+@pytest.fixture
+def interrupted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ctrl+C is pressed when 5 of the map's z are done."""
+
+    def compute(grid: Grid, executor: object = None):
+        yield Grid(grid.theta, grid.z[:5], grid.steps).cells()
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Grid, "compute", compute)
+
+
+def test_the_tables_put_theory_beside_measurement():
+    out = pendu("stability", *SMALL).out
+    assert "RK4                         2.828427125  2.828427125" in out
+    assert "Explicit Euler                     none         none" in out
+    (row,) = (line for line in out.splitlines() if line.startswith("Velocity Verlet") and "28.65 deg" in line)
+    # The scene's z = 0.1566 holds; the first rung beyond the limit is 2.209, 14.1 times that.
+    assert row.split() == ["Velocity", "Verlet", "28.65", "deg", "2.209", "0.705", "grows", "1", "holds", "14.1"]
+
+
+def test_json_has_the_fields_of_the_design():
+    answer = pendu("stability", *SMALL, "--json").json
+    assert answer["schema"] == "pendu.stability/1"
+    assert answer["map"] is None
+    for linear, method in zip(answer["linear"], METHODS, strict=True):
+        assert linear["method"] == method.key
+        assert linear["limit_z"] == pytest.approx(linear["theory_z"], abs=1e-9)
+    assert [(row["method"], row["theta"]) for row in answer["pendulum"]] == [(k, t) for k in KEYS for t in (0.5, 2.0)]
+    for row in answer["pendulum"]:
+        assert row["reason"] in ("over the top", "grows", "drifts", "resonance", "chaotic")
+        assert row["first_failure_z"] > 0
+        assert row["at_scene"]["fate"] in FATES
+
+
+def test_the_scenes_own_swing_and_step_are_tried():
+    answer = pendu("stability", "--scene", "large-swing", "--h", "0.5", "--steps", 50, "--json").json
+    (row,) = (r for r in answer["pendulum"] if r["method"] == "velocity_verlet" and r["theta"] == 2.5)
+    assert answer["z"] == pytest.approx(0.5 * math.sqrt(9.81))
+    assert row["at_scene"]["fate"] == "over the top"
+    assert row["first_failure_z"] < answer["z"]
+
+
+def test_a_swing_that_nothing_can_throw_off_has_null_and_a_hyphen():
+    few = ("--steps", 5, "--z-values", "0.01,0.02", "--theta-values", "1", "--h", "0.005")
+    assert {row["first_failure_z"] for row in pendu("stability", *few, "--json").json["pendulum"]} == {None}
+    assert pendu("stability", *few).out.splitlines()[-1].split()[2:] == ["deg", *"----", "holds", "-"]
+
+
+def test_the_map_as_json_repeats_the_engine():
+    grid = Grid(np.array([0.5, 2.0]), np.linspace(0.1, 3, 12), 300)
+    expected = grid.cells()
+    answer = pendu("stability", *SMALL, "--json", "--map").json["map"]
+    assert answer["theta"] == [0.5, 2.0]
+    assert answer["z"] == pytest.approx(grid.z.tolist(), rel=1e-15)
+    for index, told in enumerate(answer["methods"]):
+        assert told["method"] == KEYS[index]
+        assert told["steps_survived"] == expected["steps"][:, index].tolist()
+        assert [[FATES.index(fate) for fate in row] for row in told["fate"]] == expected["fate"][:, index].tolist()
+
+
+def test_csv_has_a_line_for_each_amplitude_or_with_the_map_for_each_swing():
+    rows = list(csv.DictReader(io.StringIO(pendu("stability", *SMALL, "--csv").out)))
+    assert len(rows) == 4 * 2
+    rows = list(csv.DictReader(io.StringIO(pendu("stability", *SMALL, "--csv", "--map").out)))
+    assert len(rows) == 4 * 12 * 2
+    assert {row["fate"] for row in rows} <= set(FATES)
+    assert rows[0]["method"] == "explicit_euler"
+
+
+def test_the_map_is_drawn_in_characters_where_there_is_no_colour():
+    out = pendu("stability", *SMALL, "--map").out
+    assert "\x1b" not in out
+    assert "3 v Velocity Verlet" in out
+    assert "| linear limit" in out
+
+
+def test_the_map_is_drawn_in_half_blocks_where_there_is(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("COLORTERM", "truecolor")
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    out = pendu("stability", *SMALL, "--map").out
+    assert "▀" in out
+    assert "\x1b[" in out
+
+
+def test_worker_processes_print_the_same_to_the_last_bit():
+    arguments = ("stability", *SMALL, "--json", "--map")
+    assert pendu(*arguments, "--workers", 2).out == pendu(*arguments).out
+
+
+def test_a_dask_cluster_prints_the_same_to_the_last_bit():
+    distributed = pytest.importorskip("distributed")
+    arguments = ("stability", *SMALL, "--json", "--map")
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, host="127.0.0.1", dashboard_address=None
+    ) as cluster:
+        assert pendu(*arguments, "--dask", cluster.scheduler_address).out == pendu(*arguments).out
+
+
+def test_a_map_in_a_file_is_the_map(tmp_path):
+    file = tmp_path / "map.npz"
+    assert pendu("stability", *SMALL, "-o", file).code == 0
+    with np.load(file) as map_:
+        assert map_["methods"].tolist() == KEYS
+        assert map_["fates"].tolist() == list(FATES)
+        expected = Grid(map_["theta"], map_["z"], int(map_["steps"])).cells()
+        assert map_["cells"].tobytes() == expected.tobytes()
+    assert list(tmp_path.iterdir()) == [file]
+
+
+def test_ctrl_c_keeps_the_part_of_a_map_that_is_done(interrupted, tmp_path):
+    file = tmp_path / "map.npz"
+    outcome = pendu("stability", *SMALL, "-o", file)
+    assert outcome.code == 130
+    assert "5 of the map's 12 z" in outcome.err
+    with np.load(file) as map_:
+        assert (map_["cells"]["fate"][:5] != UNKNOWN).all()
+        assert (map_["cells"]["fate"][5:] == UNKNOWN).all()
+    outcome = pendu("stability", *SMALL, "--csv", "--map")
+    assert outcome.code == 130
+    assert len(outcome.out.splitlines()) == 1 + 4 * 5 * 2
+
+
+def test_ctrl_c_during_the_tables_keeps_the_swings_whose_loss_is_known(interrupted):
+    outcome = pendu("stability", *SMALL, "--json")
+    assert outcome.code == 130
+    assert "interrupted; the swings known by then to be lost are kept." in outcome.err
+    assert outcome.json["interrupted"]
+    rows = outcome.json["pendulum"]
+    assert {(row["method"], row["theta"]) for row in rows} >= {("explicit_euler", 0.5), ("explicit_euler", 2.0)}
+    assert all(row["first_failure_z"] < 1 for row in rows)
+    assert all(row["at_scene"]["fate"] in FATES for row in rows)
+    table = pendu("stability", *SMALL)
+    assert (table.code, table.err) == (130, outcome.err)
+    assert table.out.count(" deg ") == len(rows)
+    listed = pendu("stability", *SMALL, "--csv")
+    assert (listed.code, len(listed.out.splitlines())) == (130, 1 + len(rows))
+
+
+def test_before_the_scenes_own_z_its_cell_is_not_known(interrupted):
+    late = ("--h", "0.9", *SMALL)
+    assert {row["at_scene"] for row in pendu("stability", *late, "--json").json["pendulum"]} == {None}
+    assert pendu("stability", *late).out.splitlines()[-1].split()[-2] == "-"
+
+
+def test_a_table_of_many_amplitudes_takes_the_memory_of_a_strip():
+    tracemalloc.start()
+    rows, whole = Study(Scene(), np.linspace(0.1, 3, 2000).tolist(), steps=1).table()
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert whole
+    assert len(rows) == 8000
+    # The cells of all 813 z would be 813 * 4 * 2000 * 16 bytes = 104 MB, and twice that when they are joined.
+    assert peak < 20e6
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--theta-values", "4"), ("amplitude 4", "3.14159")),
+        (("--theta-values", "0"), ("amplitude 0",)),
+        (("--theta-values", "abc"), ("abc", "angle")),
+        (("--z-values", "0"), ("z 0",)),
+        (("--z-values", "nan"), ("z nan",)),
+        (("--z-values", "3:1:10"), ("3:1:10", "FIRST:LAST:HOW_MANY")),
+        (("--z-values", "1:2:1"), ("1:2:1",)),
+        (("--z-values", "1:2"), ("1:2",)),
+        (("--z-values", ""), ("number",)),
+        (("--steps", "0"), ("count",)),
+        (("--steps", "3000000000"), ("steps",)),
+        (("--workers", "0"), ("count",)),
+        (("--json", "--csv"), ("not allowed",)),
+        (("--workers", "2", "--dask", "tcp://x:1"), ("not allowed",)),
+        (("--map", "--z-values", "0.1:3:2000", "--theta-values", "0.1:3:2000"), ("16000000", "-o FILE.npz")),
+        (("--theta-values", "0.1:3:10001"), ("10001 amplitudes", "-o FILE.npz")),
+        (("--h", "0"), ("h = 0",)),
+    ],
+)
+def test_what_cannot_be_is_refused_in_one_sentence(arguments, words):
+    assert pendu("stability", *arguments).refused(2, *words)
+
+
+def test_a_file_that_cannot_be_written_is_exit_5(tmp_path):
+    assert pendu("stability", *SMALL, "-o", tmp_path / "no" / "map.npz").refused(5, "create the folder")
+
+
+def test_dask_without_its_package_says_what_to_install(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    assert pendu("stability", "--dask", "tcp://127.0.0.1:1").refused(2, "pendu-tui[cluster]")
+
+
+def test_the_amplitude_of_a_scene_is_how_far_it_swings():
+    assert amplitude(Scene(theta=1.0)) == 1.0
+    assert amplitude(Scene(theta=-1.0)) == 1.0
+    moving = Scene(theta=0.0, omega=2.0)  # omega²/2 = w0² (1 - cos amplitude)
+    assert math.cos(amplitude(moving)) == pytest.approx(1 - 2 / moving.w0_squared, rel=1e-12)
+    assert amplitude(SCENES["spin"]) is None
+    assert amplitude(Scene(theta=0.0)) is None
+
+
+def test_the_map_has_a_line_for_each_of_its_rows_when_it_is_piped():
+    lines = pendu(
+        "stability", "--steps", "3", "--theta-values", "0.5:3:6", "--z-values", "0.1:3:20", "--map"
+    ).out.splitlines()
+    assert max(map(len, lines)) <= 120
+    titles = [line for line in lines if "1 e Explicit Euler" in line or "4 r RK4" in line]
+    assert len(titles) == 2

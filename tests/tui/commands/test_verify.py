@@ -1,0 +1,153 @@
+import json
+from dataclasses import replace
+from io import BytesIO
+
+import pytest
+from mcap.writer import Writer
+
+from engine.run.lockstep import Sample
+from recordings.events import Entry
+from recordings.library import golden_names
+from tests.recordings.sittings import record, two_runs
+from tests.tui.command_line import pendu
+
+
+def altered() -> list[Entry]:
+    """A sitting in which one number of one sample was changed by one unit in the last place."""
+    entries = two_runs()
+    place = next(i for i, (_, value) in enumerate(entries) if isinstance(value, Sample) and value.step == 6)
+    sample = entries[place].value
+    reading = sample.readings[2]
+    changed = replace(reading, omega=reading.omega * (1 + 2**-52))
+    readings = (*sample.readings[:2], changed, sample.readings[3])
+    entries[place] = entries[place]._replace(value=replace(sample, readings=readings))
+    return entries
+
+
+def foreign() -> bytes:
+    """An MCAP file of somebody else."""
+    stream = BytesIO()
+    writer = Writer(stream)
+    writer.start()
+    writer.register_channel("/camera", "json", writer.register_schema("x", "jsonschema", b"{}"))
+    writer.finish()
+    return stream.getvalue()
+
+
+def test_the_recordings_that_come_with_the_program_verify():
+    outcome = pendu("verify", "golden")
+    assert (outcome.code, outcome.err) == (0, "")
+    for name in golden_names():
+        assert f"{name}.mcap" in outcome.out
+
+
+def test_a_recording_of_ones_own_verifies(tmp_path):
+    path = record(tmp_path / "ours.mcap", two_runs())
+    outcome = pendu("verify", path)
+    assert outcome.code == 0
+    assert outcome.out.startswith("identical ")
+    assert "2 runs" in outcome.out
+
+
+def test_json_has_the_fields_of_the_design(tmp_path):
+    path = record(tmp_path / "ours.mcap", two_runs())
+    answer = pendu("verify", path, "--json").json
+    assert answer["schema"] == "pendu.verify/1"
+    (told,) = answer["files"]
+    assert (told["file"], told["complete"], told["runs"], told["identical"]) == (str(path), True, 2, True)
+    assert (told["same_sin"], told["max_difference"], told["first_difference"]) == (True, 0.0, None)
+
+
+def test_a_difference_of_one_bit_is_exit_1_and_told_so_that_one_can_act(tmp_path):
+    path = record(tmp_path / "altered.mcap", altered())
+    outcome = pendu("verify", path)
+    assert outcome.code == 1
+    assert outcome.out.startswith("different ")
+    for word in (str(path), "run 1, step 6", "velocity_verlet", "omega", "0x1.", "1 ulps apart"):
+        assert word in outcome.out
+    (told,) = pendu("verify", path, "--json").json["files"]
+    difference = told["first_difference"]
+    assert (difference["run"], difference["step"], difference["method"]) == (1, 6, "velocity_verlet")
+    assert float.fromhex(difference["recorded_hex"]) == difference["recorded"]
+    assert difference["ulps"] == 1
+    assert told["max_difference"] == abs(difference["recorded"] - difference["computed"])
+
+
+def test_a_folder_stands_for_the_recordings_in_it_and_below(tmp_path):
+    (tmp_path / "a").mkdir()
+    record(tmp_path / "one.mcap", two_runs())
+    record(tmp_path / "a" / "two.mcap", two_runs())
+    outcome = pendu("verify", tmp_path)
+    assert outcome.out.count("identical   ") == 2
+    assert outcome.out.endswith("2 recordings, 2 identical\n")
+
+
+def test_a_folder_without_recordings_has_not_been_verified(tmp_path):
+    assert pendu("verify", tmp_path).refused(3, "no recording in this folder")
+
+
+def test_a_recording_with_a_byte_changed_is_not_called_identical(tmp_path):
+    path = record(tmp_path / "damaged.mcap", two_runs())
+    data = bytearray(path.read_bytes())
+    data[len(data) // 2] ^= 1
+    path.write_bytes(data)
+    assert pendu("verify", path).code in (1, 3)
+    assert "identical   " not in pendu("verify", path).out
+
+
+def test_a_recording_that_lacks_its_end_fails_the_check_and_is_said_to_be_cut(tmp_path):
+    path = record(tmp_path / "cut.mcap", two_runs())
+    path.write_bytes(path.read_bytes()[:-40])
+    outcome = pendu("verify", path)
+    assert outcome.code == 1
+    assert outcome.out.startswith("unfinished  ")
+    assert "the file ends within" in outcome.out
+    (told,) = pendu("verify", path, "--json").json["files"]
+    assert (told["complete"], told["identical"]) == (False, True)
+    assert pendu("verify", path, record(tmp_path / "whole.mcap", two_runs())).out.endswith(
+        "2 recordings, 1 identical\n"
+    )
+
+
+def test_what_a_killed_lab_has_left_is_verified_as_far_as_it_goes(tmp_path):
+    path = record(tmp_path / "a.mcap", two_runs()).rename(tmp_path / "a.mcap.part")
+    path.write_bytes(path.read_bytes()[:-40])
+    outcome = pendu("verify", path)
+    assert (outcome.code, outcome.out.split()[0]) == (0, "identical")
+    assert "the file ends within" in outcome.out
+
+
+@pytest.mark.parametrize(
+    "content", [b"", b"hello", b"\x89MCAP0\r\n", foreign()], ids=["empty", "text", "cut", "foreign"]
+)
+def test_what_is_no_recording_is_one_sentence_and_exit_3(tmp_path, content):
+    path = tmp_path / "file.mcap"
+    path.write_bytes(content)
+    assert pendu("verify", path).refused(3, str(path))
+    assert pendu("info", path).refused(3, str(path))
+    assert pendu("export", path).refused(3, str(path))
+    assert pendu("recover", path, "-o", tmp_path / "out.mcap").refused(3, str(path))
+    assert [other.name for other in tmp_path.iterdir()] == ["file.mcap"]
+
+
+def test_an_unreadable_file_does_not_keep_the_others_from_being_verified(tmp_path):
+    (tmp_path / "a.mcap").touch()
+    record(tmp_path / "b.mcap", two_runs())
+    outcome = pendu("verify", tmp_path)
+    assert (outcome.code, outcome.err.count("\n")) == (3, 1)
+    assert [line.split()[0] for line in outcome.out.splitlines()] == ["identical", "2"]
+    assert [told["identical"] for told in json.loads(pendu("verify", tmp_path, "--json").out)["files"]] == [False, True]
+
+
+def test_an_unknown_name_is_answered_with_the_nearest_one():
+    assert pendu("verify", "drfit").refused(3, "did you mean drift?")
+
+
+def test_a_name_that_means_nothing_does_not_keep_the_others_from_being_verified(tmp_path):
+    path = record(tmp_path / "a.mcap", two_runs())
+    outcome = pendu("verify", "no/such.mcap", path)
+    assert (outcome.code, outcome.err.count("\n")) == (3, 1)
+    assert [line.split()[0] for line in outcome.out.splitlines()] == ["identical", "2"]
+    missing, there = pendu("verify", "no/such.mcap", path, "--json").json["files"]
+    assert (missing["file"], missing["identical"], there["identical"]) == ("no/such.mcap", False, True)
+    assert "There is no recording 'no/such.mcap'" in missing["reason"]

@@ -1,0 +1,228 @@
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from engine.methods import METHODS
+from tests.tui.drawing.test_canvas import dots
+from tui.drawing.chart import SMALLEST, Series, loglog_chart, time_chart
+from tui.drawing.columns import held, per_column, span
+from tui.drawing.palette import EXACT, FRAME, NOBODY, TEXT
+from tui.playback.history import Window
+
+ANY = st.floats(allow_nan=True, allow_infinity=True)
+COUNT = len(METHODS)
+ROOM = 4  # columns for letters
+
+
+def window(x, low, high=None, repeats=0.0, turned=False):
+    """A window on one quantity, with a column for each method or the same for all."""
+    x, low, high = (np.asarray(part, float) for part in (x, low, low if high is None else high))
+    low, high = (np.tile(part[:, None], COUNT) if part.ndim == 1 else part for part in (low, high))
+    return Window(x, x, {"energy_error": low}, {"energy_error": high}, repeats, turned)
+
+
+def chart(data, width=40, height=10, **options):
+    return time_chart(data, "energy_error", width, height, **options)
+
+
+def plotted(picture, log):
+    """The dots of a chart as people read them: (column of characters, value), and the size of a dot in values."""
+    lines = picture.text.splitlines()
+    left = max(line.find("┤") for line in lines) + 1
+    labels = [(row, float(line.partition("┤")[0])) for row, line in enumerate(lines) if "┤" in line]
+    (row, value), (other_row, other_value) = labels[0], labels[-1]
+    if log:
+        value, other_value = np.log10(value), np.log10(other_value)
+    per_row = (value - other_value) / (other_row - row)
+    inside = [(x // 2 - left, y) for x, y in dots(picture) if x // 2 >= left and y < 4 * (len(lines) - 2)]
+    columns = picture.characters.shape[1] - left - ROOM
+    return {(column, value + per_row * (row + 0.5 - (y + 0.5) / 4)) for column, y in inside}, per_row / 4, columns
+
+
+@st.composite
+def runs(draw):
+    """Times and values of a few frames, some of which are far apart."""
+    x = np.cumsum(draw(arrays(np.float64, st.integers(1, 80), elements=st.floats(0.01, 0.5))))
+    return x, draw(arrays(np.float64, len(x), elements=st.floats(-5, 5)))
+
+
+@settings(max_examples=50)
+@given(runs(), st.integers(0, COUNT - 1), st.integers(30, 60), st.integers(8, 16))
+def test_on_a_linear_axis_every_column_shows_its_lowest_and_its_highest_value(run, index, width, height):
+    x, values = run
+    found, dot, columns = plotted(chart(window(x, values), width, height, log=False, seconds=10, shown=[index]), False)
+    for extremes in per_column(x, values[:, None], values[:, None], *span(x, 10, columns), columns):
+        for column, value in enumerate(extremes.ravel()):
+            if not np.isnan(value):  # half a dot, and a little for plotext's own rounding
+                assert min(abs(shown - value) for at, shown in found if at == column) <= 0.52 * abs(dot) + 1e-12
+
+
+@settings(max_examples=50)
+@given(runs(), st.floats(0, 3), st.integers(30, 60), st.integers(8, 16))
+def test_on_a_logarithmic_axis_every_column_shows_its_largest_magnitude(run, repeats, width, height):
+    x, values = run
+    values = np.copysign(0.5 + abs(values), values)  # within a decade: the axis begins one below what is usual
+    found, dot, columns = plotted(chart(window(x, values, repeats=repeats), width, height, seconds=10, shown=[0]), True)
+    largest = held(x, abs(values)[:, None], *span(x, 10, columns), columns, repeats).ravel()
+    for column, value in enumerate(np.log10(largest)):
+        if not np.isnan(value):
+            assert min(abs(shown - value) for at, shown in found if at == column) <= 0.52 * dot
+
+
+@settings(max_examples=150)
+@given(st.data())
+def test_whatever_the_numbers_and_the_size_a_chart_comes_out(data):
+    """What plotext cannot bear would end the process, and with it this test run."""
+    count = data.draw(st.integers(0, 30))
+    x = np.cumsum(data.draw(arrays(np.float64, count, elements=st.floats(0, 1e6))))
+    values = data.draw(arrays(np.float64, (2, count, COUNT), elements=ANY))
+    width, height = data.draw(st.integers(1, 70)), data.draw(st.integers(1, 25))
+    picture = chart(
+        window(x, values.min(axis=0), values.max(axis=0), data.draw(st.floats(0, 1e6))),
+        width,
+        height,
+        log=data.draw(st.booleans()),
+        seconds=data.draw(st.none() | st.floats(0.1, 1e6)),
+        shown=data.draw(st.lists(st.integers(0, COUNT - 1), unique=True)),
+    )
+    assert picture.characters.shape == picture.owners.shape == (height, width)
+    assert "nan" not in picture.text
+    assert "inf" not in picture.text
+
+
+@settings(max_examples=100)
+@given(
+    st.lists(st.tuples(st.lists(st.tuples(ANY, ANY), max_size=8), st.booleans()), max_size=5),
+    st.integers(1, 70),
+    st.integers(1, 25),
+)
+def test_whatever_the_points_a_loglog_chart_comes_out(data, width, height):
+    series = [
+        Series(owner, "esvr?"[owner], [x for x, _ in points], [y for _, y in points], dotted)
+        for owner, (points, dotted) in enumerate(data)
+    ]
+    picture = loglog_chart(series, width, height, x_label="h [s]", y_label="error")
+    assert picture.characters.shape == (height, width)
+
+
+def test_the_largest_errors_of_half_a_swing_over_decades():
+    """One grows, one wobbles, one wobbles and touches zero, one drifts: no line is torn by zeros."""
+    t = np.linspace(0, 18, 400)
+    errors = np.stack([0.3 * t, 0.08 * np.sin(6 * t), 0.005 * np.sin(6 * t) ** 2, 3e-6 * t], axis=1)
+    assert chart(window(t, errors, repeats=1.0), 48, 11, seconds=20).text == (
+        "  100┤\n"
+        "     │                    ⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⡀e\n"
+        "    1┤  ⣀⡠⠤⠤⠒⠒⠒⠒⠒⠉⠉⠉⠉⠉⠉⠉⠉⠉\n"
+        "     │⠰⠭⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠄s\n"
+        " 1e-2┤⢀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⡀v\n"
+        "     │\n"
+        " 1e-4┤                    ⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⡀r\n"
+        "     │  ⣀⡠⠤⠤⠒⠒⠒⠒⠒⠉⠉⠉⠉⠉⠉⠉⠉⠉\n"
+        " 1e-6┤⠐⠉\n"
+        "     └┬──────────────────┬─────────────────┬────\n"
+        "      0                  10               20 s"
+    )
+
+
+def test_all_values_of_a_column_on_a_linear_axis():
+    t = np.linspace(0, 20, 400)
+    assert chart(window(t, np.sin(t)), 48, 9, log=False, seconds=20, shown=[1]).text == (
+        "    1┤ ⢀⣠⢤⢄        ⢀⣠⢤⣀        ⣀⡤⣄         ⡀s\n"
+        "     │ ⣸  ⢸       ⢀⣸  ⢸       ⣀⡇  ⡇       ⡠⠇\n"
+        "     │⢸    ⢹      ⢸   ⠈⢹      ⡇   ⠉⡆      ⡇\n"
+        "    0┤⠸    ⠘⢢    ⢠⠚    ⠘⢤    ⡖⠃    ⠧⡄    ⡖⠁\n"
+        "     │      ⢸   ⢀⣸      ⢸   ⣀⡇      ⡇   ⡠⠇\n"
+        "     │       ⢹  ⢸       ⠈⢹  ⡇       ⠉⡆ ⢀⡇\n"
+        "   -1┤       ⠈⠙⠚⠉        ⠈⠙⠚⠁        ⠉⠓⠃\n"
+        "     └┬──────────────────┬─────────────────┬────\n"
+        "      0                  10               20 s"
+    )
+
+
+def test_speed_against_accuracy():
+    h = 2.0 ** -np.arange(1, 8)
+    series = [
+        Series(EXACT, "order 4", [20, 2000], [1e-4, 1e-12], dotted=True),
+        Series(0, "e", 10 / h, 3 * h),
+        Series(3, "r", 40 / h, 0.01 * h**4),
+    ]
+    picture = loglog_chart(series, 48, 14, x_label="force evaluations", y_label="theta error [rad]")
+    assert picture.text == (
+        "theta error [rad]\n"
+        "  1e4┤\n"
+        "     │\n"
+        "    1┤   e⠒⠒⠤e⠤⠤⠤e⣀⣀⣀e⣀⣀⣀\n"
+        "     │                   e⠉⠉e⠉⠉⠒e\n"
+        " 1e-4┤    ⠄⠄⡀    r⠒⠒⠤r⣀\n"
+        "     │       ⠁⠁⠂⠄⠄⡀    ⠉⠉r⠢⠤r⡀\n"
+        " 1e-8┤             ⠁⠁⠂⠂⠄⡀⢀   ⠈⠉⠒r⠤⢄⣀\n"
+        "     │                    ⠈⠐⠐⠠⢀⢀    r⠑⠒⠤r\n"
+        "1e-12┤                          ⠈⠐order 4\n"
+        "     │\n"
+        "     └┬───────────┬────────────┬───────────┬────\n"
+        "      10         100          1e3         1e4\n"
+        "                               force evaluations"
+    )
+    assert {0, 3, EXACT, FRAME, TEXT, NOBODY} == set(picture.owners.ravel().tolist())
+
+
+@given(st.sets(st.integers(0, COUNT - 1)))
+@settings(max_examples=20)
+def test_every_shown_method_has_its_letter_and_no_other_has(shown):
+    letters = "".join(
+        line[6:] for line in chart(window([1, 2, 3], [1, 1, 1]), shown=sorted(shown)).text.splitlines()[:-2]
+    )
+    assert {letter for letter in letters if letter.isalpha()} == {METHODS[index].letter for index in shown}
+
+
+def test_zeros_are_drawn_at_the_floor_and_not_lost():
+    picture = chart(window([1, 2, 3, 4], [0, 0, 0, 0]), 40, 12, shown=[3])
+    assert "1e-17" in picture.text or "1e-18" in picture.text
+    assert "⣀" in picture.text or "⠤" in picture.text
+
+
+def test_owners_are_those_of_the_methods():
+    picture = chart(window([1, 2, 3], [1, 1, 1]), shown=[2])
+    assert set(picture.owners.ravel().tolist()) == {2, FRAME, TEXT, NOBODY}
+
+
+def test_a_method_that_has_failed_leaves_room_for_the_others():
+    picture = chart(window([1, 2], [[1e300, 1e-3, 1e-3, 1e-5]] * 2))
+    labels = [float(line.partition("┤")[0]) for line in picture.text.splitlines() if "┤" in line]
+    assert 1e6 <= max(labels) <= 1e8
+    assert min(labels) <= 1e-4
+
+
+def test_where_time_has_turned_the_axis_says_that_it_is_the_time_run():
+    assert "20 s run" in chart(window([1, 2], [1, 2], turned=True), seconds=20).text
+
+
+@pytest.mark.parametrize("size", [(SMALLEST[0] - 1, 30), (80, SMALLEST[1] - 1)])
+def test_too_small_a_place_gets_a_sentence(size):
+    assert "A chart needs 20×5" in " ".join(chart(window([1, 2], [1, 2]), *size).text.split())
+
+
+def test_the_smallest_chart_still_has_its_lines_and_labels():
+    assert chart(window(range(20), np.geomspace(1e-4, 1, 20)), *SMALLEST, seconds=20).text == (
+        "    1┤       ⢀⡠⠄esvr\n     │    ⢀⡠⠒⠁\n 1e-3┤⢀⡠⠔⠊⠁\n     └┬────────┬────\n      0       20 s"
+    )
+
+
+def test_charts_asked_for_by_several_threads_do_not_disturb_each_other():
+    def build(number):
+        return chart(window(range(20), np.full(20, 10.0**-number)), seconds=20, shown=[number % COUNT]).text
+
+    with ThreadPoolExecutor(4) as threads:
+        assert list(threads.map(build, range(12))) == [build(number) for number in range(12)]
+
+
+def test_plotext_is_loaded_with_the_first_chart_and_not_before():
+    script = "import sys, tui.drawing.chart; print('plotext' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "False"

@@ -1,0 +1,145 @@
+import itertools
+
+import numpy as np
+import pytest
+from rich.color import Color, ColorSystem
+
+from engine.methods import METHODS
+from tui.drawing.palette import EXACT, FAINT, FRAME, NOBODY, PALETTES, TEXT, WARN, mark, palette
+
+# Machado, Oliveira & Fernandes, IEEE Trans. Vis. Comput. Graph. 15 (2009) 1291: what the colour blind see, linear RGB.
+SIGHT = {
+    "normal": np.eye(3),
+    "protanopia": np.array(
+        [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]]
+    ),
+    "deuteranopia": np.array(
+        [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.011820, 0.042940, 0.968881]]
+    ),
+    "tritanopia": np.array(
+        [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602], [0.004733, 0.691367, 0.303900]]
+    ),
+}
+# Ottosson, "A perceptual color space for image processing" (2020).
+TO_CONES = [
+    [0.4122214708, 0.5363325363, 0.0514459929],
+    [0.2119034982, 0.6806995451, 0.1073969566],
+    [0.0883024619, 0.2817188376, 0.6299787005],
+]
+TO_OKLAB = [
+    [0.2104542553, 0.7936177850, -0.0040720468],
+    [1.9779984951, -2.4285922050, 0.4505937099],
+    [0.0259040371, 0.7827717662, -0.8086757660],
+]
+
+COMPUTED = [theme for theme in PALETTES if theme != "ansi"]
+THEMES = pytest.mark.parametrize("theme", COMPUTED)
+TERMINALS = {  # what the names of the 16 colours stand for: black, then bright red, blue, cyan, yellow
+    "xterm": ("#000000", "#FF0000", "#5C5CFF", "#00FFFF", "#FFFF00"),
+    "VGA": ("#000000", "#FF5555", "#5555FF", "#55FFFF", "#FFFF55"),
+    "Tango": ("#000000", "#EF2929", "#729FCF", "#34E2E2", "#FCE94F"),
+    "Windows": ("#0C0C0C", "#E74856", "#3B78FF", "#61D6D6", "#F9F1A5"),
+}
+
+
+def linear(colour):
+    value = np.array([int(colour[at : at + 2], 16) for at in (1, 3, 5)]) / 255
+    return np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4)
+
+
+def oklab(rgb):
+    return TO_OKLAB @ np.cbrt(TO_CONES @ np.clip(rgb, 0, 1))
+
+
+def worst_pair(colours):
+    return min(
+        100 * np.linalg.norm(oklab(matrix @ linear(one)) - oklab(matrix @ linear(other)))
+        for matrix in SIGHT.values()
+        for one, other in itertools.combinations(colours, 2)
+    )
+
+
+def contrast(colour, background):
+    """As WCAG 2 defines it."""
+    dark, light = sorted(linear(one) @ [0.2126, 0.7152, 0.0722] for one in (colour, background))
+    return (light + 0.05) / (dark + 0.05)
+
+
+@pytest.mark.parametrize(("theme", "apart"), [("dark", 19.5), ("light", 16.0), ("high-contrast", 21.6)])
+def test_methods_are_told_apart_by_the_colour_blind(theme, apart):
+    assert worst_pair(PALETTES[theme].methods) == pytest.approx(apart, abs=0.05)  # the figures are given to 0.1
+    assert worst_pair(("#FF0000", "#00FF00", "#FFFF00", "#0000FF")) < apart / 4
+
+
+@THEMES
+def test_what_is_read_has_the_contrast_that_wcag_asks_of_text(theme):
+    colours = PALETTES[theme]
+    for owner in (*range(len(METHODS)), EXACT, TEXT, WARN):
+        assert contrast(colours.colour(owner), colours.background) >= 4.5
+
+
+def test_in_high_contrast_all_that_is_read_has_the_contrast_of_wcags_strictest_level():
+    colours = PALETTES["high-contrast"]
+    for owner in (*range(len(METHODS)), EXACT, FRAME, TEXT, WARN):
+        assert contrast(colours.colour(owner), colours.background) >= 7
+
+
+@THEMES
+def test_methods_are_told_apart_in_256_colours(theme):
+    colours = PALETTES[theme]
+    names = [*colours.methods, colours.text, colours.background]
+    fewer = [Color.parse(name).downgrade(ColorSystem.EIGHT_BIT).get_truecolor().hex for name in names]
+    assert worst_pair(fewer[:-2]) >= 15  # nearly what they are apart in all colours
+    assert all(contrast(name, fewer[-1]) >= 4 for name in fewer[:-1])  # of text 4.5 is asked, of graphics 3
+
+
+@pytest.mark.parametrize("terminal", TERMINALS)
+def test_methods_are_told_apart_in_the_terminals_own_16_colours(terminal):
+    assert PALETTES["ansi"].methods == ("bright_red", "bright_blue", "bright_cyan", "bright_yellow")
+    black, *methods = TERMINALS[terminal]
+    assert worst_pair(methods) >= 14.4
+    assert min(contrast(method, black) for method in methods) >= 4.1  # of text 4.5 is asked, of graphics 3
+
+
+def test_of_the_terminals_own_colours_trails_have_the_darker_ones():
+    assert [PALETTES["ansi"].colour(index + FAINT) for index in range(4)] == ["red", "blue", "cyan", "yellow"]
+
+
+@THEMES
+def test_lines_are_seen_and_trails_are_fainter_than_their_methods(theme):
+    colours = PALETTES[theme]
+    assert contrast(colours.colour(FRAME), colours.background) >= 3  # WCAG's bound for graphics
+    for owner in range(len(METHODS)):
+        full, faint = (contrast(colours.colour(one), colours.background) for one in (owner, owner + FAINT))
+        assert 2 <= faint < 0.7 * full
+
+
+@THEMES
+def test_a_fifth_and_a_ninth_method_have_colours_of_their_own(theme):
+    colours = PALETTES[theme]
+    assert len({colours.colour(index) for index in range(12)}) == 12
+
+
+def test_characters_of_nobody_have_the_colour_of_text():
+    assert PALETTES["dark"].colour(NOBODY) == PALETTES["dark"].text
+
+
+@pytest.mark.parametrize(
+    ("theme", "name"),
+    [
+        *((name, name) for name in PALETTES),
+        ("textual-dark", "dark"),
+        ("textual-light", "light"),
+        ("ansi-light", "ansi"),
+        ("nord", "dark"),
+    ],
+)
+def test_other_themes_have_the_palette_that_their_names_say(theme, name):
+    assert palette(theme) is PALETTES[name]
+
+
+def test_marks_are_distinct_and_take_one_column_in_every_terminal():
+    marks = [mark(index) for index in range(len(METHODS))]
+    assert marks[0] == "1 e"
+    assert len(set(marks)) == len(METHODS)
+    assert all(text.isascii() for text in marks)

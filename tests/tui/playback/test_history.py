@@ -1,0 +1,201 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from engine.methods import METHODS
+from engine.models.pendulum import energy
+from engine.models.state import State
+from engine.run.lockstep import Lockstep, Reading, Sample
+from engine.scenes import DEFAULT_SCENE, SCENES
+from tui.drawing.palette import EXACT
+from tui.playback.history import QUANTITIES, History
+
+CAPACITY = 8  # small, so that few samples reach many levels
+
+
+def sample(step, error=0.0, *, low=None, high=None, t=None, run=1, theta=0.0):
+    reading = Reading(
+        theta=theta,
+        omega=-theta,
+        energy=0.0,
+        energy_error=error,
+        max_energy_error=abs(error),
+        energy_error_low=error if low is None else low,
+        energy_error_high=error if high is None else high,
+    )
+    return Sample(run, step, 0.1 * step if t is None else t, (reading,) * len(METHODS))
+
+
+def filled(samples, capacity=CAPACITY):
+    history = History(DEFAULT_SCENE, capacity)
+    for one in samples:
+        history.add(one)
+    return history
+
+
+@given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=300))
+def test_no_extreme_is_ever_lost(errors):
+    window = filled(sample(step, error) for step, error in enumerate(errors)).window()
+    assert window.low["energy_error"].min() == min(errors)
+    assert window.high["energy_error"].max() == max(errors)
+
+
+@given(st.integers(1, 1000), st.sampled_from([8, 16, 64]))
+def test_every_sample_is_in_exactly_one_row_of_the_whole_run(count, capacity):
+    """Each sample's error is its number, so a row's low and high are its first and last sample."""
+    window = filled((sample(step, step) for step in range(count)), capacity).window()
+    first, last = window.low["energy_error"][:, 0], window.high["energy_error"][:, 0]
+    assert first.tolist() == [0, *(last[:-1] + 1)]
+    assert last[-1] == count - 1
+
+
+@given(st.integers(1, 1000))
+def test_a_window_has_hardly_more_rows_than_the_capacity(count):
+    window = filled(sample(step) for step in range(count)).window()
+    assert len(window.x) <= CAPACITY + math.log2(count + 1)  # and one row for each finer level
+
+
+@given(st.integers(1, 1000), st.floats(0.1, 300))
+def test_a_window_reaches_back_as_far_as_asked_and_half_a_swing_more(count, seconds):
+    history = filled(sample(step) for step in range(count))
+    window = history.window(seconds)
+    start = max(window.x[-1] - seconds - window.repeats, 0)
+    rows = np.diff(window.x, prepend=start)
+    assert window.x[0] >= start
+    assert window.x[0] <= start + 2 * max(rows[1:], default=0.1) + 0.1  # the first row began before the window did
+    assert rows.max() <= 2 * (window.x[-1] - start) / CAPACITY * 2 + 0.2  # and none is coarser than it has to be
+
+
+def test_recent_samples_are_kept_as_they_were_in_a_short_window():
+    history = filled((sample(step) for step in range(20_000)), capacity=64)
+    window = history.window(1.0)
+    assert np.allclose(np.diff(window.x), 0.1)
+    assert window.x[-1] == pytest.approx(1999.9)
+
+
+def test_memory_grows_by_one_level_only_when_the_run_gets_twice_as_long():
+    """An hour at 30 samples a second takes seven levels of 2048 rows, about 3 MB."""
+    history = History(DEFAULT_SCENE, capacity=64)
+    for step in range(20_000):
+        history.add(sample(step))
+        if step + 1 in (63, 64, 127, 128, 1023, 1024, 20_000):
+            assert len(history._levels) == 1 + max(math.floor(math.log2((step + 1) / 64)) + 1, 0)
+    assert all(len(level.steps) == 64 for level in history._levels)
+
+
+def test_half_a_swing_is_what_errors_repeat_after_and_a_turn_in_rotation():
+    assert filled([sample(0)]).window().repeats == pytest.approx(1.0696, abs=1e-4)  # T = 2.1391 s at 1 rad
+    spin = History(SCENES["spin"])
+    spin.add(sample(0))
+    assert (
+        0.7 < spin.window().repeats < 2 * math.pi / math.sqrt(64 - 4 * 9.81) * 1.01
+    )  # between fastest and slowest omega
+    rest = History(DEFAULT_SCENE.altered(theta=0.0))
+    assert rest.window().repeats == 0
+
+
+def test_the_same_sample_again_changes_nothing():
+    history = filled([sample(0), sample(1, low=-1, high=1), sample(1, low=0, high=0)])
+    assert history.window().high["energy_error"][:, 0].tolist() == [0, 1]
+
+
+def test_an_earlier_sample_takes_back_what_came_after_it():
+    history = filled(sample(step, step) for step in (*range(6), 3))
+    assert history.window().high["energy_error"][:, 0].tolist() == [0, 1, 2, 3]
+    assert history.trail(0, 10)[0].shape == (4,)
+
+
+def test_a_run_that_goes_on_from_the_past_keeps_that_past():
+    history = filled([*(sample(step, step) for step in range(6)), sample(3, 30, run=2), sample(4, 40, run=2)])
+    assert history.window().high["energy_error"][:, 0].tolist() == [0, 1, 2, 30, 40]
+
+
+@given(st.integers(1, 400), st.data())
+def test_after_a_rewind_the_past_is_what_it_was_but_for_one_row(count, data):
+    step = data.draw(st.integers(0, count - 1))
+    history = filled(sample(step, step) for step in range(count))
+    history.rewind(step)
+    window = history.window()
+    known = window.high["energy_error"][:, 0]
+    assert np.all(known <= step)
+    assert np.all(np.diff(known) > 0)
+    longest = 2 ** math.ceil(math.log2(max((count) / CAPACITY, 1)))
+    assert step - (known[-1] if len(known) else -1) < longest  # samples of the finest row that reaches back so far
+    history.add(sample(step + 1, step + 1))
+    assert history.window().high["energy_error"][-1, 0] == step + 1
+
+
+@given(st.lists(st.tuples(st.booleans(), st.integers(0, 60)), max_size=60))
+def test_however_one_goes_back_and_forth_rows_stay_in_order(moves):
+    history, step = History(DEFAULT_SCENE, CAPACITY), 0
+    for forward, by in moves:
+        if forward:
+            for _ in range(by):
+                step += 1
+                history.add(sample(step, step))
+        else:
+            step = max(step - by, 0)
+            history.add(sample(step, step))
+        window = history.window()
+        assert np.all(np.diff(window.x) >= 0)
+        assert np.all(np.diff(window.high["energy_error"][:, 0]) > 0)
+        if len(window.x):
+            assert window.high["energy_error"][-1, 0] == step
+
+
+def test_where_time_runs_backwards_rows_stay_in_the_order_in_which_they_were_run():
+    history = filled(sample(step, t=t) for step, t in enumerate([0.0, 0.1, 0.2, 0.1, 0.0]))
+    window = history.window()
+    assert window.x == pytest.approx([0, 0.1, 0.2, 0.3, 0.4])
+    assert window.t == pytest.approx([0, 0.1, 0.2, 0.1, 0.0])
+    assert window.turned
+    assert not filled([sample(0), sample(1)]).window().turned
+
+
+def test_theta_errors_are_taken_against_the_exact_swing_and_unknown_without_it():
+    history = History(DEFAULT_SCENE)
+    history.add(sample(0, theta=1.0), State(0.75, 0.0))
+    history.add(sample(1, theta=1.0))
+    assert history.window().low["theta_error"][0, 0] == 0.25
+    assert np.isnan(history.window().low["theta_error"][1, 0])
+
+
+@settings(max_examples=20)
+@given(st.sampled_from(sorted(SCENES)), st.integers(1, 5))
+def test_energies_are_those_of_the_readings(name, stride):
+    scene = SCENES[name]
+    lockstep, history = Lockstep(scene), History(scene)
+    history.add(lockstep.sample())
+    for _ in range(20):
+        lockstep.advance(stride)
+        latest = lockstep.sample()
+        history.add(latest)
+    window = history.window()
+    for index, reading in enumerate(latest.readings):
+        low, high = window.low["energy"][-1, index], window.high["energy"][-1, index]
+        tolerance = 1e-14 * max(
+            abs(low), abs(high), energy(scene.w0_squared, scene.theta, scene.omega)
+        )  # there and back
+        assert low - tolerance <= reading.energy <= high + tolerance
+
+
+def test_trails_are_the_last_states_of_methods_and_of_the_exact_swing():
+    history = History(DEFAULT_SCENE, CAPACITY)
+    for step in range(20):
+        history.add(sample(step, theta=step), State(-step, 0.5))
+    theta, omega = history.trail(2, 3)
+    assert theta.tolist() == [17, 18, 19]
+    assert omega.tolist() == [-17, -18, -19]
+    assert history.trail(EXACT, 2)[0].tolist() == [-18, -19]
+    assert len(history.trail(0, 100)[0]) == CAPACITY
+
+
+def test_an_empty_history_has_empty_windows_and_trails():
+    history = History(DEFAULT_SCENE)
+    assert history.trail(0, 5)[0].size == 0
+    assert all(
+        history.window(seconds).low[quantity].shape == (0, 4) for quantity in QUANTITIES for seconds in (None, 5.0)
+    )

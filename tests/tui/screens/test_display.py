@@ -1,0 +1,102 @@
+"""Themes and pixels change while the lab runs, and everything is drawn anew."""
+
+import re
+
+import pytest
+from rich.color import Color
+
+from tests.tui.conftest import lines_of
+from tests.tui.stage import key_of, lab
+from tui.drawing.palette import PALETTES, TEXT
+from tui.terminal.options import PIXELS
+from tui.views import VIEWS
+from tui.views.keys import COMMON
+
+
+async def picture(theatre) -> str:
+    await theatre.pilot.pause()
+    await theatre.settled()
+    await theatre.pilot.pause()
+    return theatre.app.export_screenshot()
+
+
+@pytest.mark.parametrize("theme", ["light", "high-contrast"])
+@pytest.mark.parametrize("view", ["lab", "phase"])
+async def test_a_theme_changes_all_colours_and_no_character(theme, view):
+    async with lab() as theatre:
+        await theatre.run(1)
+        await theatre.press("space", key_of(view))
+        before = await picture(theatre)
+        theatre.app.action_use_theme(theme)
+        after = await picture(theatre)
+        assert lines_of(before) == lines_of(after)
+        colours = {found.upper() for found in re.findall(r"fill: (#[0-9a-fA-F]{6})", after)}
+        old, new = PALETTES["dark"], PALETTES[theme]
+        assert not colours & {old.colour(owner).upper() for owner in (0, 1, 2, 3, TEXT)} - set(new.methods)
+        assert colours >= {new.colour(owner).upper() for owner in (0, 1, 2, 3, TEXT)}
+
+
+async def test_a_draws_with_half_blocks_then_ascii_then_braille_again_in_every_view():
+    async with lab() as theatre:
+        await theatre.run(1)
+        await theatre.press("space")
+        for name in VIEWS:
+            await theatre.press(key_of(name))
+            before = "".join(lines_of(await picture(theatre)))
+            await theatre.press("a")
+            half = "".join(lines_of(await picture(theatre)))
+            await theatre.press("a")
+            plain = "".join(lines_of(await picture(theatre)))
+            await theatre.press("a")
+            assert theatre.app.pixels == PIXELS[0]
+            assert not re.search("[⠀-⣿]", half)
+            assert plain.isascii()
+            assert not before.isascii()
+
+
+async def test_forms_help_and_the_palette_are_ascii_too():
+    async with lab() as theatre:
+        theatre.app.pixels = "ascii"
+        for keys in (["i"], ["question_mark"], ["ctrl+p", *"theme"]):
+            await theatre.press(*keys)
+            await theatre.pilot.pause(0.3)
+            assert theatre.app.screen is not theatre.stage
+            assert "".join(lines_of(await picture(theatre))).isascii()
+            await theatre.press("escape")
+
+
+def colours(app) -> set[Color]:
+    """All colours on the screen, in front and behind."""
+    styles = [segment.style for strip in app.screen._compositor.render_strips() for segment in strip if segment.style]
+    return {colour for style in styles for colour in (style.color, style.bgcolor) if colour is not None}
+
+
+async def test_the_theme_ansi_uses_the_terminals_own_colours_and_no_others():
+    async with lab() as theatre:
+        theatre.app.action_use_theme("ansi")
+        await theatre.run(1)
+        for key in (*map(key_of, VIEWS), "i"):
+            await theatre.press(key)
+            await theatre.pilot.pause(0.3)
+            assert len(colours(theatre.app)) > 3
+            assert all(colour.is_system_defined or colour.is_default for colour in colours(theatre.app))
+
+
+async def test_no_color_leaves_no_colour_whatever_the_theme(monkeypatch):
+    monkeypatch.setenv("NO_COLOR", "1")
+    async with lab() as theatre:
+        for theme in PALETTES:
+            theatre.app.action_use_theme(theme)
+            await theatre.pilot.pause()
+            assert all(colour.is_default for colour in colours(theatre.app))
+
+
+async def test_an_empty_no_color_means_nothing(monkeypatch):
+    monkeypatch.setenv("NO_COLOR", "")
+    async with lab() as theatre:
+        assert not theatre.app.no_color
+
+
+def test_the_help_says_how_to_change_the_pixels_and_how_to_leave_for_a_while():
+    shown = {key.shown: key.action for key in COMMON}
+    assert (shown["a"], shown["ctrl+z"]) == ("app.next_pixels", "app.suspend_process")

@@ -1,0 +1,197 @@
+"""Every key of the lab does what the help says, and is in the help."""
+
+import math
+
+import pytest
+
+from engine.scenes import DEFAULT_SCENE, SCENES
+from tests.tui.stage import lab
+from tui.playback.history import QUANTITIES
+from tui.playback.live import Live
+from tui.playback.shown import WINDOWS
+from tui.screens.help import Help, help_text
+from tui.screens.start_form import StartForm
+from tui.screens.status_line import StatusLine
+from tui.views.keys import COMMON, LIVE
+from tui.views.lab.error_table import ErrorTable
+from tui.views.lab.pendulums import Pendulum
+from tui.views.lab.time_chart import TimeChart
+
+
+async def test_time_space_pauses_and_goes_on_full_stop_and_comma_step():
+    async with lab() as theatre:
+        await theatre.run(1)
+        step = theatre.source.sample.step
+        await theatre.press("space")
+        await theatre.run(1)
+        assert theatre.source.sample.step == step
+        assert "paused" in theatre.text(StatusLine)
+        await theatre.press("full_stop", "full_stop", "comma")
+        assert theatre.source.sample.step == step + 1
+        await theatre.press("comma", "comma", "comma")
+        assert theatre.source.sample.step == step - 2
+        await theatre.press("space")
+        await theatre.run(1)
+        assert theatre.source.sample.step == step - 2 + 20
+        assert "running" in theatre.text(StatusLine)
+
+
+async def test_speed_less_and_greater_halve_and_double_and_0_is_real_time():
+    async with lab() as theatre:
+        await theatre.press("greater_than_sign", "greater_than_sign")
+        assert theatre.source.playhead.speed == 4
+        assert " 4× " in theatre.text(StatusLine)
+        await theatre.run(1)
+        assert theatre.source.sample.t == pytest.approx(4, abs=0.05)
+        await theatre.press("0")
+        assert theatre.source.playhead.speed == 1
+        await theatre.press("less_than_sign")
+        assert " 1/2× " in theatre.text(StatusLine)
+
+
+async def test_the_run_r_restarts_plus_and_minus_change_h_b_reverses_p_and_capital_p_change_the_scene():
+    async with lab() as theatre:
+        await theatre.run(2)
+        await theatre.press("plus")
+        assert theatre.source.h == 0.1
+        await theatre.press("minus", "minus")
+        assert theatre.source.h == 0.02
+        await theatre.press("b")
+        assert theatre.source.h == -0.02
+        await theatre.run(1)
+        assert theatre.source.sample.t == pytest.approx(1, abs=0.05)
+        await theatre.press("r")
+        assert (theatre.source.h, theatre.source.sample.step, theatre.source.scene.theta) == (0.02, 0, 1.0)
+        names = list(SCENES)
+        await theatre.press("p")
+        assert theatre.source.scene == SCENES[names[0]]  # 0.02 made it a scene of its own
+        await theatre.press("p")
+        assert theatre.source.scene == SCENES[names[1]]
+        await theatre.press("P", "P")
+        assert theatre.source.scene == SCENES[names[-1]]
+        assert names[-1] in theatre.text(StatusLine)
+
+
+async def test_settings_are_undone_one_after_the_other():
+    async with lab() as theatre:
+        await theatre.run(1)
+        before = (theatre.source.h, theatre.source.playhead.speed, theatre.source.scene, theatre.stage.look)
+        await theatre.press("plus", "greater_than_sign", "p", "t", "y")
+        await theatre.press("u", "u", "u", "u", "u")
+        after = (theatre.source.h, theatre.source.playhead.speed, theatre.source.scene, theatre.stage.look)
+        assert after == before
+        await theatre.press("u")  # there is nothing left to undo
+
+
+async def test_what_is_shown_digits_t_y_e_and_w():
+    async with lab() as theatre:
+        await theatre.run(2)
+        panes = list(theatre.stage.query("#pendulums Pendulum").results(Pendulum))
+        await theatre.press("1")
+        await theatre.pilot.pause()
+        assert [pane.display for pane in panes] == [False, True, True, True]
+        assert "Explicit" not in theatre.text(ErrorTable)
+        await theatre.press("1", "5")
+        assert theatre.stage.look.exact
+        dotted = panes[0].text
+        await theatre.press("5")
+        assert panes[0].text != dotted
+        with_trails = panes[0].text
+        await theatre.press("t")
+        assert len(panes[0].text.split()) < len(with_trails.split())
+
+        chart = theatre.stage.query_one(TimeChart)
+        titles = [chart.border_title]
+        for _ in QUANTITIES:
+            await theatre.press("e")
+            titles.append(chart.border_title)
+        assert titles[0] == titles[-1] == "max |dE/E0| per half swing, 20 s"
+        assert len(set(titles)) == len(QUANTITIES)
+        await theatre.press("y")
+        assert chart.border_title == "energy error dE/E0, 20 s"
+        spans = set()
+        for _ in WINDOWS:
+            await theatre.press("w")
+            spans.add(chart.border_title)
+        assert len(spans) == len(WINDOWS)
+        before = theatre.stage.look
+        await theatre.press("w", "W")
+        assert theatre.stage.look == before
+
+
+async def test_the_form_takes_radians_and_degrees_and_starts_with_enter():
+    async with lab() as theatre:
+        await theatre.run(1)
+        await theatre.press("i")
+        form = theatre.app.screen
+        assert isinstance(form, StartForm)
+        await theatre.press(*"115deg", "tab", *"-2", "tab", *"0.01", "enter")
+        await theatre.pilot.pause()
+        scene = theatre.source.scene
+        assert (scene.theta, scene.omega, scene.h) == (math.radians(115), -2.0, 0.01)
+        assert (scene.length, scene.gravity, theatre.source.sample.step) == (1.0, 9.81, 0)
+
+
+async def test_the_form_says_what_is_wrong_as_it_is_typed_and_does_not_start_that():
+    async with lab() as theatre:
+        await theatre.press("i")
+        form = theatre.app.screen
+        verdict = form.query_one("#verdict")
+        for keys, words in (("abc", "no angle"), ("1e99", "out of range"), ("", "no angle")):
+            await theatre.press("home", "shift+end", "delete", *keys)
+            await theatre.pilot.pause()
+            assert words in str(verdict.render())
+            await theatre.press("enter")
+            assert theatre.app.screen is form
+        await theatre.press("escape")
+        await theatre.pilot.pause()
+        assert theatre.app.screen is theatre.stage
+        assert theatre.source.scene == DEFAULT_SCENE
+
+
+async def test_help_and_palette_open_and_close_and_the_lab_runs_on_behind():
+    async with lab() as theatre:
+        await theatre.press("question_mark")
+        assert isinstance(theatre.app.screen, Help)
+        await theatre.run(1)
+        assert theatre.source.sample.t == pytest.approx(1)
+        await theatre.press("escape")
+        assert theatre.app.screen is theatre.stage
+        await theatre.press("ctrl+p")
+        await theatre.pilot.pause()
+        await theatre.press(*"double speed")
+        await theatre.pilot.pause(0.3)
+        await theatre.press("enter")
+        await theatre.pilot.pause(0.1)
+        assert theatre.source.playhead.speed == 2
+
+
+async def test_q_leaves():
+    async with lab() as theatre:
+        await theatre.press("q")
+        assert theatre.app.return_value is None
+        assert not theatre.app.is_running or theatre.app._exit
+
+
+async def test_a_click_on_the_key_line_does_what_the_key_does():
+    async with lab() as theatre:
+        row = theatre.text("KeyLine")
+        for label, check in (
+            ("Pause", lambda: theatre.source.playhead.paused),
+            ("Faster", lambda: theatre.source.playhead.speed == 2),
+        ):
+            assert not check()
+            await theatre.pilot.click("KeyLine", offset=(row.index(label) + 1, 0))
+            await theatre.pilot.pause()
+            assert check()
+
+
+def test_the_help_names_every_key():
+    said = help_text((*LIVE, *COMMON), Live(DEFAULT_SCENE))
+    for key in (*LIVE, *COMMON):
+        assert f"  {key.shown:<14}{key.does}" in said
+
+
+def test_no_key_has_two_meanings():
+    names = [name for key in (*LIVE, *COMMON) if key.names for name in key.names.split(",")]
+    assert len(names) == len(set(names))

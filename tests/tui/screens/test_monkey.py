@@ -1,0 +1,92 @@
+"""Five thousand random keys and clicks over all views, live and replay."""
+
+import itertools
+import os
+import shutil
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from engine.accuracy.study import ladder
+from engine.scenes import DEFAULT_SCENE
+from recordings.library import resolve
+from recordings.live_recorder import SittingRecorder
+from recordings.recording import Recording
+from recordings.verify import verify
+from tests.tui.monkey import ESCDELAY, SIZE, play, play_on_stage
+from tests.tui.pty_lab import PtyLab
+from tests.tui.stage import on_stage
+from tui.playback.live import Live
+from tui.playback.marks import Marks
+from tui.playback.replay import Replay
+from tui.screens.base import Stage
+from tui.screens.live import Lab
+from tui.screens.replay import Player
+
+PRESSES = 2500
+LOOK = 0.004  # s that seem to pass between two looks at the clock, so that a frame's budget ends
+FEW = ladder(5.0, 0.2, 0.05, 2)
+
+
+def all_verify(library: Path) -> int:
+    """How many recordings there are; all of them are finished, and the same bits come out again."""
+    recordings = list(library.glob("*.[mp]*"))
+    for path in recordings:
+        assert path.suffix == ".mcap"
+        assert verify(path).identical
+    return len(recordings)
+
+
+@contextmanager
+def here(function: Callable[..., Iterator[object]], *arguments: object) -> Iterator[Iterator[object]]:
+    """What `elsewhere` yields, without another process: when it comes does not depend on the machine."""
+    yield function(*arguments)
+
+
+@pytest.fixture
+def library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    folder = tmp_path / "library"
+    folder.mkdir()
+    monkeypatch.setenv("PENDU_RECORDINGS", str(folder))
+    monkeypatch.setattr("tui.views.accuracy.view.elsewhere", here)
+    monkeypatch.setattr("tui.views.stability.view.elsewhere", here)
+    monkeypatch.setattr("tui.views.accuracy.view.usual", lambda scene: (5.0, FEW))
+    monkeypatch.setattr("tui.views.stability.view.PASSES", (2, 6))
+    return folder
+
+
+@pytest.mark.parametrize("command", ["live", "replay"])
+async def test_a_monkey_does_no_harm_and_all_it_recorded_verifies(tmp_path, library, command):
+    def recorded(live: Live) -> Live:
+        live.record(SittingRecorder(library / f"{live.sample.step}.mcap"))
+        return live
+
+    def make(clock: Callable[[], float]) -> Stage:
+        looks = itertools.count(0.0, LOOK).__next__
+        if command == "live":
+            return Lab(recorded(Live(DEFAULT_SCENE, clock=looks)), clock)
+        path = Path(shutil.copy(resolve("drift"), tmp_path))  # marks are kept beside it
+        replay = Replay(Recording.open(path), Marks(path), clock=looks)
+        return Player(replay, lambda live: Lab(recorded(live), clock), clock)
+
+    async with on_stage(make, SIZE) as theatre:
+        await play_on_stage(theatre, PRESSES, int(os.environ.get("PENDU_MONKEY", "1")))
+        assert theatre.stage.source.kind == "LIVE"
+        theatre.source.close()
+    assert all_verify(library) == 1
+
+
+@pytest.mark.skipif("PENDU_MONKEY" not in os.environ, reason="its keys meet the program at other moments each time")
+@pytest.mark.parametrize("command", ["live", "replay"])
+def test_nor_does_it_to_the_real_program(tmp_path, command):
+    library = tmp_path / "library"
+    arguments = [command]
+    if command == "replay":
+        arguments.append(str(shutil.copy(resolve("drift"), tmp_path)))  # marks are kept beside it
+    with PtyLab(*arguments, size=SIZE, PENDU_RECORDINGS=str(library), ESCDELAY=ESCDELAY) as pendu:
+        pendu.wait_for("Quit")
+        code = play(pendu, PRESSES, int(os.environ["PENDU_MONKEY"]))
+        assert code == 0, pendu.output.decode(errors="replace").rpartition("\x1b[?1049l")[2]
+    assert all_verify(library) >= 1

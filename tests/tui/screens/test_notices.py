@@ -1,0 +1,32 @@
+"""Notices lie where they cover no number."""
+
+import asyncio
+
+from textual.widgets._toast import Toast
+
+from engine.scenes import DEFAULT_SCENE
+from tui.playback.live import Live
+from tui.screens.app import PenduApp
+from tui.screens.base import ALREADY
+from tui.screens.insight_line import InsightLine
+from tui.screens.live import Lab
+
+
+async def test_the_notice_of_a_mark_lies_on_the_insight_line():
+    app = PenduApp(Lab(Live(DEFAULT_SCENE, clock=lambda: 0.0), lambda: 0.0))
+    async with app.run_test(size=(80, 24), notifications=True) as pilot:
+        await pilot.press("m")
+        async with asyncio.timeout(20):
+            while not (toasts := app.screen.query(Toast)) or not toasts.first().region:
+                await pilot.pause(0.01)
+        assert toasts.first().region.height == 1
+        assert app.screen.query_one(InsightLine).region.contains_region(toasts.first().region)
+
+
+async def test_a_second_mark_at_one_moment_is_none_and_is_said_to_be():
+    live = Live(DEFAULT_SCENE, clock=lambda: 0.0)
+    app = PenduApp(Lab(live, lambda: 0.0))
+    async with app.run_test(size=(80, 24), notifications=True) as pilot:
+        await pilot.press("m", "m")
+        assert [notice.message for notice in app._notifications] == ["Mark at 0.00 s", ALREADY]
+    assert [event.kind for event in live.events].count("mark") == 1

@@ -1,0 +1,161 @@
+"""Every key of the replay does what the help says, and so does the mouse on its bar."""
+
+import asyncio
+import itertools
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from engine.scenes import DEFAULT_SCENE
+from recordings.recording import Recording
+from tests.tui.sitting import eventful, recorded
+from tests.tui.stage import on_stage, player
+from tui.cli.errors import UserError
+from tui.playback.live import Live
+from tui.playback.marks import Marks
+from tui.playback.replay import Replay
+from tui.screens.help import help_text
+from tui.screens.live import Lab
+from tui.screens.replay import Player
+from tui.screens.seek_bar import SeekBar
+from tui.screens.status_line import StatusLine
+from tui.views.keys import COMMON, REPLAY
+from tui.views.lab.event_list import DiaryPane
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    return eventful(tmp_path / "eventful.mcap")
+
+
+async def test_seeking_with_arrows_home_end_and_page_keys_and_stepping(path):
+    async with player(path) as theatre:
+        replay = theatre.source
+        assert " REPLAY " in theatre.text(StatusLine)
+        bar = theatre.stage.query_one(SeekBar)
+        assert "of 12.00 s" in bar.render_line(0).text
+        for keys, position in (
+            (["right", "right"], 2),
+            (["left"], 1),
+            (["shift+right"], 11),
+            (["shift+left"], 1),
+            (["end"], 12),
+            (["home"], 0),
+            (["pagedown", "pagedown"], 2.4),
+            (["pageup"], 1.2),
+        ):
+            await theatre.press(*keys)
+            assert replay.playhead.position == pytest.approx(position)
+        await theatre.press("full_stop", "full_stop", "comma")
+        assert replay.sample.step == 25
+        assert "paused" in theatre.text(StatusLine)
+
+
+async def test_events_speed_direction_and_space_at_the_end(path):
+    async with player(path) as theatre:
+        replay = theatre.source
+        await theatre.press("right_square_bracket")
+        assert replay.playhead.position == pytest.approx(2)
+        await theatre.press("right_square_bracket", "right_square_bracket", "left_square_bracket")
+        assert replay.playhead.position == pytest.approx(4)
+        await theatre.press("b", "greater_than_sign")
+        assert replay.playhead.speed == -2
+        assert "-2×" in theatre.text(StatusLine)
+        await theatre.run(1)
+        assert replay.playhead.position == pytest.approx(2)
+        await theatre.press("b", "0", "end")
+        await theatre.run(0.5)
+        assert replay.playhead.paused
+        await theatre.press("space")
+        await theatre.run(1)
+        assert replay.playhead.position == pytest.approx(1)
+
+
+async def test_a_loop_is_set_and_left_and_a_mark_becomes_a_tick(path):
+    async with player(path) as theatre:
+        replay = theatre.source
+        await theatre.press("right", "A", "right", "B")
+        assert replay.loop == (1, 2)
+        assert "loop" in theatre.text(SeekBar)
+        await theatre.run(1.5)
+        assert 1 <= replay.playhead.position <= 2
+        await theatre.press("L")
+        assert replay.loop is None
+        await theatre.press("home", "shift+right", "m")
+        assert 10 in replay.ticks
+
+
+async def test_a_click_and_a_drag_on_the_bar_go_there(path):
+    async with player(path) as theatre:
+        replay, bar = theatre.source, theatre.stage.query_one(SeekBar)
+        half = 1 + bar._columns // 2
+        cell = replay.length / bar._columns
+        await theatre.pilot.mouse_down(SeekBar, offset=(half, 0))
+        await theatre.pilot.pause()
+        assert replay.playhead.position == pytest.approx(6, abs=cell)
+        await theatre.pilot.hover("#pendulums", offset=(1 + bar._columns // 4, 3))  # far off the bar
+        await theatre.pilot.pause()
+        assert replay.playhead.position == pytest.approx(3, abs=cell)
+        await theatre.pilot.hover("KeyLine", offset=(119, 0))
+        await theatre.pilot.pause()
+        assert replay.playhead.position == pytest.approx(12)
+        await theatre.pilot.mouse_up("KeyLine", offset=(119, 0))
+        await theatre.pilot.hover(SeekBar, offset=(half, 0))
+        await theatre.pilot.pause()
+        assert replay.playhead.position == pytest.approx(12)
+
+
+async def test_f_goes_on_live_from_the_replayed_moment(path):
+    async with player(path) as theatre:
+        await theatre.press("right", "right", "right")
+        here = theatre.source.sample
+        await theatre.press("f")
+        await theatre.pilot.pause(0.1)
+        assert isinstance(theatre.stage, Lab)
+        assert theatre.source.sample.step == here.step
+        assert theatre.source.sample.readings[3].theta == here.readings[3].theta
+        assert " LIVE " in theatre.text(StatusLine)
+
+
+async def test_the_lab_that_goes_on_knows_what_the_replay_knew_even_right_after_a_jump(tmp_path):
+    path = recorded(tmp_path / "drift.mcap", 20.0)
+
+    def make(clock: Callable[[], float]) -> Player:
+        slowly = itertools.count(0.0, 0.003).__next__  # so that a frame has time for some samples only
+        return Player(Replay(Recording.open(path), Marks(path), slowly), lambda live: Lab(live, clock), clock)
+
+    async with on_stage(make, (120, 40)) as theatre:
+        theatre.stage.seek(theatre.source.length)
+        await theatre.pilot.click("KeyLine", offset=(theatre.text("KeyLine").index("Live"), 0))
+        async with asyncio.timeout(20):
+            while not isinstance(theatre.stage, Lab):
+                await theatre.pilot.pause(0.01)
+        verdicts = [judgement.verdict for judgement in theatre.source.judgements]
+        assert verdicts == ["grows", "bounded", "bounded", "drifts"]
+        assert "over the top" in theatre.text(DiaryPane)
+
+
+async def test_f_stays_in_the_replay_where_the_lab_could_not_record(path):
+    def go_live(live: Live) -> Lab:
+        raise UserError("/nowhere is no folder that can be written: choose another one.")
+
+    def make(clock: Callable[[], float]) -> Player:
+        return Player(Replay(Recording.open(path), Marks(path), clock=lambda: 0.0), go_live, clock)
+
+    async with on_stage(make, (120, 40)) as theatre:
+        await theatre.press("right", "f")
+        await theatre.pilot.pause(0.1)
+        assert isinstance(theatre.stage, Player)
+        await theatre.press("right")
+        assert theatre.source.playhead.position == pytest.approx(2.0)
+        assert any("/nowhere" in notice.message for notice in theatre.app._notifications)
+
+
+def test_the_help_names_every_key_and_no_key_has_two_meanings():
+    keys = (*REPLAY, *COMMON)
+    said = help_text(keys, Live(DEFAULT_SCENE))
+    for key in keys:
+        assert f"  {key.shown:<14}{key.does}" in said
+    names = [name for key in keys if key.names for name in key.names.split(",")]
+    assert len(names) == len(set(names))

@@ -1,0 +1,119 @@
+"""The lab as it looks: the README's pictures are these."""
+
+import math
+from zlib import crc32
+
+import numpy as np
+import pytest
+
+from engine.scenes import DEFAULT_SCENE, SCENES
+from recordings.library import resolve
+from tests.tui.command_line import pendu
+from tests.tui.conftest import SNAPSHOTS
+from tests.tui.stage import player
+from tui.screens.still import normalised, still
+from tui.terminal.options import Display
+
+SIZES = {"80x24": (80, 24), "120x40": (120, 40), "200x60": (200, 60)}
+SECONDS = 12.0
+
+ANGLES = np.linspace(0, 30, 10_000)
+SINES = 4099858461
+"""Those of the processor and the library that the pictures were made with.  Chaos tells a last bit from another."""
+
+VIEWS = {"lab": [], "phase": ["f3", "5"], "accuracy": ["f4"], "stability": ["f5"]}
+DISPLAYS = {
+    "high-contrast": Display("high-contrast"),
+    "ascii": Display(pixels="ascii"),
+    "present": Display(present=True),
+}
+
+
+@pytest.fixture(autouse=True)
+def _few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of the stability map: they take no time."""
+    monkeypatch.setattr("tui.views.stability.view.PASSES", (20, 300))
+
+
+def sines() -> int:
+    return crc32(np.sin(ANGLES).tobytes() + np.array([math.sin(angle) for angle in ANGLES]).tobytes())
+
+
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("view", VIEWS)
+async def test_every_view_at_every_size(snapshot, view, size):
+    if view in ("accuracy", "stability") and sines() != SINES:
+        pytest.skip("sines are rounded otherwise here")
+    snapshot(f"{view}-{size}-dark", await still(DEFAULT_SCENE, SECONDS, SIZES[size], keys=VIEWS[view]))
+
+
+@pytest.mark.parametrize("size", SIZES)
+async def test_the_lab_in_light_at_every_size(snapshot, size):
+    snapshot(f"lab-{size}-light", await still(DEFAULT_SCENE, SECONDS, SIZES[size], Display("light")))
+
+
+@pytest.mark.parametrize("display", DISPLAYS)
+async def test_the_lab_in_other_colours_and_characters(snapshot, display):
+    snapshot(f"lab-120x40-{display}", await still(DEFAULT_SCENE, SECONDS, (120, 40), DISPLAYS[display]))
+
+
+async def test_a_replay(snapshot):
+    async with player(resolve("drift")) as theatre:
+        await theatre.run(SECONDS / 2)
+        await theatre.settled()
+        snapshot("replay-120x40-dark", normalised(theatre.app.export_screenshot()))
+
+
+async def test_on_a_narrow_terminal_there_is_one_pane_and_the_table(snapshot):
+    snapshot("lab-60x16", await still(DEFAULT_SCENE, SECONDS, (60, 16)))
+
+
+async def test_on_a_terminal_too_small_there_is_a_message_with_have_and_need(snapshot):
+    snapshot("lab-50x12", await still(DEFAULT_SCENE, SECONDS, (50, 12)))
+
+
+async def test_the_exact_swing_is_a_ghost_and_hidden_methods_leave_their_room(snapshot):
+    snapshot("lab-ghost", await still(SCENES["crossover"], SECONDS, (120, 40), keys=["5", "1", "2"]))
+
+
+async def test_the_form_and_the_help_lie_over_the_lab(snapshot):
+    snapshot("lab-form", await still(DEFAULT_SCENE, SECONDS, (80, 24), keys=["i", *"abc"]))
+    snapshot("lab-help", await still(DEFAULT_SCENE, SECONDS, (120, 40), keys=["question_mark"]))
+
+
+def test_the_command_writes_the_same_picture(tmp_path):
+    out = tmp_path / "lab.svg"
+    outcome = pendu("snapshot", "--time", SECONDS, "--size", "80x24", "-o", out)
+    assert (outcome.code, outcome.out, outcome.err) == (0, "", "")
+    assert out.read_text(encoding="utf-8") == (SNAPSHOTS / "lab-80x24-dark.svg").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--size", "10x10"], "60x16"),
+        (["--size", "big"], "120x40"),
+        (["--time", "nan"], "no time"),
+        (["--time", "-1"], "no time"),
+        (["--theme", "pink"], "dark"),
+        (["--scene", "drfit"], "did you mean drift"),
+    ],
+)
+def test_what_cannot_be_drawn_is_refused_in_a_sentence(tmp_path, arguments, words):
+    assert pendu("snapshot", *arguments, "-o", tmp_path / "x.svg").refused(2, words)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", ["lab.png", "lab.txt", "lab"])
+def test_a_still_is_not_written_under_a_name_that_says_it_were_something_else(tmp_path, name):
+    assert pendu("snapshot", "-o", tmp_path / name).refused(2, "SVG", "lab.svg")
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_folder_that_is_not_there_is_refused_before_anything_is_drawn(tmp_path):
+    assert pendu("snapshot", "-o", tmp_path / "no" / "x.svg").refused(5, "there is no folder")
+
+
+async def test_a_still_is_the_same_to_the_letter_whenever_it_is_made():
+    one, other = [await still(DEFAULT_SCENE, 3.0, (120, 40)) for _ in range(2)]
+    assert one == other

@@ -1,0 +1,54 @@
+"""No class of ours takes a private name that Textual uses for something else: it would not notice, and break."""
+
+import ast
+import inspect
+import pkgutil
+import textwrap
+from collections.abc import Iterator
+from importlib import import_module
+
+import pytest
+from textual.message_pump import MessagePump
+
+import tui
+
+MEANT = {"Commands": {"_gather_commands", "_action_command_list"}}
+"""What replaces Textual's own, by class."""
+
+for module in pkgutil.walk_packages(tui.__path__, "tui."):
+    import_module(module.name)
+
+
+def below(kind: type) -> Iterator[type]:
+    for each in kind.__subclasses__():
+        yield each
+        yield from below(each)
+
+
+OURS = sorted({each for each in below(MessagePump) if each.__module__.startswith("tui.")}, key=lambda each: str(each))
+
+
+def written(kind: type) -> set[str]:
+    """The private names that a class's text defines in its body or assigns on self."""
+    (body,) = ast.parse(textwrap.dedent(inspect.getsource(kind))).body
+    assert isinstance(body, ast.ClassDef)
+    targets = [target for node in body.body for target in getattr(node, "targets", [getattr(node, "target", None)])]
+    names = {node.name for node in body.body if hasattr(node, "name")} | {ast.unparse(each) for each in targets if each}
+    stored = [node for node in ast.walk(body) if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store)]
+    names |= {node.attr for node in stored if ast.unparse(node.value) == "self"}
+    return {name for name in names if name.startswith("_") and not name.endswith("__")}
+
+
+def textuals(kind: type) -> set[str]:
+    """The private names of all its bases that are not ours."""
+    bases = [base for base in kind.__mro__ if base.__module__.startswith(("textual.", "rich."))]
+    return {name for base in bases for name in (*vars(base), *written(base)) if name.startswith("_")}
+
+
+@pytest.mark.parametrize("kind", OURS, ids=lambda kind: kind.__name__)
+def test_a_class_takes_no_private_name_of_textuals(kind):
+    assert written(kind) & textuals(kind) == MEANT.get(kind.__name__, set())
+
+
+def test_the_names_that_textual_uses_are_found_wherever_it_writes_them():
+    assert {"_closing", "_running", "_timers", "_driver"} <= textuals(tui.screens.app.PenduApp)

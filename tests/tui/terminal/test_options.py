@@ -1,0 +1,85 @@
+import argparse
+
+import pytest
+
+from tui.cli.errors import UserError
+from tui.cli.options import Parser
+from tui.drawing.palette import PALETTES
+from tui.terminal.options import CALM_FPS, FPS, PIXELS, Display, add_display_options, colours, display_of, suited_theme
+
+XTERM = {"TERM": "xterm-256color"}
+
+
+def chosen(*arguments: str, encoding: str = "utf-8", **environment: str) -> Display:
+    parser = Parser(argument_default=None)
+    add_display_options(parser)
+    return display_of(parser.parse_args(arguments), XTERM | environment, encoding)
+
+
+def test_on_most_terminals_the_lab_is_dark_in_braille_with_the_mouse_at_30_frames_a_second():
+    assert chosen() == Display("dark", "braille", True, 30) == Display()
+
+
+@pytest.mark.parametrize("theme", PALETTES)
+@pytest.mark.parametrize("pixels", PIXELS)
+def test_what_is_asked_for_is_taken_whatever_the_terminal_says(theme, pixels):
+    asked = ("--theme", theme, "--pixels", pixels, "--no-mouse", "--fps", "12")
+    assert chosen(*asked, encoding="ascii", NO_COLOR="1") == Display(theme, pixels, False, 12)
+
+
+@pytest.mark.parametrize(
+    ("environment", "theme"),
+    [
+        ({"COLORFGBG": "15;0"}, "dark"),
+        ({"COLORFGBG": "0;15"}, "light"),
+        ({"COLORFGBG": "0;default;15"}, "light"),
+        ({"COLORFGBG": "0;7"}, "light"),
+        ({"COLORFGBG": "15;8"}, "dark"),
+        ({"COLORFGBG": "nonsense"}, "dark"),
+        ({"TERM": "xterm"}, "ansi"),
+        ({"TERM": "linux", "COLORFGBG": "0;15"}, "ansi"),
+        ({"TERM": "xterm", "COLORTERM": "truecolor"}, "dark"),
+        ({"NO_COLOR": "1", "COLORTERM": "truecolor"}, "ansi"),
+        ({"NO_COLOR": ""}, "dark"),
+    ],
+)
+def test_the_theme_follows_what_the_terminal_says(environment, theme):
+    assert suited_theme(XTERM | environment) == theme
+
+
+@pytest.mark.parametrize(
+    ("environment", "number"),
+    [
+        ({"TERM": "xterm-256color"}, 256),
+        ({"TERM": "tmux-256color", "COLORTERM": "truecolor"}, 1 << 24),
+        ({"TERM": "xterm-kitty"}, 256),
+        ({"TERM": "screen"}, 16),
+        ({"TERM": "dumb"}, 0),
+        ({}, 0),
+    ],
+)
+def test_colours_are_counted_by_what_the_terminal_is_called(environment, number):
+    assert colours(environment) == number
+
+
+@pytest.mark.parametrize(("encoding", "pixels"), [("UTF-8", "braille"), ("utf8", "braille"), ("iso8859-1", "ascii")])
+def test_without_utf_8_all_is_ascii(encoding, pixels):
+    assert chosen(encoding=encoding).pixels == pixels
+
+
+def test_reduced_motion_is_fewer_frames_unless_they_are_asked_for():
+    assert chosen(TEXTUAL_ANIMATIONS="none").fps == CALM_FPS < FPS
+    assert chosen("--fps", "60", TEXTUAL_ANIMATIONS="none").fps == 60
+
+
+@pytest.mark.parametrize("fps", ["0", "61", "1.5", "fast"])
+def test_frames_that_cannot_be_are_refused(fps):
+    with pytest.raises(UserError, match="fps"):
+        chosen("--fps", fps)
+
+
+def test_every_choice_is_in_the_help():
+    parser = argparse.ArgumentParser()
+    add_display_options(parser)
+    assert "{auto,dark,light,high-contrast,ansi}" in parser.format_help()
+    assert "{auto,braille,half,ascii}" in parser.format_help()

@@ -1,0 +1,66 @@
+"""The screen as text, and where it is saved."""
+
+import time
+
+import pytest
+
+from recordings import library
+from tests.tui.stage import lab
+from tui.screens.key_line import KeyLine
+from tui.screens.status_line import StatusLine
+from tui.terminal.screenshot import save_picture, text_of
+from tui.views.lab.error_table import ErrorTable
+
+NOON = time.struct_time((2026, 11, 20, 12, 0, 0, 4, 324, 0))
+
+
+async def test_the_text_of_a_picture_is_what_is_on_the_screen():
+    async with lab(size=(80, 24)) as theatre:
+        await theatre.run(12)
+        await theatre.settled()
+        lines = text_of(theatre.app.export_screenshot()).splitlines()
+        assert len(lines) == 24
+        assert lines[0] == theatre.text(StatusLine)
+        assert lines[-1] == theatre.text(KeyLine)
+        table = theatre.stage.query_one(ErrorTable)
+        assert lines[table.region.y : table.region.bottom] == table.text.splitlines()
+        assert max(map(len, lines)) == 80
+
+
+def test_special_characters_come_through():
+    svg = '<text class="r" x="24.4" y="2" clip-path="url(#terminal-1-line-1)">&lt;a&#160;b&amp;⣿&gt;</text>'
+    assert text_of(svg) == "\n  <a b&⣿>"
+    assert text_of("<svg/>") == ""
+
+
+def test_pictures_of_the_same_second_do_not_overwrite_each_other(tmp_path):
+    first, second = (save_picture("<svg/>", tmp_path / "new", NOON) for _ in range(2))
+    assert [path.name for path in (*first, *second)] == [
+        "2026-11-20T12-00-00.svg",
+        "2026-11-20T12-00-00.txt",
+        "2026-11-20T12-00-00-2.svg",
+        "2026-11-20T12-00-00-2.txt",
+    ]
+
+
+async def test_s_saves_a_picture_and_its_text_among_the_recordings_and_says_where(tmp_path, monkeypatch):
+    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
+    async with lab(size=(80, 24)) as theatre:
+        await theatre.run(1)
+        await theatre.press("s")
+        (told,) = theatre.app._notifications
+    (picture,), (text,) = tmp_path.glob("*.svg"), tmp_path.glob("*.txt")
+    assert str(picture) in told.message
+    assert text.read_text(encoding="utf-8") == text_of(picture.read_text(encoding="utf-8")) + "\n"
+    assert "t 1.00 s" in text.read_text(encoding="utf-8")
+    assert library.listing(tmp_path) == []  # a picture is no recording
+
+
+@pytest.mark.skipif("not hasattr(__import__('os'), 'geteuid')")
+async def test_where_nothing_can_be_saved_that_is_said(tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path / "file" / "below"))
+    async with lab(size=(80, 24)) as theatre:
+        await theatre.press("s")
+        (told,) = theatre.app._notifications
+        assert "cannot be saved" in told.message

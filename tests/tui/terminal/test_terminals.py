@@ -1,0 +1,241 @@
+"""The real program on terminals that have less, and on those that are taken away for a while."""
+
+import itertools
+import random
+import re
+import signal
+import time
+from pathlib import Path
+
+import pytest
+
+from engine.run.lockstep import Sample
+from recordings.recording import Recording
+from recordings.verify import verify
+from tests.tui.emulator import Emulator
+from tests.tui.pty_lab import PtyLab
+
+RECORDING = "REC 0 s"
+NEVER_CHANGES = "Phase space"  # once painted
+AWAY = 2.0  # s
+QUIET = 1.5  # s; a chart is built and painted in a fifth of that
+VIEWS = {"Phase space": "\x1bOR", "Accuracy": "\x1bOS", "Stability": "\x1b[15~", "Events": "\x1bOQ"}
+"""What one sees of a view, and its key."""
+
+T = re.compile(rb"t (\d+\.\d+) s")
+SGR = re.compile(rb"\x1b\[([\d;]*)m")
+
+
+def session(library: Path, *arguments: str, **environment: str) -> PtyLab:
+    return PtyLab(*arguments, PENDU_RECORDINGS=str(library), **environment)
+
+
+def seen(library: Path, *arguments: str, keys: str = "", **environment: str) -> bytes:
+    """What the lab sends in its first second and with some keys."""
+    with session(library, *arguments, **environment) as pendu:
+        pendu.wait_for(RECORDING)
+        for key in keys:
+            pendu.type(key)
+            pendu.run(0.3)
+        pendu.type("q")
+        assert pendu.end() == 0
+        return bytes(pendu.output)
+
+
+def codes(output: bytes) -> set[str]:
+    """The numbers of all colours and attributes."""
+    return {
+        code
+        for sequence in SGR.findall(output)
+        for code in re.findall(r"[34]8;[25];[\d;]+?(?=;[34]8|$)|\d+", sequence.decode())
+    }
+
+
+def test_without_utf_8_the_whole_lab_is_ascii(tmp_path):
+    output = seen(tmp_path, keys="v?q", PYTHONUTF8="0", PYTHONIOENCODING="latin-1")
+    assert output.isascii()
+    assert b"1x" in output  # 1×
+    assert b"-----" in output  # a frame
+
+
+def test_with_new_pixels_all_is_sent_anew_even_what_stands_still(tmp_path):
+    with session(tmp_path) as pendu:
+        pendu.wait_for(RECORDING)
+        pendu.type(" a")
+        pendu.wait_for(NEVER_CHANGES)
+        pendu.type("q")
+        assert pendu.end() == 0
+
+
+def test_pixels_can_be_chosen_and_changed_with_a(tmp_path):
+    assert seen(tmp_path / "ascii", "--pixels", "ascii").isascii()
+    output = seen(tmp_path / "half", "live", "--pixels", "half", keys="aa").decode()
+    half, braille = "▀", "⣿"
+    assert half in output
+    assert any(0x2800 < ord(character) <= ord(braille) for character in output)
+    assert not any(0x2800 <= ord(character) <= ord(braille) for character in output[: output.index(RECORDING)])
+
+
+def test_no_color_is_no_colour_at_all(tmp_path):
+    assert codes(seen(tmp_path, NO_COLOR="1")) <= {"0", "1", "2", "7", "39", "49", "22", "27"}
+
+
+def test_with_16_colours_there_are_no_others(tmp_path):
+    found = codes(seen(tmp_path, TERM="xterm", COLORTERM=""))
+    assert {"91", "94", "96", "93"} <= found  # the methods
+    assert not [code for code in found if code.startswith(("38;", "48;"))]
+
+
+def test_with_256_colours_there_are_no_others(tmp_path):
+    found = codes(seen(tmp_path, COLORTERM=""))
+    assert [code for code in found if code.startswith("38;5;")]
+    assert not [code for code in found if code.startswith(("38;2;", "48;2;"))]
+
+
+@pytest.mark.parametrize("arguments", [[], ["--no-mouse"]])
+def test_the_mouse_is_left_alone_if_that_is_asked_for(tmp_path, arguments):
+    assert (b"\x1b[?1000h" in seen(tmp_path, *arguments)) == (not arguments)
+
+
+def test_frames_come_as_often_as_is_asked_for(tmp_path):
+    with session(tmp_path, "--fps", "5", "--h", "0.001") as pendu:
+        pendu.wait_for(RECORDING)
+        began, count = pendu.now, len(pendu.reads)
+        pendu.run(3)
+        times = [at for at, _ in pendu.reads[count:]]
+        bursts = 1 + sum(after - before > 0.05 for before, after in itertools.pairwise(times))
+        assert 3 * 5 * 0.5 < bursts <= (pendu.now - began) * 5 + 2  # late ones are not made up for
+        pendu.type("q")
+        assert pendu.end() == 0
+
+
+def state(pid: int) -> str:
+    return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+
+
+def test_over_a_slow_line_no_colour_is_sent_twice_and_time_goes_on(tmp_path):
+    with PtyLab("--h", "0.01", rate=64 * 1024, PENDU_RECORDINGS=str(tmp_path)) as pendu:
+        pendu.wait_for("REC ")
+        pendu.run(3.0)  # it is found out
+        start, began = len(pendu.output), pendu.now
+        while len(times := [float(t) for t in T.findall(pendu.output, start)]) < 2 or times[-1] - times[0] < 3:
+            pendu.read(0.1)
+            assert pendu.now - began < 30
+        assert abs(pendu.now - began - (times[-1] - times[0])) < 2  # the line alone would make it three times as long
+        assert pendu.output.count(b"\x1b[0m", start) < (len(pendu.output) - start) / 500  # else one in 50 bytes
+        pendu.type("q")
+        assert pendu.end() == 0
+
+
+@pytest.mark.parametrize("how", ["ctrl+z", "a signal that cannot be caught"])
+def test_a_lab_that_was_stopped_goes_on_where_it_was(tmp_path, how):
+    with session(tmp_path) as pendu:
+        pendu.wait_for(RECORDING)
+        if how == "ctrl+z":
+            pendu.type("\x1a")
+            assert b"\x1b[?1049l" in pendu.run(1.0)  # the terminal is the shell's
+        else:
+            pendu.signal(signal.SIGSTOP)
+            pendu.run(0.5)
+        assert state(pendu.pid) == "T"
+        time.sleep(AWAY)
+        pendu.signal(signal.SIGCONT)
+        pendu.wait_for(NEVER_CHANGES)
+        pendu.wait_for("REC 2 s")
+        pendu.type("q")
+        assert pendu.end() == 0
+        present = pendu.now - AWAY
+    assert pendu.output.count(b"\x1b[?1049h") == 2  # painted anew
+    (path,) = tmp_path.iterdir()
+    assert verify(path).identical
+    recording = Recording.open(path)
+    assert recording.length < present
+    times = [entry.value.t for entry in recording.entries() if isinstance(entry.value, Sample)]
+    assert max(after - before for before, after in itertools.pairwise(times)) < 1.0
+
+
+def standing(pendu: PtyLab) -> list[str]:
+    """Pause; returns what is on the screen then."""
+    pendu.wait_for("REC 1 s")
+    pendu.type(" ")
+    pendu.wait_for("paused")
+    emulator = Emulator(pendu)
+    pendu.type("aaa")  # three kinds of pixels, painted anew each time
+    lines = still(emulator)
+    quiet_since = pendu.now
+    while pendu.now < quiet_since + QUIET:
+        pendu.run(0.1)
+        if (now := still(emulator)) != lines:
+            lines, quiet_since = now, pendu.now
+    return lines
+
+
+def still(emulator: Emulator) -> list[str]:
+    """The screen once it is whole, without what goes on: the insight line, and how much of the recording is on disk."""
+
+    def whole(lines: list[str]) -> bool:
+        panes = [line for line in lines if line.startswith("╭") and line.endswith("╮")]
+        return "paused" in lines[0] and bool(panes) and "Quit" in lines[-1]
+
+    return standing_part(emulator.wait_until(whole))
+
+
+def standing_part(lines: list[str]) -> list[str]:
+    return [lines[0].partition("REC")[0], *lines[1:-3], lines[-1]]
+
+
+@pytest.mark.parametrize("what", ["a", "ctrl+z", "stop"])
+def test_what_stood_on_the_screen_stands_there_again_to_the_letter(tmp_path, what):
+    with session(tmp_path) as pendu:
+        before = standing(pendu)
+        emulator = Emulator(pendu)
+        if what == "a":
+            pendu.type("aaa")
+        else:
+            if what == "ctrl+z":
+                pendu.type("\x1a")
+            else:
+                pendu.signal(signal.SIGSTOP)
+            while state(pendu.pid) != "T":
+                pendu.run(0.05)
+            emulator = Emulator(pendu)
+            pendu.signal(signal.SIGCONT)
+        emulator.wait_until(lambda lines: standing_part(lines) == before)
+        pendu.type("q")
+        assert pendu.end() == 0
+
+
+def test_a_storm_of_200_sizes_leaves_every_view_whole(tmp_path):
+    storm = random.Random(200)
+    with session(tmp_path) as pendu:
+        before = standing(pendu)
+        for title, key in VIEWS.items():
+            pendu.type(key)
+            for _ in range(50):
+                pendu.resize(storm.randint(1, 220), storm.randint(1, 70))
+                pendu.run(0.05)
+            emulator = Emulator(pendu)
+            pendu.resize(120, 40)
+            assert title in "".join(still(emulator))
+        emulator.wait_until(lambda lines: standing_part(lines) == before)
+        pendu.type("q")
+        assert pendu.end() == 0
+
+
+def becomes_silent(pendu: PtyLab, seconds: float = 20.0) -> bool:
+    """Whether nothing is sent any more: a cursor that blinks sends something twice a second."""
+    end = pendu.now + seconds
+    while pendu.now < end:
+        if not pendu.run(1.5):
+            return True
+    return False
+
+
+@pytest.mark.parametrize("key", [" ", " i", " \x10", " ?"])
+def test_with_reduced_motion_a_paused_lab_stands_still_and_what_lies_over_it_does_too(tmp_path, key):
+    with session(tmp_path, TEXTUAL_ANIMATIONS="none") as pendu:
+        pendu.wait_for(RECORDING)
+        for each in key:
+            pendu.type(each)
+            pendu.run(0.3)
+        assert becomes_silent(pendu)

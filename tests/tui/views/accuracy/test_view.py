@@ -1,0 +1,201 @@
+"""F4: speed against accuracy for the pendulum on screen."""
+
+import asyncio
+import math
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+import pytest
+from textual.pilot import Pilot
+
+from engine.accuracy.study import Study, ladder
+from engine.methods import METHODS
+from engine.scenes import SCENES, Scene
+from recordings.library import resolve
+from recordings.recording import Recording
+from tui.playback.live import Live
+from tui.playback.marks import Marks
+from tui.playback.replay import Replay
+from tui.screens.app import PenduApp
+from tui.screens.base import Stage
+from tui.screens.live import Lab
+from tui.screens.replay import Player
+from tui.views.accuracy.chart import MARKS
+from tui.views.accuracy.pane import HERE, AccuracyPane
+
+RUNGS = ladder(5.0, 0.2, 0.01, 4)
+VERLET = 2
+PATIENCE = 120  # s; a program that ended would be waited for in vain
+
+
+@pytest.fixture(autouse=True)
+def _few_points(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tui.views.accuracy.view.usual", lambda scene: (5.0, RUNGS))
+
+
+def said(pane: AccuracyPane) -> str:
+    """The words below the chart, on one line."""
+    return " ".join(pane.text.rsplit("force evaluations\n", 1)[1].split())
+
+
+async def complete(pilot: Pilot[object], pane: AccuracyPane) -> None:
+    """Wait for the points of another process, for those here, and for the chart."""
+    async with asyncio.timeout(PATIENCE):
+        while not (pane.settled and set(enumerate(pane.here)) <= set(pane.points)):
+            await pilot.pause(0.05)
+
+
+@asynccontextmanager
+async def view_of(stage: Stage, size: tuple[int, int]) -> AsyncIterator[tuple[Pilot[object], AccuracyPane]]:
+    app = PenduApp(stage)
+    async with app.run_test(size=size) as pilot:
+        await pilot.press("f4")
+        async with asyncio.timeout(PATIENCE):
+            while not app.screen.query(AccuracyPane):
+                await pilot.pause(0.01)
+        pane = app.screen.query_one(AccuracyPane)
+        await complete(pilot, pane)
+        yield pilot, pane
+
+
+@asynccontextmanager
+async def accuracy_view(
+    scene: Scene = SCENES["drift"], size: tuple[int, int] = (80, 30)
+) -> AsyncIterator[tuple[Pilot[object], AccuracyPane, Live]]:
+    """The view of a paused lab, once it is complete."""
+    live = Live(scene)
+    live.pause(True)
+    async with view_of(Lab(live), size) as (pilot, pane):
+        yield pilot, pane, live
+
+
+async def test_the_points_fill_in_and_are_the_engines():
+    async with accuracy_view() as (_, pane, _live):
+        for point in Study(SCENES["drift"], 5.0).points(RUNGS):
+            found = pane.points[METHODS.index(point.method), point.steps]
+            assert (found.theta_error, found.energy_error) == (point.theta_error, point.energy_error)
+        assert "energy error, the largest of all steps" in pane.text
+        assert all(pane.text.count(letter) for letter in "esvr")
+        assert pane.border_title == "Accuracy over 5 s: energy error up, force evaluations across"
+        assert pane.border_subtitle == "X you are here; x failed; ~ only rounding; dotted: error as h, h², h⁴"
+        assert set(MARKS.values()) | {HERE} == {"X", "x", "~"}
+
+
+async def test_it_says_where_you_are():
+    async with accuracy_view() as (pilot, pane, _live):
+        assert pane.text.count("X") == 4
+        assert said(pane) == "Velocity Verlet at h 0.05 s: energy error 5.7e-03 for 101 force evaluations; you are here"
+        await pilot.press("tab")
+        await complete(pilot, pane)
+        assert said(pane).startswith("RK4 at h 0.05 s: ")
+
+
+async def test_enter_uses_the_h_of_the_cursors_point_and_u_takes_it_back():
+    async with accuracy_view() as (pilot, pane, live):
+        await pilot.press("left", "right", "right")
+        await complete(pilot, pane)
+        assert "O" in pane.text
+        assert said(pane).endswith("enter uses this h")
+        point = pane.aim
+        assert point is not None
+        run = live.sample.run
+        await pilot.press("enter")
+        await complete(pilot, pane)
+        assert live.h == point.h != 0.05
+        assert live.sample.run == run  # h changes, the run goes on
+        assert pane.here[VERLET] == point.steps
+        assert pane.cursor is None
+        await pilot.press("u")
+        assert live.h == 0.05
+
+
+async def test_while_time_runs_backwards_the_chosen_h_is_negative():
+    async with accuracy_view() as (pilot, pane, live):
+        await pilot.press("b", "left", "enter")
+        await complete(pilot, pane)
+        assert live.h == pytest.approx(-5.0 / RUNGS[1])
+
+
+async def test_at_equal_cost_every_method_is_at_its_own_h():
+    async with accuracy_view() as (pilot, pane, live):
+        await pilot.press("n")
+        await complete(pilot, pane)
+        assert pane.here == (100, 100, 100, 25)
+        await pilot.press("left", "left", "enter")
+        assert live.h == pytest.approx(4 * 5.0 / RUNGS[0])
+
+
+async def test_another_h_moves_the_mark_and_another_start_the_points():
+    async with accuracy_view() as (pilot, pane, live):
+        before = dict(pane.points)
+        await pilot.press("plus")
+        await complete(pilot, pane)
+        assert pane.here == (50,) * 4
+        assert before.items() <= pane.points.items()
+        live.start(SCENES["large-swing"])
+        await pilot.pause(0.3)
+        await complete(pilot, pane)
+        assert not before.items() & pane.points.items()
+        assert (
+            pane.points[VERLET, RUNGS[0]].theta_error
+            == Study(SCENES["large-swing"], 5.0).run(METHODS[VERLET], RUNGS[0]).theta_error
+        )
+
+
+async def test_the_charts_quantity_chooses_the_error_and_hidden_methods_are_not_drawn():
+    async with accuracy_view() as (pilot, pane, _live):
+        await pilot.press("e", "1")
+        await complete(pilot, pane)
+        assert "theta error" in pane.text
+        assert "theta error up" in str(pane.border_title)
+        chart = pane.text.split("\n", 1)[1].rsplit("force evaluations", 2)[0]
+        assert "v" in chart
+        assert not {"x", "~"} & set(chart.replace("1e", ""))  # explicit Euler alone is lost
+
+
+async def test_the_cursor_stays_on_the_ladder_and_esc_leaves_it():
+    async with accuracy_view() as (pilot, pane, _live):
+        await pilot.press(*["left"] * 9)
+        assert pane.cursor == 0
+        await pilot.press(*["right"] * 9)
+        assert pane.cursor == len(RUNGS) - 1
+        await pilot.press("down", "down")
+        assert pane.index == 0
+        await pilot.press("up")
+        assert pane.index == 3
+        await pilot.press("escape")
+        assert pane.cursor is None
+
+
+async def test_an_h_that_is_too_large_or_too_small_has_no_mark():
+    async with accuracy_view() as (pilot, pane, live):
+        for h in (20.0, 1e-7):
+            live.set_h(h)
+            await pilot.pause(0.5)
+            assert pane.settled
+            assert "X" not in pane.text
+            assert said(pane) == "you are not on this chart: h is too large or too small"
+
+
+@pytest.mark.parametrize("size", [(60, 16), (80, 24), (200, 60)])
+async def test_it_fits_terminals_of_all_sizes(size: tuple[int, int]):
+    async with accuracy_view(size=size) as (pilot, pane, _live):
+        await pilot.press("right")
+        await complete(pilot, pane)
+        lines = pane.text.splitlines()
+        assert len(lines) <= pane.size.height
+        assert max(map(len, lines)) <= pane.size.width
+
+
+async def test_a_replay_shows_it_and_keeps_its_arrows():
+    path = resolve("drift")
+    replay = Replay(Recording.open(path), Marks(path))
+    replay.pause(True)
+    async with view_of(Player(replay, lambda live: Lab(live)), (80, 30)) as (pilot, pane):
+        assert said(pane).endswith("you are here")
+        await pilot.press("right")
+        assert replay.playhead.position == pytest.approx(1.0, abs=0.05)
+        assert pane.cursor is None
+        h = replay.h
+        await pilot.press("enter")
+        assert math.copysign(replay.h, 1) == h

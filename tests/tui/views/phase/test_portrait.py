@@ -1,0 +1,129 @@
+"""The theoretical portrait: where its curves lie, what is named, what the axes say."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from engine.models.exact_pendulum import Swing
+from engine.models.pendulum import energy, separatrix_energy
+from engine.scenes import SCENES, Scene
+from tui.drawing.phase_axes import in_pi, omega_ticks, theta_ticks
+from tui.views.phase.portrait import Portrait, margin
+from tui.views.phase.viewport import Viewport
+
+DRIFT = SCENES["drift"]
+W0 = DRIFT.w0
+
+
+def at_the_top(span: float, columns: int = 47, rows: int = 17) -> Viewport:
+    viewport = Viewport.portrait(columns, rows, DRIFT)
+    viewport = viewport.panned(-math.pi / viewport.theta_per_dot, 0)
+    return viewport.zoomed(span / viewport.theta_span, columns, 2 * rows)
+
+
+@given(st.floats(-3, 3), st.floats(-10, 10))
+def test_the_margin_is_what_the_energy_leaves_to_the_separatrix(theta, omega):
+    share = energy(W0 * W0, theta, omega) / separatrix_energy(W0 * W0)
+    assert margin(W0, theta, omega) == pytest.approx(1 - share, abs=1e-14)  # roundings of numbers below 4
+
+
+def test_the_margin_keeps_its_digits_where_the_energy_has_lost_them():
+    # cos²((pi - 1e-6)/2) is 2.5e-13; 1e-9 is what rounding of the angle itself costs: 2e-16 of 1e-6
+    assert margin(W0, math.pi - 1e-6, 0.0) == pytest.approx(2.5e-13, rel=1e-9)
+
+
+@pytest.mark.parametrize("span", [math.tau, 0.1, 1e-6])
+def test_the_separatrix_is_where_libration_and_rotation_meet_at_every_zoom(span):
+    viewport = at_the_top(span)
+    portrait = Portrait.of(viewport, W0)
+    assert len(portrait.separatrix[0])
+    for x, y in zip(*portrait.separatrix, strict=True):
+        around = [(x + i + 0.5, y + j + 0.5) for i in (-1, 0, 1) for j in (-1, 0, 1)]
+        values = [margin(W0, viewport.theta_at(i), viewport.omega_at(j)) for i, j in around]
+        assert min(values) <= 0 <= max(values)
+
+
+def test_the_separatrix_is_heavier_than_the_other_curves():
+    portrait = Portrait.of(Viewport.portrait(47, 17, DRIFT), W0)
+    down_the_middle = [int(np.sum(dots[0] == 47)) for dots in (portrait.separatrix, portrait.curves)]
+    crossings = len({y // 3 for x, y in zip(*portrait.curves, strict=True) if x == 47})
+    assert down_the_middle[0] == 2 * 2  # crossed twice, two dots each time
+    assert down_the_middle[1] <= 1.5 * crossings
+
+
+@pytest.mark.parametrize("scene", [DRIFT, SCENES["spin"], SCENES["gentle"], SCENES["near-separatrix"]])
+@pytest.mark.parametrize("size", [(46, 15), (78, 17), (150, 55)])
+def test_the_three_regimes_are_named_where_they_are(scene, size):
+    viewport = Viewport.portrait(*size, scene)
+    portrait = Portrait.of(viewport, scene.w0)
+    names = [word[2] for word in portrait.words]
+    assert names.count("libration") == 1
+    assert names.count("rotation") == 2  # one for each sense
+    assert names.count("separatrix") == 1
+    for column, row, text, _ in portrait.words:
+        if text in ("libration", "rotation"):
+            for at in range(column, column + len(text)):
+                value = margin(scene.w0, viewport.theta_at(2.0 * at + 1), viewport.omega_at(4.0 * row + 2))
+                assert (value > 0) == (text == "libration")
+
+
+@pytest.mark.parametrize("size", [(4, 2), (10, 3), (20, 6), (46, 15), (78, 17)])
+def test_words_do_not_overlap_nor_leave_the_picture(size):
+    portrait = Portrait.of(Viewport.portrait(*size, DRIFT), W0)
+    cells = [(row, at) for column, row, text, _ in portrait.words for at in range(column, column + len(text))]
+    assert len(cells) == len(set(cells))
+    assert all(0 <= row < size[1] and 0 <= column < size[0] for row, column in cells)
+
+
+@pytest.mark.parametrize(("theta", "omega"), [(1.0, 0.0), (0.3, -2.0), (3.1, 0.0), (0.0, 8.0), (2.0, -9.0), (3.1, 0.5)])
+def test_the_orbit_through_a_state_is_where_the_exact_swing_goes(theta, omega):
+    scene = Scene(theta=theta, omega=omega)
+    viewport = Viewport.portrait(80, 30, scene)
+    x, y = Portrait.of(viewport, scene.w0).orbit(theta, omega)
+    orbit = set(zip(x.tolist(), y.tolist(), strict=True))
+    swing = Swing(scene)
+    assert swing.period is not None
+    passed = set()
+    for k in range(2000):
+        state = swing.at(k * swing.period / 2000)
+        i, j = math.floor(viewport.x(state.theta)), math.floor(viewport.y(state.omega))
+        near = {(i + a, j + b) for a in (-1, 0, 1) for b in (-1, 0, 1)} & orbit
+        # the outermost dots have no neighbour to differ from
+        assert near or not (1 <= i < viewport.columns * 2 - 1 and 1 <= j < viewport.rows * 4 - 1)
+        passed |= near
+    assert passed == orbit  # and nowhere else
+
+
+def test_angles_are_in_pi_and_wrapped_ones_stay_in_one_turn():
+    assert [label for _, label in theta_ticks(-math.pi, math.pi, 4, True)] == ["-pi", "-pi/2", "0", "pi/2", "pi"]
+    assert [label for _, label in theta_ticks(0.8 * math.pi, 1.2 * math.pi, 4, True)] == [
+        "0.8pi",
+        "0.9pi",
+        "pi",
+        "-0.9pi",
+        "-0.8pi",
+    ]
+    assert [label for _, label in theta_ticks(-4 * math.pi, 4 * math.pi, 4, False)] == [
+        "-4pi",
+        "-2pi",
+        "0",
+        "2pi",
+        "4pi",
+    ]
+    assert in_pi(-0.75) == "-3pi/4"
+
+
+def test_close_to_the_top_angles_are_counted_from_it():
+    labels = [label for _, label in theta_ticks(math.pi - 5e-7, math.pi + 5e-7, 4, True)]
+    assert labels == ["-5e-7", "pi", "+5e-7"]
+
+
+@given(st.floats(-20, 20), st.floats(1e-9, 100), st.integers(1, 12))
+def test_ticks_are_in_view_and_not_too_many(low, span, most):
+    for ticks in (omega_ticks(low, low + span, most), theta_ticks(low, low + span, most, False)):
+        assert len(ticks) <= 2 * most + 1
+        assert all(low - 1e-3 * span <= value <= low + span * 1.001 for value, _ in ticks)
+        assert len({label for _, label in ticks}) == len(ticks)

@@ -1,0 +1,196 @@
+import asyncio
+import math
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+import numpy as np
+import pytest
+from textual.pilot import Pilot
+
+from engine.scenes import SCENES, Scene
+from engine.stability.outcomes import UNKNOWN
+from recordings.library import resolve
+from recordings.recording import Recording
+from tui.playback.live import Live
+from tui.playback.marks import Marks
+from tui.playback.replay import Replay
+from tui.screens.app import PenduApp
+from tui.screens.base import Stage
+from tui.screens.live import Lab
+from tui.screens.replay import Player
+from tui.screens.status_line import StatusLine
+from tui.views.stability.pane import StabilityPane
+
+VERLET, RK4 = 2, 3  # in METHODS
+
+
+@asynccontextmanager
+async def stability_view(
+    monkeypatch: pytest.MonkeyPatch, scene: Scene = SCENES["drift"], size: tuple[int, int] = (80, 24)
+) -> AsyncIterator[tuple[Pilot[object], StabilityPane, Live]]:
+    """The view with a map of 60 steps, once that is complete."""
+    monkeypatch.setattr("tui.views.stability.view.PASSES", (20, 60))
+    live = Live(scene)
+    live.pause(True)
+    async with view_of(Lab(live), size) as (pilot, pane):
+        yield pilot, pane, live
+
+
+@asynccontextmanager
+async def view_of(stage: Stage, size: tuple[int, int]) -> AsyncIterator[tuple[Pilot[object], StabilityPane]]:
+    app = PenduApp(stage)
+    async with app.run_test(size=size) as pilot:
+        await pilot.press("f5")
+        async with asyncio.timeout(120):  # a program that ended would be waited for in vain
+            while not app.screen.query(StabilityPane):
+                await pilot.pause(0.01)
+            pane = app.screen.query_one(StabilityPane)
+            while not pane.complete:
+                await pilot.pause(0.05)
+        pane.draw()
+        yield pilot, pane
+
+
+async def test_the_map_fills_in_and_is_the_engines(monkeypatch: pytest.MonkeyPatch):
+    async with stability_view(monkeypatch) as (_, pane, _live):
+        assert (pane.cells["fate"] != UNKNOWN).all()
+        sixty = type(pane.grid)(pane.grid.theta[:5], pane.grid.z[30:35], 60)
+        assert np.array_equal(pane.cells[30:35, :, :5], sixty.cells())
+        for line in ("1 e Explicit Euler  grows", "2 s Symplectic Euler  holds", "4 r RK4  holds", "h 0.479"):
+            assert line in pane.text
+
+
+async def test_it_says_what_becomes_of_the_swing_on_screen(monkeypatch: pytest.MonkeyPatch):
+    async with stability_view(monkeypatch) as (_, pane, live):
+        z, theta = pane.here(VERLET)
+        assert (z, theta) == (live.scene.z, 1.0)
+        assert pane.text.count("X") == 4
+        assert "Velocity Verlet at h 0.0539 s, 58.1 deg: holds" in pane.text
+
+
+async def test_at_equal_cost_each_method_is_where_its_own_step_is(monkeypatch: pytest.MonkeyPatch):
+    async with stability_view(monkeypatch) as (pilot, pane, live):
+        await pilot.press("n")
+        pane.draw()
+        z, theta = pane.here(VERLET)
+        assert pane.here(RK4) == (pytest.approx(4 * z), theta)
+        assert z == pytest.approx(live.scene.z)
+        assert "Velocity Verlet at h 0.0539 s" in pane.text  # the cell nearest to 0.05
+
+
+async def test_enter_starts_with_the_cursors_amplitude_and_step(monkeypatch: pytest.MonkeyPatch):
+    async with stability_view(monkeypatch) as (pilot, pane, live):
+        z, theta = pane.aim(VERLET)
+        await pilot.press("right", "right", "shift+right", "up", "enter")
+        assert live.scene.z == pytest.approx(pane.grid.z[z + 7], rel=1e-12)
+        assert live.scene.theta == pane.grid.theta[theta + 1]
+        assert live.scene.omega == 0
+        assert pane.cursor is None
+        assert pane.aim(VERLET) == (z + 7, theta + 1)
+        await pilot.press("u")
+        assert live.scene == SCENES["drift"]
+
+
+async def test_a_click_starts_with_what_was_clicked_on(monkeypatch: pytest.MonkeyPatch):
+    async with stability_view(monkeypatch) as (pilot, pane, live):
+        # RK4's panel is below and to the right: its map begins behind panel, gap and labels, all inside a frame.
+        lowest = max(y for y, line in enumerate(pane.text.splitlines()) if line.startswith(" 18 "))
+        await pilot.click(StabilityPane, offset=(1 + 38 + 2 + 4 + 16, 1 + lowest))
+        assert live.scene.z == pytest.approx(1.5, abs=0.1)
+        assert live.scene.theta == pytest.approx(math.pi / 12, abs=0.1)
+        assert "RK4 at h" in pane.text
+
+
+async def test_the_cursor_stays_on_the_map_and_esc_leaves_it(monkeypatch: pytest.MonkeyPatch):
+    async with stability_view(monkeypatch) as (pilot, pane, _):
+        before = pane.aim(VERLET)
+        for _ in range(4):
+            await pilot.press("shift+left", "shift+down")
+        assert pane.cursor == (0, 0)
+        await pilot.press("escape")
+        assert pane.cursor is None
+        assert pane.aim(VERLET) == before
+
+
+async def test_tab_goes_through_the_methods_in_words(monkeypatch: pytest.MonkeyPatch):
+    async with stability_view(monkeypatch) as (pilot, pane, _):
+        for label in ("RK4 at", "Explicit Euler at", "Symplectic Euler at", "Velocity Verlet at"):
+            await pilot.press("tab")
+            assert label in pane.text
+
+
+async def test_the_axis_is_that_of_the_scenes_pendulum(monkeypatch: pytest.MonkeyPatch):
+    async with stability_view(monkeypatch) as (pilot, pane, live):
+        live.start(Scene(length=4 * 9.81))  # w0 = 1/2, so h = 2 z
+        await pilot.pause(0.3)
+        assert "h 3 " in pane.text
+
+
+async def test_hidden_methods_leave_their_panels_to_the_others(monkeypatch: pytest.MonkeyPatch):
+    async with stability_view(monkeypatch) as (pilot, pane, _):
+        await pilot.press("1")
+        await pilot.pause(0.3)
+        assert "Explicit" not in pane.text
+        for key in "234":
+            await pilot.press(key)
+        await pilot.pause(0.3)
+        assert "1 e" not in pane.text
+
+
+async def test_another_theme_recolours_it(monkeypatch: pytest.MonkeyPatch):
+    async with stability_view(monkeypatch) as (pilot, pane, _):
+        before = pane.render_line(2)
+        pilot.app.theme = "light"
+        await pilot.pause(0.3)
+        assert pane.render_line(2).text == before.text
+        assert pane.render_line(2) != before
+
+
+async def test_a_scene_that_spins_is_not_on_the_map(monkeypatch: pytest.MonkeyPatch):
+    async with stability_view(monkeypatch, SCENES["spin"]) as (_, pane, _live):
+        assert pane.here(VERLET) is None
+        assert "X" not in pane.text
+
+
+@pytest.mark.parametrize("size", [(60, 16), (79, 20), (120, 40), (200, 60)])
+async def test_it_fits_terminals_of_all_sizes(size: tuple[int, int], monkeypatch: pytest.MonkeyPatch):
+    async with stability_view(monkeypatch, size=size) as (pilot, pane, _):
+        await pilot.press("right", "up")
+        lines = pane.text.splitlines()
+        assert len(lines) <= pane.size.height
+        assert max(map(len, lines)) <= pane.size.width
+
+
+async def test_on_a_terminal_that_is_too_small_it_draws_nothing(monkeypatch: pytest.MonkeyPatch):
+    async with stability_view(monkeypatch, size=(30, 8)) as (pilot, pane, _):
+        await pilot.press("right", "up")
+        assert pane.text == ""
+
+
+async def test_a_larger_step_beyond_a_limit_is_warned_of_and_taken(monkeypatch: pytest.MonkeyPatch):
+    scene = Scene(theta=0.1, length=9.81, h=1.0)  # w0 = 1, so h is z
+    async with stability_view(monkeypatch, scene) as (pilot, pane, live):
+        status = pane.screen.query_one(StatusLine)
+        await pilot.press("plus")
+        assert live.h == 2.0
+        assert "beyond" not in status.text
+        await pilot.press("plus")
+        assert live.h == 5.0
+        assert "z 5  beyond limit 2 of s, v; 2.83 of r" in status.text
+        assert pane.aim(VERLET) is None  # it is beyond the map, too
+
+
+async def test_a_replay_says_what_becomes_of_its_swing_and_keeps_its_arrows(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("tui.views.stability.view.PASSES", (20, 60))
+    path = resolve("drift")
+    replay = Replay(Recording.open(path), Marks(path))
+    replay.pause(True)
+    async with view_of(Player(replay, lambda live: Lab(live)), (80, 30)) as (pilot, pane):
+        assert "Velocity Verlet at h 0.0539 s, 58.1 deg: holds" in pane.text
+        await pilot.press("right")
+        assert replay.playhead.position == pytest.approx(1.0, abs=0.05)
+        assert pane.cursor is None
+        scene = replay.scene
+        await pilot.press("enter")
+        await pilot.click(StabilityPane, offset=(20, 4))
+        assert replay.scene == scene

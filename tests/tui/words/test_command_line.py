@@ -1,0 +1,71 @@
+"""The command that is copied gives the same run, to the bit."""
+
+import shlex
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from engine.scenes import LIMITS, SCENES, Scene
+from recordings.library import GOLDEN
+from recordings.live_recorder import SittingRecorder
+from recordings.recording import Recording
+from tui.cli.dispatch import command_of
+from tui.cli.options import joined, scene_of
+from tui.playback.live import Live
+from tui.playback.marks import Marks
+from tui.playback.replay import Replay
+from tui.words.command_line import command
+
+
+def options_of(text: str):
+    """What the command line makes of a command."""
+    program, name, *arguments = shlex.split(text)
+    assert program == "pendu-tui"
+    return command_of(name)[0].parse_args(joined(arguments))
+
+
+@pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
+def test_a_scene_of_the_list_is_called_by_its_name(scene):
+    text = command(Live(scene))
+    assert text == f"pendu-tui live --scene {scene.name}"
+    assert scene_of(options_of(text)) == scene
+
+
+@given(
+    theta=st.floats(*LIMITS["theta"]),
+    omega=st.floats(-1e3, 1e3),
+    length=st.floats(0.01, 100),
+    h=st.floats(1e-3, 0.1),
+)
+def test_any_other_scene_comes_back_to_the_last_bit(theta, omega, length, h):
+    scene = Scene(theta=theta, omega=omega, length=length, h=h)
+    again = scene_of(options_of(command(Live(scene))))
+    assert (again.theta, again.omega, again.length, again.gravity, again.h) == (theta, omega, length, scene.gravity, h)
+
+
+def test_the_speed_is_kept():
+    assert options_of(command(Live(SCENES["spin"], speed=0.25))).speed == 0.25
+
+
+def test_a_run_whose_step_size_changed_is_found_in_its_recording(tmp_path):
+    live = Live(SCENES["drift"], clock=lambda: 0.0)
+    live.record(SittingRecorder(tmp_path / "my run.mcap"))
+    for frame in range(61):
+        live.tick(frame / 30)
+    live.set_h(0.1)
+    options = options_of(command(live))
+    live.close()
+    assert Path(options.file) == tmp_path / "my run.mcap"
+    assert options.start_at == pytest.approx(2.0)
+    assert options.paused
+
+
+def test_a_replay_is_found_where_it_stands():
+    path = GOLDEN / "drift.mcap"
+    replay = Replay(Recording.open(path), Marks(path))
+    replay.seek(1.5)
+    options = options_of(command(replay))
+    assert (Path(options.file), options.start_at, options.paused) == (path, 1.5, True)
+    replay.close()

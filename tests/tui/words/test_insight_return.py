@@ -1,0 +1,57 @@
+"""What is said when time has run back to its start."""
+
+import re
+from dataclasses import replace
+
+import pytest
+
+from engine.scenes import SCENES
+from tui.playback.live import Live
+from tui.words.insight import insight, return_text
+
+
+def misses(text: str) -> dict[str, float]:
+    return {letter: float(number) for letter, number in re.findall(r"\b([a-z]) ([\d.e+-]+\d)", text.partition("by")[2])}
+
+
+def there_and_back(scene_name: str, steps: int) -> Live:
+    live = Live(SCENES[scene_name])
+    for h in (live.h, -live.h):
+        if h != live.h:
+            live.set_h(h)
+        for _ in range(steps):
+            live.step(1)
+    return live
+
+
+@pytest.mark.parametrize("scene", ["drift", "large-swing", "gentle"])
+def test_ten_seconds_there_and_back_tell_who_is_reversible(scene):
+    live = there_and_back(scene, round(10 / SCENES[scene].h))
+    text = insight(live)
+    assert text.startswith("Back at t = 0")
+    assert len(text) <= 79  # with the blank before it, what the narrowest full layout has room for
+    missed = misses(text)
+    assert missed["v"] < 1e-12  # reversible but for rounding, 1e-16 a step
+    assert 1e-9 < missed["r"] < 1e-2  # h⁵
+    assert missed["s"] > 1e-3  # not reversible, whatever the books say
+    assert missed["e"] > 1e-2
+
+
+def test_it_is_said_for_a_while_only():
+    live = there_and_back("drift", 40)
+    assert "Back" in insight(live)
+    live.step(round(9 / live.h * -1))
+    assert "Back" not in insight(live)
+
+
+def test_before_time_is_back_nothing_is_said_of_it():
+    live = there_and_back("drift", 40)
+    live.step(-1)
+    assert "Back" not in insight(live)
+
+
+def test_a_method_that_failed_is_not_said_to_have_missed():
+    sample = there_and_back("drift", 10).sample
+    euler, *others = sample.readings
+    sample = replace(sample, readings=(replace(euler, diverged_at=0.5), *others))
+    assert "by e failed, s 0." in return_text(SCENES["drift"], sample)

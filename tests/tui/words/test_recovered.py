@@ -1,0 +1,78 @@
+from contextlib import nullcontext
+from pathlib import Path
+
+from recordings.recording import Recording
+from recordings.verify import verify
+from tests.tui.sitting import Sitting
+from tui.words.recovered import recover_leftovers
+
+
+def recover_in(folder: Path) -> list[str]:
+    return recover_leftovers(folder, lambda what: nullcontext(lambda done, total: None))
+
+
+def left_unfinished(path: Path) -> Path:
+    """What a sitting leaves whose process was killed."""
+    sitting = Sitting(path)
+    sitting.run(3.0)
+    assert sitting.live.recorder is not None
+    sitting.live.recorder._recorder._file.close()
+    return path.with_name(path.name + ".part")
+
+
+def test_where_nothing_is_left_nothing_is_said(tmp_path):
+    assert recover_in(tmp_path) == []
+    assert recover_in(tmp_path / "no such folder") == []
+
+
+def test_what_is_left_becomes_a_whole_recording_and_is_told(tmp_path):
+    part = left_unfinished(tmp_path / "one.mcap")
+    (said,) = recover_in(tmp_path)
+    (whole,) = tmp_path.iterdir()
+    assert not part.exists()
+    assert str(whole) in said
+    assert verify(whole).identical
+    assert Recording.open(whole).length > 2  # at most the last second is lost
+    assert recover_in(tmp_path) == []
+
+
+def test_what_cannot_be_recovered_is_kept_told_once_and_stops_nothing(tmp_path):
+    (tmp_path / "bad.mcap.part").write_bytes(b"nothing of ours")
+    left_unfinished(tmp_path / "good.mcap")
+    said = recover_in(tmp_path)
+    assert len(said) == 2
+    (kept,) = [path for path in tmp_path.iterdir() if path.read_bytes() == b"nothing of ours"]
+    assert any("cannot be recovered" in sentence and str(kept) in sentence for sentence in said)
+    assert recover_in(tmp_path) == []
+
+
+def test_a_recording_in_progress_is_left_alone(tmp_path):
+    sitting = Sitting(tmp_path / "one.mcap")
+    sitting.run(1.0)
+    assert recover_in(tmp_path) == []
+    sitting.live.close()
+    assert [path.name for path in tmp_path.iterdir()] == ["one.mcap"]
+
+
+def test_a_full_disk_does_not_keep_the_lab_from_starting(tmp_path, monkeypatch):
+    part = left_unfinished(tmp_path / "one.mcap")
+
+    def full(self):
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as elsewhere:
+        elsewhere.setattr("mcap.writer.Writer.flush", full)
+        (said,) = recover_in(tmp_path)
+    assert str(part) in said
+    assert "No space left on device" in said
+    assert list(tmp_path.iterdir()) == [part]
+    assert len(recover_in(tmp_path)) == 1
+    assert not part.exists()
+
+
+def test_what_another_lab_recovers_first_is_passed_over(tmp_path, monkeypatch):
+    one, two = left_unfinished(tmp_path / "one.mcap"), left_unfinished(tmp_path / "two.mcap")
+    monkeypatch.setattr("tui.words.recovered.leftovers", lambda folder: [one, two])
+    one.unlink()
+    assert len(recover_in(tmp_path)) == 1
+    assert not two.exists()

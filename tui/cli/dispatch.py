@@ -1,0 +1,151 @@
+"""pendu-tui: finds the command and hands over to it.  Imports nothing that the command does not need."""
+
+import io
+import os
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from itertools import pairwise
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+from tui.cli.errors import Exit, UserError, explained
+
+if TYPE_CHECKING:
+    from tui.cli.options import Parser
+
+COMMANDS = {
+    "live": "the lab: four pendulums, their errors, a recording",
+    "replay": "a recording on the same screen",
+    "snapshot": "a still of the lab as an SVG picture",
+    "accuracy": "speed against accuracy: which method, which h, at what cost",
+    "stability": "where each method stops holding a swing, theory beside measurement",
+    "run": "a scene without a screen, each method judged; a check for CI",
+    "verify": "simulate recordings again and compare every bit",
+    "info": "what is in a recording, whole or damaged",
+    "recover": "save what is intact of a damaged recording",
+    "export": "a recording as CSV",
+    "recordings": "list the recordings, or prune them",
+    "scenes": "the scenes, with what to watch",
+    "methods": "the methods, with what is claimed and what is measured",
+    "doctor": "what the lab finds here, and what to do about it",
+    "completion": "what makes the tab key of bash, zsh or fish know all this",
+}
+"""Name of the command -> what it does.  Its module is tui.commands.NAME."""
+
+USAGE = """\
+usage: pendu-tui [COMMAND] [OPTIONS]
+
+Four integrators swing the same pendulum in your terminal: see who gains energy, who keeps it, who loses it slowly.
+
+commands (pendu-tui COMMAND --help tells more):
+{commands}
+
+pendu-tui alone is pendu-tui live.  pendu-tui --version prints the version.
+
+exit codes: 0 fine, 1 a check failed, 2 usage, 3 input unreadable, 4 terminal unsuitable, 5 disk, 130 interrupted.
+
+examples:
+  pendu-tui
+  pendu-tui --theta 170deg --h 0.02
+  pendu-tui replay latest
+  pendu-tui run --scene crossover --time 100
+"""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line and return the exit code.  Nothing but a bug leaves a traceback."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")  # a terminal without θ shows a ?, not a traceback
+    try:
+        code = _dispatch(list(sys.argv[1:] if arguments is None else arguments))
+        sys.stdout.flush()
+        return code
+    except KeyboardInterrupt:
+        print("pendu-tui: interrupted.", file=sys.stderr)
+        return Exit.INTERRUPTED
+    except BrokenPipeError:
+        _drop_output()
+        return Exit.PIPE_CLOSED
+    except Exception as error:
+        if isinstance(error.__context__, KeyboardInterrupt):  # Ctrl+C within an import, made an error of by a library
+            print("pendu-tui: interrupted.", file=sys.stderr)
+            return Exit.INTERRUPTED
+        refusal = explained(error)
+        from recordings.errors import printable
+
+        print(f"pendu-tui: {printable(str(refusal), limit=1000)}", file=sys.stderr)
+        try:
+            sys.stdout.flush()
+        except OSError:
+            _drop_output()
+        return refusal.code
+
+
+def _drop_output() -> None:
+    """Send what stdout did not take nowhere, or the interpreter tries again as it ends, and complains."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _dispatch(arguments: list[str]) -> int:
+    match arguments:
+        case ["-h" | "--help", *_] | ["help"]:
+            print(USAGE.format(commands="\n".join(f"  {name:<12}{does}" for name, does in COMMANDS.items())), end="")
+            return Exit.FINE
+        case ["help", name, *_]:
+            return _run(name, ["--help"])
+        case ["--version", *_]:
+            from importlib.metadata import version
+
+            print(f"pendu-tui {version('pendu-tui')}")
+            return Exit.FINE
+        case [name, *rest] if not name.startswith("-"):
+            return _run(name, rest)
+    return _run("live", arguments)
+
+
+def _run(name: str, arguments: list[str]) -> int:
+    from tui.cli.options import joined
+
+    parser, command = command_of(name)
+    arguments = joined(arguments)
+    try:
+        options = parser.parse_args(arguments)
+    except SystemExit:  # --help, printed
+        return Exit.FINE
+    except UserError as error:
+        raise _misplaced(name, arguments, parser) or parser.unknown_option(arguments) or error from None
+    code: int = command.run(options)
+    return code
+
+
+def _misplaced(name: str, arguments: Sequence[str], parser: "Parser") -> UserError | None:
+    """What to say to one who gave the command after its options, for which it was taken for live."""
+    places = pairwise(["", *arguments])
+    late = next((each for before, each in places if each in COMMANDS and not parser.takes_value(before)), None)
+    return UserError(f"the command comes first: pendu-tui {late}.") if late and name == "live" else None
+
+
+def command_of(name: str) -> tuple["Parser", ModuleType]:
+    """A command's parser and module.  Raises UserError if there is none."""
+    from argparse import RawDescriptionHelpFormatter
+
+    from engine.scenes import SCENES
+    from tui.cli.options import Parser, did_you_mean
+
+    if name not in COMMANDS:
+        hint = did_you_mean(name, COMMANDS) or "; pendu-tui --help lists them."
+        if name in SCENES:
+            hint = f", but a scene: pendu-tui --scene {name}"
+        raise UserError(f"there is no command {name!r}{hint}")
+    command = import_module(f"tui.commands.{name}")
+    parser = Parser(
+        prog=f"pendu-tui {name}",
+        description=command.__doc__,
+        epilog=command.EXAMPLES,
+        formatter_class=RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    command.add_options(parser)
+    return parser, command

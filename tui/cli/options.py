@@ -1,0 +1,126 @@
+"""Options that several commands share, and how their values are read."""
+
+import argparse
+import difflib
+import math
+import re
+import sys
+from collections.abc import Iterable, Sequence
+from typing import NoReturn
+
+from engine.scenes import DEFAULT_SCENE, LIMITS, SCENES, Scene
+from tui.cli.errors import UserError
+
+
+class Parser(argparse.ArgumentParser):
+    """An argument parser whose errors are one sentence."""
+
+    def error(self, message: str) -> NoReturn:
+        """Raise UserError instead of printing the usage."""
+        raise UserError(f"{message.removeprefix('argument ')}; {self.prog} --help shows the options.")
+
+    def takes_value(self, name: str) -> bool:
+        """Whether this is an option with a value behind it."""
+        action = self._option_string_actions.get(name)
+        return action is not None and action.nargs != 0
+
+    def unknown_option(self, arguments: Sequence[str]) -> UserError | None:
+        """What to say of the first option that there is none of: argparse would name what is missing for it."""
+        for argument in arguments:
+            name = argument.partition("=")[0] if argument.startswith("--") else argument[:2]
+            if argument == "--" or " " in name or name in self._option_string_actions:
+                continue
+            if re.match(r"--?[a-z]", name, re.IGNORECASE):
+                hint = did_you_mean(name, self._option_string_actions) or f"; {self.prog} --help shows the options."
+                return UserError(f"{self.prog.rpartition(' ')[2]} has no option {name}{hint}")
+        return None
+
+
+def joined(arguments: Sequence[str]) -> list[str]:
+    """The arguments with negative numbers tied to their options: argparse takes -1e-3 for an option."""
+    tied: list[str] = []
+    for argument in arguments:
+        if tied and re.match(r"-\.?\d", argument) and re.fullmatch(r"--[a-z-]+", tied[-1]):
+            tied[-1] += "=" + argument
+        else:
+            tied.append(argument)
+    return tied
+
+
+class Bare(float):
+    """An angle that was given without its unit."""
+
+
+def angle(text: str) -> float:
+    """An angle [rad] from `2`, `2rad`, `115deg` or `115°`; a Bare one from `2`."""
+    number = re.sub(r"(deg|°|rad)$", "", text)
+    try:
+        value = float(number)
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is no angle: give radians such as 2, or degrees such as 115deg"
+        ) from None
+    if number == text:
+        return Bare(value)
+    return value if text.endswith("rad") else math.radians(value)
+
+
+def number(text: str) -> float:
+    """A number; whether it makes sense is for the one who takes it to say."""
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is no number: give one such as 0.05 or 1e-3") from None
+
+
+def positive(text: str) -> float:
+    """A number above zero, and finite."""
+    value = number(text)
+    if not 0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f"{text!r} is out of range: give a number above zero")
+    return value
+
+
+def count(text: str) -> int:
+    """A whole number, 1 or more."""
+    if not re.fullmatch(r"\d{1,18}", text) or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text!r} is no count: give a whole number, 1 or more")
+    return int(text)
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """The end of a sentence about a word that is not known."""
+    near = difflib.get_close_matches(word, known, n=1)
+    return f": did you mean {near[0]}?" if near else ""
+
+
+def add_scene_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options that determine a scene; `scene_of` reads them."""
+    group = parser.add_argument_group("scene", "numbers win over those of the scene, which hold where none are given")
+    group.add_argument("--scene", metavar="NAME", default=DEFAULT_SCENE.name, help="see pendu-tui scenes (%(default)s)")
+    group.add_argument(
+        "--theta", metavar="RAD|DEGdeg", type=angle, help="start angle from straight down, in rad, or such as 115deg"
+    )
+    group.add_argument("--omega", metavar="RAD_S", type=angle, help="start angular velocity in rad/s, or such as 30deg")
+    group.add_argument("--length", metavar="M", type=number, help="length in m")
+    group.add_argument("--gravity", metavar="M_S2", type=number, help="gravity in m/s²")
+    group.add_argument("--h", metavar="S", type=number, help="step size in s")
+
+
+def scene_of(options: argparse.Namespace) -> Scene:
+    """The scene that the options describe; whoever seems to have meant degrees is told.
+
+    Raises UserError for an unknown name and SceneError for numbers that cannot be run.
+    """
+    if options.scene not in SCENES:
+        hint = did_you_mean(options.scene, SCENES) or "; pendu-tui scenes lists them."
+        raise UserError(f"there is no scene {options.scene!r}{hint}")
+    given = {name: getattr(options, name) for name in (*LIMITS, "h")}
+    scene = SCENES[options.scene].altered(**{name: float(value) for name, value in given.items() if value is not None})
+    if isinstance(options.theta, Bare) and abs(options.theta) > math.tau:
+        bare, turns = f"{options.theta:g}", abs(options.theta) / math.tau
+        print(
+            f"pendu-tui: --theta {bare} is {bare} rad, {turns:.3g} turns; for degrees write {bare}deg.",
+            file=sys.stderr,
+        )
+    return scene

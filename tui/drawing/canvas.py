@@ -1,0 +1,153 @@
+"""Points and lines -> characters.
+
+A canvas has 2×4 dots in every cell.  Coordinates are in dots, x to the right and y downwards from
+the upper left corner; dot (i, j) covers [i, i+1) × [j, j+1).  Dots of different owners share a cell
+and all stay; the cell has the colour of the owner who drew there last.  What lies outside, or is
+not finite, is not drawn.
+"""
+
+import itertools
+import textwrap
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tui.drawing.palette import NOBODY
+
+Run = tuple[str, int]
+"""Characters next to each other that have the same owner."""
+
+_BITS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]], np.uint8)  # Unicode's order of braille dots
+_GLYPHS = np.array([ord(" "), *range(0x2801, 0x2900)], np.uint32)
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """Characters and their owners, ready for a screen."""
+
+    characters: NDArray[np.uint32]  # code points, (rows, columns)
+    owners: NDArray[np.int8]  # (rows, columns)
+
+    def row(self, y: int) -> list[Run]:
+        """The runs of row y, from the left; together as wide as the picture, which may have no column at all."""
+        text = self.characters[y].astype("<u4").tobytes().decode("utf-32-le")
+        owners = self.owners[y]
+        starts = [0, *(np.flatnonzero(owners[1:] != owners[:-1]) + 1).tolist(), len(text)] if text else []
+        return [(text[start:end], int(owners[start])) for start, end in itertools.pairwise(starts)]
+
+    @property
+    def text(self) -> str:
+        """The characters alone, line by line, without blanks at the ends."""
+        return "\n".join("".join(text for text, _ in self.row(y)).rstrip() for y in range(len(self.characters)))
+
+    def write(self, row: int, column: int, text: str, owner: int) -> None:
+        """Replace the characters from a cell on, as far as there are any."""
+        for at, character in enumerate(text, column):
+            if 0 <= at < self.characters.shape[1]:
+                self.characters[row, at], self.owners[row, at] = ord(character), owner
+
+    @classmethod
+    def stacked(cls, *pictures: "Picture") -> "Picture":
+        """Pictures of one width, one below the other."""
+        return cls(
+            np.concatenate([picture.characters for picture in pictures]),
+            np.concatenate([picture.owners for picture in pictures]),
+        )
+
+    @classmethod
+    def of_text(cls, text: str, columns: int, rows: int, owner: int) -> "Picture":
+        """A text wrapped and centred, as far as it fits."""
+        lines = textwrap.wrap(text, max(columns, 1))[:rows]
+        canvas = Canvas(columns, rows)
+        for row, line in enumerate(lines, (rows - len(lines)) // 2):
+            canvas.label((columns - len(line)) // 2, row, line, owner)
+        return canvas.picture()
+
+
+class Canvas:
+    """Something to draw on, `columns` × `rows` cells large."""
+
+    def __init__(self, columns: int, rows: int) -> None:
+        self.columns, self.rows = columns, rows
+        self.width, self.height = 2 * columns, 4 * rows  # dots
+        self._dots = np.zeros((self.height, self.width), np.uint8)
+        self._owners = np.full((rows, columns), NOBODY, np.int8)
+        self._labels: dict[tuple[int, int], tuple[str, int]] = {}  # (row, column) -> character, owner
+
+    def points(self, x: ArrayLike, y: ArrayLike, owner: int) -> None:
+        """Set the dots at x, y (numbers or arrays of one shape)."""
+        with np.errstate(invalid="ignore"):
+            i = np.floor(np.atleast_1d(np.asarray(x, np.float64)))
+            j = np.floor(np.atleast_1d(np.asarray(y, np.float64)))
+            inside = (i >= 0) & (i < self.width) & (j >= 0) & (j < self.height)
+        i, j = i[inside].astype(np.intp), j[inside].astype(np.intp)
+        self._dots[j, i] = 1
+        self._owners[j >> 2, i >> 1] = owner
+
+    def line(self, x: ArrayLike, y: ArrayLike, owner: int, dotted: bool = False) -> None:
+        """Join the points x, y (arrays of n) with straight lines, broken where a point is not finite."""
+        i, j = _along(np.asarray(x, np.float64), np.asarray(y, np.float64), self.width, self.height)
+        every = 3 if dotted else 1
+        self.points(i[::every], j[::every], owner)
+
+    def disc(self, x: float, y: float, radius: float, owner: int, hollow: bool = False) -> None:
+        """Set the dots whose centres are within `radius` of (x, y); hollow: only the rim, one dot wide."""
+        if not (abs(x) < 1e6 and abs(y) < 1e6):  # elsewhere, or not finite
+            return
+        i, j = np.meshgrid(
+            np.arange(np.floor(x - radius), np.ceil(x + radius) + 1),
+            np.arange(np.floor(y - radius), np.ceil(y + radius) + 1),
+        )
+        distance = np.hypot(i + 0.5 - x, j + 0.5 - y)
+        inside = (distance <= radius) & (distance > radius - 1 if hollow else True)
+        self.points(i[inside], j[inside], owner)
+
+    def label(self, column: int, row: int, text: str, owner: int) -> None:
+        """Write text from a cell on, over any dots; what does not fit is cut off."""
+        for at, character in enumerate(text, column):
+            if 0 <= at < self.columns and 0 <= row < self.rows:
+                self._labels[row, at] = character, owner
+
+    def is_free(self, column: int, row: int) -> bool:
+        """Whether a label may go to a cell: it is on the canvas and has none yet."""
+        return 0 <= column < self.columns and 0 <= row < self.rows and (row, column) not in self._labels
+
+    def picture(self) -> Picture:
+        """What has been drawn so far."""
+        cells = self._dots.reshape(self.rows, 4, self.columns, 2)
+        bits = np.zeros((self.rows, self.columns), np.uint8)
+        for down in range(4):
+            for right in range(2):
+                bits |= cells[:, down, :, right] * _BITS[down, right]
+        characters, owners = _GLYPHS[bits], self._owners.copy()
+        for place, (character, owner) in self._labels.items():
+            characters[place], owners[place] = ord(character), owner
+        return Picture(characters, owners)
+
+
+def _along(
+    x: NDArray[np.float64], y: NDArray[np.float64], width: int, height: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Points along a polyline as far as it lies on the canvas: one in each column of dots, or row where it is steep."""
+    with np.errstate(all="ignore"):
+        x0, y0, dx, dy = x[:-1], y[:-1], np.diff(x), np.diff(y)
+        # Liang and Barsky (1984): the part [first, last] of each segment that is inside, as fractions of it.
+        first, last = np.zeros(len(dx)), np.ones(len(dx))
+        for start, step, size in ((x0, dx, width), (y0, dy, height)):
+            low, high = np.sort([-start / step, (size - start) / step], axis=0)
+            level, inside = step == 0, (start >= 0) & (start < size)
+            first = np.maximum(first, np.where(level, np.where(inside, 0.0, 2.0), low))
+            last = np.minimum(last, np.where(level, 1.0, high))
+        drawn = (first <= last) & np.isfinite(dx) & np.isfinite(dy)
+        x0, y0, dx, dy, first, last = (part[drawn] for part in (x0, y0, dx, dy, first, last))
+        steep = abs(dy) > abs(dx)
+        start, step = np.where(steep, y0, x0), np.where(steep, dy, dx)
+        begin, end = np.floor(start + first * step), np.floor(start + last * step)
+        # From very far away, rounding could ask for more points than the canvas has dots.
+        counts = np.minimum(abs(end - begin) + 1, max(width, height) + 2).astype(np.intp)
+        segment = np.repeat(np.arange(len(counts)), counts)
+        nth = np.arange(len(segment)) - np.repeat(np.cumsum(counts) - counts, counts)
+        centre = begin[segment] + np.sign(step)[segment] * nth + 0.5
+        share = np.where(step[segment] == 0, 0.0, np.clip((centre - start[segment]) / step[segment], 0.0, 1.0))
+        return x0[segment] + share * dx[segment], y0[segment] + share * dy[segment]

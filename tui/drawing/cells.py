@@ -1,0 +1,114 @@
+"""Rows: a widget made of rows of characters with owners.  Only rows that changed are sent to the terminal."""
+
+from collections.abc import Sequence
+from itertools import zip_longest
+
+import numpy as np
+from rich.segment import Segment
+from rich.style import Style
+from textual.geometry import Region, Size
+from textual.strip import Strip
+from textual.widget import Widget
+
+from tui.drawing.canvas import Picture, Run
+from tui.drawing.large import thick
+from tui.drawing.palette import NOBODY, palette
+
+Row = Sequence[Run]
+
+PRESENT = "-present"
+"""The app's class where pictures have thick lines."""
+
+
+def changed_rows(before: Picture | None, after: Picture) -> list[int]:
+    """The rows that differ; all of them where there is nothing to compare with."""
+    if before is None or before.characters.shape != after.characters.shape:
+        return list(range(len(after.characters)))
+    changed = (before.characters != after.characters) | (before.owners != after.owners)
+    return np.flatnonzero(changed.any(axis=1)).tolist()
+
+
+class Rows(Widget):
+    """Shows rows or a picture; what is missing is blank, what is too long is cut off."""
+
+    ALLOW_SELECT = False
+
+    def __init__(self, id: str | None = None, classes: str | None = None) -> None:
+        super().__init__(id=id, classes=classes)
+        self._rows: list[Row] = []
+        self._picture: Picture | None = None
+        self._styles: dict[int, Style] = {}
+        self._visible = False
+        self.room = Size()  # asking Textual how large a widget is walks through the screen; and may change any time
+
+    @property
+    def drawable(self) -> bool:
+        """Whether there is anything to draw on: on screen and not empty."""
+        return self._visible and bool(self.room)
+
+    def draw(self) -> None:
+        """Bring what is shown up to date."""
+
+    def on_resize(self) -> None:
+        """Draw for the new size."""
+        self._fit()
+
+    def on_show(self) -> None:
+        """Draw what has changed meanwhile."""
+        self._visible = True
+        self._fit()
+
+    def _fit(self) -> None:
+        if self.room != self.size:
+            self.room = self.size
+            self.refresh()  # Textual may have painted it already, in the room that it had before
+        self.draw()
+
+    def on_hide(self) -> None:
+        """Draw no more."""
+        self._visible = False
+
+    def show(self, rows: Sequence[Row]) -> None:
+        """Show these rows."""
+        before, self._rows, self._picture = self._rows, list(rows), None
+        self._refresh_rows([y for y, (old, new) in enumerate(zip_longest(before, rows)) if old != new])
+
+    def show_picture(self, picture: Picture) -> None:
+        """Show a picture."""
+        if self.app.has_class(PRESENT):
+            picture = thick(picture)
+        changed, self._picture = changed_rows(self._picture, picture), picture
+        self._rows[len(picture.characters) :] = [()] * (len(picture.characters) - len(self._rows))
+        for y in changed:
+            self._rows[y] = picture.row(y)
+        self._refresh_rows(changed)
+
+    def _refresh_rows(self, changed: Sequence[int]) -> None:
+        if changed:
+            self.refresh(*(Region(0, y, self.room.width, 1) for y in changed))
+
+    @property
+    def text(self) -> str:
+        """What is shown, without colours."""
+        return "\n".join("".join(text for text, _ in row).rstrip() for row in self._rows)
+
+    def render_line(self, y: int) -> Strip:
+        """One row."""
+        row = self._rows[y] if y < len(self._rows) else ()
+        strip = Strip([Segment(text, self._style(owner)) for text, owner in row])
+        return strip.adjust_cell_length(self.room.width, self._style(NOBODY))
+
+    def style_of(self, owner: int, base: Style) -> Style:
+        """How an owner's characters look; `base` is the widget's own style."""
+        return base if owner == NOBODY else base + Style(color=palette(self.app.theme).colour(owner))
+
+    def notify_style_update(self) -> None:
+        """Forget styles that the theme or the sheet has changed."""
+        super().notify_style_update()
+        self._styles = {}
+
+    def _style(self, owner: int) -> Style:
+        style = self._styles.get(owner)
+        if style is None:  # walking the sheet's chain is slow
+            style = self._styles[owner] = self.style_of(owner, self.rich_style)
+        return style

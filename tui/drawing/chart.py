@@ -1,0 +1,233 @@
+"""Arrays -> charts made of characters.  The only module that knows plotext.
+
+plotext 6 ends the process where a number is not finite or far outside the limits, so it gets
+nothing but numbers on the canvas.  It has one figure for the whole process, hence the lock.
+"""
+
+import re
+import threading
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from engine.methods import METHODS
+from tui.drawing.axes import Axis, Floats, decades, decades_across, linear, times
+from tui.drawing.canvas import Canvas, Picture
+from tui.drawing.columns import held, per_column, span
+from tui.drawing.palette import FRAME, NOBODY, TEXT
+from tui.playback.history import Quantity, Window
+
+FLOOR = 1e-17  # a relative error of doubles below it says nothing; zeros are drawn here
+TOP = 1e6  # larger magnitudes are drawn here, so that a method that fails leaves room for the others
+SMALLEST = (20, 5)  # columns, rows
+_ROOM = 4  # columns for the letters at the right end
+_FIRST_COLOUR = 32  # plotext is told owners as colours of the 256-colour palette, from this one on
+
+_lock = threading.Lock()
+
+
+@dataclass(frozen=True, slots=True)
+class Series:
+    """Points with a mark at each, joined by lines; or, dotted, a reference line with its mark at the end."""
+
+    owner: int
+    mark: str  # a letter; a few for a reference
+    x: ArrayLike  # (n,)
+    y: ArrayLike  # (n,)
+    dotted: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class _Curve:
+    """What plotext gets: columns and rows of the plot, counted from its lower left corner."""
+
+    owner: int
+    columns: Floats
+    rows: Floats
+    joined: bool = True
+
+
+def time_chart(
+    window: Window,
+    quantity: Quantity,
+    width: int,
+    height: int,
+    *,
+    log: bool = True,
+    seconds: float | None = None,
+    shown: Sequence[int] = range(len(METHODS)),
+) -> Picture:
+    """A quantity of the shown methods over the last `seconds`, or over the whole run.
+
+    Linear, each column of characters reaches from the lowest to the highest value that falls into
+    it.  Logarithmic, it stands at the largest magnitude of the half swing that ends in it, or of
+    the column if that is longer; else zero crossings would tear the lines.
+    """
+    if width < SMALLEST[0] or height < SMALLEST[1]:
+        return _too_small(width, height, *SMALLEST)
+    index, rows = list(shown), height - 2
+    low, high = (np.clip(side[quantity][:, index], -TOP, TOP) for side in (window.low, window.high))
+    if log:
+        low = high = np.log10(np.maximum(np.fmax(abs(low), abs(high)), FLOOR))
+    y_axis = _y_axis(low, high, rows, log)
+    columns = width - 1 - _ROOM - y_axis.label_width
+    start, end = span(window.x, seconds, columns)
+    if log:
+        low = high = held(window.x, high, start, end, columns, window.repeats)
+    else:
+        low, high = per_column(window.x, low, high, start, end, columns)
+    curves = [
+        _outline(owner, rows * y_axis.share(low[:, i]), rows * y_axis.share(high[:, i]))
+        for i, owner in enumerate(index)
+    ]
+    x_axis = times(start, end, columns, " run" if window.turned else "")
+    picture = _plot(curves, x_axis, y_axis, width, height)
+    _write_letters(picture, curves, rows, width - columns - _ROOM)
+    return picture
+
+
+def _y_axis(low: Floats, high: Floats, rows: int, log: bool) -> Axis:
+    known = ~np.isnan(high).all(axis=0)
+    if not known.any():
+        return decades(-4, 0, rows) if log else linear(-1, 1, rows)
+    bottom, top = float(np.nanmin(low)), float(np.nanmax(high))
+    if log:  # errors begin at zero: a decade below what is usual is low enough
+        bottom = float(np.nanmedian(low[:, known], axis=0).min()) - 1
+    return (decades if log else linear)(bottom, top, rows)
+
+
+def loglog_chart(series: Sequence[Series], width: int, height: int, *, x_label: str, y_label: str) -> Picture:
+    """Points with marks over two logarithmic axes that hold them all, and dotted reference lines.
+
+    Points that are not finite and positive are left out; of reference lines, what lies outside.
+    """
+    if width < SMALLEST[0] or height < SMALLEST[1] + 2:
+        return _too_small(width, height, SMALLEST[0], SMALLEST[1] + 2)
+    rows = height - 4
+    points = [_logs(one) for one in series]
+    marked = [some for one, some in zip(series, points, strict=True) if not one.dotted and len(some)]
+    (left, bottom), (right, top) = (
+        (np.min(np.concatenate(marked), axis=0), np.max(np.concatenate(marked), axis=0))
+        if marked
+        else ((0, -4), (1, 0))
+    )
+    y_axis = decades(bottom, top, rows)
+    columns = width - 1 - _ROOM - y_axis.label_width
+    x_axis = decades_across(left, right, columns)
+    curves = []
+    for one, (x, y) in zip(series, (some.T for some in points), strict=True):
+        if one.dotted and len(x):
+            across = np.linspace(x_axis.low, x_axis.high, columns)
+            x, y = across, np.interp(across, x, y, left=np.nan, right=np.nan)
+            inside = (y >= y_axis.low) & (y <= y_axis.high)
+            x, y = x[inside], y[inside]
+        curves.append(_Curve(one.owner, columns * x_axis.share(x), rows * y_axis.share(y), joined=not one.dotted))
+    picture = _plot(curves, x_axis, y_axis, width, height - 2)
+    for one, curve in zip(series, curves, strict=True):
+        for column, row in list(zip(curve.columns.tolist(), curve.rows.tolist(), strict=True))[
+            -1 if one.dotted else 0 :
+        ]:
+            at = min(width - columns - _ROOM + int(column), width - len(one.mark))
+            picture.write(_row(row, rows), at, one.mark, one.owner)
+    return Picture.stacked(_line(y_label, width), picture, _line(x_label.rjust(width), width))
+
+
+def _logs(series: Series) -> Floats:
+    """log10 of the points that have one, (n, 2), in the order of x."""
+    points = np.stack([np.asarray(series.x, np.float64), np.asarray(series.y, np.float64)], axis=1)
+    points = points[(np.isfinite(points) & (points > 0)).all(axis=1)]
+    return np.log10(points[np.argsort(points[:, 0], kind="stable")])
+
+
+def _outline(owner: int, low: Floats, high: Floats) -> _Curve:
+    """Through the lows and highs of columns, from each to the nearer end of the next."""
+    known = np.flatnonzero(~np.isnan(low))
+    low, high = low[known], high[known]
+    falling = np.diff(low + high, prepend=0.0) < 0
+    heights = np.stack([np.where(falling, high, low), np.where(falling, low, high)], axis=1).ravel()
+    distinct = np.stack([np.full(len(low), True), low != high], axis=1).ravel()
+    return _Curve(owner, np.repeat(known + 0.5, 2)[distinct], heights[distinct])
+
+
+def _plot(curves: Sequence[_Curve], x_axis: Axis, y_axis: Axis, width: int, height: int) -> Picture:
+    """Let plotext draw curves, with the ends of the x axis at the first column and before the room for letters."""
+    import plotext  # 0.1 s, so only after the first paint
+
+    rows, columns = height - 2, width - 1 - y_axis.label_width
+    with _lock:
+        plotext.terminal.limit(False, False)
+        figure = plotext.figure
+        figure.clear.data()
+        figure.clear.settings()
+        figure.plot_size(width, height)
+        figure.axes(False)
+        figure.axes(True, pixel=_FIRST_COLOUR + FRAME, axis=["x", "y"], side=0)
+        for name, axis, size, used in (("x", x_axis, columns, columns - _ROOM), ("y", y_axis, rows, rows)):
+            ruler = figure.ruler(name, 0)
+            ruler.alignment(lim="edge")
+            ruler.lim(0, size)
+            ruler.ticks((used * axis.share(list(axis.labels))).tolist(), _justified(axis, name))
+            ruler.pixel(_FIRST_COLOUR + TEXT)
+        for curve in curves:
+            marker = plotext.marker("braille", pixel=_FIRST_COLOUR + curve.owner)
+            signal = figure.signal(curve.columns.tolist(), curve.rows.tolist(), marker=marker)
+            figure.draw(signal.lines(curve.joined))
+        drawn = figure.build().string()
+    return _parsed(drawn, width, height)
+
+
+def _justified(axis: Axis, name: str) -> list[str]:
+    return [label.rjust(axis.label_width) if name == "y" else label for label in axis.labels.values()]
+
+
+_CODES_OR_TEXT = re.compile(r"\x1b\[([\d;]*)m|([^\x1b]+)")
+
+
+def _parsed(drawn: str, width: int, height: int) -> Picture:
+    """Text with colour codes -> characters and owners.  rich's own reader takes ten times as long."""
+    characters = np.full((height, width), ord(" "), np.uint32)
+    owners = np.full((height, width), NOBODY, np.int8)
+    for row, line in enumerate(drawn.split("\n")[:height]):
+        column, owner = 0, NOBODY
+        for codes, text in _CODES_OR_TEXT.findall(line):
+            if codes.startswith("38;5;"):
+                owner = int(codes[5:]) - _FIRST_COLOUR
+            elif codes == "0":
+                owner = NOBODY
+            text = text[: width - column]
+            if text:
+                characters[row, column : column + len(text)] = np.frombuffer(text.encode("utf-32-le"), np.uint32)
+                owners[row, column : column + len(text)] = owner
+                column += len(text)
+    return Picture(characters, owners)
+
+
+def _write_letters(picture: Picture, curves: Sequence[_Curve], rows: int, left: int) -> None:
+    """Write each method's letter to the right of its line's end, in the nearest free cell."""
+    taken = set()
+    for curve in curves:
+        if not len(curve.rows):
+            continue
+        column, row = left + int(curve.columns[-1]) + 1, _row(curve.rows[-1], rows)
+        places = [(row + down, column + right) for down in (0, 1, -1) for right in range(_ROOM)]
+        place = next((place for place in places if 0 <= place[0] < rows and place not in taken), None)
+        if place:
+            taken.add(place)
+            picture.write(*place, METHODS[curve.owner].letter, curve.owner)
+
+
+def _row(height: float, rows: int) -> int:
+    """The row of characters, from above, at a height over the lower edge."""
+    return min(max(rows - 1 - int(height), 0), rows - 1)
+
+
+def _line(text: str, width: int) -> Picture:
+    canvas = Canvas(width, 1)
+    canvas.label(0, 0, text, TEXT)
+    return canvas.picture()
+
+
+def _too_small(width: int, height: int, columns: int, rows: int) -> Picture:
+    return Picture.of_text(f"A chart needs {columns}×{rows} characters.", width, height, TEXT)

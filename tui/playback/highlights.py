@@ -1,0 +1,39 @@
+"""Highlights: when in a recording its methods did something; found run by run, while the replay plays."""
+
+from collections import defaultdict
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
+
+from recordings.events import Event
+from tui.playback.past import Past, pieces
+
+if TYPE_CHECKING:
+    from recordings.recording import Recording
+
+
+class Highlights:
+    """What the diary would list of each run at its end, as times of the recording clock."""
+
+    def __init__(self, recording: "Recording") -> None:
+        self.clocks: list[float] = []  # s
+        self._search = self._find(recording)
+
+    def find(self, is_time_left: Callable[[], bool]) -> None:
+        """Look further ahead."""
+        while is_time_left() and next(self._search, self) is not self:
+            pass
+
+    def _find(self, recording: "Recording") -> Iterator[object]:
+        events: dict[int, list[Event]] = defaultdict(list)
+        for _, event in recording.events:
+            events[event.run].append(event)
+        for run in recording.runs:
+            past, known, before, then = Past(run.scene, events[run.number]), 0, 0, run.begin
+            yield run
+            for clock in past.read(recording, run.number, pieces(run.begin, run.end), run.steps + 1):
+                happenings, step = past.witness.happenings(past.witness.seen), past.witness.seen
+                for each in happenings[known:]:  # of a long run not every sample is read
+                    share = (each.step - before) / (step - before) if step > before else 1.0
+                    self.clocks.append(then + share * (clock - then))
+                known, before, then = len(happenings), step, clock
+                yield clock

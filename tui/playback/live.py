@@ -1,0 +1,211 @@
+"""Live: a course that follows the clock, and is recorded."""
+
+import time
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Literal
+
+from engine.methods import METHODS
+from engine.run.lockstep import Sample
+from engine.run.observer import Happening
+from engine.run.rewindable import Course, Pitch
+from engine.run.verdict import Judgement
+from engine.scenes import Scene, check_h
+from recordings.events import Event, EventKind
+from tui.playback.past import Past
+from tui.playback.playhead import Pace, Playhead
+from tui.playback.source import EQUAL_PARTS, Tape, is_marked, least_h
+
+if TYPE_CHECKING:
+    from recordings.live_recorder import SittingRecorder
+
+FRAME_BUDGET = 0.020  # s of each frame for the simulation; the rest of 33 ms is for drawing
+CHUNK = 256  # steps between looks at the clock, about a millisecond
+
+
+class Live:
+    """The lab: it runs, it is changed, it is recorded once a recorder is there."""
+
+    kind: Literal["LIVE"] = "LIVE"
+
+    def __init__(
+        self,
+        scene: Scene,
+        speed: float = 1.0,
+        clock: Callable[[], float] = time.perf_counter,
+        changes: Iterable[tuple[int, Pitch]] = (),
+        step: int = 0,
+        past: Past | None = None,
+    ) -> None:
+        """With `changes` of how it steps, as (step, pitch), and a `step`, go on from there, not from the start.
+
+        `past`: what is known of the way there.
+        """
+        self.playhead = Playhead(speed=speed)
+        self.pace = Pace()
+        self.events: list[Event] = []
+        self.recorder: SittingRecorder | None = None
+        self._recorded = Playhead()  # the recording clock: it stands while the lab is paused, whatever the speed
+        self._clock = clock
+        self._runs = 1
+        self._enter(Course.at(scene, changes, step), past)
+
+    @property
+    def scene(self) -> Scene:
+        """The scene of the run."""
+        return self._course.scene
+
+    @property
+    def h(self) -> float:
+        """The step size in force [s]."""
+        return self._course.h
+
+    @property
+    def equal_cost(self) -> bool:
+        """Whether all methods spend the same number of force evaluations."""
+        return self._course.equal_cost
+
+    @property
+    def in_past(self) -> bool:
+        """Whether the lab has stepped back and what comes next is known."""
+        return self._course.in_past
+
+    @property
+    def judgements(self) -> Sequence[Judgement]:
+        """The verdicts on the run since the last change of the step size."""
+        return self._witness.judgements
+
+    @property
+    def happenings(self) -> Sequence[Happening]:
+        """What the methods did up to the sample."""
+        return self._witness.happenings(self.sample.step)
+
+    @property
+    def later_marks(self) -> Sequence[Event]:
+        """None: marks are events of the sitting itself."""
+        return ()
+
+    @property
+    def tape(self) -> Tape | None:
+        """What becomes of the recording."""
+        recorder = self.recorder
+        return None if recorder is None else Tape(recorder.path.name, recorder.seconds, recorder.bytes, recorder.failed)
+
+    def record(self, recorder: "SittingRecorder") -> None:
+        """Record from here on."""
+        self.recorder = recorder
+        for event in self.events:
+            recorder.event(event, self._recorded.position)
+        recorder.sample(self.sample, self._recorded.position)
+
+    def tick(self, now: float) -> Sample:
+        """Follow the clock as far as the frame's budget goes; what is beyond it is dropped."""
+        before = self.playhead
+        self.playhead, self._recorded = before.at(now), self._recorded.at(now)
+        if self.playhead.paused or before.seen is None:
+            return self.sample
+        began, target = self._clock(), self._course.step_at(self.playhead.position)
+        target = int(min(target, self._course.home))  # so that a sample shows what each method misses its start by
+        while (left := target - self._course.step) > 0 and self._clock() - began < FRAME_BUDGET:
+            self._course.forward(min(left, CHUNK))
+        due = self.playhead.position - before.position
+        if left > 0:
+            self.playhead = self.playhead.moved_to(self._course.x)
+        self.pace = self.pace.after(max(0.0, now - before.seen), due, self.playhead.position - before.position)
+        return self._take_sample()
+
+    def step(self, n: int) -> Sample:
+        """Pause and go n steps on, or back where n is negative."""
+        self.pause(True)
+        if n >= 0:
+            self._course.forward(n)
+        else:
+            self._course.back_to(max(0, self._course.step + n))
+        self.playhead = self.playhead.moved_to(self._course.x)
+        return self._take_sample()
+
+    def start(self, scene: Scene) -> None:
+        """Begin a new run.  Raises SceneError, before anything has changed, for a step too large at equal cost."""
+        equal_cost, whole = self.equal_cost, scene.h * max(EQUAL_PARTS)
+        if equal_cost:
+            check_h(whole, scene.w0)
+        self._runs += 1
+        self._enter(Course(scene, self._runs))
+        if equal_cost:
+            self.set_h(whole, equal_cost)
+
+    def _enter(self, course: Course, past: Past | None = None) -> None:
+        past = past or Past(course.scene)
+        self._course = course
+        self.swing, self.history, self._witness = past.swing, past.history, past.witness
+        self.playhead = self.playhead.moved_to(course.x)
+        self._note_start()
+        self._take_sample()
+
+    def restart(self) -> None:
+        """Begin again, with the step size in force."""
+        self.start(self.scene.altered(h=least_h(self)))
+
+    def set_h(self, h: float, equal_cost: bool = False) -> None:
+        """Use step size h [s] from here on, at equal cost or not; a negative h runs time backwards.
+
+        Raises SceneError for a step size that is zero, not finite or absurd.
+        """
+        for own in (h, h / max(EQUAL_PARTS)) if equal_cost else (h,):
+            check_h(own, self.scene.w0)
+        if self.in_past:
+            self._runs += 1
+            self._course.branch(self._runs)
+            self._note_start()
+        self._course.set_h(h, equal_cost)
+        self._note_here("set_h", h=h, equal_cost=equal_cost)
+        self._witness.judge_anew(self._course.step)
+        self._take_sample()
+
+    def pause(self, paused: bool) -> None:
+        """Stop or go on."""
+        if paused != self.playhead.paused:
+            self.playhead = replace(self.playhead, paused=paused)
+            self._recorded = replace(self._recorded, paused=paused)
+            self._note_here("pause" if paused else "resume")
+
+    def set_speed(self, speed: float) -> None:
+        """Simulate `speed` seconds for each second of the clock."""
+        if speed != self.playhead.speed:
+            self.playhead = replace(self.playhead, speed=speed)
+            self.pace = Pace()
+            self._note_here("speed", speed=speed)
+
+    def mark(self, text: str | None = None) -> None:
+        """Leave a mark among the events, unless the sample has one."""
+        if not is_marked(self):
+            self._note_here("mark", text=text)
+
+    def close(self) -> None:
+        """Finish the recording."""
+        if self.recorder is not None:
+            self.recorder.close()
+
+    def _take_sample(self) -> Sample:
+        self.sample = self._course.sample()
+        self.history.add(self.sample, self.swing.at(self.sample.t), self._course.equal_cost)
+        self._witness.add(self.sample)
+        if self.recorder is not None and self.sample.step >= self._course.furthest:
+            self.recorder.sample(self.sample, self._recorded.position)
+        return self.sample
+
+    def _note_start(self) -> None:
+        """The start of the run, and the changes of its step size where it goes on from another's past."""
+        course = self._course
+        keys = tuple(method.key for method in METHODS)
+        self._note(Event("start", course.run, 0, 0.0, scene=self.scene, methods=keys))
+        for change in course.changes[1:]:
+            self._note(Event("set_h", course.run, change.step, change.t, h=change.h, equal_cost=change.equal_cost))
+
+    def _note_here(self, kind: EventKind, **what: Any) -> None:
+        self._note(Event(kind, self._course.run, self._course.step, self._course.t, **what))
+
+    def _note(self, event: Event) -> None:
+        self.events.append(event)
+        if self.recorder is not None:
+            self.recorder.event(event, self._recorded.position)

@@ -1,0 +1,240 @@
+"""Stage: what the lab and the replay have in common: the frame's clock, the views, and how they look."""
+
+import gc
+import time
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, ClassVar, cast
+
+from textual.app import ComposeResult
+from textual.binding import BindingType
+from textual.containers import Container
+from textual.message import Message
+from textual.reactive import Initialize, var
+from textual.screen import Screen
+from textual.widget import Widget
+
+from engine.run.lockstep import Sample
+from tui.playback.playhead import doubled
+from tui.playback.shown import Look
+from tui.playback.source import Source
+from tui.screens.insight_line import InsightLine
+from tui.screens.key_line import Hint, KeyLine
+from tui.screens.status_line import StatusLine
+from tui.screens.too_small import TooSmall
+from tui.views import create, following
+from tui.views.keys import COMMON, Key, bindings, hints
+from tui.views.view import View
+
+if TYPE_CHECKING:
+    from tui.screens.app import PenduApp
+
+READ, BUILT = 10, 5
+"""How often a second what is read is brought up to date, and what has to be built."""
+
+STALL = 1.0  # s; a longer gap between frames was not lived: Ctrl+Z, a computer asleep, a line that was dead
+ALREADY = "There is a mark here already"
+SMALLEST = (60, 16)
+"""Columns and rows below which there is only a message."""
+
+
+def _first_source(stage: Any) -> Source:
+    source: Source = stage.first_source
+    return source
+
+
+class Stage(Screen[None]):
+    """Shows a source.  Its clock is passed in."""
+
+    @dataclass
+    class Began(Message):
+        """This stage follows the clock now."""
+
+        stage: "Stage"
+
+    BINDINGS: ClassVar[list[BindingType]] = bindings(*COMMON)
+    AUTO_FOCUS = ""  # keys belong to the screen until a pane is clicked
+    KEYS: ClassVar[tuple[Key, ...]] = COMMON
+
+    source: var[Source] = var(Initialize(_first_source))
+    sample: var[Sample | None] = var(None)
+    reading: var[Sample | None] = var(None, always_update=True)
+    past: var[Sample | None] = var(None)
+    look: var[Look] = var(Look())
+    view: var[str] = var("lab")
+
+    def __init__(
+        self,
+        source: Source,
+        clock: Callable[[], float] = time.monotonic,
+        prepare: Callable[[], None] = lambda: None,
+        notices: Sequence[str] = (),
+    ) -> None:
+        """`prepare` is called after the first paint, for what takes time; it may raise OSError."""
+        super().__init__()
+        self._prepare = prepare
+        self._notices = notices
+        self.first_source = source
+        self.clock = clock
+        self._frames = 0
+        self._missed = 0.0  # s of the clock while the program was stopped
+        self._late = False  # everything is to be shown with the next frame
+        self._undo: list[Callable[[], object]] = []
+        for reactive in (Stage.sample, Stage.reading, Stage.past):
+            self.set_reactive(reactive, source.sample)
+
+    def compose(self) -> ComposeResult:
+        """Create what frames the views, and the first one."""
+        yield StatusLine().data_bind(Stage.source, sample=Stage.reading)
+        with Container(id="views"):
+            yield self._create(self.view)
+        yield TooSmall(SMALLEST)
+        yield from self.more()
+        yield InsightLine().data_bind(Stage.source, sample=Stage.reading)
+        yield KeyLine([Hint(key.shown, key.hint, key.action) for key in hints(self.KEYS)])
+
+    def more(self) -> Iterable[Widget]:
+        """What this screen has above the insight line."""
+        return ()
+
+    def on_mount(self) -> None:
+        """Wait for the first paint."""
+        self.call_after_refresh(self._begin)
+
+    def _begin(self) -> None:
+        """Follow the clock from now on."""
+        try:
+            self._prepare()
+        except OSError as error:
+            self.app.exit(error)
+            return
+        gc.collect()
+        gc.freeze()  # what is there now stays: collecting it again and again would cost frames
+        gc.enable()
+        self.post_message(self.Began(self))
+        self._fps = cast("PenduApp", self.app).fps
+        self._timer = self.set_interval(1 / self._fps, self.frame)
+        for notice in self._notices:
+            self.notify(notice, timeout=15, markup=False)
+
+    def end(self) -> None:
+        """Follow the clock no longer: another screen takes over."""
+        self._timer.stop()
+        self.source.close()
+
+    def frame(self) -> None:
+        """One frame: the source always follows the clock, the screen as far as the line can carry it."""
+        now, seen = self.clock() - self._missed, self.source.playhead.seen
+        if seen is not None and now - seen > STALL:
+            self._missed += now - seen
+            now = seen
+        sample = self.source.tick(now)
+        if cast("PenduApp", self.app).is_behind(urgent=self._late):
+            return
+        self._frames += 1
+        self.sample = sample
+        if self._late or self._frames % max(self._fps // READ, 1) == 0:
+            self.reading = sample
+        if self._late or self._frames % max(self._fps // BUILT, 1) == 0:
+            self.past = sample
+        self._late = False
+
+    def show_now(self) -> None:
+        """Show everything as it is, without waiting for its turn; on a line that is busy, as soon as it is not."""
+        self._late = cast("PenduApp", self.app).is_behind(urgent=True)
+        if not self._late:
+            self.sample = self.reading = self.past = self.source.sample
+
+    def remember(self, undo: Callable[[], object]) -> None:
+        """Keep what undoes a setting."""
+        self._undo.append(undo)
+
+    def change_look(self, look: Look) -> None:
+        """Use another look."""
+        before = self.look
+        self.remember(lambda: setattr(self, "look", before))
+        self.look = look
+
+    def on_key_line_pressed(self, message: KeyLine.Pressed) -> None:
+        """A click on the key line does what the key does."""
+        self.call_next(self.run_action, message.action)
+
+    def action_pause(self) -> None:
+        """Stop, or go on."""
+        self.source.pause(not self.source.playhead.paused)
+        self.show_now()
+
+    def action_step(self, n: int) -> None:
+        """Pause and go n steps on or back."""
+        self.source.step(n)
+        self.show_now()
+
+    def action_speed(self, doublings: int) -> None:
+        """Double or halve the speed."""
+        self.set_speed(doubled(self.source.playhead.speed, doublings))
+
+    def action_real_time(self) -> None:
+        """Play a second in a second."""
+        self.set_speed(1.0)
+
+    def set_speed(self, speed: float) -> None:
+        """Set the speed, so that it can be undone."""
+        before = self.source.playhead.speed
+        if speed != before:
+            self.remember(lambda: self.source.set_speed(before))
+            self.source.set_speed(speed)
+            self.show_now()
+
+    def action_show(self, number: int) -> None:
+        """Show or hide a method, or the exact swing."""
+        self.change_look(self.look.toggled(number))
+
+    def action_trails(self) -> None:
+        """Show or hide the trails."""
+        self.change_look(replace(self.look, trails=not self.look.trails))
+
+    def action_log(self) -> None:
+        """Chart logarithmically, or linearly."""
+        self.change_look(replace(self.look, log=not self.look.log))
+
+    def action_quantity(self) -> None:
+        """Chart the next quantity."""
+        self.change_look(self.look.next_quantity())
+
+    def action_window(self, direction: int) -> None:
+        """Chart more or less of the past."""
+        self.change_look(self.look.next_window(direction > 0))
+
+    def action_undo(self) -> None:
+        """Take back the last setting."""
+        if self._undo:
+            self._undo.pop()()
+            self.show_now()
+
+    def action_view(self, name: str = "") -> None:
+        """Show a view, or the next one."""
+        self.call_next(self._show_view, name or following(self.view))  # data_bind works in the screen's own turn only
+
+    async def _show_view(self, name: str) -> None:
+        views = self.query_one("#views")
+        if not views.query(f"#{name}"):
+            await views.mount(self._create(name))
+        for view in views.children:
+            view.display = view.id == name
+        self.view = name
+        self.show_now()
+
+    def action_help(self) -> None:
+        """Show the keys, those of what has the focus first."""
+        from tui.screens.help import Help
+
+        panes = self.query_one(f"#{self.view}", View).KEYS
+        keys = (*panes, *self.KEYS) if self.focused is not None else (*self.KEYS, *panes)
+        self.app.push_screen(Help(keys, self.source))
+
+    def action_quit(self) -> None:
+        """Leave the program."""
+        self.app.exit()
+
+    def _create(self, name: str) -> View:
+        return create(name).data_bind(Stage.source, Stage.sample, Stage.reading, Stage.past, Stage.look)

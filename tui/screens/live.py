@@ -1,0 +1,106 @@
+"""Lab: the live screen, where the run can be changed."""
+
+import math
+from collections.abc import Callable
+from typing import ClassVar
+
+from textual.binding import BindingType
+
+from engine.scenes import SCENES, Scene, SceneError
+from tui.playback.live import Live
+from tui.playback.playhead import next_h
+from tui.playback.source import EQUAL_PARTS, is_marked, least_h
+from tui.screens.base import ALREADY, Stage
+from tui.views.keys import COMMON, LIVE, Key, bindings
+from tui.views.messages import SceneChosen, StepSizeChosen
+
+
+class Lab(Stage):
+    """Shows a live source and changes it."""
+
+    BINDINGS: ClassVar[list[BindingType]] = bindings(*LIVE)
+    KEYS: ClassVar[tuple[Key, ...]] = (*LIVE, *COMMON)
+
+    @property
+    def live(self) -> Live:
+        """The source."""
+        assert isinstance(self.source, Live)
+        return self.source
+
+    def start(self, scene: Scene) -> None:
+        """Begin a new run, which can be undone by another one."""
+        before = self.live.scene
+        if self._do(lambda: self.live.start(scene)):
+            self.remember(lambda: self._do(lambda: self.live.start(before)))
+
+    def set_h(self, h: float, equal_cost: bool) -> None:
+        """Use another step size from here on, at equal cost or not."""
+        before = self.live.h, self.live.equal_cost
+        if self._do(lambda: self.live.set_h(h, equal_cost)):
+            self.remember(lambda: self._do(lambda: self.live.set_h(*before)))
+
+    def _do(self, change: Callable[[], None]) -> bool:
+        """Change the run, or say why that cannot be."""
+        try:
+            change()
+        except SceneError as error:
+            self.notify(str(error), severity="warning", markup=False)
+            return False
+        self.show_now()
+        return True
+
+    def on_scene_chosen(self, choice: SceneChosen) -> None:
+        """Start what was chosen in a view."""
+        self.start(choice.scene)
+
+    def on_step_size_chosen(self, choice: StepSizeChosen) -> None:
+        """Go on with what was chosen in a view."""
+        self.set_h(math.copysign(choice.h, self.live.h), self.live.equal_cost)
+
+    def action_restart(self) -> None:
+        """Begin again."""
+        self.live.restart()
+        self.show_now()
+
+    def action_larger_h(self, direction: int) -> None:
+        """Go along 1, 2, 5 with h."""
+        live = self.live
+        h = next_h(math.copysign(least_h(live), live.h), direction > 0)
+        self.set_h(h * max(EQUAL_PARTS) if live.equal_cost else h, live.equal_cost)
+
+    def action_reverse(self) -> None:
+        """Let time run the other way."""
+        self.set_h(-self.live.h, self.live.equal_cost)
+
+    def action_equal_cost(self) -> None:
+        """Give every method the same number of force evaluations, or the same step again."""
+        live = self.live
+        h = math.copysign(least_h(live), live.h)
+        self.set_h(h if live.equal_cost else h * max(EQUAL_PARTS), not live.equal_cost)
+
+    def action_scene(self, direction: int) -> None:
+        """Start the next scene, or the previous one."""
+        names = list(SCENES)
+        name = self.live.scene.name
+        at = names.index(name) + direction if name in SCENES else min(direction, 0)
+        self.start(SCENES[names[at % len(names)]])
+
+    def action_start_scene(self, name: str) -> None:
+        """Start a scene of the list."""
+        self.start(SCENES[name])
+
+    def action_start_values(self) -> None:
+        """Ask for the start values."""
+        from tui.screens.start_form import StartForm  # Textual's input field can wait until it is wanted
+
+        def chosen(scene: Scene | None) -> None:
+            if scene is not None:
+                self.start(scene)
+
+        self.app.push_screen(StartForm(self.live.scene.altered(h=least_h(self.live))), chosen)
+
+    def action_mark(self) -> None:
+        """Leave a mark in the recording."""
+        text = ALREADY if is_marked(self.live) else f"Mark at {self.live.sample.t:.2f} s"
+        self.live.mark()
+        self.notify(text, timeout=2)

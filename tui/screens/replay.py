@@ -1,0 +1,115 @@
+"""Player: the replay's screen, where one can go to any moment."""
+
+import asyncio
+import time
+from collections.abc import Callable, Iterator, Sequence
+from typing import ClassVar
+
+from textual.binding import BindingType
+from textual.widget import Widget
+
+from tui.cli.errors import UserError, explained
+from tui.playback.live import Live
+from tui.playback.replay import Replay
+from tui.playback.source import is_marked
+from tui.screens.base import ALREADY, Stage
+from tui.screens.seek_bar import SeekBar
+from tui.views.keys import COMMON, REPLAY, Key, bindings
+
+LONG = 100_000  # steps; a quarter of a second
+
+
+class Player(Stage):
+    """Shows a replay.  `go_live` makes the screen for a lab that goes on from the replayed moment."""
+
+    BINDINGS: ClassVar[list[BindingType]] = bindings(*REPLAY)
+    KEYS: ClassVar[tuple[Key, ...]] = (*REPLAY, *COMMON)
+
+    def __init__(
+        self,
+        source: Replay,
+        go_live: Callable[[Live], Stage],
+        clock: Callable[[], float] = time.monotonic,
+        notices: Sequence[str] = (),
+    ) -> None:
+        super().__init__(source, clock, notices=notices)
+        self._go_live = go_live
+
+    @property
+    def replay(self) -> Replay:
+        """The source."""
+        assert isinstance(self.source, Replay)
+        return self.source
+
+    def more(self) -> Iterator[Widget]:
+        """The bar above the insight line."""
+        yield SeekBar().data_bind(Stage.source, sample=Stage.reading)
+
+    def on_seek_bar_sought(self, message: SeekBar.Sought) -> None:
+        """Go there."""
+        self.seek(message.position)
+
+    def seek(self, position: float) -> None:
+        """Go to a moment of the recording clock."""
+        self.replay.seek(position)
+        self.show_now()
+
+    def action_seek(self, seconds: float) -> None:
+        """Go some seconds on or back."""
+        self.seek(self.replay.playhead.position + seconds)
+
+    def action_part(self, share: float) -> None:
+        """Go on by a share of the whole, or back."""
+        self.seek(self.replay.playhead.position + share * self.replay.length)
+
+    def action_event(self, direction: int) -> None:
+        """Go to the next event, or to the one before."""
+        self.replay.seek_event(direction)
+        self.show_now()
+
+    def action_reverse(self) -> None:
+        """Play the other way."""
+        self.replay.set_speed(-self.replay.playhead.speed)
+        self.show_now()
+
+    def action_mark(self) -> None:
+        """Leave a mark beside the recording."""
+        text = ALREADY if is_marked(self.replay) else f"Mark at {self.replay.sample.t:.2f} s simulated"
+        try:
+            self.replay.mark()
+        except OSError as error:
+            self.notify(f"The mark cannot be saved: {error.strerror}.", severity="warning", markup=False)
+        else:
+            self.notify(text, timeout=2)
+        self.show_now()
+
+    def action_loop_end(self, number: int) -> None:
+        """Begin or end the loop here."""
+        ends = list(self.replay.ends)
+        ends[number] = self.replay.playhead.position
+        self.replay.ends = (ends[0], ends[1])
+        self.replay.looping = None not in ends or self.replay.looping
+        self.show_now()
+
+    def action_loop(self) -> None:
+        """Loop, or stop looping."""
+        self.replay.looping = not self.replay.looping
+        self.show_now()
+
+    async def action_live(self) -> None:
+        """Go on live from here, when the past is known and the way here has been simulated again."""
+        self.replay.pause(True)
+        if not self.replay.fill():
+            self.notify("Reading what came before ...", timeout=2)
+        while not self.replay.fill():
+            await asyncio.sleep(0)
+        if self.replay.sample.step > LONG:
+            self.notify(f"Simulating {self.replay.sample.step} steps ...", timeout=2)
+        live = await asyncio.to_thread(self.replay.live)
+        try:
+            lab = self._go_live(live)
+        except (OSError, UserError) as error:
+            self.notify(f"The lab cannot record: {explained(error)}", severity="warning", markup=False)
+            return
+        self.end()
+        self.app.push_screen(lab)

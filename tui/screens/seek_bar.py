@@ -1,0 +1,109 @@
+"""SeekBar: where the replay stands, and what was done when."""
+
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+from textual import events
+from textual.message import Message
+from textual.reactive import var
+
+from engine.run.lockstep import Sample
+from tui.drawing.cells import Row, Rows
+from tui.drawing.palette import FRAME, TEXT, WARN
+from tui.playback.replay import Replay
+from tui.playback.source import Source
+from tui.words.numbers import seconds
+
+LEAST = 24  # columns for the bar
+
+
+def bar(position: float, length: float, ticks: Sequence[float], ends: Sequence[tuple[float, str]], width: int) -> Row:
+    """The bar: what was played is heavy, events are ticks, the ends of the loop are letters."""
+
+    def column(clock: float) -> int:
+        return min(int(clock / length * width), width - 1) if length > 0 else 0
+
+    here = column(position)
+    cells = ["━" if at < here else "─" for at in range(width)]
+    owners = [TEXT if at < here else FRAME for at in range(width)]
+    for tick in ticks:
+        at = column(tick)
+        cells[at] = "┿" if at < here else "┼"
+    for clock, letter in ends:
+        cells[column(clock)], owners[column(clock)] = letter, TEXT
+    cells[here], owners[here] = "█", WARN
+    runs = groupby(zip(cells, owners, strict=True), key=lambda cell: cell[1])
+    return [("".join(cell for cell, _ in run), owner) for owner, run in runs]
+
+
+def facts(replay: Replay, room: int) -> str:
+    """Position and length, of the recording clock; loop, run, step and event as far as there is room."""
+    runs, ticks = [run.number for run in replay.recording.runs], replay.ticks
+    text = f"recording {seconds(replay.playhead.position)} of {seconds(replay.length)}"
+    for part in (
+        "loop" if replay.loop else "",
+        f"run {runs.index(replay.run.number) + 1}/{len(runs)}",
+        f"step {replay.sample.step}/{replay.run.steps}",
+        f"event {bisect_right(ticks, replay.playhead.position)}/{len(ticks)}",
+    ):
+        if part and len(text) + len(part) + 2 <= room:
+            text += "  " + part
+    return text
+
+
+class SeekBar(Rows):
+    """The bar.  Click or drag on it to go elsewhere."""
+
+    source: var[Source | None] = var(None)
+    sample: var[Sample | None] = var(None)
+
+    @dataclass
+    class Sought(Message):
+        """The user wants to be at this moment of the recording clock."""
+
+        position: float  # s
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._columns = 1  # of the bar
+        self._length = 0.0  # of the recording
+        self._dragging = False
+
+    def watch_sample(self) -> None:
+        """Follow the sample."""
+        self.draw()
+
+    def draw(self) -> None:
+        """Draw bar and facts."""
+        replay = self.source
+        if not isinstance(replay, Replay) or not self.drawable:
+            return
+        text = facts(replay, self.room.width - LEAST - 3)
+        self._length = replay.length
+        self._columns = max(self.room.width - len(text) - 3, 1)
+        ends = [(clock, letter) for clock, letter in zip(replay.ends, "AB", strict=True) if clock is not None]
+        row = bar(replay.playhead.position, replay.length, replay.ticks, ends, self._columns)
+        self.show([[(" ", TEXT), *row, ("  " + text, TEXT)]])
+
+    def on_mouse_down(self, event: events.MouseDown) -> None:
+        """Go there, and follow the pointer until it is released."""
+        self._dragging = True
+        self.capture_mouse()
+        self._seek(event)
+
+    def on_mouse_move(self, event: events.MouseMove) -> None:
+        """Follow the pointer."""
+        if self._dragging:
+            self._seek(event)
+
+    def on_mouse_up(self, event: events.MouseUp) -> None:
+        """Stay there."""
+        self._dragging = False
+        self.release_mouse()
+
+    def _seek(self, event: events.MouseEvent) -> None:
+        column = event.screen_x - self.content_region.x - 1  # clamped: a drag may leave the bar
+        share = min(max((column + 0.5) / self._columns, 0.0), 1.0)
+        self.post_message(self.Sought(share * self._length))

@@ -1,0 +1,91 @@
+"""StatusLine: what runs, how fast, from where, and what becomes of the recording."""
+
+import math
+from typing import NamedTuple
+
+from rich.style import Style
+from textual.reactive import var
+
+from engine.run.lockstep import Sample
+from recordings.errors import printable
+from tui.drawing.cells import Row, Rows
+from tui.drawing.palette import FRAME, TEXT, WARN
+from tui.playback.source import Source, own_h
+from tui.words.limits import limit_warning
+from tui.words.numbers import file_size, percent, seconds
+
+BADGE = -10
+"""The owner of LIVE and REPLAY."""
+
+
+class _Part(NamedTuple):
+    keep: int  # the smallest go first where there is no room
+    text: str
+    owner: int = TEXT
+
+
+def speed_text(speed: float) -> str:
+    """As "1×", "1/8×", "1024×", "-2×"."""
+    sign, size = "-" if speed < 0 else "", abs(speed)
+    return f"{sign}{size:.4g}×" if size >= 1 else f"{sign}1/{1 / size:.4g}×"
+
+
+def coarse(value: float) -> str:
+    """As "12 s", "3 min", "1 h 02 min"."""
+    return f"{int(value)} s" if value < 60 else f"{int(value / 60)} min" if value < 3600 else seconds(value)
+
+
+def status_row(source: Source, width: int) -> Row:
+    """The line, as far as there is room."""
+    scene, playhead, pace, tape = source.scene, source.playhead, source.pace, source.tape
+    z, live, named = abs(source.h) * scene.w0, source.kind == "LIVE", bool(scene.watch)
+    warning = limit_warning([abs(h) * scene.w0 for h in own_h(source)])
+    parts = [
+        _Part(12, "paused " if playhead.paused else "reversed" if source.h < 0 else "running"),
+        _Part(7, speed_text(playhead.speed)),
+        _Part(11, f"t {seconds(source.sample.t)}{'' if live else ' simulated'}"),
+        _Part(11, f"h {source.h:.4g} s{' equal cost' if source.equal_cost else ''}"),
+        _Part(10, f"z {z:.3g}", WARN if warning else TEXT),
+        *([_Part(9, warning, WARN)] if warning else []),
+        _Part(6 if named else 3, scene.name, FRAME),
+        _Part(4 if named else 6, f"{math.degrees(scene.theta):.4g}° {scene.omega:.4g} rad/s"),
+    ]
+    if pace.share < 0.99:
+        parts.insert(2, _Part(10, f"real-time {percent(pace.share)}", WARN))
+    if tape is None:
+        parts.append(_Part(8, "not recorded", FRAME))
+    elif tape.failed:
+        parts.append(_Part(10, "NOT RECORDED", WARN))
+    else:
+        if live:
+            parts.append(_Part(8, f"REC {coarse(tape.seconds)}"))
+        parts.append(_Part(2, file_size(tape.bytes), FRAME))
+        parts.append(_Part(1, printable(tape.name), FRAME))
+    badge = f" {source.kind} "
+    while parts and len(badge) + sum(len(part.text) + 2 for part in parts) > width:
+        parts.remove(min(parts))
+    return [(badge, BADGE), *((text, owner) for part in parts for text, owner in (("  ", TEXT), part[1:]))]
+
+
+class StatusLine(Rows):
+    """The line."""
+
+    source: var[Source | None] = var(None)
+    sample: var[Sample | None] = var(None)
+
+    def watch_sample(self) -> None:
+        """Follow the sample."""
+        self.draw()
+
+    def draw(self) -> None:
+        """Draw the line."""
+        if self.source is not None and self.drawable:
+            self.show([status_row(self.source, self.room.width)])
+
+    def style_of(self, owner: int, base: Style) -> Style:
+        """LIVE and REPLAY stand out."""
+        return (
+            super().style_of(WARN, base) + Style(reverse=True, bold=True)
+            if owner == BADGE
+            else super().style_of(owner, base)
+        )

@@ -1,0 +1,44 @@
+"""A still of the lab, the same to the letter whenever it is made: its clock is moved by hand."""
+
+import asyncio
+import re
+from collections.abc import Sequence
+
+from engine.scenes import Scene
+from tui.playback.live import Live
+from tui.screens.app import PenduApp
+from tui.screens.live import Lab
+from tui.terminal.options import FPS, USUAL, Display
+
+PATIENCE = 30.0  # s for the charts to be built
+
+
+async def still(
+    scene: Scene, seconds: float, size: tuple[int, int], display: Display = USUAL, keys: Sequence[str] = ()
+) -> str:
+    """The lab as an SVG picture, `seconds` after the start and `keys` pressed since."""
+    now = 0.0
+    live = Live(scene, clock=lambda: 0.0)
+    stage = Lab(live, clock=lambda: now)
+    app = PenduApp(stage, display=display)
+    async with app.run_test(size=size) as pilot:
+        for frame in range(round(seconds * FPS) + 1):
+            now = frame / FPS
+            live.tick(now)
+        stage.show_now()
+        await pilot.press(*keys)
+        await settled(app)
+        await pilot.pause()
+        return normalised(app.export_screenshot())
+
+
+async def settled(app: PenduApp) -> None:
+    """Wait until every pane that takes its time shows the newest data."""
+    async with asyncio.timeout(PATIENCE):
+        while not all(getattr(pane, "settled", True) for pane in app.stage.query("#views *")):
+            await asyncio.sleep(0.01)
+
+
+def normalised(svg: str) -> str:
+    """The picture without the number that makes its names unique in a page."""
+    return re.sub(r"terminal-\d+-", "terminal-", svg)

@@ -1,0 +1,58 @@
+"""Braille -> half blocks or ASCII, where the terminal has no more: all that is drawn passes through here."""
+
+import unicodedata
+
+from rich.cells import cell_len
+from rich.segment import Segment
+from textual.color import Color
+from textual.filter import LineFilter
+
+from tui.terminal.options import Pixels
+
+_UPPER, _LOWER = 0x01 | 0x08 | 0x02 | 0x10, 0x04 | 0x20 | 0x40 | 0x80  # the dots of a cell, in Unicode's order
+
+
+def _braille(blank_upper_lower_both: str) -> dict[int, str]:
+    return {0x2800 + bits: blank_upper_lower_both[bool(bits & _UPPER) + 2 * bool(bits & _LOWER)] for bits in range(256)}
+
+
+_LIKE = {
+    "-": "─━–−▔",
+    "|": "│┃┊▏▎▌▐▊▕",
+    "+": "┌┐└┘├┤┬┴┼┿╭╮╰╯▛▜▙▟",
+    "#": "█",
+    "'": "▀",
+    ".": "▄▁·…",
+    "x": "×",
+    "u": "µ",
+    "o": "°•",
+    "~": "±",
+    "V": "√",
+    "_": "½",
+}
+
+
+class _Ascii(dict[int, str]):
+    """For str.translate.  What has no likeness becomes question marks; every character keeps its width."""
+
+    def __missing__(self, code: int) -> str:
+        character = chr(code)
+        plain = unicodedata.normalize("NFKD", character)[0]
+        self[code] = plain if plain.isascii() and cell_len(character) == 1 else "?" * cell_len(character)
+        return self[code]
+
+
+class PixelFilter(LineFilter):
+    """Writes nothing that the terminal does not have."""
+
+    def __init__(self, pixels: Pixels) -> None:
+        super().__init__(enabled=pixels != "braille")
+        self._table: dict[int, str] = _braille(" ▀▄█")
+        if pixels == "ascii":
+            self._table = _Ascii(_braille(" '.:"))
+            self._table.update((ord(character), like) for like, those in _LIKE.items() for character in those)
+
+    def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
+        """The same segments in other characters."""
+        table = self._table
+        return [Segment(text.translate(table), style, control) for text, style, control in segments]

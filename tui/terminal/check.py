@@ -1,0 +1,31 @@
+"""The terminal: whether the lab can be shown on it, and whether it is still there."""
+
+import os
+import sys
+
+from tui.cli.errors import Exit, UserError
+
+
+def check_terminal() -> None:
+    """Raise UserError unless the lab can be shown: Textual itself would print garbage."""
+    if not all(stream is not None and stream.isatty() for stream in (sys.__stdin__, sys.__stdout__, sys.__stderr__)):
+        raise UserError(
+            "this is no terminal: the lab needs one for its input and its output; pendu-tui run needs none,"
+            " nor does --plain.",
+            Exit.TERMINAL_UNSUITABLE,
+        )
+    term = os.environ.get("TERM", "")
+    if term in ("", "dumb", "unknown"):
+        raise UserError(
+            f"the terminal (TERM={term}) cannot move its cursor: set TERM to what it is, such as xterm-256color.",
+            Exit.TERMINAL_UNSUITABLE,
+        )
+
+
+def is_gone() -> bool:
+    """Whether the terminal has been closed: who writes to it then fails, or waits forever."""
+    try:
+        os.get_terminal_size(0)
+    except OSError:
+        return True
+    return False

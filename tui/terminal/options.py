@@ -1,0 +1,94 @@
+"""How a terminal is made use of: colours, characters, mouse, frames; from options and what it says of itself."""
+
+import argparse
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+from tui.cli.options import count
+from tui.drawing.palette import PALETTES
+
+Pixels = Literal["braille", "half", "ascii"]
+"""Pictures made of braille, of half blocks, or of nothing but ASCII, which lines and words are made of then, too."""
+
+PIXELS: tuple[Pixels, ...] = get_args(Pixels)
+FPS, CALM_FPS, MOST_FPS = 30, 10, 60
+
+
+@dataclass(frozen=True, slots=True)
+class Display:
+    """How the lab is shown on a terminal."""
+
+    theme: str = "dark"
+    pixels: Pixels = "braille"
+    mouse: bool = True
+    fps: int = FPS
+    present: bool = False  # large numbers and thick lines, for a projector
+
+
+USUAL = Display()
+
+
+def add_display_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options that say how the lab is shown; `display_of` reads them."""
+    group = add_picture_options(parser, "auto", "auto")
+    group.add_argument("--plain", action="store_true", help="no screen but a sentence a second; Ctrl+C ends it")
+    group.add_argument("--no-mouse", action="store_true", help="leave the mouse to the terminal; every click has a key")
+    group.add_argument(
+        "--fps", metavar="N", type=_fps, help=f"frames a second ({FPS}; {CALM_FPS} with TEXTUAL_ANIMATIONS=none)"
+    )
+
+
+def add_picture_options(parser: argparse.ArgumentParser, theme: str, pixels: str) -> argparse._ArgumentGroup:
+    """Add those of them that a picture of the lab has, too, with these defaults."""
+    parser.set_defaults(no_mouse=False, fps=None)
+    group = parser.add_argument_group(
+        "display", "auto: as the terminal says it can; pendu-tui doctor tells what that is"
+    )
+    group.add_argument("--theme", choices=("auto", *PALETTES), default=theme, help="colours (%(default)s)")
+    group.add_argument("--pixels", choices=("auto", *PIXELS), default=pixels, help="what is drawn with (%(default)s)")
+    group.add_argument("--present", action="store_true", help="large numbers and thick lines, for a projector")
+    return group
+
+
+def _fps(text: str) -> int:
+    if count(text) > MOST_FPS:
+        raise argparse.ArgumentTypeError(f"{text!r} is out of range: give 1 to {MOST_FPS} frames a second")
+    return count(text)
+
+
+def display_of(options: argparse.Namespace, environment: Mapping[str, str], encoding: str) -> Display:
+    """The display that the options describe; what they leave open is for the terminal to say."""
+    calm = environment.get("TEXTUAL_ANIMATIONS", "").lower() == "none"
+    return Display(
+        suited_theme(environment) if options.theme == "auto" else options.theme,
+        ("braille" if is_utf8(encoding) else "ascii") if options.pixels == "auto" else options.pixels,
+        not options.no_mouse,
+        options.fps or (CALM_FPS if calm else FPS),
+        options.present,
+    )
+
+
+def is_utf8(encoding: str) -> bool:
+    """Whether an encoding is UTF-8, however it is spelt."""
+    return encoding.lower().replace("-", "").replace("_", "") == "utf8"
+
+
+def suited_theme(environment: Mapping[str, str]) -> str:
+    """The terminal's own colours where it has few or none are wanted, else the theme for its background.
+
+    COLORFGBG, such as "0;15", ends with the background's number among the 16 colours: 7 and 9 to 15 are light.
+    """
+    if environment.get("NO_COLOR") or colours(environment) <= 16:
+        return "ansi"
+    return "light" if environment.get("COLORFGBG", "").rpartition(";")[2] in map(str, (7, *range(9, 16))) else "dark"
+
+
+def colours(environment: Mapping[str, str]) -> int:
+    """How many colours the terminal says it has, by the variables that Rich goes by."""
+    if environment.get("COLORTERM", "").strip().lower() in ("truecolor", "24bit"):
+        return 1 << 24
+    term = environment.get("TERM", "").lower()
+    if term in ("", "dumb", "unknown"):
+        return 0
+    return 256 if term.endswith(("256color", "kitty")) else 16

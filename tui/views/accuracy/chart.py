@@ -1,0 +1,70 @@
+"""Points of an accuracy study -> a log-log chart: cost across, error up."""
+
+from collections.abc import Sequence
+from typing import Literal
+
+from engine.accuracy.study import ErrorKind, Flaw, Point
+from engine.methods import METHODS
+from tui.drawing.canvas import Picture
+from tui.drawing.chart import Series, loglog_chart
+from tui.drawing.palette import FRAME
+
+Cost = Literal["evaluations", "seconds"]
+
+MARKS: dict[Flaw, str] = {"lost": "x", "diverged": "x", "rounding": "~"}
+"""Of points that say nothing of how a method depends on h."""
+
+ERROR_LABELS: dict[ErrorKind, str] = {
+    "theta": "theta error [rad], the largest distance from the exact swing",
+    "energy": "energy error, the largest of all steps, relative",
+    "final": "theta error at the end [rad]",
+}
+COST_LABELS: dict[Cost, str] = {"evaluations": "force evaluations", "seconds": "seconds"}
+BESIDE = 0.2  # of a method's errors: where the dotted line of its order runs
+POWERS = {1: "h", 2: "h²", 3: "h³", 4: "h⁴"}
+
+
+def cost_of(point: Point, cost: Cost) -> float:
+    """What the run cost; zero where it was not timed."""
+    return point.force_evaluations if cost == "evaluations" else point.seconds or 0.0
+
+
+def accuracy_chart(
+    points: Sequence[Point],
+    kind: ErrorKind,
+    cost: Cost,
+    width: int,
+    height: int,
+    marks: Sequence[tuple[str, Point]] = (),
+) -> Picture:
+    """Letters for points, x and ~ for those that are lost or only rounding, dotted lines for orders, and `marks`."""
+
+    def series(some: Sequence[Point], mark: str) -> Series:
+        costs, errors = [cost_of(point, cost) for point in some], [point.error(kind) for point in some]
+        return Series(METHODS.index(some[0].method), mark, costs, errors)
+
+    by_method = [ours for method in METHODS if (ours := [point for point in points if point.method == method])]
+    lines = [series(ours, ours[0].method.letter) for ours in by_method]
+    flawed = [series([point], MARKS[flaw]) for point in points if (flaw := point.flaw(kind))]
+    marked = [series([point], mark) for mark, point in marks]
+    slopes = [_slope(ours, kind, cost, points) for ours in by_method]
+    return loglog_chart(
+        [*(slope for slope in slopes if slope), *lines, *flawed, *marked],
+        width,
+        height,
+        x_label=COST_LABELS[cost],
+        y_label=ERROR_LABELS[kind],
+    )
+
+
+def _slope(ours: Sequence[Point], kind: ErrorKind, cost: Cost, points: Sequence[Point]) -> Series | None:
+    """A line of the slope that the method's order claims, beside its errors; one line for methods of one order."""
+    order = ours[0].method.order
+    valid = [point for point in ours if not point.flaw(kind) and point.error(kind) and cost_of(point, cost)]
+    if not valid or ours[0].method != next(p.method for p in points if p.method.order == order):
+        return None
+    anchor = valid[len(valid) // 2]
+    costs = [cost_of(point, cost) for point in points]
+    ends = [min(costs), max(costs)]
+    errors = [BESIDE * anchor.error(kind) * (end / cost_of(anchor, cost)) ** -order for end in ends]
+    return Series(FRAME, POWERS.get(order, f"h^{order}"), ends, errors, dotted=True)

@@ -1,0 +1,78 @@
+"""AccuracyView: speed against accuracy for the pendulum on screen; the chart fills in as it is computed."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from textual.app import ComposeResult
+from textual.message import Message
+from textual.worker import get_current_worker
+
+from engine.accuracy.study import Point, measured, usual
+from engine.scenes import Scene
+from tui.playback.source import own_h
+from tui.views.accuracy.pane import KEYS, MOST_STEPS, AccuracyPane
+from tui.views.background import elsewhere
+from tui.views.view import View
+
+Start = tuple[float, float, float]
+"""theta, omega, w0²: what the chart depends on."""
+
+
+class AccuracyView(View):
+    """Computes in a process of its own: all points for another start or pendulum, some for another h."""
+
+    KEYS = KEYS
+
+    @dataclass
+    class Measured(Message):
+        """A point is there."""
+
+        start: Start
+        point: Point
+
+    def __init__(self, id: str) -> None:
+        super().__init__(id=id)
+        self._start: Start | None = None
+
+    def compose(self) -> ComposeResult:
+        """Create the pane."""
+        yield AccuracyPane().data_bind(View.source, View.look, sample=View.reading)
+
+    def on_mount(self) -> None:
+        """The keys are the chart's from the start."""
+        self.query_one(AccuracyPane).focus()
+        self.watch_reading()
+
+    def watch_reading(self) -> None:
+        """Compute what is not there yet for the run on screen, if anybody looks."""
+        if self.source is None or not self.display or not self.query(AccuracyPane):
+            return
+        pane, scene = self.query_one(AccuracyPane), self.source.scene
+        start = (scene.theta, scene.omega, scene.w0_squared)
+        if start != self._start:
+            self._start = start
+            pane.begin(*usual(scene))
+            self._compute(scene, pane.time, pane.rungs, "ladder")
+            pane.here = ()
+        here = tuple(max(1, round(pane.time / abs(h))) for h in own_h(self.source))
+        if here != pane.here:
+            pane.here = here
+            known = {*pane.rungs, *(steps for _, steps in pane.points)}
+            if wanted := [steps for steps in sorted(set(here) - known) if 1 < steps <= MOST_STEPS]:
+                self._compute(scene, pane.time, wanted, "here")
+
+    def _compute(self, scene: Scene, time: float, rungs: Sequence[int], group: str) -> None:
+        self.run_worker(lambda: self._wait_for(scene, time, rungs), thread=True, group=group, exclusive=True)
+
+    def _wait_for(self, scene: Scene, time: float, rungs: Sequence[int]) -> None:
+        worker, start = get_current_worker(), (scene.theta, scene.omega, scene.w0_squared)
+        with elsewhere(measured, scene, time, rungs) as found:
+            for point in found:
+                if worker.is_cancelled:
+                    return
+                self.post_message(self.Measured(start, point))
+
+    def on_accuracy_view_measured(self, message: Measured) -> None:
+        """Show it, unless there is another pendulum on screen by now."""
+        if message.start == self._start:
+            self.query_one(AccuracyPane).add(message.point)

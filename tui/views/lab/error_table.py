@@ -1,0 +1,122 @@
+"""ErrorTable: what each method reads now, and what is known of its energy error."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from textual.reactive import var
+
+from engine.methods import METHODS, Method
+from engine.models.state import State
+from engine.run.lockstep import Reading, Sample
+from engine.run.verdict import Judgement
+from tui.drawing.cells import Row, Rows
+from tui.drawing.palette import FRAME, TEXT, WARN, mark
+from tui.playback.shown import Look
+from tui.playback.source import Source, own_h
+from tui.words.numbers import decimal, scientific
+
+
+class Line(NamedTuple):
+    """All that a line of the table is made of."""
+
+    method: Method
+    reading: Reading
+    judgement: Judgement
+    exact: State
+    h: float  # s, its own step size
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A column: its head and width where room is scarce and where it is not, and how its cells are made."""
+
+    keep: int  # columns with the smallest numbers go first where there is no room
+    narrow: tuple[str, int]
+    wide: tuple[str, int]
+    cell: Callable[[Line, int], str]
+
+
+COLUMNS = (
+    Column(9, ("h", 6), ("h [s]", 8), lambda line, width: f"{line.h:.4g}"[:width].rjust(width)),
+    Column(
+        4, ("theta", 6), ("theta [rad]", 11), lambda line, width: decimal(line.reading.theta, width, max(width - 6, 3))
+    ),
+    Column(
+        2,
+        ("omega", 6),
+        ("omega [rad/s]", 13),
+        lambda line, width: decimal(line.reading.omega, width, max(width - 8, 3)),
+    ),
+    Column(7, ("dE/E0", 8), ("dE/E0 now", 9), lambda line, width: scientific(line.reading.energy_error, width)),
+    Column(
+        6, ("largest", 7), ("largest", 8), lambda line, width: scientific(line.reading.max_energy_error, width, 1, "-")
+    ),
+    Column(5, ("per s", 8), ("drift per s", 11), lambda line, width: scientific(line.judgement.slope, width)),
+    Column(8, ("verdict", 9), ("verdict", 9), lambda line, width: verdict(line).rjust(width)),
+    Column(3, ("th.err", 7), ("theta error", 11), lambda line, width: scientific(theta_error(line), width, 1, "-")),
+    Column(1, ("f", 1), ("force/step", 10), lambda line, width: str(line.method.force_evaluations).rjust(width)),
+)
+NAME = max(len(mark(index) + method.label) for index, method in enumerate(METHODS)) + 1
+MOST_GAP = 3
+
+
+def theta_error(line: Line) -> float:
+    """|theta - exact theta| [rad]."""
+    return abs(line.reading.theta - line.exact.theta)
+
+
+def verdict(line: Line) -> str:
+    """The verdict in a word; a method that has diverged has failed."""
+    return "failed" if line.reading.diverged_at is not None else line.judgement.verdict
+
+
+def chosen(columns: Sequence[Column], room: int) -> list[tuple[str, int, Callable[[Line, int], str]]]:
+    """(head, width, cell) of the columns that fit, in their order: wide ones, or as many narrow ones as possible."""
+    if sum(column.wide[1] + 1 for column in columns) <= room:
+        return [(*column.wide, column.cell) for column in columns]
+    left = list(columns)
+    while left and sum(column.narrow[1] + 1 for column in left) > room:
+        left.remove(min(left, key=lambda column: column.keep))
+    return [(*column.narrow, column.cell) for column in left]
+
+
+def table(
+    sample: Sample, judgements: Sequence[Judgement], exact: State, h: Sequence[float], look: Look, width: int
+) -> list[Row]:
+    """The table's rows, its head first; each method's own step size where they differ."""
+    columns = chosen(COLUMNS[len(set(h)) == 1 :], width - NAME)
+    spare = width - NAME - sum(size + 1 for _, size, _ in columns)
+    gap = " " * (1 + min(spare // max(len(columns), 1), MOST_GAP))
+    rows: list[Row] = [[("method".ljust(NAME), FRAME), *((gap + head.rjust(size), FRAME) for head, size, _ in columns)]]
+    for index in look.indices:
+        line = Line(METHODS[index], sample.readings[index], judgements[index], exact, h[index])
+        failed = line.reading.diverged_at is not None
+        cells = "".join(gap + cell(line, size) for _, size, cell in columns)
+        rows.append([(f"{mark(index)} {METHODS[index].label}".ljust(NAME), index), (cells, WARN if failed else TEXT)])
+    return rows
+
+
+class ErrorTable(Rows):
+    """The table."""
+
+    source: var[Source | None] = var(None)
+    sample: var[Sample | None] = var(None)
+    look: var[Look] = var(Look())
+
+    def watch_sample(self) -> None:
+        """Follow the sample."""
+        self.draw()
+
+    def watch_look(self) -> None:
+        """Follow the settings; hidden methods leave no gap."""
+        self.styles.height = 1 + len(self.look.indices)
+        self.draw()
+
+    def draw(self) -> None:
+        """Draw the table."""
+        source, sample = self.source, self.sample
+        if source is None or sample is None or not self.drawable:
+            return
+        exact = source.swing.at(sample.t)
+        self.show(table(sample, source.judgements, exact, own_h(source), self.look, self.room.width))

@@ -1,0 +1,60 @@
+"""Pendulum: one or all methods' pendulums on one pivot."""
+
+from collections.abc import Sequence
+
+from textual.reactive import var
+
+from engine.methods import METHODS
+from engine.run.lockstep import Sample
+from tui.drawing.cells import Rows
+from tui.drawing.palette import EXACT, mark
+from tui.playback.shown import Look
+from tui.playback.source import Source
+from tui.views.lab.pendulum_picture import Bob, pendulum_picture
+
+TRAIL = 15  # samples, half a second at 30 frames a second
+
+
+class Pendulum(Rows):
+    """The pendulums of some methods; more than one are told apart by their letters."""
+
+    source: var[Source | None] = var(None)
+    sample: var[Sample | None] = var(None)
+    look: var[Look] = var(Look())
+
+    def __init__(self, indices: Sequence[int], id: str | None = None, classes: str | None = None) -> None:
+        super().__init__(id, classes)
+        self._indices = indices
+        alone = len(indices) == 1
+        self.border_title = f"{mark(indices[0])} {METHODS[indices[0]].label}" if alone else "Pendulums"
+
+    def watch_sample(self) -> None:
+        """Follow the sample."""
+        self.draw()
+
+    def watch_look(self) -> None:
+        """Follow the settings."""
+        self.draw()
+
+    def draw(self) -> None:
+        """Draw the sample and the way there."""
+        source, sample = self.source, self.sample
+        if source is None or sample is None or not self.drawable:
+            return
+        length = TRAIL if self.look.trails else 0
+        bobs = []
+        if self.look.exact:
+            bobs.append(Bob(source.swing.at(sample.t).theta, EXACT, ghost=True))
+        for index in self._indices:
+            if self.look.shown[index]:
+                reading = sample.readings[index]
+                bobs.append(
+                    Bob(
+                        reading.theta,
+                        index,
+                        trail=source.history.trail(index, length)[0],
+                        letter=METHODS[index].letter if len(self._indices) > 1 else "",
+                        diverged=reading.diverged_at is not None,
+                    )
+                )
+        self.show_picture(pendulum_picture(*self.room, bobs))

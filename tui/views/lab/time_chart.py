@@ -1,0 +1,91 @@
+"""TimeChart: a quantity of all methods over time."""
+
+import asyncio
+from functools import partial
+
+from textual.reactive import var
+
+from engine.methods import METHODS
+from engine.models.exact_pendulum import Swing
+from engine.run.lockstep import Sample
+from tui.drawing.cells import Rows
+from tui.drawing.chart import time_chart
+from tui.playback.history import Quantity
+from tui.playback.shown import Look
+from tui.playback.source import Source
+from tui.words.findings import about
+
+NAMES: dict[Quantity, tuple[str, str]] = {
+    "energy_error": ("energy error dE/E0", "|dE/E0|"),
+    "theta_error": ("theta - exact theta [rad]", "theta error [rad]"),
+    "shadow_error": ("shadow energy error", "|shadow error|"),
+    "energy": ("energy per m L² [1/s²]", "energy [1/s²]"),
+}
+"""Of the quantity itself, and of its magnitude, which is charted logarithmically."""
+
+NO_SHADOW = f"only {' and '.join(m.letter for m in METHODS if m.shadow)} have a shadow energy"
+
+
+def title(look: Look, swing: Swing) -> str:
+    """What the chart shows, and of how much of the past."""
+    name, magnitude = NAMES[look.quantity]
+    span = "all" if look.seconds is None else about(look.seconds)
+    if not look.log:
+        return f"{name}, {span}"
+    each = {"libration": " per half swing", "rotation": " per turn"}.get(swing.regime, "")
+    return f"max {magnitude}{each}, {span}"
+
+
+class TimeChart(Rows):
+    """The chart.  It is built in a thread, always from the newest data; what comes too quickly is left out."""
+
+    source: var[Source | None] = var(None)
+    sample: var[Sample | None] = var(None)
+    look: var[Look] = var(Look())
+
+    def __init__(self, id: str | None = None) -> None:
+        super().__init__(id)
+        self._wanted = asyncio.Event()
+        self._building = False
+
+    @property
+    def settled(self) -> bool:
+        """Whether the chart shows the newest data."""
+        return not (self._building or self._wanted.is_set())
+
+    def on_mount(self) -> None:
+        """Build from the first paint on: plotext takes as long to import as all else takes to paint."""
+        self.call_after_refresh(self._start)
+
+    def _start(self) -> None:
+        self.run_worker(self._build_on_demand(), group="chart")
+
+    def watch_sample(self) -> None:
+        """Follow the sample."""
+        self.draw()
+
+    def watch_look(self) -> None:
+        """Follow the settings."""
+        self.draw()
+
+    def draw(self) -> None:
+        """Ask for a chart."""
+        if self.source is not None and self.drawable:
+            self._wanted.set()
+            text = title(self.look, self.source.swing)
+            if text != self.border_title:  # setting it paints all of the pane
+                self.border_title = text
+                self.border_subtitle = NO_SHADOW if self.look.quantity == "shadow_error" else ""
+
+    async def _build_on_demand(self) -> None:
+        while True:
+            await self._wanted.wait()
+            self._wanted.clear()
+            if self.source is None or not self.drawable:
+                continue
+            self._building = True
+            look, (width, height) = self.look, self.room
+            build = partial(time_chart, log=look.log, seconds=look.seconds, shown=look.indices)
+            window = self.source.history.window(look.seconds)
+            self.show_picture(await asyncio.to_thread(build, window, look.quantity, width, height))
+            self._building = False

@@ -1,0 +1,50 @@
+"""LabView: four pendulums, the chart of their errors, phase space, the diary, and the table."""
+
+from collections.abc import Iterator
+
+from textual.app import ComposeResult
+from textual.containers import Container, Grid, Horizontal
+from textual.widget import Widget
+
+from engine.methods import METHODS
+from tui.views.lab.error_table import ErrorTable
+from tui.views.lab.event_list import DiaryPane
+from tui.views.lab.large_table import LargeTable
+from tui.views.lab.pendulums import Pendulum
+from tui.views.lab.time_chart import TimeChart
+from tui.views.phase.pane import KEYS, PhasePane
+from tui.views.view import View
+
+
+class LabView(View):
+    """Which panes there are and how large is the sheet's business: it depends on the terminal."""
+
+    KEYS = KEYS
+
+    def compose(self) -> ComposeResult:
+        """Create the panes."""
+        with Horizontal():
+            with Container(id="side"):
+                with Grid(id="pendulums"):
+                    yield from self._pendulums()
+                yield DiaryPane().data_bind(View.source, sample=View.reading)
+            yield self._following(Pendulum(range(len(METHODS)), id="overlay"))
+            with Container(id="charts"):
+                yield TimeChart().data_bind(View.source, View.look, sample=View.past)
+                yield PhasePane().data_bind(View.source, View.sample, View.look)
+        yield ErrorTable().data_bind(View.source, View.look, sample=View.reading)
+        yield LargeTable().data_bind(View.source, View.look, sample=View.reading)
+
+    def _pendulums(self) -> Iterator[Widget]:
+        for index in range(len(METHODS)):
+            yield self._following(Pendulum([index]))
+
+    def _following(self, pendulum: Pendulum) -> Widget:
+        return pendulum.data_bind(View.source, View.sample, View.look)
+
+    def watch_look(self) -> None:
+        """Hidden methods leave their room to the others."""
+        shown = self.look.indices
+        for index, pendulum in enumerate(self.query("#pendulums Pendulum")):
+            pendulum.display = index in shown
+        self.query_one("#pendulums").set_class(len(shown) < 3, "-few")

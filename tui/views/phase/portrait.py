@@ -1,0 +1,174 @@
+"""The theoretical portrait: curves of equal energy, the separatrix, the regimes' names and the axes."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tui.drawing.palette import FRAME, TEXT
+from tui.drawing.phase_axes import nice, omega_ticks, theta_ticks
+from tui.views.phase.viewport import Viewport
+
+Dots = tuple[NDArray[np.intp], NDArray[np.intp]]  # x, y
+Cells = NDArray[np.bool_]  # (rows, columns)
+Word = tuple[int, int, str, int]  # column, row, text, owner
+_CURVES = 8  # about so many energies are in view
+
+
+def margin(w0: float, theta: Any, omega: Any) -> Any:
+    """1 - E/E_separatrix: 1 at rest, 0 on the separatrix, negative in rotation; numbers or arrays.
+
+    The product of two numbers of which one is exact near the separatrix, where 1 - E/E_separatrix
+    itself would cancel.
+    """
+    c, v = np.cos(np.asarray(theta) / 2), np.asarray(omega) / (2 * w0)
+    return (c - v) * (c + v)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Portrait:
+    """What does not move, for one viewport: computed once, drawn with every frame."""
+
+    viewport: Viewport
+    w0: float
+    margin: NDArray[np.float64]  # (dots down, dots right), at the dots' centres
+    curves: Dots
+    separatrix: Dots
+    words: tuple[Word, ...]
+
+    @classmethod
+    def of(cls, viewport: Viewport, w0: float) -> "Portrait":
+        """Draw the portrait of all pendulums with natural frequency w0 [rad/s]."""
+        x, y = np.arange(2 * viewport.columns) + 0.5, np.arange(4 * viewport.rows) + 0.5
+        omega = viewport.omega_at(y)[:, None]
+        field = margin(w0, viewport.theta_at(x), omega)
+        curves, separatrix = _border(_level(field)), _border(field < 0, heavy=True)
+        return cls(
+            viewport,
+            w0,
+            field,
+            _dots(curves),
+            _dots(separatrix),
+            words=_words(viewport, curves, separatrix, field, omega),
+        )
+
+    def orbit(self, theta: float, omega: float) -> Dots:
+        """The exact orbit through a state."""
+        value = margin(self.w0, theta, omega)
+        curve = _border(self.margin < value)
+        if value < 0:  # the same energy belongs to two orbits, one for each sense of rotation
+            rows = self.viewport.omega_at(np.arange(len(curve)) + 0.5)
+            curve &= (rows > 0)[:, None] if omega > 0 else (rows < 0)[:, None]
+        return _dots(curve)
+
+
+def _level(field: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Which of the energies in view each dot has: evenly spaced in amplitude, or in the slowest omega of a rotation."""
+    spacing = np.where(field > 0, np.arcsin(np.sqrt(np.clip(field, 0, 1))), -np.sqrt(np.maximum(-field, 0)))
+    step = nice(float(spacing.max() - spacing.min()) / _CURVES)
+    return np.floor(spacing / step).astype(np.int64)
+
+
+def _border(values: NDArray[Any], heavy: bool = False) -> NDArray[np.bool_]:
+    """Dots whose value differs from that of the dot to the right or below; heavy: also those beyond."""
+    border = np.zeros(values.shape, np.bool_)
+    right, below = values[:, 1:] != values[:, :-1], values[1:] != values[:-1]
+    border[:, :-1] |= right
+    border[:-1] |= below
+    if heavy:
+        border[:, 1:] |= right
+        border[1:] |= below
+    return border
+
+
+def _dots(mask: NDArray[np.bool_]) -> Dots:
+    y, x = np.nonzero(mask)
+    return x, y
+
+
+def _cells(dots: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Dots as (rows, columns, 8): the dots of each cell."""
+    rows, columns = dots.shape[0] // 4, dots.shape[1] // 2
+    return dots.reshape(rows, 4, columns, 2).swapaxes(1, 2).reshape(rows, columns, 8)
+
+
+def _windows(cells: NDArray[np.bool_], length: int) -> NDArray[np.bool_]:
+    """Where `length` cells in a row all are true, by the first of them."""
+    if cells.shape[1] < length:
+        return np.zeros((len(cells), 0), np.bool_)
+    windows: Cells = np.all(np.lib.stride_tricks.sliding_window_view(cells, length, axis=1), axis=2)
+    return windows
+
+
+def _nearest(places: NDArray[np.bool_], row: float, column: float) -> tuple[int, int] | None:
+    """The true place nearest to a point, a row counting as two columns."""
+    rows, columns = np.nonzero(places)
+    if not len(rows):
+        return None
+    best = int(np.argmin(4 * (rows - row) ** 2 + (columns - column) ** 2))
+    return int(rows[best]), int(columns[best])
+
+
+def _words(
+    viewport: Viewport,
+    curves: NDArray[np.bool_],
+    separatrix: NDArray[np.bool_],
+    field: NDArray[np.float64],
+    omega: NDArray[np.float64],
+) -> tuple[Word, ...]:
+    """The axes' numbers and the names of the regimes, each where it has room."""
+    words = _axes(viewport)
+    bare: Cells = ~np.any(_cells(separatrix), axis=2)
+    free = bare.copy()
+    for word in words:
+        _take(free, word)
+    blank = free & ~np.any(_cells(curves), axis=2)
+    regimes = {"libration": field > 0, "rotation": (field < 0) & (omega > 0), " rotation": (field < 0) & (omega < 0)}
+    for name, region in regimes.items():
+        cells: Cells = np.all(_cells(region), axis=2)
+        for word in _inside(name.strip(), cells, [cells & blank, cells & free]):
+            _take(free, word)
+            words.append(word)
+    return (*words, *_beside("separatrix", ~bare, free))
+
+
+def _take(free: NDArray[np.bool_], word: Word) -> None:
+    """A word's cells, and one on both sides, are no longer free."""
+    column, row, text, _ = word
+    free[row, max(column - 1, 0) : column + len(text) + 1] = False
+
+
+def _inside(name: str, region: NDArray[np.bool_], preferred: Sequence[NDArray[np.bool_]]) -> list[Word]:
+    """The name as near to the middle of its region as it fits, with a blank cell on both sides."""
+    if not region.any():
+        return []
+    rows, columns = np.nonzero(region)
+    middle = rows.mean(), columns.mean() - len(name) / 2 - 1
+    for cells in preferred:
+        if (place := _nearest(_windows(cells, len(name) + 2), *middle)) is not None:
+            return [(place[1] + 1, place[0], name, FRAME)]
+    return []
+
+
+def _beside(name: str, curve: NDArray[np.bool_], free: NDArray[np.bool_]) -> list[Word]:
+    """The name to the right of a curve."""
+    places = _windows(free, len(name) + 1)[:, 1:]
+    place = _nearest(curve[:, : places.shape[1]] & places, 0.3 * len(curve), 0.6 * curve.shape[1])
+    return [] if place is None else [(place[1] + 1, place[0], name, TEXT)]
+
+
+def _axes(viewport: Viewport) -> list[Word]:
+    """Numbers along the left edge (rad/s) and the lower one (pi or rad)."""
+    columns, bottom = viewport.columns, viewport.rows - 1
+    words: list[Word] = [
+        (0, math.floor(viewport.y(omega) / 4), label[:columns], TEXT)
+        for omega, label in omega_ticks(viewport.omega_at(4.0 * bottom), viewport.omega_at(0.0), max(bottom // 3, 1))
+    ]
+    left, right = viewport.theta_at(0.0), viewport.theta_at(2.0 * columns + 1)  # pi may be at the very edge
+    for theta, label in theta_ticks(left, right, min(columns // 9 + 1, 8), viewport.wrap):
+        column = math.floor((theta - left) / viewport.theta_per_dot / 2) - len(label) // 2
+        words.append((max(min(column, columns - len(label)), 0), bottom, label[:columns], TEXT))
+    return words

@@ -1,0 +1,45 @@
+"""PhaseView: phase space over the whole screen, with what the methods do to area."""
+
+from textual.app import ComposeResult
+
+from tui.drawing.cells import Rows
+from tui.views.phase.facts import fact_rows
+from tui.views.phase.pane import KEYS, PhasePane
+from tui.views.view import View
+
+RADIUS = 0.1  # rad; large enough to be seen, small enough to stay a ring for a while
+
+ROOMY = 18  # rows from which on there is room for the table
+
+
+class PhaseView(View):
+    """The portrait, and the table below it."""
+
+    KEYS = KEYS
+    DEFAULT_CSS = "PhaseView #facts { height: 6; }"
+
+    def compose(self) -> ComposeResult:
+        """Create the panes."""
+        yield PhasePane(radius=RADIUS).data_bind(View.source, View.sample, View.look)
+        yield Rows(id="facts")
+
+    def on_show(self) -> None:
+        """The keys are the portrait's."""
+        self.query_one(PhasePane).focus()
+
+    def on_resize(self) -> None:
+        """Where there is little room, all of it is the portrait's."""
+        self.query_one("#facts").display = self.size.height >= ROOMY
+
+    def watch_reading(self) -> None:
+        """Follow the sample with the numbers."""
+        self._write_facts()
+
+    def on_phase_display_ring_moved(self) -> None:
+        """Follow the ring with them."""
+        self._write_facts()
+
+    def _write_facts(self) -> None:
+        facts, pane = self.query_one("#facts", Rows), self.query_one(PhasePane)
+        if self.source is not None and facts.drawable:
+            facts.show(fact_rows(self.source, self.look, pane.neighbours, pane.ring, facts.size.width))

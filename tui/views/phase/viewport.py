@@ -1,0 +1,135 @@
+"""Viewport: which part of phase space a rectangle of character cells shows.
+
+Dots as on the canvas: 2×4 a cell, x to the right, y downwards, dot (i, j) covers [i, i+1) × [j, j+1).
+The viewport's middle is the centre of its middle cell, so that theta = 0 and omega = 0 can be clicked.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from engine.models.state import State
+from engine.scenes import Scene
+
+NARROWEST, WIDEST = 1e-6, 200 * math.pi  # rad of theta from the left edge to the right one
+
+
+@dataclass(frozen=True, slots=True)
+class Viewport:
+    """A stretch of phase space on `columns` × `rows` cells."""
+
+    columns: int
+    rows: int
+    theta: float  # rad, at the centre of the middle cell
+    omega: float  # rad/s, there
+    theta_per_dot: float  # rad
+    omega_per_dot: float  # rad/s
+    wrap: bool = True  # every angle is shown, in the one turn that is there
+
+    @classmethod
+    def portrait(cls, columns: int, rows: int, scene: Scene, wrap: bool = True) -> "Viewport":
+        """-pi to pi, unwrapped -3 pi to 3 pi, and all three regimes.
+
+        It reaches up to 1.3 times the fastest of the separatrix and of the scene's own orbit.
+        """
+        fastest = max(2 * scene.w0, math.hypot(scene.omega, 2 * scene.w0 * math.sin(scene.theta / 2)))
+        return cls(
+            columns,
+            rows,
+            0.0,
+            0.0,
+            theta_per_dot=(1 if wrap else 3) * math.pi / (columns - 0.5),  # half a dot, or rounding loses points at pi
+            omega_per_dot=1.3 * fastest / max(2 * rows - 2, 2),
+            wrap=wrap,
+        )
+
+    @property
+    def middle(self) -> tuple[int, int]:
+        """The corner of dots in the centre of the middle cell."""
+        return 2 * (self.columns // 2) + 1, 4 * (self.rows // 2) + 2
+
+    def x(self, theta: Any) -> Any:
+        """Where an angle is [dots]; numbers or arrays."""
+        x = self.middle[0] + np.subtract(theta, self.theta) / self.theta_per_dot
+        if self.wrap:
+            turn = math.tau / self.theta_per_dot
+            x = x - turn * np.round((x - self.columns) / turn)
+        return x
+
+    def y(self, omega: Any) -> Any:
+        """Where an angular velocity is [dots]; numbers or arrays."""
+        return self.middle[1] - np.subtract(omega, self.omega) / self.omega_per_dot
+
+    def theta_at(self, x: Any) -> Any:
+        """The angle at x [dots]; numbers or arrays."""
+        return self.theta + (x - self.middle[0]) * self.theta_per_dot
+
+    def omega_at(self, y: Any) -> Any:
+        """The angular velocity at y [dots]; numbers or arrays."""
+        return self.omega - (y - self.middle[1]) * self.omega_per_dot
+
+    def at(self, x: float, y: float) -> State:
+        """The roundest state within half a dot of (x, y), its angle brought to [-pi, pi] when wrapped.
+
+        No angle is rounder than a multiple of pi: so one gets to the equilibria.
+        """
+        theta, omega = self.theta_at(x), self.omega_at(y)
+        if self.wrap and abs(theta) > math.pi:
+            theta = math.remainder(theta, math.tau)
+        upright_or_down = math.pi * round(theta / math.pi)
+        if abs(theta - upright_or_down) <= self.theta_per_dot / 2:
+            theta = upright_or_down
+        else:
+            theta = roundest(theta, self.theta_per_dot / 2)
+        return State(theta, roundest(omega, self.omega_per_dot / 2))
+
+    def at_cell(self, column: int, row: int) -> State:
+        """The roundest state within half a dot of a cell's centre."""
+        return self.at(2 * column + 1, 4 * row + 2)
+
+    @property
+    def theta_span(self) -> float:
+        """From the left edge to the right one [rad]."""
+        return 2 * self.columns * self.theta_per_dot
+
+    def zoomed(self, factor: float, x: float, y: float) -> "Viewport":
+        """`factor` times as much of phase space, with (x, y) [dots] showing what it showed."""
+        factor = min(max(factor, NARROWEST / self.theta_span), WIDEST / self.theta_span)
+        if abs(factor - 1) < 1e-9:
+            return self
+        right, down = x - self.middle[0], y - self.middle[1]
+        return replace(
+            self,
+            theta=self.theta + right * self.theta_per_dot * (1 - factor),
+            omega=self.omega - down * self.omega_per_dot * (1 - factor),
+            theta_per_dot=self.theta_per_dot * factor,
+            omega_per_dot=self.omega_per_dot * factor,
+        )
+
+    def panned(self, right: float, down: float) -> "Viewport":
+        """What is shown moves by so many dots."""
+        theta = self.theta - right * self.theta_per_dot
+        if self.wrap and abs(theta) > math.pi:
+            theta = math.remainder(theta, math.tau)
+        return replace(self, theta=theta, omega=self.omega + down * self.omega_per_dot)
+
+    def resized(self, columns: int, rows: int) -> "Viewport":
+        """The same stretch of phase space on another rectangle."""
+        return replace(
+            self,
+            columns=columns,
+            rows=rows,
+            theta_per_dot=self.theta_per_dot * self.columns / columns,
+            omega_per_dot=self.omega_per_dot * self.rows / rows,
+        )
+
+
+def roundest(value: float, tolerance: float) -> float:
+    """The number with the fewest decimals that is within `tolerance` > 0 of the value."""
+    for decimals in range(-math.floor(math.log10(2 * tolerance)) - 1, 17):
+        rounded = round(value, decimals)
+        if abs(rounded - value) <= tolerance:
+            return rounded + 0.0  # -0.0 becomes 0.0
+    return value

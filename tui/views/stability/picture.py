@@ -1,0 +1,202 @@
+"""The map of stability -> coloured half-blocks, or characters that need no colour.
+
+A panel a method: z across, amplitude up.  A pixel that covers several cells shows the worst of
+them, so that no failure vanishes.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+from itertools import groupby, zip_longest
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.segment import Segment
+from rich.style import Style
+
+from engine.methods import METHODS, Method
+from engine.stability.chaos import GREENE_Z
+from engine.stability.grid import Grid
+from engine.stability.outcomes import HOLDS, UNKNOWN, Cells
+from tui.drawing.palette import Palette, mark, mixed
+
+EXACT_ENOUGH = 1e-12  # energy errors below it are drawn alike
+LIMIT, THRESHOLD, CATCHING, HERE = "│", "┊", "•", "X"
+_WITHOUT_COLOUR = {LIMIT: "|", THRESHOLD: ":", CATCHING: "o", HERE: "X"}
+MARGIN = 4  # for the labels of the amplitudes
+SHADES = 16  # from lost at once to lost at the end, and again from there to held exactly
+
+Scores = NDArray[np.float64]
+Line = list[Segment]
+
+
+def scores(cells: Cells, steps: int) -> Scores:
+    """How well each swing fared: -1 not computed; 0 to 1 lost, early to late; 1 to 2 held, energy error large to small.
+
+    Both parts are logarithmic, in steps survived and in the largest energy error.
+    """
+    survived = np.log1p(cells["steps"]) / math.log1p(steps)
+    digits = np.log10(np.clip(cells["error"], EXACT_ENOUGH, 1)) / math.log10(EXACT_ENOUGH)
+    return np.select([cells["fate"] == UNKNOWN, cells["fate"] == HOLDS], [-1.0, 1 + digits], survived)
+
+
+def picture(grid: Grid, cells: Cells, columns: int, palette: Palette | None) -> list[Line]:
+    """All panels and the legend, `columns` wide; with no palette, characters instead of colours."""
+    across = 2 if columns >= 70 else 1
+    width = (columns - 2 * (across - 1)) // across
+    rows = max(6, (width - MARGIN) // 4)  # a cell is twice as high as wide, so panels are about 2:1
+    panels = [panel(grid, cells, index, width, rows, palette) for index in range(len(grid.methods))]
+    return [*side_by_side(panels, across), *legend(grid.steps, palette, columns)]
+
+
+def side_by_side(panels: Sequence[Sequence[Line]], across: int) -> list[Line]:
+    """The lines of panels of one size, some beside each other."""
+    return [
+        [segment for number, line in enumerate(lines) for segment in ([Segment("  ")] if number else []) + line]
+        for first in range(0, len(panels), across)
+        for lines in zip(*panels[first : first + across], strict=True)
+    ]
+
+
+def differing(before: Line, after: Line) -> int:
+    """How many columns there are up to the last one in which two lines differ: Textual sends a row from its start."""
+    if before == after:
+        return 0
+    cells = [[(character, part.style) for part in line for character in part.text] for line in (before, after)]
+    return max((x for x, (old, new) in enumerate(zip_longest(*cells), 1) if old != new), default=0)
+
+
+def panel(
+    grid: Grid,
+    cells: Cells,
+    index: int,
+    columns: int,
+    rows: int,
+    palette: Palette | None,
+    *,
+    here: tuple[float, float] | None = None,
+    w0: float | None = None,
+) -> list[Line]:
+    """One method's panel: its title, `rows` of the map, and the axis.
+
+    `here` is a (z, theta) to mark.  With w0 [1/s] the axis says h instead of z.
+    """
+    method, width = grid.methods[index], columns - MARGIN
+    overlay: dict[tuple[int, int] | None, str] = {
+        _place(grid, z, theta, width, rows): sign for z, theta, sign in theory(method, grid, rows)
+    }
+    if here:
+        overlay[_place(grid, here[0], here[1], width, rows)] = HERE
+    values = scores(cells[:, index], grid.steps)
+    pixels = worst(values, width, rows if palette is None else 2 * rows).tolist()
+    levels = range(-SHADES, 2 * SHADES + 1)
+    shades = [] if palette is None else [colour(level / SHADES, index, palette) for level in levels]
+
+    def drawn(row: int, column: int) -> tuple[str, str, str, bool]:
+        """The character, its colour, the colour behind it, and whether they change places."""
+        sign = overlay.get((row, column))
+        if palette is None:
+            return _WITHOUT_COLOUR[sign] if sign else character(pixels[row][column], grid.steps), "", "", False
+        upper, lower = (shades[round((pixels[2 * row + half][column] + 1) * SHADES)] for half in (0, 1))
+        return sign or "▀", palette.text if sign else upper, lower, sign == HERE
+
+    lines = [title(index, columns, palette)]
+    for row in range(rows):
+        degrees = math.degrees(_theta_of_row(grid, row, rows))
+        line = [Segment(f"{degrees:3.0f} " if row in (0, rows // 2, rows - 1) else " " * MARGIN)]
+        for (sign, front, back, reverse), run in groupby(drawn(row, column) for column in range(width)):
+            style = Style(color=front, bgcolor=back, reverse=reverse) if back else None
+            line.append(Segment(sign * len(list(run)), style))
+        lines.append(line)
+    symbol, scale = ("z", 1.0) if w0 is None else ("h", w0)
+    first, middle, last = (f"{value / scale:.3g}" for value in (grid.z[0], np.median(grid.z), grid.z[-1]))
+    axis = first + f"{symbol} {middle}".center(width)[len(first) : width - len(last)] + last
+    return [*lines, [Segment(" " * MARGIN + axis)]]
+
+
+def title(index: int, columns: int, palette: Palette | None, note: str = "") -> Line:
+    """The line above a panel, with a note behind the method's name or, where there is no room, instead of it."""
+    texts = [f"{'':{MARGIN}}{mark(index)} {name}{note}" for name in (f"{METHODS[index].label}  ", "")]
+    text = next((text for text in texts if len(text) <= columns), texts[-1])
+    return [Segment(text[:columns].ljust(columns), Style(bold=True) if palette else None)]
+
+
+def theory(method: Method, grid: Grid, rows: int) -> Iterator[tuple[float, float, str]]:
+    """Points (z, theta) that theory names, one a row: the linear limit, Greene's threshold and the catching orbit.
+
+    The catching orbit, z² sin q = 4 q, comes to rest at q only in a reversible method.
+    """
+    for row in range(rows):
+        theta = _theta_of_row(grid, row, rows)
+        if method.symplectic:
+            yield GREENE_Z, theta, THRESHOLD
+        if method.symplectic and method.reversible:
+            yield math.sqrt(4 * theta / math.sin(theta)), theta, CATCHING
+        if method.linear_limit:
+            yield method.linear_limit, theta, LIMIT
+
+
+def worst(values: Scores, columns: int, rows: int) -> Scores:
+    """The lowest of the values (z, theta) under each pixel (row from the top, column)."""
+
+    def starts(count: int, parts: int) -> list[int]:
+        return [part * count // parts for part in range(parts)]
+
+    across = np.minimum.reduceat(values, starts(values.shape[0], columns), axis=0)
+    return np.minimum.reduceat(across, starts(values.shape[1], rows), axis=1).T[::-1]
+
+
+def colour(score: float, index: int, palette: Palette) -> str:
+    """Held: the method's colour, brighter for a smaller energy error.  Lost: the alarm's, darker for sooner."""
+    if score < 0:
+        return palette.background
+    if score < 1:
+        return mixed(palette.warn, palette.background, 0.9 - 0.5 * score)
+    return mixed(palette.colour(index), palette.background, 0.6 * (2 - score))
+
+
+def character(score: float, steps: int) -> str:
+    """The same without colour: # + - held, by energy error; lost within 10 steps, a dot, after 10^n steps, n."""
+    if score < 0:
+        return " "
+    if score < 1:
+        survived = round(math.expm1(score * math.log1p(steps)))
+        return "." if survived < 10 else str(len(str(survived)) - 1)
+    return "#" if score > 1 + 4 / 12 else "+" if score > 1 + 1 / 12 else "-"
+
+
+def legend(steps: int, palette: Palette | None, columns: int = 80) -> list[Line]:
+    """What colours, characters and lines mean."""
+    limit, threshold, catching = (sign if palette else _WITHOUT_COLOUR[sign] for sign in (LIMIT, THRESHOLD, CATCHING))
+    lines = [Segment(f"{limit} linear limit   {threshold} chaos loose above   ")]
+    orbit = [Segment(f"{catching} catching orbit   up: amplitude, deg")]
+    if palette is None:
+        held = [Segment("held: error < 1e-4 #  < 0.1 +  above -   ")]
+        lost = [Segment("lost: at step < 10 .  < 100 1  < 1000 2")]
+    else:
+        held, lost = (
+            [Segment("█", Style(color=colour(low + 0.999 * part / 7, 2, palette))) for part in range(8)]
+            for low in (1.0, 0.0)
+        )
+        held = [Segment("held: energy error 1 "), *held, Segment(" 1e-12   ")]
+        lost = [Segment("lost: at once "), *lost, Segment(f" at step {steps}")]
+    return [held + lost, lines + orbit] if columns >= 80 else [held, lost, lines, orbit]
+
+
+def _theta_of_row(grid: Grid, row: int, rows: int) -> float:
+    index = (rows - row - 0.5) / rows * len(grid.theta) - 0.5
+    return float(np.interp(index, np.arange(len(grid.theta)), grid.theta))
+
+
+def place_at(grid: Grid, row: int, column: int, rows: int, columns: int) -> tuple[int, int]:
+    """The indices (z, theta) of the map's cell under the middle of a panel's character, or the nearest."""
+    z, theta = int((column + 0.5) / columns * len(grid.z)), int((rows - row - 0.5) / rows * len(grid.theta))
+    return min(max(z, 0), len(grid.z) - 1), min(max(theta, 0), len(grid.theta) - 1)
+
+
+def _place(grid: Grid, z: float, theta: float, columns: int, rows: int) -> tuple[int, int] | None:
+    """(row, column) of the character over (z, theta); None outside the map."""
+    if not (grid.z[0] <= z <= grid.z[-1] and grid.theta[0] <= theta <= grid.theta[-1]):
+        return None
+    across = (np.interp(z, grid.z, np.arange(len(grid.z))) + 0.5) / len(grid.z)
+    up = (np.interp(theta, grid.theta, np.arange(len(grid.theta))) + 0.5) / len(grid.theta)
+    return min(rows - 1, int((1 - up) * rows)), min(columns - 1, int(across * columns))

@@ -1,0 +1,58 @@
+"""StabilityView: where each method loses a swing, for the pendulum on screen; the map fills in as it is computed."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from textual.app import ComposeResult
+from textual.message import Message
+from textual.worker import get_current_worker
+
+from engine.stability.grid import Grid, Piece, pieces
+from tui.views.background import elsewhere
+from tui.views.stability.pane import KEYS, StabilityPane
+from tui.views.view import View
+
+PASSES = (300, 10_000)
+"""Steps of each swing: a first picture at once, then the lasting one."""
+
+
+class StabilityView(View):
+    """The map, which depends on z and amplitude only: another scene moves "here" and the axis, not the map."""
+
+    KEYS = KEYS
+
+    @dataclass
+    class Computed(Message):
+        """A piece of the map is there."""
+
+        piece: Piece
+
+    def compose(self) -> ComposeResult:
+        """Create the pane."""
+        grid = Grid((np.arange(48) + 0.5) * math.pi / 48, (np.arange(80) + 0.5) * 3 / 80, PASSES[-1])
+        yield StabilityPane(grid).data_bind(View.source, View.look, sample=View.reading)
+
+    def on_mount(self) -> None:
+        """The keys are the map's from the start."""
+        pane = self.query_one(StabilityPane)
+        pane.focus()
+        self.run_worker(lambda: self._wait_for(pane.grid), thread=True)
+
+    def _wait_for(self, grid: Grid) -> None:
+        worker = get_current_worker()
+        with elsewhere(pieces, grid, PASSES) as found:
+            for piece in found:
+                if worker.is_cancelled:
+                    return
+                self.post_message(self.Computed(piece))
+
+    def on_stability_view_computed(self, message: Computed) -> None:
+        """Show it, and how far it is in tenths: with a new title, Textual sends all of the pane again."""
+        piece, pane = message.piece, self.query_one(StabilityPane)
+        pane.fill(piece.z, piece.method, piece.cells)
+        pane.complete = piece.done == 1 and piece.steps == PASSES[-1]
+        state = "" if pane.complete else f", computing {int(10 * piece.done) / 10:.0%}"
+        title = f"Stability: h across, amplitude up; {piece.steps} steps{state}"
+        if title != pane.border_title:
+            pane.border_title = title

@@ -1,0 +1,43 @@
+"""What a map of stability says about one swing, in words."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from engine.methods import Method
+from engine.stability.outcomes import HOLDS, UNKNOWN, Cells, Floats, reason
+
+CHAOS_STEPS = 2000
+"""4 ms.  Of 500 swings on the map that are chaotic or resonant, 10 000 steps judge 3 otherwise."""
+
+
+def note(method: Method, theta: float, z: float, cell: Any) -> str:
+    """What becomes of a swing, in a few words."""
+    if cell["fate"] == UNKNOWN:
+        return "…"
+    if cell["fate"] == HOLDS:
+        return f"holds, {cell['error']:.0e}"
+    return f"{_reason(method, theta, z, cell)}, step {cell['steps'] + 1}"
+
+
+def verdict(method: Method, theta: float, zs: Floats, cells: Cells, at: int, w0: float) -> str:
+    """What becomes of the swing from theta [rad] at zs[at], and how far the nearest cliff is; `cells` go along zs."""
+    cell = cells[at]
+    place = f"{method.label} at h {zs[at] / w0:.3g} s, {math.degrees(theta):.3g} deg:"
+    if cell["fate"] == UNKNOWN:
+        return f"{place} not computed yet"
+    holds = cell["fate"] == HOLDS
+    other = np.flatnonzero((cells["fate"] == HOLDS) != holds)
+    if not len(other):
+        cliff = "; no h on this map loses it" if holds else "; no h on this map holds it"
+    else:
+        nearest = zs[other[np.abs(other - at).argmin()]] / w0
+        cliff = f"; lost at h {nearest:.3g} s" if holds else f"; holds at h {nearest:.3g} s"
+    if holds:
+        return f"{place} holds, energy error {cell['error']:.1e}{cliff}"
+    return f"{place} lost at step {cell['steps'] + 1}, {_reason(method, theta, zs[at], cell)}{cliff}"
+
+
+def _reason(method: Method, theta: float, z: float, cell: Any) -> str:
+    return reason(method, theta, z, int(cell["fate"]), CHAOS_STEPS)

@@ -1,0 +1,47 @@
+"""The lab without a screen: a sentence a second, and one for whatever happens.  For screen readers and logs."""
+
+import time
+from collections.abc import Callable
+
+from engine.methods import METHODS
+from tui.playback.source import Source
+from tui.words.describe import description
+from tui.words.events import diary
+from tui.words.findings import short
+from tui.words.insight import TURN, insight
+from tui.words.numbers import seconds
+
+TICK = 1 / 30  # s, as often as the screen would be painted
+
+
+def plain(
+    source: Source,
+    say: Callable[[str], object],
+    stopped: Callable[[], bool],
+    clock: Callable[[], float] = time.monotonic,
+    sleep: Callable[[float], object] = time.sleep,
+) -> None:
+    """Tell what runs, and then what happens, until somebody stops it or the recording is at its end."""
+    for sentence in description(source):
+        say(sentence)
+    began, second, news = clock(), 0, False
+    source.tick(began)
+    known = set(diary(source))
+    while not stopped() and not (source.kind == "REPLAY" and source.playhead.paused):
+        sleep(TICK)
+        source.tick(clock())
+        for line in diary(source):
+            if line not in known:
+                known.add(line)
+                news = True
+                say(f"{seconds(line.t)}: {line.text}.")
+        if clock() - began >= second + 1:
+            second = int(clock() - began)
+            say(insight(source) if news or second % TURN == 0 else numbers(source))
+            news = False
+
+
+def numbers(source: Source) -> str:
+    """Time and energy errors."""
+    errors = [f"{short(m)} {r.energy_error:+.2g}" for m, r in zip(METHODS, source.sample.readings, strict=True)]
+    return f"{seconds(source.sample.t)}: energy errors {', '.join(errors)}."
