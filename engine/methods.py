@@ -10,12 +10,12 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from engine.models.modified_energy import symplectic_euler_shadow, velocity_verlet_shadow
+from engine.models.modified_energy import symplectic_euler_modified_energy, velocity_verlet_modified_energy
 from engine.models.state import Acceleration, Phase
 
 Step = Callable[[Acceleration, Phase, float], Phase]
 
-Shadow = Callable[[float, float, float, float], float]
+ModifiedEnergy = Callable[[float, float, float, float], float]
 """(w0_squared [s⁻²], theta [rad], omega [rad/s], h [s]) -> shadow energy [s⁻²]."""
 
 
@@ -91,7 +91,9 @@ class Method:
     other_names: tuple[str, ...]
     reference: str
     used: str  # where, and in brackets who says so
-    shadow: Shadow | None = None  # energy of which it keeps all but O(h⁴); None: none is known, or there is none
+    modified_energy: ModifiedEnergy | None = (
+        None  # energy of which it keeps all but O(h⁴); None: none is known, or there is none
+    )
 
 
 METHODS: tuple[Method, ...] = (
@@ -126,7 +128,7 @@ METHODS: tuple[Method, ...] = (
         other_names=("semi-implicit Euler", "Euler-Cromer"),
         reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), I.1.2",
         used="games and robots: the default of MuJoCo [mujoco.readthedocs.io, Computation]",
-        shadow=symplectic_euler_shadow,
+        modified_energy=symplectic_euler_modified_energy,
     ),
     Method(
         key="velocity_verlet",
@@ -143,7 +145,7 @@ METHODS: tuple[Method, ...] = (
         other_names=("Störmer-Verlet", "leapfrog (kick-drift-kick)"),
         reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), I.1.4",
         used="molecular dynamics: the default of LAMMPS [docs.lammps.org, run_style]",
-        shadow=velocity_verlet_shadow,
+        modified_energy=velocity_verlet_modified_energy,
     ),
     Method(
         key="rk4",

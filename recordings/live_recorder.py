@@ -13,7 +13,7 @@ from recordings.recorder import Recorder, WallClock, trouble
 RETRY_EVERY = 5.0  # s of the recording clock
 
 
-class SittingRecorder:
+class LiveRecorder:
     """A recorder that survives trouble with the disk: the sitting goes on, and so does the recording, in a new file.
 
     Opening the first file may raise DiskError; nothing after that does.  With `or_next`, a name that another
@@ -27,7 +27,7 @@ class SittingRecorder:
         self._closed = False
         self.files: list[Path] = []  # that hold something and are no longer written to
         self._path, self._wall = path, wall
-        self._course: list[Event] = []  # of the run: its start and its changes of h
+        self._run: list[Event] = []  # of the run: its start and its changes of h
         self._zero = self._failed_at = 0.0  # s of the sitting's clock: where the file begins, the last failure
         self._recorder = self._opened() if or_next else Recorder(path, wall)
 
@@ -49,10 +49,10 @@ class SittingRecorder:
     def event(self, event: Event, clock: float) -> None:
         """Record an event."""
         if event.kind == "start":
-            self._course = []
+            self._run = []
         self._write(Entry(clock, event))
         if event.kind in ("start", "set_h"):
-            self._course.append(event)
+            self._run.append(event)
 
     def sample(self, sample: Sample, clock: float) -> None:
         """Record a sample."""
@@ -105,6 +105,6 @@ class SittingRecorder:
         except OSError as error:
             raise trouble(error, self._path) from error
         self._recorder, self._zero = recorder, clock
-        for event in self._course:
+        for event in self._run:
             recorder.event(event, 0.0)
         self.failed = None

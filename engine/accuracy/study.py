@@ -13,7 +13,7 @@ from typing import Literal, NamedTuple
 
 from engine.accuracy.rounding import rounding_floor
 from engine.methods import METHODS, Method
-from engine.models.exact_pendulum import Swing
+from engine.models.exact_pendulum import ExactMotion
 from engine.run.compiled import tiered
 from engine.run.lockstep import Lockstep
 from engine.run.loops import Loops, plain
@@ -98,10 +98,10 @@ class Study:
 
     def __init__(self, scene: Scene, time: float, loops: Callable[[Method], Loops] = plain) -> None:
         self.scene, self.time, self.loops = scene, time, loops
-        self.swing = Swing(scene)
-        self._energy_floor, self._theta_floor = rounding_floor(self.swing, time)
+        self.exact = ExactMotion(scene)
+        self._energy_floor, self._theta_floor = rounding_floor(self.exact, time)
         times = (time * comparison / COMPARISONS for comparison in range(COMPARISONS + 1))
-        self._width = min(math.pi, max(abs(self.swing.at(t).theta) for t in times))
+        self._width = min(math.pi, max(abs(self.exact.at(t).theta) for t in times))
 
     def run(self, method: Method, steps: int, comparisons: int = COMPARISONS) -> Point:
         """Take this many steps; at least `comparisons` of them, the last included, meet the exact swing.
@@ -114,7 +114,7 @@ class Study:
         while lockstep.step < steps:
             lockstep.advance(min(stride, steps - lockstep.step))
             (reading,) = lockstep.sample().readings
-            final_error = abs(reading.theta - self.swing.at(lockstep.t).theta)
+            final_error = abs(reading.theta - self.exact.at(lockstep.t).theta)
             theta_error = max(theta_error, final_error)
         energy_error, energy_floor = reading.max_energy_error, self._energy_floor * math.sqrt(steps)
         theta_floor = self._theta_floor * math.sqrt(steps)
@@ -180,7 +180,7 @@ def orders(scene: Scene, time: float, loops: Callable[[Method], Loops] = plain) 
     where phase hangs steeply on energy, it reads 5 within the first period.  Symplectic Euler reads 2
     from theta = 0, where its angles are velocity Verlet's.
     """
-    study = Study(scene, min(time, Swing(scene).period or math.tau / scene.w0), loops)
+    study = Study(scene, min(time, ExactMotion(scene).period or math.tau / scene.w0), loops)
     usable = [steps for steps in ORDER_STEPS if study.time / steps * scene.w0 >= Z_LIMITS[0]]
     return [
         Order(method, _slope([study.run(method, steps, ORDER_COMPARISONS) for steps in usable])) for method in METHODS

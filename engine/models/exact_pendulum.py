@@ -21,7 +21,7 @@ Regime = Literal["libration", "rotation", "separatrix", "equilibrium"]
 Motion = Callable[[float], State]
 
 
-class Swing:
+class ExactMotion:
     """The exact motion of a scene's pendulum: where it is at any time, its period and its regime."""
 
     regime: Regime

@@ -8,7 +8,7 @@ from engine.models.state import State
 from engine.run.lockstep import parts
 
 
-class ShadowErrors:
+class ModifiedEnergyErrors:
     """Shadow energy errors in the order of METHODS, relative like energy errors; nan for a method without one.
 
     Another step size has another shadow energy, so errors count from where the step size last changed.
@@ -31,7 +31,9 @@ class ShadowErrors:
     def _energies(self, states: Sequence[State]) -> list[float]:
         cuts = parts() if self._equal_cost else (1,) * len(METHODS)
         energies = [
-            math.nan if method.shadow is None else method.shadow(self._w0_squared, *state, self._h / cut)
+            math.nan
+            if method.modified_energy is None
+            else method.modified_energy(self._w0_squared, *state, self._h / cut)
             for method, state, cut in zip(METHODS, states, cuts, strict=True)
         ]
         return [

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from engine.methods import METHODS, Method
-from engine.models.exact_pendulum import Swing
+from engine.models.exact_pendulum import ExactMotion
 from engine.models.pendulum import acceleration, energy, energy_scale
 from engine.models.state import Phase
 from engine.run.lockstep import Reading, Sample, parts
@@ -22,7 +22,7 @@ MOST_STEPS = 20_000
 
 
 @dataclass(frozen=True, slots=True)
-class Happening:
+class Milestone:
     """Something that a method did: it went over the top, its numbers ended, or it earned a verdict."""
 
     kind: Literal["over the top", "failed", "verdict"]
@@ -38,15 +38,15 @@ class Happening:
         return METHODS[self.index]
 
 
-class Witness:
+class RunObserver:
     """Watches one run, sample by sample."""
 
-    def __init__(self, scene: Scene, swing: Swing) -> None:
+    def __init__(self, scene: Scene, exact: ExactMotion) -> None:
         self._scene = scene
-        self._period = swing.period or math.tau / scene.w0
-        self._turn = self._period if swing.regime == "rotation" else math.inf  # s
-        self._bottom = math.tau * round(scene.theta / math.tau) if swing.regime == "libration" else None
-        self._happenings: list[Happening] = []
+        self._period = exact.period or math.tau / scene.w0
+        self._turn = self._period if exact.regime == "rotation" else math.inf  # s
+        self._bottom = math.tau * round(scene.theta / math.tau) if exact.regime == "libration" else None
+        self._milestones: list[Milestone] = []
         self._before: Sample | None = None
         self._x = 0.0  # s, the simulated time run through
         self.seen = -1
@@ -58,13 +58,13 @@ class Witness:
         """The verdicts on the run since the last change of the step size."""
         return [trend.judgement for trend in self._trends]
 
-    def happenings(self, step: int) -> list[Happening]:
+    def milestones(self, step: int) -> list[Milestone]:
         """What happened up to a step, in its order."""
-        return sorted((each for each in self._happenings if each.step <= step), key=lambda each: each.step)
+        return sorted((each for each in self._milestones if each.step <= step), key=lambda each: each.step)
 
     def judge_anew(self, step: int) -> None:
         """The step size changes here: verdicts begin anew, and what came later has never been."""
-        self._happenings = self.happenings(step)
+        self._milestones = self.milestones(step)
         self._trends = [Trend(self._period) for _ in METHODS]
         if self._before is not None and self._before.step == step:
             for trend, reading in zip(self._trends, self._before.readings, strict=True):
@@ -86,10 +86,10 @@ class Witness:
             trend.read(self._x, reading, per_turn)
             verdict = trend.judgement.verdict
             if reading.diverged_at is not None:
-                self._note(Happening("failed", index, sample.step, reading.diverged_at, reading.energy_error))
+                self._note(Milestone("failed", index, sample.step, reading.diverged_at, reading.energy_error))
             elif verdict != known:
-                happening = Happening("verdict", index, sample.step, sample.t, reading.energy_error, verdict)
-                self._happenings.append(happening)
+                milestone = Milestone("verdict", index, sample.step, sample.t, reading.energy_error, verdict)
+                self._milestones.append(milestone)
             if before is not None and self.is_over(reading.theta) and not self.is_over(before.readings[index].theta):
                 self._note(self._crossing(index, before, sample))
 
@@ -97,12 +97,12 @@ class Witness:
         """Whether theta [rad] is where the exact swing never comes: beyond the top."""
         return self._bottom is not None and abs(theta - self._bottom) > math.pi
 
-    def _note(self, happening: Happening) -> None:
+    def _note(self, milestone: Milestone) -> None:
         """Keep what happens to a method but once."""
-        if not any((each.kind, each.index) == (happening.kind, happening.index) for each in self._happenings):
-            self._happenings.append(happening)
+        if not any((each.kind, each.index) == (milestone.kind, milestone.index) for each in self._milestones):
+            self._milestones.append(milestone)
 
-    def _crossing(self, index: int, before: Sample, sample: Sample) -> Happening:
+    def _crossing(self, index: int, before: Sample, sample: Sample) -> Milestone:
         """Where between two samples a method goes over the top.
 
         The steps between them are taken again, whole or in the parts of equal cost, whichever leads to
@@ -117,8 +117,8 @@ class Witness:
                 if math.isclose(path[-1][0], end, rel_tol=1e-6):
                     n = next((n for n, (theta, _) in enumerate(path, 1) if self.is_over(theta)), len(path))
                     step = before.step + math.ceil(n / part)
-                    return Happening("over the top", index, step, before.t + n * h, self._error(path[n - 1]))
-        return Happening("over the top", index, sample.step, sample.t, sample.readings[index].energy_error)
+                    return Milestone("over the top", index, step, before.t + n * h, self._error(path[n - 1]))
+        return Milestone("over the top", index, sample.step, sample.t, sample.readings[index].energy_error)
 
     def _path(self, method: Method, begin: Reading, h: float, steps: int) -> Iterator[Phase]:
         force, phase = acceleration(self._scene.w0_squared), (begin.theta, begin.omega)

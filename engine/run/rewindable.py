@@ -25,7 +25,7 @@ class Pitch(NamedTuple):
     equal_cost: bool = False
 
 
-class Change(NamedTuple):
+class SteppingChange(NamedTuple):
     """A change of how a run steps."""
 
     step: int  # before which it applies
@@ -35,12 +35,12 @@ class Change(NamedTuple):
     equal_cost: bool = False
 
 
-class _Place(NamedTuple):
+class _Checkpoint(NamedTuple):
     lockstep: Lockstep
     applied: int  # changes
 
 
-class Course:
+class RewindableRun:
     """One run: its lockstep, the changes of its step size, and the way back.
 
     Between a step back and the step reached before, forward repeats what was, changes included.
@@ -49,7 +49,7 @@ class Course:
     def __init__(self, scene: Scene, run: int) -> None:
         self.scene = scene
         self.run = run
-        self.changes = [Change(0, 0.0, 0.0, scene.h)]  # the first is the start's
+        self.changes = [SteppingChange(0, 0.0, 0.0, scene.h)]  # the first is the start's
         self.furthest = 0  # the last step sampled
         self._applied = 1
         self._lockstep = Lockstep(scene, run, loops=unhurried)
@@ -148,7 +148,7 @@ class Course:
         """
         x = self.x
         self._lockstep.set_h(h, equal_cost)
-        self.changes.append(Change(self.step, x, self.t, h, equal_cost))
+        self.changes.append(SteppingChange(self.step, x, self.t, h, equal_cost))
         self._applied += 1
 
     def branch(self, run: int) -> None:
@@ -159,8 +159,8 @@ class Course:
         self.run = self._lockstep.run = run
         self.furthest = self.step
 
-    def _copy(self) -> _Place:
-        return _Place(copy.deepcopy(self._lockstep), self._applied)
+    def _copy(self) -> _Checkpoint:
+        return _Checkpoint(copy.deepcopy(self._lockstep), self._applied)
 
     def _thin(self) -> None:
         steps = [place.lockstep.step for place in self._copies]

@@ -55,7 +55,7 @@ def linear_limit(step: Step) -> float:
     return float(stable)
 
 
-def wobble(step: Step, z: float) -> tuple[float, float]:
+def energy_range(step: Step, z: float) -> tuple[float, float]:
     """Lowest and highest energy, over the start's, that a linear swing from rest is taken to by this step.
 
     A symplectic step keeps a quadratic form, not the energy: the swing stays on the ellipse

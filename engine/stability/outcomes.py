@@ -15,7 +15,7 @@ from engine.methods import Method
 from engine.models.pendulum import acceleration, energy
 from engine.models.state import Number
 from engine.stability.chaos import is_chaotic
-from engine.stability.linear import wobble
+from engine.stability.linear import energy_range
 
 BAND = 0.5
 """How far, as a fraction, energy may go above the highest and below the lowest that the method's own
@@ -43,7 +43,7 @@ def outcomes(method: Method, theta: Floats, z: Floats, steps: int) -> Cells:
     force = acceleration(1.0, np.sin)
     h: Number = z
     distinct, where = np.unique(z, return_inverse=True)
-    lowest, highest = np.array([wobble(method.step, value) for value in distinct.tolist()]).T
+    lowest, highest = np.array([energy_range(method.step, value) for value in distinct.tolist()]).T
     phase: tuple[Floats, Floats] = (theta, np.zeros(len(theta)))
     start: Floats = energy(1.0, *phase, np.sin)
     floor = (1 - BAND) * lowest[where] * start

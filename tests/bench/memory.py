@@ -13,10 +13,10 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from engine.scenes import DEFAULT_SCENE
-from recordings.live_recorder import SittingRecorder
+from recordings.live_recorder import LiveRecorder
 from tui.playback.live import Live
 from tui.screens.app import PenduApp
-from tui.screens.live import Lab
+from tui.screens.live import LiveScreen
 from tui.screens.still import settled
 from tui.terminal.options import FPS
 
@@ -35,7 +35,7 @@ async def measure(folder: Path) -> dict[str, float]:
     """Run the hour."""
     now = 0.0
     live = Live(DEFAULT_SCENE, clock=lambda: 0.0)
-    stage = Lab(live, clock=lambda: now, prepare=lambda: live.record(SittingRecorder(folder / "hour.mcap")))
+    stage = LiveScreen(live, clock=lambda: now, prepare=lambda: live.record(LiveRecorder(folder / "hour.mcap")))
     app = PenduApp(stage)
     at: dict[int, float] = {}
     async with app.run_test(size=(120, 40)) as pilot:

@@ -11,12 +11,12 @@ from collections.abc import Callable
 import numpy as np
 
 from engine.methods import METHODS
-from engine.models.exact_pendulum import Swing
+from engine.models.exact_pendulum import ExactMotion
 from engine.run.lockstep import Lockstep
 from engine.scenes import DEFAULT_SCENE
 from tui.drawing.canvas import Canvas, Picture
 from tui.drawing.chart import time_chart
-from tui.playback.history import History, Window
+from tui.playback.history import ErrorHistory, Window
 from tui.views.lab.pendulum_picture import Bob, pendulum_picture
 
 BUDGETS = {  # ms
@@ -52,14 +52,14 @@ def scattered(random: np.random.Generator) -> Callable[[], Picture]:
     return draw
 
 
-def long_run() -> tuple[History, float]:
+def long_run() -> tuple[ErrorHistory, float]:
     """A history of many frames, and what adding one took on average [ms]."""
-    lockstep, swing, history = Lockstep(DEFAULT_SCENE), Swing(DEFAULT_SCENE), History(DEFAULT_SCENE)
+    lockstep, exact, history = Lockstep(DEFAULT_SCENE), ExactMotion(DEFAULT_SCENE), ErrorHistory(DEFAULT_SCENE)
     samples = []
     for _ in range(FRAMES):
         samples.append(lockstep.sample())
         lockstep.advance(1)
-    states = [swing.at(sample.t) for sample in samples]
+    states = [exact.at(sample.t) for sample in samples]
     began = time.perf_counter()
     for sample, state in zip(samples, states, strict=True):
         history.add(sample, state)

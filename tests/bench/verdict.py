@@ -22,7 +22,7 @@ from itertools import groupby
 from statistics import median
 
 from engine.methods import METHODS
-from engine.models.exact_pendulum import Swing
+from engine.models.exact_pendulum import ExactMotion
 from engine.run.compiled import compiled
 from engine.run.lockstep import Lockstep
 from engine.run.verdict import Trend
@@ -82,12 +82,12 @@ def verdicts(scene: Scene, period: float) -> list[list[tuple[str, float]]]:
 
 def microseconds_per_add() -> float:
     """What taking in one sample costs, once the bins have begun to merge: 64 samples a period [µs]."""
-    trend, wobble = Trend(2.0), [math.sin(k * math.pi / 32) ** 2 for k in range(64)]
+    trend, energy_range = Trend(2.0), [math.sin(k * math.pi / 32) ** 2 for k in range(64)]
     best = math.inf
     for k in range(8):
         began = time.perf_counter()
         for step in range(k * 6400, (k + 1) * 6400):
-            trend.add(step / 32, wobble[step % 64])
+            trend.add(step / 32, energy_range[step % 64])
         best = min(best, time.perf_counter() - began)
     return best / 6400 * 1e6
 
@@ -97,7 +97,7 @@ def main() -> None:
     wrong, flickers, undecided, waits = [], [], [], []
     for name, z in GRID:
         scene = SCENES[name].altered(h=z / SCENES[name].w0)
-        period = Swing(scene).period or math.tau / scene.w0
+        period = ExactMotion(scene).period or math.tau / scene.w0
         for method, true, given in zip(METHODS, truths(scene, period), verdicts(scene, period), strict=True):
             cell = {"scene": name, "z": z, "method": method.key, "truth": true, "verdicts": given}
             if not given:

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.methods import METHODS, Method
-from engine.models.exact_pendulum import Swing
+from engine.models.exact_pendulum import ExactMotion
 from engine.models.pendulum import acceleration
 from engine.models.state import Acceleration, Phase
 from engine.phase_space.tangent import jacobian
@@ -28,11 +28,11 @@ def travel(method: Method, force: Acceleration, phase: Phase, h: float, n: int) 
     return phase
 
 
-def largest_theta_error(method: Method, swing: Swing, time: float, n: int) -> float:
-    scene, phase, worst = swing.scene, (swing.scene.theta, swing.scene.omega), 0.0
+def largest_theta_error(method: Method, exact: ExactMotion, time: float, n: int) -> float:
+    scene, phase, worst = exact.scene, (exact.scene.theta, exact.scene.omega), 0.0
     for k in range(1, n + 1):
         phase = plain(method).travel(scene.w0_squared, phase, time / n, 1)
-        worst = max(worst, abs(phase[0] - swing.at(k * time / n).theta))
+        worst = max(worst, abs(phase[0] - exact.at(k * time / n).theta))
     return worst
 
 
@@ -40,10 +40,10 @@ def largest_theta_error(method: Method, swing: Swing, time: float, n: int) -> fl
 @pytest.mark.parametrize("start", [(1.0, 0.0), (2.5, 0.5), (0.5, 8.0)])
 def test_the_error_falls_with_the_claimed_power_of_h(method: Method, start: tuple[float, float]) -> None:
     """Over half a period: later, what RK4 loses in energy adds a power of its own, and it reads 5 to 6.6."""
-    swing = Swing(Scene(theta=start[0], omega=start[1]))
-    assert swing.period is not None
+    exact = ExactMotion(Scene(theta=start[0], omega=start[1]))
+    assert exact.period is not None
     steps = [int(n * {1: 80, 2: 8, 4: 1}[method.order]) for n in (50, 71, 100, 141, 200)]
-    errors = [largest_theta_error(method, swing, swing.period / 2, n) for n in steps]
+    errors = [largest_theta_error(method, exact, exact.period / 2, n) for n in steps]
     slope = np.polyfit(np.log(steps), np.log(errors), 1)[0]
     assert -slope == pytest.approx(method.order, abs=0.1)  # the next power of h is still felt at 50 steps
 
@@ -84,10 +84,10 @@ def test_explicit_euler_blows_area_up_by_h2_w02_cos_theta(theta: float, omega: f
 
 def test_rk4_loses_area_with_the_sixth_power_of_h() -> None:
     """det - 1 of a step at the bottom is -z⁶/72 + z⁸/576; along a swing the power is the same."""
-    swing = Swing(Scene())
+    exact = ExactMotion(Scene())
     lost = []
     for h in (0.02, 0.04):
-        states = [swing.at(k * 0.1) for k in range(22)]  # a period
+        states = [exact.at(k * 0.1) for k in range(22)]  # a period
         logs = [math.log(jacobian(METHODS[3].step, W0_SQUARED, *state, h).determinant) for state in states]
         lost.append(sum(logs))
     assert all(loss < 0 for loss in lost)

@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 from engine.run.lockstep import Sample
-from recordings.live_recorder import SittingRecorder
+from recordings.live_recorder import LiveRecorder
 from tests.recordings.sittings import SCENE
 from tui.playback.live import Live
 
@@ -27,7 +27,7 @@ KEYS = (
 )
 
 
-class Noting(SittingRecorder):
+class Noting(LiveRecorder):
     """Keeps in mind what it was given last."""
 
     last = 0, 0

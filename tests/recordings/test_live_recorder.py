@@ -10,7 +10,7 @@ import pytest
 from engine.run.lockstep import Lockstep
 from recordings.errors import DiskError
 from recordings.events import Event
-from recordings.live_recorder import RETRY_EVERY, SittingRecorder
+from recordings.live_recorder import RETRY_EVERY, LiveRecorder
 from recordings.names import free_path
 from recordings.recording import Recording
 from recordings.verify import verify
@@ -21,7 +21,7 @@ class Lab:
     """A lab that runs at 10 samples a second, and its recorder."""
 
     def __init__(self, path):
-        self.recorder = SittingRecorder(path)
+        self.recorder = LiveRecorder(path)
         self.lockstep = Lockstep(SCENE)
         self.clock = 0.0
         self.recorder.event(start(), 0.0)
@@ -116,7 +116,7 @@ def test_a_restart_while_nothing_is_recorded_is_what_the_new_file_begins_with(la
 def test_two_sittings_that_chose_the_same_name_are_two_recordings(tmp_path, monkeypatch):
     monkeypatch.setattr("recordings.live_recorder.free_path", Looks(free_path))
     path = tmp_path / "now.mcap"
-    recorders = [SittingRecorder(path, or_next=True) for _ in range(2)]
+    recorders = [LiveRecorder(path, or_next=True) for _ in range(2)]
     for recorder in recorders:
         recorder.event(start(), 0.0)
         recorder.sample(Lockstep(SCENE).sample(), 0.0)
@@ -128,18 +128,18 @@ def test_two_sittings_that_chose_the_same_name_are_two_recordings(tmp_path, monk
 class Looks:
     """Two sittings look for a free name before either takes it: the second look finds what the first did."""
 
-    def __init__(self, look):
-        self.look, self.found = look, []
+    def __init__(self, shown):
+        self.shown, self.found = shown, []
 
     def __call__(self, path):
-        self.found.append(self.found[0] if len(self.found) == 1 else self.look(path))
+        self.found.append(self.found[0] if len(self.found) == 1 else self.shown(path))
         return self.found[-1]
 
 
 def test_a_name_that_somebody_gave_is_not_changed(tmp_path):
-    recorder = SittingRecorder(tmp_path / "mine.mcap")
+    recorder = LiveRecorder(tmp_path / "mine.mcap")
     with pytest.raises(DiskError, match="choose another name"):
-        SittingRecorder(tmp_path / "mine.mcap")
+        LiveRecorder(tmp_path / "mine.mcap")
     recorder.close()
 
 
@@ -184,7 +184,7 @@ def test_a_folder_that_may_no_longer_be_written_is_said(lab, tmp_path):
 
 def test_a_first_file_that_cannot_be_written_is_an_error_at_once(tmp_path):
     with pytest.raises(DiskError, match="No such file"):
-        SittingRecorder(tmp_path / "no" / "lab.mcap")
+        LiveRecorder(tmp_path / "no" / "lab.mcap")
 
 
 LIMITED = """

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from engine.scenes import DEFAULT_SCENE, SCENES, Scene
-from recordings.live_recorder import SittingRecorder
+from recordings.live_recorder import LiveRecorder
 from tui.playback.live import Live
 
 FPS = 30
@@ -16,7 +16,7 @@ class Sitting:
     def __init__(self, path: Path, scene: Scene = DEFAULT_SCENE) -> None:
         self.now = 0.0
         self.live = Live(scene, clock=lambda: 0.0)
-        self.live.record(SittingRecorder(path, wall=lambda: 1_700_000_000_000_000_000))
+        self.live.record(LiveRecorder(path, wall=lambda: 1_700_000_000_000_000_000))
         self.live.tick(0.0)
 
     def run(self, seconds: float) -> None:

@@ -9,14 +9,14 @@ from textual.pilot import Pilot
 
 from engine.scenes import DEFAULT_SCENE, Scene
 from recordings.recording import Recording
-from tui.drawing.cells import Rows
+from tui.drawing.cells import CellWidget
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
 from tui.screens.app import PenduApp
-from tui.screens.base import Stage
-from tui.screens.live import Lab
-from tui.screens.replay import Player
+from tui.screens.base import SourceScreen
+from tui.screens.live import LiveScreen
+from tui.screens.replay import ReplayScreen
 from tui.screens.still import settled
 from tui.terminal.options import FPS
 from tui.views.keys import COMMON
@@ -27,7 +27,7 @@ class Theatre:
 
     def __init__(self, make_stage: Any) -> None:
         self.now = 0.0
-        self.first: Stage = make_stage(lambda: self.now)
+        self.first: SourceScreen = make_stage(lambda: self.now)
         self.app = PenduApp(self.first)
         self.pilot: Pilot[Any]
 
@@ -49,9 +49,9 @@ class Theatre:
     async def press(self, *keys: str) -> None:
         await self.pilot.press(*keys)
 
-    def text(self, widget: type[Rows] | str) -> str:
+    def text(self, widget: type[CellWidget] | str) -> str:
         """What the first such widget on the stage shows."""
-        return self.stage.query(widget).first(Rows).text
+        return self.stage.query(widget).first(CellWidget).text
 
     async def settled(self) -> None:
         await settled(self.app)
@@ -73,14 +73,14 @@ async def on_stage(make_stage: Any, size: tuple[int, int]) -> AsyncIterator[Thea
 
 def lab(scene: Scene = DEFAULT_SCENE, size: tuple[int, int] = (120, 40)) -> Any:
     """A lab on stage."""
-    return on_stage(lambda clock: Lab(Live(scene, clock=lambda: 0.0), clock), size)
+    return on_stage(lambda clock: LiveScreen(Live(scene, clock=lambda: 0.0), clock), size)
 
 
 def player(path: Path, size: tuple[int, int] = (120, 40)) -> Any:
     """A replay on stage; going live from it is not recorded."""
 
-    def make(clock: Any) -> Stage:
+    def make(clock: Any) -> SourceScreen:
         replay = Replay(Recording.open(path), Marks(path), clock=lambda: 0.0)
-        return Player(replay, lambda live: Lab(live, clock), clock)
+        return ReplayScreen(replay, lambda live: LiveScreen(live, clock), clock)
 
     return on_stage(make, size)

@@ -14,13 +14,13 @@ from engine.scenes import Scene
 from tui.cli.errors import Exit, UserError
 from tui.cli.options import add_scene_options, positive, scene_of
 from tui.cli.output import progress
-from tui.terminal.options import add_display_options, display_of
+from tui.terminal.options import add_terminal_options, terminal_options_of
 
 if TYPE_CHECKING:
     from tui.playback.live import Live
     from tui.playback.source import Source
-    from tui.screens.base import Stage
-    from tui.screens.live import Lab
+    from tui.screens.base import SourceScreen
+    from tui.screens.live import LiveScreen
 
 EXAMPLES = """\
 examples:
@@ -39,7 +39,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     recording = parser.add_mutually_exclusive_group()
     recording.add_argument("--record", metavar="FILE", type=Path, help="record here, not in the data folder")
     recording.add_argument("--no-record", action="store_true", help="record nothing")
-    add_display_options(parser)
+    add_terminal_options(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -67,9 +67,9 @@ def plain_lab(scene: Scene, options: argparse.Namespace) -> int:
 
     live = Live(scene, options.speed)
     if path is not None:
-        from recordings.live_recorder import SittingRecorder
+        from recordings.live_recorder import LiveRecorder
 
-        live.record(SittingRecorder(path, or_next=options.record is None))
+        live.record(LiveRecorder(path, or_next=options.record is None))
     return say(live)
 
 
@@ -87,26 +87,26 @@ def say(source: "Source") -> int:
     return Exit.FINE
 
 
-def recording_lab(live: "Live", path: Path | None, notices: Sequence[str] = (), or_next: bool = True) -> "Lab":
+def recording_lab(live: "Live", path: Path | None, notices: Sequence[str] = (), or_next: bool = True) -> "LiveScreen":
     """The lab's screen, and a recording at that place, or at the next free one."""
-    from tui.screens.live import Lab
+    from tui.screens.live import LiveScreen
 
     def prepare() -> None:
         if path is not None:
-            from recordings.live_recorder import SittingRecorder  # brings mcap, which can wait for the first paint
+            from recordings.live_recorder import LiveRecorder  # brings mcap, which can wait for the first paint
 
-            live.record(SittingRecorder(path, or_next=or_next))
+            live.record(LiveRecorder(path, or_next=or_next))
 
-    return Lab(live, prepare=prepare, notices=notices)
+    return LiveScreen(live, prepare=prepare, notices=notices)
 
 
-def show(stage: "Stage", options: argparse.Namespace) -> int:
+def show(stage: "SourceScreen", options: argparse.Namespace) -> int:
     """Run the app with this screen first, and say goodbye."""
     from tui.commands.replay import player
     from tui.screens.app import PenduApp
 
     assert sys.__stderr__ is not None  # where Textual draws
-    display = display_of(options, os.environ, sys.__stderr__.encoding)
+    display = terminal_options_of(options, os.environ, sys.__stderr__.encoding)
     app = PenduApp(stage, lambda path: player(path, options.no_record), display)
     result = app.run(mouse=display.mouse)
     app.stage.source.close()

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 from tui.cli.errors import Exit, UserError
 from tui.cli.options import number, positive
 from tui.commands.live import place_of, recording_lab, say, show
-from tui.terminal.options import add_display_options
+from tui.terminal.options import add_terminal_options
 
 if TYPE_CHECKING:
     from tui.playback.live import Live
-    from tui.screens.base import Stage
-    from tui.screens.replay import Player
+    from tui.screens.base import SourceScreen
+    from tui.screens.replay import ReplayScreen
 
 EXAMPLES = """\
 examples:
@@ -32,7 +32,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--loop", action="store_true", help="begin again at the end")
     parser.add_argument("--paused", action="store_true", help="wait for the space key")
     parser.add_argument("--no-record", action="store_true", help="record nothing when going on live")
-    add_display_options(parser)
+    add_terminal_options(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -54,21 +54,21 @@ def run(options: argparse.Namespace) -> int:
     return say(replay) if options.plain else show(stage, options)
 
 
-def player(path: Path, no_record: bool) -> "Player":
+def player(path: Path, no_record: bool) -> "ReplayScreen":
     """The stage for a recording; a lab that goes on from it is recorded, or not."""
     from recordings.recording import Recording
     from tui.cli.output import progress
     from tui.playback.marks import Marks
     from tui.playback.replay import Replay
-    from tui.screens.replay import Player
+    from tui.screens.replay import ReplayScreen
 
     with progress(f"looking through {path.name}") as tell:
         recording = Recording.open(path, progress=tell)
     if recording.at(0.0) is None:
         raise UserError(f"{path}: no samples are left in it, so there is nothing to see.", Exit.INPUT_UNREADABLE)
 
-    def go_live(live: "Live") -> "Stage":
+    def go_live(live: "Live") -> "SourceScreen":
         return recording_lab(live, None if no_record else place_of(None))
 
     notices = [f"This recording is not whole: {recording.reason}. What is intact is shown."] if recording.reason else []
-    return Player(Replay(recording, Marks(path)), go_live, notices=notices)
+    return ReplayScreen(Replay(recording, Marks(path)), go_live, notices=notices)

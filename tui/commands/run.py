@@ -115,7 +115,7 @@ def _gate(expression: str | None) -> "Gate | None":
 
 def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int) -> "tuple[Sample, list[Trend], bool]":
     """The last sample, each method's trend, and whether somebody stopped it before its end."""
-    from engine.models.exact_pendulum import Swing
+    from engine.models.exact_pendulum import ExactMotion
     from engine.run import compiled, loops
     from engine.run.verdict import Trend
     from recordings.headless import simulate
@@ -126,9 +126,9 @@ def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int)
         from recordings.recorder import Recorder
 
         recorder = Recorder(options.record, wall=None, overwrite=options.force)
-    swing = Swing(scene)
-    trends = [Trend(period := swing.period or math.tau / scene.w0) for _ in METHODS]
-    per_turn = period / scene.h if swing.regime == "rotation" else math.inf
+    exact = ExactMotion(scene)
+    trends = [Trend(period := exact.period or math.tau / scene.w0) for _ in METHODS]
+    per_turn = period / scene.h if exact.regime == "rotation" else math.inf
     fast = not options.no_compiled and steps >= COMPILED_FROM and compiled.available()
     with stop_requests() as stopped, progress(f"{steps} steps") as show, recorder as recording:
         for sample in simulate(scene, options.time, recording, every, loops=compiled.compiled if fast else loops.plain):
@@ -143,9 +143,9 @@ def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int)
 def _rows(scene: Scene, sample: "Sample", trends: "list[Trend]") -> list[dict[str, Any]]:
     """What became of each method.  A method that diverged has no theta to compare."""
     from engine.accuracy.study import evaluations
-    from engine.models.exact_pendulum import Swing
+    from engine.models.exact_pendulum import ExactMotion
 
-    exact = Swing(scene).at(sample.t).theta
+    exact = ExactMotion(scene).at(sample.t).theta
     rows = []
     for method, reading, trend in zip(METHODS, sample.readings, trends, strict=True):
         judgement, end = trend.judgement, reading.diverged_at

@@ -8,7 +8,7 @@ from pathlib import Path
 from tui.cli.errors import Exit
 from tui.cli.files import whole_file
 from tui.cli.options import add_scene_options, scene_of
-from tui.terminal.options import add_picture_options, display_of
+from tui.terminal.options import add_picture_options, terminal_options_of
 
 EXAMPLES = """\
 examples:
@@ -36,7 +36,7 @@ def run(options: argparse.Namespace) -> int:
 
     from tui.screens.still import still
 
-    display = display_of(options, os.environ, "utf-8")
+    display = terminal_options_of(options, os.environ, "utf-8")
     with whole_file(options.output, options.force) as file:
         file.write_text(asyncio.run(still(scene, options.time, options.size, display)), encoding="utf-8")
     return Exit.FINE

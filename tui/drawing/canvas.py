@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from tui.drawing.palette import NOBODY
 
-Run = tuple[str, int]
+Span = tuple[str, int]
 """Characters next to each other that have the same owner."""
 
 _BITS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]], np.uint8)  # Unicode's order of braille dots
@@ -29,7 +29,7 @@ class Picture:
     characters: NDArray[np.uint32]  # code points, (rows, columns)
     owners: NDArray[np.int8]  # (rows, columns)
 
-    def row(self, y: int) -> list[Run]:
+    def row(self, y: int) -> list[Span]:
         """The runs of row y, from the left; together as wide as the picture, which may have no column at all."""
         text = self.characters[y].astype("<u4").tobytes().decode("utf-32-le")
         owners = self.owners[y]

@@ -10,11 +10,11 @@ from textual.geometry import Region, Size
 from textual.strip import Strip
 from textual.widget import Widget
 
-from tui.drawing.canvas import Picture, Run
+from tui.drawing.canvas import Picture, Span
 from tui.drawing.large import thick
 from tui.drawing.palette import NOBODY, palette
 
-Row = Sequence[Run]
+Row = Sequence[Span]
 
 PRESENT = "-present"
 """The app's class where pictures have thick lines."""
@@ -28,7 +28,7 @@ def changed_rows(before: Picture | None, after: Picture) -> list[int]:
     return np.flatnonzero(changed.any(axis=1)).tolist()
 
 
-class Rows(Widget):
+class CellWidget(Widget):
     """Shows rows or a picture; what is missing is blank, what is too long is cut off."""
 
     ALLOW_SELECT = False

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 from recordings.events import Event
-from tui.playback.past import Past, pieces
+from tui.playback.past import RunSoFar, pieces
 
 if TYPE_CHECKING:
     from recordings.recording import Recording
@@ -28,12 +28,12 @@ class Highlights:
         for _, event in recording.events:
             events[event.run].append(event)
         for run in recording.runs:
-            past, known, before, then = Past(run.scene, events[run.number]), 0, 0, run.begin
+            past, known, before, then = RunSoFar(run.scene, events[run.number]), 0, 0, run.begin
             yield run
             for clock in past.read(recording, run.number, pieces(run.begin, run.end), run.steps + 1):
-                happenings, step = past.witness.happenings(past.witness.seen), past.witness.seen
-                for each in happenings[known:]:  # of a long run not every sample is read
+                milestones, step = past.observer.milestones(past.observer.seen), past.observer.seen
+                for each in milestones[known:]:  # of a long run not every sample is read
                     share = (each.step - before) / (step - before) if step > before else 1.0
                     self.clocks.append(then + share * (clock - then))
-                known, before, then = len(happenings), step, clock
+                known, before, then = len(milestones), step, clock
                 yield clock

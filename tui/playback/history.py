@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from engine.methods import METHODS
-from engine.models.exact_pendulum import Swing
+from engine.models.exact_pendulum import ExactMotion
 from engine.models.pendulum import energy, energy_scale
 from engine.models.state import State
 from engine.run.lockstep import Sample
-from engine.run.modified_energy_errors import ShadowErrors
+from engine.run.modified_energy_errors import ModifiedEnergyErrors
 from engine.scenes import Scene
 
 Quantity = Literal["energy_error", "theta_error", "shadow_error", "energy"]
@@ -83,18 +83,18 @@ class _Level:
             self.first = self.count = otherwise
 
 
-class History:
+class ErrorHistory:
     """The past of one run, up to the last sample added.  Another start is another History."""
 
     def __init__(self, scene: Scene, capacity: int = 2048) -> None:
         self._start_energy: float = energy(scene.w0_squared, scene.theta, scene.omega)
         self._scale = energy_scale(scene.w0_squared, self._start_energy)
-        swing = Swing(scene)
-        self._repeats = (swing.period or 0.0) / (2 if swing.regime == "libration" else 1)
+        exact = ExactMotion(scene)
+        self._repeats = (exact.period or 0.0) / (2 if exact.regime == "libration" else 1)
         self._run = 0
         self._levels = [_Level(capacity)]
         self._states = np.zeros((capacity, len(METHODS) + 1, 2))  # beside level 0; the exact swing comes last
-        self._shadows = ShadowErrors(scene.w0_squared, self._scale)
+        self._shadows = ModifiedEnergyErrors(scene.w0_squared, self._scale)
         self.returned: Sample | None = None  # where simulated time last was back at 0
 
     def add(self, sample: Sample, exact: State | None = None, equal_cost: bool = False) -> None:

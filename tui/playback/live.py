@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from engine.methods import METHODS
 from engine.run.lockstep import Sample
-from engine.run.observer import Happening
-from engine.run.rewindable import Course, Pitch
+from engine.run.observer import Milestone
+from engine.run.rewindable import Pitch, RewindableRun
 from engine.run.verdict import Judgement
 from engine.scenes import Scene, check_h
 from recordings.events import Event, EventKind
-from tui.playback.past import Past
+from tui.playback.past import RunSoFar
 from tui.playback.playhead import Pace, Playhead
-from tui.playback.source import EQUAL_PARTS, Tape, is_marked, least_h
+from tui.playback.source import EQUAL_PARTS, RecordingStatus, is_marked, least_h
 
 if TYPE_CHECKING:
-    from recordings.live_recorder import SittingRecorder
+    from recordings.live_recorder import LiveRecorder
 
 FRAME_BUDGET = 0.020  # s of each frame for the simulation; the rest of 33 ms is for drawing
 CHUNK = 256  # steps between looks at the clock, about a millisecond
@@ -35,7 +35,7 @@ class Live:
         clock: Callable[[], float] = time.perf_counter,
         changes: Iterable[tuple[int, Pitch]] = (),
         step: int = 0,
-        past: Past | None = None,
+        past: RunSoFar | None = None,
     ) -> None:
         """With `changes` of how it steps, as (step, pitch), and a `step`, go on from there, not from the start.
 
@@ -44,41 +44,41 @@ class Live:
         self.playhead = Playhead(speed=speed)
         self.pace = Pace()
         self.events: list[Event] = []
-        self.recorder: SittingRecorder | None = None
+        self.recorder: LiveRecorder | None = None
         self._recorded = Playhead()  # the recording clock: it stands while the lab is paused, whatever the speed
         self._clock = clock
         self._runs = 1
-        self._enter(Course.at(scene, changes, step), past)
+        self._enter(RewindableRun.at(scene, changes, step), past)
 
     @property
     def scene(self) -> Scene:
         """The scene of the run."""
-        return self._course.scene
+        return self._run.scene
 
     @property
     def h(self) -> float:
         """The step size in force [s]."""
-        return self._course.h
+        return self._run.h
 
     @property
     def equal_cost(self) -> bool:
         """Whether all methods spend the same number of force evaluations."""
-        return self._course.equal_cost
+        return self._run.equal_cost
 
     @property
     def in_past(self) -> bool:
         """Whether the lab has stepped back and what comes next is known."""
-        return self._course.in_past
+        return self._run.in_past
 
     @property
     def judgements(self) -> Sequence[Judgement]:
         """The verdicts on the run since the last change of the step size."""
-        return self._witness.judgements
+        return self._observer.judgements
 
     @property
-    def happenings(self) -> Sequence[Happening]:
+    def milestones(self) -> Sequence[Milestone]:
         """What the methods did up to the sample."""
-        return self._witness.happenings(self.sample.step)
+        return self._observer.milestones(self.sample.step)
 
     @property
     def later_marks(self) -> Sequence[Event]:
@@ -86,12 +86,16 @@ class Live:
         return ()
 
     @property
-    def tape(self) -> Tape | None:
+    def recording_status(self) -> RecordingStatus | None:
         """What becomes of the recording."""
         recorder = self.recorder
-        return None if recorder is None else Tape(recorder.path.name, recorder.seconds, recorder.bytes, recorder.failed)
+        return (
+            None
+            if recorder is None
+            else RecordingStatus(recorder.path.name, recorder.seconds, recorder.bytes, recorder.failed)
+        )
 
-    def record(self, recorder: "SittingRecorder") -> None:
+    def record(self, recorder: "LiveRecorder") -> None:
         """Record from here on."""
         self.recorder = recorder
         for event in self.events:
@@ -104,13 +108,13 @@ class Live:
         self.playhead, self._recorded = before.at(now), self._recorded.at(now)
         if self.playhead.paused or before.seen is None:
             return self.sample
-        began, target = self._clock(), self._course.step_at(self.playhead.position)
-        target = int(min(target, self._course.home))  # so that a sample shows what each method misses its start by
-        while (left := target - self._course.step) > 0 and self._clock() - began < FRAME_BUDGET:
-            self._course.forward(min(left, CHUNK))
+        began, target = self._clock(), self._run.step_at(self.playhead.position)
+        target = int(min(target, self._run.home))  # so that a sample shows what each method misses its start by
+        while (left := target - self._run.step) > 0 and self._clock() - began < FRAME_BUDGET:
+            self._run.forward(min(left, CHUNK))
         due = self.playhead.position - before.position
         if left > 0:
-            self.playhead = self.playhead.moved_to(self._course.x)
+            self.playhead = self.playhead.moved_to(self._run.x)
         self.pace = self.pace.after(max(0.0, now - before.seen), due, self.playhead.position - before.position)
         return self._take_sample()
 
@@ -118,10 +122,10 @@ class Live:
         """Pause and go n steps on, or back where n is negative."""
         self.pause(True)
         if n >= 0:
-            self._course.forward(n)
+            self._run.forward(n)
         else:
-            self._course.back_to(max(0, self._course.step + n))
-        self.playhead = self.playhead.moved_to(self._course.x)
+            self._run.back_to(max(0, self._run.step + n))
+        self.playhead = self.playhead.moved_to(self._run.x)
         return self._take_sample()
 
     def start(self, scene: Scene) -> None:
@@ -130,14 +134,14 @@ class Live:
         if equal_cost:
             check_h(whole, scene.w0)
         self._runs += 1
-        self._enter(Course(scene, self._runs))
+        self._enter(RewindableRun(scene, self._runs))
         if equal_cost:
             self.set_h(whole, equal_cost)
 
-    def _enter(self, course: Course, past: Past | None = None) -> None:
-        past = past or Past(course.scene)
-        self._course = course
-        self.swing, self.history, self._witness = past.swing, past.history, past.witness
+    def _enter(self, course: RewindableRun, past: RunSoFar | None = None) -> None:
+        past = past or RunSoFar(course.scene)
+        self._run = course
+        self.exact, self.history, self._observer = past.exact, past.history, past.observer
         self.playhead = self.playhead.moved_to(course.x)
         self._note_start()
         self._take_sample()
@@ -155,11 +159,11 @@ class Live:
             check_h(own, self.scene.w0)
         if self.in_past:
             self._runs += 1
-            self._course.branch(self._runs)
+            self._run.branch(self._runs)
             self._note_start()
-        self._course.set_h(h, equal_cost)
+        self._run.set_h(h, equal_cost)
         self._note_here("set_h", h=h, equal_cost=equal_cost)
-        self._witness.judge_anew(self._course.step)
+        self._observer.judge_anew(self._run.step)
         self._take_sample()
 
     def pause(self, paused: bool) -> None:
@@ -187,23 +191,23 @@ class Live:
             self.recorder.close()
 
     def _take_sample(self) -> Sample:
-        self.sample = self._course.sample()
-        self.history.add(self.sample, self.swing.at(self.sample.t), self._course.equal_cost)
-        self._witness.add(self.sample)
-        if self.recorder is not None and self.sample.step >= self._course.furthest:
+        self.sample = self._run.sample()
+        self.history.add(self.sample, self.exact.at(self.sample.t), self._run.equal_cost)
+        self._observer.add(self.sample)
+        if self.recorder is not None and self.sample.step >= self._run.furthest:
             self.recorder.sample(self.sample, self._recorded.position)
         return self.sample
 
     def _note_start(self) -> None:
         """The start of the run, and the changes of its step size where it goes on from another's past."""
-        course = self._course
+        course = self._run
         keys = tuple(method.key for method in METHODS)
         self._note(Event("start", course.run, 0, 0.0, scene=self.scene, methods=keys))
         for change in course.changes[1:]:
             self._note(Event("set_h", course.run, change.step, change.t, h=change.h, equal_cost=change.equal_cost))
 
     def _note_here(self, kind: EventKind, **what: Any) -> None:
-        self._note(Event(kind, self._course.run, self._course.step, self._course.t, **what))
+        self._note(Event(kind, self._run.run, self._run.step, self._run.t, **what))
 
     def _note(self, event: Event) -> None:
         self.events.append(event)

@@ -7,12 +7,12 @@ from itertools import pairwise
 from operator import itemgetter
 from typing import TYPE_CHECKING
 
-from engine.models.exact_pendulum import Swing
+from engine.models.exact_pendulum import ExactMotion
 from engine.run.lockstep import Sample
-from engine.run.observer import Witness
+from engine.run.observer import RunObserver
 from engine.scenes import Scene
 from recordings.events import Event
-from tui.playback.history import History
+from tui.playback.history import ErrorHistory
 
 if TYPE_CHECKING:
     from recordings.recording import Recording
@@ -22,28 +22,28 @@ PIECES = 300  # in at most so many pieces of a second, evenly spread
 _step = itemgetter(0)
 
 
-class Past:
+class RunSoFar:
     """A run up to a moment: its history, and what is known of it.  `events` are all of a recorded run's."""
 
     def __init__(self, scene: Scene, events: Iterable[Event] = ()) -> None:
         self._changes = [(event.step, event.equal_cost) for event in events if event.kind == "set_h"]
-        self.swing = Swing(scene)
-        self.history = History(scene)
-        self.witness = Witness(scene, self.swing)
+        self.exact = ExactMotion(scene)
+        self.history = ErrorHistory(scene)
+        self.observer = RunObserver(scene, self.exact)
 
     def add(self, sample: Sample) -> None:
         """Add a sample; an earlier one takes back what came after it, except from the verdicts."""
-        first, last = (bisect_left(self._changes, step, key=_step) for step in (self.witness.seen, sample.step))
+        first, last = (bisect_left(self._changes, step, key=_step) for step in (self.observer.seen, sample.step))
         for step, _ in self._changes[first:last]:
-            self.witness.judge_anew(step)
-        self.history.add(sample, self.swing.at(sample.t), last > 0 and self._changes[last - 1][1])
-        self.witness.add(sample)
+            self.observer.judge_anew(step)
+        self.history.add(sample, self.exact.at(sample.t), last > 0 and self._changes[last - 1][1])
+        self.observer.add(sample)
 
     def read(self, recording: "Recording", run: int, pieces: list[tuple[float, float]], last: int) -> Iterator[float]:
         """Add what pieces of the recording clock hold of a run before step `last`; yields each sample's clock."""
         for start, end in pieces:
             for clock, value in recording.entries(start, end):
-                if value.run == run and isinstance(value, Sample) and self.witness.seen < value.step < last:
+                if value.run == run and isinstance(value, Sample) and self.observer.seen < value.step < last:
                     self.add(value)
                     yield clock
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 from engine.run.lockstep import Sample
-from tui.playback.past import Past, pieces
+from tui.playback.past import RunSoFar, pieces
 
 if TYPE_CHECKING:
     from recordings.recording import Place, Recording, Run
@@ -15,12 +15,12 @@ RECENT = 20.0  # and some frames later, for the chart
 NANOSECOND = 1e-9  # s; clocks in a file are rounded to it, and a frame must not miss its sample by half of it
 
 
-class Reel:
+class ReplayCursor:
     """A place in a recording: the sample there, its run, and the past, which after a jump is read bit by bit."""
 
     sample: Sample
     run: "Run"
-    past: Past
+    past: RunSoFar
 
     def __init__(self, recording: "Recording") -> None:
         self.recording = recording
@@ -92,9 +92,9 @@ class Reel:
         self.past.add(value)
         self._filling = self._fill()
 
-    def _nothing_known(self) -> Past:
+    def _nothing_known(self) -> RunSoFar:
         """The past before any of it has been read."""
-        return Past(self.run.scene, [event for _, event in self.recording.events if event.run == self.run.number])
+        return RunSoFar(self.run.scene, [event for _, event in self.recording.events if event.run == self.run.number])
 
     def _fill(self) -> Iterator[object]:
         """Read the past of the sample, and then that of the samples that have come since: the recent past, then all."""

@@ -6,20 +6,20 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
-from engine.models.exact_pendulum import Swing
+from engine.models.exact_pendulum import ExactMotion
 from engine.run.lockstep import Sample
-from engine.run.observer import Happening
+from engine.run.observer import Milestone
 from engine.run.rewindable import Pitch
 from engine.run.verdict import Judgement
 from engine.scenes import Scene
 from recordings.events import Event
 from tui.playback.highlights import Highlights
-from tui.playback.history import History
+from tui.playback.history import ErrorHistory
 from tui.playback.live import Live
 from tui.playback.marks import Mark, Marks, mark_event
 from tui.playback.playhead import Pace, Playhead
-from tui.playback.reel import Reel
-from tui.playback.source import Tape, is_marked
+from tui.playback.reel import ReplayCursor
+from tui.playback.source import RecordingStatus, is_marked
 
 if TYPE_CHECKING:
     from recordings.recording import Recording, Run
@@ -41,7 +41,7 @@ class Replay:
         """Of the loop, on the recording clock [s]; None: the recording's own."""
         self.looping = False
         self._clock = clock
-        self._reel = Reel(recording)
+        self._reel = ReplayCursor(recording)
         self._highlights = Highlights(recording)
 
     @property
@@ -72,24 +72,24 @@ class Replay:
         return self.run.scene
 
     @property
-    def swing(self) -> Swing:
+    def exact(self) -> ExactMotion:
         """The exact motion of that scene."""
-        return self._reel.past.swing
+        return self._reel.past.exact
 
     @property
-    def history(self) -> History:
+    def history(self) -> ErrorHistory:
         """The past of the run, up to the sample; after a jump it grows for some frames."""
         return self._reel.past.history
 
     @property
     def judgements(self) -> Sequence[Judgement]:
         """The verdicts on the run up to the sample."""
-        return self._reel.past.witness.judgements
+        return self._reel.past.observer.judgements
 
     @property
-    def happenings(self) -> Sequence[Happening]:
+    def milestones(self) -> Sequence[Milestone]:
         """What the methods did up to the sample."""
-        return self._reel.past.witness.happenings(self.sample.step)
+        return self._reel.past.observer.milestones(self.sample.step)
 
     @property
     def events(self) -> Sequence[Event]:
@@ -129,9 +129,9 @@ class Replay:
         return bool(changes) and changes[-1][1].equal_cost
 
     @property
-    def tape(self) -> Tape:
+    def recording_status(self) -> RecordingStatus:
         """The recording."""
-        return Tape(self.recording.path.name, self.length, self.recording.bytes)
+        return RecordingStatus(self.recording.path.name, self.length, self.recording.bytes)
 
     def tick(self, now: float) -> Sample:
         """Follow the clock to `now`: stop at the ends, or go round in the loop."""

@@ -10,7 +10,7 @@ WINDOWS: tuple[float | None, ...] = (5.0, 20.0, 60.0, 300.0, 1800.0, None)
 
 
 @dataclass(frozen=True, slots=True)
-class Look:
+class Shown:
     """What is shown of a source, and how."""
 
     shown: tuple[bool, ...] = (True,) * len(METHODS)
@@ -25,18 +25,18 @@ class Look:
         """The shown methods as indices into METHODS."""
         return [index for index, shown in enumerate(self.shown) if shown]
 
-    def toggled(self, number: int) -> "Look":
+    def toggled(self, number: int) -> "Shown":
         """With one method shown or hidden; the number after the last method's is the exact swing's."""
         if number == len(self.shown):
             return replace(self, exact=not self.exact)
         shown = tuple(was != (index == number) for index, was in enumerate(self.shown))
         return replace(self, shown=shown)
 
-    def next_quantity(self) -> "Look":
+    def next_quantity(self) -> "Shown":
         """With the chart's next quantity."""
         return replace(self, quantity=QUANTITIES[(QUANTITIES.index(self.quantity) + 1) % len(QUANTITIES)])
 
-    def next_window(self, forward: bool = True) -> "Look":
+    def next_window(self, forward: bool = True) -> "Shown":
         """With the chart's next longer window, or the next shorter one; the ends are joined."""
         at = WINDOWS.index(self.seconds) + (1 if forward else -1)
         return replace(self, seconds=WINDOWS[at % len(WINDOWS)])

@@ -10,14 +10,14 @@ from recordings.events import Event
 from tui.playback.playhead import Pace, Playhead
 
 if TYPE_CHECKING:
-    from engine.models.exact_pendulum import Swing
-    from engine.run.observer import Happening
+    from engine.models.exact_pendulum import ExactMotion
+    from engine.run.observer import Milestone
     from engine.run.verdict import Judgement
-    from tui.playback.history import History
+    from tui.playback.history import ErrorHistory
 
 
 @dataclass(frozen=True, slots=True)
-class Tape:
+class RecordingStatus:
     """What becomes of a recording, or what is replayed."""
 
     name: str
@@ -50,11 +50,11 @@ class Source(Protocol):
         """Whether all methods spend the same number of force evaluations: RK4 a step of h, the others four of h/4."""
 
     @property
-    def swing(self) -> "Swing":
+    def exact(self) -> "ExactMotion":
         """The exact motion of the scene: at(t), period, regime."""
 
     @property
-    def history(self) -> "History":
+    def history(self) -> "ErrorHistory":
         """The past of the run on screen, up to the sample."""
 
     @property
@@ -62,7 +62,7 @@ class Source(Protocol):
         """What is known of each method's energy error so far: verdict and drift per second."""
 
     @property
-    def happenings(self) -> "Sequence[Happening]":
+    def milestones(self) -> "Sequence[Milestone]":
         """What the methods did in this run up to the sample, in its order."""
 
     @property
@@ -82,7 +82,7 @@ class Source(Protocol):
         """Whether it can follow the clock."""
 
     @property
-    def tape(self) -> Tape | None:
+    def recording_status(self) -> RecordingStatus | None:
         """The recording; None where nothing is recorded."""
 
     def tick(self, now: float) -> Sample:

@@ -19,12 +19,12 @@ from textual.theme import BUILTIN_THEMES, Theme
 from tui.cli.errors import Exit
 from tui.drawing.cells import PRESENT
 from tui.drawing.palette import PALETTES, Palette
-from tui.screens.base import SMALLEST, Stage
+from tui.screens.base import SMALLEST, SourceScreen
 from tui.screens.modal import Commands
-from tui.terminal.character_sets import PixelFilter
+from tui.terminal.character_sets import CharacterSetFilter
 from tui.terminal.check import is_gone
-from tui.terminal.options import PIXELS, USUAL, Display, Pixels
-from tui.terminal.throughput import Wire
+from tui.terminal.options import CHARACTER_SETS, USUAL, CharacterSet, TerminalOptions
+from tui.terminal.throughput import Throughput
 
 WIDTHS = [(0, "-tiny"), (SMALLEST[0], "-narrow"), (80, "-normal"), (120, "-wide")]
 HEIGHTS = [(0, "-flat"), (SMALLEST[1], "-low"), (24, "-middle"), (36, "-high")]
@@ -44,9 +44,14 @@ class PenduApp(App[Exit | OSError]):
         Binding("ctrl+z", "suspend_process", show=False, priority=True),
     ]
 
-    pixels: var[Pixels] = var("braille", init=False)
+    character_set: var[CharacterSet] = var("braille", init=False)
 
-    def __init__(self, stage: Stage, opened: Callable[[Path], Stage] | None = None, display: Display = USUAL) -> None:
+    def __init__(
+        self,
+        stage: SourceScreen,
+        opened: Callable[[Path], SourceScreen] | None = None,
+        display: TerminalOptions = USUAL,
+    ) -> None:
         """`opened` makes the stage on which a recording is replayed; it may raise an exception with a sentence."""
         if not os.environ.get("NO_COLOR", "?"):
             del os.environ["NO_COLOR"]  # no-color.org: empty means nothing
@@ -56,10 +61,10 @@ class PenduApp(App[Exit | OSError]):
             self.register_theme(_theme(name, colours))
         self.theme = display.theme
         self.fps = display.fps
-        self.set_reactive(PenduApp.pixels, display.pixels)
+        self.set_reactive(PenduApp.character_set, display.character_set)
         self.set_class(display.present, PRESENT)
         self.stages = [stage]
-        self.wire = Wire()
+        self.throughput = Throughput()
 
     def get_driver_class(self) -> type[Driver]:
         """Our own for Linux and its kin, unless another was asked for."""
@@ -75,11 +80,11 @@ class PenduApp(App[Exit | OSError]):
 
         What is urgent need not wait for what the system has taken already.
         """
-        self.wire.tick(time.monotonic())
-        return self.wire.is_full if urgent else self.wire.is_busy
+        self.throughput.tick(time.monotonic())
+        return self.throughput.is_full if urgent else self.throughput.is_busy
 
     @property
-    def stage(self) -> Stage:
+    def stage(self) -> SourceScreen:
         """The stage that follows the clock."""
         return self.stages[-1]
 
@@ -87,7 +92,7 @@ class PenduApp(App[Exit | OSError]):
         """The stage."""
         return self.stage
 
-    def on_stage_began(self, message: Stage.Began) -> None:
+    def on_source_screen_began(self, message: SourceScreen.Began) -> None:
         """Another stage has taken over."""
         if message.stage is not self.stage:
             self.stages.append(message.stage)
@@ -126,11 +131,11 @@ class PenduApp(App[Exit | OSError]):
     def _doing(self, action: str) -> Callable[[], None]:
         return lambda: self.stage.call_next(self.stage.run_action, action)
 
-    def action_aid(self, name: str, *arguments: object) -> None:
+    def action_extra(self, name: str, *arguments: object) -> None:
         """Do what is seldom wanted, and imported only then."""
-        from tui.screens.extras import AIDS
+        from tui.screens.extras import EXTRAS
 
-        AIDS[name](self, *arguments)
+        EXTRAS[name](self, *arguments)
 
     def action_command_palette(self) -> None:
         """Open the palette."""
@@ -146,11 +151,11 @@ class PenduApp(App[Exit | OSError]):
         self.toggle_class(PRESENT)
         self.stage.show_now()
 
-    def action_next_pixels(self) -> None:
+    def action_next_character_set(self) -> None:
         """Draw with braille, half blocks, or ASCII."""
-        self.pixels = PIXELS[(PIXELS.index(self.pixels) + 1) % len(PIXELS)]
+        self.character_set = CHARACTER_SETS[(CHARACTER_SETS.index(self.character_set) + 1) % len(CHARACTER_SETS)]
 
-    def watch_pixels(self) -> None:
+    def watch_character_set(self) -> None:
         """Draw everything anew: no widget knows that its characters have become others."""
         self.refresh_css(animate=False)
         for screen in self.screen_stack:
@@ -159,10 +164,10 @@ class PenduApp(App[Exit | OSError]):
 
     def get_line_filters(self) -> Sequence[LineFilter]:
         """What all lines pass through before they are shown."""
-        return [*super().get_line_filters(), *(one for one in (_FILTERS[self.pixels],) if one.enabled)]
+        return [*super().get_line_filters(), *(one for one in (_FILTERS[self.character_set],) if one.enabled)]
 
 
-_FILTERS = {pixels: PixelFilter(pixels) for pixels in PIXELS}
+_FILTERS = {character_set: CharacterSetFilter(character_set) for character_set in CHARACTER_SETS}
 
 
 _ANSI = BUILTIN_THEMES["ansi-dark"].variables  # of cursors and selections, in the terminal's own colours

@@ -16,7 +16,7 @@ from textual.widget import Widget
 
 from engine.run.lockstep import Sample
 from tui.playback.playhead import doubled
-from tui.playback.shown import Look
+from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.screens.insight_line import InsightLine
 from tui.screens.key_line import Hint, KeyLine
@@ -43,14 +43,14 @@ def _first_source(stage: Any) -> Source:
     return source
 
 
-class Stage(Screen[None]):
+class SourceScreen(Screen[None]):
     """Shows a source.  Its clock is passed in."""
 
     @dataclass
     class Began(Message):
         """This stage follows the clock now."""
 
-        stage: "Stage"
+        stage: "SourceScreen"
 
     BINDINGS: ClassVar[list[BindingType]] = bindings(*COMMON)
     AUTO_FOCUS = ""  # keys belong to the screen until a pane is clicked
@@ -58,9 +58,9 @@ class Stage(Screen[None]):
 
     source: var[Source] = var(Initialize(_first_source))
     sample: var[Sample | None] = var(None)
-    reading: var[Sample | None] = var(None, always_update=True)
-    past: var[Sample | None] = var(None)
-    look: var[Look] = var(Look())
+    sample_10hz: var[Sample | None] = var(None, always_update=True)
+    sample_5hz: var[Sample | None] = var(None)
+    shown: var[Shown] = var(Shown())
     view: var[str] = var("lab")
 
     def __init__(
@@ -80,17 +80,17 @@ class Stage(Screen[None]):
         self._missed = 0.0  # s of the clock while the program was stopped
         self._late = False  # everything is to be shown with the next frame
         self._undo: list[Callable[[], object]] = []
-        for reactive in (Stage.sample, Stage.reading, Stage.past):
+        for reactive in (SourceScreen.sample, SourceScreen.sample_10hz, SourceScreen.sample_5hz):
             self.set_reactive(reactive, source.sample)
 
     def compose(self) -> ComposeResult:
         """Create what frames the views, and the first one."""
-        yield StatusLine().data_bind(Stage.source, sample=Stage.reading)
+        yield StatusLine().data_bind(SourceScreen.source, sample=SourceScreen.sample_10hz)
         with Container(id="views"):
             yield self._create(self.view)
         yield TooSmall(SMALLEST)
         yield from self.more()
-        yield InsightLine().data_bind(Stage.source, sample=Stage.reading)
+        yield InsightLine().data_bind(SourceScreen.source, sample=SourceScreen.sample_10hz)
         yield KeyLine([Hint(key.shown, key.hint, key.action) for key in hints(self.KEYS)])
 
     def more(self) -> Iterable[Widget]:
@@ -134,26 +134,26 @@ class Stage(Screen[None]):
         self._frames += 1
         self.sample = sample
         if self._late or self._frames % max(self._fps // READ, 1) == 0:
-            self.reading = sample
+            self.sample_10hz = sample
         if self._late or self._frames % max(self._fps // BUILT, 1) == 0:
-            self.past = sample
+            self.sample_5hz = sample
         self._late = False
 
     def show_now(self) -> None:
         """Show everything as it is, without waiting for its turn; on a line that is busy, as soon as it is not."""
         self._late = cast("PenduApp", self.app).is_behind(urgent=True)
         if not self._late:
-            self.sample = self.reading = self.past = self.source.sample
+            self.sample = self.sample_10hz = self.sample_5hz = self.source.sample
 
     def remember(self, undo: Callable[[], object]) -> None:
         """Keep what undoes a setting."""
         self._undo.append(undo)
 
-    def change_look(self, look: Look) -> None:
+    def change_shown(self, shown: Shown) -> None:
         """Use another look."""
-        before = self.look
-        self.remember(lambda: setattr(self, "look", before))
-        self.look = look
+        before = self.shown
+        self.remember(lambda: setattr(self, "shown", before))
+        self.shown = shown
 
     def on_key_line_pressed(self, message: KeyLine.Pressed) -> None:
         """A click on the key line does what the key does."""
@@ -187,23 +187,23 @@ class Stage(Screen[None]):
 
     def action_show(self, number: int) -> None:
         """Show or hide a method, or the exact swing."""
-        self.change_look(self.look.toggled(number))
+        self.change_shown(self.shown.toggled(number))
 
     def action_trails(self) -> None:
         """Show or hide the trails."""
-        self.change_look(replace(self.look, trails=not self.look.trails))
+        self.change_shown(replace(self.shown, trails=not self.shown.trails))
 
     def action_log(self) -> None:
         """Chart logarithmically, or linearly."""
-        self.change_look(replace(self.look, log=not self.look.log))
+        self.change_shown(replace(self.shown, log=not self.shown.log))
 
     def action_quantity(self) -> None:
         """Chart the next quantity."""
-        self.change_look(self.look.next_quantity())
+        self.change_shown(self.shown.next_quantity())
 
     def action_window(self, direction: int) -> None:
         """Chart more or less of the past."""
-        self.change_look(self.look.next_window(direction > 0))
+        self.change_shown(self.shown.next_window(direction > 0))
 
     def action_undo(self) -> None:
         """Take back the last setting."""
@@ -237,4 +237,10 @@ class Stage(Screen[None]):
         self.app.exit()
 
     def _create(self, name: str) -> View:
-        return create(name).data_bind(Stage.source, Stage.sample, Stage.reading, Stage.past, Stage.look)
+        return create(name).data_bind(
+            SourceScreen.source,
+            SourceScreen.sample,
+            SourceScreen.sample_10hz,
+            SourceScreen.sample_5hz,
+            SourceScreen.shown,
+        )

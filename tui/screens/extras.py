@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from recordings import library
 from tui.cli.errors import explained
 from tui.playback.live import Live
-from tui.screens.text import Reader
+from tui.screens.text import TextScreen
 from tui.terminal.screenshot import save_picture
 from tui.views import VIEWS
 from tui.words.cards import method_card
@@ -24,17 +24,17 @@ def show_description(app: "PenduApp") -> None:
     stage = app.stage
     panes = [str(pane.border_title) for pane in stage.query("*") if pane.border_title and pane.is_on_screen]
     shown = f"On screen: {VIEWS[stage.view].title}; {'; '.join(panes)}."
-    app.push_screen(Reader("In words", "\n".join([*description(stage.source), shown])))
+    app.push_screen(TextScreen("In words", "\n".join([*description(stage.source), shown])))
 
 
 def show_diary(app: "PenduApp") -> None:
     """List all events."""
-    app.push_screen(Reader("Events", "\n".join(map(str, diary(app.stage.source)))))
+    app.push_screen(TextScreen("Events", "\n".join(map(str, diary(app.stage.source)))))
 
 
 def show_card(app: "PenduApp", index: int) -> None:
     """Show a method's card."""
-    app.push_screen(Reader("Method", method_card(index)))
+    app.push_screen(TextScreen("Method", method_card(index)))
 
 
 def take_picture(app: "PenduApp") -> None:
@@ -70,7 +70,7 @@ def replay(app: "PenduApp", path: str) -> None:
     app.push_screen(stage)
 
 
-AIDS: dict[str, Callable[..., Any]] = {
+EXTRAS: dict[str, Callable[..., Any]] = {
     "describe": show_description,
     "diary": show_diary,
     "card": show_card,

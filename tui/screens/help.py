@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from engine.methods import METHODS
 from tui.playback.source import Source
-from tui.screens.text import Reader
+from tui.screens.text import TextScreen
 from tui.views.keys import Key
 from tui.words.cards import method_card, scene_card
 from tui.words.describe import step_text
@@ -20,7 +20,7 @@ def help_text(keys: Sequence[Key], source: Source) -> str:
     return "\n\n".join([*parts, *(method_card(index) for index in range(len(METHODS)))])
 
 
-class Help(Reader):
+class Help(TextScreen):
     """The help."""
 
     def __init__(self, keys: Sequence[Key], source: Source) -> None:

@@ -5,7 +5,7 @@ import textwrap
 from textual.reactive import var
 
 from engine.run.lockstep import Sample
-from tui.drawing.cells import Rows
+from tui.drawing.cells import CellWidget
 from tui.drawing.palette import TEXT, WARN
 from tui.playback.source import Source
 from tui.words.hints import hint
@@ -17,7 +17,7 @@ def fitted(text: str, width: int, height: int) -> list[str]:
     return textwrap.wrap(text, max(width, 2), max_lines=max(height, 1), placeholder=" …")
 
 
-class InsightLine(Rows):
+class InsightLine(CellWidget):
     """The sentence; trouble with the recording comes before everything else."""
 
     source: var[Source | None] = var(None)
@@ -35,9 +35,9 @@ class InsightLine(Rows):
         """Draw the sentence."""
         if self.source is None or not self.drawable:
             return
-        tape = self.source.tape
-        if tape is not None and tape.failed:
-            text, owner = f"Nothing is being recorded: {tape.failed}", WARN
+        recording_status = self.source.recording_status
+        if recording_status is not None and recording_status.failed:
+            text, owner = f"Nothing is being recorded: {recording_status.failed}", WARN
         else:
             text, owner = self._hint(self.source) or insight(self.source), TEXT
         self.show([[(f" {line}", owner)] for line in fitted(text, self.room.width - 2, self.room.height)])

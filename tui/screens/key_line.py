@@ -7,7 +7,7 @@ from typing import NamedTuple
 from textual import events
 from textual.message import Message
 
-from tui.drawing.cells import Row, Rows
+from tui.drawing.cells import CellWidget, Row
 from tui.drawing.palette import FRAME, TEXT
 
 
@@ -32,7 +32,7 @@ def key_row(hints: Sequence[Hint], width: int) -> tuple[Row, list[tuple[int, int
     return row, places
 
 
-class KeyLine(Rows):
+class KeyLine(CellWidget):
     """The line."""
 
     @dataclass

@@ -10,12 +10,12 @@ from engine.scenes import SCENES, Scene, SceneError
 from tui.playback.live import Live
 from tui.playback.playhead import next_h
 from tui.playback.source import EQUAL_PARTS, is_marked, least_h
-from tui.screens.base import ALREADY, Stage
+from tui.screens.base import ALREADY, SourceScreen
 from tui.views.keys import COMMON, LIVE, Key, bindings
 from tui.views.messages import SceneChosen, StepSizeChosen
 
 
-class Lab(Stage):
+class LiveScreen(SourceScreen):
     """Shows a live source and changes it."""
 
     BINDINGS: ClassVar[list[BindingType]] = bindings(*LIVE)

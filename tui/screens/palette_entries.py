@@ -24,13 +24,13 @@ def menu(keys: Iterable[Key], live: bool, recordings: Iterable[Path]) -> list[En
         *(Entry(f"{key.does} ({key.shown})", key.group, key.action) for key in keys if _offered(key)),
         *(Entry(f"scene {name}", scene.watch, f"start_scene({name!r})") for name, scene in SCENES.items() if live),
         *(
-            Entry(f"method {method.label}", "its card", f"app.aid('card', {index})")
+            Entry(f"method {method.label}", "its card", f"app.extra('card', {index})")
             for index, method in enumerate(METHODS)
         ),
         *(Entry(f"theme {name}", "", f"app.use_theme({name!r})") for name in PALETTES),
         Entry("large numbers and thick lines, or not", "for a projector", "app.present"),
-        *(Entry(f"replay {path.stem}", str(path), f"app.aid('replay', {str(path)!r})") for path in recordings),
-        Entry("copy the command that reproduces this", "to the clipboard", "app.aid('copy_command')"),
+        *(Entry(f"replay {path.stem}", str(path), f"app.extra('replay', {str(path)!r})") for path in recordings),
+        Entry("copy the command that reproduces this", "to the clipboard", "app.extra('copy_command')"),
     ]
 
 

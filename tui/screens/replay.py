@@ -12,14 +12,14 @@ from tui.cli.errors import UserError, explained
 from tui.playback.live import Live
 from tui.playback.replay import Replay
 from tui.playback.source import is_marked
-from tui.screens.base import ALREADY, Stage
+from tui.screens.base import ALREADY, SourceScreen
 from tui.screens.seek_bar import SeekBar
 from tui.views.keys import COMMON, REPLAY, Key, bindings
 
 LONG = 100_000  # steps; a quarter of a second
 
 
-class Player(Stage):
+class ReplayScreen(SourceScreen):
     """Shows a replay.  `go_live` makes the screen for a lab that goes on from the replayed moment."""
 
     BINDINGS: ClassVar[list[BindingType]] = bindings(*REPLAY)
@@ -28,7 +28,7 @@ class Player(Stage):
     def __init__(
         self,
         source: Replay,
-        go_live: Callable[[Live], Stage],
+        go_live: Callable[[Live], SourceScreen],
         clock: Callable[[], float] = time.monotonic,
         notices: Sequence[str] = (),
     ) -> None:
@@ -43,7 +43,7 @@ class Player(Stage):
 
     def more(self) -> Iterator[Widget]:
         """The bar above the insight line."""
-        yield SeekBar().data_bind(Stage.source, sample=Stage.reading)
+        yield SeekBar().data_bind(SourceScreen.source, sample=SourceScreen.sample_10hz)
 
     def on_seek_bar_sought(self, message: SeekBar.Sought) -> None:
         """Go there."""

@@ -10,7 +10,7 @@ from textual.message import Message
 from textual.reactive import var
 
 from engine.run.lockstep import Sample
-from tui.drawing.cells import Row, Rows
+from tui.drawing.cells import CellWidget, Row
 from tui.drawing.palette import FRAME, TEXT, WARN
 from tui.playback.replay import Replay
 from tui.playback.source import Source
@@ -53,7 +53,7 @@ def facts(replay: Replay, room: int) -> str:
     return text
 
 
-class SeekBar(Rows):
+class SeekBar(CellWidget):
     """The bar.  Click or drag on it to go elsewhere."""
 
     source: var[Source | None] = var(None)

@@ -8,7 +8,7 @@ from textual.reactive import var
 
 from engine.run.lockstep import Sample
 from recordings.errors import printable
-from tui.drawing.cells import Row, Rows
+from tui.drawing.cells import CellWidget, Row
 from tui.drawing.palette import FRAME, TEXT, WARN
 from tui.playback.source import Source, own_h
 from tui.words.limits import limit_warning
@@ -37,7 +37,7 @@ def coarse(value: float) -> str:
 
 def status_row(source: Source, width: int) -> Row:
     """The line, as far as there is room."""
-    scene, playhead, pace, tape = source.scene, source.playhead, source.pace, source.tape
+    scene, playhead, pace, recording_status = source.scene, source.playhead, source.pace, source.recording_status
     z, live, named = abs(source.h) * scene.w0, source.kind == "LIVE", bool(scene.watch)
     warning = limit_warning([abs(h) * scene.w0 for h in own_h(source)])
     parts = [
@@ -52,22 +52,22 @@ def status_row(source: Source, width: int) -> Row:
     ]
     if pace.share < 0.99:
         parts.insert(2, _Part(10, f"real-time {percent(pace.share)}", WARN))
-    if tape is None:
+    if recording_status is None:
         parts.append(_Part(8, "not recorded", FRAME))
-    elif tape.failed:
+    elif recording_status.failed:
         parts.append(_Part(10, "NOT RECORDED", WARN))
     else:
         if live:
-            parts.append(_Part(8, f"REC {coarse(tape.seconds)}"))
-        parts.append(_Part(2, file_size(tape.bytes), FRAME))
-        parts.append(_Part(1, printable(tape.name), FRAME))
+            parts.append(_Part(8, f"REC {coarse(recording_status.seconds)}"))
+        parts.append(_Part(2, file_size(recording_status.bytes), FRAME))
+        parts.append(_Part(1, printable(recording_status.name), FRAME))
     badge = f" {source.kind} "
     while parts and len(badge) + sum(len(part.text) + 2 for part in parts) > width:
         parts.remove(min(parts))
     return [(badge, BADGE), *((text, owner) for part in parts for text, owner in (("  ", TEXT), part[1:]))]
 
 
-class StatusLine(Rows):
+class StatusLine(CellWidget):
     """The line."""
 
     source: var[Source | None] = var(None)

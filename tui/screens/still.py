@@ -7,19 +7,19 @@ from collections.abc import Sequence
 from engine.scenes import Scene
 from tui.playback.live import Live
 from tui.screens.app import PenduApp
-from tui.screens.live import Lab
-from tui.terminal.options import FPS, USUAL, Display
+from tui.screens.live import LiveScreen
+from tui.terminal.options import FPS, USUAL, TerminalOptions
 
 PATIENCE = 30.0  # s for the charts to be built
 
 
 async def still(
-    scene: Scene, seconds: float, size: tuple[int, int], display: Display = USUAL, keys: Sequence[str] = ()
+    scene: Scene, seconds: float, size: tuple[int, int], display: TerminalOptions = USUAL, keys: Sequence[str] = ()
 ) -> str:
     """The lab as an SVG picture, `seconds` after the start and `keys` pressed since."""
     now = 0.0
     live = Live(scene, clock=lambda: 0.0)
-    stage = Lab(live, clock=lambda: now)
+    stage = LiveScreen(live, clock=lambda: now)
     app = PenduApp(stage, display=display)
     async with app.run_test(size=size) as pilot:
         for frame in range(round(seconds * FPS) + 1):

@@ -10,7 +10,7 @@ from textual.widgets import Static
 from tui.screens.modal import Modal
 
 
-class Reader(Modal[None]):
+class TextScreen(Modal[None]):
     """A text.  Esc closes it, and so do the keys that open one."""
 
     BINDINGS: ClassVar[list[BindingType]] = [

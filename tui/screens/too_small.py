@@ -1,11 +1,11 @@
 """TooSmall: what is said on a terminal on which nothing fits."""
 
 from tui.drawing.canvas import Picture
-from tui.drawing.cells import Rows
+from tui.drawing.cells import CellWidget
 from tui.drawing.palette import TEXT
 
 
-class TooSmall(Rows):
+class TooSmall(CellWidget):
     """Have and need.  The keys go on working."""
 
     def __init__(self, need: tuple[int, int]) -> None:

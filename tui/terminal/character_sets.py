@@ -7,7 +7,7 @@ from rich.segment import Segment
 from textual.color import Color
 from textual.filter import LineFilter
 
-from tui.terminal.options import Pixels
+from tui.terminal.options import CharacterSet
 
 _UPPER, _LOWER = 0x01 | 0x08 | 0x02 | 0x10, 0x04 | 0x20 | 0x40 | 0x80  # the dots of a cell, in Unicode's order
 
@@ -42,13 +42,13 @@ class _Ascii(dict[int, str]):
         return self[code]
 
 
-class PixelFilter(LineFilter):
+class CharacterSetFilter(LineFilter):
     """Writes nothing that the terminal does not have."""
 
-    def __init__(self, pixels: Pixels) -> None:
-        super().__init__(enabled=pixels != "braille")
+    def __init__(self, character_set: CharacterSet) -> None:
+        super().__init__(enabled=character_set != "braille")
         self._table: dict[int, str] = _braille(" ▀▄█")
-        if pixels == "ascii":
+        if character_set == "ascii":
             self._table = _Ascii(_braille(" '.:"))
             self._table.update((ord(character), like) for like, those in _LIKE.items() for character in those)
 

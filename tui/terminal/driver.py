@@ -6,7 +6,7 @@ from typing import IO, Any
 from textual.drivers.linux_driver import LinuxDriver
 
 from tui.terminal.sgr import lean
-from tui.terminal.throughput import Wire
+from tui.terminal.throughput import Throughput
 
 
 def _size(text: str) -> int:
@@ -17,14 +17,14 @@ def _size(text: str) -> int:
 class _Metered:
     """A file that tells how long writing took."""
 
-    def __init__(self, file: IO[str], wire: Wire) -> None:
-        self._file, self._wire = file, wire
+    def __init__(self, file: IO[str], throughput: Throughput) -> None:
+        self._file, self._throughput = file, throughput
 
     def write(self, text: str) -> None:
         began = time.monotonic()
         self._file.write(text)
         self._file.flush()
-        self._wire.written(_size(text), began, time.monotonic())
+        self._throughput.written(_size(text), began, time.monotonic())
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._file, name)
@@ -35,18 +35,18 @@ class LabDriver(LinuxDriver):
 
     def __init__(self, app: Any, **options: Any) -> None:
         super().__init__(app, **options)
-        self._wire: Wire = app.wire
-        self._file: Any = _Metered(self._file, self._wire)
+        self._throughput: Throughput = app.throughput
+        self._file: Any = _Metered(self._file, self._throughput)
 
     def start_application_mode(self) -> None:
         """Take the terminal, with another thread that writes."""
-        self._wire.restart()
+        self._throughput.restart()
         super().start_application_mode()  # type: ignore[no-untyped-call]
 
     def write(self, data: str) -> None:
         """Send this.  Leaving out colours takes a twentieth of a core, so a line that carries all gets all."""
-        sent = lean(data) if self._wire.is_slow else data
-        self._wire.send(_size(sent))
+        sent = lean(data) if self._throughput.is_slow else data
+        self._throughput.send(_size(sent))
         super().write(sent)
 
     def _sigcont_application(self, *_: object) -> None:

@@ -8,28 +8,28 @@ from typing import Literal, get_args
 from tui.cli.options import count
 from tui.drawing.palette import PALETTES
 
-Pixels = Literal["braille", "half", "ascii"]
+CharacterSet = Literal["braille", "half", "ascii"]
 """Pictures made of braille, of half blocks, or of nothing but ASCII, which lines and words are made of then, too."""
 
-PIXELS: tuple[Pixels, ...] = get_args(Pixels)
+CHARACTER_SETS: tuple[CharacterSet, ...] = get_args(CharacterSet)
 FPS, CALM_FPS, MOST_FPS = 30, 10, 60
 
 
 @dataclass(frozen=True, slots=True)
-class Display:
+class TerminalOptions:
     """How the lab is shown on a terminal."""
 
     theme: str = "dark"
-    pixels: Pixels = "braille"
+    character_set: CharacterSet = "braille"
     mouse: bool = True
     fps: int = FPS
     present: bool = False  # large numbers and thick lines, for a projector
 
 
-USUAL = Display()
+USUAL = TerminalOptions()
 
 
-def add_display_options(parser: argparse.ArgumentParser) -> None:
+def add_terminal_options(parser: argparse.ArgumentParser) -> None:
     """Add the options that say how the lab is shown; `display_of` reads them."""
     group = add_picture_options(parser, "auto", "auto")
     group.add_argument("--plain", action="store_true", help="no screen but a sentence a second; Ctrl+C ends it")
@@ -39,14 +39,16 @@ def add_display_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_picture_options(parser: argparse.ArgumentParser, theme: str, pixels: str) -> argparse._ArgumentGroup:
+def add_picture_options(parser: argparse.ArgumentParser, theme: str, character_set: str) -> argparse._ArgumentGroup:
     """Add those of them that a picture of the lab has, too, with these defaults."""
     parser.set_defaults(no_mouse=False, fps=None)
     group = parser.add_argument_group(
         "display", "auto: as the terminal says it can; pendu-tui doctor tells what that is"
     )
     group.add_argument("--theme", choices=("auto", *PALETTES), default=theme, help="colours (%(default)s)")
-    group.add_argument("--pixels", choices=("auto", *PIXELS), default=pixels, help="what is drawn with (%(default)s)")
+    group.add_argument(
+        "--pixels", choices=("auto", *CHARACTER_SETS), default=character_set, help="what is drawn with (%(default)s)"
+    )
     group.add_argument("--present", action="store_true", help="large numbers and thick lines, for a projector")
     return group
 
@@ -57,10 +59,10 @@ def _fps(text: str) -> int:
     return count(text)
 
 
-def display_of(options: argparse.Namespace, environment: Mapping[str, str], encoding: str) -> Display:
+def terminal_options_of(options: argparse.Namespace, environment: Mapping[str, str], encoding: str) -> TerminalOptions:
     """The display that the options describe; what they leave open is for the terminal to say."""
     calm = environment.get("TEXTUAL_ANIMATIONS", "").lower() == "none"
-    return Display(
+    return TerminalOptions(
         suited_theme(environment) if options.theme == "auto" else options.theme,
         ("braille" if is_utf8(encoding) else "ascii") if options.pixels == "auto" else options.pixels,
         not options.no_mouse,

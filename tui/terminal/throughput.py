@@ -13,7 +13,7 @@ FORTH = 0.02  # more every second, until one waits again: the line may have beco
 TWICE, FORGOTTEN = 1.0, 300.0  # s; one wait alone may be a stall of a fast terminal, and two may be chance
 
 
-class Wire:
+class Throughput:
     """Knows what is on its way.  More than the line carries only makes every frame later by what waits.
 
     `written` may be called from another thread.

@@ -6,7 +6,7 @@ from textual.containers import Container
 from textual.reactive import var
 
 from engine.run.lockstep import Sample
-from tui.playback.shown import Look
+from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.views.keys import Key
 
@@ -20,8 +20,8 @@ class View(Container):
     source: var[Source | None] = var(None)
     sample: var[Sample | None] = var(None)
     """Every frame, 30 a second."""
-    reading: var[Sample | None] = var(None)
+    sample_10hz: var[Sample | None] = var(None)
     """The sample as often as people can read it, 10 times a second."""
-    past: var[Sample | None] = var(None)
+    sample_5hz: var[Sample | None] = var(None)
     """The sample as often as a chart is worth building, 5 times a second."""
-    look: var[Look] = var(Look())
+    shown: var[Shown] = var(Shown())

@@ -4,10 +4,10 @@ import math
 import textwrap
 
 from engine.methods import METHODS
-from engine.models.exact_pendulum import Swing
+from engine.models.exact_pendulum import ExactMotion
 from engine.scenes import Scene
 from tui.drawing.palette import mark
-from tui.words.motion import swing_text
+from tui.words.motion import motion_text
 
 WIDTH = 72  # characters; what 80 columns leave beside frame and scroll bar
 _HEAD = 14
@@ -47,7 +47,7 @@ def scene_card(scene: Scene, now: str = "") -> str:
             "pendulum": f"length {scene.length:.5g} m, gravity {scene.gravity:.5g} m/s², w0 = {scene.w0:.4g} 1/s",
             "step": f"h = {scene.h:.5g} s, z = h w0 = {scene.z:.4g}",
             "now": now,
-            "motion": swing_text(Swing(scene)),
+            "motion": motion_text(ExactMotion(scene)),
         },
     )
 

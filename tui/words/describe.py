@@ -17,8 +17,8 @@ def _run(source: Source) -> list[str]:
     scene, playhead, sample = source.scene, source.playhead, source.sample
     kind = "The lab" if source.kind == "LIVE" else "The replay"
     state = "is paused" if playhead.paused else f"runs at {playhead.speed:.4g} times real time"
-    regime = {"libration": "swings", "rotation": "turns over and over"}.get(source.swing.regime)
-    motion = f"; it {regime}, once in {about(source.swing.period)}" if regime and source.swing.period else ""
+    regime = {"libration": "swings", "rotation": "turns over and over"}.get(source.exact.regime)
+    motion = f"; it {regime}, once in {about(source.exact.period)}" if regime and source.exact.period else ""
     return [
         f"{kind} {state}, at {seconds(sample.t)} of run {sample.run}, scene {scene.name}.",
         f"The pendulum is {scene.length:.4g} m long and started at {math.degrees(scene.theta):.4g} degrees "
@@ -37,7 +37,7 @@ def step_text(source: Source) -> str:
 def method_sentence(source: Source, index: int) -> str:
     """What a method does: its end, its way over the top, its verdict, or its error so far."""
     method, reading = METHODS[index], source.sample.readings[index]
-    happened = {each.kind: each for each in source.happenings if each.index == index}
+    happened = {each.kind: each for each in source.milestones if each.index == index}
     if "failed" in happened:
         return failed(happened["failed"])
     if "over the top" in happened:
@@ -50,10 +50,10 @@ def method_sentence(source: Source, index: int) -> str:
 
 
 def _tape(source: Source) -> list[str]:
-    tape = source.tape
-    if tape is None:
+    recording_status = source.recording_status
+    if recording_status is None:
         return ["Nothing is recorded."]
-    if tape.failed:
-        return [f"Nothing is being recorded: {tape.failed}"]
+    if recording_status.failed:
+        return [f"Nothing is being recorded: {recording_status.failed}"]
     verb = "Recorded so far" if source.kind == "LIVE" else "The recording"
-    return [f"{verb}: {seconds(tape.seconds)} in {tape.name}."]
+    return [f"{verb}: {seconds(recording_status.seconds)} in {recording_status.name}."]

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from engine.run.observer import Happening
+from engine.run.observer import Milestone
 from recordings.events import Event
 from tui.drawing.palette import FRAME, TEXT
 from tui.playback.source import Source
@@ -30,7 +30,7 @@ def diary(source: Source) -> list[Line]:
     Pauses and speeds are no part of the diary: they change no number.
     """
     run = source.sample.run
-    happened = [Line(run, each.step, each.t, happening_text(each), each.index) for each in source.happenings]
+    happened = [Line(run, each.step, each.t, happening_text(each), each.index) for each in source.milestones]
     return sorted([*_done(source), *happened], key=lambda line: line[:2])  # stable: first what was done
 
 
@@ -59,13 +59,13 @@ def change_text(event: Event) -> str:
     return f"{backwards}h {abs(event.h):.4g} s{equal}"
 
 
-def happening_text(happening: Happening) -> str:
+def happening_text(milestone: Milestone) -> str:
     """What a method did."""
-    name = short(happening.method)
-    match happening.kind:
+    name = short(milestone.method)
+    match milestone.kind:
         case "over the top":
-            return f"{name} over the top, {times(1 + happening.energy_error)} E0"
+            return f"{name} over the top, {times(1 + milestone.energy_error)} E0"
         case "failed":
             return f"{name} failed"
         case "verdict":
-            return f"{name}: {happening.verdict}"
+            return f"{name}: {milestone.verdict}"

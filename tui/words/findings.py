@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from engine.methods import METHODS, Method
-from engine.run.observer import Happening
+from engine.run.observer import Milestone
 from tui.playback.source import Source
 
 LARGEST_BAND = 0.2
@@ -74,15 +74,15 @@ def _bands(source: Source) -> list[tuple[float, int]]:
     )
 
 
-def failed(happening: Happening) -> str:
+def failed(milestone: Milestone) -> str:
     """A method whose numbers ended."""
-    return f"{happening.method.label} failed at {happening.t:.4g} s: its numbers are no longer finite."
+    return f"{milestone.method.label} failed at {milestone.t:.4g} s: its numbers are no longer finite."
 
 
-def over_the_top(happening: Happening) -> str:
+def over_the_top(milestone: Milestone) -> str:
     """A method that went where the exact swing never comes."""
-    ratio = times(1 + happening.energy_error)
-    return f"{happening.method.label} went over the top at {happening.t:.3g} s with {ratio} times the start's energy."
+    ratio = times(1 + milestone.energy_error)
+    return f"{milestone.method.label} went over the top at {milestone.t:.3g} s with {ratio} times the start's energy."
 
 
 def staying(source: Source) -> str:
@@ -97,7 +97,7 @@ def staying(source: Source) -> str:
 
 def period(source: Source) -> float:
     """The time that verdicts count in [s]."""
-    return source.swing.period or math.tau / source.scene.w0
+    return source.exact.period or math.tau / source.scene.w0
 
 
 def leaving(source: Source, index: int) -> str:

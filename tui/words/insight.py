@@ -4,7 +4,7 @@ import math
 
 from engine.methods import METHODS
 from engine.run.lockstep import Sample
-from engine.run.observer import Happening
+from engine.run.observer import Milestone
 from engine.scenes import Scene
 from tui.playback.source import Source
 from tui.words.findings import failed, leaving, over_the_top, so_far, staying
@@ -18,7 +18,7 @@ TURN = 8.0  # s of the clock for which one of the lasting sentences stays
 def insight(source: Source) -> str:
     """The sentence: nothing moves, time is back at its start, news, what to watch, or what is known, in turn."""
     sample, scene, returned = source.sample, source.scene, source.history.returned
-    if source.swing.regime == "equilibrium":
+    if source.exact.regime == "equilibrium":
         return RESTING
     if returned is not None and abs(sample.t) < WATCH:
         return return_text(scene, returned)
@@ -34,22 +34,22 @@ def insight(source: Source) -> str:
 def _news(source: Source, seconds: float) -> str:
     """What has happened within the last simulated seconds; failures come first, then tops, then verdicts."""
     sample, kinds = source.sample, ("failed", "over the top", "verdict")
-    recent = [each for each in source.happenings if (sample.step - each.step) * abs(source.h) < seconds]
+    recent = [each for each in source.milestones if (sample.step - each.step) * abs(source.h) < seconds]
     newest = sorted(recent, key=lambda each: (-kinds.index(each.kind), each.step))
     return next(filter(None, (_told(source, each) for each in reversed(newest))), "")
 
 
-def _told(source: Source, happening: Happening) -> str:
-    if happening.kind == "failed":
-        return failed(happening)
-    if happening.kind == "over the top":
-        return over_the_top(happening)
-    return staying(source) if happening.verdict == "bounded" else leaving(source, happening.index)
+def _told(source: Source, milestone: Milestone) -> str:
+    if milestone.kind == "failed":
+        return failed(milestone)
+    if milestone.kind == "over the top":
+        return over_the_top(milestone)
+    return staying(source) if milestone.verdict == "bounded" else leaving(source, milestone.index)
 
 
 def lasting(source: Source) -> list[str]:
     """What is known of the run by now, what matters most first; at least one sentence."""
-    happened = {(each.kind, each.index): each for each in source.happenings}
+    happened = {(each.kind, each.index): each for each in source.milestones}
     failures = [failed(each) for (kind, _), each in happened.items() if kind == "failed"]
     tops = [
         over_the_top(each)

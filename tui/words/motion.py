@@ -2,7 +2,7 @@
 
 import math
 
-from engine.models.exact_pendulum import Swing
+from engine.models.exact_pendulum import ExactMotion
 from tui.drawing.phase_axes import in_pi
 from tui.views.phase.portrait import margin
 from tui.words.numbers import scientific
@@ -40,11 +40,11 @@ def place_text(w0: float, theta: float, omega: float, width: int) -> str:
     return text[:width]
 
 
-def swing_text(swing: Swing) -> str:
+def motion_text(exact: ExactMotion) -> str:
     """The exact motion: its period, energy and regime."""
-    scene = swing.scene
-    energy = f"E/Es {energy_share(scene.w0, scene.theta, scene.omega)}  {swing.regime}"
-    return energy if swing.period is None else f"exact period {swing.period:.6g} s  {energy}"
+    scene = exact.scene
+    energy = f"E/Es {energy_share(scene.w0, scene.theta, scene.omega)}  {exact.regime}"
+    return energy if exact.period is None else f"exact period {exact.period:.6g} s  {energy}"
 
 
 def area_text(ratio: float) -> tuple[str, str]:

@@ -7,7 +7,7 @@ import pytest
 from engine.accuracy.recommend import cheapest, most_accurate, reach, spend
 from engine.accuracy.study import Study
 from engine.methods import METHODS
-from engine.models.exact_pendulum import Swing
+from engine.models.exact_pendulum import ExactMotion
 from engine.run import compiled
 from engine.run.lockstep import Lockstep
 from engine.run.loops import plain
@@ -24,12 +24,12 @@ def recommended(scene, time, kind, target):
 
 def largest_error(scene, point, kind):
     """Of every step, by the lockstep and the exact swing alone."""
-    lockstep, swing = Lockstep(scene.altered(h=point.h), methods=(point.method,)), Swing(scene)
+    lockstep, exact = Lockstep(scene.altered(h=point.h), methods=(point.method,)), ExactMotion(scene)
     largest = 0.0
     for _ in range(point.steps):
         lockstep.advance(1)
         (reading,) = lockstep.sample().readings
-        error = reading.energy_error if kind == "energy" else reading.theta - swing.at(lockstep.t).theta
+        error = reading.energy_error if kind == "energy" else reading.theta - exact.at(lockstep.t).theta
         largest = abs(error) if kind == "final" else max(largest, abs(error))
     return largest
 

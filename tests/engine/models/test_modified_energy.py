@@ -10,7 +10,7 @@ from engine.models.pendulum import acceleration, energy
 W0_SQUARED = 9.81
 
 
-def wobble(quantity, method: Method, h: float, time: float = 20.0) -> float:
+def energy_range(quantity, method: Method, h: float, time: float = 20.0) -> float:
     force = acceleration(W0_SQUARED)
     phase = (1.0, 0.0)
     values = []
@@ -21,8 +21,8 @@ def wobble(quantity, method: Method, h: float, time: float = 20.0) -> float:
 
 
 def shadow_of(method: Method, h: float):
-    assert method.shadow is not None
-    return lambda theta, omega: method.shadow(W0_SQUARED, theta, omega, h)
+    assert method.modified_energy is not None
+    return lambda theta, omega: method.modified_energy(W0_SQUARED, theta, omega, h)
 
 
 def plain_energy(theta: float, omega: float) -> float:
@@ -30,16 +30,16 @@ def plain_energy(theta: float, omega: float) -> float:
 
 
 def order(quantity_at, method: Method) -> float:
-    coarse, fine = (wobble(quantity_at(h), method, h) for h in (0.05, 0.025))
+    coarse, fine = (energy_range(quantity_at(h), method, h) for h in (0.05, 0.025))
     return math.log2(coarse / fine)
 
 
-with_shadow = pytest.mark.parametrize("method", [m for m in METHODS if m.shadow], ids=lambda m: m.key)
+with_shadow = pytest.mark.parametrize("method", [m for m in METHODS if m.modified_energy], ids=lambda m: m.key)
 
 
 def test_only_symplectic_methods_have_one():
-    assert {method.key for method in METHODS if method.shadow} >= {"symplectic_euler", "velocity_verlet"}
-    assert all(method.symplectic for method in METHODS if method.shadow)
+    assert {method.key for method in METHODS if method.modified_energy} >= {"symplectic_euler", "velocity_verlet"}
+    assert all(method.symplectic for method in METHODS if method.modified_energy)
 
 
 @with_shadow
@@ -55,4 +55,4 @@ def test_the_shadow_energy_wobbles_with_h4(method: Method):
 
 @with_shadow
 def test_the_shadow_energy_is_flat_where_the_energy_is_seen_to_wobble(method: Method):
-    assert wobble(shadow_of(method, 0.05), method, 0.05) < wobble(plain_energy, method, 0.05) / 100
+    assert energy_range(shadow_of(method, 0.05), method, 0.05) < energy_range(plain_energy, method, 0.05) / 100

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.models.exact_pendulum import Swing
+from engine.models.exact_pendulum import ExactMotion
 from engine.models.pendulum import acceleration, energy, energy_scale, separatrix_energy
 from engine.scenes import Scene
 
@@ -28,7 +28,9 @@ def test_near_the_bottom_it_does_not_cancel() -> None:
 def test_the_exact_swing_keeps_it(theta: float, omega: float, t: float) -> None:
     start = energy(9.81, theta, omega)
     # Relative to the energy where it is small: the state is right to 1e-13 of its own size.
-    assert energy(9.81, *Swing(Scene(theta=theta, omega=omega)).at(t)) == pytest.approx(start, rel=1e-12, abs=1e-300)
+    assert energy(9.81, *ExactMotion(Scene(theta=theta, omega=omega)).at(t)) == pytest.approx(
+        start, rel=1e-12, abs=1e-300
+    )
 
 
 @given(theta=st.floats(-10, 10))

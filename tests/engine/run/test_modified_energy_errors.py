@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from engine.methods import METHODS
-from engine.models.exact_pendulum import Swing
+from engine.models.exact_pendulum import ExactMotion
 from engine.run.lockstep import Lockstep
 from engine.scenes import SCENES, Scene
 from recordings.recording import Recording
 from tests.tui.sitting import recorded
-from tui.playback.history import History
+from tui.playback.history import ErrorHistory
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
@@ -21,37 +21,37 @@ DRIFT = SCENES["drift"]
 INDEX = {method.key: i for i, method in enumerate(METHODS)}
 
 
-def run(scene: Scene, *stretches: tuple[int, float], equal_cost: bool = False) -> History:
+def run(scene: Scene, *stretches: tuple[int, float], equal_cost: bool = False) -> ErrorHistory:
     """The history of a run, a sample a step."""
-    lockstep, history, swing = Lockstep(scene), History(scene), Swing(scene)
-    history.add(lockstep.sample(), swing.at(0.0))
+    lockstep, history, exact = Lockstep(scene), ErrorHistory(scene), ExactMotion(scene)
+    history.add(lockstep.sample(), exact.at(0.0))
     for steps, h in stretches:
         lockstep.set_h(h, equal_cost)
         for _ in range(steps):
             lockstep.advance(1)
-            history.add(lockstep.sample(), swing.at(lockstep.t), equal_cost)
+            history.add(lockstep.sample(), exact.at(lockstep.t), equal_cost)
     return history
 
 
-def largest(history: History, quantity: str) -> np.ndarray:
+def largest(history: ErrorHistory, quantity: str) -> np.ndarray:
     window = history.window()
     return np.nanmax(np.fmax(abs(window.low[quantity]), abs(window.high[quantity]))[2:], axis=0)
 
 
 @pytest.mark.filterwarnings("ignore:All-NaN")
 def test_the_shadow_energy_is_flat_where_the_energy_wobbles_and_explains_it_to_fourth_order():
-    wobble, rest = {}, {}
+    energy_range, rest = {}, {}
     for h in (0.05, 0.025):
         history = run(DRIFT, (int(20 / h), h))
-        wobble[h], rest[h] = largest(history, "energy_error"), largest(history, "shadow_error")
+        energy_range[h], rest[h] = largest(history, "energy_error"), largest(history, "shadow_error")
     for key in ("symplectic_euler", "velocity_verlet"):
         i = INDEX[key]
-        assert rest[0.05][i] < wobble[0.05][i] / 100
+        assert rest[0.05][i] < energy_range[0.05][i] / 100
         # h⁴, measured 3.99 and 4.00; ±0.1 as for all orders here
         assert math.log2(rest[0.05][i] / rest[0.025][i]) == pytest.approx(4, abs=0.1)
-    assert math.log2(wobble[0.05][INDEX["velocity_verlet"]] / wobble[0.025][INDEX["velocity_verlet"]]) == pytest.approx(
-        2, abs=0.1
-    )
+    assert math.log2(
+        energy_range[0.05][INDEX["velocity_verlet"]] / energy_range[0.025][INDEX["velocity_verlet"]]
+    ) == pytest.approx(2, abs=0.1)
 
 
 def test_a_method_without_a_shadow_energy_shows_none():

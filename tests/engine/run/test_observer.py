@@ -8,28 +8,28 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from engine.methods import METHODS
-from engine.models.exact_pendulum import Swing
+from engine.models.exact_pendulum import ExactMotion
 from engine.run.lockstep import Lockstep, Sample
-from engine.run.observer import Happening, Witness
+from engine.run.observer import Milestone, RunObserver
 from engine.scenes import SCENES, Scene
 
 DRIFT = SCENES["drift"]
 
 
-def watched(scene: Scene, seconds: float, every: int = 1, equal_cost: bool = False) -> Witness:
+def watched(scene: Scene, seconds: float, every: int = 1, equal_cost: bool = False) -> RunObserver:
     """A witness that has seen one sample in `every` steps."""
-    witness, lockstep = Witness(scene, Swing(scene)), Lockstep(scene)
+    observer, lockstep = RunObserver(scene, ExactMotion(scene)), Lockstep(scene)
     if equal_cost:
         lockstep.set_h(4 * scene.h, equal_cost=True)
-    witness.add(lockstep.sample())
+    observer.add(lockstep.sample())
     while lockstep.t < seconds:
         lockstep.advance(every)
-        witness.add(lockstep.sample())
-    return witness
+        observer.add(lockstep.sample())
+    return observer
 
 
-def told(witness: Witness, kind: str, step: int = 10**9) -> dict[str, Happening]:
-    return {each.method.key: each for each in witness.happenings(step) if each.kind == kind}
+def told(observer: RunObserver, kind: str, step: int = 10**9) -> dict[str, Milestone]:
+    return {each.method.key: each for each in observer.milestones(step) if each.kind == kind}
 
 
 def tops(scene: Scene, seconds: float, parts: int = 1) -> dict[str, tuple[float, float]]:
@@ -72,15 +72,15 @@ def test_at_equal_cost_the_parts_of_a_step_count():
 
 def test_where_the_steps_between_samples_cannot_be_taken_again_it_is_the_sample_that_saw_it():
     lockstep = Lockstep(DRIFT)
-    witness = Witness(DRIFT, Swing(DRIFT))
+    observer = RunObserver(DRIFT, ExactMotion(DRIFT))
     lockstep.advance(100)
-    witness.add(lockstep.sample())
+    observer.add(lockstep.sample())
     lockstep.advance(20)
     lockstep.set_h(0.02)  # nobody says so
     lockstep.advance(100)
     sample = lockstep.sample()
-    witness.add(sample)
-    top = told(witness, "over the top")["explicit_euler"]
+    observer.add(sample)
+    top = told(observer, "over the top")["explicit_euler"]
     assert (top.step, top.t, top.energy_error) == (sample.step, sample.t, sample.readings[0].energy_error)
 
 
@@ -90,35 +90,35 @@ def test_a_pendulum_that_spins_goes_over_no_top():
 
 def test_the_witness_of_a_rotation_that_beats_with_its_steps_waits():
     scene = Scene(theta=0.0, omega=6.2 * Scene().w0 / 0.1, h=0.1 / Scene().w0)
-    witness, lockstep = Witness(scene, Swing(scene)), Lockstep(scene)
+    observer, lockstep = RunObserver(scene, ExactMotion(scene)), Lockstep(scene)
     for _ in range(700):
         lockstep.advance(1)
-        witness.add(lockstep.sample())
-    assert {judgement.verdict for judgement in witness.judgements[1:3]} <= {"too early", "bounded"}
+        observer.add(lockstep.sample())
+    assert {judgement.verdict for judgement in observer.judgements[1:3]} <= {"too early", "bounded"}
 
 
 def test_who_is_up_there_already_is_not_said_to_have_gone_there_now():
     lockstep = Lockstep(DRIFT)
     lockstep.advance(200)
-    witness = Witness(DRIFT, Swing(DRIFT))
-    witness.add(lockstep.sample())
+    observer = RunObserver(DRIFT, ExactMotion(DRIFT))
+    observer.add(lockstep.sample())
     lockstep.advance(1)
-    witness.add(lockstep.sample())
-    assert not told(witness, "over the top")
+    observer.add(lockstep.sample())
+    assert not told(observer, "over the top")
 
 
 def test_verdicts_happen_when_they_are_given():
-    witness = Witness(DRIFT, Swing(DRIFT))
+    observer = RunObserver(DRIFT, ExactMotion(DRIFT))
     lockstep = Lockstep(DRIFT)
     changes = []
-    witness.add(lockstep.sample())
+    observer.add(lockstep.sample())
     for _ in range(1200):
-        before = [judgement.verdict for judgement in witness.judgements]
+        before = [judgement.verdict for judgement in observer.judgements]
         lockstep.advance(1)
-        witness.add(lockstep.sample())
-        after = [judgement.verdict for judgement in witness.judgements]
+        observer.add(lockstep.sample())
+        after = [judgement.verdict for judgement in observer.judgements]
         changes += [(lockstep.step, i, after[i]) for i in range(len(METHODS)) if after[i] != before[i]]
-    verdicts = [(each.step, each.index, each.verdict) for each in witness.happenings(1200) if each.kind == "verdict"]
+    verdicts = [(each.step, each.index, each.verdict) for each in observer.milestones(1200) if each.kind == "verdict"]
     assert verdicts == changes
     assert {(METHODS[i].key, verdict) for _, i, verdict in changes} >= {
         ("explicit_euler", "grows"),
@@ -129,33 +129,33 @@ def test_verdicts_happen_when_they_are_given():
 
 
 def test_a_method_fails_once_at_the_time_at_which_its_numbers_ended():
-    witness = Witness(DRIFT, Swing(DRIFT))
+    observer = RunObserver(DRIFT, ExactMotion(DRIFT))
     samples = [Lockstep(DRIFT).sample()]
     euler, *others = samples[0].readings
     failed = (replace(euler, diverged_at=0.15), *others)
     samples += [Sample(1, step, step * 0.05, failed) for step in (4, 5, 6)]
     for sample in samples:
-        witness.add(sample)
-    (failure,) = [each for each in witness.happenings(6) if each.kind == "failed"]
+        observer.add(sample)
+    (failure,) = [each for each in observer.milestones(6) if each.kind == "failed"]
     assert (failure.method.key, failure.step, failure.t) == ("explicit_euler", 4, 0.15)
-    assert not told(witness, "verdict")  # to fail is enough
+    assert not told(observer, "verdict")  # to fail is enough
 
 
 @settings(max_examples=20)
 @given(back=st.integers(0, 240))
 def test_after_a_step_back_only_what_happened_until_then_has_happened(back):
-    witness, lockstep = Witness(DRIFT, Swing(DRIFT)), Lockstep(DRIFT)
+    observer, lockstep = RunObserver(DRIFT, ExactMotion(DRIFT)), Lockstep(DRIFT)
     samples = [lockstep.sample()]
     for _ in range(240):
         lockstep.advance(1)
         samples.append(lockstep.sample())
     for sample in samples:
-        witness.add(sample)
-    everything = witness.happenings(240)
+        observer.add(sample)
+    everything = observer.milestones(240)
     for sample in samples[back:]:
-        witness.add(sample)  # forward again: known already
-    assert witness.happenings(240) == everything
-    assert witness.happenings(back) == [each for each in everything if each.step <= back]
-    witness.judge_anew(back)  # a change there: the future has never been
-    assert witness.happenings(240) == [each for each in everything if each.step <= back]
-    assert all(judgement.verdict == "too early" for judgement in witness.judgements)
+        observer.add(sample)  # forward again: known already
+    assert observer.milestones(240) == everything
+    assert observer.milestones(back) == [each for each in everything if each.step <= back]
+    observer.judge_anew(back)  # a change there: the future has never been
+    assert observer.milestones(240) == [each for each in everything if each.step <= back]
+    assert all(judgement.verdict == "too early" for judgement in observer.judgements)

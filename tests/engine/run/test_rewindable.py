@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from engine.run.lockstep import Lockstep, Sample
-from engine.run.rewindable import COPY_EVERY, Course
+from engine.run.rewindable import COPY_EVERY, RewindableRun
 from engine.scenes import DEFAULT_SCENE, SCENES
 
 MOVES = st.lists(st.integers(-1500, 2500), min_size=1, max_size=8)
@@ -27,7 +27,7 @@ def phases(sample: Sample) -> list[tuple[float, float, float]]:
     return [(reading.theta, reading.omega, reading.max_energy_error) for reading in sample.readings]
 
 
-def move(course: Course, n: int) -> None:
+def move(course: RewindableRun, n: int) -> None:
     if n >= 0:
         course.forward(n)
     else:
@@ -37,7 +37,7 @@ def move(course: Course, n: int) -> None:
 @settings(max_examples=25)
 @given(MOVES)
 def test_back_and_forth_ends_where_the_straight_way_does_with_the_same_bits(moves):
-    course = Course(DEFAULT_SCENE, 1)
+    course = RewindableRun(DEFAULT_SCENE, 1)
     for n in moves:
         move(course, n)
         sample = course.sample()
@@ -48,7 +48,7 @@ def test_back_and_forth_ends_where_the_straight_way_does_with_the_same_bits(move
 @settings(max_examples=25)
 @given(MOVES, H_VALUES)
 def test_changes_of_h_are_repeated_on_the_way_there(moves, h):
-    course = Course(DEFAULT_SCENE, 1)
+    course = RewindableRun(DEFAULT_SCENE, 1)
     course.forward(700)
     course.set_h(h)
     course.forward(1900)
@@ -61,7 +61,7 @@ def test_changes_of_h_are_repeated_on_the_way_there(moves, h):
 
 
 def test_in_the_past_one_knows_what_comes_next_and_at_the_end_one_does_not():
-    course = Course(DEFAULT_SCENE, 1)
+    course = RewindableRun(DEFAULT_SCENE, 1)
     course.forward(10)
     course.sample()
     assert not course.in_past
@@ -72,7 +72,7 @@ def test_in_the_past_one_knows_what_comes_next_and_at_the_end_one_does_not():
 
 
 def test_a_change_made_where_one_steps_back_to_is_still_to_come():
-    course = Course(DEFAULT_SCENE, 1)
+    course = RewindableRun(DEFAULT_SCENE, 1)
     course.forward(10)
     course.set_h(0.1)
     course.forward(5)
@@ -84,7 +84,7 @@ def test_a_change_made_where_one_steps_back_to_is_still_to_come():
 
 
 def test_a_branch_shares_the_past_and_forgets_what_came_next():
-    course = Course(DEFAULT_SCENE, 1)
+    course = RewindableRun(DEFAULT_SCENE, 1)
     course.forward(100)
     course.set_h(0.1)
     course.forward(5000)
@@ -101,7 +101,7 @@ def test_a_branch_shares_the_past_and_forgets_what_came_next():
 
 
 def test_extremes_after_going_back_are_those_since_the_furthest_step_again():
-    ahead, returning = Course(DEFAULT_SCENE, 1), Course(DEFAULT_SCENE, 1)
+    ahead, returning = RewindableRun(DEFAULT_SCENE, 1), RewindableRun(DEFAULT_SCENE, 1)
     for course in (ahead, returning):
         course.forward(500)
         course.sample()
@@ -113,7 +113,7 @@ def test_extremes_after_going_back_are_those_since_the_furthest_step_again():
 
 
 def test_the_way_back_is_kept_in_few_copies_the_closer_the_more_recent():
-    course = Course(SCENES["gentle"], 1)
+    course = RewindableRun(SCENES["gentle"], 1)
     for _ in range(400):
         course.forward(COPY_EVERY)
     steps = [place.lockstep.step for place in course._copies]
@@ -124,7 +124,7 @@ def test_the_way_back_is_kept_in_few_copies_the_closer_the_more_recent():
 
 
 def test_time_run_through_goes_up_even_while_time_runs_backwards():
-    course = Course(DEFAULT_SCENE, 1)
+    course = RewindableRun(DEFAULT_SCENE, 1)
     course.forward(100)
     course.set_h(-0.05)
     course.forward(40)

@@ -11,7 +11,7 @@ from dataclasses import replace
 import pytest
 
 from engine.methods import METHODS
-from engine.models.exact_pendulum import Swing
+from engine.models.exact_pendulum import ExactMotion
 from engine.run.lockstep import Lockstep
 from engine.run.verdict import Judgement, Trend
 from engine.scenes import SCENES, Scene
@@ -27,7 +27,7 @@ GRID = [*((name, z) for name in SWINGS for z in (0.05, 0.1, 0.2, 0.4)), *((name,
 
 
 def trends(scene: Scene) -> list[Trend]:
-    return [Trend(Swing(scene).period or math.tau / scene.w0) for _ in METHODS]
+    return [Trend(ExactMotion(scene).period or math.tau / scene.w0) for _ in METHODS]
 
 
 def follow(lockstep: Lockstep, steps: list[int], judges: list[Trend]) -> list[list[str]]:
@@ -50,7 +50,7 @@ def at(name: str, z: float) -> Scene:
 def samples(scene: Scene, periods: float, per_second: int = 30) -> list[int]:
     """Steps between samples, as the lab takes them."""
     every = max(1, round(1 / per_second / scene.h))
-    return [every] * math.ceil(periods * (Swing(scene).period or 1.0) / scene.h / every)
+    return [every] * math.ceil(periods * (ExactMotion(scene).period or 1.0) / scene.h / every)
 
 
 @pytest.mark.parametrize(("name", "z"), GRID)
@@ -77,7 +77,7 @@ def test_a_rotation_that_beats_with_its_steps_is_never_said_to_have_left(theta, 
     """Half a turn a step, or a whole one: over millions of steps the symplectic errors stay below a sixth."""
     scene = Scene(theta=theta, omega=turn_of_a_step * Scene().w0 / z, h=z / Scene().w0)
     lockstep, judges = Lockstep(scene, methods=METHODS[1:3]), trends(scene)[1:3]
-    per_turn = Swing(scene).period / scene.h
+    per_turn = ExactMotion(scene).period / scene.h
     for n in samples(scene, 300):
         lockstep.advance(n)
         for judge, reading in zip(judges, lockstep.sample().readings, strict=True):

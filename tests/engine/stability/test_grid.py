@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from engine.methods import METHODS
+from engine.stability import grid as stability_map
 from engine.stability.grid import Grid, default_grid
 from engine.stability.outcomes import HOLDS, UNKNOWN, outcomes
-from engine.stability import grid as stability_map
 
 GRID = Grid(theta=np.linspace(0.1, 3.1, 7), z=np.linspace(0.1, 3, 13), steps=200)
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from engine.methods import METHODS, Method, Step, explicit_euler, rk4, velocity_verlet
 from engine.models.pendulum import acceleration, energy
 from engine.models.state import Phase
-from engine.stability.linear import wobble
+from engine.stability.linear import energy_range
 from engine.stability.outcomes import BAND, FATES, GROWS, first_failure, outcomes
 
 BY_KEY = {method.key: method for method in METHODS}
@@ -46,7 +46,7 @@ def test_each_swing_of_an_ensemble_is_what_a_plain_loop_says(
     for cell, (theta, z) in zip(cells, swings, strict=True):
         phase, survived, expected = (theta, 0.0), 0, "holds"
         start = energy(1.0, *phase, np.sin)
-        lowest, highest = wobble(method.step, z)
+        lowest, highest = energy_range(method.step, z)
         worst = 0.0
         while survived < steps and expected == "holds":
             phase = method.step(force, phase, z)

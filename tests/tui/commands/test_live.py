@@ -5,7 +5,7 @@ import pytest
 from engine.scenes import DEFAULT_SCENE
 from recordings.errors import DiskError
 from recordings.library import listing
-from recordings.live_recorder import SittingRecorder
+from recordings.live_recorder import LiveRecorder
 from recordings.verify import verify
 from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PtyLab
@@ -31,7 +31,7 @@ def test_a_name_that_was_taken_meanwhile_is_replaced_only_if_nobody_gave_it(tmp_
     path = tmp_path / "now.mcap"
     live = Live(DEFAULT_SCENE)
     lab = recording_lab(live, path, or_next=or_next)
-    other = SittingRecorder(path)
+    other = LiveRecorder(path)
     if or_next:
         lab._prepare()
         assert live.recorder.path.name == "now-2.mcap"

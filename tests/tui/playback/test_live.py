@@ -47,12 +47,12 @@ class Bench:
     def __init__(self, scene=DEFAULT_SCENE, speed=1.0, second_per_look=0.0):
         self.now = self.work = 0.0
         self.second_per_look = second_per_look
-        self.live = Live(scene, speed, clock=self.look)
+        self.live = Live(scene, speed, clock=self.shown)
         self.keeper = Keeper()
         self.live.record(self.keeper)
         self.live.tick(0.0)
 
-    def look(self) -> float:
+    def shown(self) -> float:
         self.work += self.second_per_look
         return self.work
 

@@ -10,7 +10,7 @@ import pytest
 from engine.run.lockstep import Sample
 from engine.scenes import DEFAULT_SCENE
 from recordings.events import Entry
-from recordings.live_recorder import SittingRecorder
+from recordings.live_recorder import LiveRecorder
 from recordings.recording import Recording
 from tests.tui.sitting import FPS, eventful, recorded
 from tui.playback.live import Live
@@ -218,10 +218,10 @@ def test_a_lab_that_goes_on_from_here_knows_what_was_known(tmp_path):
     table.replay.seek(18.0)
     table.run(1 / FPS)
     assert table.replay.fill()
-    known = table.replay.happenings, table.replay.judgements, table.replay.history.window().t
+    known = table.replay.milestones, table.replay.judgements, table.replay.history.window().t
     live = table.replay.live()
     assert [judgement.verdict for judgement in live.judgements] == ["grows", "bounded", "bounded", "drifts"]
-    assert (live.happenings, live.judgements) == known[:2]
+    assert (live.milestones, live.judgements) == known[:2]
     np.testing.assert_array_equal(live.history.window().t, known[2])
     while table.replay.sample.step < table.samples[-1].value.step:
         table.replay.step(1)
@@ -281,7 +281,7 @@ def test_a_change_of_the_step_is_known_of_wherever_the_pieces_of_a_long_past_beg
     changed = {"begin": begin, "end": end, "gap": end + 0.7}[place]
     assert end + 1 < pieces(0.0, length)[101][0]
     live = Live(DEFAULT_SCENE, clock=lambda: 0.0)
-    live.record(SittingRecorder(tmp_path / "long.mcap"))
+    live.record(LiveRecorder(tmp_path / "long.mcap"))
     for now in np.arange(0.0, length + frame / 2, frame):
         live.tick(now)
         if changed <= now < changed + frame:
@@ -294,4 +294,4 @@ def test_a_change_of_the_step_is_known_of_wherever_the_pieces_of_a_long_past_beg
     assert table.replay.fill()
     for seen, was in zip(table.replay.judgements, live.judgements, strict=True):
         assert seen.verdict == was.verdict
-        assert seen.periods == pytest.approx(was.periods, abs=table.replay.swing.period * 5)  # a bin, and a gap
+        assert seen.periods == pytest.approx(was.periods, abs=table.replay.exact.period * 5)  # a bin, and a gap

@@ -8,7 +8,7 @@ from rich.color import Color
 from tests.tui.conftest import lines_of
 from tests.tui.stage import key_of, lab
 from tui.drawing.palette import PALETTES, TEXT
-from tui.terminal.options import PIXELS
+from tui.terminal.options import CHARACTER_SETS
 from tui.views import VIEWS
 from tui.views.keys import COMMON
 
@@ -48,7 +48,7 @@ async def test_a_draws_with_half_blocks_then_ascii_then_braille_again_in_every_v
             await theatre.press("a")
             plain = "".join(lines_of(await picture(theatre)))
             await theatre.press("a")
-            assert theatre.app.pixels == PIXELS[0]
+            assert theatre.app.character_set == CHARACTER_SETS[0]
             assert not re.search("[⠀-⣿]", half)
             assert plain.isascii()
             assert not before.isascii()
@@ -56,7 +56,7 @@ async def test_a_draws_with_half_blocks_then_ascii_then_braille_again_in_every_v
 
 async def test_forms_help_and_the_palette_are_ascii_too():
     async with lab() as theatre:
-        theatre.app.pixels = "ascii"
+        theatre.app.character_set = "ascii"
         for keys in (["i"], ["question_mark"], ["ctrl+p", *"theme"]):
             await theatre.press(*keys)
             await theatre.pilot.pause(0.3)
@@ -99,4 +99,4 @@ async def test_an_empty_no_color_means_nothing(monkeypatch):
 
 def test_the_help_says_how_to_change_the_pixels_and_how_to_leave_for_a_while():
     shown = {key.shown: key.action for key in COMMON}
-    assert (shown["a"], shown["ctrl+z"]) == ("app.next_pixels", "app.suspend_process")
+    assert (shown["a"], shown["ctrl+z"]) == ("app.next_character_set", "app.suspend_process")

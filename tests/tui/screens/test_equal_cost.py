@@ -10,10 +10,10 @@ from recordings.verify import verify
 from tests.tui.sitting import recorded
 from tui.playback.live import Live
 from tui.playback.source import EQUAL_PARTS, least_h, own_h
-from tui.screens.live import Lab
+from tui.screens.live import LiveScreen
 
 
-class Driver(Lab):
+class Driver(LiveScreen):
     """The lab's actions without a screen."""
 
     def show_now(self) -> None:

@@ -75,10 +75,10 @@ async def test_the_run_r_restarts_plus_and_minus_change_h_b_reverses_p_and_capit
 async def test_settings_are_undone_one_after_the_other():
     async with lab() as theatre:
         await theatre.run(1)
-        before = (theatre.source.h, theatre.source.playhead.speed, theatre.source.scene, theatre.stage.look)
+        before = (theatre.source.h, theatre.source.playhead.speed, theatre.source.scene, theatre.stage.shown)
         await theatre.press("plus", "greater_than_sign", "p", "t", "y")
         await theatre.press("u", "u", "u", "u", "u")
-        after = (theatre.source.h, theatre.source.playhead.speed, theatre.source.scene, theatre.stage.look)
+        after = (theatre.source.h, theatre.source.playhead.speed, theatre.source.scene, theatre.stage.shown)
         assert after == before
         await theatre.press("u")  # there is nothing left to undo
 
@@ -92,7 +92,7 @@ async def test_what_is_shown_digits_t_y_e_and_w():
         assert [pane.display for pane in panes] == [False, True, True, True]
         assert "Explicit" not in theatre.text(ErrorTable)
         await theatre.press("1", "5")
-        assert theatre.stage.look.exact
+        assert theatre.stage.shown.exact
         dotted = panes[0].text
         await theatre.press("5")
         assert panes[0].text != dotted
@@ -114,9 +114,9 @@ async def test_what_is_shown_digits_t_y_e_and_w():
             await theatre.press("w")
             spans.add(chart.border_title)
         assert len(spans) == len(WINDOWS)
-        before = theatre.stage.look
+        before = theatre.stage.shown
         await theatre.press("w", "W")
-        assert theatre.stage.look == before
+        assert theatre.stage.shown == before
 
 
 async def test_the_form_takes_radians_and_degrees_and_starts_with_enter():

@@ -10,8 +10,8 @@ from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.playhead import Pace
 from tui.playback.replay import Replay
-from tui.playback.shown import Look
-from tui.playback.source import Tape, own_h
+from tui.playback.shown import Shown
+from tui.playback.source import RecordingStatus, own_h
 from tui.screens.insight_line import fitted
 from tui.screens.key_line import Hint, key_row
 from tui.screens.seek_bar import bar, facts
@@ -34,7 +34,7 @@ def lab(seconds: float = 12.0, scene=DEFAULT_SCENE) -> Live:
 class Taped(Live):
     """A lab with a recording that is only said to be there."""
 
-    tape = Tape("2026-11-20T10-14-03.mcap", 72.4, 96_000)
+    recording_status = RecordingStatus("2026-11-20T10-14-03.mcap", 72.4, 96_000)
 
 
 def taped(**changes) -> Taped:
@@ -85,9 +85,9 @@ def test_what_is_dropped_is_told_and_so_is_trouble():
     slow = taped(pace=Pace(due=1.0, done=0.62))
     assert "real-time 62 %" in text(status_row(slow, 80))
     assert "real-time" not in text(status_row(taped(pace=Pace(due=1.0, done=0.995)), 80))
-    broken = taped(tape=replace(Taped.tape, failed="the disk is full."))
+    broken = taped(recording_status=replace(Taped.recording_status, failed="the disk is full."))
     assert "NOT RECORDED" in text(status_row(broken, 80))
-    assert "not recorded" in text(status_row(taped(tape=None), 80))
+    assert "not recorded" in text(status_row(taped(recording_status=None), 80))
 
 
 def test_speeds_are_read_as_people_say_them():
@@ -96,10 +96,10 @@ def test_speeds_are_read_as_people_say_them():
     ]
 
 
-def rows(live: Live, width: int, look: Look | None = None) -> str:
-    exact = live.swing.at(live.sample.t)
+def rows(live: Live, width: int, shown: Shown | None = None) -> str:
+    exact = live.exact.at(live.sample.t)
     return "\n".join(
-        text(row) for row in table(live.sample, live.judgements, exact, own_h(live), look or Look(), width)
+        text(row) for row in table(live.sample, live.judgements, exact, own_h(live), shown or Shown(), width)
     )
 
 
@@ -140,7 +140,7 @@ def test_hidden_methods_are_not_in_the_table_and_failed_ones_are_called_so():
     live = lab(1.0)
     readings = live.sample.readings
     live.sample = replace(live.sample, readings=(*readings[:3], replace(readings[3], diverged_at=0.8)))
-    lines = rows(live, 80, Look(shown=(False, True, False, True))).splitlines()
+    lines = rows(live, 80, Shown(shown=(False, True, False, True))).splitlines()
     assert [line[0] for line in lines] == ["m", "2", "4"]
     assert "failed" in lines[2]
 

@@ -4,7 +4,7 @@ from textual.containers import VerticalScroll
 
 from tests.tui.stage import lab
 from tui.screens.help import Help
-from tui.screens.text import Reader
+from tui.screens.text import TextScreen
 
 
 async def opened(theatre) -> Help:
@@ -26,7 +26,7 @@ async def test_asked_twice_it_closes_itself_only():
 async def test_asked_while_something_lies_over_it_it_waits_until_it_is_asked_again():
     async with lab() as theatre:
         reader = await opened(theatre)
-        above = Reader("Above", "it")
+        above = TextScreen("Above", "it")
         await theatre.app.push_screen(above)
         reader.dismiss()
         await theatre.pilot.pause()

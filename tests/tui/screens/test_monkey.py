@@ -12,7 +12,7 @@ import pytest
 from engine.accuracy.study import ladder
 from engine.scenes import DEFAULT_SCENE
 from recordings.library import resolve
-from recordings.live_recorder import SittingRecorder
+from recordings.live_recorder import LiveRecorder
 from recordings.recording import Recording
 from recordings.verify import verify
 from tests.tui.monkey import ESCDELAY, SIZE, play, play_on_stage
@@ -21,9 +21,9 @@ from tests.tui.stage import on_stage
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
-from tui.screens.base import Stage
-from tui.screens.live import Lab
-from tui.screens.replay import Player
+from tui.screens.base import SourceScreen
+from tui.screens.live import LiveScreen
+from tui.screens.replay import ReplayScreen
 
 PRESSES = 2500
 LOOK = 0.004  # s that seem to pass between two looks at the clock, so that a frame's budget ends
@@ -60,16 +60,16 @@ def library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @pytest.mark.parametrize("command", ["live", "replay"])
 async def test_a_monkey_does_no_harm_and_all_it_recorded_verifies(tmp_path, library, command):
     def recorded(live: Live) -> Live:
-        live.record(SittingRecorder(library / f"{live.sample.step}.mcap"))
+        live.record(LiveRecorder(library / f"{live.sample.step}.mcap"))
         return live
 
-    def make(clock: Callable[[], float]) -> Stage:
+    def make(clock: Callable[[], float]) -> SourceScreen:
         looks = itertools.count(0.0, LOOK).__next__
         if command == "live":
-            return Lab(recorded(Live(DEFAULT_SCENE, clock=looks)), clock)
+            return LiveScreen(recorded(Live(DEFAULT_SCENE, clock=looks)), clock)
         path = Path(shutil.copy(resolve("drift"), tmp_path))  # marks are kept beside it
         replay = Replay(Recording.open(path), Marks(path), clock=looks)
-        return Player(replay, lambda live: Lab(recorded(live), clock), clock)
+        return ReplayScreen(replay, lambda live: LiveScreen(recorded(live), clock), clock)
 
     async with on_stage(make, SIZE) as theatre:
         await play_on_stage(theatre, PRESSES, int(os.environ.get("PENDU_MONKEY", "1")))

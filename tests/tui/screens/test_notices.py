@@ -9,11 +9,11 @@ from tui.playback.live import Live
 from tui.screens.app import PenduApp
 from tui.screens.base import ALREADY
 from tui.screens.insight_line import InsightLine
-from tui.screens.live import Lab
+from tui.screens.live import LiveScreen
 
 
 async def test_the_notice_of_a_mark_lies_on_the_insight_line():
-    app = PenduApp(Lab(Live(DEFAULT_SCENE, clock=lambda: 0.0), lambda: 0.0))
+    app = PenduApp(LiveScreen(Live(DEFAULT_SCENE, clock=lambda: 0.0), lambda: 0.0))
     async with app.run_test(size=(80, 24), notifications=True) as pilot:
         await pilot.press("m")
         async with asyncio.timeout(20):
@@ -25,7 +25,7 @@ async def test_the_notice_of_a_mark_lies_on_the_insight_line():
 
 async def test_a_second_mark_at_one_moment_is_none_and_is_said_to_be():
     live = Live(DEFAULT_SCENE, clock=lambda: 0.0)
-    app = PenduApp(Lab(live, lambda: 0.0))
+    app = PenduApp(LiveScreen(live, lambda: 0.0))
     async with app.run_test(size=(80, 24), notifications=True) as pilot:
         await pilot.press("m", "m")
         assert [notice.message for notice in app._notifications] == ["Mark at 0.00 s", ALREADY]

@@ -10,16 +10,16 @@ from textual.command import CommandList
 from engine.methods import METHODS
 from engine.scenes import SCENES
 from recordings.library import GOLDEN, listing
-from recordings.live_recorder import SittingRecorder
+from recordings.live_recorder import LiveRecorder
 from tests.tui.stage import Theatre, lab, on_stage
 from tui.commands.replay import player
 from tui.drawing.palette import PALETTES
 from tui.playback.live import Live
 from tui.screens.app import PenduApp
-from tui.screens.extras import AIDS
-from tui.screens.live import Lab
+from tui.screens.extras import EXTRAS
+from tui.screens.live import LiveScreen
 from tui.screens.palette_entries import menu
-from tui.screens.replay import Player
+from tui.screens.replay import ReplayScreen
 from tui.views import VIEWS
 from tui.views.keys import COMMON, LIVE, REPLAY
 from tui.words.cards import method_card
@@ -71,12 +71,12 @@ def test_a_replay_cannot_be_given_a_scene():
     assert not [title for title in titles((*REPLAY, *COMMON), live=False) if title.startswith("scene ")]
 
 
-@pytest.mark.parametrize("stage", [Lab, Player])
+@pytest.mark.parametrize("stage", [LiveScreen, ReplayScreen])
 def test_there_is_an_action_behind_every_entry(stage):
-    for entry in menu(stage.KEYS, stage is Lab, [Path("it's here.mcap")]):
+    for entry in menu(stage.KEYS, stage is LiveScreen, [Path("it's here.mcap")]):
         where, action, parameters = parse(entry.action)
         assert hasattr(PenduApp if where == "app" else stage, f"action_{action}")
-        assert action != "aid" or parameters[0] in AIDS
+        assert action != "aid" or parameters[0] in EXTRAS
 
 
 async def test_a_scene_a_theme_and_a_card_can_be_chosen():
@@ -100,8 +100,8 @@ async def test_a_recording_is_replayed_and_the_sitting_before_it_is_finished(tmp
     monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
     (tmp_path / "earlier.mcap").write_bytes(DRIFT.read_bytes())
     live = Live(SCENES["spin"], clock=lambda: 0.0)
-    live.record(SittingRecorder(tmp_path / "now.mcap"))
-    async with on_stage(lambda clock: Lab(live, clock), (100, 30)) as theatre:
+    live.record(LiveRecorder(tmp_path / "now.mcap"))
+    async with on_stage(lambda clock: LiveScreen(live, clock), (100, 30)) as theatre:
         theatre.app.opened = lambda path: player(path, no_record=True)
         offered = [command.title for command in theatre.app.get_system_commands(theatre.stage)]
         assert {"replay earlier", "replay drift", "replay spin"} <= set(offered)

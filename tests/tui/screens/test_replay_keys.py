@@ -16,12 +16,12 @@ from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
 from tui.screens.help import help_text
-from tui.screens.live import Lab
-from tui.screens.replay import Player
+from tui.screens.live import LiveScreen
+from tui.screens.replay import ReplayScreen
 from tui.screens.seek_bar import SeekBar
 from tui.screens.status_line import StatusLine
 from tui.views.keys import COMMON, REPLAY
-from tui.views.lab.event_list import DiaryPane
+from tui.views.lab.event_list import EventList
 
 
 @pytest.fixture
@@ -112,7 +112,7 @@ async def test_f_goes_on_live_from_the_replayed_moment(path):
         here = theatre.source.sample
         await theatre.press("f")
         await theatre.pilot.pause(0.1)
-        assert isinstance(theatre.stage, Lab)
+        assert isinstance(theatre.stage, LiveScreen)
         assert theatre.source.sample.step == here.step
         assert theatre.source.sample.readings[3].theta == here.readings[3].theta
         assert " LIVE " in theatre.text(StatusLine)
@@ -121,32 +121,34 @@ async def test_f_goes_on_live_from_the_replayed_moment(path):
 async def test_the_lab_that_goes_on_knows_what_the_replay_knew_even_right_after_a_jump(tmp_path):
     path = recorded(tmp_path / "drift.mcap", 20.0)
 
-    def make(clock: Callable[[], float]) -> Player:
+    def make(clock: Callable[[], float]) -> ReplayScreen:
         slowly = itertools.count(0.0, 0.003).__next__  # so that a frame has time for some samples only
-        return Player(Replay(Recording.open(path), Marks(path), slowly), lambda live: Lab(live, clock), clock)
+        return ReplayScreen(
+            Replay(Recording.open(path), Marks(path), slowly), lambda live: LiveScreen(live, clock), clock
+        )
 
     async with on_stage(make, (120, 40)) as theatre:
         theatre.stage.seek(theatre.source.length)
         await theatre.pilot.click("KeyLine", offset=(theatre.text("KeyLine").index("Live"), 0))
         async with asyncio.timeout(20):
-            while not isinstance(theatre.stage, Lab):
+            while not isinstance(theatre.stage, LiveScreen):
                 await theatre.pilot.pause(0.01)
         verdicts = [judgement.verdict for judgement in theatre.source.judgements]
         assert verdicts == ["grows", "bounded", "bounded", "drifts"]
-        assert "over the top" in theatre.text(DiaryPane)
+        assert "over the top" in theatre.text(EventList)
 
 
 async def test_f_stays_in_the_replay_where_the_lab_could_not_record(path):
-    def go_live(live: Live) -> Lab:
+    def go_live(live: Live) -> LiveScreen:
         raise UserError("/nowhere is no folder that can be written: choose another one.")
 
-    def make(clock: Callable[[], float]) -> Player:
-        return Player(Replay(Recording.open(path), Marks(path), clock=lambda: 0.0), go_live, clock)
+    def make(clock: Callable[[], float]) -> ReplayScreen:
+        return ReplayScreen(Replay(Recording.open(path), Marks(path), clock=lambda: 0.0), go_live, clock)
 
     async with on_stage(make, (120, 40)) as theatre:
         await theatre.press("right", "f")
         await theatre.pilot.pause(0.1)
-        assert isinstance(theatre.stage, Player)
+        assert isinstance(theatre.stage, ReplayScreen)
         await theatre.press("right")
         assert theatre.source.playhead.position == pytest.approx(2.0)
         assert any("/nowhere" in notice.message for notice in theatre.app._notifications)

@@ -30,7 +30,7 @@ async def test_what_fits_is_shown_and_nothing_is_cut_off(size, pendulums, charts
         assert len(on_screen(theatre, Pendulum)) == pendulums
         assert len(on_screen(theatre, TimeChart)) == charts
         assert len(theatre.text(ErrorTable).splitlines()) == 5
-        for widget in theatre.stage.query("Rows"):
+        for widget in theatre.stage.query("CellWidget"):
             if widget.is_on_screen:
                 x, y, width, height = widget.region
                 assert x + width <= size[0]

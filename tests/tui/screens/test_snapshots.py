@@ -12,7 +12,7 @@ from tests.tui.command_line import pendu
 from tests.tui.conftest import SNAPSHOTS
 from tests.tui.stage import player
 from tui.screens.still import normalised, still
-from tui.terminal.options import Display
+from tui.terminal.options import TerminalOptions
 
 SIZES = {"80x24": (80, 24), "120x40": (120, 40), "200x60": (200, 60)}
 SECONDS = 12.0
@@ -23,9 +23,9 @@ SINES = 4099858461
 
 VIEWS = {"lab": [], "phase": ["f3", "5"], "accuracy": ["f4"], "stability": ["f5"]}
 DISPLAYS = {
-    "high-contrast": Display("high-contrast"),
-    "ascii": Display(pixels="ascii"),
-    "present": Display(present=True),
+    "high-contrast": TerminalOptions("high-contrast"),
+    "ascii": TerminalOptions(character_set="ascii"),
+    "present": TerminalOptions(present=True),
 }
 
 
@@ -49,7 +49,7 @@ async def test_every_view_at_every_size(snapshot, view, size):
 
 @pytest.mark.parametrize("size", SIZES)
 async def test_the_lab_in_light_at_every_size(snapshot, size):
-    snapshot(f"lab-{size}-light", await still(DEFAULT_SCENE, SECONDS, SIZES[size], Display("light")))
+    snapshot(f"lab-{size}-light", await still(DEFAULT_SCENE, SECONDS, SIZES[size], TerminalOptions("light")))
 
 
 @pytest.mark.parametrize("display", DISPLAYS)

@@ -7,26 +7,26 @@ from rich.style import Style
 from textual.color import Color
 
 from tui.drawing.canvas import Canvas
-from tui.terminal.character_sets import PixelFilter
-from tui.terminal.options import PIXELS
+from tui.terminal.character_sets import CharacterSetFilter
+from tui.terminal.options import CHARACTER_SETS
 
 BOLD = Style(bold=True)
 
 
-def written(text, pixels):
-    (segment,) = PixelFilter(pixels).apply([Segment(text, BOLD)], Color.parse("black"))
+def written(text, character_set):
+    (segment,) = CharacterSetFilter(character_set).apply([Segment(text, BOLD)], Color.parse("black"))
     assert segment.style == BOLD
     return segment.text
 
 
 @pytest.mark.parametrize(
-    ("pixels", "picture"),
+    ("character_set", "picture"),
     [("half", [" ▄▄▄▄", " █  █", " ▀▀▀▀"]), ("ascii", [" ....", " :  :", " ''''"])],
 )
-def test_a_ring_of_braille_in_half_blocks_and_in_ascii(pixels, picture):
+def test_a_ring_of_braille_in_half_blocks_and_in_ascii(character_set, picture):
     canvas = Canvas(6, 3)
     canvas.disc(6, 6, 4, 0, hollow=True)
-    assert [written(line, pixels) for line in canvas.picture().text.split("\n")] == picture
+    assert [written(line, character_set) for line in canvas.picture().text.split("\n")] == picture
 
 
 def test_half_blocks_leave_everything_but_braille_as_it_is():
@@ -39,10 +39,10 @@ def test_in_ascii_frames_and_words_are_read_as_before():
     assert written("Störmer, 2√2, 57°, µs", "ascii") == "Stormer, 2V2, 57o, us"
 
 
-@given(st.text(st.characters(exclude_categories=("Cc", "Cs"))), st.sampled_from(PIXELS[1:]))
-def test_whatever_is_written_keeps_its_width_and_ascii_is_ascii(text, pixels):
-    assert cell_len(written(text, pixels)) == sum(map(cell_len, text))
-    assert pixels != "ascii" or written(text, pixels).isascii()
+@given(st.text(st.characters(exclude_categories=("Cc", "Cs"))), st.sampled_from(CHARACTER_SETS[1:]))
+def test_whatever_is_written_keeps_its_width_and_ascii_is_ascii(text, character_set):
+    assert cell_len(written(text, character_set)) == sum(map(cell_len, text))
+    assert character_set != "ascii" or written(text, character_set).isascii()
 
 
 @given(st.text(st.characters(max_codepoint=0x7E, min_codepoint=0x20)))
@@ -51,5 +51,5 @@ def test_ascii_stays_as_it_is(text):
 
 
 def test_where_there_is_braille_nothing_is_filtered():
-    assert not PixelFilter("braille").enabled
-    assert all(PixelFilter(pixels).enabled for pixels in PIXELS[1:])
+    assert not CharacterSetFilter("braille").enabled
+    assert all(CharacterSetFilter(character_set).enabled for character_set in CHARACTER_SETS[1:])

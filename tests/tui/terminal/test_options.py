@@ -5,26 +5,35 @@ import pytest
 from tui.cli.errors import UserError
 from tui.cli.options import Parser
 from tui.drawing.palette import PALETTES
-from tui.terminal.options import CALM_FPS, FPS, PIXELS, Display, add_display_options, colours, display_of, suited_theme
+from tui.terminal.options import (
+    CALM_FPS,
+    CHARACTER_SETS,
+    FPS,
+    TerminalOptions,
+    add_terminal_options,
+    colours,
+    suited_theme,
+    terminal_options_of,
+)
 
 XTERM = {"TERM": "xterm-256color"}
 
 
-def chosen(*arguments: str, encoding: str = "utf-8", **environment: str) -> Display:
+def chosen(*arguments: str, encoding: str = "utf-8", **environment: str) -> TerminalOptions:
     parser = Parser(argument_default=None)
-    add_display_options(parser)
-    return display_of(parser.parse_args(arguments), XTERM | environment, encoding)
+    add_terminal_options(parser)
+    return terminal_options_of(parser.parse_args(arguments), XTERM | environment, encoding)
 
 
 def test_on_most_terminals_the_lab_is_dark_in_braille_with_the_mouse_at_30_frames_a_second():
-    assert chosen() == Display("dark", "braille", True, 30) == Display()
+    assert chosen() == TerminalOptions("dark", "braille", True, 30) == TerminalOptions()
 
 
 @pytest.mark.parametrize("theme", PALETTES)
-@pytest.mark.parametrize("pixels", PIXELS)
-def test_what_is_asked_for_is_taken_whatever_the_terminal_says(theme, pixels):
-    asked = ("--theme", theme, "--pixels", pixels, "--no-mouse", "--fps", "12")
-    assert chosen(*asked, encoding="ascii", NO_COLOR="1") == Display(theme, pixels, False, 12)
+@pytest.mark.parametrize("character_set", CHARACTER_SETS)
+def test_what_is_asked_for_is_taken_whatever_the_terminal_says(theme, character_set):
+    asked = ("--theme", theme, "--pixels", character_set, "--no-mouse", "--fps", "12")
+    assert chosen(*asked, encoding="ascii", NO_COLOR="1") == TerminalOptions(theme, character_set, False, 12)
 
 
 @pytest.mark.parametrize(
@@ -62,9 +71,9 @@ def test_colours_are_counted_by_what_the_terminal_is_called(environment, number)
     assert colours(environment) == number
 
 
-@pytest.mark.parametrize(("encoding", "pixels"), [("UTF-8", "braille"), ("utf8", "braille"), ("iso8859-1", "ascii")])
-def test_without_utf_8_all_is_ascii(encoding, pixels):
-    assert chosen(encoding=encoding).pixels == pixels
+@pytest.mark.parametrize(("encoding", "character_set"), [("UTF-8", "braille"), ("utf8", "braille"), ("iso8859-1", "ascii")])
+def test_without_utf_8_all_is_ascii(encoding, character_set):
+    assert chosen(encoding=encoding).character_set == character_set
 
 
 def test_reduced_motion_is_fewer_frames_unless_they_are_asked_for():
@@ -80,6 +89,6 @@ def test_frames_that_cannot_be_are_refused(fps):
 
 def test_every_choice_is_in_the_help():
     parser = argparse.ArgumentParser()
-    add_display_options(parser)
+    add_terminal_options(parser)
     assert "{auto,dark,light,high-contrast,ansi}" in parser.format_help()
     assert "{auto,braille,half,ascii}" in parser.format_help()

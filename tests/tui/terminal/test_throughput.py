@@ -5,7 +5,7 @@ from collections import deque
 
 import pytest
 
-from tui.terminal.throughput import SYSTEMS, Wire
+from tui.terminal.throughput import SYSTEMS, Throughput
 
 FRAME, FPS = 3000, 30  # bytes, 1/s
 
@@ -15,7 +15,7 @@ class Line:
 
     def __init__(self, rate: float) -> None:
         self.rate, self.held, self.now = rate, 0.0, 0.0
-        self.wire = Wire()
+        self.throughput = Throughput()
         self.writing: deque[tuple[float, int]] = deque()  # since when, bytes
         self.frames = 0
 
@@ -27,21 +27,21 @@ class Line:
             self.held = max(0.0, self.held - self.rate / FPS)
             while self.writing and self.held - sum(size for _, size in list(self.writing)[1:]) <= SYSTEMS:
                 began, size = self.writing.popleft()
-                self.wire.written(size, began, self.now)
+                self.throughput.written(size, began, self.now)
                 if self.writing:
                     self.writing[0] = self.now, self.writing[0][1]
-            self.wire.tick(self.now)
-            if not self.wire.is_busy:
+            self.throughput.tick(self.now)
+            if not self.throughput.is_busy:
                 self.send(FRAME)
                 self.frames += 1
             longest = max(longest, self.held / self.rate)
         return longest
 
     def send(self, size: int) -> None:
-        self.wire.send(size)
+        self.throughput.send(size)
         self.held += size
         if self.held <= SYSTEMS:
-            self.wire.written(size, self.now, self.now)
+            self.throughput.written(size, self.now, self.now)
         else:
             self.writing.append((self.now, size))
 
@@ -50,7 +50,7 @@ def test_a_fast_line_gets_every_frame():
     line = Line(math.inf)
     line.run(10)
     assert line.frames == 10 * FPS
-    assert line.wire.rate == math.inf
+    assert line.throughput.rate == math.inf
 
 
 @pytest.mark.parametrize("rate", [16_000, 64_000])
@@ -79,26 +79,26 @@ def test_two_large_pictures_say_how_fast_the_line_is(rate):
     line.send(60_000)
     line.send(60_000)
     line.run(120_000 / rate)
-    assert 0.7 * rate < line.wire.rate < 1.4 * rate  # more is known at the next wait
+    assert 0.7 * rate < line.throughput.rate < 1.4 * rate  # more is known at the next wait
 
 
 @pytest.mark.parametrize(("size", "seconds"), [(100, 33.0), (3000, 0.7), (60_000, 5.0)])
 def test_a_fast_line_that_once_stood_still_is_not_taken_for_a_slow_one(size, seconds):
     line = Line(math.inf)
     line.run(2)
-    line.wire.send(size)
-    assert line.wire.is_busy  # Ctrl+S, or a mouse that selects
-    line.wire.written(size, line.now, line.now + seconds)
+    line.throughput.send(size)
+    assert line.throughput.is_busy  # Ctrl+S, or a mouse that selects
+    line.throughput.written(size, line.now, line.now + seconds)
     line.now += seconds
     line.frames = 0
     line.run(1)
     assert line.frames == FPS
-    assert not line.wire.is_slow
+    assert not line.throughput.is_slow
 
 
 def test_what_another_writer_has_not_written_is_not_waited_for():
-    wire = Wire()
-    wire.send(3000)
-    assert wire.is_busy
-    wire.restart()
-    assert not wire.is_full
+    throughput = Throughput()
+    throughput.send(3000)
+    assert throughput.is_busy
+    throughput.restart()
+    assert not throughput.is_full

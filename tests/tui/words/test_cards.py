@@ -9,8 +9,8 @@ from tui.playback.live import Live
 from tui.screens.help import help_text
 from tui.views.accuracy import pane as accuracy
 from tui.views.keys import COMMON, LIVE, REPLAY
-from tui.views.phase.pane import PhasePane
 from tui.views.phase import pane as phase
+from tui.views.phase.pane import PhasePane
 from tui.views.stability import pane as stability
 from tui.words.cards import WIDTH, method_card, scene_card
 

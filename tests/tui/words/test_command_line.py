@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from engine.scenes import LIMITS, SCENES, Scene
 from recordings.library import GOLDEN
-from recordings.live_recorder import SittingRecorder
+from recordings.live_recorder import LiveRecorder
 from recordings.recording import Recording
 from tui.cli.dispatch import command_of
 from tui.cli.options import joined, scene_of
@@ -51,7 +51,7 @@ def test_the_speed_is_kept():
 
 def test_a_run_whose_step_size_changed_is_found_in_its_recording(tmp_path):
     live = Live(SCENES["drift"], clock=lambda: 0.0)
-    live.record(SittingRecorder(tmp_path / "my run.mcap"))
+    live.record(LiveRecorder(tmp_path / "my run.mcap"))
     for frame in range(61):
         live.tick(frame / 30)
     live.set_h(0.1)

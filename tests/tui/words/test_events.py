@@ -3,14 +3,14 @@
 import pytest
 
 from engine.scenes import SCENES
-from recordings.live_recorder import SittingRecorder
+from recordings.live_recorder import LiveRecorder
 from recordings.recording import Recording
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
 from tui.screens.app import PenduApp
-from tui.screens.live import Lab
-from tui.views.lab.event_list import DiaryPane
+from tui.screens.live import LiveScreen
+from tui.views.lab.event_list import EventList
 from tui.words.events import diary
 
 DRIFT = SCENES["drift"]
@@ -66,7 +66,7 @@ def test_changes_and_marks_are_there_and_pauses_are_not():
 
 def test_marks_beside_a_recording_are_at_the_time_of_their_step(tmp_path):
     live = Live(DRIFT, clock=lambda: 0.0)
-    live.record(SittingRecorder(tmp_path / "run.mcap"))
+    live.record(LiveRecorder(tmp_path / "run.mcap"))
     for change in (0.1, -0.02):
         after(live, 2, live.playhead.seen or 0.0)
         live.set_h(change)
@@ -109,10 +109,10 @@ def test_lines_fit_into_the_pane_of_the_smallest_layout_that_has_one():
 
 async def test_the_pane_shows_the_newest_last_and_is_there_only_where_there_is_room():
     live = after(Live(DRIFT, clock=lambda: 0.0), 20)
-    app = PenduApp(Lab(live, clock=lambda: 20.0))
+    app = PenduApp(LiveScreen(live, clock=lambda: 20.0))
     async with app.run_test(size=(120, 40)) as pilot:
         await pilot.pause()
-        pane = app.stage.query_one(DiaryPane)
+        pane = app.stage.query_one(EventList)
         app.stage.show_now()
         assert pane.text.splitlines() == [str(line) for line in diary(live)][-pane.size.height :]
         assert pane.size.height >= 4

@@ -63,7 +63,7 @@ def test_news_are_told_for_as_long_of_the_clock_at_any_speed(speed):
     sitting, seen = Sitting(SCENES["drift"], speed), 0
     while sitting.live.sample.t < 7.15 + FRESH * speed + 1:
         sitting.run(1 / FPS)
-        happened = any(each.kind == "over the top" for each in sitting.live.happenings)
+        happened = any(each.kind == "over the top" for each in sitting.live.milestones)
         seen += happened and "went over the top" in insight(sitting.live)
     assert seen / FPS == pytest.approx(FRESH, abs=2 / FPS + 0.05 / speed)  # a frame at each end, and a step of 0.05 s
 
@@ -79,7 +79,7 @@ def test_what_is_known_is_told_in_turn():
 def test_the_energy_at_the_top_is_the_one_of_the_event_and_stands_still():
     sitting = Sitting(SCENES["drift"])
     sitting.run(8)
-    (top,) = (each for each in sitting.live.happenings if each.kind == "over the top")
+    (top,) = (each for each in sitting.live.milestones if each.kind == "over the top")
     told = {sitting.run(1) for _ in range(5)}
     assert (
         told == {over_the_top(top)} == {"Explicit Euler went over the top at 7.15 s with 5.1 times the start's energy."}
@@ -147,7 +147,7 @@ def test_who_stays_is_told_with_the_time_that_the_verdict_rests_on():
     live = after("drift", 40)
     text = staying(live)
     seconds = float(re.search(r"no trend in (\d+) s", text)[1])
-    assert 40 - live.swing.period - 1 < seconds <= 40
+    assert 40 - live.exact.period - 1 < seconds <= 40
     assert [name for name in (short(method) for method in METHODS) if name in text] == ["Symplectic Euler", "Verlet"]
     assert staying(after("drift", 5)) == ""
 

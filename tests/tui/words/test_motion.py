@@ -4,13 +4,13 @@ import math
 
 import pytest
 
-from engine.models.exact_pendulum import Swing
+from engine.models.exact_pendulum import ExactMotion
 from engine.phase_space.neighbours import Neighbours
 from engine.scenes import Scene
 from tui.playback.live import Live
-from tui.playback.shown import Look
+from tui.playback.shown import Shown
 from tui.views.phase.facts import fact_rows
-from tui.words.motion import area_text, energy_share, place_text, regime, swing_text
+from tui.words.motion import area_text, energy_share, motion_text, place_text, regime
 
 W0 = Scene().w0
 
@@ -55,8 +55,8 @@ def test_multiples_of_pi_are_called_so():
 
 
 def test_the_exact_swing_is_said_with_its_period():
-    assert swing_text(Swing(Scene())) == "exact period 2.13914 s  E/Es 0.2298  libration"
-    assert swing_text(Swing(Scene(theta=0.0))) == "E/Es 0  equilibrium"
+    assert motion_text(ExactMotion(Scene())) == "exact period 2.13914 s  E/Es 0.2298  libration"
+    assert motion_text(ExactMotion(Scene(theta=0.0))) == "E/Es 0  equilibrium"
 
 
 @pytest.mark.parametrize(
@@ -79,7 +79,7 @@ def test_the_table_tells_who_keeps_area():
     live, neighbours = Live(Scene()), Neighbours(0.1)
     live.step(200)
     ring = neighbours.follow(live.scene, live.sample.run, live.sample.step, live.events, 200)
-    lines = ["".join(text for text, _ in row) for row in fact_rows(live, Look(), neighbours, ring, 80)]
+    lines = ["".join(text for text, _ in row) for row in fact_rows(live, Shown(), neighbours, ring, 80)]
     assert [line.split()[0] for line in lines[2:]] == ["1", "2", "3", "4"]
     assert "1 + " in lines[3] or "1 - " in lines[3] or " 1 " in lines[3]  # symplectic Euler, but for rounding
     assert " 0.99997" in lines[5]  # RK4: a loss that four digits would not show
@@ -90,8 +90,8 @@ def test_the_table_says_when_the_ring_is_behind_or_not_there():
     live, neighbours = Live(Scene()), Neighbours(0.1)
     live.step(200)
     ring = neighbours.follow(live.scene, live.sample.run, live.sample.step, live.events, 50)
-    assert "150 steps behind" in fact_rows(live, Look(), neighbours, ring, 80)[0][0][0]
-    without = fact_rows(live, Look(), None, None, 80)
+    assert "150 steps behind" in fact_rows(live, Shown(), neighbours, ring, 80)[0][0][0]
+    without = fact_rows(live, Shown(), None, None, 80)
     assert "g draws one" in without[0][0][0]
     assert len(without) == 6
 
@@ -100,8 +100,8 @@ def test_the_table_says_when_the_ring_is_behind_or_not_there():
 def test_a_number_that_does_not_fit_is_left_out_not_cut_off(width):
     live = Live(Scene())
     live.step(30)
-    wide = ["".join(text for text, _ in row) for row in fact_rows(live, Look(), None, None, 80)]
-    rows = ["".join(text for text, _ in row) for row in fact_rows(live, Look(), None, None, width)]
+    wide = ["".join(text for text, _ in row) for row in fact_rows(live, Shown(), None, None, 80)]
+    rows = ["".join(text for text, _ in row) for row in fact_rows(live, Shown(), None, None, width)]
     for whole, row in zip(wide[1:], rows[1:], strict=True):
         assert len(row) <= max(width, 22)  # the names stay
         assert whole.startswith(row)

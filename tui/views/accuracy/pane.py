@@ -12,9 +12,9 @@ from textual.reactive import var
 from engine.accuracy.study import REASONS, ErrorKind, Point
 from engine.methods import METHODS
 from engine.run.lockstep import Sample
-from tui.drawing.cells import Rows
+from tui.drawing.cells import CellWidget
 from tui.drawing.palette import TEXT
-from tui.playback.shown import Look
+from tui.playback.shown import Shown
 from tui.playback.source import EQUAL_PARTS, Source
 from tui.views.accuracy.chart import POWERS, accuracy_chart
 from tui.views.keys import Key, bindings
@@ -38,7 +38,7 @@ KEYS = (
 )
 
 
-class AccuracyPane(Rows, can_focus=True):
+class AccuracyPane(CellWidget, can_focus=True):
     """Draws the points that there are, "you are here" for each method, and one of them in words."""
 
     DEFAULT_CSS = """
@@ -50,7 +50,7 @@ class AccuracyPane(Rows, can_focus=True):
 
     source: var[Source | None] = var(None)
     sample: var[Sample | None] = var(None)
-    look: var[Look] = var(Look())
+    shown: var[Shown] = var(Shown())
 
     def __init__(self) -> None:
         super().__init__()
@@ -74,7 +74,7 @@ class AccuracyPane(Rows, can_focus=True):
     @property
     def kind(self) -> ErrorKind:
         """The error that is charted: what the lab's chart shows, energy or theta."""
-        return "theta" if self.look.quantity == "theta_error" else "energy"
+        return "theta" if self.shown.quantity == "theta_error" else "energy"
 
     @property
     def missing(self) -> int:
@@ -98,7 +98,7 @@ class AccuracyPane(Rows, can_focus=True):
 
     @property
     def _state(self) -> object:
-        return frozenset(self.points), self.here, self.index, self.cursor, self.look, self.room
+        return frozenset(self.points), self.here, self.index, self.cursor, self.shown, self.room
 
     def watch_sample(self) -> None:
         """Draw what is new."""
@@ -112,7 +112,7 @@ class AccuracyPane(Rows, can_focus=True):
             self.run_worker(self._build(), group="chart")
 
     async def _build(self) -> None:
-        state, kind, shown = self._state, self.kind, self.look.indices
+        state, kind, shown = self._state, self.kind, self.shown.indices
         points = [p for (i, steps), p in sorted(self.points.items()) if i in shown and steps in self.rungs]
         here = [
             (HERE, self.points[place]) for place in enumerate(self.here) if place in self.points and place[0] in shown
@@ -162,7 +162,7 @@ class AccuracyPane(Rows, can_focus=True):
 
     def action_method(self, down: int) -> None:
         """Go to the next method that is shown."""
-        if shown := self.look.indices:
+        if shown := self.shown.indices:
             at = shown.index(self.index) if self.index in shown else -1
             self.index = shown[(at + down) % len(shown)]
             self.draw()

@@ -36,14 +36,14 @@ class AccuracyView(View):
 
     def compose(self) -> ComposeResult:
         """Create the pane."""
-        yield AccuracyPane().data_bind(View.source, View.look, sample=View.reading)
+        yield AccuracyPane().data_bind(View.source, View.shown, sample=View.sample_10hz)
 
     def on_mount(self) -> None:
         """The keys are the chart's from the start."""
         self.query_one(AccuracyPane).focus()
-        self.watch_reading()
+        self.watch_sample_10hz()
 
-    def watch_reading(self) -> None:
+    def watch_sample_10hz(self) -> None:
         """Compute what is not there yet for the run on screen, if anybody looks."""
         if self.source is None or not self.display or not self.query(AccuracyPane):
             return

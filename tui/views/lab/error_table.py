@@ -10,9 +10,9 @@ from engine.methods import METHODS, Method
 from engine.models.state import State
 from engine.run.lockstep import Reading, Sample
 from engine.run.verdict import Judgement
-from tui.drawing.cells import Row, Rows
+from tui.drawing.cells import CellWidget, Row
 from tui.drawing.palette import FRAME, TEXT, WARN, mark
-from tui.playback.shown import Look
+from tui.playback.shown import Shown
 from tui.playback.source import Source, own_h
 from tui.words.numbers import decimal, scientific
 
@@ -82,14 +82,14 @@ def chosen(columns: Sequence[Column], room: int) -> list[tuple[str, int, Callabl
 
 
 def table(
-    sample: Sample, judgements: Sequence[Judgement], exact: State, h: Sequence[float], look: Look, width: int
+    sample: Sample, judgements: Sequence[Judgement], exact: State, h: Sequence[float], shown: Shown, width: int
 ) -> list[Row]:
     """The table's rows, its head first; each method's own step size where they differ."""
     columns = chosen(COLUMNS[len(set(h)) == 1 :], width - NAME)
     spare = width - NAME - sum(size + 1 for _, size, _ in columns)
     gap = " " * (1 + min(spare // max(len(columns), 1), MOST_GAP))
     rows: list[Row] = [[("method".ljust(NAME), FRAME), *((gap + head.rjust(size), FRAME) for head, size, _ in columns)]]
-    for index in look.indices:
+    for index in shown.indices:
         line = Line(METHODS[index], sample.readings[index], judgements[index], exact, h[index])
         failed = line.reading.diverged_at is not None
         cells = "".join(gap + cell(line, size) for _, size, cell in columns)
@@ -97,20 +97,20 @@ def table(
     return rows
 
 
-class ErrorTable(Rows):
+class ErrorTable(CellWidget):
     """The table."""
 
     source: var[Source | None] = var(None)
     sample: var[Sample | None] = var(None)
-    look: var[Look] = var(Look())
+    shown: var[Shown] = var(Shown())
 
     def watch_sample(self) -> None:
         """Follow the sample."""
         self.draw()
 
-    def watch_look(self) -> None:
+    def watch_shown(self) -> None:
         """Follow the settings; hidden methods leave no gap."""
-        self.styles.height = 1 + len(self.look.indices)
+        self.styles.height = 1 + len(self.shown.indices)
         self.draw()
 
     def draw(self) -> None:
@@ -118,5 +118,5 @@ class ErrorTable(Rows):
         source, sample = self.source, self.sample
         if source is None or sample is None or not self.drawable:
             return
-        exact = source.swing.at(sample.t)
-        self.show(table(sample, source.judgements, exact, own_h(source), self.look, self.room.width))
+        exact = source.exact.at(sample.t)
+        self.show(table(sample, source.judgements, exact, own_h(source), self.shown, self.room.width))

@@ -3,12 +3,12 @@
 from textual.reactive import var
 
 from engine.run.lockstep import Sample
-from tui.drawing.cells import Rows
+from tui.drawing.cells import CellWidget
 from tui.playback.source import Source
 from tui.words.events import diary
 
 
-class DiaryPane(Rows):
+class EventList(CellWidget):
     """The last lines of the diary."""
 
     source: var[Source | None] = var(None)

@@ -6,21 +6,21 @@ from textual.reactive import var
 
 from engine.methods import METHODS
 from engine.run.lockstep import Sample
-from tui.drawing.cells import Rows
+from tui.drawing.cells import CellWidget
 from tui.drawing.palette import EXACT, mark
-from tui.playback.shown import Look
+from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.views.lab.pendulum_picture import Bob, pendulum_picture
 
 TRAIL = 15  # samples, half a second at 30 frames a second
 
 
-class Pendulum(Rows):
+class Pendulum(CellWidget):
     """The pendulums of some methods; more than one are told apart by their letters."""
 
     source: var[Source | None] = var(None)
     sample: var[Sample | None] = var(None)
-    look: var[Look] = var(Look())
+    shown: var[Shown] = var(Shown())
 
     def __init__(self, indices: Sequence[int], id: str | None = None, classes: str | None = None) -> None:
         super().__init__(id, classes)
@@ -32,7 +32,7 @@ class Pendulum(Rows):
         """Follow the sample."""
         self.draw()
 
-    def watch_look(self) -> None:
+    def watch_shown(self) -> None:
         """Follow the settings."""
         self.draw()
 
@@ -41,12 +41,12 @@ class Pendulum(Rows):
         source, sample = self.source, self.sample
         if source is None or sample is None or not self.drawable:
             return
-        length = TRAIL if self.look.trails else 0
+        length = TRAIL if self.shown.trails else 0
         bobs = []
-        if self.look.exact:
-            bobs.append(Bob(source.swing.at(sample.t).theta, EXACT, ghost=True))
+        if self.shown.exact:
+            bobs.append(Bob(source.exact.at(sample.t).theta, EXACT, ghost=True))
         for index in self._indices:
-            if self.look.shown[index]:
+            if self.shown.shown[index]:
                 reading = sample.readings[index]
                 bobs.append(
                     Bob(

@@ -6,12 +6,12 @@ from functools import partial
 from textual.reactive import var
 
 from engine.methods import METHODS
-from engine.models.exact_pendulum import Swing
+from engine.models.exact_pendulum import ExactMotion
 from engine.run.lockstep import Sample
-from tui.drawing.cells import Rows
+from tui.drawing.cells import CellWidget
 from tui.drawing.chart import time_chart
 from tui.playback.history import Quantity
-from tui.playback.shown import Look
+from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.words.findings import about
 
@@ -23,25 +23,25 @@ NAMES: dict[Quantity, tuple[str, str]] = {
 }
 """Of the quantity itself, and of its magnitude, which is charted logarithmically."""
 
-NO_SHADOW = f"only {' and '.join(m.letter for m in METHODS if m.shadow)} have a shadow energy"
+NO_MODIFIED_ENERGY = f"only {' and '.join(m.letter for m in METHODS if m.modified_energy)} have a shadow energy"
 
 
-def title(look: Look, swing: Swing) -> str:
+def title(shown: Shown, exact: ExactMotion) -> str:
     """What the chart shows, and of how much of the past."""
-    name, magnitude = NAMES[look.quantity]
-    span = "all" if look.seconds is None else about(look.seconds)
-    if not look.log:
+    name, magnitude = NAMES[shown.quantity]
+    span = "all" if shown.seconds is None else about(shown.seconds)
+    if not shown.log:
         return f"{name}, {span}"
-    each = {"libration": " per half swing", "rotation": " per turn"}.get(swing.regime, "")
+    each = {"libration": " per half swing", "rotation": " per turn"}.get(exact.regime, "")
     return f"max {magnitude}{each}, {span}"
 
 
-class TimeChart(Rows):
+class TimeChart(CellWidget):
     """The chart.  It is built in a thread, always from the newest data; what comes too quickly is left out."""
 
     source: var[Source | None] = var(None)
     sample: var[Sample | None] = var(None)
-    look: var[Look] = var(Look())
+    shown: var[Shown] = var(Shown())
 
     def __init__(self, id: str | None = None) -> None:
         super().__init__(id)
@@ -64,7 +64,7 @@ class TimeChart(Rows):
         """Follow the sample."""
         self.draw()
 
-    def watch_look(self) -> None:
+    def watch_shown(self) -> None:
         """Follow the settings."""
         self.draw()
 
@@ -72,10 +72,10 @@ class TimeChart(Rows):
         """Ask for a chart."""
         if self.source is not None and self.drawable:
             self._wanted.set()
-            text = title(self.look, self.source.swing)
+            text = title(self.shown, self.source.exact)
             if text != self.border_title:  # setting it paints all of the pane
                 self.border_title = text
-                self.border_subtitle = NO_SHADOW if self.look.quantity == "shadow_error" else ""
+                self.border_subtitle = NO_MODIFIED_ENERGY if self.shown.quantity == "shadow_error" else ""
 
     async def _build_on_demand(self) -> None:
         while True:
@@ -84,8 +84,8 @@ class TimeChart(Rows):
             if self.source is None or not self.drawable:
                 continue
             self._building = True
-            look, (width, height) = self.look, self.room
-            build = partial(time_chart, log=look.log, seconds=look.seconds, shown=look.indices)
-            window = self.source.history.window(look.seconds)
-            self.show_picture(await asyncio.to_thread(build, window, look.quantity, width, height))
+            shown, (width, height) = self.shown, self.room
+            build = partial(time_chart, log=shown.log, seconds=shown.seconds, shown=shown.indices)
+            window = self.source.history.window(shown.seconds)
+            self.show_picture(await asyncio.to_thread(build, window, shown.quantity, width, height))
             self._building = False

@@ -8,7 +8,7 @@ from textual.widget import Widget
 
 from engine.methods import METHODS
 from tui.views.lab.error_table import ErrorTable
-from tui.views.lab.event_list import DiaryPane
+from tui.views.lab.event_list import EventList
 from tui.views.lab.large_table import LargeTable
 from tui.views.lab.pendulums import Pendulum
 from tui.views.lab.time_chart import TimeChart
@@ -27,24 +27,24 @@ class LabView(View):
             with Container(id="side"):
                 with Grid(id="pendulums"):
                     yield from self._pendulums()
-                yield DiaryPane().data_bind(View.source, sample=View.reading)
+                yield EventList().data_bind(View.source, sample=View.sample_10hz)
             yield self._following(Pendulum(range(len(METHODS)), id="overlay"))
             with Container(id="charts"):
-                yield TimeChart().data_bind(View.source, View.look, sample=View.past)
-                yield PhasePane().data_bind(View.source, View.sample, View.look)
-        yield ErrorTable().data_bind(View.source, View.look, sample=View.reading)
-        yield LargeTable().data_bind(View.source, View.look, sample=View.reading)
+                yield TimeChart().data_bind(View.source, View.shown, sample=View.sample_5hz)
+                yield PhasePane().data_bind(View.source, View.sample, View.shown)
+        yield ErrorTable().data_bind(View.source, View.shown, sample=View.sample_10hz)
+        yield LargeTable().data_bind(View.source, View.shown, sample=View.sample_10hz)
 
     def _pendulums(self) -> Iterator[Widget]:
         for index in range(len(METHODS)):
             yield self._following(Pendulum([index]))
 
     def _following(self, pendulum: Pendulum) -> Widget:
-        return pendulum.data_bind(View.source, View.sample, View.look)
+        return pendulum.data_bind(View.source, View.sample, View.shown)
 
-    def watch_look(self) -> None:
+    def watch_shown(self) -> None:
         """Hidden methods leave their room to the others."""
-        shown = self.look.indices
+        shown = self.shown.indices
         for index, pendulum in enumerate(self.query("#pendulums Pendulum")):
             pendulum.display = index in shown
         self.query_one("#pendulums").set_class(len(shown) < 3, "-few")

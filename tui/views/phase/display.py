@@ -9,25 +9,25 @@ from engine.phase_space.area import Neighbourhood
 from engine.phase_space.neighbours import Neighbours
 from engine.run.lockstep import Sample
 from tui.drawing.canvas import Canvas, Picture
-from tui.drawing.cells import Rows
+from tui.drawing.cells import CellWidget
 from tui.drawing.palette import EXACT, FRAME, TEXT
-from tui.playback.shown import Look
+from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.views.phase.picture import Point, phase_picture
 from tui.views.phase.portrait import Portrait
 from tui.views.phase.viewport import Viewport
-from tui.words.motion import place_text, swing_text
+from tui.words.motion import motion_text, place_text
 
 TRAIL = 300  # samples, ten seconds at 30 frames a second
 RING_STEPS = 100  # a frame; 52 µs each, so a ring that has to catch up costs 5 ms of a frame at most
 
 
-class PhaseDisplay(Rows, can_focus=True):
+class PhaseDisplay(CellWidget, can_focus=True):
     """Draws; who derives from it sets the crosshair, the pointer and the viewport."""
 
     source: var[Source | None] = var(None)
     sample: var[Sample | None] = var(None)
-    look: var[Look] = var(Look())
+    shown: var[Shown] = var(Shown())
     wrap: var[bool] = var(True)
     radius: var[float | None] = var(None)
     """Of the ring of neighbours [rad]; None: no ring."""
@@ -63,7 +63,7 @@ class PhaseDisplay(Rows, can_focus=True):
         """Follow the sample."""
         self.draw()
 
-    def watch_look(self) -> None:
+    def watch_shown(self) -> None:
         """Follow the settings."""
         self.draw()
 
@@ -119,11 +119,11 @@ class PhaseDisplay(Rows, can_focus=True):
 
     def _points(self, source: Source, sample: Sample) -> list[Point]:
         self._follow(source, sample)
-        length = TRAIL if self.look.trails else 0
+        length = TRAIL if self.shown.trails else 0
         points = []
-        if self.look.exact:
-            points.append(Point(*source.swing.at(sample.t), EXACT, "x"))
-        for index in self.look.indices:
+        if self.shown.exact:
+            points.append(Point(*source.exact.at(sample.t), EXACT, "x"))
+        for index in self.shown.indices:
             reading = sample.readings[index]
             trail = source.history.trail(index, length)
             ring = None if self.ring is None else self.ring.rings[index]
@@ -147,7 +147,7 @@ class PhaseDisplay(Rows, can_focus=True):
         """Say what is at the crosshair or under the pointer, and what the exact swing is as far as there is room."""
         if self.source is None or self._plot is None:
             return
-        width, swing = self._plot.characters.shape[1], swing_text(self.source.swing)
+        width, swing = self._plot.characters.shape[1], motion_text(self.source.exact)
         line = Canvas(width, 1).picture()
         if self.aim is None:
             line.write(0, 0, swing, FRAME)

@@ -3,9 +3,9 @@
 from engine.methods import METHODS
 from engine.phase_space.area import Neighbourhood
 from engine.phase_space.neighbours import Neighbours
-from tui.drawing.canvas import Run
+from tui.drawing.canvas import Span
 from tui.drawing.palette import FRAME, TEXT, mark
-from tui.playback.shown import Look
+from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.words.motion import area_text
 from tui.words.numbers import scientific
@@ -14,16 +14,16 @@ _NAME, _CELL = 22, 14
 
 
 def fact_rows(
-    source: Source, look: Look, neighbours: Neighbours | None, ring: Neighbourhood | None, width: int
-) -> list[list[Run]]:
+    source: Source, shown: Shown, neighbours: Neighbours | None, ring: Neighbourhood | None, width: int
+) -> list[list[Span]]:
     """The rows; of the columns, the first ones that fit."""
-    exact, fit = source.swing.at(source.sample.t), max((width - _NAME) // _CELL, 0)
+    exact, fit = source.exact.at(source.sample.t), max((width - _NAME) // _CELL, 0)
     heads = ("sum log det J", "area", "theta error", "dE/E0")[:fit]
-    rows: list[list[Run]] = [
+    rows: list[list[Span]] = [
         [(_ring_text(source, neighbours)[:width], TEXT)],
         [(" " * _NAME + "".join(head.rjust(_CELL) for head in heads), FRAME)],
     ]
-    for index in look.indices:
+    for index in shown.indices:
         reading = source.sample.readings[index]
         cells = (
             *(("-", "-") if ring is None else area_text(ring.area_ratios[index])),

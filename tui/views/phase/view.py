@@ -2,7 +2,7 @@
 
 from textual.app import ComposeResult
 
-from tui.drawing.cells import Rows
+from tui.drawing.cells import CellWidget
 from tui.views.phase.facts import fact_rows
 from tui.views.phase.pane import KEYS, PhasePane
 from tui.views.view import View
@@ -20,8 +20,8 @@ class PhaseView(View):
 
     def compose(self) -> ComposeResult:
         """Create the panes."""
-        yield PhasePane(radius=RADIUS).data_bind(View.source, View.sample, View.look)
-        yield Rows(id="facts")
+        yield PhasePane(radius=RADIUS).data_bind(View.source, View.sample, View.shown)
+        yield CellWidget(id="facts")
 
     def on_show(self) -> None:
         """The keys are the portrait's."""
@@ -31,7 +31,7 @@ class PhaseView(View):
         """Where there is little room, all of it is the portrait's."""
         self.query_one("#facts").display = self.size.height >= ROOMY
 
-    def watch_reading(self) -> None:
+    def watch_sample_10hz(self) -> None:
         """Follow the sample with the numbers."""
         self._write_facts()
 
@@ -40,6 +40,6 @@ class PhaseView(View):
         self._write_facts()
 
     def _write_facts(self) -> None:
-        facts, pane = self.query_one("#facts", Rows), self.query_one(PhasePane)
+        facts, pane = self.query_one("#facts", CellWidget), self.query_one(PhasePane)
         if self.source is not None and facts.drawable:
-            facts.show(fact_rows(self.source, self.look, pane.neighbours, pane.ring, facts.size.width))
+            facts.show(fact_rows(self.source, self.shown, pane.neighbours, pane.ring, facts.size.width))

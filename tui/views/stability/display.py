@@ -16,7 +16,7 @@ from engine.stability.grid import Grid
 from engine.stability.outcomes import Cells
 from engine.stability.study import amplitude
 from tui.drawing.palette import Palette, palette
-from tui.playback.shown import Look
+from tui.playback.shown import Shown
 from tui.playback.source import Source, own_h
 from tui.views.stability.picture import MARGIN, Line, differing, legend, panel, side_by_side, title
 from tui.views.stability.words import note, verdict
@@ -40,7 +40,7 @@ class StabilityDisplay(Widget, can_focus=True):
 
     source: var[Source | None] = var(None)
     sample: var[Sample | None] = var(None)
-    look: var[Look] = var(Look())
+    shown: var[Shown] = var(Shown())
 
     def __init__(self, grid: Grid) -> None:
         super().__init__()
@@ -122,14 +122,16 @@ class StabilityDisplay(Widget, can_focus=True):
         columns = self.panel_size()[0]
         panels = [
             [title(index, columns, self._colours, self._note(index)), *self._panels[index][1:]]
-            for index in self.look.indices
+            for index in self.shown.indices
         ]
         said = [*textwrap.wrap(self._verdict(), max(self.size.width - 1, 1)), "", ""][:WORDS]
         self._lines = [*side_by_side(panels, 2), *([Segment(f" {line}")] for line in said), *self._legend()]
         self._paint(wait)
 
     def _paint(self, wait: bool = True) -> None:
-        at_once = SOME if wait and cast("PenduApp", self.app).wire.is_slow else None  # a key waits for what is sent
+        at_once = (
+            SOME if wait and cast("PenduApp", self.app).throughput.is_slow else None
+        )  # a key waits for what is sent
         self._painted[len(self._lines) :] = [[] for _ in self._lines[len(self._painted) :]]
         ends = {y: differing(*lines) for y, lines in enumerate(zip(self._painted, self._lines, strict=True))}
         changed = [(y, end) for y, end in ends.items() if end][:at_once]
@@ -146,7 +148,7 @@ class StabilityDisplay(Widget, can_focus=True):
 
     def _state(self, source: Source) -> object:
         """What the picture depends on besides the map."""
-        return source.scene, own_h(source), self.look, self.app.theme
+        return source.scene, own_h(source), self.shown, self.app.theme
 
     @property
     def _colours(self) -> Palette | None:
@@ -154,7 +156,7 @@ class StabilityDisplay(Widget, can_focus=True):
 
     def panel_size(self) -> tuple[int, int]:
         """Columns of a panel, and rows of its map: two panels in a row, below them words and the legend."""
-        lines = -(-len(self.look.indices) // 2) or 1
+        lines = -(-len(self.shown.indices) // 2) or 1
         return (self.size.width - 2) // 2, max(1, (self.size.height - WORDS - len(self._legend())) // lines - 2)
 
     def _legend(self) -> list[Line]:
@@ -168,7 +170,7 @@ class StabilityDisplay(Widget, can_focus=True):
         return note(METHODS[index], self.grid.theta[theta], self.grid.z[z], self.cells[z, index, theta])
 
     def _verdict(self) -> str:
-        shown = self.look.indices
+        shown = self.shown.indices
         index = self.index if self.index in shown else shown[0] if shown else 0
         if self.source is None or not shown or (aim := self.aim(index)) is None:
             return ""

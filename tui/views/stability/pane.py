@@ -59,7 +59,7 @@ class StabilityPane(StabilityDisplay):
 
     def action_next_method(self) -> None:
         """Speak of the next method that is shown."""
-        shown = self.look.indices
+        shown = self.shown.indices
         self.index = next((index for index in shown if index > self.index), shown[0] if shown else 0)
         self.tell()
 
@@ -95,7 +95,7 @@ class StabilityPane(StabilityDisplay):
         x, y = event.get_content_offset_capture(self)
         across, column = divmod(x, columns + 2)
         down, row = divmod(y, rows + 2)
-        number, shown = 2 * down + across, self.look.indices
+        number, shown = 2 * down + across, self.shown.indices
         if not (across in (0, 1) and MARGIN <= column < columns and 1 <= row <= rows and 0 <= number < len(shown)):
             return None
         self.index = shown[number]

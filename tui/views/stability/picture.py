@@ -87,7 +87,7 @@ def panel(
     if here:
         overlay[_place(grid, here[0], here[1], width, rows)] = HERE
     values = scores(cells[:, index], grid.steps)
-    pixels = worst(values, width, rows if palette is None else 2 * rows).tolist()
+    character_set = worst(values, width, rows if palette is None else 2 * rows).tolist()
     levels = range(-SHADES, 2 * SHADES + 1)
     shades = [] if palette is None else [colour(level / SHADES, index, palette) for level in levels]
 
@@ -95,8 +95,8 @@ def panel(
         """The character, its colour, the colour behind it, and whether they change places."""
         sign = overlay.get((row, column))
         if palette is None:
-            return _WITHOUT_COLOUR[sign] if sign else character(pixels[row][column], grid.steps), "", "", False
-        upper, lower = (shades[round((pixels[2 * row + half][column] + 1) * SHADES)] for half in (0, 1))
+            return _WITHOUT_COLOUR[sign] if sign else character(character_set[row][column], grid.steps), "", "", False
+        upper, lower = (shades[round((character_set[2 * row + half][column] + 1) * SHADES)] for half in (0, 1))
         return sign or "▀", palette.text if sign else upper, lower, sign == HERE
 
     lines = [title(index, columns, palette)]

@@ -31,7 +31,7 @@ class StabilityView(View):
     def compose(self) -> ComposeResult:
         """Create the pane."""
         grid = Grid((np.arange(48) + 0.5) * math.pi / 48, (np.arange(80) + 0.5) * 3 / 80, PASSES[-1])
-        yield StabilityPane(grid).data_bind(View.source, View.look, sample=View.reading)
+        yield StabilityPane(grid).data_bind(View.source, View.shown, sample=View.sample_10hz)
 
     def on_mount(self) -> None:
         """The keys are the map's from the start."""

@@ -17,15 +17,15 @@ from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
 from tui.screens.app import PenduApp
-from tui.screens.base import Stage
-from tui.screens.live import Lab
-from tui.screens.replay import Player
+from tui.screens.base import SourceScreen
+from tui.screens.live import LiveScreen
+from tui.screens.replay import ReplayScreen
 from tui.views.accuracy.chart import MARKS
 from tui.views.accuracy.pane import HERE, AccuracyPane
 
 RUNGS = ladder(5.0, 0.2, 0.01, 4)
 VERLET = 2
-PATIENCE = 120  # s; a program that ended would be waited for in vain
+PATIENCE = 30  # s; a program that ended would be waited for in vain
 
 
 @pytest.fixture(autouse=True)
@@ -46,7 +46,7 @@ async def complete(pilot: Pilot[object], pane: AccuracyPane) -> None:
 
 
 @asynccontextmanager
-async def view_of(stage: Stage, size: tuple[int, int]) -> AsyncIterator[tuple[Pilot[object], AccuracyPane]]:
+async def view_of(stage: SourceScreen, size: tuple[int, int]) -> AsyncIterator[tuple[Pilot[object], AccuracyPane]]:
     app = PenduApp(stage)
     async with app.run_test(size=size) as pilot:
         await pilot.press("f4")
@@ -65,7 +65,7 @@ async def accuracy_view(
     """The view of a paused lab, once it is complete."""
     live = Live(scene)
     live.pause(True)
-    async with view_of(Lab(live), size) as (pilot, pane):
+    async with view_of(LiveScreen(live), size) as (pilot, pane):
         yield pilot, pane, live
 
 
@@ -191,7 +191,7 @@ async def test_a_replay_shows_it_and_keeps_its_arrows():
     path = resolve("drift")
     replay = Replay(Recording.open(path), Marks(path))
     replay.pause(True)
-    async with view_of(Player(replay, lambda live: Lab(live)), (80, 30)) as (pilot, pane):
+    async with view_of(ReplayScreen(replay, lambda live: LiveScreen(live)), (80, 30)) as (pilot, pane):
         assert said(pane).endswith("you are here")
         await pilot.press("right")
         assert replay.playhead.position == pytest.approx(1.0, abs=0.05)

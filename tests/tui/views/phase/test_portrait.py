@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.models.exact_pendulum import Swing
+from engine.models.exact_pendulum import ExactMotion
 from engine.models.pendulum import energy, separatrix_energy
 from engine.scenes import SCENES, Scene
 from tui.drawing.phase_axes import in_pi, omega_ticks, theta_ticks
@@ -84,11 +84,11 @@ def test_the_orbit_through_a_state_is_where_the_exact_swing_goes(theta, omega):
     viewport = Viewport.portrait(80, 30, scene)
     x, y = Portrait.of(viewport, scene.w0).orbit(theta, omega)
     orbit = set(zip(x.tolist(), y.tolist(), strict=True))
-    swing = Swing(scene)
-    assert swing.period is not None
+    exact = ExactMotion(scene)
+    assert exact.period is not None
     passed = set()
     for k in range(2000):
-        state = swing.at(k * swing.period / 2000)
+        state = exact.at(k * exact.period / 2000)
         i, j = math.floor(viewport.x(state.theta)), math.floor(viewport.y(state.omega))
         near = {(i + a, j + b) for a in (-1, 0, 1) for b in (-1, 0, 1)} & orbit
         # the outermost dots have no neighbour to differ from

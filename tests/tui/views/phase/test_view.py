@@ -12,14 +12,14 @@ from engine.phase_space.area import Neighbourhood
 from engine.scenes import SCENES, Scene
 from recordings.recording import Recording
 from tests.tui.sitting import recorded
-from tui.drawing.cells import Rows
+from tui.drawing.cells import CellWidget
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
 from tui.screens.app import PenduApp
 from tui.screens.insight_line import InsightLine
-from tui.screens.live import Lab
-from tui.screens.replay import Player
+from tui.screens.live import LiveScreen
+from tui.screens.replay import ReplayScreen
 from tui.views.lab.time_chart import TimeChart
 from tui.views.phase.pane import PhasePane
 from tui.views.phase.view import RADIUS
@@ -30,7 +30,7 @@ DRIFT = SCENES["drift"]
 class Bench:
     """A lab with a clock that is moved by hand."""
 
-    def __init__(self, pilot: Pilot[None], lab: Lab) -> None:
+    def __init__(self, pilot: Pilot[None], lab: LiveScreen) -> None:
         self.pilot, self.lab = pilot, lab
         self.now = 0.0
 
@@ -59,7 +59,7 @@ class Bench:
 @asynccontextmanager
 async def lab(scene: Scene = DRIFT, size: tuple[int, int] = (120, 40)) -> AsyncIterator[Bench]:
     live = Live(scene, clock=lambda: 0.0)
-    screen = Lab(live, clock=lambda: bench.now)
+    screen = LiveScreen(live, clock=lambda: bench.now)
     app = PenduApp(screen)
     app.on_ready = lambda: None  # no clock but ours
     async with app.run_test(size=size) as pilot:
@@ -113,7 +113,7 @@ async def test_the_view_shows_who_keeps_the_area_around_the_start():
         ring = Neighbourhood(DRIFT, RADIUS)
         ring.advance(bench.live.sample.step, DRIFT.h)
         assert bench.pane.ring.area_ratios == ring.area_ratios
-        lines = bench.lab.query_one("#facts", Rows).text.splitlines()
+        lines = bench.lab.query_one("#facts", CellWidget).text.splitlines()
         assert "0.1 rad around the start" in lines[0]
         assert f"{ring.area_ratios[3]:.9f}" in lines[5]
 
@@ -141,7 +141,7 @@ async def test_no_start_is_too_much_for_it(scene):
         bench.pane.action_zoom(0.01)
         bench.lab.show_now()
         bench.pane.action_move(3, 2)
-        text = bench.pane.text + bench.lab.query_one("#facts", Rows).text
+        text = bench.pane.text + bench.lab.query_one("#facts", CellWidget).text
         assert "libration" in text or "rotation" in text
         assert "nan" not in text
         assert "inf" not in text
@@ -158,7 +158,7 @@ async def test_one_who_looks_late_and_paused_sees_the_ring_catch_up():
                 break
         assert bench.pane.neighbours.step == bench.live.sample.step
         await bench.pilot.pause()
-        text = bench.lab.query_one("#facts", Rows).text
+        text = bench.lab.query_one("#facts", CellWidget).text
         assert "behind" not in text
         assert f"{bench.pane.ring.area_ratios[3]:.9f}" in text
 
@@ -227,7 +227,7 @@ async def test_the_help_tells_the_panes_keys():
 async def test_in_a_replay_the_arrows_still_seek(tmp_path: Path):
     path = recorded(tmp_path / "sitting.mcap", 5.0)
     replay = Replay(Recording.open(path), Marks(path), clock=lambda: 0.0)
-    player = Player(replay, go_live=Lab, clock=lambda: 0.0)
+    player = ReplayScreen(replay, go_live=LiveScreen, clock=lambda: 0.0)
     async with PenduApp(player).run_test(size=(120, 40)) as pilot:
         await pilot.press("f3")
         await pilot.pause()

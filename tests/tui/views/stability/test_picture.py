@@ -113,12 +113,12 @@ def test_what_is_not_computed_yet_is_blank():
 @given(
     st.tuples(st.integers(1, 30), st.integers(1, 20)), st.tuples(st.integers(1, 40), st.integers(1, 30)), st.randoms()
 )
-def test_no_failure_vanishes_however_small_the_picture(shape, pixels, random):
+def test_no_failure_vanishes_however_small_the_picture(shape, character_set, random):
     values = np.array([[random.random() for _ in range(shape[1])] for _ in range(shape[0])])
-    drawn = worst(values, *pixels)
-    assert drawn.shape == (pixels[1], pixels[0])
+    drawn = worst(values, *character_set)
+    assert drawn.shape == (character_set[1], character_set[0])
     assert drawn.min() == values.min()
-    if pixels[0] >= shape[0] and pixels[1] >= shape[1]:
+    if character_set[0] >= shape[0] and character_set[1] >= shape[1]:
         assert set(drawn.flat) <= set(values.flat)
 
 

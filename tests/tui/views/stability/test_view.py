@@ -15,9 +15,9 @@ from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
 from tui.screens.app import PenduApp
-from tui.screens.base import Stage
-from tui.screens.live import Lab
-from tui.screens.replay import Player
+from tui.screens.base import SourceScreen
+from tui.screens.live import LiveScreen
+from tui.screens.replay import ReplayScreen
 from tui.screens.status_line import StatusLine
 from tui.views.stability.pane import StabilityPane
 
@@ -32,12 +32,12 @@ async def stability_view(
     monkeypatch.setattr("tui.views.stability.view.PASSES", (20, 60))
     live = Live(scene)
     live.pause(True)
-    async with view_of(Lab(live), size) as (pilot, pane):
+    async with view_of(LiveScreen(live), size) as (pilot, pane):
         yield pilot, pane, live
 
 
 @asynccontextmanager
-async def view_of(stage: Stage, size: tuple[int, int]) -> AsyncIterator[tuple[Pilot[object], StabilityPane]]:
+async def view_of(stage: SourceScreen, size: tuple[int, int]) -> AsyncIterator[tuple[Pilot[object], StabilityPane]]:
     app = PenduApp(stage)
     async with app.run_test(size=size) as pilot:
         await pilot.press("f5")
@@ -185,7 +185,7 @@ async def test_a_replay_says_what_becomes_of_its_swing_and_keeps_its_arrows(monk
     path = resolve("drift")
     replay = Replay(Recording.open(path), Marks(path))
     replay.pause(True)
-    async with view_of(Player(replay, lambda live: Lab(live)), (80, 30)) as (pilot, pane):
+    async with view_of(ReplayScreen(replay, lambda live: LiveScreen(live)), (80, 30)) as (pilot, pane):
         assert "Velocity Verlet at h 0.0539 s, 58.1 deg: holds" in pane.text
         await pilot.press("right")
         assert replay.playhead.position == pytest.approx(1.0, abs=0.05)
