@@ -17,7 +17,7 @@ COMMANDS = {
         "accuracy", "--time", "2", "--h-values", "0.1:0.01:2", "--cost", "seconds", "--budget", "1e3", "--json",
     ],
     "stability": ["stability", "--steps", "30", "--z-values", "0.5,2.5", "--theta-values", "1,2", "--json"],
-    "stability --map": ["stability", "--steps", "30", "--z-values", "0.5,2.5", "--theta-values", "1", "--map", "--json"],
+    "stability --map": ["stability", "--steps", "9", "--z-values", "0.5,2.5", "--theta-values", "1", "--map", "--json"],
     "run": ["run", "--time", "2", "--json"],
     "run of a method that diverges": ["run", "--h", "2", "--length", "0.1", "--time", "4000", "--json"],
     "verify": ["verify", "whole.mcap", "cut.mcap", "--json"],

@@ -1,4 +1,4 @@
-"""The command line: `dispatch` finds the command, `options`, `output`, `errors`, `files` and `fail_if` are what commands share."""
+"""The command line: `dispatch` finds the command; `options`, `output`, `errors`, `files` and `fail_if` serve all of them."""
 
 from tui.cli.dispatch import main
 

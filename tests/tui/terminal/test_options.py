@@ -71,7 +71,9 @@ def test_colours_are_counted_by_what_the_terminal_is_called(environment, number)
     assert colours(environment) == number
 
 
-@pytest.mark.parametrize(("encoding", "character_set"), [("UTF-8", "braille"), ("utf8", "braille"), ("iso8859-1", "ascii")])
+@pytest.mark.parametrize(
+    ("encoding", "character_set"), [("UTF-8", "braille"), ("utf8", "braille"), ("iso8859-1", "ascii")]
+)
 def test_without_utf_8_all_is_ascii(encoding, character_set):
     assert chosen(encoding=encoding).character_set == character_set
 
