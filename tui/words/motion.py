@@ -3,7 +3,7 @@
 import math
 
 from engine.models.exact_pendulum import ExactMotion
-from tui.drawing.phase_axes import in_pi
+from tui.drawing.axes import in_pi
 from tui.views.phase.portrait import margin
 from tui.words.numbers import scientific
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tui.drawing.axes import nice, omega_ticks, theta_ticks
 from tui.drawing.palette import FRAME, TEXT
-from tui.drawing.phase_axes import nice, omega_ticks, theta_ticks
 from tui.views.phase.viewport import Viewport
 
 Dots = tuple[NDArray[np.intp], NDArray[np.intp]]  # x, y

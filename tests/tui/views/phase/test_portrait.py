@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from engine.models.exact_pendulum import ExactMotion
 from engine.models.pendulum import energy, separatrix_energy
 from engine.scenes import SCENES, Scene
-from tui.drawing.phase_axes import in_pi, omega_ticks, theta_ticks
+from tui.drawing.axes import in_pi, omega_ticks, theta_ticks
 from tui.views.phase.portrait import Portrait, margin
 from tui.views.phase.viewport import Viewport
 
