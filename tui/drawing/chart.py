@@ -7,10 +7,9 @@ nothing but numbers on the canvas.  It has one figure for the whole process, hen
 import re
 import threading
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from engine.methods import METHODS
 from tui.drawing.axes import Axis, Floats, held, linear_axis, log_axis, log_x_axis, per_column, time_axis, time_span
@@ -33,19 +32,9 @@ class Series:
 
     owner: int
     mark: str  # a letter; a few for a reference
-    x: ArrayLike  # (n,)
-    y: ArrayLike  # (n,)
+    x: Floats | Sequence[float]  # (n,)
+    y: Floats | Sequence[float]  # (n,); in what is plotted, x and y are in characters from the lower left corner
     dotted: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class _Curve:
-    """What plotext gets: columns and rows of the plot, counted from its lower left corner."""
-
-    owner: int
-    columns: Floats
-    rows: Floats
-    joined: bool = True
 
 
 def time_chart(
@@ -117,15 +106,15 @@ def loglog_chart(series: Sequence[Series], width: int, height: int, *, x_label: 
             x, y = across, np.interp(across, x, y, left=np.nan, right=np.nan)
             inside = (y >= y_axis.low) & (y <= y_axis.high)
             x, y = x[inside], y[inside]
-        curves.append(_Curve(one.owner, columns * x_axis.share(x), rows * y_axis.share(y), joined=not one.dotted))
+        curves.append(replace(one, x=columns * x_axis.share(x), y=rows * y_axis.share(y)))
     blank = Canvas(width, 1).picture()
     picture = Picture.stacked(blank, _plot(curves, x_axis, y_axis, width, height - 2), blank)
     picture.write(0, 0, y_label, TEXT)
     picture.write(height - 1, 0, x_label.rjust(width), TEXT)
-    for one, curve in zip(series, curves, strict=True):
-        for column, row in list(zip(curve.columns, curve.rows, strict=True))[-1 if one.dotted else 0 :]:
-            at = min(width - columns - _ROOM + int(column), width - len(one.mark))
-            picture.write(1 + _row(row, rows), at, one.mark, one.owner)
+    for curve in curves:
+        for column, row in list(zip(curve.x, curve.y, strict=True))[-1 if curve.dotted else 0 :]:
+            at = min(width - columns - _ROOM + int(column), width - len(curve.mark))
+            picture.write(1 + _row(row, rows), at, curve.mark, curve.owner)
     return picture
 
 
@@ -136,17 +125,17 @@ def _logs(series: Series) -> Floats:
     return np.log10(points[np.argsort(points[:, 0], kind="stable")])
 
 
-def _outline(owner: int, low: Floats, high: Floats) -> _Curve:
+def _outline(index: int, low: Floats, high: Floats) -> Series:
     """Through the lows and highs of columns, from each to the nearer end of the next."""
     known = np.flatnonzero(~np.isnan(low))
     low, high = low[known], high[known]
     falling = np.diff(low + high, prepend=0.0) < 0
     heights = np.stack([np.where(falling, high, low), np.where(falling, low, high)], axis=1).ravel()
     distinct = np.stack([np.full(len(low), True), low != high], axis=1).ravel()
-    return _Curve(owner, np.repeat(known + 0.5, 2)[distinct], heights[distinct])
+    return Series(index, METHODS[index].letter, np.repeat(known + 0.5, 2)[distinct], heights[distinct])
 
 
-def _plot(curves: Sequence[_Curve], x_axis: Axis, y_axis: Axis, width: int, height: int) -> Picture:
+def _plot(curves: Sequence[Series], x_axis: Axis, y_axis: Axis, width: int, height: int) -> Picture:
     """Let plotext draw curves, with the ends of the x axis at the first column and before the room for letters."""
     import plotext  # 0.1 s, so only after the first paint
 
@@ -168,8 +157,8 @@ def _plot(curves: Sequence[_Curve], x_axis: Axis, y_axis: Axis, width: int, heig
             ruler.pixel(_FIRST_COLOUR + TEXT)
         for curve in curves:
             marker = plotext.marker("braille", pixel=_FIRST_COLOUR + curve.owner)
-            signal = figure.signal(curve.columns.tolist(), curve.rows.tolist(), marker=marker)
-            figure.draw(signal.lines(curve.joined))
+            signal = figure.signal(np.asarray(curve.x).tolist(), np.asarray(curve.y).tolist(), marker=marker)
+            figure.draw(signal.lines(not curve.dotted))
         drawn = figure.build().string()
     return _parsed(drawn, width, height)
 
@@ -196,18 +185,18 @@ def _parsed(drawn: str, width: int, height: int) -> Picture:
     return Picture(characters, owners)
 
 
-def _write_letters(picture: Picture, curves: Sequence[_Curve], rows: int, left: int) -> None:
+def _write_letters(picture: Picture, curves: Sequence[Series], rows: int, left: int) -> None:
     """Write each method's letter to the right of its line's end, in the nearest free cell."""
     taken = set()
     for curve in curves:
-        if not len(curve.rows):
+        if not len(curve.x):
             continue
-        column, row = left + int(curve.columns[-1]) + 1, _row(curve.rows[-1], rows)
+        column, row = left + int(curve.x[-1]) + 1, _row(curve.y[-1], rows)
         places = [(row + down, column + right) for down in (0, 1, -1) for right in range(_ROOM)]
         place = next((place for place in places if 0 <= place[0] < rows and place not in taken), None)
         if place:
             taken.add(place)
-            picture.write(*place, METHODS[curve.owner].letter, curve.owner)
+            picture.write(*place, curve.mark, curve.owner)
 
 
 def _row(height: float, rows: int) -> int:
