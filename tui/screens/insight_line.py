@@ -36,7 +36,7 @@ class InsightLine(CellWidget):
             return
         recording_status = self.source.recording_status
         if recording_status is not None and recording_status.failed:
-            text, owner = f"Nothing is being recorded: {recording_status.failed}", WARN
+            text, owner = f"Not recording: {recording_status.failed}", WARN
         else:
             text, owner = self._hint(self.source) or insight(self.source), TEXT
         self.show([[(f" {line}", owner)] for line in fitted(text, self.room.width - 2, self.room.height)])
