@@ -12,11 +12,11 @@ from engine.scenes import SCENES
 from recordings.library import GOLDEN, listing
 from recordings.live_recorder import LiveRecorder
 from tests.tui.stage import Theatre, lab, on_stage
-from tui.commands.replay import player
 from tui.drawing.palette import PALETTES
 from tui.playback.live import Live
 from tui.screens.app import PenduApp
 from tui.screens.extras import EXTRAS
+from tui.screens.launch import open_replay, replay_screen
 from tui.screens.live import LiveScreen
 from tui.screens.palette_entries import menu
 from tui.screens.replay import ReplayScreen
@@ -102,7 +102,7 @@ async def test_a_recording_is_replayed_and_the_sitting_before_it_is_finished(tmp
     live = Live(SCENES["spin"], clock=lambda: 0.0)
     live.record(LiveRecorder(tmp_path / "now.mcap"))
     async with on_stage(lambda clock: LiveScreen(live, clock), (100, 30)) as theatre:
-        theatre.app.opened = lambda path: player(path, no_record=True)
+        theatre.app.opened = lambda path: replay_screen(open_replay(path), no_record=True)
         offered = [command.title for command in theatre.app.get_system_commands(theatre.stage)]
         assert {"replay earlier", "replay drift", "replay spin"} <= set(offered)
         await theatre.run(1)
@@ -119,7 +119,7 @@ async def test_a_file_that_is_no_recording_changes_nothing(tmp_path, monkeypatch
     monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
     (tmp_path / "broken.mcap").write_bytes(b"nothing")
     async with lab(size=(100, 30)) as theatre:
-        theatre.app.opened = lambda path: player(path, no_record=True)
+        theatre.app.opened = lambda path: replay_screen(open_replay(path), no_record=True)
         await chosen(theatre, "replay broken")
         assert theatre.source.kind == "LIVE"
         assert "broken.mcap" in [note.message for note in theatre.app._notifications][-1]
