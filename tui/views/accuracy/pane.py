@@ -7,18 +7,16 @@ from textwrap import wrap
 from typing import ClassVar
 
 from textual.binding import BindingType
-from textual.reactive import var
 
 from engine.accuracy.study import REASONS, ErrorKind, Point
 from engine.methods import METHODS
 from engine.run.lockstep import Sample
-from tui.drawing.cells import CellWidget
 from tui.drawing.palette import TEXT
-from tui.playback.shown import Shown
 from tui.playback.source import EQUAL_PARTS, Source
 from tui.views.accuracy.chart import POWERS, accuracy_chart
 from tui.views.keys import Key, bindings
 from tui.views.messages import StepSizeChosen
+from tui.views.view import Pane
 
 WORDS = 2  # lines
 MOST_STEPS = 2_000_000  # of a run for the mark at the present h: some seconds
@@ -38,7 +36,7 @@ KEYS = (
 )
 
 
-class AccuracyPane(CellWidget, can_focus=True):
+class AccuracyPane(Pane, can_focus=True):
     """Draws the points that there are, "you are here" for each method, and one of them in words."""
 
     DEFAULT_CSS = """
@@ -47,10 +45,6 @@ class AccuracyPane(CellWidget, can_focus=True):
     AccuracyPane:focus { border: round $primary; }
     """
     BINDINGS: ClassVar[list[BindingType]] = bindings(*KEYS)
-
-    source: var[Source | None] = var(None)
-    sample: var[Sample | None] = var(None)
-    shown: var[Shown] = var(Shown())
 
     def __init__(self) -> None:
         super().__init__()
@@ -100,14 +94,9 @@ class AccuracyPane(CellWidget, can_focus=True):
     def _state(self) -> object:
         return frozenset(self.points), self.here, self.index, self.cursor, self.shown, self.room
 
-    def watch_sample(self) -> None:
-        """Draw what is new."""
-        if self._drawn != self._state:
-            self.draw()
-
-    def draw(self) -> None:
-        """Build the chart in a thread, unless one is being built; the next sample asks again."""
-        if self.drawable and not self._building:
+    def paint(self, source: Source, sample: Sample) -> None:
+        """Build a chart of what is new in a thread, unless one is being built; the next sample asks again."""
+        if self._drawn != self._state and not self._building:
             self._building = True
             self.run_worker(self._build(), group="chart")
 
@@ -132,7 +121,7 @@ class AccuracyPane(CellWidget, can_focus=True):
         point = self.aim
         if point is None:
             return "" if self.missing else "you are not on this chart: h is too large or too small"
-        place = "you are here" if self.cursor is None else "enter uses this h" if self._is_live else ""
+        place = "you are here" if self.cursor is None else "enter uses this h" if self.is_live else ""
         flaw = point.flaw(self.kind)
         return (
             f"{point.method.label} at h {point.h:.4g} s: {self.kind} error {point.error(self.kind):.1e}"
@@ -142,12 +131,8 @@ class AccuracyPane(CellWidget, can_focus=True):
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """A recording's h cannot be chosen; its arrows and enter are not the pane's."""
         if action in ("choose", "cancel"):
-            return self._is_live and self.cursor is not None
-        return self._is_live or action != "move"
-
-    @property
-    def _is_live(self) -> bool:
-        return self.source is not None and self.source.kind == "LIVE"
+            return self.is_live and self.cursor is not None
+        return self.is_live or action != "move"
 
     def action_move(self, right: int) -> None:
         """Move the cursor along the method's points, to the right towards the dearer ones."""

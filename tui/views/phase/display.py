@@ -9,25 +9,21 @@ from engine.phase_space.area import Neighbourhood
 from engine.phase_space.neighbours import Neighbours
 from engine.run.lockstep import Sample
 from tui.drawing.canvas import Canvas, Picture
-from tui.drawing.cells import CellWidget
 from tui.drawing.palette import EXACT, FRAME, TEXT
-from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.views.phase.picture import Point, phase_picture
 from tui.views.phase.portrait import Portrait
 from tui.views.phase.viewport import Viewport
+from tui.views.view import Pane
 from tui.words.motion import motion_text, place_text
 
 TRAIL = 300  # samples, ten seconds at 30 frames a second
 RING_STEPS = 100  # a frame; 52 µs each, so a ring that has to catch up costs 5 ms of a frame at most
 
 
-class PhaseDisplay(CellWidget, can_focus=True):
+class PhaseDisplay(Pane, can_focus=True):
     """Draws; who derives from it sets the crosshair, the pointer and the viewport."""
 
-    source: var[Source | None] = var(None)
-    sample: var[Sample | None] = var(None)
-    shown: var[Shown] = var(Shown())
     wrap: var[bool] = var(True)
     radius: var[float | None] = var(None)
     """Of the ring of neighbours [rad]; None: no ring."""
@@ -56,16 +52,8 @@ class PhaseDisplay(CellWidget, can_focus=True):
 
     def watch_source(self) -> None:
         """Say what can be done here."""
-        live = self.source is not None and self.source.kind == "LIVE"
-        self.border_title = f"Phase space: theta, omega ({'click: start, ' if live else ''}wheel: zoom)"
-
-    def watch_sample(self) -> None:
-        """Follow the sample."""
-        self.draw()
-
-    def watch_shown(self) -> None:
-        """Follow the settings."""
-        self.draw()
+        self.border_title = f"Phase space: theta, omega ({'click: start, ' if self.is_live else ''}wheel: zoom)"
+        super().watch_source()
 
     def watch_wrap(self) -> None:
         """Begin again with the whole portrait."""
@@ -105,11 +93,7 @@ class PhaseDisplay(CellWidget, can_focus=True):
             return self.crosshair
         return None if self.pointer is None else self.viewport.at_cell(*self.pointer)
 
-    def draw(self) -> None:
-        """Draw everything."""
-        source, sample = self.source, self.sample
-        if source is None or sample is None or not self.drawable:
-            return
+    def paint(self, source: Source, sample: Sample) -> None:
         viewport, w0 = self.viewport, source.scene.w0
         if self._portrait is None or (self._portrait.viewport, self._portrait.w0) != (viewport, w0):
             self._portrait = Portrait.of(viewport, w0)
