@@ -75,7 +75,7 @@ def plain_lab(scene: Scene, options: argparse.Namespace) -> int:
 
 def say(source: "Source") -> int:
     """Tell in sentences what happens, until Ctrl+C or a signal ends it, as it should be ended; so that is fine."""
-    from tui.cli.interrupt import stop_requests
+    from tui.cli.files import stop_requests
     from tui.words.plain_text import plain
 
     try:
