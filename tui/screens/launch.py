@@ -108,7 +108,7 @@ def show(screen: "SourceScreen", options: argparse.Namespace) -> int:
 
 def print_sentences(source: "Source") -> int:
     """Print what happens as sentences until a signal such as Ctrl+C ends it, which is how it should end."""
-    from tui.cli.interrupt import stop_requests
+    from tui.cli.files import stop_requests
     from tui.words.plain_text import plain
 
     try:
