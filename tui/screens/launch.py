@@ -98,10 +98,10 @@ def show(screen: "SourceScreen", options: argparse.Namespace) -> int:
     terminal = terminal_options_of(options, os.environ, sys.__stderr__.encoding)
     app = PenduApp(screen, lambda path: replay_screen(open_replay(path), options.no_record), terminal)
     result = app.run(mouse=terminal.mouse)
-    app.stage.source.close()
+    app.source_screen.source.close()
     if isinstance(result, OSError):
         raise result
-    for each in app.stages:
+    for each in app.source_screens:
         say_goodbye(each.source)
     return app.return_code or Exit.FINE if result is None else result
 

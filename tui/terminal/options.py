@@ -13,6 +13,8 @@ CharacterSet = Literal["braille", "half", "ascii"]
 
 CHARACTER_SETS: tuple[CharacterSet, ...] = get_args(CharacterSet)
 FPS, CALM_FPS, MOST_FPS = 30, 10, 60
+SMALLEST = 60, 16
+"""Columns and rows of the smallest terminal on which the lab fits."""
 
 
 @dataclass(frozen=True, slots=True)

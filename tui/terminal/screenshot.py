@@ -20,7 +20,7 @@ def text_of(svg: str) -> str:
     return "\n".join(lines.get(line, "").rstrip() for line in range(max(lines, default=-1) + 1))
 
 
-def save_picture(svg: str, folder: Path, now: time.struct_time | None = None) -> tuple[Path, Path]:
+def save_screenshot(svg: str, folder: Path, now: time.struct_time | None = None) -> tuple[Path, Path]:
     """Save a picture and its text under the date and time; returns where.  Raises OSError."""
     folder.mkdir(parents=True, exist_ok=True)
     picture = free_path(folder / (time.strftime("%Y-%m-%dT%H-%M-%S", now or time.localtime()) + ".svg"))
