@@ -8,17 +8,17 @@ from typing import IO, Any
 
 from textual.drivers.linux_driver import LinuxDriver
 
-from tui.terminal.sgr import lean
+from tui.terminal.sgr import without_repeated_colours
 from tui.terminal.throughput import Throughput
 
 
 def _size(text: str) -> int:
-    """Bytes; the name of a file may hold some that are no text."""
+    """Bytes; a file name may hold some that are not text."""
     return len(text.encode(errors="backslashreplace"))
 
 
 class _Metered:
-    """A file that tells how long writing took."""
+    """A file that reports how long each write took."""
 
     def __init__(self, file: IO[str], throughput: Throughput) -> None:
         self._file, self._throughput = file, throughput
@@ -64,7 +64,7 @@ class LabDriver(LinuxDriver):
         """Send this.  Leaving out colours takes a twentieth of a core, so a line that carries all gets all."""
         if self._writer_thread is None or not self._writer_thread.is_alive():
             return  # the terminal is not ours now; all is painted when it is again
-        sent = lean(data) if self._throughput.is_slow else data
+        sent = without_repeated_colours(data) if self._throughput.is_slow else data
         self._throughput.send(_size(sent))
         super().write(sent)
 
