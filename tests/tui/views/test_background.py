@@ -1,6 +1,7 @@
 """Computing in another process, which neither outlives its reader nor runs what lies in the current folder."""
 
 import asyncio
+import gc
 import os
 import signal
 import subprocess
@@ -64,7 +65,7 @@ def test_a_first_map_is_complete_before_the_final_one_begins():
 
 
 @pytest.mark.parametrize("function", [forever, busy])
-async def test_a_task_that_is_cancelled_leaves_no_process(function):
+async def test_a_task_that_is_cancelled_leaves_no_process_and_no_complaint(function, caplog):
     processes = []
 
     async def read() -> None:
@@ -79,6 +80,9 @@ async def test_a_task_that_is_cancelled_leaves_no_process(function):
     with pytest.raises(asyncio.CancelledError):
         await task
     assert not is_alive(processes[0])
+    await asyncio.sleep(0.05)
+    gc.collect()
+    assert not caplog.records
 
 
 async def test_the_process_is_deaf_to_ctrl_c():
