@@ -13,7 +13,7 @@ from tui.views import VIEWS
 from tui.words.cards import method_card
 from tui.words.command_line import command
 from tui.words.describe import description
-from tui.words.events import diary
+from tui.words.events import event_lines
 
 if TYPE_CHECKING:
     from tui.screens.app import PenduApp
@@ -29,7 +29,7 @@ def show_description(app: "PenduApp") -> None:
 
 def show_diary(app: "PenduApp") -> None:
     """List all events."""
-    app.push_screen(TextScreen("Events", "\n".join(map(str, diary(app.stage.source)))))
+    app.push_screen(TextScreen("Events", "\n".join(map(str, event_lines(app.stage.source)))))
 
 
 def show_card(app: "PenduApp", index: int) -> None:

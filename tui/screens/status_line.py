@@ -11,7 +11,7 @@ from recordings.errors import printable
 from tui.drawing.cells import CellWidget, Row
 from tui.drawing.palette import FRAME, TEXT, WARN
 from tui.playback.source import Source, own_h
-from tui.words.limits import limit_warning
+from tui.words.findings import limit_warning
 from tui.words.numbers import file_size, percent, seconds
 
 BADGE = -10

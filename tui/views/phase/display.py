@@ -11,11 +11,12 @@ from engine.run.lockstep import Sample
 from tui.drawing.canvas import Canvas, Picture
 from tui.drawing.palette import EXACT, FRAME, TEXT
 from tui.playback.source import Source
+from tui.views.phase.facts import place_text
 from tui.views.phase.picture import Point, phase_picture
 from tui.views.phase.portrait import Portrait
 from tui.views.phase.viewport import Viewport
 from tui.views.view import Pane
-from tui.words.motion import motion_text, place_text
+from tui.words.motion import motion_text
 
 TRAIL = 300  # samples, ten seconds at 30 frames a second
 RING_STEPS = 100  # a frame; 52 µs each, so a ring that has to catch up costs 5 ms of a frame at most
