@@ -95,6 +95,22 @@ HINTS = ("space", "+", "right", "i", "p", "]", "?", "q", "v", ">", "f", "home", 
 """The keys on the key line, those that matter most first: at the end they are cut off."""
 
 
+def arrows(group: str, does: str, big_step: int) -> tuple[Key, ...]:
+    """The keys for `move(right, up)`, with shift in big steps; of four arrows, the help shows the first."""
+    directions = {"left": (-1, 0), "right": (1, 0), "up": (0, 1), "down": (0, -1)}
+    return tuple(
+        Key(
+            f"{shift}{name}",
+            f"{shift}arrows" if name == "left" else "",
+            f"{does}{how}",
+            f"move({step * right}, {step * up})",
+            group,
+        )
+        for shift, step, how in (("", 1, ""), ("shift+", big_step, " in big steps"))
+        for name, (right, up) in directions.items()
+    )
+
+
 def bindings(*keys: Key) -> list[BindingType]:
     """The keys as Textual takes them."""
     return [Binding(key.names, key.action, key.does, show=False) for key in keys if key.names]
