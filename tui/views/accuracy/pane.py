@@ -39,11 +39,6 @@ KEYS = (
 class AccuracyPane(Chooser[int]):
     """Draws the points that there are, "you are here" for each method, and one of them in words."""
 
-    DEFAULT_CSS = """
-    AccuracyPane { border: round $panel-lighten-2; width: 1fr; height: 1fr; }
-    AccuracyPane { border-title-color: $foreground; border-subtitle-color: $foreground; }
-    AccuracyPane:focus { border: round $primary; }
-    """
     BINDINGS: ClassVar[list[BindingType]] = bindings(*KEYS)
 
     def __init__(self) -> None:
