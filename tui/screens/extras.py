@@ -18,7 +18,7 @@ from tui.views.keys import Key
 from tui.words.cards import method_card
 from tui.words.command_line import command
 from tui.words.describe import description
-from tui.words.events import diary
+from tui.words.events import event_lines
 
 
 def show_description(screen: SourceScreen) -> None:
@@ -30,7 +30,7 @@ def show_description(screen: SourceScreen) -> None:
 
 def show_events(screen: SourceScreen) -> None:
     """List all events."""
-    screen.app.push_screen(TextScreen("Events", "\n".join(map(str, diary(screen.source)))))
+    screen.app.push_screen(TextScreen("Events", "\n".join(map(str, event_lines(screen.source)))))
 
 
 def show_card(screen: SourceScreen, key: str) -> None:

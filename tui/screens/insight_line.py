@@ -6,8 +6,7 @@ from engine.run.lockstep import Sample
 from tui.drawing.palette import TEXT, WARN
 from tui.playback.source import Source
 from tui.views.view import Pane
-from tui.words.hints import hint
-from tui.words.insight import insight
+from tui.words.insight import hint, insight
 
 
 def fitted(text: str, width: int, height: int) -> list[str]:

@@ -11,7 +11,7 @@ from tui.drawing.cells import Row
 from tui.drawing.palette import FRAME, TEXT, WARN
 from tui.playback.source import Source, own_h
 from tui.views.view import Pane
-from tui.words.limits import limit_warning
+from tui.words.findings import limit_warning
 from tui.words.numbers import file_size, percent, seconds
 
 BADGE = -10

@@ -3,9 +3,7 @@
 import math
 from collections import deque
 
-SYSTEM_BUFFER = (
-    12_000  # bytes that the system holds for a terminal before a write blocks; how full it is cannot be queried
-)
+SYSTEM_BUFFER = 12_000  # bytes held for a terminal before a write blocks; how full it is cannot be queried
 WAIT = 0.03  # s that a write takes on a full line; a shorter one may be this computer's doing
 LEAST = 4_000  # bytes/s; a line that seems slower has stalled
 ROOM = 16_000  # bytes that must drain before a blocked write returns

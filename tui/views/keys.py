@@ -21,8 +21,17 @@ def bindings(*keys: Key) -> list[BindingType]:
     return [Binding(key.names, key.action, key.does, show=False) for key in keys if key.names]
 
 
-def arrows(does: str, group: str, *actions: str, shift: bool = False) -> tuple[Key, ...]:
-    """The arrow keys with their actions for left, right, up and down, which are one line of the help."""
-    names = [f"shift+{name}" if shift else name for name in ("left", "right", "up", "down")]
-    first, *rest = (Key(name, "", "", action, group) for name, action in zip(names, actions, strict=True))
-    return first._replace(shown="shift+arrows" if shift else "arrows", does=does), *rest
+def arrows(group: str, does: str, big_step: int) -> tuple[Key, ...]:
+    """The keys for `move(right, up)`, with shift in big steps; of four arrows, the help shows the first."""
+    directions = {"left": (-1, 0), "right": (1, 0), "up": (0, 1), "down": (0, -1)}
+    return tuple(
+        Key(
+            f"{shift}{name}",
+            f"{shift}arrows" if name == "left" else "",
+            f"{does}{how}",
+            f"move({step * right}, {step * up})",
+            group,
+        )
+        for shift, step, how in (("", 1, ""), ("shift+", big_step, " in big steps"))
+        for name, (right, up) in directions.items()
+    )

@@ -16,7 +16,7 @@ from tui.playback.source import EQUAL_PARTS, Source
 from tui.views.accuracy.chart import POWERS, accuracy_chart
 from tui.views.keys import Key, bindings
 from tui.views.messages import StepSizeChosen
-from tui.views.view import Pane
+from tui.views.view import Chooser
 
 WORDS = 2  # lines
 MOST_STEPS = 2_000_000  # of a run for the mark at the present h: some seconds
@@ -36,21 +36,14 @@ KEYS = (
 )
 
 
-class AccuracyPane(Pane, can_focus=True):
+class AccuracyPane(Chooser[int]):
     """Draws the points that there are, "you are here" for each method, and one of them in words."""
 
-    DEFAULT_CSS = """
-    AccuracyPane { border: round $panel-lighten-2; width: 1fr; height: 1fr; }
-    AccuracyPane { border-title-color: $foreground; border-subtitle-color: $foreground; }
-    AccuracyPane:focus { border: round $primary; }
-    """
     BINDINGS: ClassVar[list[BindingType]] = bindings(*KEYS)
 
     def __init__(self) -> None:
         super().__init__()
         self.border_subtitle = LEGEND
-        self.index = 2  # the method that is spoken of
-        self.cursor: int | None = None  # a rung
         self.time, self.rungs = 0.0, list[int]()
         self.here: tuple[int, ...] = ()  # steps of each method at the present h
         self.points: dict[tuple[int, int], Point] = {}  # by method and steps
@@ -128,12 +121,6 @@ class AccuracyPane(Pane, can_focus=True):
             f"{f' ({REASONS[flaw]})' if flaw else ''} for {point.force_evaluations} force evaluations; {place}"
         )
 
-    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """A recording's h cannot be chosen; its arrows and enter are not the pane's."""
-        if action in ("choose", "cancel"):
-            return self.is_live and self.cursor is not None
-        return self.is_live or action != "move"
-
     def action_move(self, right: int) -> None:
         """Move the cursor along the method's points, to the right towards the dearer ones."""
         if self.rungs:
@@ -145,21 +132,7 @@ class AccuracyPane(Pane, can_focus=True):
             self.cursor = min(max(at, 0), len(self.rungs) - 1)
             self.draw()
 
-    def action_method(self, down: int) -> None:
-        """Go to the next method that is shown."""
-        if shown := self.shown.indices:
-            at = shown.index(self.index) if self.index in shown else -1
-            self.index = shown[(at + down) % len(shown)]
-            self.draw()
-
-    def action_choose(self) -> None:
-        """Use the h of the cursor's point."""
-        if self.source is not None and (point := self.aim) is not None:
-            self.cursor = None
-            part = EQUAL_PARTS[self.index] if self.source.equal_cost else 1
-            self.post_message(StepSizeChosen(point.h * part))
-
-    def action_cancel(self) -> None:
-        """Leave the cursor."""
-        self.cursor = None
-        self.draw()
+    def choose(self, rung: int) -> None:
+        assert self.source is not None
+        part = EQUAL_PARTS[self.index] if self.source.equal_cost else 1
+        self.post_message(StepSizeChosen(self.time / self.rungs[rung] * part))

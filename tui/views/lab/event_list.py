@@ -1,18 +1,24 @@
 """EventList: what was done and what happened, the newest last."""
 
 from engine.run.lockstep import Sample
+from tui.drawing.palette import FRAME, TEXT
 from tui.playback.source import Source
 from tui.views.view import Pane
-from tui.words.events import diary
+from tui.words.events import EventLine, event_lines
+
+
+def owner_of(line: EventLine) -> int:
+    """A milestone has its method's colour."""
+    return line.method if line.method is not None else TEXT if line.kind == "mark" else FRAME
 
 
 class EventList(Pane):
-    """As many of the last lines as there is room for."""
+    """As many of the last events as there is room for."""
 
     def __init__(self) -> None:
         super().__init__()
         self.border_title = "Events (E: all)"
 
     def paint(self, source: Source, sample: Sample) -> None:
-        lines = diary(source)[-self.room.height :]
-        self.show([[(str(line), line.owner)] for line in lines])
+        lines = event_lines(source)[-self.room.height :]
+        self.show([[(str(line), owner_of(line))] for line in lines])

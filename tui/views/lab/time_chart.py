@@ -11,7 +11,7 @@ from tui.playback.history import Quantity
 from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.views.view import Pane
-from tui.words.findings import about
+from tui.words.numbers import about
 
 NAMES: dict[Quantity, tuple[str, str]] = {
     "energy_error": ("energy error dE/E0", "|dE/E0|"),
