@@ -2,12 +2,11 @@
 
 import argparse
 import sys
-from contextlib import ExitStack
 from pathlib import Path
 
 from recordings.errors import printable
 from tui.cli.errors import Exit
-from tui.cli.files import whole_file
+from tui.cli.files import text_file
 from tui.cli.output import progress
 
 EXAMPLES = """\
@@ -32,11 +31,11 @@ def run(options: argparse.Namespace) -> int:
     from recordings.recording import Recording
 
     path = library.resolve(options.file)
-    with Recording.open(path) as recording, progress(printable(path.name)) as show, ExitStack() as stack:
-        out = sys.stdout
-        if options.output:
-            part = stack.enter_context(whole_file(options.output, options.force))
-            out = stack.enter_context(part.open("w", encoding="utf-8", newline=""))
+    with (
+        Recording.open(path) as recording,
+        progress(printable(path.name)) as show,
+        text_file(options.output, options.force) as out,
+    ):
         write_csv(recording, out, show)
         if recording.reason:
             print(f"pendu-tui: {printable(str(path))}: {recording.reason}; the rest is exported.", file=sys.stderr)

@@ -119,7 +119,7 @@ def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int)
     from engine.run import compiled, loops
     from engine.run.verdict import Trend
     from recordings.headless import simulate
-    from tui.cli.interrupt import stop_requests
+    from tui.cli.files import stop_requests
 
     recorder: Any = nullcontext()
     if options.record:

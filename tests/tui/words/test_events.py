@@ -112,8 +112,8 @@ async def test_the_pane_shows_the_newest_last_and_only_where_there_is_room():
     app = PenduApp(LiveScreen(live, clock=lambda: 20.0))
     async with app.run_test(size=(120, 40)) as pilot:
         await pilot.pause()
-        pane = app.stage.query_one(EventList)
-        app.stage.show_now()
+        pane = app.source_screen.query_one(EventList)
+        app.source_screen.show_now()
         assert pane.text.splitlines() == [str(line) for line in event_lines(live)][-pane.size.height :]
         assert pane.size.height >= 4
         await pilot.resize_terminal(80, 24)

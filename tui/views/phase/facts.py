@@ -3,14 +3,16 @@
 import math
 
 from engine.methods import METHODS
+from engine.models.exact_pendulum import ExactMotion
+from engine.models.state import State
 from engine.phase_space.area import Neighbourhood
 from engine.phase_space.neighbours import Neighbours
 from tui.drawing.axes import in_pi
-from tui.drawing.canvas import Span
+from tui.drawing.canvas import Canvas, Picture, Span
 from tui.drawing.palette import FRAME, TEXT, mark
 from tui.playback.shown import Shown
 from tui.playback.source import Source
-from tui.words.motion import energy_share, regime
+from tui.words.motion import energy_share, motion_text, regime
 from tui.words.numbers import scientific
 
 _NAME, _CELL = 22, 14
@@ -44,6 +46,20 @@ def _ring_text(source: Source, neighbours: Neighbours | None) -> str:
     behind = source.sample.step - neighbours.step
     text = f" A ring of neighbours, {neighbours.radius:g} rad around the start (g)"
     return f"{text}: {behind} steps behind" if behind else text
+
+
+def caption(exact: ExactMotion, aim: State | None, width: int) -> Picture:
+    """The line below the portrait: a state, if one is aimed at, and the exact motion as far as there is room."""
+    motion = motion_text(exact)
+    line = Canvas(width, 1).picture()
+    if aim is None:
+        line.write(0, 0, motion, FRAME)
+        return line
+    room = width - len(motion) - 2
+    line.write(0, 0, place_text(exact.scene.w0, *aim, room if room >= 60 else width), TEXT)
+    if room >= 60:
+        line.write(0, width - len(motion), motion, FRAME)
+    return line
 
 
 def place_text(w0: float, theta: float, omega: float, width: int) -> str:

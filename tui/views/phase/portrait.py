@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -31,6 +32,7 @@ class Portrait:
     words: tuple[Word, ...]
 
     @classmethod
+    @lru_cache(maxsize=2)  # for the lab's pane and the view's
     def of(cls, viewport: Viewport, w0: float) -> "Portrait":
         """Draw the portrait of all pendulums with natural frequency w0 [rad/s]."""
         x, y = np.arange(2 * viewport.columns) + 0.5, np.arange(4 * viewport.rows) + 0.5
