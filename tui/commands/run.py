@@ -87,7 +87,7 @@ def run(options: argparse.Namespace) -> int:
             f"pendu-tui: interrupted at t = {sample.t:g} s; the result is that of the time until then.", file=sys.stderr
         )
         return Exit.INTERRUPTED
-    if gate and gate.holds({row["method"]: row for row in rows}):
+    if gate and gate({row["method"]: row for row in rows}):
         print(f"pendu-tui: the check failed: {options.fail_if}", file=sys.stderr)
         return Exit.CHECK_FAILED
     return Exit.FINE
