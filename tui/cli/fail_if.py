@@ -19,6 +19,7 @@ from typing import Any, get_args
 
 from engine.methods import METHODS
 from engine.run.verdict import Verdict
+from tui.cli.errors import UserError
 from tui.cli.options import did_you_mean
 
 FIELDS = (
@@ -49,12 +50,8 @@ _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", re.IGNORECASE | re.A
 _EXAMPLE = "velocity_verlet.max_energy_error > 1e-2"
 
 
-class GateError(ValueError):
-    """An expression that is not a gate; its text is a sentence for the user."""
-
-
 def parse(text: str) -> Gate:
-    """The gate that `text` states.  Raises GateError, one sentence, for anything else."""
+    """The gate that `text` states.  Raises UserError for anything else."""
     source = " ".join(text.split())
     for verdict in get_args(Verdict):
         source = source.replace(verdict, verdict.replace(" ", "_"))
@@ -95,22 +92,26 @@ def _value(field: str, sign: ast.cmpop, node: ast.expr, source: str) -> float | 
     text = quoted or ast.get_source_segment(source, node) or ""
     if field == "verdict":
         if not isinstance(sign, ast.Eq | ast.NotEq):
-            raise GateError("Verdicts have no order: compare them with == or !=.")
+            raise _refusal("Verdicts have no order: compare them with == or !=.")
         return _known("verdict", text.replace("_", " "), get_args(Verdict))
     if quoted or not _NUMBER.fullmatch(text) or not math.isfinite(number := float(text)):
-        raise GateError(f"{_quoted(text)} is not a finite number; use for example 0.05 or 1e-2.")
+        raise _refusal(f"{_quoted(text)} is not a finite number; use for example 0.05 or 1e-2.")
     return number
 
 
-def _no_comparison(text: str) -> GateError:
-    return GateError(f"{_quoted(text)} is not a comparison; write METHOD.FIELD > NUMBER, for example {_EXAMPLE!r}.")
+def _refusal(sentence: str) -> UserError:
+    return UserError(f"--fail-if: {sentence}")
+
+
+def _no_comparison(text: str) -> UserError:
+    return _refusal(f"{_quoted(text)} is not a comparison; write METHOD.FIELD > NUMBER, for example {_EXAMPLE!r}.")
 
 
 def _known(what: str, name: str, names: Sequence[str]) -> str:
     if name in names:
         return name
     advice = did_you_mean(name, names) or f": choose from {', '.join(names)}."
-    raise GateError(f"There is no {what} {_quoted(name)}{advice}")
+    raise _refusal(f"There is no {what} {_quoted(name)}{advice}")
 
 
 def _quoted(text: str) -> str:

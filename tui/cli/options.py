@@ -6,9 +6,10 @@ import math
 import re
 import sys
 from collections.abc import Iterable, Sequence
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from engine.scenes import DEFAULT_SCENE, LIMITS, SCENES, Scene
+from recordings.library import golden_names
 from tui.cli.errors import UserError
 
 
@@ -45,6 +46,41 @@ def joined(arguments: Sequence[str]) -> list[str]:
         else:
             tied.append(argument)
     return tied
+
+
+class Suggestions(list[str]):
+    """What the tab key offers for an option, as its `choices`; any other text is left to the command."""
+
+    def __contains__(self, text: object) -> bool:
+        return True
+
+
+def add_file(parser: argparse._ActionsContainer, *names: str, **settings: Any) -> None:
+    """Add an option whose value the tab key completes to a file."""
+    parser.add_argument(*names, **settings).complete = "file"  # type: ignore[attr-defined]
+
+
+def add_recording(
+    parser: argparse.ArgumentParser,
+    name: str = "file",
+    metavar: str = "FILE",
+    help: str = "a file, latest, or a name such as drift",
+    offered: Sequence[str] = (),
+    **settings: Any,
+) -> None:
+    """Add an argument for `recordings.library.resolve`; the tab key offers files, known names, and those `offered`."""
+    words = " ".join(("latest", *golden_names(), *offered))
+    function = f"_pendu_tui_file_{len(words.split())}"
+    action = parser.add_argument(name, metavar=metavar, help=help, **settings)
+    action.complete = {  # type: ignore[attr-defined]  # in the words of each shell, for shtab
+        "bash": function,
+        "zsh": function,
+        "fish": f"{words} (__fish_complete_path (commandline -ct))",
+        "preamble": {
+            "bash": f'{function}() {{ compgen -W \'{words}\' -- "$1"; compgen -f -- "$1"; }}',
+            "zsh": f"{function}() {{ _alternative 'names:recording:({words})' 'files:file:_files'; }}",
+        },
+    }
 
 
 class Bare(float):
@@ -97,7 +133,13 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
 def add_scene_options(parser: argparse.ArgumentParser) -> None:
     """Add the options that determine a scene; `scene_of` reads them."""
     group = parser.add_argument_group("scene", "numbers win over those of the scene, which hold where none are given")
-    group.add_argument("--scene", metavar="NAME", default=DEFAULT_SCENE.name, help="see pendu-tui scenes (%(default)s)")
+    group.add_argument(
+        "--scene",
+        metavar="NAME",
+        choices=Suggestions(SCENES),
+        default=DEFAULT_SCENE.name,
+        help="see pendu-tui scenes (%(default)s)",
+    )
     group.add_argument(
         "--theta", metavar="RAD|DEGdeg", type=angle, help="start angle from straight down, in rad, or such as 115deg"
     )

@@ -12,7 +12,7 @@ from engine.methods import METHODS
 from engine.scenes import Scene, check_h
 from tui.cli.errors import Exit, UserError
 from tui.cli.files import whole_file
-from tui.cli.options import add_scene_options, count, positive, scene_of
+from tui.cli.options import add_file, add_scene_options, count, positive, scene_of
 from tui.cli.output import progress
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--no-compiled", action="store_true", help="do without Numba; the errors are the same")
     form = parser.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help="one JSON object, SI units")
-    form.add_argument("--csv", metavar="FILE", nargs="?", const="-", help="the points as CSV, to stdout or a file")
+    add_file(form, "--csv", metavar="FILE", nargs="?", const="-", help="the points as CSV, to stdout or a file")
     parser.add_argument("--force", action="store_true", help="overwrite FILE")
 
 

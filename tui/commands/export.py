@@ -7,6 +7,7 @@ from pathlib import Path
 from recordings.errors import printable
 from tui.cli.errors import Exit
 from tui.cli.files import text_file
+from tui.cli.options import add_file, add_recording
 from tui.cli.output import progress
 
 EXAMPLES = """\
@@ -18,9 +19,9 @@ examples:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add this command's options."""
-    parser.add_argument("file", metavar="FILE", help="a file, latest, or a name such as drift")
+    add_recording(parser)
     parser.add_argument("--format", choices=("csv",), default="csv", help="the only one there is (%(default)s)")
-    parser.add_argument("-o", "--output", metavar="OUT", type=Path, help="write here, not to stdout")
+    add_file(parser, "-o", "--output", metavar="OUT", type=Path, help="write here, not to stdout")
     parser.add_argument("--force", action="store_true", help="overwrite OUT")
 
 

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from recordings.errors import printable
 from tui.cli.errors import Exit
+from tui.cli.options import add_recording
 from tui.cli.output import print_table, progress, scene_fields, write_json
 from tui.words.numbers import file_size, seconds
 
@@ -20,7 +21,7 @@ examples:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add this command's options."""
-    parser.add_argument("file", metavar="FILE", help="a file, latest, or a name such as drift")
+    add_recording(parser)
     parser.add_argument("--json", action="store_true", help="one JSON object")
 
 

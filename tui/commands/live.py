@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from engine.scenes import Scene
 from tui.cli.errors import Exit, UserError
-from tui.cli.options import add_scene_options, positive, scene_of
+from tui.cli.options import add_file, add_scene_options, positive, scene_of
 from tui.cli.output import progress
 from tui.terminal.options import add_terminal_options, terminal_options_of
 
@@ -37,7 +37,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_scene_options(parser)
     parser.add_argument("--speed", metavar="X", type=positive, default=1.0, help="times real time (%(default)g)")
     recording = parser.add_mutually_exclusive_group()
-    recording.add_argument("--record", metavar="FILE", type=Path, help="record here, not in the data folder")
+    add_file(recording, "--record", metavar="FILE", type=Path, help="record here, not in the data folder")
     recording.add_argument("--no-record", action="store_true", help="record nothing")
     add_terminal_options(parser)
 

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tui.cli.errors import Exit, UserError
-from tui.cli.options import number, positive
+from tui.cli.options import add_recording, number, positive
 from tui.commands.live import place_of, recording_lab, say, show
 from tui.terminal.options import add_terminal_options
 
@@ -24,7 +24,7 @@ examples:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add this command's options."""
-    parser.add_argument("file", metavar="FILE|latest|NAME", help="a file, the latest sitting, or one that came along")
+    add_recording(parser, metavar="FILE|latest|NAME", help="a file, the latest sitting, or one that came along")
     parser.add_argument(
         "--start-at", metavar="S", type=number, default=0.0, help="begin at this many s of the recording (%(default)g)"
     )

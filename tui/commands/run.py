@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING, Any
 from engine.methods import METHODS
 from engine.scenes import Scene
 from tui.cli.errors import Exit, UserError
-from tui.cli.files import check_free
-from tui.cli.options import add_scene_options, count, positive, scene_of
+from tui.cli.fail_if import FIELDS, parse
+from tui.cli.files import check_free, stop_requests
+from tui.cli.options import Suggestions, add_file, add_scene_options, count, positive, scene_of
 from tui.cli.output import print_table, progress, scene_fields, write_json
 from tui.words.numbers import file_size
 
 if TYPE_CHECKING:
     from engine.run.lockstep import Sample
     from engine.run.verdict import Trend
-    from tui.cli.fail_if import Gate
 
 EXAMPLES = """\
 examples:
@@ -44,7 +44,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--time", metavar="S", type=positive, required=True, help="simulated time in s, rounded to whole steps"
     )
-    parser.add_argument("--record", metavar="FILE", type=Path, help="record it: the same run gives the same bytes")
+    add_file(parser, "--record", metavar="FILE", type=Path, help="record it: the same run gives the same bytes")
     parser.add_argument("--force", action="store_true", help="overwrite FILE")
     parser.add_argument(
         "--sample-every", metavar="STEPS", type=count, help="steps from sample to sample (those of 1/30 s)"
@@ -52,6 +52,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--fail-if",
         metavar="EXPR",
+        choices=Suggestions(f"{method.key}.{field}" for method in METHODS for field in (*FIELDS, "verdict")),
         help="exit 1 if METHOD.FIELD > NUMBER or METHOD.verdict == WORD, fields as in --json",
     )
     parser.add_argument("--no-compiled", action="store_true", help="do without Numba; the numbers are the same")
@@ -60,7 +61,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Simulate, record, judge, print."""
-    scene, gate = scene_of(options), _gate(options.fail_if)
+    scene = scene_of(options)
+    gate = None if options.fail_if is None else parse(options.fail_if)
     from recordings.headless import SAMPLE_EVERY, steps_for
 
     if options.time > LONGEST:
@@ -104,22 +106,12 @@ def _announce(steps: int, every: int) -> None:
         )
 
 
-def _gate(expression: str | None) -> "Gate | None":
-    from tui.cli.fail_if import GateError, parse
-
-    try:
-        return parse(expression) if expression is not None else None
-    except GateError as error:
-        raise UserError(f"--fail-if: {error}") from error
-
-
 def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int) -> "tuple[Sample, list[Trend], bool]":
     """The last sample, each method's trend, and whether somebody stopped it before its end."""
     from engine.models.exact_pendulum import ExactMotion
     from engine.run import compiled, loops
     from engine.run.verdict import Trend
     from recordings.headless import simulate
-    from tui.cli.files import stop_requests
 
     recorder: Any = nullcontext()
     if options.record:

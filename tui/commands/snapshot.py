@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tui.cli.errors import Exit
 from tui.cli.files import whole_file
-from tui.cli.options import add_scene_options, scene_of
+from tui.cli.options import add_file, add_scene_options, scene_of
 from tui.terminal.options import add_picture_options, terminal_options_of
 
 EXAMPLES = """\
@@ -25,7 +25,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--time", metavar="S", type=moment, default=12.0, help="s since the start (%(default)g)")
     parser.add_argument("--size", metavar="CxR", type=size, default=(120, 40), help="columns x rows (120x40)")
     add_picture_options(parser, "dark", "braille")
-    parser.add_argument("-o", "--output", metavar="FILE.svg", type=picture, required=True, help="the picture to write")
+    add_file(parser, "-o", "--output", metavar="FILE.svg", type=picture, required=True, help="the picture to write")
     parser.add_argument("--force", action="store_true", help="overwrite FILE.svg")
 
 

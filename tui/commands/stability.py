@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from engine.scenes import Z_LIMITS
 from tui.cli.errors import UserError
-from tui.cli.options import add_scene_options, angle, count, number, scene_of
+from tui.cli.options import add_file, add_scene_options, angle, count, number, scene_of
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -51,8 +51,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     form = parser.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help="one JSON object; with --map every swing of it")
     form.add_argument("--csv", action="store_true", help="a row for each amplitude; with --map for each swing")
-    form.add_argument(
-        "-o", metavar="FILE.npz", dest="file", type=Path, help="write only the map, however large, to a file"
+    add_file(
+        form, "-o", metavar="FILE.npz", dest="file", type=Path, help="write only the map, however large, to a file"
     )
     parser.add_argument("--force", action="store_true", help="overwrite FILE.npz")
     where = parser.add_mutually_exclusive_group()

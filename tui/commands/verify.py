@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from recordings.errors import RecordingError, printable
 from recordings.names import PART
 from tui.cli.errors import Exit
+from tui.cli.options import add_recording
 from tui.cli.output import progress, write_json
 
 if TYPE_CHECKING:
@@ -28,7 +29,9 @@ Exit 0: all are the same; 1: one is not, or lacks its end and is no .part; 3: on
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add this command's options."""
-    parser.add_argument("files", metavar="FILE", nargs="+", help="a file, a folder, latest, or a name such as drift")
+    add_recording(
+        parser, "files", nargs="+", help="a file, a folder, latest, or a name such as drift", offered=["golden"]
+    )
     parser.add_argument("--json", action="store_true", help="one JSON object")
 
 

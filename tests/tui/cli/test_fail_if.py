@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 
 from engine.methods import METHODS
 from engine.run.verdict import Verdict
-from tui.cli.fail_if import FIELDS, GateError, parse
+from tui.cli.errors import UserError
+from tui.cli.fail_if import FIELDS, parse
 
 SIGNS = {
     "<": operator.lt,
@@ -66,7 +67,7 @@ def test_parentheses_join_as_in_python() -> None:
     ],
 )
 def test_what_is_not_made_of_comparisons_is_refused_and_never_run(text: str) -> None:
-    with pytest.raises(GateError, match="is not a comparison"):
+    with pytest.raises(UserError, match="is not a comparison"):
         parse(text)
 
 
@@ -128,9 +129,9 @@ def test_a_verdict_is_compared_with_one_of_its_words(word: str, quote: str) -> N
     ],
 )
 def test_an_error_is_one_sentence_that_helps(text: str, sentence: str) -> None:
-    with pytest.raises(GateError) as error:
+    with pytest.raises(UserError) as error:
         parse(text)
-    assert str(error.value) == sentence
+    assert str(error.value) == f"--fail-if: {sentence}"
 
 
 @given(
@@ -141,7 +142,7 @@ def test_any_text_is_a_gate_or_one_printable_sentence(text: str) -> None:
     sentence = ""
     try:
         assert callable(parse(text))
-    except GateError as error:
+    except UserError as error:
         sentence = str(error)
     assert sentence.isprintable()
     assert len(sentence) < 800  # at most 60 quoted characters, ten each when escaped
