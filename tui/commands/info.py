@@ -1,12 +1,13 @@
 """Say what is in a recording: when, how long, which runs, and whether it is whole."""
 
 import argparse
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from recordings.errors import printable
 from tui.cli.errors import Exit
 from tui.cli.options import add_recording
-from tui.cli.output import print_table, progress, scene_fields, write_json
+from tui.cli.output import print_table, progress, write_json
 from tui.words.numbers import file_size, seconds
 
 if TYPE_CHECKING:
@@ -48,7 +49,7 @@ def _fields(recording: "Recording", size: int) -> dict[str, Any]:
         "reason": recording.reason,
         "runs": [
             {
-                "scene": scene_fields(run.scene),
+                "scene": asdict(run.scene),
                 "steps": run.steps,
                 "time": run.t,
                 "seconds": run.end - run.begin,

@@ -5,6 +5,7 @@ import math
 import sys
 import time
 from contextlib import nullcontext
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +15,7 @@ from tui.cli.errors import Exit, UserError
 from tui.cli.fail_if import FIELDS, parse
 from tui.cli.files import check_free, stop_requests
 from tui.cli.options import Suggestions, add_file, add_scene_options, count, positive, scene_of
-from tui.cli.output import print_table, progress, scene_fields, write_json
+from tui.cli.output import print_table, progress, write_json
 from tui.words.numbers import file_size
 
 if TYPE_CHECKING:
@@ -80,7 +81,7 @@ def run(options: argparse.Namespace) -> int:
     wall_seconds = time.perf_counter() - began
     rows = _rows(scene, sample, trends)
     if options.json:
-        fields = {"scene": scene_fields(scene), "time": sample.t, "steps": sample.step, "wall_seconds": wall_seconds}
+        fields = {"scene": asdict(scene), "time": sample.t, "steps": sample.step, "wall_seconds": wall_seconds}
         write_json("run", {**fields, "methods": rows})
     else:
         _print(scene, sample, wall_seconds, rows)

@@ -6,12 +6,14 @@ import os
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from engine.scenes import Z_LIMITS
-from tui.cli.errors import UserError
+from tui.cli.errors import Exit, UserError
 from tui.cli.options import add_file, add_scene_options, angle, count, number, scene_of
+from tui.cli.output import progress
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -87,20 +89,22 @@ def run(options: argparse.Namespace) -> int:
         )
     _check("z", options.z_values, *Z_LIMITS)
     _check("number of steps", [options.steps], 0, 2**31)
-    from engine.stability.study import Study
-    from tui.commands.stability_report import print_csv, print_json, print_text, write_file
+    from concurrent.futures import BrokenExecutor
 
+    from engine.stability.study import StabilityStudy
+    from tui.commands.reports.stability import print_csv, print_json, print_text, write_file
+
+    bar = partial(progress, "stability")
     with _workers(options) as executor:
-        study = Study(scene, options.theta_values, options.z_values, options.steps, executor)
-        if options.file:
-            return write_file(study, options.file, options.force)
-        if options.map and (swings := math.prod(study.grid().shape)) > LARGEST:
+        study = StabilityStudy(scene, options.theta_values, options.z_values, options.steps, executor, bar)
+        if options.map and not options.file and (swings := math.prod(study.grid().shape)) > LARGEST:
             raise UserError(f"a map of {swings} swings is too large to show: write it with -o FILE.npz.")
-        if options.json:
-            return print_json(study, options.map)
-        if options.csv:
-            return print_csv(study, options.map)
-        return print_text(study, options.map)
+        try:
+            if options.file:
+                return write_file(study, options.file, options.force)
+            return (print_json if options.json else print_csv if options.csv else print_text)(study, options.map)
+        except BrokenExecutor as error:
+            raise UserError(f"a worker is gone ({error}): try fewer, or none.", Exit.CHECK_FAILED) from None
 
 
 def _check(what: str, given: list[float] | None, low: float, high: float) -> None:
