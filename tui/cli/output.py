@@ -44,7 +44,7 @@ def scene_line(scene: Scene, *more: str) -> str:
     return f"{scene.name}: {', '.join(f'{name} {value:g}' for name, value in numbers.items())} (SI units)"
 
 
-def print_table(align: str, headers: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
+def print_table(align: str, headers: Sequence[str], rows: Iterable[Iterable[str]]) -> None:
     """Print a table; `align` has an l or an r for each column.  The first column is never wrapped."""
     from rich.table import Table
 

@@ -33,7 +33,6 @@ MOST_BUDGET = 10**9  # force evaluations of a run; minutes for each method, comp
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add this command's options."""
     add_scene_options(parser)
     parser.add_argument(
         "--time",

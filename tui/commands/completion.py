@@ -20,12 +20,10 @@ SHELLS = ("bash", "zsh", "fish")
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add this command's options."""
     parser.add_argument("shell", metavar="|".join(SHELLS), choices=SHELLS, help="the shell that is to read it")
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the script."""
     import shtab
 
     print(shtab.complete(whole_parser(), options.shell))

@@ -23,7 +23,6 @@ examples:
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add this command's options."""
     add_recording(parser, help="what is left of a recording: a file, latest, or a name such as drift")
     add_file(parser, "-o", "--output", metavar="OUT", type=Path, required=True, help="the recording to make of it")
     parser.add_argument("--force", action="store_true", help="overwrite OUT")
@@ -31,7 +30,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Recover."""
     from recordings.library import resolve
     from recordings.recover import recover
 

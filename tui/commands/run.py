@@ -2,7 +2,6 @@
 
 import argparse
 import math
-import sys
 import time
 from contextlib import nullcontext
 from dataclasses import asdict
@@ -15,7 +14,7 @@ from tui.cli.errors import Exit, UserError
 from tui.cli.fail_if import FIELDS, parse
 from tui.cli.files import check_free, stop_requests
 from tui.cli.options import Suggestions, add_file, add_scene_options, count, positive, scene_of
-from tui.cli.output import print_table, progress, write_json
+from tui.cli.output import fields_of, print_table, progress, scene_line, warn, write_json
 from tui.words.numbers import file_size
 
 if TYPE_CHECKING:
@@ -40,7 +39,6 @@ COMPILED_FROM = 1_000_000  # steps: below, compiling takes longer than it saves
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add this command's options."""
     add_scene_options(parser)
     parser.add_argument(
         "--time", metavar="S", type=positive, required=True, help="simulated time in s, rounded to whole steps"
@@ -61,7 +59,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Simulate, record, judge, print."""
     scene = scene_of(options)
     gate = None if options.fail_if is None else parse(options.fail_if)
     from recordings.headless import SAMPLE_EVERY, steps_for
@@ -86,12 +83,10 @@ def run(options: argparse.Namespace) -> int:
     else:
         _print(scene, sample, wall_seconds, rows)
     if stopped:
-        print(
-            f"pendu-tui: interrupted at t = {sample.t:g} s; the result is that of the time until then.", file=sys.stderr
-        )
+        warn(f"interrupted at t = {sample.t:g} s; the result is that of the time until then.")
         return Exit.INTERRUPTED
     if gate and gate({row["method"]: row for row in rows}):
-        print(f"pendu-tui: the check failed: {options.fail_if}", file=sys.stderr)
+        warn(f"the check failed: {options.fail_if}")
         return Exit.CHECK_FAILED
     return Exit.FINE
 
@@ -99,12 +94,8 @@ def run(options: argparse.Namespace) -> int:
 def _announce(steps: int, every: int) -> None:
     """Say so before a recording gets large."""
     if (size := steps / every * SAMPLE_BYTES) > LARGE:
-        enough = math.ceil(steps * SAMPLE_BYTES / LARGE)
-        print(
-            f"pendu-tui: the recording will have about {file_size(round(size))};"
-            f" with --sample-every {enough} it has {file_size(round(LARGE))}.",
-            file=sys.stderr,
-        )
+        enough, large = math.ceil(steps * SAMPLE_BYTES / LARGE), file_size(round(LARGE))
+        warn(f"the recording will have about {file_size(round(size))}; with --sample-every {enough} it has {large}.")
 
 
 def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int) -> "tuple[Sample, list[Trend], bool]":
@@ -141,18 +132,14 @@ def _rows(scene: Scene, sample: "Sample", trends: "list[Trend]") -> list[dict[st
     exact = ExactMotion(scene).at(sample.t).theta
     rows = []
     for method, reading, trend in zip(METHODS, sample.readings, trends, strict=True):
-        judgement, end = trend.judgement, reading.diverged_at
+        end = reading.diverged_at
         rows.append(
             {
                 "method": method.key,
-                "theta": reading.theta,
-                "omega": reading.omega,
-                "energy": reading.energy,
-                "energy_error": reading.energy_error,
-                "max_energy_error": reading.max_energy_error,
+                **fields_of(reading, "theta", "omega", "energy", "energy_error", "max_energy_error"),
                 "theta_error": abs(reading.theta - exact) if end is None else None,
-                "drift_per_second": judgement.slope,
-                "verdict": judgement.verdict,
+                "drift_per_second": trend.judgement.slope,
+                "verdict": trend.judgement.verdict,
                 "force_evaluations": evaluations(method, sample.step if end is None else round(end / scene.h)),
                 "diverged_at": end,
             }
@@ -161,31 +148,15 @@ def _rows(scene: Scene, sample: "Sample", trends: "list[Trend]") -> list[dict[st
 
 
 def _print(scene: Scene, sample: "Sample", wall_seconds: float, rows: list[dict[str, Any]]) -> None:
-    numbers = ", ".join(f"{name} {getattr(scene, name):g}" for name in ("theta", "omega", "length", "gravity", "h"))
-    print(f"{scene.name}: {numbers} (SI units), z = h·w0 = {scene.z:.4g}")
+    print(f"{scene_line(scene, 'h')}, z = h·w0 = {scene.z:.4g}")
     pace = f", {sample.step / wall_seconds / 1e6:.3g} million a second" if wall_seconds > 1 else ""
     print(f"{sample.step} steps to t = {sample.t:g} s in {wall_seconds:.2f} s{pace}\n")
-
-    def number(value: float | None, form: str) -> str:
-        return "-" if value is None else format(value, form)
-
-    def verdict(row: dict[str, Any]) -> str:
+    forms = {"energy_error": "+.2e", "max_energy_error": ".2e", "drift_per_second": "+.1e", "theta_error": ".2e"}
+    table = []
+    for method, row in zip(METHODS, rows, strict=True):
         end = row["diverged_at"]
-        return row["verdict"] if end is None else f"diverged at {end:g} s"
-
-    print_table(
-        "llrrrrr",
-        ("method", "verdict", "energy error", "largest", "per second", "theta error [rad]", "force evaluations"),
-        (
-            (
-                method.label,
-                verdict(row),
-                number(row["energy_error"], "+.2e"),
-                number(row["max_energy_error"], ".2e"),
-                number(row["drift_per_second"], "+.1e"),
-                number(row["theta_error"], ".2e"),
-                str(row["force_evaluations"]),
-            )
-            for method, row in zip(METHODS, rows, strict=True)
-        ),
-    )
+        numbers = ("-" if row[name] is None else format(row[name], form) for name, form in forms.items())
+        verdict = row["verdict"] if end is None else f"diverged at {end:g} s"
+        table.append((method.label, verdict, *numbers, str(row["force_evaluations"])))
+    headers = ("energy error", "largest", "per second", "theta error [rad]", "force evaluations")
+    print_table("llrrrrr", ("method", "verdict", *headers), table)

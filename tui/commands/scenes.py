@@ -17,12 +17,10 @@ examples:
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add this command's options."""
     parser.add_argument("--json", action="store_true", help="one JSON object, SI units")
 
 
 def run(options: argparse.Namespace) -> int:
-    """List the scenes."""
     if options.json:
         write_json("scenes", {"scenes": [asdict(scene) for scene in SCENES.values()]})
         return Exit.FINE

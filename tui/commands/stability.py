@@ -33,7 +33,6 @@ LARGEST = 2_000_000  # swings of a map that is kept in memory
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add this command's options."""
     add_scene_options(parser)
     parser.add_argument(
         "--theta-values",
@@ -80,7 +79,6 @@ def values(element: Callable[[str], float]) -> Callable[[str], list[float]]:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the tables and, with --map, the map; with -o, write the map."""
     scene = scene_of(options)
     _check("amplitude", options.theta_values, 0, math.pi)
     if len(options.theta_values or ()) > MOST_ROWS and not options.file:
