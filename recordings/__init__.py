@@ -9,7 +9,7 @@ The bytes of a file become numbers in one way, and each module is a stretch of i
 
 `index` is what `recording` opens a file with: by the summary or, where that does not hold, by a walk.
 
-- What a file holds: `events`, `format` (to bytes and back), `schemas` (for other viewers).
+- What a file holds: `events`, `fields` (the table), `format` (to bytes and back).
 - Writing: `recorder` one file, `sitting` a sitting whatever becomes of the disk, `headless` a run without a screen.
 - Reading: `recording` any moment, `export` all of it as CSV, `verify` by a `rerun` of each run, `recover` what is
   intact as a new file, `rescue` that for what a killed sitting left.

@@ -1,4 +1,4 @@
-"""The format: topics, schemas and version; samples and events to bytes and back, side by side.
+"""The format: topics and version; samples and events to bytes and back, side by side, by the table in `fields`.
 
 One topic a method, one message a reading: scalars that Foxglove, PlotJuggler and pandas plot at once.
 The messages of one sample are consecutive, in the order of the run's methods, and share their clock.
@@ -11,13 +11,14 @@ import math
 import struct
 from dataclasses import replace
 from functools import cache
-from typing import Any, NoReturn, cast
+from typing import Any, NoReturn
 
 from engine.methods import METHODS
 from engine.run.lockstep import Reading, Sample
 from engine.scenes import Scene, SceneError
 from recordings.errors import RecordingError, printable
 from recordings.events import Event
+from recordings.fields import EXTREMES, NUMBERS, SCENE_NUMBERS, VALUES, left_out, values_of
 
 FORMAT_VERSION = 1
 PROFILE = "pendu"  # in the file's header
@@ -28,8 +29,8 @@ CLOCK_LIMIT = 1e9  # s, 30 years
 MESSAGE_LIMIT = 1 << 16  # bytes; ours stay below 1 kB
 STEP_LIMIT = 1 << 53
 
-_READING_NUMBERS = ("t", "theta", "omega", "energy", "energy_error", "max_energy_error")
-SCENE_NUMBERS = ("theta", "omega", "length", "gravity", "h")
+_NUMBERS = ("t", *NUMBERS)
+_ENERGY_ERROR = NUMBERS.index("energy_error")
 _KNOWN_METHODS = frozenset(method.key for method in METHODS)
 
 
@@ -53,32 +54,20 @@ def without_extremes(sample: Sample) -> Sample:
     return replace(
         sample,
         readings=tuple(
-            replace(reading, energy_error_low=reading.energy_error, energy_error_high=reading.energy_error)
-            for reading in sample.readings
+            replace(reading, **dict.fromkeys(EXTREMES, reading.energy_error)) for reading in sample.readings
         ),
     )
 
 
 def encode_readings(sample: Sample) -> list[bytes]:
-    """One message a method, in order.  An extreme that is the energy error itself is left out."""
+    """One message a method, in order, without what need not be repeated."""
     messages = []
     for reading in sample.readings:
-        fields = {
-            "run": sample.run,
-            "step": sample.step,
-            "t": sample.t,
-            "theta": reading.theta,
-            "omega": reading.omega,
-            "energy": reading.energy,
-            "energy_error": reading.energy_error,
-            "max_energy_error": reading.max_energy_error,
-        }
-        if reading.energy_error_low != reading.energy_error:
-            fields["energy_error_low"] = reading.energy_error_low
-        if reading.energy_error_high != reading.energy_error:
-            fields["energy_error_high"] = reading.energy_error_high
-        if reading.diverged_at is not None:
-            fields["diverged_at"] = reading.diverged_at
+        fields = {"run": sample.run, "step": sample.step, "t": sample.t}
+        fields |= zip(VALUES, values_of(reading), strict=True)
+        for name, value in left_out(reading.energy_error).items():
+            if fields[name] == value:
+                del fields[name]
         messages.append(_dumps(fields))
     return messages
 
@@ -86,16 +75,14 @@ def encode_readings(sample: Sample) -> list[bytes]:
 def decode_reading(data: bytes) -> tuple[int, int, float, Reading]:
     """(run, step, t, reading) of one message."""
     fields = _loads(data)
-    values = [fields.get(name) for name in _READING_NUMBERS]
+    values: list[Any] = [fields.get(name) for name in _NUMBERS]
     for value in values:
         if type(value) is not float or value - value != 0.0:  # not finite; done so because it is an hour's decoding
-            values = [_number(fields, name) for name in _READING_NUMBERS]
-    t, theta, omega, energy, energy_error, max_energy_error = cast(list[float], values)
-    low = _number(fields, "energy_error_low") if "energy_error_low" in fields else energy_error
-    high = _number(fields, "energy_error_high") if "energy_error_high" in fields else energy_error
-    diverged_at = _number(fields, "diverged_at") if "diverged_at" in fields else None
-    reading = Reading(theta, omega, energy, energy_error, max_energy_error, low, high, diverged_at)
-    return _count(fields, "run"), _count(fields, "step"), t, reading
+            values = [_number(fields, name) for name in _NUMBERS]
+    t, *values = values
+    absent = left_out(values[_ENERGY_ERROR])
+    values += [_number(fields, name) if name in fields else value for name, value in absent.items()]
+    return _count(fields, "run"), _count(fields, "step"), t, Reading(*values)
 
 
 def encode_event(event: Event) -> bytes:

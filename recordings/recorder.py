@@ -3,6 +3,7 @@
 Everything goes to NAME.mcap.part, which is renamed to NAME.mcap when it is finished.
 """
 
+import json
 import os
 import platform
 import time
@@ -19,6 +20,7 @@ from mcap.writer import CompressionType, Writer
 from engine.run.lockstep import Sample
 from recordings.errors import DiskError, NameTakenError
 from recordings.events import Event
+from recordings.fields import EVENT_SCHEMA, SAMPLE_SCHEMA, SCENE_NUMBERS
 from recordings.format import (
     CLOCK_LIMIT,
     CLOCK_OFFSET,
@@ -26,7 +28,6 @@ from recordings.format import (
     FORMAT_VERSION,
     METADATA,
     PROFILE,
-    SCENE_NUMBERS,
     encode_event,
     encode_readings,
     sin_fingerprint,
@@ -35,7 +36,6 @@ from recordings.format import (
 )
 from recordings.lock import hold
 from recordings.names import part_of
-from recordings.schemas import EVENT_SCHEMA, SAMPLE_SCHEMA, encode_schema
 
 FLUSH_EVERY = 0.9  # s of the recording clock; with a frame's delay the loss at kill -9 stays below 1 s
 FLUSH_EVENTS_EVERY = 0.25  # s; a key held down gives 30 events a second
@@ -177,12 +177,12 @@ class Recorder:
         metadata = self._facts if self._facts is not None else _metadata(start, self._wall)
         facts = {"format": str(FORMAT_VERSION), "sin": metadata["sin"]}
         self._writer.add_metadata(METADATA, dict(metadata))
-        schema = self._writer.register_schema("pendu.Event", "jsonschema", encode_schema(EVENT_SCHEMA))
-        self._channels[EVENTS] = self._writer.register_channel(EVENTS, "json", schema, facts)
-        schema = self._writer.register_schema("pendu.Sample", "jsonschema", encode_schema(SAMPLE_SCHEMA))
-        for method in start.methods:
-            self._channels[topic(method)] = self._writer.register_channel(topic(method), "json", schema, {})
         self._topics = [topic(method) for method in start.methods]
+        for schema, topics, claims in ((EVENT_SCHEMA, [EVENTS], facts), (SAMPLE_SCHEMA, self._topics, {})):
+            data = json.dumps(schema, separators=(",", ":")).encode()
+            known = self._writer.register_schema(schema["title"], "jsonschema", data)
+            for name in topics:
+                self._channels[name] = self._writer.register_channel(name, "json", known, claims)
 
     def _add(self, messages: list[tuple[str, bytes]], clock: float) -> None:
         """Hand messages to the writer: all checked before the first, because a rejected one spoils its chunk."""

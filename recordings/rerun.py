@@ -20,12 +20,11 @@ from engine.run.lockstep import Lockstep, Reading, Sample
 from engine.scenes import SceneError
 from recordings.errors import RecordingError
 from recordings.events import Event
+from recordings.fields import EXTREMES, NUMBERS, VALUES, numbers_of
 
 TOLERANCE = 1e-11
 LOST = 1e-3  # rad, or rad/s
 MOST_STEPS = 10**10  # of a run that is simulated again; hours of computing
-NUMBERS = ("theta", "omega", "energy", "energy_error", "max_energy_error")
-EXTREMES = ("energy_error_low", "energy_error_high")
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,10 +108,10 @@ class Rerun:
             yield Difference(self.run, recorded.step, recorded.t, "", "t", recorded.t, computed.t)
         for method, was, now in zip(self._methods, recorded.readings, computed.readings, strict=True):
             lost = max(self._allowed[method, "theta"], self._allowed[method, "omega"]) > LOST
-            # A recorded extreme that is the energy error itself claims nothing: see format.without_extremes.
-            extremes = (name for name in EXTREMES if getattr(was, name) != was.energy_error)
-            for field in (*NUMBERS, *extremes, "diverged_at"):
+            for field in VALUES:
                 a, b = getattr(was, field), getattr(now, field)
+                if field in EXTREMES and a == was.energy_error:
+                    continue  # such an extreme claims nothing: see format.without_extremes
                 self.max_difference = max(self.max_difference, _distance(a, b))
                 if self._astray is None:
                     equal = a == b and (a is None or _ordinal(a) == _ordinal(b))
@@ -123,20 +122,17 @@ class Rerun:
 
     def _widen(self, computed: Sample, astray: Sample) -> None:
         for method, a, b in zip(self._methods, computed.readings, astray.readings, strict=True):
-            for field in (*NUMBERS, *EXTREMES, "diverged_at"):
+            for field in VALUES:
                 distance = _distance(getattr(a, field), getattr(b, field))
                 self._allowed[method, field] = max(self._allowed[method, field], distance)
 
 
-_pack = struct.Struct("<5d").pack
+_pack = struct.Struct(f"<{len(NUMBERS)}d").pack
 
 
 def _same(a: Reading, b: Reading) -> bool:
     """Whether two readings have the same bits; the usual case, quickly.  (0.0 == -0.0, hence the second half.)"""
-    return a == b and (
-        _pack(a.theta, a.omega, a.energy, a.energy_error, a.max_energy_error)
-        == _pack(b.theta, b.omega, b.energy, b.energy_error, b.max_energy_error)
-    )
+    return a == b and _pack(*numbers_of(a)) == _pack(*numbers_of(b))
 
 
 def _distance(a: float | None, b: float | None) -> float:

@@ -2,7 +2,7 @@
 
 import json
 import math
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import jsonschema
 import pytest
@@ -13,6 +13,7 @@ from engine.run.lockstep import Reading, Sample
 from engine.scenes import LIMITS, Scene
 from recordings.errors import TEXT_LIMIT, RecordingError, printable
 from recordings.events import Event
+from recordings.fields import EVENT_SCHEMA, NUMBERS, SAMPLE_SCHEMA, VALUES
 from recordings.format import (
     decode_event,
     decode_reading,
@@ -21,7 +22,6 @@ from recordings.format import (
     sin_fingerprint,
     without_extremes,
 )
-from recordings.schemas import EVENT_SCHEMA, SAMPLE_SCHEMA
 from tests.recordings.sittings import METHOD_KEYS, SCENE, start
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
@@ -59,6 +59,10 @@ events = st.one_of(
 )
 
 
+def test_the_table_of_fields_has_every_value_of_a_reading_in_its_order():
+    assert tuple(field.name for field in fields(Reading)) == VALUES
+
+
 @given(samples)
 def test_every_finite_double_of_a_sample_survives_to_the_bit(sample):
     messages = encode_readings(sample)
@@ -66,13 +70,7 @@ def test_every_finite_double_of_a_sample_survives_to_the_bit(sample):
         run, step, t, again = decode_reading(message)
         assert (run, step, t) == (sample.run, sample.step, sample.t)
         assert again == reading
-        for name in (
-            "theta",
-            "omega",
-            "energy",
-            "energy_error",
-            "max_energy_error",
-        ):  # -0.0 == 0.0, but their hex differs
+        for name in NUMBERS:  # -0.0 == 0.0, but their hex differs
             assert float.hex(getattr(again, name)) == float.hex(getattr(reading, name))
         jsonschema.validate(json.loads(message), SAMPLE_SCHEMA)
 
