@@ -6,13 +6,13 @@ from typing import TextIO
 from engine.run.lockstep import Sample
 from recordings.fields import MOMENT, READING, values_of
 from recordings.recording import Recording
-from recordings.scan import Progress
+from recordings.scan import ShowProgress
 
 COLUMNS = ("clock_s", *(field.column for field in MOMENT), "method", *(field.column for field in READING))
 """Names with their units; energies are per unit m·L²."""
 
 
-def write_csv(recording: Recording, out: TextIO, progress: Progress | None = None) -> int:
+def write_csv(recording: Recording, out: TextIO, progress: ShowProgress | None = None) -> int:
     """Write all samples and return how many there were.  Every number is written so that it reads back the same."""
     rows = csv.writer(out, lineterminator="\n")
     rows.writerow(COLUMNS)

@@ -17,13 +17,13 @@ from mcap.opcode import Opcode
 
 from engine.run.lockstep import Sample
 from engine.scenes import Scene
+from recordings.contents import Contents, from_summary
 from recordings.errors import RecordingError, named
 from recordings.events import Entry, Event
 from recordings.format import CLOCK_LIMIT, CLOCK_OFFSET
 from recordings.framing import read_chunk, record_at
-from recordings.index import Index, index_of
 from recordings.lock import open_file
-from recordings.scan import Progress
+from recordings.scan import Scan, ShowProgress
 
 EVENT_LIMIT = 100_000  # in memory all at once, 30 MB; a lesson has a few hundred, but every step back repeats changes
 CHUNKS_KEPT = 2  # decoded; playing meets the same one thirty times, stepping to and fro about an edge two
@@ -58,15 +58,15 @@ class Recording:
     out damaged while it plays.  Clocks are in s, from 0 to `length`.
     """
 
-    def __init__(self, path: Path, stream: BinaryIO, index: Index) -> None:
+    def __init__(self, path: Path, stream: BinaryIO, contents: Contents) -> None:
         self.path = path
         self.bytes = stream.seek(0, SEEK_END)
-        self.metadata = index.metadata
-        self.version, self.methods, self.sin = index.layout.version, index.layout.methods, index.layout.sin
-        self.samples = index.samples
-        self.complete, self.damaged, self.reason = index.complete, index.damaged, index.reason
-        self.length = (index.chunks.ends[-1] - CLOCK_OFFSET) / 1e9 if index.chunks else 0.0
-        self._stream, self._layout, self._chunks = stream, index.layout, index.chunks
+        self.metadata = contents.metadata
+        self.version, self.methods, self.sin = contents.layout.version, contents.layout.methods, contents.layout.sin
+        self.samples = contents.samples
+        self.complete, self.damaged, self.reason = contents.complete, contents.damaged, contents.reason
+        self.length = (contents.chunks.ends[-1] - CLOCK_OFFSET) / 1e9 if contents.chunks else 0.0
+        self._stream, self._layout, self._chunks = stream, contents.layout, contents.chunks
         self._entries = lru_cache(CHUNKS_KEPT)(self._known_entries)
         events = list(self._read_events())
         starts = {event.run: (chunk, clock, event) for chunk, clock, event in events if event.kind == "start"}
@@ -81,7 +81,7 @@ class Recording:
         self.runs = tuple(self._runs(list(starts.values())))
 
     @classmethod
-    def open(cls, path: Path, check: bool = False, progress: Progress | None = None) -> Self:
+    def open(cls, path: Path, check: bool = False, progress: ShowProgress | None = None) -> Self:
         """Open a recording; with `check`, every byte of it is looked at.
 
         Raises RecordingError, a sentence, for what is no recording of ours or has no run in it.
@@ -89,7 +89,8 @@ class Recording:
         with named(path):
             stream = open_file(path)
             try:
-                return cls(path, stream, index_of(stream, check, progress))
+                contents = None if check else from_summary(stream)
+                return cls(path, stream, contents or Scan(stream, progress).contents())
             except BaseException:
                 stream.close()
                 raise

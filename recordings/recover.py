@@ -12,15 +12,15 @@ from mcap.opcode import Opcode
 
 from engine.run.lockstep import Lockstep, Sample
 from engine.scenes import SceneError
+from recordings.contents import Layout, layout_of
 from recordings.errors import DiskError, RecordingError, named
 from recordings.events import Event
 from recordings.format import CLOCK_OFFSET, encode_readings, without_extremes
 from recordings.framing import Message
-from recordings.layout import Layout, layout_of
 from recordings.lock import open_file
 from recordings.names import free_path, part_of
 from recordings.recorder import Recorder, trouble
-from recordings.scan import Gap, Progress, Walk
+from recordings.scan import Gap, Scan, ShowProgress
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +39,7 @@ class Recovery:
     runs_broken: tuple[int, ...]  # that lost a change of h: they play, but do not verify
 
 
-def recover(path: Path, out: Path, progress: Progress | None = None, overwrite: bool = False) -> Recovery:
+def recover(path: Path, out: Path, progress: ShowProgress | None = None, overwrite: bool = False) -> Recovery:
     """Write what is intact of `path` to `out`, which appears only when it is whole.
 
     Raises RecordingError if nothing can be saved, DiskError if `out` cannot be written.
@@ -57,18 +57,18 @@ def recover(path: Path, out: Path, progress: Progress | None = None, overwrite: 
         raise trouble(error, out) from error
 
 
-def _recover(path: Path, out: Path, progress: Progress | None, overwrite: bool = False) -> Recovery:
+def _recover(path: Path, out: Path, progress: ShowProgress | None, overwrite: bool = False) -> Recovery:
     with named(path), open_file(path) as stream:
-        walk = Walk(stream, progress)
-        salvage = _Salvage(walk, out, overwrite)
+        scan = Scan(stream, progress)
+        salvage = _Salvage(scan, out, overwrite)
         try:
-            for piece in walk:
+            for piece in scan:
                 if isinstance(piece, Gap):
                     salvage.pass_over(piece, stream)
                 else:
                     salvage.keep(piece.layout, piece.chunk.messages)
             if salvage.kept == 0:
-                raise walk.nothing("saved")
+                raise scan.nothing("saved")
         except BaseException:
             salvage.give_up()
             raise
@@ -78,8 +78,8 @@ def _recover(path: Path, out: Path, progress: Progress | None, overwrite: bool =
 class _Salvage:
     """The copy, as far as it has come."""
 
-    def __init__(self, walk: Walk, out: Path, overwrite: bool) -> None:
-        self._walk, self._out, self._overwrite = walk, out, overwrite
+    def __init__(self, scan: Scan, out: Path, overwrite: bool) -> None:
+        self._scan, self._out, self._overwrite = scan, out, overwrite
         self._recorder: Recorder | None = None
         self._publish_time = 0
         self._timekeeper: Lockstep | None = None  # of the run being kept; without methods, it only tells the time
@@ -107,7 +107,7 @@ class _Salvage:
     def keep(self, layout: Layout, messages: list[Message]) -> None:
         """Copy what a chunk holds of runs whose start is known."""
         if self._recorder is None:
-            facts = self._walk.metadata | {"format": str(layout.version), "sin": layout.sin, "recovered": "yes"}
+            facts = self._scan.metadata | {"format": str(layout.version), "sin": layout.sin, "recovered": "yes"}
             self._recorder = Recorder(self._out, lambda: self._publish_time, self._overwrite, facts)
         for parts, (clock, value) in layout.entries(messages):
             self._publish_time = parts[0].publish_time
@@ -161,17 +161,17 @@ class _Salvage:
         """Finish the copy."""
         assert self._recorder is not None
         self._recorder.close()
-        summary = self._walk.summary
+        summary = self._scan.summary
         if summary and summary.statistics:  # which tells of all that was there
             layout = layout_of(summary.channels.values())
             self._lost = layout.samples(summary.statistics.channel_message_counts) - self.kept
-            self._chunks_lost = len(summary.chunks) - len(self._walk.chunks)
+            self._chunks_lost = len(summary.chunks) - len(self._scan.chunks)
             self._end = (summary.statistics.message_end_time - CLOCK_OFFSET) / 1e9
         return Recovery(
             file=path,
             out=self._out,
-            damaged=self._walk.damaged,
-            reason=self._walk.reason,
+            damaged=self._scan.damaged,
+            reason=self._scan.reason,
             samples_kept=self.kept,
             samples_lost=self._lost,
             chunks_lost=self._chunks_lost,

@@ -7,7 +7,7 @@ from recordings.errors import RecordingError, printable
 from recordings.lock import alone_with
 from recordings.names import PART, free_path
 from recordings.recover import Recovery, recover
-from recordings.scan import Progress
+from recordings.scan import ShowProgress
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +21,7 @@ class Rescue:
     reason: str | None  # why nothing could be saved, a sentence
 
 
-def rescue(leftover: Path, progress: Progress | None = None) -> Rescue:
+def rescue(leftover: Path, progress: ShowProgress | None = None) -> Rescue:
     """Make a recording of a leftover.
 
     The leftover is removed once all of it is in the recording, or if it was empty; else it stays, renamed so

@@ -1,7 +1,7 @@
-"""Walk: a file from its first byte to its last, past whatever is damaged.  It is checked, not trusted."""
+"""Scan: a file from its first byte to its last, past whatever is damaged.  It is checked, not trusted."""
 
 import zlib
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from io import SEEK_END
@@ -11,13 +11,13 @@ from typing import BinaryIO
 from mcap.opcode import Opcode
 from mcap.records import Channel, DataEnd, Header, Metadata
 
+from recordings.contents import Contents, Layout, layout_of
 from recordings.errors import RecordingError, printable_items
 from recordings.format import METADATA, PROFILE
 from recordings.framing import CHANNEL_LIMIT, MAGIC, RECORD, Chunk, Search, read_chunk, read_record, record_at
-from recordings.layout import Layout, check_times, layout_of
 from recordings.summary import Chunks, Summary, find_summary, read_summary
 
-Progress = Callable[[int, int], None]
+ShowProgress = Callable[[int, int], None]
 """Called with what is done and what there is in all: bytes, or samples."""
 
 
@@ -37,7 +37,7 @@ class Intact:
     chunk: Chunk
 
 
-class Walk:
+class Scan:
     """The intact chunks of a file and the gaps between them, in order.  What was found out is known at the end.
 
     Raises RecordingError for what is no recording of ours, and for chunks whose clock runs backwards.
@@ -46,7 +46,7 @@ class Walk:
     lost; a recording that merely was not finished is not.  `reason`: the first thing wrong, a clause.
     """
 
-    def __init__(self, stream: BinaryIO, progress: Progress | None = None) -> None:
+    def __init__(self, stream: BinaryIO, progress: ShowProgress | None = None) -> None:
         self.complete = self.damaged = False
         self.reason: str | None = None
         self._profile = PROFILE
@@ -57,7 +57,7 @@ class Walk:
         start = stream.read(len(MAGIC))
         if not start:
             raise RecordingError("the file is empty")
-        if sum(map(eq, start, MAGIC)) < len(start) / 2:  # less would be damage, which the walk then finds
+        if sum(map(eq, start, MAGIC)) < len(start) / 2:  # less would be damage, which the scan then finds
             raise RecordingError("this is no MCAP file")
         self._begins_right = start == MAGIC[: len(start)]
         found = find_summary(stream)
@@ -65,7 +65,6 @@ class Walk:
         self._data_end = found[1] if found else None
         self.chunks = Chunks()  # the intact ones so far
         self.messages: Counter[int] = Counter()  # in them, by channel
-        self._time = 0
         self.layout: Layout | None = None  # once a chunk was met
         self.channels: dict[int, Channel] = dict(self.summary.channels) if self.summary else {}
 
@@ -74,6 +73,16 @@ class Walk:
         if self._profile != PROFILE:
             return RecordingError("this is an MCAP file, but no recording of pendu-tui")
         return RecordingError(f"nothing in it can be {done}: {self.reason or 'it has no samples'}")
+
+    def contents(self) -> Contents:
+        """What the file holds, by a scan to its end.  Raises RecordingError if nothing in it can be read."""
+        deque(self, maxlen=0)
+        if self.layout is None:
+            raise self.nothing("read")
+        samples = self.layout.samples(self.messages)
+        return Contents(
+            self.layout, self.chunks, samples, self.metadata, self.complete, self.damaged, self.reason
+        )
 
     def __iter__(self) -> Iterator[Intact | Gap]:
         offset, crc = len(MAGIC), zlib.crc32(MAGIC)
@@ -119,8 +128,6 @@ class Walk:
             if chunk:
                 if self.layout is None:
                     self.layout = self._layout()
-                check_times(self._time, chunk.start, chunk.end)
-                self._time = chunk.end
                 found = Counter(message.channel for message in chunk.messages)
                 self.messages += found
                 self.chunks.add(offset, chunk.start, chunk.end, self.layout.events in found)

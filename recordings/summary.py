@@ -11,7 +11,7 @@ from mcap.opcode import Opcode
 from mcap.records import Channel, Statistics
 
 from recordings.errors import RecordingError
-from recordings.format import EVENTS
+from recordings.format import CLOCK_LIMIT, CLOCK_OFFSET, EVENTS
 from recordings.framing import CHANNEL_LIMIT, MAGIC, RECORD, SMALL_LIMIT, read_record, record_at
 
 CHUNK_LIMIT = 2_000_000  # a chunk every 0.9 s for three weeks; 50 MB of Chunks
@@ -35,9 +35,12 @@ class Chunks:
         return len(self.offsets)
 
     def add(self, offset: int, start: int, end: int, eventful: bool) -> None:
-        """Add the next one.  Raises RecordingError where they are too many to be held."""
+        """Add the next one.  Raises RecordingError if it cannot follow the one before, or there are too many."""
         if len(self) == CHUNK_LIMIT:
             raise RecordingError("it is longer than any recording of ours")
+        before = self.ends[-1] if self.ends else CLOCK_OFFSET
+        if not before <= start <= end <= CLOCK_OFFSET + CLOCK_LIMIT * 1e9:
+            raise RecordingError("its clock runs backwards, or for centuries")
         self.offsets.append(offset)
         self.starts.append(start)
         self.ends.append(end)
@@ -73,7 +76,7 @@ class Summary:
             channels = [at[0] for at in _CHANNEL_OFFSET.iter_unpack(content[_INDEX.size : _INDEX.size + length])]
         except struct.error as error:
             raise RecordingError("its index is damaged") from error
-        if len(content) > SMALL_LIMIT or end < start:
+        if len(content) > SMALL_LIMIT:
             raise RecordingError("its index is damaged")
         known = self.channels  # all of them: every writer puts channels before chunk indexes
         eventful = not channels or any(channel not in known or known[channel].topic == EVENTS for channel in channels)

@@ -8,7 +8,7 @@ from recordings.events import Event
 from recordings.format import sin_fingerprint
 from recordings.lock import open_file
 from recordings.rerun import Difference, Rerun
-from recordings.scan import Gap, Progress, Walk
+from recordings.scan import Gap, Scan, ShowProgress
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,19 +26,19 @@ class Verification:
     first_difference: Difference | None
 
 
-def verify(path: Path, progress: Progress | None = None) -> Verification:
+def verify(path: Path, progress: ShowProgress | None = None) -> Verification:
     """Verify a recording up to where it is first damaged.
 
     Raises RecordingError for what is no recording, or breaks the rules of one, or has no samples.
     """
     with named(path), open_file(path) as stream:
-        walk = Walk(stream, progress)
+        scan = Scan(stream, progress)
         runs = samples = 0
         same_sin = True
         max_difference = 0.0
         first: Difference | None = None
         rerun: Rerun | None = None
-        for piece in walk:
+        for piece in scan:
             if isinstance(piece, Gap):
                 break
             same_sin = piece.layout.sin == sin_fingerprint()
@@ -58,15 +58,15 @@ def verify(path: Path, progress: Progress | None = None) -> Verification:
                     first = first or difference
                 max_difference = max(max_difference, rerun.max_difference)
         if samples == 0:
-            raise walk.nothing("verified")
+            raise scan.nothing("verified")
         return Verification(
             file=path,
-            complete=walk.complete,
-            reason=walk.reason,
+            complete=scan.complete,
+            reason=scan.reason,
             runs=runs,
             samples=samples,
             same_sin=same_sin,
-            identical=first is None and not walk.damaged,
+            identical=first is None and not scan.damaged,
             max_difference=max_difference,
             first_difference=first,
         )

@@ -14,7 +14,7 @@ from recordings.events import Event
 from recordings.format import without_extremes
 from recordings.recording import Recording
 from recordings.recover import recover
-from recordings.scan import Walk
+from recordings.scan import Scan
 from recordings.verify import verify
 from tests.recordings.sittings import record, tiny, two_runs
 
@@ -33,7 +33,7 @@ class Damaged:
         with Recording.open(whole) as recording:
             self.entries = list(recording.entries())
         with whole.open("rb") as stream:
-            self.chunks = [piece.offset for piece in Walk(stream)]
+            self.chunks = [piece.offset for piece in Scan(stream)]
         self.path, self.out = tmp_path / "damaged.mcap", tmp_path / "out.mcap"
         self.recovered = set()
 

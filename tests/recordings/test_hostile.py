@@ -23,7 +23,7 @@ from recordings.framing import read_chunk
 from recordings.recorder import FLUSH_EVERY, Recorder
 from recordings.recording import EVENT_LIMIT, Recording
 from recordings.recover import recover
-from recordings.scan import Walk
+from recordings.scan import Scan
 from recordings.summary import CHUNK_LIMIT, Chunks
 from recordings.verify import verify
 from tests.recordings.sittings import METHOD_KEYS, record, start, two_runs
@@ -346,7 +346,7 @@ def test_three_weeks_of_a_sitting_are_within_the_limit_of_chunks_and_that_takes_
     assert CHUNK_LIMIT * FLUSH_EVERY > 20 * 86_400
     chunks = Chunks()
     for second in range(10_000):
-        chunks.add(second, second, second, eventful=False)
+        chunks.add(second, SECOND + second, SECOND + second, eventful=False)
     columns = (chunks.offsets, chunks.starts, chunks.ends, chunks.eventful)
     a_chunk = sum(map(sys.getsizeof, columns)) / len(chunks)
     assert a_chunk * CHUNK_LIMIT < 60e6  # bytes, twice where a summary is compared with what is in the file
@@ -355,7 +355,7 @@ def test_three_weeks_of_a_sitting_are_within_the_limit_of_chunks_and_that_takes_
 def test_a_recording_of_more_chunks_than_can_be_held_is_refused_in_a_sentence(tmp_path, monkeypatch):
     path = record(tmp_path / "a.mcap", two_runs())
     with path.open("rb") as stream:
-        found = len(list(Walk(stream)))
+        found = len(list(Scan(stream)))
     monkeypatch.setattr("recordings.summary.CHUNK_LIMIT", found)
     assert verify(path).complete
     monkeypatch.setattr("recordings.summary.CHUNK_LIMIT", found - 1)

@@ -7,10 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.run.lockstep import Lockstep, Sample
+from recordings.contents import CHECK_LIMIT
 from recordings.errors import RecordingError
 from recordings.events import Entry, Event
 from recordings.headless import simulate
-from recordings.index import CHECK_LIMIT
 from recordings.recorder import Recorder
 from recordings.recording import Recording
 from tests.recordings.sittings import METHOD_KEYS, SCENE, record, start, tiny, two_runs
@@ -174,7 +174,7 @@ def test_a_damaged_recording_opens_without_what_is_damaged_and_says_so(path, tmp
 
 
 def test_damage_in_a_file_too_long_to_be_checked_when_it_opens_shows_as_it_is_played(path, tmp_path, monkeypatch):
-    monkeypatch.setattr("recordings.index.CHECK_LIMIT", 0)
+    monkeypatch.setattr("recordings.contents.CHECK_LIMIT", 0)
     assert CHECK_LIMIT > 10_000_000
     (tmp_path / "a.mcap").write_bytes(damaged_chunk(path, 2))
     with Recording.open(tmp_path / "a.mcap") as recording:

@@ -1,16 +1,23 @@
-"""Layout: what a file's channels are for.  Messages -> samples and events."""
+"""Contents: what a file's channels are for, which chunks it has, and whether it is whole."""
 
+import zlib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import BinaryIO
 
-from mcap.records import Channel
+from mcap.opcode import Opcode
+from mcap.records import Channel, Metadata
 
 from engine.methods import METHODS
 from engine.run.lockstep import Reading, Sample
-from recordings.errors import RecordingError
+from recordings.errors import RecordingError, printable_items
 from recordings.events import Entry
-from recordings.format import CLOCK_LIMIT, CLOCK_OFFSET, EVENTS, FORMAT_VERSION, decode_event, decode_reading, topic
-from recordings.framing import Message
+from recordings.format import CLOCK_OFFSET, EVENTS, FORMAT_VERSION, METADATA, decode_event, decode_reading, topic
+from recordings.framing import Message, read_record, record_at
+from recordings.summary import Chunks, find_summary
+
+CHECK_LIMIT = 1 << 26  # bytes checked whenever a file is opened: the first two hours, in 50 ms
+_BLOCK = 1 << 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,12 +89,51 @@ def layout_of(channels: Iterable[Channel]) -> Layout:
     )
 
 
-def check_times(before: int, start: int, end: int) -> None:
-    """Raise RecordingError unless a chunk from `start` to `end` [ns] can follow one that ended at `before`."""
-    if not max(before, CLOCK_OFFSET) <= start <= end <= CLOCK_OFFSET + CLOCK_LIMIT * 1e9:
-        raise RecordingError("its clock runs backwards, or for centuries")
-
-
 def clock_of(message: Message) -> float:
     """The recording clock [s]."""
     return (message.log_time - CLOCK_OFFSET) / 1e9
+
+
+@dataclass(frozen=True, slots=True)
+class Contents:
+    """What is where in a file.  `reason`: what is wrong, a clause; None if nothing is, or nothing was found so far."""
+
+    layout: Layout
+    chunks: Chunks
+    samples: int
+    metadata: dict[str, str]
+    complete: bool
+    damaged: bool
+    reason: str | None
+
+
+def from_summary(stream: BinaryIO) -> Contents | None:
+    """The contents by a file's summary.  None where it does not hold: then a `Scan` has to find them."""
+    found = find_summary(stream)
+    if found is None:
+        return None
+    summary, data_end, crc = found
+    if summary.statistics is None or (data_end <= CHECK_LIMIT and _crc(stream, data_end) != crc):
+        return None
+    layout = layout_of(summary.channels.values())
+    metadata: dict[str, str] = {}
+    try:
+        for offset in summary.metadata_offsets:
+            record = record_at(stream, offset)
+            match read_record(*record) if record and record[0] == Opcode.METADATA else None:
+                case Metadata(name=name, metadata=found_there) if name == METADATA:
+                    metadata = printable_items(found_there)
+    except RecordingError:
+        return None
+    samples = layout.samples(summary.statistics.channel_message_counts)
+    return Contents(layout, summary.chunks, samples, metadata, complete=True, damaged=False, reason=None)
+
+
+def _crc(stream: BinaryIO, size: int) -> int:
+    """The checksum of a file's first bytes."""
+    crc = 0
+    stream.seek(0)
+    while size and (block := stream.read(min(size, _BLOCK))):
+        crc = zlib.crc32(block, crc)
+        size -= len(block)
+    return crc
