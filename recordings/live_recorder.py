@@ -7,7 +7,7 @@ from pathlib import Path
 from engine.run.lockstep import Sample
 from recordings.errors import DiskError, NameTakenError
 from recordings.events import Entry, Event
-from recordings.names import free_path
+from recordings.library import free_path
 from recordings.recorder import Recorder, WallClock, trouble
 
 RETRY_EVERY = 5.0  # s of the recording clock

@@ -34,8 +34,8 @@ from recordings.format import (
     topic,
     without_extremes,
 )
+from recordings.library import part_of
 from recordings.lock import hold
-from recordings.names import part_of
 
 FLUSH_EVERY = 0.9  # s of the recording clock; with a frame's delay the loss at kill -9 stays below 1 s
 FLUSH_EVENTS_EVERY = 0.25  # s; a key held down gives 30 events a second

@@ -10,8 +10,7 @@ from typing import NamedTuple
 
 from engine.scenes import Scene
 from recordings.headless import Changes, simulate
-from recordings.library import GOLDEN
-from recordings.names import SUFFIX
+from recordings.library import GOLDEN, SUFFIX
 from recordings.recorder import Recorder
 
 

@@ -12,7 +12,7 @@ import pytest
 
 from recordings.library import leftovers
 from recordings.recording import Recording
-from recordings.rescue import rescue
+from recordings.recover import rescue
 from recordings.verify import verify
 from tests.tui.pty_lab import PtyLab
 

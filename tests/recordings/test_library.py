@@ -8,8 +8,7 @@ import pytest
 
 from recordings import library
 from recordings.errors import RecordingError
-from recordings.library import GOLDEN, Item, leftovers, listing, new_path, prune, resolve, to_prune
-from recordings.names import free_path
+from recordings.library import GOLDEN, Item, free_path, leftovers, listing, new_path, prune, resolve, to_prune
 from recordings.recorder import Recorder
 from recordings.recording import Recording
 from tests.recordings.sittings import start, tiny

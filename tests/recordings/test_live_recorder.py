@@ -10,8 +10,8 @@ import pytest
 from engine.run.lockstep import Lockstep
 from recordings.errors import DiskError
 from recordings.events import Event
+from recordings.library import free_path
 from recordings.live_recorder import RETRY_EVERY, LiveRecorder
-from recordings.names import free_path
 from recordings.recording import Recording
 from recordings.verify import verify
 from tests.recordings.sittings import SCENE, start

@@ -5,7 +5,7 @@ import pytest
 from recordings.events import Event
 from recordings.library import leftovers
 from recordings.recorder import Recorder
-from recordings.rescue import rescue
+from recordings.recover import rescue
 from recordings.verify import verify
 from tests.recordings.sittings import start, tiny, two_runs
 

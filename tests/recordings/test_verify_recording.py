@@ -11,13 +11,11 @@ from engine.models.pendulum import acceleration
 from engine.run import loops
 from engine.run.lockstep import Lockstep, Sample
 from engine.scenes import SCENES
-from recordings import rerun
 from recordings.errors import RecordingError
 from recordings.events import Entry, Event
 from recordings.headless import simulate
 from recordings.recorder import Recorder
-from recordings.rerun import Difference
-from recordings.verify import verify
+from recordings.verify import TOLERANCE, Difference, verify
 from tests.recordings.sittings import SCENE, record, start, tiny, two_runs
 
 
@@ -180,11 +178,11 @@ def test_beyond_the_tolerance_a_difference_is_a_difference_also_where_sin_differ
     entries = two_runs()
     right = reading_of(entries, 7, 2).theta
     monkeypatch.setattr("recordings.recorder.sin_fingerprint", lambda: "another")
-    near = right * (1 + rerun.TOLERANCE / 2)
+    near = right * (1 + TOLERANCE / 2)
     verification = verify(record(tmp_path / "a.mcap", altered(entries, 7, 2, theta=near)))
     assert verification.identical
     assert verification.max_difference == abs(near - right)
-    outside = altered(entries, 7, 2, theta=right * (1 + 1e3 * rerun.TOLERANCE))
+    outside = altered(entries, 7, 2, theta=right * (1 + 1e3 * TOLERANCE))
     difference = verify(record(tmp_path / "b.mcap", outside)).first_difference
     assert (difference.method, difference.field, difference.computed) == ("velocity_verlet", "theta", right)
 

@@ -7,13 +7,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from recordings.errors import RecordingError, printable
-from recordings.names import PART
+from recordings.library import PART
 from tui.cli.errors import Exit
 from tui.cli.output import progress, write_json
 
 if TYPE_CHECKING:
-    from recordings.rerun import Difference
-    from recordings.verify import Verification
+    from recordings.verify import Difference, Verification
 
 EXAMPLES = """\
 examples:
