@@ -38,6 +38,17 @@ def named(path: Path) -> Iterator[None]:
         raise RecordingError(f"{printable(str(path))}: {error.strerror or error}.") from error
 
 
+@contextmanager
+def writing(path: Path) -> Iterator[None]:
+    """Turn whatever the disk does while `path` is written into a DiskError."""
+    try:
+        yield
+    except DiskError:
+        raise
+    except OSError as error:
+        raise DiskError(error.strerror or str(error), path, error.errno or 0) from error
+
+
 def printable(text: str, limit: int = TEXT_LIMIT) -> str:
     """`text` with nothing in it that a terminal would obey: no escapes, line ends or bidirectional overrides."""
     text = text if len(text) <= limit else text[: limit - 1] + "…"

@@ -1,14 +1,14 @@
-"""SittingRecorder: records a sitting whatever becomes of the disk."""
+"""LiveRecorder: records what the lab does, whatever becomes of the disk."""
 
 import time
 from contextlib import suppress
 from pathlib import Path
 
 from engine.run.lockstep import Sample
-from recordings.errors import DiskError, NameTakenError
+from recordings.errors import DiskError, NameTakenError, writing
 from recordings.events import Entry, Event
 from recordings.library import free_path
-from recordings.recorder import Recorder, WallClock, trouble
+from recordings.recorder import Recorder, WallClock
 
 RETRY_EVERY = 5.0  # s of the recording clock
 
@@ -38,16 +38,13 @@ class LiveRecorder:
 
     @property
     def bytes(self) -> int:
-        """Its size."""
         return self._recorder.bytes
 
     @property
     def seconds(self) -> float:
-        """Its length."""
         return self._recorder.seconds
 
     def event(self, event: Event, clock: float) -> None:
-        """Record an event."""
         if event.kind == "start":
             self._run = []
         self._write(Entry(clock, event))
@@ -55,7 +52,6 @@ class LiveRecorder:
             self._run.append(event)
 
     def sample(self, sample: Sample, clock: float) -> None:
-        """Record a sample."""
         self._write(Entry(clock, sample))
 
     def close(self) -> None:
@@ -99,11 +95,9 @@ class LiveRecorder:
                 return Recorder(free_path(self._path), self._wall)
 
     def _reopen(self, clock: float) -> None:
-        try:
+        with writing(self._path):
             self._path.parent.mkdir(parents=True, exist_ok=True)
             recorder = self._opened()
-        except OSError as error:
-            raise trouble(error, self._path) from error
         self._recorder, self._zero = recorder, clock
         for event in self._run:
             recorder.event(event, 0.0)

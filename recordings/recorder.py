@@ -12,13 +12,12 @@ from contextlib import suppress
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from types import TracebackType
 from typing import Self
 
 from mcap.writer import CompressionType, Writer
 
 from engine.run.lockstep import Sample
-from recordings.errors import DiskError, NameTakenError
+from recordings.errors import DiskError, NameTakenError, writing
 from recordings.events import Event
 from recordings.fields import EVENT_SCHEMA, SAMPLE_SCHEMA, SCENE_NUMBERS
 from recordings.format import (
@@ -66,23 +65,21 @@ class Recorder:
         self.bytes = 0  # size of the file so far
         self.samples = 0
         self._wall, self._facts = wall, facts
-        self._sits = wall is not None and facts is None  # or its seconds are none that somebody waited for
+        self._flush_by_time = wall is not None and facts is None  # real time passes while it records
         self._last: Sample | None = None
         self._channels: dict[str, int] = {}
         self._log_time = CLOCK_OFFSET
         self._paused = self._stopped = False
         self._event_waits = False
         self._flushed_at, self._unflushed = 0.0, 0
-        try:
+        with writing(self.part):
             if path.exists() and not overwrite:
                 raise NameTakenError("a file of this name exists already; choose another name", path)
-            self._file = self.part.open("xb", buffering=1 << 20)
-        except FileExistsError as error:
-            raise NameTakenError(
-                "is being recorded, or left over from a recording that was not finished; choose another name", self.part
-            ) from error
-        except OSError as error:
-            raise trouble(error, self.part) from error
+            try:
+                self._file = self.part.open("xb", buffering=1 << 20)
+            except FileExistsError as error:
+                why = "is being recorded, or left over from a recording that was not finished; choose another name"
+                raise NameTakenError(why, self.part) from error
         hold(self._file)
         self._writer = Writer(self._file, chunk_size=1 << 62, compression=CompressionType.ZSTD, enable_data_crcs=True)
         self._writer.start(PROFILE, f"pendu-tui {_version()}")
@@ -118,13 +115,10 @@ class Recorder:
 
     def flush(self) -> None:
         """Bring everything so far to the disk's cache, where it survives the death of this process."""
-        try:
+        with writing(self.part):
             self._writer.flush()  # type: ignore[no-untyped-call]
-            there = self.part.stat()
-        except OSError as error:
-            raise trouble(error, self.part) from error
-        if not os.path.samestat(there, os.fstat(self._file.fileno())):
-            raise DiskError("another file has taken its place", self.part)
+            if not os.path.samestat(self.part.stat(), os.fstat(self._file.fileno())):
+                raise DiskError("another file has taken its place", self.part)
         self.bytes = self._file.tell()
         self._flushed_at, self._unflushed, self._event_waits = self.seconds, 0, False
 
@@ -140,17 +134,16 @@ class Recorder:
                 last = self._last
                 self._add([(EVENTS, encode_event(Event("stop", last.run, last.step, last.t)))], self.seconds)
             self.flush()
-            self._writer.finish()  # type: ignore[no-untyped-call]
-            self._file.flush()
-            os.fsync(self._file.fileno())
-            self.bytes = self._file.tell()
-            if os.name == "nt":
-                self._file.close()  # Windows renames no open file; elsewhere the lock is kept until the name is right
-            self.part.replace(self.path)
-            self._file.close()
-        except OSError as error:
+            with writing(self.part):
+                self._writer.finish()  # type: ignore[no-untyped-call]
+                self._file.flush()
+                os.fsync(self._file.fileno())
+                self.bytes = self._file.tell()
+                self.part.replace(self.path)  # still locked, until the name is right
+                self._file.close()
+        except DiskError:
             self.abandon()
-            raise trouble(error, self.part) from error
+            raise
 
     def abandon(self) -> None:
         """Let go of the file as it is.  What was flushed stays in NAME.mcap.part; an empty one is removed."""
@@ -165,9 +158,7 @@ class Recorder:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
-    ) -> None:
+    def __exit__(self, kind: object, error: BaseException | None, traceback: object) -> None:
         if isinstance(error, DiskError):
             self.abandon()
         else:
@@ -194,17 +185,15 @@ class Recorder:
         self.seconds = max(self.seconds, clock)
         publish_time = self._log_time if self._wall is None else self._wall()
         sequence = self.samples % (1 << 32)
-        try:
+        with writing(self.part):
             for name, data in messages:
                 self._writer.add_message(self._channels[name], self._log_time, data, publish_time, sequence)
                 self._unflushed += len(data)
-        except OSError as error:
-            raise trouble(error, self.part) from error
 
     def _flush_if_due(self, urgent: bool = False) -> None:
         age = self.seconds - self._flushed_at
         every = FLUSH_EVENTS_EVERY if self._event_waits else FLUSH_EVERY
-        if urgent or (self._sits and age >= every) or self._unflushed > FLUSH_BYTES:
+        if urgent or (self._flush_by_time and age >= every) or self._unflushed > FLUSH_BYTES:
             self.flush()
 
 
@@ -229,10 +218,3 @@ def _metadata(start: Event, wall: WallClock | None) -> dict[str, str]:
         metadata["python"] = platform.python_version()
         metadata["platform"] = f"{platform.system()} {platform.machine()}"
     return metadata
-
-
-def trouble(error: OSError, path: Path) -> DiskError:
-    """The error as ours."""
-    if isinstance(error, DiskError):
-        return error
-    return DiskError(error.strerror or str(error), path, error.errno or 0)

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 from io import SEEK_END
 from pathlib import Path
-from types import TracebackType
 from typing import BinaryIO, NamedTuple, Self
 
 from mcap.opcode import Opcode
@@ -30,8 +29,8 @@ CHUNKS_KEPT = 2  # decoded; playing meets the same one thirty times, stepping to
 _BEYOND = 1 << 62  # the last entry of any chunk
 
 
-class Place(NamedTuple):
-    """Where a sample is.  Several may share a clock: while paused, the clock stands and steps go on."""
+class SamplePlace(NamedTuple):
+    """Where in a file a sample is.  Several may share a clock: while paused, the clock stands and steps go on."""
 
     chunk: int
     entry: int
@@ -96,48 +95,44 @@ class Recording:
                 raise
 
     def close(self) -> None:
-        """Let go of the file."""
         self._stream.close()
 
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
-    def at(self, clock: float) -> Place | None:
+    def at(self, clock: float) -> SamplePlace | None:
         """The last sample at or before that time, or else the first one; None where there are no samples."""
         clock, log_time = _as_recorded(clock)
         chunk = bisect_right(self._chunks.starts, log_time) - 1
         entries = self._entries(chunk) if chunk >= 0 else ()
         later = bisect_right(entries, clock, key=lambda entry: entry.clock)
-        return self.previous(Place(chunk, later)) or self.next(Place(-1, 0))
+        return self.previous(SamplePlace(chunk, later)) or self.next(SamplePlace(-1, 0))
 
-    def sample(self, place: Place) -> Entry:
-        """The sample there, and its time."""
+    def sample(self, place: SamplePlace) -> Entry:
         return self._entries(place.chunk)[place.entry]
 
-    def next(self, place: Place) -> Place | None:
+    def next(self, place: SamplePlace) -> SamplePlace | None:
         """The next sample; None after the last."""
         index = place.entry + 1
         for chunk in range(place.chunk, len(self._chunks)):
             entries = self._entries(chunk) if chunk >= 0 else ()
             for at in range(index, len(entries)):
                 if isinstance(entries[at].value, Sample):
-                    return Place(chunk, at)
+                    return SamplePlace(chunk, at)
             index = 0
         return None
 
-    def previous(self, place: Place) -> Place | None:
+    def previous(self, place: SamplePlace) -> SamplePlace | None:
         """The sample before; None before the first."""
         index = place.entry
         for chunk in range(min(place.chunk, len(self._chunks) - 1), -1, -1):
             entries = self._entries(chunk)
             for at in range(min(index, len(entries)) - 1, -1, -1):
                 if isinstance(entries[at].value, Sample):
-                    return Place(chunk, at)
+                    return SamplePlace(chunk, at)
             index = _BEYOND
         return None
 
@@ -192,7 +187,7 @@ class Recording:
                 chunk = following[0]
                 entries = enumerate(self._entries(chunk))
                 entry = next((at for at, (_, value) in entries if value.run == following[2].run), 0)
-            last = self.previous(Place(chunk, entry))
+            last = self.previous(SamplePlace(chunk, entry))
             end, sample = self.sample(last) if last else (begin, None)
             if not isinstance(sample, Sample) or sample.run != start.run:
                 end, step, t = begin, start.step, start.t

@@ -12,13 +12,13 @@ from mcap.opcode import Opcode
 
 from engine.run.lockstep import Sample
 from recordings.contents import layout_of
-from recordings.errors import DiskError, RecordingError, named, printable
+from recordings.errors import DiskError, RecordingError, named, printable, writing
 from recordings.events import Event
 from recordings.format import CLOCK_OFFSET, encode_readings, without_extremes
 from recordings.framing import Message
 from recordings.library import PART, free_path, part_of
 from recordings.lock import alone_with, open_file
-from recordings.recorder import Recorder, trouble
+from recordings.recorder import Recorder
 from recordings.scan import Gap, Intact, Scan, ShowProgress
 from recordings.verify import Rerun
 
@@ -88,10 +88,8 @@ def recover(path: Path, out: Path, progress: ShowProgress | None = None, overwri
     if out.exists() and not overwrite:
         raise DiskError("a file of this name exists already; choose another name", out)
     recovery = _recover(path, free_path(out), progress)  # the .part of `out` is the file that is read
-    try:
+    with writing(out):
         return replace(recovery, out=recovery.out.replace(out))
-    except OSError as error:
-        raise trouble(error, out) from error
 
 
 def _recover(path: Path, out: Path, progress: ShowProgress | None, overwrite: bool = False) -> Recovery:
