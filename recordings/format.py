@@ -51,12 +51,8 @@ def sin_fingerprint() -> str:
 
 def without_extremes(sample: Sample) -> Sample:
     """The sample as the first of its run, or after a gap: nothing is known of the steps before."""
-    return replace(
-        sample,
-        readings=tuple(
-            replace(reading, **dict.fromkeys(EXTREMES, reading.energy_error)) for reading in sample.readings
-        ),
-    )
+    readings = (replace(reading, **dict.fromkeys(EXTREMES, reading.energy_error)) for reading in sample.readings)
+    return replace(sample, readings=tuple(readings))
 
 
 def encode_readings(sample: Sample) -> list[bytes]:

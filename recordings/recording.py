@@ -109,7 +109,7 @@ class Recording:
         chunk = bisect_right(self._chunks.starts, log_time) - 1
         entries = self._entries(chunk) if chunk >= 0 else ()
         later = bisect_right(entries, clock, key=lambda entry: entry.clock)
-        return self.previous(SamplePlace(chunk, later)) or self.next(SamplePlace(-1, 0))
+        return self.previous(SamplePlace(chunk, later)) or self.next(SamplePlace(0, -1))
 
     def sample(self, place: SamplePlace) -> Entry:
         return self._entries(place.chunk)[place.entry]
@@ -118,7 +118,7 @@ class Recording:
         """The next sample; None after the last."""
         index = place.entry + 1
         for chunk in range(place.chunk, len(self._chunks)):
-            entries = self._entries(chunk) if chunk >= 0 else ()
+            entries = self._entries(chunk)
             for at in range(index, len(entries)):
                 if isinstance(entries[at].value, Sample):
                     return SamplePlace(chunk, at)

@@ -88,7 +88,7 @@ class Scan:
         offset, crc = len(MAGIC), zlib.crc32(MAGIC)
         search = Search(self._stream)
         if not self._begins_right:
-            self.damaged, self.reason = True, "it does not begin as an MCAP file does"
+            self._damage("it does not begin as an MCAP file does")
         while True:
             if self._progress:
                 self._progress(offset, self.size)
@@ -119,7 +119,7 @@ class Scan:
                             return
             except RecordingError as error:
                 following = search.next_chunk(offset + 1)
-                self.damaged, self.reason = True, self.reason or f"{error} (at byte {offset})"
+                self._damage(f"{error} (at byte {offset})")
                 yield Gap(offset)
                 if following is None:
                     return
@@ -150,18 +150,20 @@ class Scan:
     def _end(self, offset: int, right: bool) -> None:
         """Check what follows the data; all that is wrong there is damage without a gap."""
         if not right:
-            self.damaged, self.reason = True, self.reason or "its checksum is wrong"
+            self._damage("its checksum is wrong")
         elif self.summary is None or offset != self._data_end:
             try:
-                whole = read_summary(self._stream, offset + RECORD.size + 4) is not None
-                self.damaged = self.damaged or whole  # and yet not where the footer says
+                if read_summary(self._stream, offset + RECORD.size + 4):
+                    self._damage("its summary is not where its footer says")
                 self.reason = self.reason or "the file ends within its summary"
             except RecordingError as error:
-                self.damaged, self.reason = True, self.reason or str(error)
-        elif not self.damaged and not self._agrees(self.summary):
-            self.damaged, self.reason = True, "its summary contradicts what is in it"
-        else:
-            self.complete = not self.damaged
+                self._damage(str(error))
+        elif not self._agrees(self.summary):
+            self._damage("its summary contradicts what is in it")
+        self.complete = self.reason is None
+
+    def _damage(self, reason: str) -> None:
+        self.damaged, self.reason = True, self.reason or reason
 
     def _agrees(self, summary: Summary) -> bool:
         statistics = summary.statistics

@@ -58,17 +58,16 @@ class Summary:
 
     def take(self, opcode: int, content: bytes) -> None:
         """Take in a record.  Raises RecordingError for one that is damaged."""
-        match opcode:
-            case Opcode.CHUNK_INDEX:
-                self._take_index(content)
-            case Opcode.METADATA_INDEX:
-                self.metadata_offsets.append(int.from_bytes(content[:8], "little"))
-            case Opcode.CHANNEL | Opcode.STATISTICS:
-                match read_record(opcode, content):
-                    case Channel() as channel:
-                        self.channels[channel.id] = channel
-                    case Statistics() as statistics:
-                        self.statistics = statistics
+        if opcode == Opcode.CHUNK_INDEX:
+            self._take_index(content)
+        elif opcode == Opcode.METADATA_INDEX:
+            self.metadata_offsets.append(int.from_bytes(content[:8], "little"))
+        elif opcode in (Opcode.CHANNEL, Opcode.STATISTICS):
+            record = read_record(opcode, content)
+            if isinstance(record, Channel):
+                self.channels[record.id] = record
+            elif isinstance(record, Statistics):
+                self.statistics = record
 
     def _take_index(self, content: bytes) -> None:
         try:

@@ -89,7 +89,7 @@ def test_each_shows_what_it_says_is_to_be_watched():
 
 
 def test_the_shipped_layout_shows_what_is_in_a_recording():
-    layout = json.loads((GOLDEN.parent / "foxglove_layout.json").read_text())
+    layout = json.loads((GOLDEN.parent / "viewers" / "foxglove_layout.json").read_text())
     panels = layout["configById"]
 
     def shown(node):
