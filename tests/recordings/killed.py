@@ -11,7 +11,7 @@ from pathlib import Path
 
 from engine.run.lockstep import Sample
 from recordings.live_recorder import LiveRecorder
-from tests.recordings.sittings import SCENE
+from tests.recordings.examples import SCENE
 from tui.playback.live import Live
 
 FRAME = 1 / 30  # s

@@ -16,7 +16,7 @@ from recordings.recording import Recording
 from recordings.recover import recover
 from recordings.scan import Scan
 from recordings.verify import verify
-from tests.recordings.sittings import record, tiny, two_runs
+from tests.recordings.examples import record, tiny, two_runs
 
 
 @pytest.fixture(autouse=True)

@@ -22,7 +22,7 @@ from recordings.format import (
     sin_fingerprint,
     without_extremes,
 )
-from tests.recordings.sittings import METHOD_KEYS, SCENE, start
+from tests.recordings.examples import METHOD_KEYS, SCENE, start
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
 counts = st.integers(0, 2**53 - 1)

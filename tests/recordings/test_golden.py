@@ -13,8 +13,8 @@ from recordings.format import sin_fingerprint, without_extremes
 from recordings.library import GOLDEN, golden_names
 from recordings.recording import Recording
 from recordings.verify import verify
+from tests.recordings.examples import two_runs
 from tests.recordings.make_golden import RECORDINGS, make
-from tests.recordings.sittings import two_runs
 
 ROOM = 64_000  # bytes; they are in every installation
 

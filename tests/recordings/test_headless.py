@@ -14,7 +14,7 @@ from recordings.recorder import Recorder
 from recordings.recording import Recording
 from recordings.recover import recover
 from recordings.verify import verify
-from tests.recordings.sittings import SCENE
+from tests.recordings.examples import SCENE
 
 
 def test_samples_are_a_thirtieth_of_a_second_apart_with_the_first_and_the_last():

@@ -26,7 +26,7 @@ from recordings.recover import recover
 from recordings.scan import Scan
 from recordings.summary import CHUNK_LIMIT, Chunks
 from recordings.verify import verify
-from tests.recordings.sittings import METHOD_KEYS, record, start, two_runs
+from tests.recordings.examples import METHOD_KEYS, record, start, two_runs
 
 SECOND = 1_000_000_000
 

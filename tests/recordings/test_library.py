@@ -11,7 +11,7 @@ from recordings.errors import RecordingError
 from recordings.library import GOLDEN, Item, free_path, leftovers, listing, new_path, prune, resolve, to_prune
 from recordings.recorder import Recorder
 from recordings.recording import Recording
-from tests.recordings.sittings import start, tiny
+from tests.recordings.examples import start, tiny
 from tui.playback.marks import Mark, Marks
 
 NOON = time.struct_time((2026, 11, 20, 12, 0, 0, 4, 324, 0))

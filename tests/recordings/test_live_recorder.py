@@ -14,7 +14,7 @@ from recordings.library import free_path
 from recordings.live_recorder import RETRY_EVERY, LiveRecorder
 from recordings.recording import Recording
 from recordings.verify import verify
-from tests.recordings.sittings import SCENE, start
+from tests.recordings.examples import SCENE, start
 
 
 class Lab:

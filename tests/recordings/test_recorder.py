@@ -21,7 +21,7 @@ from recordings.lock import in_use
 from recordings.recorder import FLUSH_EVERY, Recorder
 from recordings.recording import Recording
 from recordings.verify import verify
-from tests.recordings.sittings import METHOD_KEYS, SCENE, record, start, tiny, two_runs
+from tests.recordings.examples import METHOD_KEYS, SCENE, record, start, tiny, two_runs
 
 FRAME = 1 / 30
 

@@ -13,7 +13,7 @@ from recordings.events import Entry, Event
 from recordings.headless import simulate
 from recordings.recorder import Recorder
 from recordings.recording import Recording
-from tests.recordings.sittings import METHOD_KEYS, SCENE, record, start, tiny, two_runs
+from tests.recordings.examples import METHOD_KEYS, SCENE, record, start, tiny, two_runs
 
 
 @pytest.fixture(scope="module")

@@ -16,7 +16,7 @@ from recordings.events import Entry, Event
 from recordings.headless import simulate
 from recordings.recorder import Recorder
 from recordings.verify import TOLERANCE, Difference, verify
-from tests.recordings.sittings import SCENE, record, start, tiny, two_runs
+from tests.recordings.examples import SCENE, record, start, tiny, two_runs
 
 
 def altered(entries, at, method, **numbers):
