@@ -16,8 +16,9 @@ from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.records import Channel, DataEnd, Header, McapRecord, Metadata, Schema, Statistics
+from mcap.records import Chunk as RawChunk
 
-from recordings.errors import RecordingError
+from recordings.errors import RecordingError, printable
 
 MAGIC = b"\x89MCAP0\r\n"
 RECORD_LIMIT = 1 << 23  # bytes of a record, and of what a chunk decompresses to; ours have 1 MB at most
@@ -34,6 +35,7 @@ SEARCH_LIMIT = 1 << 30  # bytes in false chunks, a second's work; that many dama
 
 _READERS: dict[Opcode, Callable[[ReadDataStream], McapRecord]] = {
     Opcode.HEADER: Header.read,
+    Opcode.CHUNK: RawChunk.read,
     Opcode.SCHEMA: Schema.read,
     Opcode.CHANNEL: Channel.read,
     Opcode.METADATA: Metadata.read,
@@ -63,28 +65,24 @@ class Chunk(NamedTuple):
 
 def read_chunk(content: bytes) -> Chunk:
     """The chunk of a record's content.  Raises RecordingError if a bit of it is wrong."""
-    if len(content) < CHUNK_HEADER:
-        raise RecordingError("a chunk is too short")
-    start, end, size, crc = _CHUNK.unpack_from(content)
-    name_length = int.from_bytes(content[_CHUNK.size : _CHUNK.size + 4], "little")
-    if content[_CHUNK.size : _CHUNK.size + 8] != _ZSTD:
-        name = content[_CHUNK.size + 4 : _CHUNK.size + 4 + name_length][:16].decode("ascii", "replace")
-        raise RecordingError(f"a chunk is compressed as {name!r}; only zstd is read")
-    if len(content) - CHUNK_HEADER != int.from_bytes(content[CHUNK_HEADER - 8 : CHUNK_HEADER], "little"):
-        raise RecordingError("a chunk's length is wrong")
+    raw = read_record(Opcode.CHUNK, content)
+    assert isinstance(raw, RawChunk)
+    size = raw.uncompressed_size
+    if raw.compression != "zstd":
+        raise RecordingError(f"a chunk is compressed as {printable(raw.compression, 16)!r}; only zstd is read")
     if size > RECORD_LIMIT:
         raise RecordingError(f"a chunk declares {size} bytes, more than any recording of ours has in one")
-    compressed = content[CHUNK_HEADER:]
     try:
-        if zstandard.frame_content_size(compressed) not in (-1, size):  # decompress() would obey the frame
+        if zstandard.frame_content_size(raw.data) not in (-1, size):  # decompress() would obey the frame
             raise RecordingError("a chunk declares two sizes")
         decompressor = zstandard.ZstdDecompressor(max_window_size=RECORD_LIMIT)
-        data = decompressor.decompress(compressed, max_output_size=size, allow_extra_data=False)
+        data = decompressor.decompress(raw.data, max_output_size=size, allow_extra_data=False)
     except (zstandard.ZstdError, MemoryError) as error:
         raise RecordingError("a chunk cannot be decompressed") from error
-    if crc == 0 or zlib.crc32(data) != crc:
+    if raw.uncompressed_crc == 0 or zlib.crc32(data) != raw.uncompressed_crc:
         raise RecordingError("a chunk's checksum is wrong")
     channels, messages = _records(data)
+    start, end = raw.message_start_time, raw.message_end_time
     if not messages or messages[0].log_time != start or messages[-1].log_time != end:
         raise RecordingError("a chunk's times are wrong")
     return Chunk(start, end, channels, messages)
@@ -126,14 +124,14 @@ def read_record(opcode: int, content: bytes) -> McapRecord | None:
         if len(content) < 6 or len(content) != 6 + int.from_bytes(content[2:6], "little"):
             raise RecordingError("an index is damaged")
         return None
-    if len(content) > SMALL_LIMIT:
+    if len(content) > SMALL_LIMIT and opcode != Opcode.CHUNK:
         raise RecordingError(f"a record has {len(content)} bytes, more than any of its kind in a recording of ours")
     stream = ReadDataStream(BytesIO(content))
     try:
         record = _READERS[Opcode(opcode)](stream)
     except KeyError as error:
         raise RecordingError("no record of ours begins where one should") from error
-    except (McapError, ValueError, struct.error) as error:
+    except (McapError, ValueError, OverflowError, struct.error) as error:
         raise RecordingError("a record is damaged") from error
     if stream.count != len(content):
         raise RecordingError("a record's length is wrong")
