@@ -35,9 +35,9 @@ class Layout:
         return max(messages.get(channel, 0) for channel in self.places)
 
     def entries(self, messages: Iterable[Message], only_events: bool = False) -> Iterator[tuple[list[Message], Entry]]:
-        """What the messages of a chunk say, each entry with its messages.  Channels of others are passed over.
+        """The entries of a chunk, each with its messages.  Unknown channels are skipped.
 
-        Raises RecordingError for messages that are none of ours, and for a sample that is not whole.
+        Raises RecordingError for an unexpected message or an incomplete sample.
         """
         parts: list[Message] = []  # of a sample
         readings: list[Reading] = []
@@ -52,34 +52,34 @@ class Layout:
                 if not readings:
                     head = run, step, t
                 if self.places[message.channel] != len(readings) or (run, step, t) != head:
-                    raise RecordingError("a sample is not whole")
+                    raise RecordingError("a sample is incomplete")
                 parts.append(message)
                 readings.append(reading)
                 if len(readings) == len(self.methods):
                     yield parts, Entry(clock_of(parts[0]), Sample(*head, tuple(readings)))
                     parts, readings = [], []
             elif message.channel == self.events:
-                raise RecordingError("a sample is not whole")
+                raise RecordingError("a sample is incomplete")
         if readings:
-            raise RecordingError("a sample is not whole")
+            raise RecordingError("a sample is incomplete")
 
 
 def layout_of(channels: Iterable[Channel]) -> Layout:
-    """The layout that these channels declare.  Raises RecordingError if it is none of ours, or a newer one."""
+    """The layout that these channels declare.  Raises RecordingError if it is not ours, or of a newer format."""
     by_topic = {channel.topic: channel for channel in channels}
     if EVENTS not in by_topic:
-        raise RecordingError("this is an MCAP file, but no recording of pendu-tui")
+        raise RecordingError("this is an MCAP file, but not a recording of pendu-tui")
     facts = by_topic[EVENTS].metadata
     version = facts.get("format", "")
     if not version.isdecimal() or not version.isascii() or len(version) > 9:
-        raise RecordingError("this is no recording of pendu-tui, or one without the version of its format")
+        raise RecordingError("this is not a recording of pendu-tui, or its format version is missing")
     if int(version) > FORMAT_VERSION:
         raise RecordingError(
-            f"it has format {version}, and this pendu-tui knows formats up to {FORMAT_VERSION}; install a newer one"
+            f"it has format {version}, this pendu-tui reads formats up to {FORMAT_VERSION}; install a newer version"
         )
     methods = tuple(method.key for method in METHODS if topic(method.key) in by_topic)
     if not methods:
-        raise RecordingError("it has no method that this version knows")
+        raise RecordingError("this version knows none of its methods")
     return Layout(
         events=by_topic[EVENTS].id,
         methods=methods,
@@ -96,7 +96,7 @@ def clock_of(message: Message) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Contents:
-    """What is where in a file.  `reason`: what is wrong, a clause; None if nothing is, or nothing was found so far."""
+    """What is where in a file.  `reason`: what is wrong, a clause; None if nothing wrong was found so far."""
 
     layout: Layout
     chunks: Chunks
@@ -108,7 +108,7 @@ class Contents:
 
 
 def from_summary(stream: BinaryIO) -> Contents | None:
-    """The contents by a file's summary.  None where it does not hold: then a `Scan` has to find them."""
+    """The contents by a file's summary; None if that cannot be trusted, and a `Scan` is needed."""
     found = find_summary(stream)
     if found is None:
         return None

@@ -13,7 +13,7 @@ COLUMNS = ("clock_s", *(field.column for field in MOMENT), "method", *(field.col
 
 
 def write_csv(recording: Recording, out: TextIO, progress: ShowProgress | None = None) -> int:
-    """Write all samples and return how many there were.  Every number is written so that it reads back the same."""
+    """Write all samples and return how many there were.  Every number reads back with the same bits."""
     rows = csv.writer(out, lineterminator="\n")
     rows.writerow(COLUMNS)
     count = 0

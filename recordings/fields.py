@@ -1,4 +1,4 @@
-"""Fields: the one table of what the messages of a recording hold.
+"""Fields: the one table of what the messages of a recording hold, with units.
 
 Messages, their schemas, the columns of a CSV, `verify`, `run --json` and `--fail-if` take names and units from here.
 """
@@ -33,7 +33,7 @@ class Field(NamedTuple):
 
 
 MOMENT = (Field("run", type="integer"), Field("step", type="integer"), Field("t", "s"))
-"""Where in a recording a message belongs; part of every one."""
+"""Where in a recording a message belongs; in every message."""
 
 READING = (
     Field("theta", "rad"),
@@ -45,7 +45,7 @@ READING = (
     Field("energy_error_high", about="since the sample before", required=False),
     Field("diverged_at", "s", required=False),
 )
-"""One method in a sample: the attributes of a Reading, in their order.  `verify` compares all of them."""
+"""One method in a sample: the attributes of a Reading, in order.  `verify` compares all of them."""
 
 SCENE_NUMBERS = ("theta", "omega", "length", "gravity", "h")
 """The attributes of a Scene that are numbers."""
@@ -64,7 +64,7 @@ EVENT = (
     Field("speed", about="times real time", required=False),
     Field("text", type="string", required=False),
 )
-"""What was done.  Everything but the kind depends on the kind."""
+"""An event: its kind, and what that kind needs."""
 
 VALUES = tuple(field.name for field in READING)
 NUMBERS = tuple(field.name for field in READING if field.required)
@@ -77,7 +77,7 @@ numbers_of = attrgetter(*NUMBERS)
 
 
 def left_out(energy_error: float) -> dict[str, float | None]:
-    """What a message need not repeat: extremes that are the energy error itself, and that nothing diverged."""
+    """Values that a message leaves out: extremes equal to the energy error, and that the method has not diverged."""
     return {"energy_error_low": energy_error, "energy_error_high": energy_error, "diverged_at": None}
 
 

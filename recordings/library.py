@@ -48,12 +48,12 @@ def folder() -> Path:
 
 
 def new_path(where: Path | None = None, now: time.struct_time | None = None) -> Path:
-    """A name that no recording has yet, by date and time."""
+    """A free name, by date and time."""
     return free_path((where or folder()) / (time.strftime("%Y-%m-%dT%H-%M-%S", now or time.localtime()) + SUFFIX))
 
 
 def listing(where: Path | None = None) -> list[Item]:
-    """The finished recordings, newest first.  None, where there is no folder."""
+    """The finished recordings, newest first."""
     items = []
     for path in _files(where or folder(), SUFFIX):
         with suppress(OSError):  # deleted meanwhile
@@ -63,7 +63,7 @@ def listing(where: Path | None = None) -> list[Item]:
 
 
 def resolve(name: str, where: Path | None = None) -> Path:
-    """The recording that `name` means: a file, `latest`, one of the library, or one that came with the program.
+    """The recording of this name: a file, `latest`, one of the library, or a bundled one.
 
     Raises RecordingError, a sentence, if there is none.
     """
@@ -73,7 +73,7 @@ def resolve(name: str, where: Path | None = None) -> Path:
     if name == "latest":
         items = listing(where)
         if not items:
-            raise RecordingError(f"There is no recording in {printable(str(where))} yet; pendu-tui makes one.")
+            raise RecordingError(f"No recordings in {printable(str(where))} yet; start pendu-tui to make one.")
         return items[0].path
     golden = golden_names()
     if name in golden:
@@ -91,17 +91,17 @@ def resolve(name: str, where: Path | None = None) -> Path:
 
 
 def golden_names() -> list[str]:
-    """The recordings that come with the program."""
+    """The bundled recordings."""
     return sorted(path.stem for path in GOLDEN.glob("*" + SUFFIX))
 
 
 def leftovers(where: Path | None = None) -> list[Path]:
-    """Recordings that were begun and not finished, and that nobody is working on."""
+    """Unfinished recordings that no lab is writing any more."""
     return [path for path in _files(where or folder(), SUFFIX + PART) if not in_use(path)]
 
 
 def to_prune(items: Sequence[Item], keep: int | None = None, size: int | None = None) -> list[Item]:
-    """Which to delete so that only the `keep` newest are left, with no more than `size` bytes in all."""
+    """What to delete so that only the `keep` newest are left, with at most `size` bytes in all."""
     newest_first = sorted(items, key=lambda item: item.modified, reverse=True)
     total = 0
     for place, item in enumerate(newest_first):
@@ -112,10 +112,7 @@ def to_prune(items: Sequence[Item], keep: int | None = None, size: int | None = 
 
 
 def prune(items: Iterable[Item]) -> list[Item]:
-    """Delete these recordings, and the marks beside them; return what was deleted.
-
-    What somebody is replaying stays, and what cannot be deleted.
-    """
+    """Delete these recordings with their marks, except those in use; return what could be deleted."""
     deleted = []
     for item in items:
         with suppress(OSError):

@@ -14,11 +14,11 @@ RETRY_EVERY = 5.0  # s of the recording clock
 
 
 class LiveRecorder:
-    """A recorder that survives trouble with the disk: the sitting goes on, and so does the recording, in a new file.
+    """A recorder that survives a failing disk: the lab goes on, and so does the recording, in a new file.
 
     Opening the first file may raise DiskError; nothing after that does.  With `or_next`, a name that another
-    sitting has taken meanwhile becomes the next free one.  `failed` says in a sentence why nothing is being
-    recorded right now.  Every file begins with the start and the changes of h of its run, so each replays and
+    lab has taken meanwhile becomes the next free one.  `failed` is a sentence on why nothing is being recorded
+    now, or None.  Every file begins with the start and the changes of h of its run, so each replays and
     verifies by itself.
     """
 
@@ -28,7 +28,7 @@ class LiveRecorder:
         self.files: list[Path] = []  # that hold something and are no longer written to
         self._path, self._wall = path, wall
         self._run: list[Event] = []  # of the run: its start and its changes of h
-        self._zero = self._failed_at = 0.0  # s of the sitting's clock: where the file begins, the last failure
+        self._zero = self._failed_at = 0.0  # s of the lab's clock: where the file begins, the last failure
         self._recorder = self._opened() if or_next else Recorder(path, wall)
 
     @property
@@ -55,7 +55,7 @@ class LiveRecorder:
         self._write(Entry(clock, sample))
 
     def close(self) -> None:
-        """Finish the file; `failed` says if that was impossible.  What still happens then is not recorded."""
+        """Finish the file; `failed` is set if that was impossible.  Nothing after it is recorded."""
         self._closed = True
         if self.failed is None:
             try:

@@ -1,6 +1,6 @@
 """Who is using a recording: a writer holds an exclusive lock on it, a reader a shared one.
 
-Locks end with their process, however it ends, so a leftover is told from a recording in progress.
+A lock ends with its process, however that ends, so a leftover differs from a recording in progress.
 Only POSIX has such locks; elsewhere nothing is locked.
 """
 

@@ -1,6 +1,6 @@
-"""Recorder: a sitting into a file, so that at most the last second is lost whatever happens to the process.
+"""Recorder: writes samples and events to a file, and loses at most the last second if the process is killed.
 
-Everything goes to NAME.mcap.part, which is renamed to NAME.mcap when it is finished.
+It writes to NAME.mcap.part, which becomes NAME.mcap when it is finished.
 """
 
 import json
@@ -38,18 +38,18 @@ from recordings.lock import hold
 
 FLUSH_EVERY = 0.9  # s of the recording clock; with a frame's delay the loss at kill -9 stays below 1 s
 FLUSH_EVENTS_EVERY = 0.25  # s; a key held down gives 30 events a second
-FLUSH_BYTES = 1 << 17  # of messages in one chunk, however dense the samples; all that counts where nobody sits
+FLUSH_BYTES = 1 << 17  # of messages in one chunk, however dense the samples; the only limit in headless runs
 
 WallClock = Callable[[], int]  # ns since 1970
 
 
 class Recorder:
-    """Writes one recording.  The first thing it is given is a start.
+    """Writes one recording, which begins with a start.
 
     Clocks are in seconds since the recording began, pauses excluded.  Headless recordings have no
-    `wall` clock: nothing in them tells when or where they were made, so the same run gives the same
-    bytes.  `facts` are the metadata of the recording of which this one is a copy.  Any trouble with the
-    disk raises DiskError; after one, only `abandon` is of use.
+    `wall` clock: nothing in them depends on when or where they were made, so the same run gives the
+    same bytes.  `facts` are the metadata of the recording that is copied, if one is.  A failing disk
+    raises DiskError; after that, only `abandon` is of use.
     """
 
     def __init__(
@@ -78,14 +78,14 @@ class Recorder:
             try:
                 self._file = self.part.open("xb", buffering=1 << 20)
             except FileExistsError as error:
-                why = "is being recorded, or left over from a recording that was not finished; choose another name"
+                why = "is in use by a running recording or left over from an unfinished one; choose another name"
                 raise NameTakenError(why, self.part) from error
         hold(self._file)
         self._writer = Writer(self._file, chunk_size=1 << 62, compression=CompressionType.ZSTD, enable_data_crcs=True)
         self._writer.start(PROFILE, f"pendu-tui {_version()}")
 
     def event(self, event: Event, clock: float) -> None:
-        """Write an event; what it changes is on disk a quarter of a second later at the latest."""
+        """Write an event; it is on disk within a quarter of a second."""
         if event.kind == "start":
             self._last = None  # or a recording that ends here would have a stop of the run before
             if not self._channels:
@@ -97,9 +97,9 @@ class Recorder:
         self._flush_if_due(urgent=self._paused)
 
     def sample(self, sample: Sample, clock: float, encoded: Sequence[bytes] | None = None) -> None:
-        """Write a sample, unless it is the last one again.  A copy passes on the messages that it has `encoded`.
+        """Write a sample, unless it was the last one written.  A copy passes the messages that it read as `encoded`.
 
-        Steps ascend within a run.  Extremes are those since the sample before, so a run's first has none.
+        Steps ascend within a run.  Extremes are those since the previous sample, so a run's first has none.
         """
         last = self._last
         if last is None or last.run != sample.run:
@@ -114,16 +114,16 @@ class Recorder:
         self._flush_if_due(urgent=self._paused or last is None or last.run != sample.run)
 
     def flush(self) -> None:
-        """Bring everything so far to the disk's cache, where it survives the death of this process."""
+        """Hand everything so far to the system, where it survives the death of this process."""
         with writing(self.part):
             self._writer.flush()  # type: ignore[no-untyped-call]
             if not os.path.samestat(self.part.stat(), os.fstat(self._file.fileno())):
-                raise DiskError("another file has taken its place", self.part)
+                raise DiskError("the file was replaced", self.part)
         self.bytes = self._file.tell()
         self._flushed_at, self._unflushed, self._event_waits = self.seconds, 0, False
 
     def close(self) -> None:
-        """Finish the recording: a stop, the summary, and its own name.  A recording without a start leaves no file."""
+        """Finish the recording: a stop, the summary, and its final name.  Without a start, leave no file."""
         if self._file.closed:
             return
         if not self._channels:
@@ -146,7 +146,7 @@ class Recorder:
             raise
 
     def abandon(self) -> None:
-        """Let go of the file as it is.  What was flushed stays in NAME.mcap.part; an empty one is removed."""
+        """Leave the file as it is.  What was flushed stays in NAME.mcap.part; an empty one is removed."""
         if self._file.closed:
             return
         with suppress(OSError):
@@ -176,11 +176,11 @@ class Recorder:
                 self._channels[name] = self._writer.register_channel(name, "json", known, claims)
 
     def _add(self, messages: list[tuple[str, bytes]], clock: float) -> None:
-        """Hand messages to the writer: all checked before the first, because a rejected one spoils its chunk."""
+        """Hand messages to the writer.  All are checked first, because a rejected one spoils its chunk."""
         if not self._channels:
             raise ValueError("a recording begins with a start")
         if not 0 <= clock <= CLOCK_LIMIT:  # nor nan
-            raise ValueError(f"{clock} is no reading of a recording clock")
+            raise ValueError(f"{clock} is not a reading of a recording clock")
         self._log_time = max(self._log_time, CLOCK_OFFSET + round(clock * 1e9))
         self.seconds = max(self.seconds, clock)
         publish_time = self._log_time if self._wall is None else self._wall()
@@ -203,7 +203,7 @@ def _version() -> str:
 
 
 def _metadata(start: Event, wall: WallClock | None) -> dict[str, str]:
-    """For people; verification needs none of it but the fingerprint, which stands under a checksum as well."""
+    """For people.  Verification needs only the fingerprint, and takes it from the events' channel."""
     assert start.scene is not None
     metadata = {
         "format": str(FORMAT_VERSION),

@@ -1,6 +1,6 @@
-"""Recording: what is in a file, and any moment of it, without reading the rest.
+"""Recording: any moment of a file, without reading the rest.
 
-An unfinished or damaged file opens with what is intact.
+An unfinished or damaged file opens with what is intact in it.
 """
 
 from bisect import bisect_left, bisect_right
@@ -24,13 +24,13 @@ from recordings.framing import read_chunk, record_at
 from recordings.lock import open_file
 from recordings.scan import Scan, ShowProgress
 
-EVENT_LIMIT = 100_000  # in memory all at once, 30 MB; a lesson has a few hundred, but every step back repeats changes
+EVENT_LIMIT = 100_000  # in memory all at once, 30 MB; a lesson has a few hundred, but each step back repeats them
 CHUNKS_KEPT = 2  # decoded; playing meets the same one thirty times, stepping to and fro about an edge two
 _BEYOND = 1 << 62  # the last entry of any chunk
 
 
 class SamplePlace(NamedTuple):
-    """Where in a file a sample is.  Several may share a clock: while paused, the clock stands and steps go on."""
+    """Where in a file a sample is.  Samples may share a clock: single steps while paused do not advance it."""
 
     chunk: int
     entry: int
@@ -52,9 +52,9 @@ class Run:
 class Recording:
     """A recording that is open for reading.
 
-    `complete`: it was finished and nothing is wrong with it; `damaged`: something was changed or lost;
-    `reason`: what is wrong, a clause, or None.  A file too long to be checked as it is opened may turn
-    out damaged while it plays.  Clocks are in s, from 0 to `length`.
+    `complete`: finished, and nothing is wrong; `damaged`: something was changed or lost; `reason`:
+    what is wrong, a clause, or None.  In a file too long to be checked at opening, damage may show
+    only while it plays.  Clocks are in s, from 0 to `length`.
     """
 
     def __init__(self, path: Path, stream: BinaryIO, contents: Contents) -> None:
@@ -72,7 +72,7 @@ class Recording:
         if list(starts) != sorted(starts):
             raise RecordingError("its runs are not in order")
         if not starts:
-            raise RecordingError("no start of a run is left in it")
+            raise RecordingError("the starts of all its runs are lost")
         self.events: tuple[tuple[float, Event], ...] = tuple(
             (clock, event) for _, clock, event in events if event.run in starts
         )
@@ -81,9 +81,9 @@ class Recording:
 
     @classmethod
     def open(cls, path: Path, check: bool = False, progress: ShowProgress | None = None) -> Self:
-        """Open a recording; with `check`, every byte of it is looked at.
+        """Open a recording; with `check`, check every byte of it.
 
-        Raises RecordingError, a sentence, for what is no recording of ours or has no run in it.
+        Raises RecordingError, a sentence, if it is not one of ours or has no run in it.
         """
         with named(path):
             stream = open_file(path)
@@ -104,7 +104,7 @@ class Recording:
         self.close()
 
     def at(self, clock: float) -> SamplePlace | None:
-        """The last sample at or before that time, or else the first one; None where there are no samples."""
+        """The last sample at or before that time, or else the first; None if there are no samples."""
         clock, log_time = _as_recorded(clock)
         chunk = bisect_right(self._chunks.starts, log_time) - 1
         entries = self._entries(chunk) if chunk >= 0 else ()
@@ -137,7 +137,7 @@ class Recording:
         return None
 
     def entries(self, start: float = 0.0, end: float = CLOCK_LIMIT) -> Iterator[Entry]:
-        """All samples and events from `start` to `end`, both included, in the order in which they were recorded."""
+        """All samples and events from `start` to `end`, both included, in the order of recording."""
         (start, log_time), (end, _) = _as_recorded(start), _as_recorded(end)
         for chunk in range(bisect_left(self._chunks.ends, log_time), len(self._chunks)):
             for entry in self._entries(chunk):
@@ -151,21 +151,21 @@ class Recording:
         try:
             record = record_at(self._stream, self._chunks.offsets[chunk])
             if record is None or record[0] != Opcode.CHUNK:
-                raise RecordingError("a chunk is not where its summary says")
+                raise RecordingError("a chunk is not where the summary puts it")
             read = read_chunk(record[1])
             if (read.start, read.end) != (self._chunks.starts[chunk], self._chunks.ends[chunk]):
-                raise RecordingError("a chunk is not the one of its summary")
+                raise RecordingError("a chunk differs from its entry in the summary")
             return tuple(entry for _, entry in self._layout.entries(read.messages, only_events))
         except (RecordingError, OSError) as error:
             self.complete, self.damaged, self.reason = False, True, self.reason or str(error)
             return ()
 
     def _known_entries(self, chunk: int) -> tuple[Entry, ...]:
-        """A chunk's entries without those of runs whose start is lost."""
+        """A chunk's entries, except those of runs whose start is lost."""
         return tuple(entry for entry in self._read_entries(chunk) if entry.value.run in self._known)
 
     def _read_events(self) -> Iterator[tuple[int, float, Event]]:
-        """(chunk, clock, event) of all events, from the chunks that have any; of too many, the first."""
+        """(chunk, clock, event) of all events; of too many, the first."""
         count = 0
         for chunk, eventful in enumerate(self._chunks.eventful):
             if not eventful:
@@ -174,7 +174,7 @@ class Recording:
                 if not isinstance(event, Event):
                     continue
                 if count == EVENT_LIMIT:
-                    self.complete, self.reason = False, self.reason or f"only its first {count} events are taken in"
+                    self.complete, self.reason = False, self.reason or f"only its first {count} events are shown"
                     return
                 yield chunk, clock, event
                 count += 1

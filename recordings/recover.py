@@ -82,7 +82,7 @@ def recover(path: Path, out: Path, progress: ShowProgress | None = None, overwri
     Raises RecordingError if nothing can be saved, DiskError if `out` cannot be written.
     """
     if out.exists() and path.exists() and out.samefile(path):
-        raise DiskError("is the recording that is to be recovered; choose another name", out)
+        raise DiskError("is the recording to recover; choose another name", out)
     if not (part_of(out).exists() and path.exists() and part_of(out).samefile(path)):
         return _recover(path, out, progress, overwrite)
     if out.exists() and not overwrite:

@@ -1,4 +1,4 @@
-"""Scan: a file from its first byte to its last, past whatever is damaged.  It is checked, not trusted."""
+"""Scan: read a file from its first byte to its last, past any damage, and check everything."""
 
 import zlib
 from collections import Counter, deque
@@ -18,19 +18,19 @@ from recordings.framing import CHANNEL_LIMIT, MAGIC, RECORD, Chunk, Search, read
 from recordings.summary import Chunks, Summary, find_summary, read_summary
 
 ShowProgress = Callable[[int, int], None]
-"""Called with what is done and what there is in all: bytes, or samples."""
+"""Called with how much is done and how much there is: bytes, or samples."""
 
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """A stretch of a file that is unreadable."""
+    """An unreadable stretch of a file."""
 
     offset: int  # where it begins
 
 
 @dataclass(frozen=True, slots=True)
 class Intact:
-    """A chunk that is as it was written."""
+    """A chunk as it was written."""
 
     offset: int
     layout: Layout
@@ -38,12 +38,12 @@ class Intact:
 
 
 class Scan:
-    """The intact chunks of a file and the gaps between them, in order.  What was found out is known at the end.
+    """The intact chunks of a file and the gaps between them, in order.  Its attributes are final at the end.
 
-    Raises RecordingError for what is no recording of ours, and for chunks whose clock runs backwards.
+    Raises RecordingError for a file that is not one of ours, and for chunks whose clock runs backwards.
 
     `complete`: finished by the recorder, and every checksum right.  `damaged`: something was changed or
-    lost; a recording that merely was not finished is not.  `reason`: the first thing wrong, a clause.
+    lost; a recording that was only not finished is not.  `reason`: the first thing wrong, a clause.
     """
 
     def __init__(self, stream: BinaryIO, progress: ShowProgress | None = None) -> None:
@@ -57,8 +57,8 @@ class Scan:
         start = stream.read(len(MAGIC))
         if not start:
             raise RecordingError("the file is empty")
-        if sum(map(eq, start, MAGIC)) < len(start) / 2:  # less would be damage, which the scan then finds
-            raise RecordingError("this is no MCAP file")
+        if sum(map(eq, start, MAGIC)) < len(start) / 2:  # fewer wrong bytes are damage, which the scan finds
+            raise RecordingError("this is not an MCAP file")
         self._begins_right = start == MAGIC[: len(start)]
         found = find_summary(stream)
         self.summary: Summary | None = found[0] if found else None
@@ -71,7 +71,7 @@ class Scan:
     def nothing(self, done: str) -> RecordingError:
         """Why nothing in it can be read, verified or saved."""
         if self._profile != PROFILE:
-            return RecordingError("this is an MCAP file, but no recording of pendu-tui")
+            return RecordingError("this is an MCAP file, but not a recording of pendu-tui")
         return RecordingError(f"nothing in it can be {done}: {self.reason or 'it has no samples'}")
 
     def contents(self) -> Contents:
@@ -88,7 +88,7 @@ class Scan:
         offset, crc = len(MAGIC), zlib.crc32(MAGIC)
         search = Search(self._stream)
         if not self._begins_right:
-            self._damage("it does not begin as an MCAP file does")
+            self._damage("its first bytes are damaged")
         while True:
             if self._progress:
                 self._progress(offset, self.size)
@@ -140,7 +140,7 @@ class Scan:
             self.channels[channel.id] = channel
             self.layout = None
         if len(self.channels) > CHANNEL_LIMIT:
-            raise RecordingError("it declares more channels than any recording of ours has")
+            raise RecordingError("unexpectedly many channels")
 
     def _layout(self) -> Layout:
         if self.damaged and not self.channels:
@@ -148,7 +148,7 @@ class Scan:
         return layout_of(self.channels.values())
 
     def _end(self, offset: int, right: bool) -> None:
-        """Check what follows the data; all that is wrong there is damage without a gap."""
+        """Check what follows the data.  Damage there leaves no gap."""
         if not right:
             self._damage("its checksum is wrong")
         elif self.summary is None or offset != self._data_end:

@@ -1,4 +1,4 @@
-"""The summary at a file's end: what is where, so that opening and seeking need not read the rest."""
+"""Summary: what is where, from a file's end, so that opening and seeking need not read the rest."""
 
 import struct
 import zlib
@@ -24,7 +24,7 @@ _DATA_END = struct.Struct("<BQI")
 
 @dataclass(slots=True)
 class Chunks:
-    """Where the chunks of a file are, by columns: 25 bytes a chunk where objects would take 200."""
+    """Where the chunks of a file are, in columns: 25 bytes per chunk, where objects would take 200."""
 
     offsets: "array[int]" = field(default_factory=lambda: array("Q"))
     starts: "array[int]" = field(default_factory=lambda: array("Q"))  # ns, log_time
@@ -35,12 +35,12 @@ class Chunks:
         return len(self.offsets)
 
     def add(self, offset: int, start: int, end: int, eventful: bool) -> None:
-        """Add the next one.  Raises RecordingError if it cannot follow the one before, or there are too many."""
+        """Add the next one.  Raises RecordingError if its times cannot follow, or if there are too many."""
         if len(self) == CHUNK_LIMIT:
-            raise RecordingError("it is longer than any recording of ours")
+            raise RecordingError("it has unexpectedly many chunks")
         before = self.ends[-1] if self.ends else CLOCK_OFFSET
         if not before <= start <= end <= CLOCK_OFFSET + CLOCK_LIMIT * 1e9:
-            raise RecordingError("its clock runs backwards, or for centuries")
+            raise RecordingError("its clock runs backwards or for centuries")
         self.offsets.append(offset)
         self.starts.append(start)
         self.ends.append(end)
@@ -49,7 +49,7 @@ class Chunks:
 
 @dataclass(slots=True)
 class Summary:
-    """What a summary says.  Its own checksum was right."""
+    """A summary whose checksum was right."""
 
     channels: dict[int, Channel] = field(default_factory=dict)
     statistics: Statistics | None = None
@@ -96,7 +96,7 @@ def read_summary(stream: BinaryIO, start: int) -> Summary | None:
         summary.take(opcode, content)
         others += opcode != Opcode.CHUNK_INDEX
         if others > OTHER_LIMIT:
-            raise RecordingError("its summary lists more than any recording of ours has")
+            raise RecordingError("its summary is unexpectedly long")
         crc = zlib.crc32(content, zlib.crc32(header, crc))
         offset += len(header) + len(content)
     else:
@@ -105,7 +105,7 @@ def read_summary(stream: BinaryIO, start: int) -> Summary | None:
     if after != MAGIC:
         if MAGIC.startswith(after):
             return None
-        raise RecordingError("it goes on after its end")
+        raise RecordingError("data follows its end")
     if len(content) != _FOOTER.size or _FOOTER.unpack(content)[0] != start:
         raise RecordingError("its footer is damaged")
     expected = _FOOTER.unpack(content)[2]

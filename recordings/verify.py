@@ -1,11 +1,10 @@
 """Verify: simulate a recording's runs again from their events, and compare every sample bit for bit.
 
-Where this machine's sin is not the one of the recording, bits cannot be demanded. What can be is that
-a sample lies within a tolerance: as far as the same run strays when its start is off by one part in
-10^11 (measured, by simulating that, too), and at least one part in 10^11 of the number.  Another libm's
-sin is off by 1e-16 in one value of 1400; tested is one that is off in every other.  Where a run is so
-chaotic that its strayed twin has lost it, by a thousandth of a radian, nothing can be demanded of that
-method any more.
+If this machine's sin differs from the recording's, samples need not have the same bits, but must lie
+within a tolerance: as far as the same run strays when its start is changed by one part in 10^11 (which
+is simulated, too), and at least one part in 10^11 of the number.  Another libm's sin differs by 1e-16 in
+one value of 1400; the tests use one that differs in every second value.  Once the changed run is off by
+a thousandth of a radian, as happens in chaos, that method is no longer compared.
 """
 
 import math
@@ -33,7 +32,7 @@ MOST_STEPS = 10**10  # of a run that is simulated again; hours of computing
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """A number that was recorded and did not come out again."""
+    """A recorded number that the re-simulation did not reproduce."""
 
     run: int
     step: int
@@ -45,12 +44,12 @@ class Difference:
 
     @property
     def size(self) -> float:
-        """How far they are apart; infinitely, where there is only one."""
+        """Their distance; infinite if one is missing."""
         return _distance(self.recorded, self.computed)
 
     @property
     def ulps(self) -> int | None:
-        """How many doubles they are apart; None where there is only one."""
+        """Their distance in doubles; None if one is missing."""
         if self.recorded is None or self.computed is None:
             return None
         return abs(_ordinal(self.recorded) - _ordinal(self.computed))
@@ -58,7 +57,7 @@ class Difference:
 
 @dataclass(frozen=True, slots=True)
 class Verification:
-    """What came of it.  Complete and identical: nothing was changed since it was recorded, and nothing is missing."""
+    """The result of `verify`.  Complete and identical: nothing was changed or lost since it was recorded."""
 
     file: Path
     complete: bool  # finished, and every checksum right
@@ -74,7 +73,7 @@ class Verification:
 def verify(path: Path, progress: ShowProgress | None = None) -> Verification:
     """Verify a recording up to where it is first damaged.
 
-    Raises RecordingError for what is no recording, or breaks the rules of one, or has no samples.
+    Raises RecordingError if it is not a recording, is inconsistent, or has no samples.
     """
     with named(path), open_file(path) as stream:
         scan = Scan(stream, progress)
@@ -94,7 +93,7 @@ def verify(path: Path, progress: ShowProgress | None = None) -> Verification:
                     rerun = Rerun(value, exact=same_sin)
                     runs += 1
                 if rerun is None or value.run != rerun.run:
-                    raise RecordingError(f"something of run {value.run} lies outside of it")
+                    raise RecordingError(f"data of run {value.run} lies outside that run")
                 if isinstance(value, Event):
                     rerun.follow(value)
                     continue
@@ -118,7 +117,7 @@ def verify(path: Path, progress: ShowProgress | None = None) -> Verification:
 
 
 class Rerun:
-    """One run, again.  `exact`: its sin is this machine's, so every bit must be the same.
+    """One run, simulated again.  `exact`: its sin is this machine's, so every bit must be the same.
 
     `max_difference`: the largest so far of any number, within tolerance or not.
     """
@@ -147,7 +146,7 @@ class Rerun:
                     raise RecordingError(f"run {self.run} cannot have been recorded: {error}") from error
 
     def reach(self, step: int) -> list[Sample]:
-        """The run's sample at this step; where sin is another one, also that of the run that is off at its start."""
+        """The run's sample at this step; if not `exact`, also that of the run with the changed start."""
         if step <= self._sampled:
             raise RecordingError(f"the steps of run {self.run} are not in order")
         self._sampled = step
@@ -155,7 +154,7 @@ class Rerun:
         return [lockstep.sample() for lockstep in self._locksteps]
 
     def compare(self, recorded: Sample) -> list[Difference]:
-        """What differs from the sample when the run gets there."""
+        """The differences from a recorded sample."""
         computed, *astray = self.reach(recorded.step)
         for other in astray:
             self._widen(computed, other)
@@ -167,7 +166,7 @@ class Rerun:
         if step < self._locksteps[0].step:
             raise RecordingError(f"the steps of run {self.run} are not in order")
         if step > MOST_STEPS:
-            raise RecordingError(f"run {self.run} has {step} steps, more than can be simulated again")
+            raise RecordingError(f"run {self.run} has {step} steps, more than can be re-simulated")
         for lockstep in self._locksteps:
             lockstep.advance(step - lockstep.step)
 
@@ -200,7 +199,7 @@ _pack = struct.Struct(f"<{len(NUMBERS)}d").pack
 
 
 def _same(a: Reading, b: Reading) -> bool:
-    """Whether two readings have the same bits; the usual case, quickly.  (0.0 == -0.0, hence the second half.)"""
+    """Whether two readings have the same bits, quickly.  (0.0 == -0.0, hence the second half.)"""
     return a == b and _pack(*numbers_of(a)) == _pack(*numbers_of(b))
 
 
@@ -209,6 +208,6 @@ def _distance(a: float | None, b: float | None) -> float:
 
 
 def _ordinal(value: float) -> int:
-    """The place of a double among all doubles in order; neighbours differ by 1, and -0.0 comes just before 0.0."""
+    """The position of a double among all doubles in order; -0.0 comes just before 0.0."""
     bits = int.from_bytes(struct.pack(">d", value), "big", signed=True)
     return bits if bits >= 0 else -(bits & (1 << 63) - 1) - 1
