@@ -109,11 +109,10 @@ class Contents:
 
 def from_summary(stream: BinaryIO) -> Contents | None:
     """The contents by a file's summary; None if that cannot be trusted, and a `Scan` is needed."""
-    found = find_summary(stream)
-    if found is None:
+    summary = find_summary(stream)
+    if summary is None or summary.statistics is None:
         return None
-    summary, data_end, crc = found
-    if summary.statistics is None or (data_end <= CHECK_LIMIT and _crc(stream, data_end) != crc):
+    if summary.data_end <= CHECK_LIMIT and _crc(stream, summary.data_end) != summary.data_crc:
         return None
     layout = layout_of(summary.channels.values())
     metadata: dict[str, str] = {}

@@ -43,7 +43,6 @@ class Recovery:
 class Rescue:
     """What became of a recording that a killed lab left unfinished."""
 
-    leftover: Path
     saved: Path | None  # the recording made of it; None if nothing could be saved
     kept: Path | None  # where the leftover is now; None if all of it is in `saved`, or it was empty
     recovery: Recovery | None
@@ -59,17 +58,17 @@ def rescue(leftover: Path, progress: ShowProgress | None = None) -> Rescue:
     with alone_with(leftover):
         if leftover.stat().st_size == 0:
             leftover.unlink()
-            return Rescue(leftover, None, None, None, f"{printable(str(leftover))}: the file is empty.")
+            return Rescue(None, None, None, f"{printable(str(leftover))}: the file is empty.")
         name = leftover.with_name(leftover.name.removesuffix(PART))
         try:
             recovery = recover(leftover, free_path(name), progress)
         except RecordingError as error:
-            return Rescue(leftover, None, _put_aside(leftover, ".unreadable"), None, str(error))
+            return Rescue(None, _put_aside(leftover, ".unreadable"), None, str(error))
         if recovery.damaged:
-            return Rescue(leftover, recovery.out, _put_aside(leftover, ".damaged"), recovery, None)
+            return Rescue(recovery.out, _put_aside(leftover, ".damaged"), recovery, None)
         leftover.unlink()
         saved = recovery.out if name.exists() else recovery.out.rename(name)
-        return Rescue(leftover, saved, None, recovery, None)
+        return Rescue(saved, None, recovery, None)
 
 
 def _put_aside(path: Path, suffix: str) -> Path:

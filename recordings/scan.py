@@ -25,7 +25,7 @@ ShowProgress = Callable[[int, int], None]
 class Gap:
     """An unreadable stretch of a file."""
 
-    offset: int  # where it begins
+    offset: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,13 +60,11 @@ class Scan:
         if sum(map(eq, start, MAGIC)) < len(start) / 2:  # fewer wrong bytes are damage, which the scan finds
             raise RecordingError("this is not an MCAP file")
         self._begins_right = start == MAGIC[: len(start)]
-        found = find_summary(stream)
-        self.summary: Summary | None = found[0] if found else None
-        self._data_end = found[1] if found else None
+        self.summary = find_summary(stream)
         self.chunks = Chunks()  # the intact ones so far
         self.messages: Counter[int] = Counter()  # in them, by channel
         self.layout: Layout | None = None  # once a chunk was met
-        self.channels: dict[int, Channel] = dict(self.summary.channels) if self.summary else {}
+        self.channels = dict(self.summary.channels) if self.summary else {}
 
     def nothing(self, done: str) -> RecordingError:
         """Why nothing in it can be read, verified or saved."""
@@ -127,7 +125,9 @@ class Scan:
                 continue
             if chunk:
                 if self.layout is None:
-                    self.layout = self._layout()
+                    if self.damaged and not self.channels:
+                        raise self.nothing("read")
+                    self.layout = layout_of(self.channels.values())
                 found = Counter(message.channel for message in chunk.messages)
                 self.messages += found
                 self.chunks.add(offset, chunk.start, chunk.end, self.layout.events in found)
@@ -142,18 +142,13 @@ class Scan:
         if len(self.channels) > CHANNEL_LIMIT:
             raise RecordingError("unexpectedly many channels")
 
-    def _layout(self) -> Layout:
-        if self.damaged and not self.channels:
-            raise self.nothing("read")
-        return layout_of(self.channels.values())
-
     def _end(self, offset: int, right: bool) -> None:
         """Check what follows the data.  Damage there leaves no gap."""
         if not right:
             self._damage("its checksum is wrong")
-        elif self.summary is None or offset != self._data_end:
+        elif self.summary is None or offset != self.summary.data_end:
             try:
-                if read_summary(self._stream, offset + RECORD.size + 4):
+                if read_summary(self._stream, offset):
                     self._damage("its summary is not where its footer says")
                 self.reason = self.reason or "the file ends within its summary"
             except RecordingError as error:

@@ -51,6 +51,8 @@ class Chunks:
 class Summary:
     """A summary whose checksum was right."""
 
+    data_end: int  # where the data before it end in the file,
+    data_crc: int  # and their checksum
     channels: dict[int, Channel] = field(default_factory=dict)
     statistics: Statistics | None = None
     chunks: Chunks = field(default_factory=Chunks)
@@ -82,12 +84,17 @@ class Summary:
         self.chunks.add(offset, start, end, eventful)
 
 
-def read_summary(stream: BinaryIO, start: int) -> Summary | None:
-    """The summary that begins at `start`, where DataEnd ends, and ends with the file.
+def read_summary(stream: BinaryIO, data_end: int) -> Summary | None:
+    """The summary after the DataEnd record at this offset; it must end with the file.
 
     None if it is cut off; RecordingError if it is damaged.
     """
-    summary, offset, crc, others = Summary(), start, 0, 0
+    offset = data_end + _DATA_END.size
+    stream.seek(data_end)
+    opcode, length, data_crc = _DATA_END.unpack(stream.read(_DATA_END.size).ljust(_DATA_END.size))
+    if (opcode, length) != (Opcode.DATA_END, 4) or data_crc == 0:
+        raise RecordingError("its data do not end where the summary begins")
+    summary, start, crc, others = Summary(data_end, data_crc), offset, 0, 0
     while record := record_at(stream, offset):
         opcode, content = record
         header = RECORD.pack(opcode, len(content))
@@ -114,22 +121,14 @@ def read_summary(stream: BinaryIO, start: int) -> Summary | None:
     return summary
 
 
-def find_summary(stream: BinaryIO) -> tuple[Summary, int, int] | None:
-    """(summary, where DataEnd begins, CRC of all before it) by way of the footer; None if anything is amiss."""
-    size = stream.seek(0, SEEK_END)
-    tail = RECORD.size + _FOOTER.size + len(MAGIC)
-    stream.seek(max(0, size - tail))
-    footer = stream.read(tail)
-    if len(footer) < tail or RECORD.unpack_from(footer) != (Opcode.FOOTER, _FOOTER.size):
-        return None
-    start = _FOOTER.unpack_from(footer, RECORD.size)[0]
-    data_end = start - _DATA_END.size
-    if not len(MAGIC) <= data_end < size - tail:
-        return None
-    stream.seek(data_end)
-    opcode, length, crc = _DATA_END.unpack(stream.read(_DATA_END.size))
+def find_summary(stream: BinaryIO) -> Summary | None:
+    """The summary, by way of the footer; None if anything is wrong."""
+    footer = stream.seek(0, SEEK_END) - RECORD.size - _FOOTER.size - len(MAGIC)
     try:
-        summary = read_summary(stream, start)
+        record = record_at(stream, max(0, footer))
+        if record is None or record[0] != Opcode.FOOTER:
+            return None
+        data_end = int.from_bytes(record[1][:8], "little") - _DATA_END.size
+        return read_summary(stream, data_end) if len(MAGIC) <= data_end < footer else None
     except RecordingError:
         return None
-    return (summary, data_end, crc) if summary and (opcode, length) == (Opcode.DATA_END, 4) and crc else None
