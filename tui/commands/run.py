@@ -144,6 +144,7 @@ def _rows(scene: Scene, sample: "Sample", trends: "list[Trend]") -> list[dict[st
     """What became of each method.  A method that diverged has no theta to compare."""
     from engine.accuracy.study import evaluations
     from engine.models.exact_pendulum import ExactMotion
+    from recordings.fields import NUMBERS
 
     exact = ExactMotion(scene).at(sample.t).theta
     rows = []
@@ -152,11 +153,7 @@ def _rows(scene: Scene, sample: "Sample", trends: "list[Trend]") -> list[dict[st
         rows.append(
             {
                 "method": method.key,
-                "theta": reading.theta,
-                "omega": reading.omega,
-                "energy": reading.energy,
-                "energy_error": reading.energy_error,
-                "max_energy_error": reading.max_energy_error,
+                **{name: getattr(reading, name) for name in NUMBERS},
                 "theta_error": abs(reading.theta - exact) if end is None else None,
                 "drift_per_second": judgement.slope,
                 "verdict": judgement.verdict,
