@@ -16,9 +16,8 @@ from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.records import Channel, DataEnd, Header, McapRecord, Metadata, Schema, Statistics
-from mcap.records import Chunk as RawChunk
 
-from recordings.errors import RecordingError, printable
+from recordings.errors import RecordingError
 
 MAGIC = b"\x89MCAP0\r\n"
 RECORD_LIMIT = 1 << 23  # bytes of a record, and of what a chunk decompresses to; ours have 1 MB at most
@@ -35,7 +34,6 @@ SEARCH_LIMIT = 1 << 30  # bytes in false chunks, a second's work; that many dama
 
 _READERS: dict[Opcode, Callable[[ReadDataStream], McapRecord]] = {
     Opcode.HEADER: Header.read,
-    Opcode.CHUNK: RawChunk.read,
     Opcode.SCHEMA: Schema.read,
     Opcode.CHANNEL: Channel.read,
     Opcode.METADATA: Metadata.read,
@@ -65,24 +63,26 @@ class Chunk(NamedTuple):
 
 def read_chunk(content: bytes) -> Chunk:
     """The chunk of a record's content.  Raises RecordingError if any bit of it is wrong."""
-    raw = read_record(Opcode.CHUNK, content)
-    assert isinstance(raw, RawChunk)
-    size = raw.uncompressed_size
-    if raw.compression != "zstd":
-        raise RecordingError(f"a chunk is compressed as {printable(raw.compression, 16)!r}; only zstd is read")
+    if len(content) < CHUNK_HEADER:
+        raise RecordingError("a chunk is too short")
+    start, end, size, crc = _CHUNK.unpack_from(content)
+    if content[_CHUNK.size : _CHUNK.size + len(_ZSTD)] != _ZSTD:
+        raise RecordingError("a chunk is not compressed with zstd")
+    if len(content) - CHUNK_HEADER != int.from_bytes(content[CHUNK_HEADER - 8 : CHUNK_HEADER], "little"):
+        raise RecordingError("a chunk's length is wrong")
     if size > RECORD_LIMIT:
         raise RecordingError(f"unexpected chunk of {size} bytes")
+    compressed = content[CHUNK_HEADER:]
     try:
-        if zstandard.frame_content_size(raw.data) not in (-1, size):  # decompress() would obey the frame
+        if zstandard.frame_content_size(compressed) not in (-1, size):  # decompress() would obey the frame
             raise RecordingError("a chunk declares two different sizes")
         decompressor = zstandard.ZstdDecompressor(max_window_size=RECORD_LIMIT)
-        data = decompressor.decompress(raw.data, max_output_size=size, allow_extra_data=False)
+        data = decompressor.decompress(compressed, max_output_size=size, allow_extra_data=False)
     except (zstandard.ZstdError, MemoryError) as error:
         raise RecordingError("a chunk cannot be decompressed") from error
-    if raw.uncompressed_crc == 0 or zlib.crc32(data) != raw.uncompressed_crc:
+    if crc == 0 or zlib.crc32(data) != crc:
         raise RecordingError("a chunk's checksum is wrong")
     channels, messages = _records(data)
-    start, end = raw.message_start_time, raw.message_end_time
     if not messages or messages[0].log_time != start or messages[-1].log_time != end:
         raise RecordingError("a chunk's times are wrong")
     return Chunk(start, end, channels, messages)
@@ -124,7 +124,7 @@ def read_record(opcode: int, content: bytes) -> McapRecord | None:
         if len(content) < 6 or len(content) != 6 + int.from_bytes(content[2:6], "little"):
             raise RecordingError("an index is damaged")
         return None
-    if len(content) > SMALL_LIMIT and opcode != Opcode.CHUNK:
+    if len(content) > SMALL_LIMIT:
         raise RecordingError(f"unexpected record of {len(content)} bytes")
     stream = ReadDataStream(BytesIO(content))
     try:

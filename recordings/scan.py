@@ -78,9 +78,7 @@ class Scan:
         if self.layout is None:
             raise self.nothing("read")
         samples = self.layout.samples(self.messages)
-        return Contents(
-            self.layout, self.chunks, samples, self.metadata, self.complete, self.damaged, self.reason
-        )
+        return Contents(self.layout, self.chunks, samples, self.metadata, self.complete, self.damaged, self.reason)
 
     def __iter__(self) -> Iterator[Intact | Gap]:
         offset, crc = len(MAGIC), zlib.crc32(MAGIC)

@@ -212,6 +212,13 @@ print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
     assert int(grown) < 60_000  # kB
 
 
+def test_a_chunk_that_declares_another_length_than_it_has_is_damaged():
+    record = bomb(100)[len(framing.MAGIC) + framing.RECORD.size :]
+    length = framing.CHUNK_HEADER - 8  # where its data's length stands
+    with pytest.raises(RecordingError, match="a chunk's length is wrong"):
+        read_chunk(record[:length] + struct.pack("<Q", 1 << 40) + record[framing.CHUNK_HEADER :])
+
+
 @pytest.mark.parametrize(("lie", "looked_at"), [(0, 10), (1, 0)], ids=["plausible sizes", "sizes that disagree"])
 def test_a_file_of_false_chunks_costs_no_more_than_a_limit(tmp_path, monkeypatch, lie, looked_at):
     length, path = 1_000_000, tmp_path / "x.mcap"
