@@ -9,7 +9,7 @@ from recordings.errors import printable
 from recordings.library import leftovers
 
 if TYPE_CHECKING:
-    from recordings.rescue import Rescue
+    from recordings.recover import Rescue
 
 Progress = Callable[[str], AbstractContextManager[Callable[[float, float], None]]]
 
@@ -18,7 +18,7 @@ def recover_leftovers(folder: Path, progress: Progress) -> list[str]:
     """Recover all unfinished recordings in a folder; returns a sentence on each, also where the disk fails."""
     sentences = []
     for part in leftovers(folder):
-        from recordings.rescue import rescue  # imports mcap, so only if there is something to do
+        from recordings.recover import rescue  # imports mcap, so only if there is something to do
 
         try:
             with progress(f"recovering {printable(part.name)}") as show:
