@@ -28,7 +28,7 @@ def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
     if not path.parent.is_dir():
         raise UserError(f"{path}: there is no folder {path.parent}; create the folder first.", Exit.DISK)
     part = path.with_name(path.name + ".part")
-    with _signals_to(_interrupt):
+    with _signals_to(signal.default_int_handler):
         try:
             part.touch()
             yield part
@@ -79,7 +79,3 @@ def _signals_to(handler: Callable[[int, FrameType | None], None]) -> Iterator[No
     finally:
         for number, earlier in before.items():
             signal.signal(number, earlier)
-
-
-def _interrupt(number: int, frame: FrameType | None) -> None:
-    raise KeyboardInterrupt

@@ -136,16 +136,14 @@ def add_scene_options(parser: argparse.ArgumentParser) -> None:
         default=DEFAULT_SCENE.name,
         help="see pendu-tui scenes (%(default)s)",
     )
-    group.add_argument(
-        "--theta",
-        metavar="RAD|DEGdeg",
-        type=start_angle,
-        help="start angle from straight down, in rad, or such as 115deg",
-    )
-    group.add_argument("--omega", metavar="RAD_S", type=angle, help="start angular velocity in rad/s, or such as 30deg")
-    group.add_argument("--length", metavar="M", type=number, help="length in m")
-    group.add_argument("--gravity", metavar="M_S2", type=number, help="gravity in m/s²")
-    group.add_argument("--h", metavar="S", type=number, help="step size in s")
+    for name, metavar, read, meaning in (
+        ("theta", "RAD|DEGdeg", start_angle, "start angle from straight down, in rad, or such as 115deg"),
+        ("omega", "RAD_S", angle, "start angular velocity in rad/s, or such as 30deg"),
+        ("length", "M", number, "length in m"),
+        ("gravity", "M_S2", number, "gravity in m/s²"),
+        ("h", "S", number, "step size in s"),
+    ):
+        group.add_argument(f"--{name}", metavar=metavar, type=read, help=meaning)
 
 
 def scene_of(options: argparse.Namespace) -> Scene:

@@ -109,22 +109,14 @@ def mouse(environment: Mapping[str, str]) -> Check:
 
 
 def folder(path: Path) -> Check:
-    """Whether recordings can be kept: tried out, since rights alone do not tell, and nothing is left of it."""
-    made: list[Path] = []
+    """Whether recordings can be kept: tried out in what there is of the folder, since rights alone do not tell."""
     try:
-        for each in (*reversed(path.parents), path):
-            if not each.exists():
-                each.mkdir()
-                made.append(each)
-        with TemporaryFile(dir=path):
-            free = shutil.disk_usage(path).free
+        there = next(each for each in (path, *path.parents) if each.exists() or each.is_symlink())
+        with TemporaryFile(dir=there):
+            free = shutil.disk_usage(there).free
     except OSError as error:
         advice = f"cannot be written ({error.strerror}): set PENDU_RECORDINGS to a folder that can"
         return Check("recordings", str(path), advice)
-    finally:
-        for each in reversed(made):
-            with suppress(OSError):  # somebody has put something there
-                each.rmdir()
     advice = "there is little room: pendu-tui recordings prune --keep 20 makes some" if free < ROOMY else ""
     return Check("recordings", f"{path}, {file_size(free)} free", advice)
 

@@ -38,8 +38,7 @@ def run(options: argparse.Namespace) -> int:
     with progress(printable(path.name)) as show:
         recovery = recover(path, options.output, show, options.force)
     if options.json:
-        paths = {"file": str(recovery.file), "out": str(recovery.out)}
-        write_json("recover", asdict(recovery) | paths)
+        write_json("recover", asdict(recovery) | {"file": str(recovery.file), "out": str(recovery.out)})
     else:
         print(_sentence(recovery))
     return Exit.FINE

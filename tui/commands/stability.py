@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from engine.scenes import Z_LIMITS
 from tui.cli.errors import Exit, UserError
@@ -115,8 +115,8 @@ def _check(what: str, given: list[float] | None, low: float, high: float) -> Non
 def _workers(options: argparse.Namespace) -> "Iterator[Executor | None]":
     """What runs the strips; None for this process.  Ctrl+C is this process's business, not the workers'."""
     if options.dask:
-        with _dask(options.dask) as executor:
-            yield executor
+        with _dask(options.dask) as client:
+            yield client.get_executor()
     elif options.workers > 1:
         from concurrent.futures import ProcessPoolExecutor
         from multiprocessing import get_context
@@ -129,15 +129,12 @@ def _workers(options: argparse.Namespace) -> "Iterator[Executor | None]":
         yield None
 
 
-@contextmanager
-def _dask(address: str) -> "Iterator[Executor]":
+def _dask(address: str) -> Any:
     try:
         import distributed
+
+        return distributed.Client(address, timeout="10s")
     except ImportError:
         raise UserError("--dask needs the extra `cluster`: pip install 'pendu-tui[cluster]'.") from None
-    try:
-        client = distributed.Client(address, timeout="10s")
     except (OSError, ValueError) as error:
         raise UserError(f"no Dask scheduler answers at {address!r}: {type(error).__name__}; is it running?") from None
-    with client:
-        yield client.get_executor()
