@@ -1,6 +1,6 @@
-"""The keys of the lab and of the replay: from here come bindings, key line, help, command palette and `pendu-tui keys`.
+"""The keys of the lab and of the replay: a view's keys are with its pane.
 
-A view's keys are with its pane.
+Bindings, key line, help, command palette and `pendu-tui keys` come from these tables.
 """
 
 from collections.abc import Iterable
