@@ -1,13 +1,13 @@
 """Write a recording as CSV: one row for each sample and method, units in the header."""
 
 import argparse
-import sys
 from pathlib import Path
 
 from recordings.errors import printable
 from tui.cli.errors import Exit
 from tui.cli.files import text_file
-from tui.cli.output import progress
+from tui.cli.options import add_file, add_recording
+from tui.cli.output import progress, warn
 
 EXAMPLES = """\
 examples:
@@ -17,15 +17,13 @@ examples:
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add this command's options."""
-    parser.add_argument("file", metavar="FILE", help="a file, latest, or a name such as drift")
+    add_recording(parser)
     parser.add_argument("--format", choices=("csv",), default="csv", help="the only one there is (%(default)s)")
-    parser.add_argument("-o", "--output", metavar="OUT", type=Path, help="write here, not to stdout")
+    add_file(parser, "-o", "--output", metavar="OUT", type=Path, help="write here, not to stdout")
     parser.add_argument("--force", action="store_true", help="overwrite OUT")
 
 
 def run(options: argparse.Namespace) -> int:
-    """Export."""
     from recordings import library
     from recordings.export import write_csv
     from recordings.recording import Recording
@@ -38,5 +36,5 @@ def run(options: argparse.Namespace) -> int:
     ):
         write_csv(recording, out, show)
         if recording.reason:
-            print(f"pendu-tui: {printable(str(path))}: {recording.reason}; the rest is exported.", file=sys.stderr)
+            warn(f"{printable(str(path))}: {recording.reason}; the rest is exported.")
     return Exit.FINE

@@ -4,7 +4,7 @@ import argparse
 import gc
 from pathlib import Path
 
-from tui.cli.options import add_scene_options, positive, scene_of
+from tui.cli.options import add_file, add_scene_options, positive, scene_of
 from tui.terminal.options import add_terminal_options
 
 EXAMPLES = """\
@@ -18,17 +18,15 @@ examples:
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add this command's options."""
     add_scene_options(parser)
     parser.add_argument("--speed", metavar="X", type=positive, default=1.0, help="times real time (%(default)g)")
     recording = parser.add_mutually_exclusive_group()
-    recording.add_argument("--record", metavar="FILE", type=Path, help="record here, not in the data folder")
+    add_file(recording, "--record", metavar="FILE", type=Path, help="record here, not in the data folder")
     recording.add_argument("--no-record", action="store_true", help="record nothing")
     add_terminal_options(parser)
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the lab."""
     from tui.screens import launch
     from tui.terminal.check import check_terminal
 

@@ -3,7 +3,7 @@
 import argparse
 
 from tui.cli.errors import UserError
-from tui.cli.options import number, positive
+from tui.cli.options import add_recording, number, positive
 from tui.terminal.options import add_terminal_options
 
 EXAMPLES = """\
@@ -15,8 +15,7 @@ examples:
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add this command's options."""
-    parser.add_argument("file", metavar="FILE|latest|NAME", help="a file, the latest sitting, or one that came along")
+    add_recording(parser, metavar="FILE|latest|NAME", help="a file, the latest sitting, or one that came along")
     parser.add_argument(
         "--start-at", metavar="S", type=number, default=0.0, help="begin at this many s of the recording (%(default)g)"
     )
@@ -28,7 +27,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Replay."""
     from recordings.library import resolve
     from tui.screens import launch
     from tui.terminal.check import check_terminal

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tui.cli.errors import Exit, UserError
-from tui.cli.output import progress
+from tui.cli.output import progress, warn
 
 if TYPE_CHECKING:  # Textual is imported only where there is a screen, NumPy and mcap only when they are needed
     from tui.playback.live import Live
@@ -45,7 +45,7 @@ def recover_leftovers(folder: Path) -> list[str]:
 
     sentences = recovered.recover_leftovers(folder, progress)
     for sentence in sentences:
-        print(f"pendu-tui: {sentence}", file=sys.stderr)
+        warn(sentence)
     return sentences
 
 
@@ -129,4 +129,4 @@ def say_goodbye(source: "Source") -> None:
     for file in source.recorder.files:
         print(f"recorded: {file}\nsee it again: pendu-tui replay {shlex.quote(str(file))}")
     if source.recorder.failed:
-        print(f"pendu-tui: the recording stopped: {source.recorder.failed}", file=sys.stderr)
+        warn(f"the recording stopped: {source.recorder.failed}")

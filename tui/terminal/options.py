@@ -13,8 +13,7 @@ CharacterSet = Literal["braille", "half", "ascii"]
 
 CHARACTER_SETS: tuple[CharacterSet, ...] = get_args(CharacterSet)
 FPS, CALM_FPS, MOST_FPS = 30, 10, 60
-SMALLEST = 60, 16
-"""Columns and rows of the smallest terminal on which the lab fits."""
+SMALLEST = (60, 16)  # columns, rows of a terminal that the lab fits on
 
 
 @dataclass(frozen=True, slots=True)

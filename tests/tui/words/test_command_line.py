@@ -12,7 +12,7 @@ from recordings.library import GOLDEN
 from recordings.live_recorder import LiveRecorder
 from recordings.recording import Recording
 from tui.cli.dispatch import command_of
-from tui.cli.options import joined, scene_of
+from tui.cli.options import scene_of
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
@@ -23,7 +23,7 @@ def options_of(text: str):
     """What the command line makes of a command."""
     program, name, *arguments = shlex.split(text)
     assert program == "pendu-tui"
-    return command_of(name)[0].parse_args(joined(arguments))
+    return command_of(name)[0].parse_args(arguments)
 
 
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
