@@ -29,9 +29,9 @@ from tui.views.keys import Key, bindings
 from tui.views.view import View
 
 READ, BUILT = 10, 5
-"""How often a second what is read is brought up to date, and what has to be built."""
+"""How often a second numbers that people read are updated, and charts, which take time to build."""
 
-STALL = 1.0  # s; a longer gap between frames was not lived: Ctrl+Z, a computer asleep, a line that was dead
+STALL = 1.0  # s; a longer gap between frames does not count as time: Ctrl+Z, a computer asleep, a dead line
 ALREADY = "There is a mark here already"
 
 
@@ -52,7 +52,7 @@ def _first_source(screen: Any) -> Source:
 
 
 class SourceScreen(Screen[None]):
-    """Shows a source.  Its clock is passed in."""
+    """Shows a source, following a clock that is passed in."""
 
     @dataclass
     class Began(Message):
@@ -78,7 +78,7 @@ class SourceScreen(Screen[None]):
         prepare: Callable[[], None] = lambda: None,
         notices: Sequence[str] = (),
     ) -> None:
-        """`prepare` is called after the first paint, for what takes time; it may raise OSError."""
+        """`prepare` is called after the first paint, since it may take time; it may raise OSError."""
         super().__init__()
         self._prepare = prepare
         self._notices = notices
@@ -86,7 +86,7 @@ class SourceScreen(Screen[None]):
         self.clock = clock
         self._frames = 0
         self._missed = 0.0  # s of the clock while the program was stopped
-        self._late = False  # everything is to be shown with the next frame
+        self._late = False  # the next frame shows everything
         self._undo: list[Callable[[], object]] = []
         for reactive in (SourceScreen.sample, SourceScreen.sample_10hz, SourceScreen.sample_5hz):
             self.set_reactive(reactive, source.sample)
@@ -105,7 +105,7 @@ class SourceScreen(Screen[None]):
         yield KeyLine(hinted(self.KEYS))
 
     def more(self) -> Iterable[Widget]:
-        """What this screen has above the insight line."""
+        """The widgets above the insight line."""
         return ()
 
     def on_mount(self) -> None:
@@ -118,7 +118,7 @@ class SourceScreen(Screen[None]):
             self.app.exit(error)
             return
         gc.collect()
-        gc.freeze()  # what is there now stays: collecting it again and again would cost frames
+        gc.freeze()  # what exists now stays: collecting it again and again would cost frames
         gc.enable()
         self.post_message(self.Began(self))
         self._timer = self.set_interval(1 / self.host.fps, self.frame)
@@ -126,7 +126,7 @@ class SourceScreen(Screen[None]):
             self.notify(notice, timeout=15, markup=False)
 
     def end(self) -> None:
-        """Follow the clock no longer: another screen takes over."""
+        """Stop following the clock: another screen takes over."""
         self._timer.stop()
         self.source.close()
 
@@ -148,13 +148,13 @@ class SourceScreen(Screen[None]):
         self._late = False
 
     def show_now(self) -> None:
-        """Show everything as it is, without waiting for its turn; on a line that is busy, as soon as it is not."""
+        """Show everything at once; on a busy line, with the next frame that it can carry."""
         self._late = self.host.is_behind(urgent=True)
         if not self._late:
             self.sample = self.sample_10hz = self.sample_5hz = self.source.sample
 
     def remember(self, undo: Callable[[], object]) -> None:
-        """Keep what undoes a setting."""
+        """Keep the function that undoes a change."""
         self._undo.append(undo)
 
     def change_shown(self, shown: Shown) -> None:
@@ -181,7 +181,7 @@ class SourceScreen(Screen[None]):
         self.set_speed(1.0)
 
     def set_speed(self, speed: float) -> None:
-        """Set the speed, so that it can be undone."""
+        """Set the speed; `u` undoes it."""
         before = self.source.playhead.speed
         if speed != before:
             self.remember(lambda: self.source.set_speed(before))
@@ -222,7 +222,7 @@ class SourceScreen(Screen[None]):
         self.show_now()
 
     def action_help(self) -> None:
-        """Show the keys, those of what has the focus first."""
+        """Show the help, with the keys of a focused pane first."""
         from tui.screens.text import TextScreen, help_text
 
         panes = self.query_one(f"#{self.view}", View).KEYS

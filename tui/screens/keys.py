@@ -1,6 +1,6 @@
-"""The keys of the lab and of the replay: from here come bindings, key line, help, command palette and `pendu-tui keys`.
+"""The keys of the lab and of the replay: a view's keys are with its pane.
 
-A view's keys are with its pane.
+Bindings, key line, help, command palette and `pendu-tui keys` come from these tables.
 """
 
 from collections.abc import Iterable
@@ -43,6 +43,7 @@ COMMON = (
     Key("ctrl+p", "ctrl+p", "command palette", "command_palette", _PROGRAM),
     Key("ctrl+z", "ctrl+z", "to the shell, where fg comes back", "app.suspend_process", _PROGRAM),
     Key("q", "q", "quit", "quit", _PROGRAM, "Quit"),
+    Key("", "ctrl+c", "finish the recording and quit", "", _PROGRAM),
     Key("", "click", "on a key of the last line: as if it were pressed", "", _PROGRAM),
 )
 
@@ -82,6 +83,13 @@ REPLAY = (
     Key("", "click, drag", "on the bar: to that moment", "", _PLAY),
 )
 
+OVERLAYS = (
+    Key("", "esc", "close the text, the form or the palette", "", "texts and forms"),
+    Key("", "enter", "in the form: start with these values", "", "texts and forms"),
+    Key("", "up, down", "scroll the text, or go to another field", "", "texts and forms"),
+)
+"""For the list of all keys: Textual binds them."""
+
 HINTS = ("space", "+", "right", "i", "p", "]", "?", "q", "v", ">", "f", "home", "end", "L", "r", *"yewbnmudEs")
 """The keys on the key line, those that matter most first: at the end they are cut off."""
 
@@ -91,11 +99,11 @@ def hinted(keys: Iterable[Key]) -> list[Key]:
     return sorted((key for key in keys if key.hint), key=lambda key: HINTS.index(key.shown))
 
 
-def key_list(keys: Iterable[Key]) -> str:
-    """The keys as a text, by group."""
+def key_list(keys: Iterable[Key], where: str = "") -> str:
+    """The keys as a text, by group; the headings show where they work, unless that is the group's name."""
     listed = [key for key in keys if key.shown]
-    groups = dict.fromkeys(key.group for key in listed)
-    return "\n\n".join(
-        "\n".join([group.capitalize(), *(f"  {key.shown:<14}{key.does}" for key in listed if key.group == group)])
-        for group in groups
-    )
+    parts = []
+    for group in dict.fromkeys(key.group for key in listed):
+        heading = group.capitalize() + (f" ({where})" if where not in ("", group) else "")
+        parts.append([heading, *(f"  {key.shown:<14}{key.does}" for key in listed if key.group == group)])
+    return "\n\n".join("\n".join(lines) for lines in parts)

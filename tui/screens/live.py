@@ -28,19 +28,19 @@ class LiveScreen(SourceScreen):
         return self.source
 
     def start(self, scene: Scene) -> None:
-        """Begin a new run, which can be undone by another one."""
+        """Start a new run; `u` starts one of the scene before."""
         before = self.live.scene
         if self._do(lambda: self.live.start(scene)):
             self.remember(lambda: self._do(lambda: self.live.start(before)))
 
     def set_h(self, h: float, equal_cost: bool) -> None:
-        """Use another step size from here on, at equal cost or not."""
+        """Change the step size from here on."""
         before = self.live.h, self.live.equal_cost
         if self._do(lambda: self.live.set_h(h, equal_cost)):
             self.remember(lambda: self._do(lambda: self.live.set_h(*before)))
 
     def _do(self, change: Callable[[], None]) -> bool:
-        """Change the run, or say why that cannot be."""
+        """Change the run, or notify why not."""
         try:
             change()
         except SceneError as error:
@@ -69,7 +69,7 @@ class LiveScreen(SourceScreen):
         self.set_h(-self.live.h, self.live.equal_cost)
 
     def action_equal_cost(self) -> None:
-        """Give every method the same number of force evaluations, or the same step again."""
+        """Toggle between equal force evaluations and equal steps for all methods."""
         live = self.live
         h = math.copysign(least_h(live), live.h)
         self.set_h(h if live.equal_cost else h * max(EQUAL_PARTS), not live.equal_cost)

@@ -33,12 +33,12 @@ async def still(
 
 
 async def settled(app: PenduApp) -> None:
-    """Wait until every pane that takes its time shows the newest data."""
+    """Wait until every pane shows the newest data."""
     async with asyncio.timeout(PATIENCE):
         while not all(getattr(pane, "settled", True) for pane in app.source_screen.query("#views *")):
             await asyncio.sleep(0.01)
 
 
 def normalised(svg: str) -> str:
-    """The picture without the number that makes its names unique in a page."""
+    """The picture without the random number in Rich's names."""
     return re.sub(r"terminal-\d+-", "terminal-", svg)

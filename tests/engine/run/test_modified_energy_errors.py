@@ -11,7 +11,7 @@ from engine.models.exact_pendulum import ExactMotion
 from engine.run.lockstep import Lockstep
 from engine.scenes import SCENES, Scene
 from recordings.recording import Recording
-from tests.tui.sitting import recorded
+from tests.tui.harness import recorded
 from tui.playback.history import ErrorHistory
 from tui.playback.live import Live
 from tui.playback.marks import Marks

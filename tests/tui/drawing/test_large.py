@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.tui.stage import lab
+from tests.tui.harness import lab
 from tui.drawing.canvas import Canvas
 from tui.drawing.cells import PRESENT
 from tui.drawing.large import HEIGHT, large, thick

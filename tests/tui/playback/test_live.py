@@ -7,9 +7,8 @@ import pytest
 from engine.run.lockstep import Lockstep, Sample
 from engine.scenes import DEFAULT_SCENE, SCENES, SceneError
 from recordings.events import Event
+from tests.tui.harness import FPS, Lab
 from tui.playback.live import FRAME_BUDGET, Live
-
-FPS = 30
 
 
 class Keeper:
@@ -41,26 +40,16 @@ class Keeper:
         self.closed = True
 
 
-class Bench:
-    """A live source with its clock."""
+class Bench(Lab):
+    """A lab recorded in memory, with a clock of its own work."""
 
     def __init__(self, scene=DEFAULT_SCENE, speed=1.0, second_per_look=0.0):
-        self.now = self.work = 0.0
-        self.second_per_look = second_per_look
-        self.live = Live(scene, speed, clock=self.shown)
-        self.keeper = Keeper()
-        self.live.record(self.keeper)
-        self.live.tick(0.0)
+        self.work, self.second_per_look, self.keeper = 0.0, second_per_look, Keeper()
+        super().__init__(scene, speed, self.keeper, self.shown)
 
     def shown(self) -> float:
         self.work += self.second_per_look
         return self.work
-
-    def run(self, seconds: float) -> Sample:
-        for _ in range(round(seconds * FPS)):
-            self.now += 1 / FPS
-            sample = self.live.tick(self.now)
-        return sample
 
     @property
     def kinds(self) -> list[str]:

@@ -12,7 +12,7 @@ from engine.scenes import DEFAULT_SCENE
 from recordings.events import Entry
 from recordings.live_recorder import LiveRecorder
 from recordings.recording import Recording
-from tests.tui.sitting import FPS, eventful, recorded
+from tests.tui.harness import FPS, Clocked, eventful, recorded
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.past import DENSE, PIECES, pieces
@@ -23,20 +23,13 @@ NANOSECOND = 1e-9  # what clocks in a file are rounded to
 LENGTH = 12.0  # s, of the eventful sitting
 
 
-class Table:
+class Table(Clocked):
     """A replay with its clock."""
 
     def __init__(self, path: Path):
         self.recording = Recording.open(path)
         self.replay = Replay(self.recording, Marks(path), clock=lambda: 0.0)
-        self.now = 0.0
-        self.replay.tick(0.0)
-
-    def run(self, seconds: float) -> Sample:
-        for _ in range(max(round(seconds * FPS), 1)):
-            self.now += 1 / FPS
-            sample = self.replay.tick(self.now)
-        return sample
+        super().__init__(self.replay)
 
     @property
     def due(self) -> Sample:

@@ -7,7 +7,7 @@ import pytest
 from engine.scenes import Scene
 from recordings.recording import Recording
 from recordings.verify import verify
-from tests.tui.sitting import recorded
+from tests.tui.harness import recorded
 from tui.playback.live import Live
 from tui.playback.source import EQUAL_PARTS, least_h, own_h
 from tui.screens.live import LiveScreen

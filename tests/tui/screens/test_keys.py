@@ -5,7 +5,7 @@ import math
 import pytest
 
 from engine.scenes import DEFAULT_SCENE, SCENES
-from tests.tui.stage import lab
+from tests.tui.harness import lab
 from tui.playback.history import QUANTITIES
 from tui.playback.live import Live
 from tui.playback.shown import WINDOWS

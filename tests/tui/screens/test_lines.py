@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from engine.scenes import DEFAULT_SCENE
-from tests.tui.sitting import FPS, eventful
+from tests.tui.harness import after, eventful
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.playhead import Pace
@@ -24,11 +24,8 @@ def text(row) -> str:
     return "".join(words for words, _ in row).rstrip()
 
 
-def lab(seconds: float = 12.0, scene=DEFAULT_SCENE) -> Live:
-    live = Live(scene, clock=lambda: 0.0)
-    for frame in range(round(seconds * FPS) + 1):
-        live.tick(frame / FPS)
-    return live
+def lab(seconds: float = 12.0) -> Live:
+    return after(DEFAULT_SCENE, seconds)
 
 
 class Taped(Live):

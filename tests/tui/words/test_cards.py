@@ -4,7 +4,7 @@ import pytest
 
 from engine.methods import METHODS
 from engine.scenes import SCENES
-from tests.tui.stage import lab
+from tests.tui.harness import lab
 from tui.playback.live import Live
 from tui.screens.keys import COMMON, LIVE, REPLAY
 from tui.screens.text import help_text

@@ -1,6 +1,5 @@
 """F4: speed against accuracy for the pendulum on screen."""
 
-import asyncio
 import math
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -13,11 +12,10 @@ from engine.methods import METHODS
 from engine.scenes import SCENES, Scene
 from recordings.library import resolve
 from recordings.recording import Recording
+from tests.tui.harness import until, view_of
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
-from tui.screens.app import PenduApp
-from tui.screens.base import SourceScreen
 from tui.screens.live import LiveScreen
 from tui.screens.replay import ReplayScreen
 from tui.views.accuracy.chart import MARKS
@@ -25,7 +23,6 @@ from tui.views.accuracy.pane import HERE, AccuracyPane
 
 RUNGS = ladder(5.0, 0.2, 0.01, 4)
 VERLET = 2
-PATIENCE = 30  # s; a program that ended would be waited for in vain
 
 
 @pytest.fixture(autouse=True)
@@ -38,24 +35,13 @@ def said(pane: AccuracyPane) -> str:
     return " ".join(pane.text.rsplit("force evaluations\n", 1)[1].split())
 
 
+def is_complete(pane: AccuracyPane) -> bool:
+    """It has the points of the other process and those of the current step, and its chart shows them."""
+    return pane.settled and set(enumerate(pane.here)) <= set(pane.points)
+
+
 async def complete(pilot: Pilot[object], pane: AccuracyPane) -> None:
-    """Wait for the points of another process, for those here, and for the chart."""
-    async with asyncio.timeout(PATIENCE):
-        while not (pane.settled and set(enumerate(pane.here)) <= set(pane.points)):
-            await pilot.pause(0.05)
-
-
-@asynccontextmanager
-async def view_of(stage: SourceScreen, size: tuple[int, int]) -> AsyncIterator[tuple[Pilot[object], AccuracyPane]]:
-    app = PenduApp(stage)
-    async with app.run_test(size=size) as pilot:
-        await pilot.press("f4")
-        async with asyncio.timeout(PATIENCE):
-            while not app.screen.query(AccuracyPane):
-                await pilot.pause(0.01)
-        pane = app.screen.query_one(AccuracyPane)
-        await complete(pilot, pane)
-        yield pilot, pane
+    await until(pilot, lambda: is_complete(pane))
 
 
 @asynccontextmanager
@@ -65,7 +51,7 @@ async def accuracy_view(
     """The view of a paused lab, once it is complete."""
     live = Live(scene)
     live.pause(True)
-    async with view_of(LiveScreen(live), size) as (pilot, pane):
+    async with view_of(LiveScreen(live), "f4", AccuracyPane, is_complete, size) as (pilot, pane):
         yield pilot, pane, live
 
 
@@ -191,7 +177,8 @@ async def test_a_replay_shows_it_and_keeps_its_arrows():
     path = resolve("drift")
     replay = Replay(Recording.open(path), Marks(path))
     replay.pause(True)
-    async with view_of(ReplayScreen(replay, lambda live: LiveScreen(live)), (80, 30)) as (pilot, pane):
+    screen = ReplayScreen(replay, lambda live: LiveScreen(live))
+    async with view_of(screen, "f4", AccuracyPane, is_complete, (80, 30)) as (pilot, pane):
         assert said(pane).endswith("you are here")
         await pilot.press("right")
         assert replay.playhead.position == pytest.approx(1.0, abs=0.05)
