@@ -32,7 +32,7 @@ READ, BUILT = 10, 5
 """How often a second numbers that people read are updated, and charts, which take time to build."""
 
 STALL = 1.0  # s; a longer gap between frames does not count as time: Ctrl+Z, a computer asleep, a dead line
-ALREADY = "There is a mark here already"
+ALREADY = "Already marked"
 
 
 class Host(Protocol):

@@ -69,7 +69,7 @@ class ReplayScreen(SourceScreen):
 
     def action_mark(self) -> None:
         """Leave a mark next to the recording, which itself stays as it is."""
-        text = ALREADY if is_marked(self.replay) else f"Mark at {self.replay.sample.t:.2f} s simulated"
+        text = ALREADY if is_marked(self.replay) else f"Mark at {self.replay.sample.t:.2f} s"
         try:
             self.replay.mark()
         except OSError as error:
@@ -94,7 +94,7 @@ class ReplayScreen(SourceScreen):
         """Continue live from here, once the run so far is known and simulated again up to here."""
         self.replay.pause(True)
         if not self.replay.fill():
-            self.notify("Reading what came before ...", timeout=2)
+            self.notify("Loading earlier samples ...", timeout=2)
         while not self.replay.fill():
             await asyncio.sleep(0)
         if self.replay.sample.step > LONG:
@@ -103,7 +103,7 @@ class ReplayScreen(SourceScreen):
         try:
             lab = self._go_live(live)
         except (OSError, UserError) as error:
-            self.notify(f"The lab cannot record: {explained(error)}", severity="warning", markup=False)
+            self.notify(f"Cannot start recording: {explained(error)}", severity="warning", markup=False)
             return
         self.end()
         self.app.push_screen(lab)

@@ -41,17 +41,17 @@ def status_row(source: Source, width: int) -> Row:
     z, live, named = abs(source.h) * scene.w0, source.kind == "LIVE", bool(scene.watch)
     warning = limit_warning([abs(h) * scene.w0 for h in own_h(source)])
     parts = [
-        _Part(12, "paused " if playhead.paused else "reversed" if source.h < 0 else "running"),
+        _Part(12, "paused " if playhead.paused else "backwards" if source.h < 0 else "running"),
         _Part(7, speed_text(playhead.speed)),
-        _Part(11, f"t {seconds(source.sample.t)}{'' if live else ' simulated'}"),
+        _Part(11, f"t {seconds(source.sample.t)}"),
         _Part(11, f"h {source.h:.4g} s{' equal cost' if source.equal_cost else ''}"),
         _Part(10, f"z {z:.3g}", WARN if warning else TEXT),
         *([_Part(9, warning, WARN)] if warning else []),
-        _Part(6 if named else 3, scene.name, FRAME),
+        _Part(6 if named else 3, f"scene {scene.name}" if named else f"{scene.name} scene", FRAME),
         _Part(4 if named else 6, f"{math.degrees(scene.theta):.4g}° {scene.omega:.4g} rad/s"),
     ]
     if pace.share < 0.99:
-        parts.insert(2, _Part(10, f"real-time {percent(pace.share)}", WARN))
+        parts.insert(2, _Part(10, f"only {percent(pace.share)} of {speed_text(playhead.speed)}", WARN))
     if recording is None:
         parts.append(_Part(8, "not recorded", FRAME))
     elif recording.failed:

@@ -12,5 +12,5 @@ class TooSmall(CellWidget):
     def draw(self) -> None:
         columns, rows = self.room
         needed = "x".join(map(str, SMALLEST))
-        text = f"This terminal has {columns}x{rows}, pendu needs {needed}. Enlarge it, or q quits."
+        text = f"Terminal too small: {columns}x{rows}, need {needed}. Enlarge it, or press q to quit."
         self.show_picture(Picture.of_text(text, columns, rows, TEXT))

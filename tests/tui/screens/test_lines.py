@@ -44,7 +44,7 @@ def taped(**changes) -> Taped:
 def test_the_status_line_says_all_where_there_is_room():
     line = text(status_row(taped(), 120))
     assert line == (
-        " LIVE   running  1×  t 0.00 s  h 0.05 s  z 0.157  drift  57.3° 0 rad/s  REC 1 min  96 kB"
+        " LIVE   running  1×  t 0.00 s  h 0.05 s  z 0.157  scene drift  57.3° 0 rad/s  REC 1 min  96 kB"
         "  2026-11-20T10-14-03.mcap"
     )
 
@@ -61,13 +61,13 @@ def test_the_status_line_leaves_out_what_matters_least_and_never_runs_over(width
 
 def test_at_80_columns_it_says_which_run_it_is_at_which_step_and_whether_that_is_recorded():
     live = taped()
-    assert "  z 0.157  drift  REC 1 min" in text(status_row(live, 80))
+    assert "  z 0.157  scene drift  REC 1 min" in text(status_row(live, 80))
     live.set_h(-0.2, equal_cost=True)
     live.set_speed(0.25)
     live.playhead = live.playhead.moved_to(0.0)
     live.sample = replace(live.sample, t=725.0)
     assert text(status_row(live, 80)) == (
-        " LIVE   reversed  1/4×  t 12 min 05 s  h -0.2 s equal cost  z 0.626  REC 1 min"
+        " LIVE   backwards  1/4×  t 12 min 05 s  h -0.2 s equal cost  z 0.626  REC 1 min"
     )
 
 
@@ -80,8 +80,8 @@ def test_a_start_that_has_no_name_is_told_in_numbers():
 
 def test_what_is_dropped_is_told_and_so_is_trouble():
     slow = taped(pace=Pace(due=1.0, done=0.62))
-    assert "real-time 62 %" in text(status_row(slow, 80))
-    assert "real-time" not in text(status_row(taped(pace=Pace(due=1.0, done=0.995)), 80))
+    assert "only 62 % of 1×" in text(status_row(slow, 80))
+    assert "only" not in text(status_row(taped(pace=Pace(due=1.0, done=0.995)), 80))
     broken = taped(recording_status=replace(Taped.recording_status, failed="the disk is full."))
     assert "NOT RECORDED" in text(status_row(broken, 80))
     assert "not recorded" in text(status_row(taped(recording_status=None), 80))
@@ -160,7 +160,7 @@ def test_the_bar_tells_position_length_run_step_and_event(tmp_path):
     assert facts(replay, 80) == f"{here}  loop  run 2/3  step 50/200  event 4/5"
     assert facts(replay, 50) == f"{here}  loop  run 2/3"
     assert facts(replay, 0) == here
-    assert " t 1.00 s simulated  " in text(status_row(replay, 80))
+    assert " t 1.00 s  " in text(status_row(replay, 80))
 
 
 def test_a_sentence_that_does_not_fit_ends_in_an_ellipsis():
@@ -173,6 +173,6 @@ def test_a_sentence_that_does_not_fit_ends_in_an_ellipsis():
 def test_the_key_line_shows_whole_hints_each_a_button():
     keys = hinted((*LIVE, *COMMON))
     row, places = key_row(keys, 60)
-    assert text(row) == " space Pause  + Larger h  i Start  p Scene  ? Help  q Quit"
+    assert text(row) == " space Pause  + Larger h  i Edit  p Scene  ? Help  q Quit"
     for first, end, action in places:
         assert action in [key.action for key in keys if f" {key.shown} {key.hint} " == (text(row) + " ")[first:end]]

@@ -139,7 +139,7 @@ async def test_the_lab_that_goes_on_knows_what_the_replay_knew_even_right_after_
 
 async def test_f_stays_in_the_replay_where_the_lab_could_not_record(path):
     def go_live(live: Live) -> LiveScreen:
-        raise UserError("/nowhere is no folder that can be written: choose another one.")
+        raise UserError("/nowhere is not writable: choose another folder.")
 
     def make(clock: Callable[[], float]) -> ReplayScreen:
         return ReplayScreen(Replay(Recording.open(path), Marks(path), clock=lambda: 0.0), go_live, clock)
