@@ -20,7 +20,7 @@ def test_a_mistyped_command_is_answered_with_the_nearest_one():
 
 
 def test_a_scene_given_as_a_command_is_answered_with_how_to_see_it():
-    assert pendu("crossover").refused(2, "but a scene: pendu-tui --scene crossover")
+    assert pendu("crossover").refused(2, "for the scene use: pendu-tui --scene crossover")
 
 
 @pytest.mark.parametrize(
@@ -50,7 +50,7 @@ def test_a_slip_with_options_that_exist_is_said_as_it_is(arguments, words):
 
 
 def test_a_command_behind_its_options_is_asked_to_come_first():
-    assert pendu("--scene", "drift", "run", "--time", "10").refused(2, "the command comes first: pendu-tui run.")
+    assert pendu("--scene", "drift", "run", "--time", "10").refused(2, "put the command first: pendu-tui run.")
     assert pendu("--record", "run", "--nope").refused(2, "live has no option --nope")
 
 

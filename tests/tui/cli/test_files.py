@@ -68,7 +68,7 @@ def test_a_signal_to_end_leaves_nothing_half_written(tmp_path, number):
 
 
 def test_a_folder_is_not_replaced_by_force_either(tmp_path):
-    with pytest.raises(UserError, match="exists already"), whole_file(tmp_path, force=True):
+    with pytest.raises(UserError, match="already exists"), whole_file(tmp_path, force=True):
         raise AssertionError
 
 
@@ -81,7 +81,7 @@ def test_a_device_is_written_to_and_not_replaced():
 def test_no_command_overwrites_but_by_force(tmp_path, command):
     file = tmp_path / "file.svg"
     file.write_text("older")
-    assert pendu(*command, file).refused(5, str(file), "exists already", "--force")
+    assert pendu(*command, file).refused(5, str(file), "already exists", "--force")
     assert file.read_text() == "older"
     assert pendu(*command, file, "--force").code == 0
     assert file.read_bytes() != b"older"

@@ -49,7 +49,7 @@ def test_an_encoding_without_braille_is_answered_with_how_to_change_it():
         ({"TERM": "xterm"}, "16", "COLORTERM"),
         ({"TERM": "dumb"}, "none", "set TERM"),
         ({}, "none", "set TERM"),
-        ({"TERM": "xterm", "NO_COLOR": "1"}, "NO_COLOR", "as you asked"),
+        ({"TERM": "xterm", "NO_COLOR": "1"}, "NO_COLOR", "as requested"),
     ],
 )
 def test_colours_are_read_from_the_environment(environment, found, advice):
@@ -101,5 +101,5 @@ def test_leftovers_are_counted_and_answered_with_what_saves_them():
 
 def test_without_a_terminal_the_lab_does_not_start_and_doctor_says_so():
     (finding,) = [f for f in pendu("doctor", "--json").json["findings"] if f["what"] == "lab"]
-    assert finding["found"] == "does not start here"
+    assert finding["found"] == "cannot start here"
     assert "pendu-tui run needs none" in finding["advice"]

@@ -167,7 +167,7 @@ def test_a_run_that_is_stopped_finishes_its_recording(tmp_path, number):
     os.kill(process.pid, number)
     out, err = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert "with --sample-every 320 it has 200 MB." in err
+    assert "--sample-every 320 would reduce it to 200 MB." in err
     assert "pendu-tui: interrupted at t = " in err
     assert "RK4" in out  # what was done is told
     result = verify(path)

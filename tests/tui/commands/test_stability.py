@@ -144,7 +144,7 @@ def test_ctrl_c_keeps_the_part_of_a_map_that_is_done(interrupted, tmp_path):
 def test_ctrl_c_during_the_tables_keeps_the_swings_whose_loss_is_known(interrupted):
     outcome = pendu("stability", *SMALL, "--json")
     assert outcome.code == 130
-    assert "interrupted; the swings known by then to be lost are kept." in outcome.err
+    assert "interrupted; swings already found lost are kept." in outcome.err
     assert outcome.json["interrupted"]
     rows = outcome.json["pendulum"]
     assert {(row["method"], row["theta"]) for row in rows} >= {("explicit_euler", 0.5), ("explicit_euler", 2.0)}

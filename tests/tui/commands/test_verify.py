@@ -83,7 +83,7 @@ def test_a_folder_stands_for_the_recordings_in_it_and_below(tmp_path):
 
 
 def test_a_folder_without_recordings_has_not_been_verified(tmp_path):
-    assert pendu("verify", tmp_path).refused(3, "no recording in this folder")
+    assert pendu("verify", tmp_path).refused(3, "no recordings in this folder")
 
 
 def test_a_recording_with_a_byte_changed_is_not_called_identical(tmp_path):
