@@ -128,6 +128,7 @@ def _rows(scene: Scene, sample: "Sample", trends: "list[Trend]") -> list[dict[st
     """The results by method, as in --json.  A method that diverged has no theta to compare."""
     from engine.accuracy.study import evaluations
     from engine.models.exact_pendulum import ExactMotion
+    from recordings.fields import NUMBERS
 
     exact = ExactMotion(scene).at(sample.t).theta
     rows = []
@@ -136,7 +137,7 @@ def _rows(scene: Scene, sample: "Sample", trends: "list[Trend]") -> list[dict[st
         rows.append(
             {
                 "method": method.key,
-                **fields_of(reading, "theta", "omega", "energy", "energy_error", "max_energy_error"),
+                **fields_of(reading, *NUMBERS),
                 "theta_error": abs(reading.theta - exact) if end is None else None,
                 "drift_per_second": trend.judgement.slope,
                 "verdict": trend.judgement.verdict,

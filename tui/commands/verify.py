@@ -7,14 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from recordings.errors import RecordingError, printable
-from recordings.names import PART
+from recordings.library import PART
 from tui.cli.errors import Exit
 from tui.cli.options import add_recording
 from tui.cli.output import fields_of, progress, warn, write_json
 
 if TYPE_CHECKING:
-    from recordings.rerun import Difference
-    from recordings.verify import Verification
+    from recordings.verify import Difference, Verification
 
 EXAMPLES = """\
 examples:

@@ -9,7 +9,7 @@ from recordings.errors import printable
 from recordings.library import leftovers
 
 if TYPE_CHECKING:
-    from recordings.rescue import Rescue
+    from recordings.recover import Rescue
 
 Progress = Callable[[str], AbstractContextManager[Callable[[float, float], None]]]
 
@@ -18,7 +18,7 @@ def recover_leftovers(folder: Path, progress: Progress) -> list[str]:
     """Make whole recordings of what is left in the folder; returns a sentence on each, whatever the disk does."""
     sentences = []
     for part in leftovers(folder):
-        from recordings.rescue import rescue  # brings mcap, so only where there is something to do
+        from recordings.recover import rescue  # brings mcap, so only where there is something to do
 
         try:
             with progress(f"recovering {printable(part.name)}") as show:
