@@ -18,8 +18,9 @@ from engine.scenes import DEFAULT_SCENE
 from recordings.export import COLUMNS
 from tests.tui.command_line import pendu
 from tui.cli.dispatch import COMMANDS, command_of
+from tui.screens.keys import COMMON, LIVE, REPLAY
 from tui.views.accuracy import pane as accuracy
-from tui.views.keys import COMMON, LIVE, REPLAY, Key
+from tui.views.keys import Key
 from tui.views.phase import pane as phase
 from tui.views.stability import pane as stability
 

@@ -35,6 +35,16 @@ def separatrix_energy(w0_squared: float) -> float:
     return 2 * w0_squared
 
 
+def separatrix_margin(w0: float, theta: Any, omega: Any, cos: Callable[[Any], Any] = math.cos) -> Any:
+    """1 - E/E_separatrix: 1 at rest, 0 on the separatrix, negative in rotation.  Pass the `cos` of your numbers.
+
+    The product of two numbers of which one is exact near the separatrix, where 1 - E/E_separatrix
+    itself would cancel.
+    """
+    c, v = cos(theta / 2), omega / (2 * w0)
+    return (c - v) * (c + v)
+
+
 def energy_scale(w0_squared: float, start_energy: float) -> float:
     """What relative energy errors are relative to: the start's energy, or 2 w0² where that is zero."""
     return start_energy if start_energy > 0 else separatrix_energy(w0_squared)

@@ -25,6 +25,7 @@ COMMANDS = {
     "recover": "save what is intact of a damaged recording",
     "export": "a recording as CSV",
     "recordings": "list the recordings, or prune them",
+    "keys": "all keys and mouse actions",
     "scenes": "the scenes, with what to watch",
     "methods": "the methods, with what is claimed and what is measured",
     "doctor": "what the lab finds here, and what to do about it",

@@ -1,4 +1,4 @@
-"""SeekBar: where the replay stands, and what was done when."""
+"""SeekBar: the position in the replay, and its events."""
 
 from bisect import bisect_right
 from collections.abc import Sequence
@@ -7,20 +7,20 @@ from itertools import groupby
 
 from textual import events
 from textual.message import Message
-from textual.reactive import var
 
 from engine.run.lockstep import Sample
-from tui.drawing.cells import CellWidget, Row
+from tui.drawing.cells import Row
 from tui.drawing.palette import FRAME, TEXT, WARN
 from tui.playback.replay import Replay
 from tui.playback.source import Source
+from tui.views.view import Pane
 from tui.words.numbers import seconds
 
 LEAST = 24  # columns for the bar
 
 
 def bar(position: float, length: float, ticks: Sequence[float], ends: Sequence[tuple[float, str]], width: int) -> Row:
-    """The bar: what was played is heavy, events are ticks, the ends of the loop are letters."""
+    """The bar: heavy up to the position, a tick for each event, letters at the ends of the loop."""
 
     def column(clock: float) -> int:
         return min(int(clock / length * width), width - 1) if length > 0 else 0
@@ -39,7 +39,7 @@ def bar(position: float, length: float, ticks: Sequence[float], ends: Sequence[t
 
 
 def facts(replay: Replay, room: int) -> str:
-    """Position and length, of the recording clock; loop, run, step and event as far as there is room."""
+    """Position and length of the recording; loop, run, step and event as far as there is room."""
     runs, ticks = [run.number for run in replay.recording.runs], replay.ticks
     text = f"recording {seconds(replay.playhead.position)} of {seconds(replay.length)}"
     for part in (
@@ -53,17 +53,14 @@ def facts(replay: Replay, room: int) -> str:
     return text
 
 
-class SeekBar(CellWidget):
-    """The bar.  Click or drag on it to go elsewhere."""
-
-    source: var[Source | None] = var(None)
-    sample: var[Sample | None] = var(None)
+class SeekBar(Pane):
+    """The bar; a click or a drag on it goes there."""
 
     @dataclass
     class Sought(Message):
-        """The user wants to be at this moment of the recording clock."""
+        """The user wants to see this moment."""
 
-        position: float  # s
+        position: float  # s of the recording
 
     def __init__(self) -> None:
         super().__init__()
@@ -71,15 +68,9 @@ class SeekBar(CellWidget):
         self._length = 0.0  # of the recording
         self._dragging = False
 
-    def watch_sample(self) -> None:
-        """Follow the sample."""
-        self.draw()
-
-    def draw(self) -> None:
-        """Draw bar and facts."""
-        replay = self.source
-        if not isinstance(replay, Replay) or not self.drawable:
-            return
+    def paint(self, source: Source, sample: Sample) -> None:
+        assert isinstance(source, Replay)
+        replay = source
         text = facts(replay, self.room.width - LEAST - 3)
         self._length = replay.length
         self._columns = max(self.room.width - len(text) - 3, 1)
@@ -88,18 +79,15 @@ class SeekBar(CellWidget):
         self.show([[(" ", TEXT), *row, ("  " + text, TEXT)]])
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Go there, and follow the pointer until it is released."""
         self._dragging = True
         self.capture_mouse()
         self._seek(event)
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
-        """Follow the pointer."""
         if self._dragging:
             self._seek(event)
 
     def on_mouse_up(self, event: events.MouseUp) -> None:
-        """Stay there."""
         self._dragging = False
         self.release_mouse()
 

@@ -16,9 +16,7 @@ _HEAD = 14
 def method_card(index: int) -> str:
     """All that is claimed of a method; every line is a field of METHODS, and tested there."""
     method = METHODS[index]
-    limit = (
-        f"z = h w0 up to {method.linear_limit:.4g}, where swings are small" if method.linear_limit else "none: at no h"
-    )
+    limit, area = f"z = h w0 up to {method.linear_limit:.4g}, where swings are small", "area in phase space"
     return _card(
         f"{mark(index)} {method.label}",
         {
@@ -26,11 +24,9 @@ def method_card(index: int) -> str:
             "formula": method.formula,
             "order": f"{method.order}: half the step makes the error {2**method.order} times smaller",
             "costs": f"{method.force_evaluations} force evaluation{'s' * (method.force_evaluations > 1)} a step",
-            "symplectic": "yes: it keeps area in phase space"
-            if method.symplectic
-            else "no: area in phase space changes",
+            "symplectic": f"yes: it keeps {area}" if method.symplectic else f"no: {area} changes",
             "reversible": "yes: turned round, it returns to its start" if method.reversible else "no",
-            "stable": limit,
+            "stable": limit if method.linear_limit else "none: at no h",
             "used in": method.used,
             "reference": method.reference,
         },
@@ -53,10 +49,9 @@ def scene_card(scene: Scene, now: str = "") -> str:
 
 
 def _card(title: str, lines: dict[str, str]) -> str:
-    """A title and what there is to say, each line with its head."""
-    told = [
+    paragraphs = [
         textwrap.fill(text, WIDTH, initial_indent=f"  {head:<{_HEAD}}", subsequent_indent=" " * (_HEAD + 2))
         for head, text in lines.items()
         if text
     ]
-    return "\n".join([title, *told])
+    return "\n".join([title, *paragraphs])

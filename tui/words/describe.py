@@ -4,13 +4,13 @@ import math
 
 from engine.methods import METHODS
 from tui.playback.source import Source
-from tui.words.findings import about, failed, leaving, over_the_top
-from tui.words.numbers import seconds
+from tui.words.findings import ending, endings, leaving
+from tui.words.numbers import about, seconds
 
 
 def description(source: Source) -> list[str]:
     """What runs and what each method does, a line a thought."""
-    return [*_run(source), *(method_sentence(source, index) for index in range(len(METHODS))), *_tape(source)]
+    return [*_run(source), *(method_sentence(source, index) for index in range(len(METHODS))), _recording(source)]
 
 
 def _run(source: Source) -> list[str]:
@@ -37,11 +37,8 @@ def step_text(source: Source) -> str:
 def method_sentence(source: Source, index: int) -> str:
     """What a method does: its end, its way over the top, its verdict, or its error so far."""
     method, reading = METHODS[index], source.sample.readings[index]
-    happened = {each.kind: each for each in source.milestones if each.index == index}
-    if "failed" in happened:
-        return failed(happened["failed"])
-    if "over the top" in happened:
-        return over_the_top(happened["over the top"])
+    if milestone := endings(source).get(index):
+        return ending(milestone)
     if source.judgements[index].verdict == "bounded":
         return f"{method.label} stays within a band: its energy is off by {reading.max_energy_error:.2g} at most."
     return leaving(source, index) or (
@@ -49,11 +46,11 @@ def method_sentence(source: Source, index: int) -> str:
     )
 
 
-def _tape(source: Source) -> list[str]:
-    recording_status = source.recording_status
-    if recording_status is None:
-        return ["Nothing is recorded."]
-    if recording_status.failed:
-        return [f"Nothing is being recorded: {recording_status.failed}"]
+def _recording(source: Source) -> str:
+    status = source.recording_status
+    if status is None:
+        return "Nothing is recorded."
+    if status.failed:
+        return f"Nothing is being recorded: {status.failed}"
     verb = "Recorded so far" if source.kind == "LIVE" else "The recording"
-    return [f"{verb}: {seconds(recording_status.seconds)} in {recording_status.name}."]
+    return f"{verb}: {seconds(status.seconds)} in {status.name}."

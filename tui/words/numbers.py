@@ -1,4 +1,4 @@
-"""Numbers -> text of a fixed width, for tables and the status line.
+"""Numbers -> text: of a fixed width for tables, as people say them in sentences.
 
 Never wider than asked, and never "nan" or "inf": what is not a number is a hyphen.
 """
@@ -43,6 +43,21 @@ def seconds(value: float) -> str:
         return f"{sign}{hours} h {rest:02d} min"
     days, rest = divmod(round(value / 3600), 24)
     return f"{sign}{days} d {rest:02d} h" if days < 10_000 else f"{sign}{value:.1e} s"
+
+
+def about(seconds: float) -> str:
+    """A duration with two digits or so: "40 s", "32 min", "8.4 h", "12 days"."""
+    units = (("days", 86400), ("h", 3600), ("min", 60), ("s", 1))
+    unit, size = next((unit for unit in units if seconds >= 2 * unit[1]), units[-1])
+    value = seconds / size
+    return f"{value:.0f} {unit}" if value >= 9.95 else f"{value:.2g} {unit}"
+
+
+def two_digits(value: float) -> str:
+    """A positive number with two digits or so: "0.66", "4.3", "440", "1.3e+06"."""
+    if not 0.095 <= value < 99_999.5:
+        return f"{value:.1e}"
+    return f"{value:.2f}" if value < 0.95 else f"{value:.1f}" if value < 9.95 else f"{value:.0f}"
 
 
 def file_size(count: int) -> str:

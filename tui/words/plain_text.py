@@ -6,8 +6,8 @@ from collections.abc import Callable
 from engine.methods import METHODS
 from tui.playback.source import Source
 from tui.words.describe import description
-from tui.words.events import diary
-from tui.words.findings import short
+from tui.words.events import event_lines
+from tui.words.findings import short_name
 from tui.words.insight import TURN, insight
 from tui.words.numbers import seconds
 
@@ -26,11 +26,11 @@ def plain(
         say(sentence)
     began, second, news = clock(), 0, False
     source.tick(began)
-    known = set(diary(source))
+    known = set(event_lines(source))
     while not stopped() and not (source.kind == "REPLAY" and source.playhead.paused):
         sleep(TICK)
         source.tick(clock())
-        for line in diary(source):
+        for line in event_lines(source):
             if line not in known:
                 known.add(line)
                 news = True
@@ -43,5 +43,5 @@ def plain(
 
 def numbers(source: Source) -> str:
     """Time and energy errors."""
-    errors = [f"{short(m)} {r.energy_error:+.2g}" for m, r in zip(METHODS, source.sample.readings, strict=True)]
+    errors = [f"{short_name(m)} {r.energy_error:+.2g}" for m, r in zip(METHODS, source.sample.readings, strict=True)]
     return f"{seconds(source.sample.t)}: energy errors {', '.join(errors)}."

@@ -10,8 +10,8 @@ from hypothesis.extra.numpy import arrays
 
 from engine.methods import METHODS
 from tests.tui.drawing.test_canvas import dots
+from tui.drawing.axes import held, per_column, time_span
 from tui.drawing.chart import SMALLEST, Series, loglog_chart, time_chart
-from tui.drawing.columns import held, per_column, span
 from tui.drawing.palette import EXACT, FRAME, NOBODY, TEXT
 from tui.playback.history import Window
 
@@ -57,7 +57,7 @@ def runs(draw):
 def test_on_a_linear_axis_every_column_shows_its_lowest_and_its_highest_value(run, index, width, height):
     x, values = run
     found, dot, columns = plotted(chart(window(x, values), width, height, log=False, seconds=10, shown=[index]), False)
-    for extremes in per_column(x, values[:, None], values[:, None], *span(x, 10, columns), columns):
+    for extremes in per_column(x, values[:, None], values[:, None], *time_span(x, 10, columns), columns):
         for column, value in enumerate(extremes.ravel()):
             if not np.isnan(value):  # half a dot, and a little for plotext's own rounding
                 assert min(abs(shown - value) for at, shown in found if at == column) <= 0.52 * abs(dot) + 1e-12
@@ -69,7 +69,7 @@ def test_on_a_logarithmic_axis_every_column_shows_its_largest_magnitude(run, rep
     x, values = run
     values = np.copysign(0.5 + abs(values), values)  # within a decade: the axis begins one below what is usual
     found, dot, columns = plotted(chart(window(x, values, repeats=repeats), width, height, seconds=10, shown=[0]), True)
-    largest = held(x, abs(values)[:, None], *span(x, 10, columns), columns, repeats).ravel()
+    largest = held(x, abs(values)[:, None], *time_span(x, 10, columns), columns, repeats).ravel()
     for column, value in enumerate(np.log10(largest)):
         if not np.isnan(value):
             assert min(abs(shown - value) for at, shown in found if at == column) <= 0.52 * dot

@@ -17,7 +17,7 @@ from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.past import DENSE, PIECES, pieces
 from tui.playback.replay import Replay
-from tui.words.events import diary
+from tui.words.events import event_lines
 
 NANOSECOND = 1e-9  # what clocks in a file are rounded to
 LENGTH = 12.0  # s, of the eventful sitting
@@ -167,7 +167,7 @@ def test_the_next_event_is_also_what_a_method_does_as_the_diary_lists_it(tmp_pat
         table.replay.seek_event(1)
         table.replay.pause(True)
         table.run(1 / FPS)
-        listed.append([line.text for line in diary(table.replay)][sum(map(len, listed)) + 1 :])
+        listed.append([line.text for line in event_lines(table.replay)][sum(map(len, listed)) + 1 :])
     assert listed == [
         ["Explicit Euler over the top, 5.1 E0"],
         ["Explicit Euler: grows", "RK4: drifts"],

@@ -6,9 +6,9 @@ from engine.methods import METHODS
 from engine.scenes import SCENES
 from tests.tui.stage import lab
 from tui.playback.live import Live
-from tui.screens.help import help_text
+from tui.screens.keys import COMMON, LIVE, REPLAY
+from tui.screens.text import help_text
 from tui.views.accuracy import pane as accuracy
-from tui.views.keys import COMMON, LIVE, REPLAY
 from tui.views.phase import pane as phase
 from tui.views.phase.pane import PhasePane
 from tui.views.stability import pane as stability

@@ -3,7 +3,7 @@
 from recordings.events import Event
 from tests.tui.stage import lab
 from tui.screens.insight_line import InsightLine
-from tui.words.hints import HINTS, SHOWN, hint
+from tui.words.insight import HINT_SHOWN, HINTS, hint
 
 FIRST_START = Event("start", 1, 0, 0.0)
 
@@ -16,7 +16,7 @@ def shown(events: list[Event]) -> list[str]:
 
 def test_each_hint_comes_once_for_some_seconds():
     assert shown([FIRST_START]) == [text for _, _, text in HINTS]
-    assert sum(bool(hint(seconds / 10, [])) for seconds in range(1200)) == len(HINTS) * SHOWN * 10
+    assert sum(bool(hint(seconds / 10, [])) for seconds in range(1200)) == len(HINTS) * HINT_SHOWN * 10
 
 
 def test_who_has_done_it_is_not_told_how():
@@ -35,4 +35,4 @@ async def test_hints_are_on_the_insight_line_and_leave_it_again():
     assert [text for text in dict.fromkeys(said) if text in {text for _, _, text in HINTS}] == [
         text for _, _, text in HINTS
     ]
-    assert len([text for text in said if text == HINTS[0][2]]) == SHOWN / 2
+    assert len([text for text in said if text == HINTS[0][2]]) == HINT_SHOWN / 2

@@ -8,9 +8,10 @@ from engine.methods import METHODS
 from engine.run.lockstep import Lockstep
 from engine.scenes import SCENES, Scene
 from tui.playback.live import Live
-from tui.words.events import diary
-from tui.words.findings import about, forecast, leaving, over_the_top, short, so_far, staying, times
+from tui.words.events import event_lines
+from tui.words.findings import ending, forecast, leaving, short_name, so_far, staying
 from tui.words.insight import FRESH, RESTING, TURN, WATCH, insight, lasting
+from tui.words.numbers import about, two_digits
 
 EXPLICIT, SYMPLECTIC, VERLET, RK4 = range(4)
 FPS = 30
@@ -81,13 +82,11 @@ def test_the_energy_at_the_top_is_the_one_of_the_event_and_stands_still():
     sitting.run(8)
     (top,) = (each for each in sitting.live.milestones if each.kind == "over the top")
     told = {sitting.run(1) for _ in range(5)}
-    assert (
-        told == {over_the_top(top)} == {"Explicit Euler went over the top at 7.15 s with 5.1 times the start's energy."}
-    )
+    assert told == {ending(top)} == {"Explicit Euler went over the top at 7.15 s with 5.1 times the start's energy."}
     lockstep = Lockstep(SCENES["drift"])
     lockstep.advance(top.step)
     assert top.energy_error == lockstep.sample().readings[EXPLICIT].energy_error
-    assert any(line.text == "Explicit Euler over the top, 5.1 E0" for line in diary(sitting.live))
+    assert any(line.text == "Explicit Euler over the top, 5.1 E0" for line in event_lines(sitting.live))
 
 
 @pytest.mark.parametrize(
@@ -140,7 +139,7 @@ def test_whoever_has_left_a_band_is_said_to_be_outside():
     readings = live.sample.readings
     ratio = abs(readings[RK4].energy_error) / readings[VERLET].max_energy_error
     assert ratio > 1
-    assert leaving(live, RK4).endswith(f"its error is {times(ratio)} times Verlet's largest.")
+    assert leaving(live, RK4).endswith(f"its error is {two_digits(ratio)} times Verlet's largest.")
 
 
 def test_who_stays_is_told_with_the_time_that_the_verdict_rests_on():
@@ -148,7 +147,7 @@ def test_who_stays_is_told_with_the_time_that_the_verdict_rests_on():
     text = staying(live)
     seconds = float(re.search(r"no trend in (\d+) s", text)[1])
     assert 40 - live.exact.period - 1 < seconds <= 40
-    assert [name for name in (short(method) for method in METHODS) if name in text] == ["Symplectic Euler", "Verlet"]
+    assert [name for name in map(short_name, METHODS) if name in text] == ["Symplectic Euler", "Verlet"]
     assert staying(after("drift", 5)) == ""
 
 
@@ -211,10 +210,10 @@ def test_durations_have_two_digits(seconds, text):
     ("ratio", "text"), [(0.664, "0.66"), (1.0, "1.0"), (4.34, "4.3"), (9.97, "10"), (439.4, "439"), (1.3e6, "1.3e+06")]
 )
 def test_ratios_have_two_digits(ratio, text):
-    assert times(ratio) == text
+    assert two_digits(ratio) == text
 
 
 def test_names_are_short_where_they_stay_different():
-    names = [short(method) for method in METHODS]
+    names = [short_name(method) for method in METHODS]
     assert names == ["Explicit Euler", "Symplectic Euler", "Verlet", "RK4"]
     assert len(set(names)) == len(METHODS)

@@ -98,7 +98,7 @@ async def test_f3_shows_all_of_it_and_the_arrows_are_its_keys(size):
         await bench.view("f3")
         assert bench.pane.has_focus
         await bench.pilot.press("shift+right", "up")
-        crosshair = bench.pane.crosshair
+        crosshair = bench.pane.cursor
         await bench.pilot.press("enter")
         assert (bench.live.scene.theta, bench.live.scene.omega) == tuple(crosshair)
         await bench.view("f2")
@@ -235,4 +235,4 @@ async def test_in_a_replay_the_arrows_still_seek(tmp_path: Path):
         pane.focus()
         await pilot.press("right", "right")
         assert replay.playhead.position == pytest.approx(2.0)
-        assert pane.crosshair is None
+        assert pane.cursor is None

@@ -45,9 +45,8 @@ async def view_of(stage: SourceScreen, size: tuple[int, int]) -> AsyncIterator[t
             while not app.screen.query(StabilityPane):
                 await pilot.pause(0.01)
             pane = app.screen.query_one(StabilityPane)
-            while not pane.complete:
+            while not pane.settled:
                 await pilot.pause(0.05)
-        pane.draw()
         yield pilot, pane
 
 

@@ -6,7 +6,7 @@ import pytest
 from engine.methods import METHODS
 from engine.stability.outcomes import CELL, DRIFTS, GROWS, HOLDS, OVER_THE_TOP, UNKNOWN, outcomes
 from tui.views.stability.words import note, verdict
-from tui.words.limits import limit_warning
+from tui.words.findings import limit_warning
 
 EULER, _, VERLET, RK4 = METHODS
 ZS = np.array([0.5, 1.0, 1.5, 2.0, 2.5])

@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from tui.drawing.columns import held, per_column, span
+from tui.drawing.axes import held, per_column, time_span
 
 VALUES = st.floats(-1e6, 1e6) | st.just(np.nan)
 
@@ -59,7 +59,7 @@ def test_what_was_before_the_chart_is_held_into_its_first_columns():
 
 @given(st.floats(0, 1e9), st.floats(1, 1e4), st.integers(5, 200))
 def test_a_window_ends_at_the_last_moment_to_a_column_and_columns_keep_their_place(latest, seconds, columns):
-    start, end = span(np.array([0.0, latest]), seconds, columns)
+    start, end = time_span(np.array([0.0, latest]), seconds, columns)
     assert end - start == pytest.approx(seconds, rel=1e-4)  # 1e9 s less 20 s has few digits left
     assert latest <= end * (1 + 1e-9)
     assert end <= max(latest + seconds / columns, seconds) * (1 + 1e-9)
@@ -68,8 +68,8 @@ def test_a_window_ends_at_the_last_moment_to_a_column_and_columns_keep_their_pla
 
 @given(st.floats(0, 1e9))
 def test_the_whole_run_fills_nine_tenths_of_the_chart(latest):
-    start, end = span(np.array([0.0, latest]), None, 50)
+    start, end = time_span(np.array([0.0, latest]), None, 50)
     assert start == 0
     assert max(latest, 1) <= end * (1 + 1e-9)
     assert end <= max(1.1 * latest, 1.1)
-    assert span(np.array([]), None, 50) == (0, 1)
+    assert time_span(np.array([]), None, 50) == (0, 1)
