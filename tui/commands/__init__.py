@@ -1,6 +1,6 @@
 """The subcommands, one module each; only the chosen one is imported.
 
-On screen: `live`, `replay`.  Pictures: `snapshot`.  Studies: `accuracy`, `stability`, which print by `reports`.
+On screen: `live`, `replay`, and their `keys`.  Pictures: `snapshot`.  Studies: `accuracy`, `stability`, which print by `reports`.
 Runs and recordings: `run`, `verify`, `info`, `recover`, `export`, `recordings`.  Lists and help: `scenes`,
 `methods`, `doctor`, `completion`.
 

@@ -114,7 +114,7 @@ def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int)
     trends = [Trend(period := exact.period or math.tau / scene.w0) for _ in METHODS]
     per_turn = period / scene.h if exact.regime == "rotation" else math.inf
     fast = not options.no_compiled and steps >= COMPILED_FROM and compiled.available()
-    with stop_requests() as stopped, progress(f"{steps} steps") as show, recorder as recording:
+    with stop_requests() as stopped, progress(f"{steps:,} steps") as show, recorder as recording:
         for sample in simulate(scene, options.time, recording, every, loops=compiled.compiled if fast else loops.plain):
             for trend, reading in zip(trends, sample.readings, strict=True):
                 trend.read(sample.t, reading, per_turn)

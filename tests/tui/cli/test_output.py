@@ -36,8 +36,10 @@ def shown(stream: io.StringIO, seconds_per_call: float, monkeypatch) -> str:
     return stream.getvalue()
 
 
-def test_what_takes_longer_than_a_second_on_a_terminal_shows_a_bar(monkeypatch):
-    assert "working" in shown(Terminal(), 0.5, monkeypatch)
+def test_what_takes_longer_than_a_second_on_a_terminal_shows_a_bar_and_the_time_left(monkeypatch):
+    bar = shown(Terminal(), 0.5, monkeypatch)
+    assert "working" in bar
+    assert "left" in bar
 
 
 def test_what_is_done_within_a_second_shows_none(monkeypatch):
