@@ -143,7 +143,7 @@ def test_the_numbers_are_the_same_without_numba():
     assert pendu(*QUICK, "--json").json == pendu(*QUICK, "--json", "--no-compiled").json
 
 
-def test_points_that_say_nothing_are_kept_with_their_reason():
+def test_useless_points_are_kept_with_their_reason():
     points = pendu("accuracy", "--time", "20", "--h-values", "0.2:0.0002:4", "--json").json["points"]
     assert {(p["method"], p["reason"]) for p in points if not p["valid"]} == {
         ("explicit_euler", REASONS["lost"]),
@@ -165,7 +165,7 @@ def test_a_budget_is_answered_with_the_smallest_error_for_it():
     assert answer["force_evaluations"] <= 1000
 
 
-def test_it_says_plainly_that_no_method_gets_there():
+def test_a_target_that_no_method_reaches_is_reported():
     told = pendu(*QUICK, "--target", "1e-9", "--budget", "500")
     assert told.code == 0
     assert "No method reaches the target over 5 s: theta error up to 1e-09 within 500 force evaluations\n" in told.out
@@ -215,7 +215,7 @@ def test_csv_has_a_line_for_each_point_with_all_digits(tmp_path):
         (["--theta", "0"], ["at rest", "no error to measure"]),
     ],
 )
-def test_a_slip_is_one_sentence_and_exit_2(arguments, words):
+def test_a_mistake_is_one_sentence_and_exit_2(arguments, words):
     assert pendu("accuracy", *arguments).refused(2, *words)
 
 
