@@ -7,7 +7,7 @@ from engine.run.lockstep import Sample
 from tui.playback.past import RunSoFar, pieces
 
 if TYPE_CHECKING:
-    from recordings.recording import Place, Recording, Run
+    from recordings.recording import Recording, Run, SamplePlace
 
 FOLLOWED = 100  # samples: what lies closer ahead is played through, what lies further is jumped to
 TAIL = 1.0  # s of the past that are there at once after a jump, for the trails,
@@ -35,7 +35,7 @@ class ReplayCursor:
         """Go to the last sample before a moment [s]: through those between where they are few, else by a jump."""
         recording, at = self.recording, self._place
         target = recording.at(position + NANOSECOND) or at
-        ahead: list[Place] = []
+        ahead: list[SamplePlace] = []
         while at < target and len(ahead) < FOLLOWED and (following := recording.next(at)):
             ahead.append(at := following)
         if at < target:
@@ -68,7 +68,7 @@ class ReplayCursor:
         """Whether the past is known as far as it can be."""
         return self._filling is None and not self._stale
 
-    def _move(self, place: "Place") -> None:
+    def _move(self, place: "SamplePlace") -> None:
         """Show the sample at a place that is close to the last one."""
         clock, value = self.recording.sample(place)
         assert isinstance(value, Sample)
@@ -78,7 +78,7 @@ class ReplayCursor:
         self._place, self.clock, self.sample = place, clock, value
         self.past.add(value)
 
-    def _jump(self, place: "Place") -> None:
+    def _jump(self, place: "SamplePlace") -> None:
         """Show the sample at any place: the trails' past at once, the rest during the next frames."""
         self._place = place
         self.clock, value = self.recording.sample(place)

@@ -1,4 +1,4 @@
-"""Lab: the live screen, where the run can be changed."""
+"""LiveScreen: the lab, where the run can be changed."""
 
 import math
 from collections.abc import Callable
@@ -11,7 +11,8 @@ from tui.playback.live import Live
 from tui.playback.playhead import next_h
 from tui.playback.source import EQUAL_PARTS, is_marked, least_h
 from tui.screens.base import ALREADY, SourceScreen
-from tui.views.keys import COMMON, LIVE, Key, bindings
+from tui.screens.keys import COMMON, LIVE
+from tui.views.keys import Key, bindings
 from tui.views.messages import SceneChosen, StepSizeChosen
 
 
@@ -23,7 +24,6 @@ class LiveScreen(SourceScreen):
 
     @property
     def live(self) -> Live:
-        """The source."""
         assert isinstance(self.source, Live)
         return self.source
 
@@ -50,26 +50,22 @@ class LiveScreen(SourceScreen):
         return True
 
     def on_scene_chosen(self, choice: SceneChosen) -> None:
-        """Start what was chosen in a view."""
         self.start(choice.scene)
 
     def on_step_size_chosen(self, choice: StepSizeChosen) -> None:
-        """Go on with what was chosen in a view."""
         self.set_h(math.copysign(choice.h, self.live.h), self.live.equal_cost)
 
     def action_restart(self) -> None:
-        """Begin again."""
         self.live.restart()
         self.show_now()
 
     def action_larger_h(self, direction: int) -> None:
-        """Go along 1, 2, 5 with h."""
+        """Take the next larger or smaller h of 1, 2, 5, 10, ..."""
         live = self.live
         h = next_h(math.copysign(least_h(live), live.h), direction > 0)
         self.set_h(h * max(EQUAL_PARTS) if live.equal_cost else h, live.equal_cost)
 
     def action_reverse(self) -> None:
-        """Let time run the other way."""
         self.set_h(-self.live.h, self.live.equal_cost)
 
     def action_equal_cost(self) -> None:
@@ -79,19 +75,16 @@ class LiveScreen(SourceScreen):
         self.set_h(h if live.equal_cost else h * max(EQUAL_PARTS), not live.equal_cost)
 
     def action_scene(self, direction: int) -> None:
-        """Start the next scene, or the previous one."""
-        names = list(SCENES)
-        name = self.live.scene.name
+        """Start the next scene, or the previous one if direction is -1."""
+        names, name = list(SCENES), self.live.scene.name
         at = names.index(name) + direction if name in SCENES else min(direction, 0)
         self.start(SCENES[names[at % len(names)]])
 
     def action_start_scene(self, name: str) -> None:
-        """Start a scene of the list."""
         self.start(SCENES[name])
 
     def action_start_values(self) -> None:
-        """Ask for the start values."""
-        from tui.screens.start_form import StartForm  # Textual's input field can wait until it is wanted
+        from tui.screens.start_form import StartForm  # Textual's input field is imported when it is needed
 
         def chosen(scene: Scene | None) -> None:
             if scene is not None:
@@ -100,7 +93,6 @@ class LiveScreen(SourceScreen):
         self.app.push_screen(StartForm(self.live.scene.altered(h=least_h(self.live))), chosen)
 
     def action_mark(self) -> None:
-        """Leave a mark in the recording."""
         text = ALREADY if is_marked(self.live) else f"Mark at {self.live.sample.t:.2f} s"
         self.live.mark()
         self.notify(text, timeout=2)

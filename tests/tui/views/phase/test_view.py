@@ -194,7 +194,7 @@ async def test_reversed_time_tells_at_its_start_how_far_each_method_misses_it():
         await bench.run(5)
         await bench.pilot.press("b")
         await bench.run(6)
-        assert bench.lab.query_one(InsightLine).text.startswith(" Back at t = 0, the start is missed by e ")
+        assert bench.lab.query_one(InsightLine).text.startswith(" Back at t = 0. Missed the start by e ")
 
 
 async def test_e_comes_by_the_shadow_energies():
