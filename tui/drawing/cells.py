@@ -11,7 +11,6 @@ from textual.strip import Strip
 from textual.widget import Widget
 
 from tui.drawing.canvas import Picture
-from tui.drawing.large import thick
 from tui.drawing.palette import NOBODY, palette
 
 Row = Sequence[tuple[str, int | Style]]
@@ -19,6 +18,22 @@ Row = Sequence[tuple[str, int | Style]]
 
 PRESENT = "-present"
 """The app's class where pictures have thick lines."""
+
+
+def _grown(bits: int) -> int:
+    """The dots of a braille cell, each as wide as the cell and two rows high."""
+    rows = (0x09, 0x12, 0x24, 0xC0)  # two dots each, from the top
+    neighbours = (*rows[1:], rows[2])
+    return sum({dots for row, other in zip(rows, neighbours, strict=True) if bits & row for dots in (row, other)})
+
+
+_THICK = np.array([0x2800 + _grown(bits) for bits in range(256)], np.uint32)
+
+
+def thick(picture: Picture) -> Picture:
+    """The picture with thick lines; words stay as they are."""
+    codes = picture.characters
+    return Picture(np.where(codes & ~np.uint32(0xFF) == 0x2800, _THICK[codes & 0xFF], codes), picture.owners)
 
 
 def changed_rows(before: Picture | None, after: Picture) -> list[int]:

@@ -16,7 +16,7 @@ from tui.views.view import Pane
 from tui.words.numbers import decimal, scientific
 
 
-class Line(NamedTuple):
+class TableLine(NamedTuple):
     """All that a line of the table is made of."""
 
     method: Method
@@ -33,7 +33,7 @@ class Column:
     keep: int  # columns with the smallest numbers go first where there is no room
     narrow: tuple[str, int]
     wide: tuple[str, int]
-    cell: Callable[[Line, int], str]
+    cell: Callable[[TableLine, int], str]
 
 
 COLUMNS = (
@@ -60,17 +60,17 @@ NAME = max(len(mark(index) + method.label) for index, method in enumerate(METHOD
 MOST_GAP = 3
 
 
-def theta_error(line: Line) -> float:
+def theta_error(line: TableLine) -> float:
     """|theta - exact theta| [rad]."""
     return abs(line.reading.theta - line.exact.theta)
 
 
-def verdict(line: Line) -> str:
+def verdict(line: TableLine) -> str:
     """The verdict in a word; a method that has diverged has failed."""
     return "failed" if line.reading.diverged_at is not None else line.judgement.verdict
 
 
-def chosen(columns: Sequence[Column], room: int) -> list[tuple[str, int, Callable[[Line, int], str]]]:
+def chosen(columns: Sequence[Column], room: int) -> list[tuple[str, int, Callable[[TableLine, int], str]]]:
     """(head, width, cell) of the columns that fit, in their order: wide ones, or as many narrow ones as possible."""
     if sum(column.wide[1] + 1 for column in columns) <= room:
         return [(*column.wide, column.cell) for column in columns]
@@ -89,7 +89,7 @@ def table(
     gap = " " * (1 + min(spare // max(len(columns), 1), MOST_GAP))
     rows: list[Row] = [[("method".ljust(NAME), FRAME), *((gap + head.rjust(size), FRAME) for head, size, _ in columns)]]
     for index in shown.indices:
-        line = Line(METHODS[index], sample.readings[index], judgements[index], exact, h[index])
+        line = TableLine(METHODS[index], sample.readings[index], judgements[index], exact, h[index])
         failed = line.reading.diverged_at is not None
         cells = "".join(gap + cell(line, size) for _, size, cell in columns)
         rows.append([(f"{mark(index)} {METHODS[index].label}".ljust(NAME), index), (cells, WARN if failed else TEXT)])

@@ -21,7 +21,7 @@ from tui.views.stability.words import note, verdict
 from tui.views.view import Chooser
 
 WORDS = 2  # lines
-SOME = 4  # rows of what was computed that are sent with a sample: a key waits for what is on its way
+SOME = 6  # rows of what was computed that are sent with a sample: a key waits for what is on its way
 ROOMY = 28  # rows from which on there is room for all of the legend
 BIG_STEP = 5  # cells of the map
 

@@ -22,6 +22,7 @@ from tui.drawing.palette import Palette, mark, mixed
 EXACT_ENOUGH = 1e-12  # energy errors below it are drawn alike
 LIMIT, THRESHOLD, CATCHING, HERE = "│", "┊", "•", "X"
 _WITHOUT_COLOUR = {LIMIT: "|", THRESHOLD: ":", CATCHING: "o", HERE: "X"}
+EXAMPLE = [method.key for method in METHODS].index("velocity_verlet")  # whose colours the legend shows
 MARGIN = 4  # for the labels of the amplitudes
 SHADES = 16  # from lost at once to lost at the end, and again from there to held exactly
 
@@ -166,7 +167,7 @@ def legend(steps: int, palette: Palette | None, columns: int = 80) -> list[Segme
         lost = [Segment("lost: at step < 10 .  < 100 1  < 1000 2")]
     else:
         held, lost = (
-            [Segment("█", Style(color=colour(low + 0.999 * part / 7, 2, palette))) for part in range(8)]
+            [Segment("█", Style(color=colour(low + 0.999 * part / 7, EXAMPLE, palette))) for part in range(8)]
             for low in (1.0, 0.0)
         )
         held = [Segment("held: energy error 1 "), *held, Segment(" 1e-12   ")]
