@@ -11,6 +11,7 @@ from typing import BinaryIO
 from mcap.opcode import Opcode
 
 from engine.run.lockstep import Lockstep, Sample
+from engine.run.stepping import Stepping
 from engine.scenes import SceneError
 from recordings.errors import DiskError, RecordingError, named
 from recordings.events import Event
@@ -134,7 +135,7 @@ class _Salvage:
         if event.kind == "set_h" and event.h is not None:
             self._timekeeper.advance(event.step - self._timekeeper.step)
             try:
-                self._timekeeper.set_h(event.h)
+                self._timekeeper.set_stepping(Stepping(event.h))
             except SceneError as error:
                 raise RecordingError(f"run {event.run} cannot have been recorded: {error}") from error
         self._recorder.event(event, clock)

@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 from engine.methods import METHODS
 from engine.run.compiled import tiered
 from engine.run.lockstep import Lockstep, Reading, Sample
+from engine.run.stepping import Stepping
 from engine.scenes import SceneError
 from recordings.errors import RecordingError
 from recordings.events import Event
@@ -77,7 +78,7 @@ class Rerun:
         if event.kind == "set_h" and event.h is not None:
             for lockstep in self._go(event.step):
                 try:
-                    lockstep.set_h(event.h, event.equal_cost)
+                    lockstep.set_stepping(Stepping(event.h, event.equal_cost))
                 except SceneError as error:
                     raise RecordingError(f"run {self.run} cannot have been recorded: {error}") from error
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from engine.methods import METHODS
 from engine.models.state import State
-from engine.run.lockstep import parts
+from engine.run.stepping import Stepping
 
 
 class ModifiedEnergyErrors:
@@ -29,7 +29,7 @@ class ModifiedEnergyErrors:
         return [(energy - start) / self._scale for energy, start in zip(energies, self._starts, strict=True)]
 
     def _energies(self, states: Sequence[State]) -> list[float]:
-        cuts = parts() if self._equal_cost else (1,) * len(METHODS)
+        cuts = Stepping(self._h, self._equal_cost).parts()
         energies = [
             math.nan
             if method.modified_energy is None

@@ -10,9 +10,10 @@ from typing import Literal
 
 from engine.methods import METHODS, Method
 from engine.models.exact_pendulum import ExactMotion
-from engine.models.pendulum import acceleration, energy, energy_scale
+from engine.models.pendulum import acceleration, energy, energy_reference
 from engine.models.state import Phase
-from engine.run.lockstep import Reading, Sample, parts
+from engine.run.lockstep import Reading, Sample
+from engine.run.stepping import parts
 from engine.run.verdict import Judgement, Trend, Verdict
 from engine.scenes import Scene
 
@@ -127,6 +128,5 @@ class RunObserver:
 
     def _error(self, phase: Phase) -> float:
         scene = self._scene
-        start = energy(scene.w0_squared, scene.theta, scene.omega)
-        error: float = (energy(scene.w0_squared, *phase) - start) / energy_scale(scene.w0_squared, start)
-        return error
+        reference = energy_reference(scene.w0_squared, scene.theta, scene.omega)
+        return reference.error(energy(scene.w0_squared, *phase))

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
+from engine.run.stepping import Stepping
 from engine.scenes import DEFAULT_SCENE, SCENES, Scene
 from recordings.live_recorder import LiveRecorder
 from tui.playback.live import Live
@@ -42,15 +43,15 @@ def eventful(path: Path) -> Path:
     return recorded(
         path,
         2.0,
-        lambda live: live.set_h(0.1),
+        lambda live: live.set_stepping(Stepping(0.1)),
         2.0,
         lambda live: live.mark("here"),
-        lambda live: live.set_h(-0.1),
+        lambda live: live.set_stepping(Stepping(-0.1)),
         1.0,
         lambda live: live.start(SCENES["spin"]),
         4.0,
         lambda live: live.step(-40),
-        lambda live: live.set_h(0.05),
+        lambda live: live.set_stepping(Stepping(0.05)),
         lambda live: live.pause(False),
         3.0,
     )

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from engine.methods import METHODS
 from engine.models.exact_pendulum import ExactMotion
-from engine.models.pendulum import energy, energy_scale
+from engine.models.pendulum import energy_reference
 from engine.models.state import State
 from engine.run.lockstep import Sample
 from engine.run.modified_energy_errors import ModifiedEnergyErrors
@@ -87,8 +87,7 @@ class ErrorHistory:
     """The past of one run, up to the last sample added.  Another start is another History."""
 
     def __init__(self, scene: Scene, capacity: int = 2048) -> None:
-        self._start_energy: float = energy(scene.w0_squared, scene.theta, scene.omega)
-        self._scale = energy_scale(scene.w0_squared, self._start_energy)
+        self._start_energy, self._scale = energy_reference(scene.w0_squared, scene.theta, scene.omega)
         exact = ExactMotion(scene)
         self._repeats = (exact.period or 0.0) / (2 if exact.regime == "libration" else 1)
         self._run = 0

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Any, Literal
 from engine.methods import METHODS
 from engine.run.lockstep import Sample
 from engine.run.observer import Milestone
-from engine.run.rewindable import Pitch, RewindableRun
+from engine.run.rewindable import RewindableRun
+from engine.run.stepping import Stepping, SteppingChange
 from engine.run.verdict import Judgement
-from engine.scenes import Scene, check_h
+from engine.scenes import Scene
 from recordings.events import Event, EventKind
 from tui.playback.past import RunSoFar
 from tui.playback.playhead import Pace, Playhead
-from tui.playback.source import EQUAL_PARTS, RecordingStatus, is_marked, least_h
+from tui.playback.source import RecordingStatus, is_marked
 
 if TYPE_CHECKING:
     from recordings.live_recorder import LiveRecorder
@@ -33,11 +34,11 @@ class Live:
         scene: Scene,
         speed: float = 1.0,
         clock: Callable[[], float] = time.perf_counter,
-        changes: Iterable[tuple[int, Pitch]] = (),
+        changes: Iterable[SteppingChange] = (),
         step: int = 0,
         past: RunSoFar | None = None,
     ) -> None:
-        """With `changes` of how it steps, as (step, pitch), and a `step`, go on from there, not from the start.
+        """With a `step` and the `changes` of the stepping on the way there, go on from there, not from the start.
 
         `past`: what is known of the way there.
         """
@@ -48,7 +49,9 @@ class Live:
         self._recorded = Playhead()  # the recording clock: it stands while the lab is paused, whatever the speed
         self._clock = clock
         self._runs = 1
-        self._enter(RewindableRun.at(scene, changes, step), past)
+        run = RewindableRun(scene, 1)
+        run.repeat(changes, step)
+        self._enter(run, past)
 
     @property
     def scene(self) -> Scene:
@@ -56,14 +59,12 @@ class Live:
         return self._run.scene
 
     @property
-    def h(self) -> float:
-        """The step size in force [s]."""
-        return self._run.h
+    def stepping(self) -> Stepping:
+        return self._run.stepping
 
     @property
-    def equal_cost(self) -> bool:
-        """Whether all methods spend the same number of force evaluations."""
-        return self._run.equal_cost
+    def changes(self) -> Sequence[SteppingChange]:
+        return self._run.changes
 
     @property
     def in_past(self) -> bool:
@@ -130,13 +131,12 @@ class Live:
 
     def start(self, scene: Scene) -> None:
         """Begin a new run.  Raises SceneError, before anything has changed, for a step too large at equal cost."""
-        equal_cost, whole = self.equal_cost, scene.h * max(EQUAL_PARTS)
-        if equal_cost:
-            check_h(whole, scene.w0)
+        stepping = Stepping.of_smallest(scene.h, self.stepping.equal_cost)
+        stepping.check(scene.w0)
         self._runs += 1
         self._enter(RewindableRun(scene, self._runs))
-        if equal_cost:
-            self.set_h(whole, equal_cost)
+        if stepping.equal_cost:
+            self.set_stepping(stepping)
 
     def _enter(self, course: RewindableRun, past: RunSoFar | None = None) -> None:
         past = past or RunSoFar(course.scene)
@@ -148,21 +148,17 @@ class Live:
 
     def restart(self) -> None:
         """Begin again, with the step size in force."""
-        self.start(self.scene.altered(h=least_h(self)))
+        self.start(self.scene.altered(h=self.stepping.smallest))
 
-    def set_h(self, h: float, equal_cost: bool = False) -> None:
-        """Use step size h [s] from here on, at equal cost or not; a negative h runs time backwards.
-
-        Raises SceneError for a step size that is zero, not finite or absurd.
-        """
-        for own in (h, h / max(EQUAL_PARTS)) if equal_cost else (h,):
-            check_h(own, self.scene.w0)
+    def set_stepping(self, stepping: Stepping) -> None:
+        """Step like this from here on.  Raises SceneError, before anything has changed, for an absurd step size."""
+        stepping.check(self.scene.w0)
         if self.in_past:
             self._runs += 1
             self._run.branch(self._runs)
             self._note_start()
-        self._run.set_h(h, equal_cost)
-        self._note_here("set_h", h=h, equal_cost=equal_cost)
+        self._run.set_stepping(stepping)
+        self._note_here("set_h", h=stepping.h, equal_cost=stepping.equal_cost)
         self._observer.judge_anew(self._run.step)
         self._take_sample()
 
@@ -192,7 +188,7 @@ class Live:
 
     def _take_sample(self) -> Sample:
         self.sample = self._run.sample()
-        self.history.add(self.sample, self.exact.at(self.sample.t), self._run.equal_cost)
+        self.history.add(self.sample, self.exact.at(self.sample.t), self._run.stepping.equal_cost)
         self._observer.add(self.sample)
         if self.recorder is not None and self.sample.step >= self._run.furthest:
             self.recorder.sample(self.sample, self._recorded.position)
@@ -203,8 +199,8 @@ class Live:
         course = self._run
         keys = tuple(method.key for method in METHODS)
         self._note(Event("start", course.run, 0, 0.0, scene=self.scene, methods=keys))
-        for change in course.changes[1:]:
-            self._note(Event("set_h", course.run, change.step, change.t, h=change.h, equal_cost=change.equal_cost))
+        for step, t, stepping in course.changes[1:]:
+            self._note(Event("set_h", course.run, step, t, h=stepping.h, equal_cost=stepping.equal_cost))
 
     def _note_here(self, kind: EventKind, **what: Any) -> None:
         self._note(Event(kind, self._run.run, self._run.step, self._run.t, **what))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 from engine.models.exact_pendulum import ExactMotion
 from engine.run.lockstep import Sample
 from engine.run.observer import Milestone
-from engine.run.rewindable import Pitch
+from engine.run.stepping import Stepping, SteppingChange
 from engine.run.verdict import Judgement
 from engine.scenes import Scene
 from recordings.events import Event
@@ -108,25 +108,20 @@ class Replay:
         return bisect_right(self.recording.events, self.playhead.position, key=lambda pair: pair[0])
 
     @property
-    def changes(self) -> list[tuple[int, Pitch]]:
-        """(step, pitch) of the changes of how this run steps, so far."""
+    def changes(self) -> list[SteppingChange]:
+        """How this run steps, up to the sample and the playhead."""
         return [
-            (event.step, Pitch(event.h, event.equal_cost))
-            for event in self.events
-            if event.run == self.sample.run and event.h is not None and event.step <= self.sample.step
+            SteppingChange(0, 0.0, Stepping(self.scene.h)),
+            *(
+                SteppingChange(event.step, event.t, Stepping(event.h, event.equal_cost))
+                for event in self.events
+                if event.run == self.sample.run and event.h is not None and event.step <= self.sample.step
+            ),
         ]
 
     @property
-    def h(self) -> float:
-        """The step size in force [s]."""
-        changes = self.changes
-        return changes[-1][1].h if changes else self.scene.h
-
-    @property
-    def equal_cost(self) -> bool:
-        """Whether all methods spend the same number of force evaluations."""
-        changes = self.changes
-        return bool(changes) and changes[-1][1].equal_cost
+    def stepping(self) -> Stepping:
+        return self.changes[-1].stepping
 
     @property
     def recording_status(self) -> RecordingStatus:
@@ -193,7 +188,7 @@ class Replay:
 
     def live(self) -> Live:
         """A lab that goes on from here with the same bits, and with what is known of the past."""
-        return Live(self.scene, changes=self.changes, step=self.sample.step, past=self._reel.past)
+        return Live(self.scene, changes=self.changes[1:], step=self.sample.step, past=self._reel.past)
 
     def close(self) -> None:
         """Let go of the file."""

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, Protocol
 
-from engine.run.lockstep import Sample, parts
+from engine.run.lockstep import Sample
 from engine.scenes import Scene
 from recordings.events import Event
 from tui.playback.playhead import Pace, Playhead
@@ -12,6 +12,7 @@ from tui.playback.playhead import Pace, Playhead
 if TYPE_CHECKING:
     from engine.models.exact_pendulum import ExactMotion
     from engine.run.observer import Milestone
+    from engine.run.stepping import Stepping, SteppingChange
     from engine.run.verdict import Judgement
     from tui.playback.history import ErrorHistory
 
@@ -42,12 +43,12 @@ class Source(Protocol):
         """The scene of the run on screen."""
 
     @property
-    def h(self) -> float:
-        """The step size in force at the sample [s]; negative while time runs backwards."""
+    def stepping(self) -> "Stepping":
+        """How the run steps from the sample on."""
 
     @property
-    def equal_cost(self) -> bool:
-        """Whether all methods spend the same number of force evaluations: RK4 a step of h, the others four of h/4."""
+    def changes(self) -> "Sequence[SteppingChange]":
+        """How the run steps, and has stepped since its start."""
 
     @property
     def exact(self) -> "ExactMotion":
@@ -102,20 +103,6 @@ class Source(Protocol):
 
     def close(self) -> None:
         """Finish what is open; a live source finishes its recording."""
-
-
-EQUAL_PARTS = parts()
-"""At equal cost, how many steps of its own each method takes in one of the dearest."""
-
-
-def own_h(source: Source) -> tuple[float, ...]:
-    """Each method's own step size [s], in the order of METHODS: `h`, or at equal cost a part of it."""
-    return tuple(source.h / part if source.equal_cost else source.h for part in EQUAL_PARTS)
-
-
-def least_h(source: Source) -> float:
-    """The smallest of them, without its sign [s]: what a scene's `h` is at equal cost."""
-    return min(abs(h) for h in own_h(source))
 
 
 def is_marked(source: Source) -> bool:

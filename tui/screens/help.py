@@ -13,7 +13,7 @@ from tui.words.describe import step_text
 def help_text(keys: Sequence[Key], source: Source) -> str:
     """What the help says: what to watch, the keys, those of the view first, and the methods."""
     scene = source.scene
-    parts = [scene_card(scene, "" if source.h == scene.h else f"h = {step_text(source)}")]
+    parts = [scene_card(scene, "" if source.stepping.h == scene.h else f"h = {step_text(source)}")]
     for group in dict.fromkeys(key.group for key in keys):
         lines = [f"  {key.shown:<14}{key.does}" for key in keys if key.group == group and key.shown]
         parts.append("\n".join([group.capitalize(), *lines]))

@@ -1,15 +1,14 @@
 """Lab: the live screen, where the run can be changed."""
 
-import math
 from collections.abc import Callable
 from typing import ClassVar
 
 from textual.binding import BindingType
 
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene, SceneError
 from tui.playback.live import Live
-from tui.playback.playhead import next_h
-from tui.playback.source import EQUAL_PARTS, is_marked, least_h
+from tui.playback.source import is_marked
 from tui.screens.base import ALREADY, SourceScreen
 from tui.views.keys import COMMON, LIVE, Key, bindings
 from tui.views.messages import SceneChosen, StepSizeChosen
@@ -33,11 +32,11 @@ class LiveScreen(SourceScreen):
         if self._do(lambda: self.live.start(scene)):
             self.remember(lambda: self._do(lambda: self.live.start(before)))
 
-    def set_h(self, h: float, equal_cost: bool) -> None:
-        """Use another step size from here on, at equal cost or not."""
-        before = self.live.h, self.live.equal_cost
-        if self._do(lambda: self.live.set_h(h, equal_cost)):
-            self.remember(lambda: self._do(lambda: self.live.set_h(*before)))
+    def set_stepping(self, stepping: Stepping) -> None:
+        """Step otherwise from here on."""
+        before = self.live.stepping
+        if self._do(lambda: self.live.set_stepping(stepping)):
+            self.remember(lambda: self._do(lambda: self.live.set_stepping(before)))
 
     def _do(self, change: Callable[[], None]) -> bool:
         """Change the run, or say why that cannot be."""
@@ -55,7 +54,7 @@ class LiveScreen(SourceScreen):
 
     def on_step_size_chosen(self, choice: StepSizeChosen) -> None:
         """Go on with what was chosen in a view."""
-        self.set_h(math.copysign(choice.h, self.live.h), self.live.equal_cost)
+        self.set_stepping(choice.stepping)
 
     def action_restart(self) -> None:
         """Begin again."""
@@ -64,19 +63,15 @@ class LiveScreen(SourceScreen):
 
     def action_larger_h(self, direction: int) -> None:
         """Go along 1, 2, 5 with h."""
-        live = self.live
-        h = next_h(math.copysign(least_h(live), live.h), direction > 0)
-        self.set_h(h * max(EQUAL_PARTS) if live.equal_cost else h, live.equal_cost)
+        self.set_stepping(self.live.stepping.next(up=direction > 0))
 
     def action_reverse(self) -> None:
         """Let time run the other way."""
-        self.set_h(-self.live.h, self.live.equal_cost)
+        self.set_stepping(self.live.stepping.reversed())
 
     def action_equal_cost(self) -> None:
         """Give every method the same number of force evaluations, or the same step again."""
-        live = self.live
-        h = math.copysign(least_h(live), live.h)
-        self.set_h(h if live.equal_cost else h * max(EQUAL_PARTS), not live.equal_cost)
+        self.set_stepping(self.live.stepping.toggled())
 
     def action_scene(self, direction: int) -> None:
         """Start the next scene, or the previous one."""
@@ -97,7 +92,7 @@ class LiveScreen(SourceScreen):
             if scene is not None:
                 self.start(scene)
 
-        self.app.push_screen(StartForm(self.live.scene.altered(h=least_h(self.live))), chosen)
+        self.app.push_screen(StartForm(self.live.scene.altered(h=self.live.stepping.smallest)), chosen)
 
     def action_mark(self) -> None:
         """Leave a mark in the recording."""

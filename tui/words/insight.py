@@ -28,13 +28,13 @@ def insight(source: Source) -> str:
     if abs(sample.t) < WATCH * pace and (text := _watch(source)):
         return text
     sentences = lasting(source)
-    return sentences[int(sample.step * abs(source.h) / (TURN * pace)) % len(sentences)]
+    return sentences[int(sample.step * abs(source.stepping.h) / (TURN * pace)) % len(sentences)]
 
 
 def _news(source: Source, seconds: float) -> str:
     """What has happened within the last simulated seconds; failures come first, then tops, then verdicts."""
     sample, kinds = source.sample, ("failed", "over the top", "verdict")
-    recent = [each for each in source.milestones if (sample.step - each.step) * abs(source.h) < seconds]
+    recent = [each for each in source.milestones if (sample.step - each.step) * abs(source.stepping.h) < seconds]
     newest = sorted(recent, key=lambda each: (-kinds.index(each.kind), each.step))
     return next(filter(None, (_told(source, each) for each in reversed(newest))), "")
 
@@ -63,7 +63,7 @@ def lasting(source: Source) -> list[str]:
 
 def _watch(source: Source) -> str:
     """What the scene says to watch, as long as its step size is in force."""
-    return source.scene.watch if source.h == source.scene.h else ""
+    return source.scene.watch if source.stepping.h == source.scene.h else ""
 
 
 def _gone(index: int) -> set[tuple[str, int]]:

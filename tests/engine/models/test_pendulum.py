@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.models.exact_pendulum import ExactMotion
-from engine.models.pendulum import acceleration, energy, energy_scale, separatrix_energy
+from engine.models.pendulum import acceleration, energy, energy_reference, separatrix_energy
 from engine.scenes import Scene
 
 
@@ -44,5 +44,5 @@ def test_upright_and_at_rest_it_has_the_energy_of_the_separatrix() -> None:
 
 
 def test_errors_are_relative_to_the_start_or_where_that_has_no_energy_to_the_separatrix() -> None:
-    assert energy_scale(9.81, 3.0) == 3.0
-    assert energy_scale(9.81, 0.0) == separatrix_energy(9.81)
+    assert energy_reference(9.81, 0.0, 2.0) == (2.0, 2.0)
+    assert energy_reference(9.81, 0.0, 0.0) == (0.0, separatrix_energy(9.81))

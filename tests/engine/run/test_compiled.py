@@ -12,6 +12,7 @@ from engine.methods import METHODS
 from engine.run import compiled
 from engine.run.lockstep import Lockstep
 from engine.run.loops import plain
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES
 from tests.engine.run.test_loops import OVERFLOWING
 
@@ -59,7 +60,7 @@ def test_a_lockstep_can_be_copied_and_given_either_loops():
     copied, slow = copy.deepcopy(start), Lockstep(SCENES["spin"])
     slow.advance(1000)
     for lockstep in (start, copied, slow):
-        lockstep.set_h(-0.01)
+        lockstep.set_stepping(Stepping(-0.01))
         lockstep.advance(500)
     assert start.sample() == copied.sample() == slow.sample()
 

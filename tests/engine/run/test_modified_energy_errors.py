@@ -9,6 +9,7 @@ import pytest
 from engine.methods import METHODS
 from engine.models.exact_pendulum import ExactMotion
 from engine.run.lockstep import Lockstep
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene
 from recordings.recording import Recording
 from tests.tui.sitting import recorded
@@ -26,7 +27,7 @@ def run(scene: Scene, *stretches: tuple[int, float], equal_cost: bool = False) -
     lockstep, history, exact = Lockstep(scene), ErrorHistory(scene), ExactMotion(scene)
     history.add(lockstep.sample(), exact.at(0.0))
     for steps, h in stretches:
-        lockstep.set_h(h, equal_cost)
+        lockstep.set_stepping(Stepping(h, equal_cost))
         for _ in range(steps):
             lockstep.advance(1)
             history.add(lockstep.sample(), exact.at(lockstep.t), equal_cost)
@@ -83,9 +84,9 @@ def test_a_replay_shows_what_the_lab_showed(tmp_path: Path):
         tmp_path / "sitting.mcap",
         live.append,
         2.0,
-        lambda lab: lab.set_h(0.1, True),
+        lambda lab: lab.set_stepping(Stepping(0.1, True)),
         2.0,
-        lambda lab: lab.set_h(0.1),
+        lambda lab: lab.set_stepping(Stepping(0.1)),
         1.0,
     )
     replay = Replay(Recording.open(path), Marks(path), clock=lambda: 0.0)

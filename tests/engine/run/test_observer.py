@@ -11,6 +11,7 @@ from engine.methods import METHODS
 from engine.models.exact_pendulum import ExactMotion
 from engine.run.lockstep import Lockstep, Sample
 from engine.run.observer import Milestone, RunObserver
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene
 
 DRIFT = SCENES["drift"]
@@ -20,7 +21,7 @@ def watched(scene: Scene, seconds: float, every: int = 1, equal_cost: bool = Fal
     """A witness that has seen one sample in `every` steps."""
     observer, lockstep = RunObserver(scene, ExactMotion(scene)), Lockstep(scene)
     if equal_cost:
-        lockstep.set_h(4 * scene.h, equal_cost=True)
+        lockstep.set_stepping(Stepping(4 * scene.h, equal_cost=True))
     observer.add(lockstep.sample())
     while lockstep.t < seconds:
         lockstep.advance(every)
@@ -76,7 +77,7 @@ def test_where_the_steps_between_samples_cannot_be_taken_again_it_is_the_sample_
     lockstep.advance(100)
     observer.add(lockstep.sample())
     lockstep.advance(20)
-    lockstep.set_h(0.02)  # nobody says so
+    lockstep.set_stepping(Stepping(0.02))  # nobody says so
     lockstep.advance(100)
     sample = lockstep.sample()
     observer.add(sample)

@@ -2,6 +2,7 @@
 
 import pytest
 
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES
 from recordings.live_recorder import LiveRecorder
 from recordings.recording import Recording
@@ -45,11 +46,11 @@ def test_changes_and_marks_are_there_and_pauses_are_not():
     live.pause(True)
     live.pause(False)
     live.set_speed(2)
-    live.set_h(0.1)
+    live.set_stepping(Stepping(0.1))
     live.step(1)
     live.mark("question 2")
-    live.set_h(-0.1)
-    live.set_h(0.4, equal_cost=True)
+    live.set_stepping(Stepping(-0.1))
+    live.set_stepping(Stepping(0.4, equal_cost=True))
     live.start(DRIFT.altered(theta=2.0))
     assert texts(live) == [
         "start drift, h 0.05 s",
@@ -69,7 +70,7 @@ def test_marks_beside_a_recording_are_at_the_time_of_their_step(tmp_path):
     live.record(LiveRecorder(tmp_path / "run.mcap"))
     for change in (0.1, -0.02):
         after(live, 2, live.playhead.seen or 0.0)
-        live.set_h(change)
+        live.set_stepping(Stepping(change))
     after(live, 1, live.playhead.seen)
     live.close()
     path = tmp_path / "run.mcap"

@@ -6,6 +6,7 @@ import pytest
 
 from engine.methods import METHODS
 from engine.run.lockstep import Lockstep
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene
 from tui.playback.live import Live
 from tui.words.events import diary
@@ -128,7 +129,7 @@ def test_there_is_no_forecast_where_it_would_be_a_guess():
     assert forecast(after("drift", 40), EXPLICIT) is None  # grows ever faster
     assert forecast(after("drift", 40), VERLET) is None  # stays
     live = after("drift", 20)
-    live.set_h(0.1)
+    live.set_stepping(Stepping(0.1))
     for _ in range(400):
         live.step(1)
     assert live.judgements[RK4].verdict == "drifts"
@@ -184,7 +185,7 @@ def test_at_the_beginning_the_scene_says_what_to_watch():
 
 def test_with_another_step_size_what_the_scene_says_to_watch_is_not_said():
     live = after("crossover", 1)
-    live.set_h(0.1)
+    live.set_stepping(Stepping(0.1))
     assert insight(live) == so_far(live)
     for _ in range(400):
         live.step(1)

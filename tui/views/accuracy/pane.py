@@ -15,7 +15,7 @@ from engine.run.lockstep import Sample
 from tui.drawing.cells import CellWidget
 from tui.drawing.palette import TEXT
 from tui.playback.shown import Shown
-from tui.playback.source import EQUAL_PARTS, Source
+from tui.playback.source import Source
 from tui.views.accuracy.chart import POWERS, accuracy_chart
 from tui.views.keys import Key, bindings
 from tui.views.messages import StepSizeChosen
@@ -171,8 +171,7 @@ class AccuracyPane(CellWidget, can_focus=True):
         """Use the h of the cursor's point."""
         if self.source is not None and (point := self.aim) is not None:
             self.cursor = None
-            part = EQUAL_PARTS[self.index] if self.source.equal_cost else 1
-            self.post_message(StepSizeChosen(point.h * part))
+            self.post_message(StepSizeChosen(self.source.stepping.with_own(point.method, point.h)))
 
     def action_cancel(self) -> None:
         """Leave the cursor."""

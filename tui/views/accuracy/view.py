@@ -9,7 +9,6 @@ from textual.worker import get_current_worker
 
 from engine.accuracy.study import Point, measured, usual
 from engine.scenes import Scene
-from tui.playback.source import own_h
 from tui.views.accuracy.pane import KEYS, MOST_STEPS, AccuracyPane
 from tui.views.background import elsewhere
 from tui.views.view import View
@@ -54,7 +53,7 @@ class AccuracyView(View):
             pane.begin(*usual(scene))
             self._compute(scene, pane.time, pane.rungs, "ladder")
             pane.here = ()
-        here = tuple(max(1, round(pane.time / abs(h))) for h in own_h(self.source))
+        here = tuple(max(1, round(pane.time / abs(h))) for h in self.source.stepping.own())
         if here != pane.here:
             pane.here = here
             known = {*pane.rungs, *(steps for _, steps in pane.points)}

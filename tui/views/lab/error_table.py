@@ -13,7 +13,7 @@ from engine.run.verdict import Judgement
 from tui.drawing.cells import CellWidget, Row
 from tui.drawing.palette import FRAME, TEXT, WARN, mark
 from tui.playback.shown import Shown
-from tui.playback.source import Source, own_h
+from tui.playback.source import Source
 from tui.words.numbers import decimal, scientific
 
 
@@ -119,4 +119,4 @@ class ErrorTable(CellWidget):
         if source is None or sample is None or not self.drawable:
             return
         exact = source.exact.at(sample.t)
-        self.show(table(sample, source.judgements, exact, own_h(source), self.shown, self.room.width))
+        self.show(table(sample, source.judgements, exact, source.stepping.own(), self.shown, self.room.width))

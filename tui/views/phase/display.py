@@ -5,8 +5,7 @@ from textual.reactive import var
 
 from engine.methods import METHODS
 from engine.models.state import State
-from engine.phase_space.area import Neighbourhood
-from engine.phase_space.neighbours import Neighbours
+from engine.phase_space.area import Neighbourhood, Neighbours
 from engine.run.lockstep import Sample
 from tui.drawing.canvas import Canvas, Picture
 from tui.drawing.cells import CellWidget
@@ -133,7 +132,7 @@ class PhaseDisplay(CellWidget, can_focus=True):
     def _follow(self, source: Source, sample: Sample) -> None:
         """Let the ring keep up; where it has not, go on without waiting for the next sample."""
         if self.neighbours is not None:
-            self.ring = self.neighbours.follow(source.scene, sample.run, sample.step, source.events, RING_STEPS)
+            self.ring = self.neighbours.follow(source.scene, sample.run, sample.step, source.changes, RING_STEPS)
             if self.neighbours.step < sample.step and not self._catching_up:
                 self._catching_up = True
                 self.set_timer(1 / 30, self._catch_up)

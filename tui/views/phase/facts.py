@@ -1,8 +1,7 @@
 """The table below the portrait: what each method made of the area around its start, and of its time and energy."""
 
 from engine.methods import METHODS
-from engine.phase_space.area import Neighbourhood
-from engine.phase_space.neighbours import Neighbours
+from engine.phase_space.area import Neighbourhood, Neighbours
 from tui.drawing.canvas import Span
 from tui.drawing.palette import FRAME, TEXT, mark
 from tui.playback.shown import Shown

@@ -6,9 +6,8 @@ from textual import events
 from textual.binding import BindingType
 
 from engine.models.state import State
-from engine.phase_space.neighbours import RADII
+from engine.phase_space.area import RADII
 from engine.scenes import SceneError
-from tui.playback.source import least_h
 from tui.views.keys import Key, bindings
 from tui.views.messages import SceneChosen
 from tui.views.phase.display import PhaseDisplay
@@ -85,7 +84,7 @@ class PhasePane(PhaseDisplay):
         """Ask for a run from here with the step size in force."""
         assert self.source is not None
         try:
-            scene = self.source.scene.altered(theta=state.theta, omega=state.omega, h=least_h(self.source))
+            scene = self.source.scene.altered(theta=state.theta, omega=state.omega, h=self.source.stepping.smallest)
         except SceneError as error:  # far out, omega may be no pendulum's
             self.notify(str(error), severity="warning")
         else:

@@ -17,7 +17,7 @@ from engine.stability.outcomes import Cells
 from engine.stability.study import amplitude
 from tui.drawing.palette import Palette, palette
 from tui.playback.shown import Shown
-from tui.playback.source import Source, own_h
+from tui.playback.source import Source
 from tui.views.stability.picture import MARGIN, Line, differing, legend, panel, side_by_side, title
 from tui.views.stability.words import note, verdict
 
@@ -87,7 +87,7 @@ class StabilityDisplay(Widget, can_focus=True):
         """The (z, amplitude) of a method on screen, if it swings."""
         if self.source is None or (theta := amplitude(self.source.scene)) is None:
             return None
-        return abs(own_h(self.source)[index]) * self.source.scene.w0, theta
+        return abs(self.source.stepping.own()[index]) * self.source.scene.w0, theta
 
     def aim(self, index: int) -> tuple[int, int] | None:
         """The cell of a method that is spoken of: at the cursor, under the pointer, or nearest to here."""
@@ -148,7 +148,7 @@ class StabilityDisplay(Widget, can_focus=True):
 
     def _state(self, source: Source) -> object:
         """What the picture depends on besides the map."""
-        return source.scene, own_h(source), self.shown, self.app.theme
+        return source.scene, source.stepping.own(), self.shown, self.app.theme
 
     @property
     def _colours(self) -> Palette | None:

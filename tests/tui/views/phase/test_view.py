@@ -9,6 +9,7 @@ from textual.pilot import Pilot
 from textual.widgets import Static
 
 from engine.phase_space.area import Neighbourhood
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene
 from recordings.recording import Recording
 from tests.tui.sitting import recorded
@@ -111,7 +112,7 @@ async def test_the_view_shows_who_keeps_the_area_around_the_start():
         await bench.view("f3")
         await bench.run(20)
         ring = Neighbourhood(DRIFT, RADIUS)
-        ring.advance(bench.live.sample.step, DRIFT.h)
+        ring.advance(bench.live.sample.step, Stepping(DRIFT.h))
         assert bench.pane.ring.area_ratios == ring.area_ratios
         lines = bench.lab.query_one("#facts", CellWidget).text.splitlines()
         assert "0.1 rad around the start" in lines[0]
