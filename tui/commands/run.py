@@ -18,7 +18,7 @@ from tui.words.numbers import file_size
 
 if TYPE_CHECKING:
     from engine.run.lockstep import Sample
-    from engine.run.verdict import Trend
+    from engine.run.observer import RunObserver
     from tui.cli.fail_if import Gate
 
 EXAMPLES = """\
@@ -74,9 +74,9 @@ def run(options: argparse.Namespace) -> int:
         check_free(options.record, options.force)
         _announce(steps, every)
     began = time.perf_counter()
-    sample, trends, stopped = _simulate(scene, options, steps, every)
+    sample, observer, stopped = _simulate(scene, options, steps, every)
     wall_seconds = time.perf_counter() - began
-    rows = _rows(scene, sample, trends)
+    rows = _rows(sample, observer)
     if options.json:
         fields = {"scene": scene_fields(scene), "time": sample.t, "steps": sample.step, "wall_seconds": wall_seconds}
         write_json("run", {**fields, "methods": rows})
@@ -113,11 +113,10 @@ def _gate(expression: str | None) -> "Gate | None":
         raise UserError(f"--fail-if: {error}") from error
 
 
-def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int) -> "tuple[Sample, list[Trend], bool]":
-    """The last sample, each method's trend, and whether somebody stopped it before its end."""
-    from engine.models.exact_pendulum import ExactMotion
+def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int) -> "tuple[Sample, RunObserver, bool]":
+    """The last sample, what was observed, and whether somebody stopped it before its end."""
     from engine.run import compiled, loops
-    from engine.run.verdict import Trend
+    from engine.run.observer import RunObserver
     from recordings.headless import simulate
     from tui.cli.interrupt import stop_requests
 
@@ -126,29 +125,25 @@ def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int)
         from recordings.recorder import Recorder
 
         recorder = Recorder(options.record, wall=None, overwrite=options.force)
-    exact = ExactMotion(scene)
-    trends = [Trend(period := exact.period or math.tau / scene.w0) for _ in METHODS]
-    per_turn = period / scene.h if exact.regime == "rotation" else math.inf
+    observer = RunObserver(scene)
     fast = not options.no_compiled and steps >= COMPILED_FROM and compiled.available()
     with stop_requests() as stopped, progress(f"{steps} steps") as show, recorder as recording:
         for sample in simulate(scene, options.time, recording, every, loops=compiled.compiled if fast else loops.plain):
-            for trend, reading in zip(trends, sample.readings, strict=True):
-                trend.read(sample.t, reading, per_turn)
+            observer.add(sample)
             show(sample.step, steps)
             if stopped() and sample.step < steps:
-                return sample, trends, True
-    return sample, trends, False
+                return sample, observer, True
+    return sample, observer, False
 
 
-def _rows(scene: Scene, sample: "Sample", trends: "list[Trend]") -> list[dict[str, Any]]:
+def _rows(sample: "Sample", observer: "RunObserver") -> list[dict[str, Any]]:
     """What became of each method.  A method that diverged has no theta to compare."""
     from engine.accuracy.study import evaluations
-    from engine.models.exact_pendulum import ExactMotion
 
-    exact = ExactMotion(scene).at(sample.t).theta
+    exact = observer.exact.at(sample.t).theta
     rows = []
-    for method, reading, trend in zip(METHODS, sample.readings, trends, strict=True):
-        judgement, end = trend.judgement, reading.diverged_at
+    for method, reading, judgement in zip(METHODS, sample.readings, observer.judgements, strict=True):
+        end = reading.diverged_at
         rows.append(
             {
                 "method": method.key,
@@ -160,7 +155,7 @@ def _rows(scene: Scene, sample: "Sample", trends: "list[Trend]") -> list[dict[st
                 "theta_error": abs(reading.theta - exact) if end is None else None,
                 "drift_per_second": judgement.slope,
                 "verdict": judgement.verdict,
-                "force_evaluations": evaluations(method, sample.step if end is None else round(end / scene.h)),
+                "force_evaluations": evaluations(method, sample.step if end is None else round(end / observer.scene.h)),
                 "diverged_at": end,
             }
         )

@@ -8,7 +8,6 @@ from textual.binding import BindingType
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene, SceneError
 from tui.playback.live import Live
-from tui.playback.source import is_marked
 from tui.screens.base import ALREADY, SourceScreen
 from tui.views.keys import COMMON, LIVE, Key, bindings
 from tui.views.messages import SceneChosen, StepSizeChosen
@@ -96,6 +95,6 @@ class LiveScreen(SourceScreen):
 
     def action_mark(self) -> None:
         """Leave a mark in the recording."""
-        text = ALREADY if is_marked(self.live) else f"Mark at {self.live.sample.t:.2f} s"
+        text = ALREADY if self.live.is_marked else f"Mark at {self.live.sample.t:.2f} s"
         self.live.mark()
         self.notify(text, timeout=2)

@@ -11,7 +11,6 @@ from textual.widget import Widget
 from tui.cli.errors import UserError, explained
 from tui.playback.live import Live
 from tui.playback.replay import Replay
-from tui.playback.source import is_marked
 from tui.screens.base import ALREADY, SourceScreen
 from tui.screens.seek_bar import SeekBar
 from tui.views.keys import COMMON, REPLAY, Key, bindings
@@ -74,7 +73,7 @@ class ReplayScreen(SourceScreen):
 
     def action_mark(self) -> None:
         """Leave a mark beside the recording."""
-        text = ALREADY if is_marked(self.replay) else f"Mark at {self.replay.sample.t:.2f} s simulated"
+        text = ALREADY if self.replay.is_marked else f"Mark at {self.replay.sample.t:.2f} s simulated"
         try:
             self.replay.mark()
         except OSError as error:

@@ -14,9 +14,9 @@ from recordings.events import Entry
 from recordings.live_recorder import LiveRecorder
 from recordings.recording import Recording
 from tests.tui.sitting import FPS, eventful, recorded
+from tui.playback.cursor import DENSE, PIECES, pieces
 from tui.playback.live import Live
 from tui.playback.marks import Marks
-from tui.playback.past import DENSE, PIECES, pieces
 from tui.playback.replay import Replay
 from tui.words.events import diary
 
