@@ -7,11 +7,13 @@ apart the older they are, so their number grows with the logarithm of the run's 
 import copy
 import math
 from bisect import bisect_right
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
-from engine.run.background import unhurried
+from engine.methods import Method
+from engine.run.compiled import tiered
 from engine.run.lockstep import Lockstep, Sample
+from engine.run.loops import Loops
 from engine.run.stepping import Stepping, SteppingChange
 from engine.scenes import Scene
 
@@ -30,14 +32,14 @@ class RewindableRun:
     Between a step back and the step reached before, forward repeats what was, changes included.
     """
 
-    def __init__(self, scene: Scene, run: int = 1) -> None:
+    def __init__(self, scene: Scene, run: int = 1, loops: Callable[[Method], Loops] = tiered) -> None:
         self.scene = scene
         self.run = run
         self.changes = [SteppingChange(0, 0.0, Stepping(scene.h))]
         self.furthest = 0  # the last step sampled
         self._x = [0.0]  # s, the simulated time run up to each change; it goes up even while t goes down
         self._applied = 1
-        self._lockstep = Lockstep(scene, run, loops=unhurried)
+        self._lockstep = Lockstep(scene, run, loops=loops)
         self._copies = [self._copy()]
 
     def repeat(self, changes: Iterable[SteppingChange], step: int) -> None:

@@ -5,6 +5,7 @@ import math
 import sys
 import time
 from contextlib import nullcontext
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -35,7 +36,6 @@ LARGE = 200e6  # bytes of a recording that nobody expects; half a minute to writ
 SAMPLE_BYTES = 320  # of a recording, measured with h from 0.01 to 0.05 s
 MOST_SAMPLES = 20_000  # of a run that is not recorded: enough for every verdict, and constant work beside the steps
 AT_ONCE = 1_000_000  # steps, about a second: nobody is heard in between
-COMPILED_FROM = 1_000_000  # steps: below, compiling takes longer than it saves
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -126,9 +126,9 @@ def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int)
 
         recorder = Recorder(options.record, wall=None, overwrite=options.force)
     observer = RunObserver(scene)
-    fast = not options.no_compiled and steps >= COMPILED_FROM and compiled.available()
+    fitting = loops.plain if options.no_compiled else partial(compiled.tiered, ahead=steps)
     with stop_requests() as stopped, progress(f"{steps} steps") as show, recorder as recording:
-        for sample in simulate(scene, options.time, recording, every, loops=compiled.compiled if fast else loops.plain):
+        for sample in simulate(scene, options.time, recording, every, loops=fitting):
             observer.add(sample)
             show(sample.step, steps)
             if stopped() and sample.step < steps:

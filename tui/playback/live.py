@@ -12,6 +12,7 @@ from engine.run.rewindable import RewindableRun
 from engine.run.stepping import Stepping, SteppingChange
 from engine.scenes import Scene
 from recordings.events import Event, EventKind
+from tui.playback.compiler import patient
 from tui.playback.playhead import Pace, Playhead
 from tui.playback.so_far import RunSoFar
 from tui.playback.source import RecordingStatus, Source
@@ -44,7 +45,7 @@ class Live(Source):
         self._recorded = Playhead()  # the recording clock: it stands while the lab is paused, whatever the speed
         self._clock = clock
         self._runs = 1
-        run = RewindableRun(scene, 1)
+        run = RewindableRun(scene, 1, patient)
         if so_far is not None:
             run.repeat(changes, so_far.sample.step)
         self._enter(run, so_far)
@@ -110,7 +111,7 @@ class Live(Source):
         stepping = Stepping.of_smallest(scene.h, self.stepping.equal_cost)
         stepping.check(scene.w0)
         self._runs += 1
-        self._enter(RewindableRun(scene, self._runs))
+        self._enter(RewindableRun(scene, self._runs, patient))
         if stepping.equal_cost:
             self.set_stepping(stepping)
 
