@@ -56,7 +56,7 @@ class Neighbourhood:
         return tuple(math.exp(c.log_area) if c.log_area < 709 else math.inf for c in self._carried)
 
     def advance(self, n: int, stepping: Stepping) -> None:
-        """Carry everything on by n steps of the lockstep."""
+        """Carry everything forward by n steps of the lockstep."""
         with np.errstate(over="ignore", invalid="ignore"):
             for carried, part in zip(self._carried, stepping.parts(), strict=True):
                 for _ in range(n * part):
@@ -84,7 +84,7 @@ class Neighbours:
     """The neighbours of a run's start, carried along to the step on screen.
 
     They begin at the run's start and take the run's own steps, changes of the stepping included, so
-    what they show does not depend on when one began to look.  Going back begins at the start again.
+    what they show does not depend on when the ring was switched on.  Going back starts over.
     """
 
     def __init__(self, radius: float) -> None:

@@ -32,14 +32,14 @@ class Reading:
 class Sample:
     """All methods' readings at one step, in the order of METHODS."""
 
-    run: int  # counts from 1 within a sitting
+    run: int  # counts from 1 within a recording
     step: int  # steps since the run's start
     t: float  # s, simulated; goes down while h is negative
     readings: tuple[Reading, ...]
 
 
 class _Track:
-    """One method's course through a run."""
+    """One method's way through a run."""
 
     __slots__ = ("advance", "diverged_at", "energy", "high", "low", "parts", "phase", "run_high", "run_low")
 
@@ -90,7 +90,6 @@ class Lockstep:
             track.parts = part
 
     def advance(self, n: int) -> None:
-        """Move every method on by n steps."""
         w0_squared = self.scene.w0_squared
         for track in self._tracks:
             if track.diverged_at is not None:
@@ -105,7 +104,7 @@ class Lockstep:
         self.step += n
 
     def sample(self) -> Sample:
-        """What all methods read now.  Lows and highs of the next sample are taken from here on."""
+        """The readings now.  Lows and highs of the next sample are taken from here on."""
         return Sample(self.run, self.step, self.t, tuple(self._read(track) for track in self._tracks))
 
     def _read(self, track: _Track) -> Reading:

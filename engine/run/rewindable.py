@@ -1,7 +1,7 @@
-"""Course: a run that can also go back, to the bit.
+"""A run that can also go back, to the bit.
 
-Going back is simulating again from a copy of the lockstep taken earlier.  Copies are the further
-apart the older they are, so their number grows with the logarithm of the run's length only.
+Going back is simulating again from a copy of the lockstep taken earlier.  The older copies
+are, the further they lie apart, so their number grows with the logarithm of the run's length only.
 """
 
 import copy
@@ -23,7 +23,7 @@ AGE_PER_GAP = 8  # copies n steps old are about n/8 steps apart
 
 class _Checkpoint(NamedTuple):
     lockstep: Lockstep
-    applied: int  # changes
+    applied: int  # changes that are in force or past
 
 
 class RewindableRun:
@@ -43,7 +43,7 @@ class RewindableRun:
         self._copies = [self._copy()]
 
     def repeat(self, changes: Iterable[SteppingChange], step: int) -> None:
-        """Take the way of another run of the same scene to a step."""
+        """Go to a step as another run of this scene did."""
         for change in changes:
             self.forward(change.step - self.step)
             self.set_stepping(change.stepping)
@@ -88,12 +88,10 @@ class RewindableRun:
         return self.step + round(ahead) if ahead > 0.5 and abs(ahead - round(ahead)) < 1e-6 else math.inf
 
     def sample(self) -> Sample:
-        """What all methods read now."""
         self.furthest = max(self.furthest, self.step)
         return self._lockstep.sample()
 
     def forward(self, n: int) -> None:
-        """Go n steps on."""
         target = self.step + n
         while self.step < target:
             while self._applied < len(self.changes) and self.changes[self._applied].step == self.step:
@@ -120,7 +118,7 @@ class RewindableRun:
         self.forward(step - self.step)
 
     def set_stepping(self, stepping: Stepping) -> None:
-        """Step like this from here on; in the past, branch first.  Raises SceneError as the lockstep does."""
+        """Step like this from here on; in the past, branch first.  Raises SceneError for an absurd h."""
         x = self.x
         self._lockstep.set_stepping(stepping)
         self.changes.append(SteppingChange(self.step, self.t, stepping))

@@ -1,7 +1,7 @@
 """The past of a run: every recent sample, and extremes of ever more samples the older they are.
 
 Level 0 holds the last samples as they were, each further level the lows and highs of pairs of rows
-of the level below, all in rings of the same capacity.  Memory so grows with the logarithm of the
+of the level below, all in rings of the same capacity.  So memory grows with the logarithm of the
 run's length only: an hour at 60 samples a second takes eight levels.
 """
 
@@ -29,7 +29,7 @@ _UNKNOWN = State(math.nan, math.nan)
 
 @dataclass(frozen=True, slots=True)
 class Window:
-    """A stretch of the past; rows in the order in which they were run."""
+    """A stretch of the past; rows in the order in which they were simulated."""
 
     x: Floats  # s, (n,): simulated time run through, which goes up even while t goes down
     t: Floats  # s, (n,): simulated time
@@ -55,7 +55,6 @@ class _Level:
         return np.arange(max(first, self.first), max(end, self.first)) % self.capacity
 
     def append(self, step: int, times: tuple[float, float], low: ArrayLike, high: ArrayLike) -> None:
-        """Add a row."""
         at = self.count % self.capacity
         self.steps[at], self.times[at], self.low[at], self.high[at] = step, times, low, high
         self._grow(1)
@@ -83,7 +82,7 @@ class _Level:
 
 
 class ErrorHistory:
-    """The past of one run, up to the last sample added.  Another start is another History."""
+    """The past of one run, up to the last sample added."""
 
     def __init__(self, observer: RunObserver, capacity: int = 2048) -> None:
         exact, self._reference = observer.exact, observer.reference

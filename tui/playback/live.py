@@ -59,11 +59,6 @@ class Live(Source):
         return self._run.stepping
 
     @property
-    def in_past(self) -> bool:
-        """Whether the lab has stepped back and what comes next is known."""
-        return self._run.in_past
-
-    @property
     def events(self) -> Sequence[Event]:
         return self._events
 
@@ -82,7 +77,7 @@ class Live(Source):
         recorder.sample(self.sample, self._recorded.position)
 
     def tick(self, now: float) -> Sample:
-        """Follow the clock as far as the frame's budget goes; what is beyond it is dropped."""
+        """Follow the clock as far as the frame's budget allows; the rest of the time is dropped."""
         before = self.playhead
         self.playhead, self._recorded = before.at(now), self._recorded.at(now)
         if self.playhead.paused or before.seen is None:
@@ -129,7 +124,7 @@ class Live(Source):
     def set_stepping(self, stepping: Stepping) -> None:
         """Step like this from here on.  Raises SceneError, before anything has changed, for an absurd step size."""
         stepping.check(self.scene.w0)
-        if self.in_past:
+        if self._run.in_past:
             self._runs += 1
             self._run.branch(self._runs)
             self._note_start()

@@ -30,6 +30,7 @@ class Replay(Source):
 
     def __init__(self, recording: "Recording", marks: Marks, clock: Callable[[], float] = time.perf_counter) -> None:
         self.recording = recording
+        self.length = recording.length  # s
         self.marks = marks
         self.playhead = Playhead()
         self.pace = Pace()
@@ -58,11 +59,6 @@ class Replay(Source):
         start, end = self.ends
         start, end = 0.0 if start is None else start, self.length if end is None else end
         return (min(start, end), max(start, end)) if self.looping else None
-
-    @property
-    def length(self) -> float:
-        """Of the recording [s]."""
-        return self.recording.length
 
     @property
     def events(self) -> Sequence[Event]:
@@ -101,7 +97,7 @@ class Replay(Source):
         return filled
 
     def pause(self, paused: bool) -> None:
-        """Stop or go on; from the end, go on from the start."""
+        """Pause or go on; from the end, go on from the start."""
         self.playhead = replace(self.playhead, paused=paused)
         position, backwards = self.playhead.position, self.playhead.speed < 0
         if not paused and position == (0.0 if backwards else self.length):
@@ -123,7 +119,7 @@ class Replay(Source):
         self._cursor.go_to(self.playhead.position)
 
     def seek_event(self, direction: int) -> None:
-        """Go to the next event, mark or highlight, or to the one before."""
+        """Go to the next event, mark or milestone, or to the previous one."""
         position = self.playhead.position
         if direction > 0:
             self.seek(min((tick for tick in self.ticks if tick > position + 1e-6), default=self.length))
@@ -132,12 +128,12 @@ class Replay(Source):
 
     @property
     def ticks(self) -> list[float]:
-        """Where on the recording clock something was done, marked, or happened as far as that is known by now [s]."""
+        """The events, marks and milestones known by now, on the recording clock [s]."""
         done = (clock for clock, event in self.recording.events if event.kind != "stop")
         return sorted({*done, *(mark.clock for mark in self.marks), *self._milestone_times})
 
     def mark(self, text: str | None = None) -> None:
-        """Leave a mark at the sample, unless it has one; it is kept beside the recording, which is not touched."""
+        """Leave a mark at the sample, unless it has one; it is kept next to the recording, which is not touched."""
         if not self.is_marked:
             self.marks.add(Mark(self.playhead.position, self.sample.run, self.sample.step, text))
 

@@ -1,4 +1,4 @@
-"""Source: what a screen shows, a lab or a recording.  One class of both, so that one screen serves both."""
+"""Source: what a screen shows, a lab or a recording."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence

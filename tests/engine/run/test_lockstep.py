@@ -150,7 +150,7 @@ def test_time_reversed_verlet_comes_back_and_its_run_counts_on() -> None:
 def test_a_useless_step_size_is_refused_and_the_old_one_stays(h: float) -> None:
     lockstep = Lockstep(SCENES["drift"])
     lockstep.advance(3)
-    with pytest.raises(SceneError, match="no usable step"):
+    with pytest.raises(SceneError, match="not a usable step"):
         lockstep.set_stepping(Stepping(h))
     assert (lockstep.stepping.h, lockstep.t) == (0.05, 3 * 0.05)
 
