@@ -60,7 +60,10 @@ class Live(Source):
 
     @property
     def events(self) -> Sequence[Event]:
-        return self._events
+        if not self._run.in_past:
+            return self._events
+        run, step = self._run.run, self._run.step
+        return [event for event in self._events if event.run != run or event.step <= step]
 
     @property
     def recording_status(self) -> RecordingStatus | None:

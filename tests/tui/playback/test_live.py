@@ -213,6 +213,17 @@ def test_an_absurd_step_size_is_refused_and_changes_nothing():
     assert (bench.live.stepping.h, len(bench.keeper.events), bench.live.sample.run) == (0.05, events, 1)
 
 
+def test_the_events_are_those_up_to_the_sample_in_the_past_too():
+    bench = Bench()
+    bench.run(1)
+    bench.live.set_stepping(Stepping(0.1))
+    bench.run(1)
+    bench.live.step(-20)
+    assert [event.kind for event in bench.live.events] == ["start"]
+    bench.live.step(20)
+    assert [event.kind for event in bench.live.events] == ["start", "set_h", "pause"]
+
+
 def test_a_recorder_that_comes_later_learns_how_the_run_began():
     live = Live(SCENES["spin"])
     keeper = Keeper()
