@@ -19,9 +19,9 @@ from engine.scenes import DEFAULT_SCENE
 from recordings.export import COLUMNS
 from tests.tui.command_line import pendu
 from tui.cli.dispatch import COMMANDS, command_of
-from tui.cli.options import joined
+from tui.screens.keys import COMMON, LIVE, REPLAY
 from tui.views.accuracy import pane as accuracy
-from tui.views.keys import COMMON, LIVE, REPLAY, Key
+from tui.views.keys import Key
 from tui.views.phase import pane as phase
 from tui.views.stability import pane as stability
 
@@ -64,7 +64,7 @@ def test_every_command_that_is_mentioned_exists_with_its_options(command):
         return
     name = words.pop(0) if words and not words[0].startswith("-") else "live"
     parser, _ = command_of(name)
-    parser.parse_args(joined(words + ["."] * (name == "verify")))
+    parser.parse_args(words + ["."] * (name == "verify"))
 
 
 @pytest.fixture

@@ -35,6 +35,16 @@ def separatrix_energy(w0_squared: float) -> float:
     return 2 * w0_squared
 
 
+def separatrix_margin(w0: float, theta: Any, omega: Any, cos: Callable[[Any], Any] = math.cos) -> Any:
+    """1 - E/E_separatrix: 1 at rest, 0 on the separatrix, negative in rotation.  Pass the `cos` of your numbers.
+
+    The product of two numbers of which one is exact near the separatrix, where 1 - E/E_separatrix
+    itself would cancel.
+    """
+    c, v = cos(theta / 2), omega / (2 * w0)
+    return (c - v) * (c + v)
+
+
 class EnergyReference(NamedTuple):
     """What the energy errors of a run are relative to."""
 

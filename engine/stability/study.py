@@ -1,8 +1,9 @@
 """The study behind the stability command: first failures on a ladder of z, and the map."""
 
 import math
-from collections.abc import Iterator, Sequence
-from concurrent.futures import BrokenExecutor, Executor
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -13,8 +14,9 @@ from engine.models.pendulum import energy
 from engine.scenes import Scene
 from engine.stability.grid import Grid, default_grid
 from engine.stability.outcomes import HOLDS, Cells, Failure, first_failure
-from tui.cli.errors import Exit, UserError
-from tui.cli.output import progress
+
+Show = Callable[[float, float], None]
+"""Takes how much is done, and how much there is in all."""
 
 THETAS = (0.1, 0.5, 1.0, 2.0, 3.0)  # rad, and the scene's own
 
@@ -42,14 +44,15 @@ def amplitude(scene: Scene) -> float | None:
 
 
 @dataclass(frozen=True, slots=True)
-class Study:
-    """What was asked for, and what computes it."""
+class StabilityStudy:
+    """What was asked for, what computes it, and what shows how far that is."""
 
     scene: Scene
     thetas: Sequence[float] | None = None  # rad
     zs: Sequence[float] | None = None
     steps: int = 10_000
     executor: Executor | None = None
+    progress: Callable[[], AbstractContextManager[Show]] = lambda: nullcontext(lambda done, total: None)
 
     def table(self) -> tuple[list[Row], bool]:
         """First failures on the ladder, to which the scene's own z is added as a rung; and whether that is all.
@@ -82,7 +85,6 @@ class Study:
         return rows, whole
 
     def grid(self) -> Grid:
-        """The map's grid."""
         grid = default_grid()
         theta = grid.theta if self.thetas is None else np.array(self.thetas)
         return Grid(theta, grid.z if self.zs is None else np.array(self.zs), self.steps)
@@ -97,16 +99,14 @@ class Study:
         return grid, cells, done
 
     def computed(self, grid: Grid) -> Iterator[Cells]:
-        """Strip after strip, with a progress bar, until all are done or Ctrl+C is pressed."""
+        """Strip after strip, until all are done or Ctrl+C is pressed.  Raises BrokenExecutor if a worker dies."""
         strips, done = grid.compute(self.executor), 0
-        with progress("stability") as show:
+        with self.progress() as show:
             while done < len(grid.z):
                 try:
                     strip = next(strips)
                 except KeyboardInterrupt:
                     return
-                except BrokenExecutor as error:
-                    raise UserError(f"a worker is gone ({error}): try fewer, or none.", Exit.CHECK_FAILED) from None
                 done += len(strip)
                 show(done, len(grid.z))
                 yield strip

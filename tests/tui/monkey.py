@@ -9,8 +9,8 @@ from textual.events import Key
 
 from tests.tui.pty_lab import PtyLab
 from tests.tui.stage import Theatre
+from tui.screens.keys import COMMON, LIVE, REPLAY
 from tui.views.accuracy import pane as accuracy
-from tui.views.keys import COMMON, LIVE, REPLAY
 from tui.views.phase import pane as phase
 from tui.views.stability import pane as stability
 

@@ -15,11 +15,11 @@ from tui.playback.marks import Marks
 from tui.playback.replay import Replay
 from tui.screens.app import PenduApp
 from tui.screens.base import SourceScreen
+from tui.screens.keys import COMMON
 from tui.screens.live import LiveScreen
 from tui.screens.replay import ReplayScreen
 from tui.screens.still import settled
 from tui.terminal.options import FPS
-from tui.views.keys import COMMON
 
 
 class Theatre:
@@ -33,7 +33,7 @@ class Theatre:
 
     @property
     def stage(self) -> Any:
-        return self.app.stage
+        return self.app.source_screen
 
     @property
     def source(self) -> Any:

@@ -1,4 +1,9 @@
-"""The command line: `dispatch` finds the command; `options`, `output`, `errors`, `files` and `fail_if` serve all of them."""
+"""The command line, from the arguments to what is printed.
+
+`dispatch` finds the command and its parser; `options` reads the options that several commands share; `fail_if`
+reads the expression of --fail-if; `output` prints JSON, tables, pictures, CSV and progress; `files` writes whole
+files and takes requests to stop; `errors` makes one sentence and an exit code of whatever goes wrong.
+"""
 
 from tui.cli.dispatch import main
 

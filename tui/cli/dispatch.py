@@ -5,7 +5,6 @@ import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
-from itertools import pairwise
 from types import ModuleType
 from typing import TYPE_CHECKING
 
@@ -62,20 +61,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         code = _dispatch(list(sys.argv[1:] if arguments is None else arguments))
         sys.stdout.flush()
         return code
-    except KeyboardInterrupt:
-        print("pendu-tui: interrupted.", file=sys.stderr)
-        return Exit.INTERRUPTED
     except BrokenPipeError:
         _drop_output()
         return Exit.PIPE_CLOSED
-    except Exception as error:
-        if isinstance(error.__context__, KeyboardInterrupt):  # Ctrl+C within an import, made an error of by a library
-            print("pendu-tui: interrupted.", file=sys.stderr)
-            return Exit.INTERRUPTED
+    except (KeyboardInterrupt, Exception) as error:
         refusal = explained(error)
         from recordings.errors import printable
+        from tui.cli.output import warn
 
-        print(f"pendu-tui: {printable(str(refusal), limit=1000)}", file=sys.stderr)
+        warn(printable(str(refusal), limit=1000))
         try:
             sys.stdout.flush()
         except OSError:
@@ -106,25 +100,18 @@ def _dispatch(arguments: list[str]) -> int:
 
 
 def _run(name: str, arguments: list[str]) -> int:
-    from tui.cli.options import joined
-
     parser, command = command_of(name)
-    arguments = joined(arguments)
     try:
         options = parser.parse_args(arguments)
     except SystemExit:  # --help, printed
         return Exit.FINE
     except UserError as error:
-        raise _misplaced(name, arguments, parser) or parser.unknown_option(arguments) or error from None
+        late = parser.stray(arguments, COMMANDS) if name == "live" else None
+        if late:  # a command after its options, which made it live
+            raise UserError(f"the command comes first: pendu-tui {late}.") from None
+        raise parser.unknown_option(arguments) or error from None
     code: int = command.run(options)
     return code
-
-
-def _misplaced(name: str, arguments: Sequence[str], parser: "Parser") -> UserError | None:
-    """What to say to one who gave the command after its options, for which it was taken for live."""
-    places = pairwise(["", *arguments])
-    late = next((each for before, each in places if each in COMMANDS and not parser.takes_value(before)), None)
-    return UserError(f"the command comes first: pendu-tui {late}.") if late and name == "live" else None
 
 
 def command_of(name: str) -> tuple["Parser", ModuleType]:

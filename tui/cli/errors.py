@@ -25,10 +25,12 @@ class UserError(Exception):
         self.code = code
 
 
-def explained(error: Exception) -> UserError:
+def explained(error: BaseException) -> UserError:
     """The error as a sentence for the user; an error that is ours, not the user's, is raised again."""
     if isinstance(error, UserError):
         return error
+    if isinstance(error, KeyboardInterrupt) or isinstance(error.__context__, KeyboardInterrupt):
+        return UserError("interrupted.", Exit.INTERRUPTED)  # the latter within an import, made an error of by a library
     from engine.scenes import SceneError  # here, because --help and --version need neither
     from recordings.errors import RecordingError
 

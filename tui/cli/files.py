@@ -1,14 +1,16 @@
-"""A file that a command writes: whole, or not at all, and over another one only by force."""
+"""Files that a command writes whole or not at all, and runs that end early, but properly, when a signal asks for it."""
 
 import signal
-from collections.abc import Iterator
+import sys
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
+from typing import TextIO
 
 from tui.cli.errors import Exit, UserError
 
-_SIGNALS = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
+_SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
 
 @contextmanager
@@ -26,15 +28,23 @@ def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
     if not path.parent.is_dir():
         raise UserError(f"{path}: there is no folder {path.parent}; create the folder first.", Exit.DISK)
     part = path.with_name(path.name + ".part")
-    before = {number: signal.signal(number, _stop) for number in _SIGNALS}
-    try:
-        part.touch()
-        yield part
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
-        for number, handler in before.items():
-            signal.signal(number, handler)
+    with _signals_to(signal.default_int_handler):
+        try:
+            part.touch()
+            yield part
+            part.replace(path)
+        finally:
+            part.unlink(missing_ok=True)
+
+
+@contextmanager
+def text_file(path: Path | None, force: bool = False) -> Iterator[TextIO]:
+    """Yield a stream to what will be the whole file `path`, or stdout where there is no path."""
+    if path is None:
+        yield sys.stdout
+    else:
+        with whole_file(path, force) as part, part.open("w", encoding="utf-8", newline="") as stream:
+            yield stream
 
 
 def check_free(path: Path, force: bool) -> None:
@@ -44,5 +54,28 @@ def check_free(path: Path, force: bool) -> None:
         raise UserError(f"{path} exists already: {advice}.", Exit.DISK)
 
 
-def _stop(number: int, frame: FrameType | None) -> None:
-    raise KeyboardInterrupt
+@contextmanager
+def stop_requests() -> Iterator[Callable[[], bool]]:
+    """Yield a function: whether Ctrl+C, SIGTERM or SIGHUP came.  A second one interrupts at once."""
+    asked = False
+
+    def ask(number: int, frame: FrameType | None) -> None:
+        nonlocal asked
+        if asked:
+            raise KeyboardInterrupt
+        asked = True
+
+    with _signals_to(ask):
+        yield lambda: asked
+
+
+@contextmanager
+def _signals_to(handler: Callable[[int, FrameType | None], None]) -> Iterator[None]:
+    """Handle the signals that ask for an end so; one that is ignored, as under nohup, stays ignored."""
+    heard = [number for number in _SIGNALS if signal.getsignal(number) is not signal.SIG_IGN]
+    before = {number: signal.signal(number, handler) for number in heard}
+    try:
+        yield
+    finally:
+        for number, earlier in before.items():
+            signal.signal(number, earlier)

@@ -4,25 +4,32 @@ import argparse
 import difflib
 import math
 import re
-import sys
 from collections.abc import Iterable, Sequence
-from typing import NoReturn
+from itertools import pairwise
+from typing import Any, NoReturn
 
 from engine.scenes import DEFAULT_SCENE, LIMITS, SCENES, Scene
+from recordings.library import golden_names
 from tui.cli.errors import UserError
+from tui.cli.output import warn
 
 
 class Parser(argparse.ArgumentParser):
-    """An argument parser whose errors are one sentence."""
+    """An argument parser whose errors are one sentence, and to which -1e-3 is a number."""
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(**settings)
+        self._negative_number_matcher = re.compile(r"-\.?\d")
 
     def error(self, message: str) -> NoReturn:
-        """Raise UserError instead of printing the usage."""
         raise UserError(f"{message.removeprefix('argument ')}; {self.prog} --help shows the options.")
 
-    def takes_value(self, name: str) -> bool:
-        """Whether this is an option with a value behind it."""
-        action = self._option_string_actions.get(name)
-        return action is not None and action.nargs != 0
+    def stray(self, arguments: Sequence[str], words: Iterable[str]) -> str | None:
+        """The first argument that is one of these words, and not the value of an option."""
+        options = {name for name, action in self._option_string_actions.items() if action.nargs != 0}
+        return next(
+            (word for before, word in pairwise(["", *arguments]) if word in words and before not in options), None
+        )
 
     def unknown_option(self, arguments: Sequence[str]) -> UserError | None:
         """What to say of the first option that there is none of: argparse would name what is missing for it."""
@@ -36,33 +43,58 @@ class Parser(argparse.ArgumentParser):
         return None
 
 
-def joined(arguments: Sequence[str]) -> list[str]:
-    """The arguments with negative numbers tied to their options: argparse takes -1e-3 for an option."""
-    tied: list[str] = []
-    for argument in arguments:
-        if tied and re.match(r"-\.?\d", argument) and re.fullmatch(r"--[a-z-]+", tied[-1]):
-            tied[-1] += "=" + argument
-        else:
-            tied.append(argument)
-    return tied
+class Suggestions(list[str]):
+    """What the tab key offers for an option, as its `choices`; any other text is left to the command."""
+
+    def __contains__(self, text: object) -> bool:
+        return True
 
 
-class Bare(float):
-    """An angle that was given without its unit."""
+def add_file(parser: argparse._ActionsContainer, *names: str, **settings: Any) -> None:
+    """Add an option whose value the tab key completes to a file."""
+    parser.add_argument(*names, **settings).complete = "file"  # type: ignore[attr-defined]
+
+
+def add_recording(
+    parser: argparse.ArgumentParser,
+    name: str = "file",
+    metavar: str = "FILE",
+    help: str = "a file, latest, or a name such as drift",
+    offered: Sequence[str] = (),
+    **settings: Any,
+) -> None:
+    """Add an argument for `recordings.library.resolve`; the tab key offers files, known names, and those `offered`."""
+    words = " ".join(("latest", *golden_names(), *offered))
+    function = f"_pendu_tui_file_{len(words.split())}"
+    action = parser.add_argument(name, metavar=metavar, help=help, **settings)
+    action.complete = {  # type: ignore[attr-defined]  # in the words of each shell, for shtab
+        "bash": function,
+        "zsh": function,
+        "fish": f"{words} (__fish_complete_path (commandline -ct))",
+        "preamble": {
+            "bash": f'{function}() {{ compgen -W \'{words}\' -- "$1"; compgen -f -- "$1"; }}',
+            "zsh": f"{function}() {{ _alternative 'names:recording:({words})' 'files:file:_files'; }}",
+        },
+    }
 
 
 def angle(text: str) -> float:
-    """An angle [rad] from `2`, `2rad`, `115deg` or `115°`; a Bare one from `2`."""
-    number = re.sub(r"(deg|°|rad)$", "", text)
+    """An angle [rad] from `2`, `2rad`, `115deg` or `115°`."""
     try:
-        value = float(number)
+        value = float(re.sub(r"(deg|°|rad)$", "", text))
     except ValueError:
         raise argparse.ArgumentTypeError(
             f"{text!r} is no angle: give radians such as 2, or degrees such as 115deg"
         ) from None
-    if number == text:
-        return Bare(value)
-    return value if text.endswith("rad") else math.radians(value)
+    return math.radians(value) if text.endswith(("deg", "°")) else value
+
+
+def start_angle(text: str) -> float:
+    """An angle [rad]; warns if degrees seem to be meant."""
+    value = angle(text)
+    if math.tau < abs(value) <= LIMITS["theta"][1] and not text.endswith(("deg", "°", "rad")):
+        warn(f"--theta {text} is {text} rad, {abs(value) / math.tau:.3g} turns; for degrees write {text}deg.")
+    return value
 
 
 def number(text: str) -> float:
@@ -97,30 +129,27 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
 def add_scene_options(parser: argparse.ArgumentParser) -> None:
     """Add the options that determine a scene; `scene_of` reads them."""
     group = parser.add_argument_group("scene", "numbers win over those of the scene, which hold where none are given")
-    group.add_argument("--scene", metavar="NAME", default=DEFAULT_SCENE.name, help="see pendu-tui scenes (%(default)s)")
     group.add_argument(
-        "--theta", metavar="RAD|DEGdeg", type=angle, help="start angle from straight down, in rad, or such as 115deg"
+        "--scene",
+        metavar="NAME",
+        choices=Suggestions(SCENES),
+        default=DEFAULT_SCENE.name,
+        help="see pendu-tui scenes (%(default)s)",
     )
-    group.add_argument("--omega", metavar="RAD_S", type=angle, help="start angular velocity in rad/s, or such as 30deg")
-    group.add_argument("--length", metavar="M", type=number, help="length in m")
-    group.add_argument("--gravity", metavar="M_S2", type=number, help="gravity in m/s²")
-    group.add_argument("--h", metavar="S", type=number, help="step size in s")
+    for name, metavar, read, meaning in (
+        ("theta", "RAD|DEGdeg", start_angle, "start angle from straight down, in rad, or such as 115deg"),
+        ("omega", "RAD_S", angle, "start angular velocity in rad/s, or such as 30deg"),
+        ("length", "M", number, "length in m"),
+        ("gravity", "M_S2", number, "gravity in m/s²"),
+        ("h", "S", number, "step size in s"),
+    ):
+        group.add_argument(f"--{name}", metavar=metavar, type=read, help=meaning)
 
 
 def scene_of(options: argparse.Namespace) -> Scene:
-    """The scene that the options describe; whoever seems to have meant degrees is told.
-
-    Raises UserError for an unknown name and SceneError for numbers that cannot be run.
-    """
+    """The scene that the options describe.  Raises UserError for an unknown name, SceneError for bad numbers."""
     if options.scene not in SCENES:
         hint = did_you_mean(options.scene, SCENES) or "; pendu-tui scenes lists them."
         raise UserError(f"there is no scene {options.scene!r}{hint}")
     given = {name: getattr(options, name) for name in (*LIMITS, "h")}
-    scene = SCENES[options.scene].altered(**{name: float(value) for name, value in given.items() if value is not None})
-    if isinstance(options.theta, Bare) and abs(options.theta) > math.tau:
-        bare, turns = f"{options.theta:g}", abs(options.theta) / math.tau
-        print(
-            f"pendu-tui: --theta {bare} is {bare} rad, {turns:.3g} turns; for degrees write {bare}deg.",
-            file=sys.stderr,
-        )
-    return scene
+    return SCENES[options.scene].altered(**{name: value for name, value in given.items() if value is not None})

@@ -1,15 +1,24 @@
-"""What commands print: JSON, tables and progress.  Data on stdout, everything else on stderr."""
+"""What commands print: JSON, CSV, tables and pictures on stdout; warnings and progress on stderr."""
 
+import csv
 import json
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict
 from time import monotonic
-from typing import Any
+from typing import TYPE_CHECKING, Any, TextIO
 
-from engine.scenes import Scene
+from engine.scenes import LIMITS, Scene
 from recordings.errors import printable
+
+if TYPE_CHECKING:
+    from rich.console import Console, RenderableType
+    from rich.text import Text
+
+
+def warn(sentence: str) -> None:
+    """Say something besides the data, on stderr."""
+    print(f"pendu-tui: {sentence}", file=sys.stderr)
 
 
 def write_json(name: str, fields: Mapping[str, Any]) -> None:
@@ -17,14 +26,26 @@ def write_json(name: str, fields: Mapping[str, Any]) -> None:
     print(json.dumps({"schema": f"pendu.{name}/1", **fields}, allow_nan=False, indent=2))
 
 
-def scene_fields(scene: Scene) -> dict[str, Any]:
-    """A scene as JSON shows it, in SI units."""
-    return asdict(scene)
+def write_csv(out: TextIO, header: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
+    """Write rows so that every number reads back the same; None is an empty field."""
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(header)
+    writer.writerows(rows)
 
 
-def print_table(align: str, headers: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
+def fields_of(value: object, *names: str) -> dict[str, Any]:
+    """Some attributes by name, as in JSON."""
+    return {name: getattr(value, name) for name in names}
+
+
+def scene_line(scene: Scene, *more: str) -> str:
+    """The scene's name and numbers, and `more` of its attributes."""
+    numbers = fields_of(scene, *LIMITS, *more)
+    return f"{scene.name}: {', '.join(f'{name} {value:g}' for name, value in numbers.items())} (SI units)"
+
+
+def print_table(align: str, headers: Sequence[str], rows: Iterable[Iterable[str]]) -> None:
     """Print a table; `align` has an l or an r for each column.  The first column is never wrapped."""
-    from rich.console import Console
     from rich.table import Table
 
     table = Table(box=None, pad_edge=False, header_style="bold", show_header=any(headers))
@@ -32,10 +53,25 @@ def print_table(align: str, headers: Sequence[str], rows: Iterable[Sequence[str]
         table.add_column(header, justify="left" if side == "l" else "right", no_wrap=not table.columns, overflow="fold")
     for row in rows:
         table.add_row(*(printable(cell, limit=1000) for cell in row))  # a file's text must not steer the terminal
-    width = None if sys.stdout.isatty() else 240  # a file or a pipe has room for every column
-    console = Console(width=width, markup=False, emoji=False, highlight=False)
-    with console.capture() as drawn:  # or Rich ends the process when the reader of a pipe is gone
-        console.print(table)
+    _print(console(240), [table])  # a file or a pipe has room for every column
+
+
+def print_picture(on: "Console", lines: "Iterable[Text]") -> None:
+    """Print lines of coloured characters, cropped to the width of the console."""
+    _print(on, lines, no_wrap=True, overflow="crop")
+
+
+def console(piped_width: int | None = None) -> "Console":
+    """Where tables and pictures are drawn: as wide as the terminal, or as given where the output is none."""
+    from rich.console import Console
+
+    return Console(width=None if sys.stdout.isatty() else piped_width, markup=False, emoji=False, highlight=False)
+
+
+def _print(on: "Console", renderables: "Iterable[RenderableType]", **how: Any) -> None:
+    with on.capture() as drawn:  # or Rich ends the process when the reader of a pipe is gone
+        for renderable in renderables:
+            on.print(renderable, **how)
     print(drawn.get(), end="")
 
 

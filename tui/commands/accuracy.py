@@ -1,23 +1,20 @@
 """Chart speed against accuracy over a ladder of h, and find the cheapest method and h for a target or a budget."""
 
 import argparse
-import sys
 import time
-from collections.abc import Iterator
-from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from engine.methods import METHODS
 from engine.scenes import Scene, check_h
 from tui.cli.errors import Exit, UserError
-from tui.cli.files import whole_file
-from tui.cli.options import add_scene_options, count, positive, scene_of
-from tui.cli.output import progress
+from tui.cli.files import text_file
+from tui.cli.options import add_file, add_scene_options, count, positive, scene_of
+from tui.cli.output import progress, warn
 
 if TYPE_CHECKING:
     from engine.accuracy.recommend import Attempt
-    from engine.accuracy.study import ErrorKind, Study
+    from tui.commands.reports.accuracy import Findings
 
 EXAMPLES = """\
 examples:
@@ -36,7 +33,6 @@ MOST_BUDGET = 10**9  # force evaluations of a run; minutes for each method, comp
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add this command's options."""
     add_scene_options(parser)
     parser.add_argument(
         "--time",
@@ -71,7 +67,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--no-compiled", action="store_true", help="do without Numba; the errors are the same")
     form = parser.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help="one JSON object, SI units")
-    form.add_argument("--csv", metavar="FILE", nargs="?", const="-", help="the points as CSV, to stdout or a file")
+    add_file(form, "--csv", metavar="FILE", nargs="?", const="-", help="the points as CSV, to stdout or a file")
     parser.add_argument("--force", action="store_true", help="overwrite FILE")
 
 
@@ -93,7 +89,7 @@ def h_values(text: str) -> tuple[float, float, int]:
 
 def run(options: argparse.Namespace) -> int:
     """Measure, recommend, print.  Ctrl+C keeps what is done."""
-    from engine.accuracy.study import Order, Point, Study, orders, timed, usual
+    from engine.accuracy.study import usual
 
     scene = scene_of(options)
     if scene.theta == scene.omega == 0:
@@ -105,66 +101,63 @@ def run(options: argparse.Namespace) -> int:
         raise UserError(f"--budget {options.budget:g} would take hours: give {MOST_BUDGET:g} evaluations or less.")
     if budget == 0:
         raise UserError(f"--budget {options.budget:g} buys nothing: give 1 force evaluation or more.")
-    from engine.accuracy.recommend import Attempt, cheapest, most_accurate
-    from engine.run import compiled, loops
-    from tui.commands.accuracy_report import Advice, Findings, print_json, print_text, write_csv
+    from engine.run.compiled import available
+    from tui.commands.reports.accuracy import Findings, print_csv, print_json, print_text
 
-    fast = not options.no_compiled and compiled.available()
-    study = Study(scene, times[-1], compiled.tiered if fast else loops.plain)
-    points: list[Point] = []
-    measured: list[Order] = []
-    advice: list[Advice] = []
-    interrupted = False
-    with whole_file(Path(options.csv), options.force) if options.csv not in (None, "-") else nullcontext() as file:
+    found = Findings(scene, times[-1], options.error, options.cost, options.target, budget)
+    file = None if options.csv in (None, "-") else Path(options.csv)
+    with text_file(file, options.force) as out:
         try:
-            with progress("measuring") as show:
-                for point in study.points(rungs):
-                    if options.cost == "seconds":
-                        point = timed(point, scene, time.perf_counter, compiled.compiled if fast else loops.plain)
-                    points.append(point)
-                    show(sum(point.steps for point in points), len(METHODS) * sum(rungs))
-            measured = orders(scene, times[-1], study.loops)
-            if options.target or budget:
-                with progress("searching") as show:
-                    for duration in times:
-                        there = study if duration == study.time else Study(scene, duration, study.loops)
-                        attempts: list[Attempt] = []
-                        for attempt in _attempts(there, options.error, options.target, budget):
-                            attempts.append(attempt)
-                            show(len(METHODS) * len(advice) + len(attempts), len(METHODS) * len(times))
-                        best = cheapest(attempts) if options.target else most_accurate(attempts, options.error)
-                        advice.append(Advice(duration, attempts, best))
+            _fill(found, times, rungs, not options.no_compiled and available())
         except KeyboardInterrupt:
-            interrupted = True
-        found = Findings(
-            scene,
-            study.time,
-            options.error,
-            options.cost,
-            options.target,
-            budget,
-            points,
-            measured,
-            advice,
-            interrupted,
-        )
-        if file:
-            if not points:
-                raise KeyboardInterrupt
-            with file.open("w", encoding="utf-8", newline="") as out:
-                write_csv(found, out)
-    if options.json:
-        print_json(found)
-    elif options.csv == "-":
-        write_csv(found, sys.stdout)
-    elif options.csv:
-        print(f"{options.csv}: {len(points)} points.")
-    else:
-        print_text(found)
-    if interrupted:
-        print("pendu-tui: interrupted; what was done is kept.", file=sys.stderr)
+            if file and not found.points:
+                raise
+            found.interrupted = True
+        if options.csv:
+            print_csv(found, out)
+        elif options.json:
+            print_json(found)
+        else:
+            print_text(found)
+    if file:
+        print(f"{file}: {len(found.points)} points.")
+    if found.interrupted:
+        warn("interrupted; what was done is kept.")
         return Exit.INTERRUPTED
     return Exit.FINE
+
+
+def _fill(found: "Findings", times: list[float], rungs: list[int], fast: bool) -> None:
+    """Find what was asked for; what is found by an interrupt stays found."""
+    from engine.accuracy.recommend import MOST_EVALUATIONS, cheapest, most_accurate, reach, spend
+    from engine.accuracy.study import Study, orders, timed
+    from engine.run import compiled, loops
+    from tui.commands.reports.accuracy import Advice
+
+    study = Study(found.scene, found.time, compiled.tiered if fast else loops.plain)
+    with progress("measuring") as show:
+        for point in study.points(rungs):
+            if found.cost == "seconds":
+                point = timed(point, found.scene, time.perf_counter, compiled.compiled if fast else loops.plain)
+            found.points.append(point)
+            show(sum(point.steps for point in found.points), len(METHODS) * sum(rungs))
+    found.orders += orders(found.scene, found.time, study.loops)
+    if not (found.target or found.budget):
+        return
+    with progress("searching") as show:
+        for duration in times:
+            there = study if duration == study.time else Study(found.scene, duration, study.loops)
+            search = (
+                reach(there, found.kind, found.target, found.budget or MOST_EVALUATIONS)
+                if found.target
+                else spend(there, found.kind, found.budget or 0)
+            )
+            attempts: list[Attempt] = []
+            for attempt in search:
+                attempts.append(attempt)
+                show(len(METHODS) * len(found.advice) + len(attempts), len(METHODS) * len(times))
+            best = cheapest(attempts) if found.target else most_accurate(attempts, found.kind)
+            found.advice.append(Advice(duration, attempts, best))
 
 
 def _ladder(scene: Scene, time: float, given: tuple[float, float, int] | None) -> list[int]:
@@ -179,9 +172,3 @@ def _ladder(scene: Scene, time: float, given: tuple[float, float, int] | None) -
     if time / smallest > MOST_STEPS:
         raise UserError(f"{time:g} s in steps of {smallest:.2g} s take hours: give --h-values, such as 0.2:0.01:8.")
     return ladder(time, largest, smallest, rungs)
-
-
-def _attempts(study: "Study", kind: "ErrorKind", target: float | None, budget: int | None) -> "Iterator[Attempt]":
-    from engine.accuracy.recommend import MOST_EVALUATIONS, reach, spend
-
-    return reach(study, kind, target, budget or MOST_EVALUATIONS) if target else spend(study, kind, budget or 0)

@@ -1,14 +1,13 @@
 """Write a recording as CSV: one row for each sample and method, units in the header."""
 
 import argparse
-import sys
-from contextlib import ExitStack
 from pathlib import Path
 
 from recordings.errors import printable
 from tui.cli.errors import Exit
-from tui.cli.files import whole_file
-from tui.cli.output import progress
+from tui.cli.files import text_file
+from tui.cli.options import add_file, add_recording
+from tui.cli.output import progress, warn
 
 EXAMPLES = """\
 examples:
@@ -18,26 +17,24 @@ examples:
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add this command's options."""
-    parser.add_argument("file", metavar="FILE", help="a file, latest, or a name such as drift")
+    add_recording(parser)
     parser.add_argument("--format", choices=("csv",), default="csv", help="the only one there is (%(default)s)")
-    parser.add_argument("-o", "--output", metavar="OUT", type=Path, help="write here, not to stdout")
+    add_file(parser, "-o", "--output", metavar="OUT", type=Path, help="write here, not to stdout")
     parser.add_argument("--force", action="store_true", help="overwrite OUT")
 
 
 def run(options: argparse.Namespace) -> int:
-    """Export."""
     from recordings import library
     from recordings.export import write_csv
     from recordings.recording import Recording
 
     path = library.resolve(options.file)
-    with Recording.open(path) as recording, progress(printable(path.name)) as show, ExitStack() as stack:
-        out = sys.stdout
-        if options.output:
-            part = stack.enter_context(whole_file(options.output, options.force))
-            out = stack.enter_context(part.open("w", encoding="utf-8", newline=""))
+    with (
+        Recording.open(path) as recording,
+        progress(printable(path.name)) as show,
+        text_file(options.output, options.force) as out,
+    ):
         write_csv(recording, out, show)
         if recording.reason:
-            print(f"pendu-tui: {printable(str(path))}: {recording.reason}; the rest is exported.", file=sys.stderr)
+            warn(f"{printable(str(path))}: {recording.reason}; the rest is exported.")
     return Exit.FINE

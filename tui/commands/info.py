@@ -1,11 +1,13 @@
 """Say what is in a recording: when, how long, which runs, and whether it is whole."""
 
 import argparse
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from recordings.errors import printable
 from tui.cli.errors import Exit
-from tui.cli.output import print_table, progress, scene_fields, write_json
+from tui.cli.options import add_recording
+from tui.cli.output import fields_of, print_table, progress, write_json
 from tui.words.numbers import file_size, seconds
 
 if TYPE_CHECKING:
@@ -19,13 +21,11 @@ examples:
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add this command's options."""
-    parser.add_argument("file", metavar="FILE", help="a file, latest, or a name such as drift")
+    add_recording(parser)
     parser.add_argument("--json", action="store_true", help="one JSON object")
 
 
 def run(options: argparse.Namespace) -> int:
-    """Look at every byte and say what was found."""
     from recordings import library
     from recordings.recording import Recording
 
@@ -42,21 +42,13 @@ def _fields(recording: "Recording", size: int) -> dict[str, Any]:
     return {
         "file": str(recording.path),
         "format": recording.version,
-        "complete": recording.complete,
-        "damaged": recording.damaged,
-        "reason": recording.reason,
+        **fields_of(recording, "complete", "damaged", "reason"),
         "runs": [
-            {
-                "scene": scene_fields(run.scene),
-                "steps": run.steps,
-                "time": run.t,
-                "seconds": run.end - run.begin,
-                "events": run.events,
-            }
+            {"scene": asdict(run.scene), "steps": run.steps, "time": run.t, "seconds": run.end - run.begin}
+            | {"events": run.events}
             for run in recording.runs
         ],
-        "methods": recording.methods,
-        "samples": recording.samples,
+        **fields_of(recording, "methods", "samples"),
         "seconds": recording.length,
         "bytes": size,
         "metadata": recording.metadata,
@@ -75,21 +67,10 @@ def _print(recording: "Recording", size: int) -> None:
     }
     print_table("ll", ("", ""), facts.items())
     print()
-    print_table(
-        "rlrrrrrrr",
-        ("run", "scene", "theta [rad]", "omega [rad/s]", "h [s]", "steps", "t [s]", "seconds", "events"),
-        (
-            (
-                str(run.number),
-                run.scene.name,
-                f"{run.scene.theta:g}",
-                f"{run.scene.omega:g}",
-                f"{run.scene.h:g}",
-                str(run.steps),
-                f"{run.t:g}",
-                f"{run.end - run.begin:.2f}",
-                str(run.events),
-            )
-            for run in recording.runs
-        ),
-    )
+    headers = ("run", "scene", "theta [rad]", "omega [rad/s]", "h [s]", "steps", "t [s]", "seconds", "events")
+    rows = []
+    for run in recording.runs:
+        start = (f"{value:g}" for value in (run.scene.theta, run.scene.omega, run.scene.h))
+        lengths = (str(run.steps), f"{run.t:g}", f"{run.end - run.begin:.2f}")
+        rows.append((str(run.number), run.scene.name, *start, *lengths, str(run.events)))
+    print_table("rlrrrrrrr", headers, rows)

@@ -2,12 +2,12 @@
 
 import argparse
 import math
+from collections.abc import Iterator
 from typing import Any
 
-from engine.methods import Method
 from engine.scenes import DEFAULT_SCENE
 from tui.cli.errors import Exit
-from tui.cli.output import print_table, write_json
+from tui.cli.output import fields_of, print_table, write_json
 
 EXAMPLES = """\
 examples:
@@ -15,14 +15,17 @@ examples:
   pendu-tui methods --json | jq '.methods[] | select(.symplectic) | .key'
 """
 
+CLAIMS = (
+    *("key", "label", "letter", "formula", "order", "force_evaluations", "symplectic", "reversible", "linear_limit"),
+    *("other_names", "reference", "used"),
+)
+
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add this command's options."""
     parser.add_argument("--json", action="store_true", help="one JSON object")
 
 
 def run(options: argparse.Namespace) -> int:
-    """List the methods."""
     from engine.run.compiled import COMPILED_FROM, available
 
     methods = _measured()
@@ -32,20 +35,7 @@ def run(options: argparse.Namespace) -> int:
     print_table(
         "lrrrllrrl",
         ("method", "order", "measured", "forces", "symplectic", "reversible", "z limit", "measured", "also called"),
-        (
-            (
-                method["key"],
-                str(method["order"]),
-                f"{method['measured_order']:.3f}",
-                str(method["force_evaluations"]),
-                "yes" if method["symplectic"] else "no",
-                "yes" if method["reversible"] else "no",
-                _limit(method["linear_limit"]),
-                _limit(method["measured_linear_limit"]),
-                ", ".join(method["other_names"]),
-            )
-            for method in methods
-        ),
+        map(_row, methods),
     )
     print(
         "\nOrders are of theta over one swing of the scene drift; forces are evaluated per step; z = h·w0,"
@@ -56,8 +46,12 @@ def run(options: argparse.Namespace) -> int:
     return Exit.FINE
 
 
-def _limit(z: float) -> str:
-    return f"{z:.3f}" if z else "none"
+def _row(method: dict[str, Any]) -> Iterator[str]:
+    yield from (method["key"], str(method["order"]), f"{method['measured_order']:.3f}")
+    yield str(method["force_evaluations"])
+    yield from ("yes" if method[claim] else "no" for claim in ("symplectic", "reversible"))
+    yield from (f"{z:.3f}" if z else "none" for z in (method["linear_limit"], method["measured_linear_limit"]))
+    yield ", ".join(method["other_names"])
 
 
 def _measured() -> list[dict[str, Any]]:
@@ -66,23 +60,6 @@ def _measured() -> list[dict[str, Any]]:
     from engine.stability.linear import linear_limit
 
     return [
-        _claims(method) | {"measured_order": order, "measured_linear_limit": linear_limit(method.step)}
+        fields_of(method, *CLAIMS) | {"measured_order": order, "measured_linear_limit": linear_limit(method.step)}
         for method, order in orders(DEFAULT_SCENE, math.inf)
     ]
-
-
-def _claims(method: Method) -> dict[str, Any]:
-    return {
-        "key": method.key,
-        "label": method.label,
-        "letter": method.letter,
-        "formula": method.formula,
-        "order": method.order,
-        "force_evaluations": method.force_evaluations,
-        "symplectic": method.symplectic,
-        "reversible": method.reversible,
-        "linear_limit": method.linear_limit,
-        "other_names": method.other_names,
-        "reference": method.reference,
-        "used": method.used,
-    }

@@ -24,14 +24,9 @@ examples:
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add this command's options."""
+    actions = ("list", "prune")
     parser.add_argument(
-        "action",
-        metavar="list|prune",
-        nargs="?",
-        choices=("list", "prune"),
-        default="list",
-        help="what to do (%(default)s)",
+        "action", metavar="|".join(actions), nargs="?", choices=actions, default="list", help="what to do (%(default)s)"
     )
     parser.add_argument("--json", action="store_true", help="one JSON object")
     group = parser.add_argument_group("prune")
@@ -49,32 +44,25 @@ def size(text: str) -> int:
 
 
 def run(options: argparse.Namespace) -> int:
-    """List or prune."""
     if options.action == "prune":
         return _prune(options)
     if options.keep is not None or options.size is not None:
         raise UserError("--keep and --size belong to pendu-tui recordings prune.")
     from recordings import library
 
-    items, leftovers = library.listing(), library.leftovers()
+    all_facts, leftovers = [_facts(item) for item in library.listing()], library.leftovers()
     if options.json:
-        facts = [_facts(item) for item in items]
-        write_json("recordings", {"folder": str(library.folder()), "recordings": facts})
+        write_json("recordings", {"folder": str(library.folder()), "recordings": all_facts})
         return Exit.FINE
-    if not items:
+    if not all_facts:
         print(f"There is no recording in {printable(str(library.folder()))} yet; pendu-tui makes one.")
     else:
-        rows = [
-            (
-                fact["file"],
-                time.strftime("%Y-%m-%d %H:%M", time.localtime(item.modified)),
-                fact["reason"] or ", ".join(fact["scenes"]),
-                "-" if fact["seconds"] is None else seconds(fact["seconds"]),
-                file_size(item.bytes),
-            )
-            for item in items
-            for fact in [_facts(item)]
-        ]
+        rows = []
+        for facts in all_facts:
+            finished = time.strftime("%Y-%m-%d %H:%M", time.localtime(facts["modified"]))
+            length = "-" if facts["seconds"] is None else seconds(facts["seconds"])
+            scenes = facts["reason"] or ", ".join(facts["scenes"])
+            rows.append((facts["file"], finished, scenes, length, file_size(facts["bytes"])))
         print_table("lllrr", ("recording, newest first", "finished", "scenes", "length", "size"), rows)
     for path in leftovers:
         print(f"unfinished: {printable(str(path))}; the lab recovers it when it starts next")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from recordings.errors import printable
 from tui.cli.errors import Exit
 from tui.cli.files import check_free
+from tui.cli.options import add_file, add_recording
 from tui.cli.output import progress, write_json
 from tui.words.numbers import seconds
 
@@ -22,17 +23,13 @@ examples:
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add this command's options."""
-    parser.add_argument(
-        "file", metavar="FILE", help="what is left of a recording: a file, latest, or a name such as drift"
-    )
-    parser.add_argument("-o", "--output", metavar="OUT", type=Path, required=True, help="the recording to make of it")
+    add_recording(parser, help="what is left of a recording: a file, latest, or a name such as drift")
+    add_file(parser, "-o", "--output", metavar="OUT", type=Path, required=True, help="the recording to make of it")
     parser.add_argument("--force", action="store_true", help="overwrite OUT")
     parser.add_argument("--json", action="store_true", help="one JSON object")
 
 
 def run(options: argparse.Namespace) -> int:
-    """Recover."""
     from recordings.library import resolve
     from recordings.recover import recover
 
@@ -41,8 +38,7 @@ def run(options: argparse.Namespace) -> int:
     with progress(printable(path.name)) as show:
         recovery = recover(path, options.output, show, options.force)
     if options.json:
-        paths = {"file": str(recovery.file), "out": str(recovery.out)}
-        write_json("recover", asdict(recovery) | paths)
+        write_json("recover", asdict(recovery) | {"file": str(recovery.file), "out": str(recovery.out)})
     else:
         print(_sentence(recovery))
     return Exit.FINE

@@ -2,9 +2,9 @@
 
 import argparse
 import math
-import sys
 import time
 from contextlib import nullcontext
+from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING, Any
 from engine.methods import METHODS
 from engine.scenes import Scene
 from tui.cli.errors import Exit, UserError
-from tui.cli.files import check_free
-from tui.cli.options import add_scene_options, count, positive, scene_of
-from tui.cli.output import print_table, progress, scene_fields, write_json
+from tui.cli.fail_if import FIELDS, parse
+from tui.cli.files import check_free, stop_requests
+from tui.cli.options import Suggestions, add_file, add_scene_options, count, positive, scene_of
+from tui.cli.output import fields_of, print_table, progress, scene_line, warn, write_json
 from tui.words.numbers import file_size
 
 if TYPE_CHECKING:
     from engine.run.lockstep import Sample
     from engine.run.observer import RunObserver
-    from tui.cli.fail_if import Gate
 
 EXAMPLES = """\
 examples:
@@ -39,12 +39,11 @@ AT_ONCE = 1_000_000  # steps, about a second: nobody is heard in between
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add this command's options."""
     add_scene_options(parser)
     parser.add_argument(
         "--time", metavar="S", type=positive, required=True, help="simulated time in s, rounded to whole steps"
     )
-    parser.add_argument("--record", metavar="FILE", type=Path, help="record it: the same run gives the same bytes")
+    add_file(parser, "--record", metavar="FILE", type=Path, help="record it: the same run gives the same bytes")
     parser.add_argument("--force", action="store_true", help="overwrite FILE")
     parser.add_argument(
         "--sample-every", metavar="STEPS", type=count, help="steps from sample to sample (those of 1/30 s)"
@@ -52,6 +51,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--fail-if",
         metavar="EXPR",
+        choices=Suggestions(f"{method.key}.{field}" for method in METHODS for field in (*FIELDS, "verdict")),
         help="exit 1 if METHOD.FIELD > NUMBER or METHOD.verdict == WORD, fields as in --json",
     )
     parser.add_argument("--no-compiled", action="store_true", help="do without Numba; the numbers are the same")
@@ -59,8 +59,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Simulate, record, judge, print."""
-    scene, gate = scene_of(options), _gate(options.fail_if)
+    scene = scene_of(options)
+    gate = None if options.fail_if is None else parse(options.fail_if)
     from recordings.headless import SAMPLE_EVERY, steps_for
 
     if options.time > LONGEST:
@@ -78,17 +78,15 @@ def run(options: argparse.Namespace) -> int:
     wall_seconds = time.perf_counter() - began
     rows = _rows(sample, observer)
     if options.json:
-        fields = {"scene": scene_fields(scene), "time": sample.t, "steps": sample.step, "wall_seconds": wall_seconds}
+        fields = {"scene": asdict(scene), "time": sample.t, "steps": sample.step, "wall_seconds": wall_seconds}
         write_json("run", {**fields, "methods": rows})
     else:
         _print(scene, sample, wall_seconds, rows)
     if stopped:
-        print(
-            f"pendu-tui: interrupted at t = {sample.t:g} s; the result is that of the time until then.", file=sys.stderr
-        )
+        warn(f"interrupted at t = {sample.t:g} s; the result is that of the time until then.")
         return Exit.INTERRUPTED
-    if gate and gate.holds({row["method"]: row for row in rows}):
-        print(f"pendu-tui: the check failed: {options.fail_if}", file=sys.stderr)
+    if gate and gate({row["method"]: row for row in rows}):
+        warn(f"the check failed: {options.fail_if}")
         return Exit.CHECK_FAILED
     return Exit.FINE
 
@@ -96,21 +94,8 @@ def run(options: argparse.Namespace) -> int:
 def _announce(steps: int, every: int) -> None:
     """Say so before a recording gets large."""
     if (size := steps / every * SAMPLE_BYTES) > LARGE:
-        enough = math.ceil(steps * SAMPLE_BYTES / LARGE)
-        print(
-            f"pendu-tui: the recording will have about {file_size(round(size))};"
-            f" with --sample-every {enough} it has {file_size(round(LARGE))}.",
-            file=sys.stderr,
-        )
-
-
-def _gate(expression: str | None) -> "Gate | None":
-    from tui.cli.fail_if import GateError, parse
-
-    try:
-        return parse(expression) if expression is not None else None
-    except GateError as error:
-        raise UserError(f"--fail-if: {error}") from error
+        enough, large = math.ceil(steps * SAMPLE_BYTES / LARGE), file_size(round(LARGE))
+        warn(f"the recording will have about {file_size(round(size))}; with --sample-every {enough} it has {large}.")
 
 
 def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int) -> "tuple[Sample, RunObserver, bool]":
@@ -118,7 +103,6 @@ def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int)
     from engine.run import compiled, loops
     from engine.run.observer import RunObserver
     from recordings.headless import simulate
-    from tui.cli.interrupt import stop_requests
 
     recorder: Any = nullcontext()
     if options.record:
@@ -139,6 +123,7 @@ def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int)
 def _rows(sample: "Sample", observer: "RunObserver") -> list[dict[str, Any]]:
     """What became of each method.  A method that diverged has no theta to compare."""
     from engine.accuracy.study import evaluations
+    from recordings.fields import NUMBERS
 
     exact = observer.exact.at(sample.t).theta
     rows = []
@@ -147,11 +132,7 @@ def _rows(sample: "Sample", observer: "RunObserver") -> list[dict[str, Any]]:
         rows.append(
             {
                 "method": method.key,
-                "theta": reading.theta,
-                "omega": reading.omega,
-                "energy": reading.energy,
-                "energy_error": reading.energy_error,
-                "max_energy_error": reading.max_energy_error,
+                **fields_of(reading, *NUMBERS),
                 "theta_error": abs(reading.theta - exact) if end is None else None,
                 "drift_per_second": judgement.slope,
                 "verdict": judgement.verdict,
@@ -163,31 +144,15 @@ def _rows(sample: "Sample", observer: "RunObserver") -> list[dict[str, Any]]:
 
 
 def _print(scene: Scene, sample: "Sample", wall_seconds: float, rows: list[dict[str, Any]]) -> None:
-    numbers = ", ".join(f"{name} {getattr(scene, name):g}" for name in ("theta", "omega", "length", "gravity", "h"))
-    print(f"{scene.name}: {numbers} (SI units), z = h·w0 = {scene.z:.4g}")
+    print(f"{scene_line(scene, 'h')}, z = h·w0 = {scene.z:.4g}")
     pace = f", {sample.step / wall_seconds / 1e6:.3g} million a second" if wall_seconds > 1 else ""
     print(f"{sample.step} steps to t = {sample.t:g} s in {wall_seconds:.2f} s{pace}\n")
-
-    def number(value: float | None, form: str) -> str:
-        return "-" if value is None else format(value, form)
-
-    def verdict(row: dict[str, Any]) -> str:
+    forms = {"energy_error": "+.2e", "max_energy_error": ".2e", "drift_per_second": "+.1e", "theta_error": ".2e"}
+    table = []
+    for method, row in zip(METHODS, rows, strict=True):
         end = row["diverged_at"]
-        return row["verdict"] if end is None else f"diverged at {end:g} s"
-
-    print_table(
-        "llrrrrr",
-        ("method", "verdict", "energy error", "largest", "per second", "theta error [rad]", "force evaluations"),
-        (
-            (
-                method.label,
-                verdict(row),
-                number(row["energy_error"], "+.2e"),
-                number(row["max_energy_error"], ".2e"),
-                number(row["drift_per_second"], "+.1e"),
-                number(row["theta_error"], ".2e"),
-                str(row["force_evaluations"]),
-            )
-            for method, row in zip(METHODS, rows, strict=True)
-        ),
-    )
+        numbers = ("-" if row[name] is None else format(row[name], form) for name, form in forms.items())
+        verdict = row["verdict"] if end is None else f"diverged at {end:g} s"
+        table.append((method.label, verdict, *numbers, str(row["force_evaluations"])))
+    headers = ("energy error", "largest", "per second", "theta error [rad]", "force evaluations")
+    print_table("llrrrrr", ("method", "verdict", *headers), table)

@@ -2,10 +2,11 @@
 
 import argparse
 import math
+from dataclasses import asdict
 
 from engine.scenes import SCENES
 from tui.cli.errors import Exit
-from tui.cli.output import print_table, scene_fields, write_json
+from tui.cli.output import print_table, write_json
 
 EXAMPLES = """\
 examples:
@@ -16,14 +17,12 @@ examples:
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add this command's options."""
     parser.add_argument("--json", action="store_true", help="one JSON object, SI units")
 
 
 def run(options: argparse.Namespace) -> int:
-    """List the scenes."""
     if options.json:
-        write_json("scenes", {"scenes": [scene_fields(scene) for scene in SCENES.values()]})
+        write_json("scenes", {"scenes": [asdict(scene) for scene in SCENES.values()]})
         return Exit.FINE
     print_table(
         "lrrrrl",

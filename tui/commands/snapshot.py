@@ -7,30 +7,28 @@ from pathlib import Path
 
 from tui.cli.errors import Exit
 from tui.cli.files import whole_file
-from tui.cli.options import add_scene_options, scene_of
-from tui.terminal.options import add_picture_options, terminal_options_of
+from tui.cli.options import add_file, add_scene_options, number, scene_of
+from tui.terminal.options import SMALLEST, add_picture_options, terminal_options_of
 
 EXAMPLES = """\
 examples:
   pendu-tui snapshot --time 12 -o lab.svg
   pendu-tui snapshot --scene crossover --time 40 --size 200x60 --theme light -o crossover.svg
 """
-LIMITS = (60, 16), (400, 200)
+LARGEST = (400, 200)  # columns, rows
 LONGEST = 3600.0  # s
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add this command's options."""
     add_scene_options(parser)
     parser.add_argument("--time", metavar="S", type=moment, default=12.0, help="s since the start (%(default)g)")
     parser.add_argument("--size", metavar="CxR", type=size, default=(120, 40), help="columns x rows (120x40)")
     add_picture_options(parser, "dark", "braille")
-    parser.add_argument("-o", "--output", metavar="FILE.svg", type=picture, required=True, help="the picture to write")
+    add_file(parser, "-o", "--output", metavar="FILE.svg", type=picture, required=True, help="the picture to write")
     parser.add_argument("--force", action="store_true", help="overwrite FILE.svg")
 
 
 def run(options: argparse.Namespace) -> int:
-    """Write the picture."""
     scene = scene_of(options)
     import asyncio
 
@@ -46,11 +44,9 @@ def size(text: str) -> tuple[int, int]:
     """A size as `120x40`."""
     match = re.fullmatch(r"(\d{1,4})[x×](\d{1,4})", text)
     columns, rows = (int(match[1]), int(match[2])) if match else (0, 0)
-    (least_columns, least_rows), (most_columns, most_rows) = LIMITS
-    if not (least_columns <= columns <= most_columns and least_rows <= rows <= most_rows):
-        raise argparse.ArgumentTypeError(
-            f"{text!r} is no size: give columns x rows such as 120x40, from 60x16 to {most_columns}x{most_rows}"
-        )
+    if not (SMALLEST[0] <= columns <= LARGEST[0] and SMALLEST[1] <= rows <= LARGEST[1]):
+        limits = " to ".join(f"{columns}x{rows}" for columns, rows in (SMALLEST, LARGEST))
+        raise argparse.ArgumentTypeError(f"{text!r} is no size: give columns x rows such as 120x40, from {limits}")
     return columns, rows
 
 
@@ -64,10 +60,6 @@ def picture(text: str) -> Path:
 
 def moment(text: str) -> float:
     """A time since the start [s]."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = -1.0
-    if not 0 <= value <= LONGEST:
+    if not 0 <= (value := number(text)) <= LONGEST:
         raise argparse.ArgumentTypeError(f"{text!r} is no time for a still: give 0 to {LONGEST:g} s")
     return value

@@ -6,12 +6,14 @@ import os
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from engine.scenes import Z_LIMITS
-from tui.cli.errors import UserError
-from tui.cli.options import add_scene_options, angle, count, number, scene_of
+from tui.cli.errors import Exit, UserError
+from tui.cli.options import add_file, add_scene_options, angle, count, number, scene_of
+from tui.cli.output import progress
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -31,7 +33,6 @@ LARGEST = 2_000_000  # swings of a map that is kept in memory
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add this command's options."""
     add_scene_options(parser)
     parser.add_argument(
         "--theta-values",
@@ -51,8 +52,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     form = parser.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help="one JSON object; with --map every swing of it")
     form.add_argument("--csv", action="store_true", help="a row for each amplitude; with --map for each swing")
-    form.add_argument(
-        "-o", metavar="FILE.npz", dest="file", type=Path, help="write only the map, however large, to a file"
+    add_file(
+        form, "-o", metavar="FILE.npz", dest="file", type=Path, help="write only the map, however large, to a file"
     )
     parser.add_argument("--force", action="store_true", help="overwrite FILE.npz")
     where = parser.add_mutually_exclusive_group()
@@ -78,7 +79,6 @@ def values(element: Callable[[str], float]) -> Callable[[str], list[float]]:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the tables and, with --map, the map; with -o, write the map."""
     scene = scene_of(options)
     _check("amplitude", options.theta_values, 0, math.pi)
     if len(options.theta_values or ()) > MOST_ROWS and not options.file:
@@ -87,20 +87,22 @@ def run(options: argparse.Namespace) -> int:
         )
     _check("z", options.z_values, *Z_LIMITS)
     _check("number of steps", [options.steps], 0, 2**31)
-    from engine.stability.study import Study
-    from tui.commands.stability_report import print_csv, print_json, print_text, write_file
+    from concurrent.futures import BrokenExecutor
 
+    from engine.stability.study import StabilityStudy
+    from tui.commands.reports.stability import print_csv, print_json, print_text, write_file
+
+    bar = partial(progress, "stability")
     with _workers(options) as executor:
-        study = Study(scene, options.theta_values, options.z_values, options.steps, executor)
-        if options.file:
-            return write_file(study, options.file, options.force)
-        if options.map and (swings := math.prod(study.grid().shape)) > LARGEST:
+        study = StabilityStudy(scene, options.theta_values, options.z_values, options.steps, executor, bar)
+        if options.map and not options.file and (swings := math.prod(study.grid().shape)) > LARGEST:
             raise UserError(f"a map of {swings} swings is too large to show: write it with -o FILE.npz.")
-        if options.json:
-            return print_json(study, options.map)
-        if options.csv:
-            return print_csv(study, options.map)
-        return print_text(study, options.map)
+        try:
+            if options.file:
+                return write_file(study, options.file, options.force)
+            return (print_json if options.json else print_csv if options.csv else print_text)(study, options.map)
+        except BrokenExecutor as error:
+            raise UserError(f"a worker is gone ({error}): try fewer, or none.", Exit.CHECK_FAILED) from None
 
 
 def _check(what: str, given: list[float] | None, low: float, high: float) -> None:
@@ -113,8 +115,8 @@ def _check(what: str, given: list[float] | None, low: float, high: float) -> Non
 def _workers(options: argparse.Namespace) -> "Iterator[Executor | None]":
     """What runs the strips; None for this process.  Ctrl+C is this process's business, not the workers'."""
     if options.dask:
-        with _dask(options.dask) as executor:
-            yield executor
+        with _dask(options.dask) as client:
+            yield client.get_executor()
     elif options.workers > 1:
         from concurrent.futures import ProcessPoolExecutor
         from multiprocessing import get_context
@@ -127,15 +129,12 @@ def _workers(options: argparse.Namespace) -> "Iterator[Executor | None]":
         yield None
 
 
-@contextmanager
-def _dask(address: str) -> "Iterator[Executor]":
+def _dask(address: str) -> Any:
     try:
         import distributed
+
+        return distributed.Client(address, timeout="10s")
     except ImportError:
         raise UserError("--dask needs the extra `cluster`: pip install 'pendu-tui[cluster]'.") from None
-    try:
-        client = distributed.Client(address, timeout="10s")
     except (OSError, ValueError) as error:
         raise UserError(f"no Dask scheduler answers at {address!r}: {type(error).__name__}; is it running?") from None
-    with client:
-        yield client.get_executor()

@@ -2,18 +2,18 @@
 
 import argparse
 import math
-import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from recordings.errors import RecordingError, printable
-from recordings.names import PART
+from recordings.library import PART
 from tui.cli.errors import Exit
-from tui.cli.output import progress, write_json
+from tui.cli.options import add_recording
+from tui.cli.output import fields_of, progress, warn, write_json
 
 if TYPE_CHECKING:
-    from recordings.rerun import Difference
-    from recordings.verify import Verification
+    from recordings.verify import Difference, Verification
 
 EXAMPLES = """\
 examples:
@@ -27,39 +27,30 @@ Exit 0: all are the same; 1: one is not, or lacks its end and is no .part; 3: on
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add this command's options."""
-    parser.add_argument("files", metavar="FILE", nargs="+", help="a file, a folder, latest, or a name such as drift")
+    add_recording(
+        parser, "files", nargs="+", help="a file, a folder, latest, or a name such as drift", offered=["golden"]
+    )
     parser.add_argument("--json", action="store_true", help="one JSON object")
 
 
 def run(options: argparse.Namespace) -> int:
-    """Verify all of them, the unreadable ones notwithstanding."""
-    from recordings.verify import verify
-
-    pairs: list[tuple[Path, Verification | RecordingError]] = []
-    for file, missing in (found for name in options.files for found in _files(name)):
-        result: Verification | RecordingError
-        try:
-            if missing:
-                raise missing
-            with progress(printable(file.name)) as show:
-                result = verify(file, show)
-        except RecordingError as error:
-            result = error
-        pairs.append((file, result))
-        if not options.json:
-            if isinstance(result, RecordingError):
-                print(f"pendu-tui: {result}", file=sys.stderr)
-            else:
-                print(_sentence(result))
-    results = [result for _, result in pairs]
+    results: list[tuple[Path, Verification | RecordingError]] = []
+    for path, result in (verified for name in options.files for verified in _verified(name)):
+        results.append((path, result))
+        if options.json:
+            continue
+        if isinstance(result, RecordingError):
+            warn(str(result))
+        else:
+            print(_sentence(result))
+    passed = [_passes(result) for _, result in results]
     if options.json:
-        write_json("verify", {"files": [_fields(file, result) for file, result in pairs]})
+        write_json("verify", {"files": [_fields(path, result) for path, result in results]})
     elif len(results) > 1:
-        print(f"{len(results)} recordings, {sum(map(_passes, results))} identical")
-    if any(isinstance(result, RecordingError) for result in results):
+        print(f"{len(results)} recordings, {sum(passed)} identical")
+    if any(isinstance(result, RecordingError) for _, result in results):
         return Exit.INPUT_UNREADABLE
-    return Exit.FINE if all(map(_passes, results)) else Exit.CHECK_FAILED
+    return Exit.FINE if all(passed) else Exit.CHECK_FAILED
 
 
 def _passes(result: "Verification | RecordingError") -> bool:
@@ -69,9 +60,10 @@ def _passes(result: "Verification | RecordingError") -> bool:
     return result.identical and (result.complete or result.file.suffix == PART)
 
 
-def _files(name: str) -> list[tuple[Path, RecordingError | None]]:
-    """The recordings that a name on the command line stands for, or why it stands for none."""
+def _verified(name: str) -> "Iterator[tuple[Path, Verification | RecordingError]]":
+    """Verify the recordings that a name on the command line stands for, the unreadable ones notwithstanding."""
     from recordings import library
+    from recordings.verify import verify
 
     path = library.GOLDEN if name == "golden" and not Path(name).exists() else Path(name)
     try:
@@ -79,8 +71,16 @@ def _files(name: str) -> list[tuple[Path, RecordingError | None]]:
         if not files:
             raise RecordingError(f"{printable(name)}: there is no recording in this folder.")
     except RecordingError as error:
-        return [(path, error)]
-    return [(file, None) for file in files]
+        yield path, error
+        return
+    for file in files:
+        result: Verification | RecordingError
+        try:
+            with progress(printable(file.name)) as show:
+                result = verify(file, show)
+        except RecordingError as error:
+            result = error
+        yield file, result
 
 
 def _sentence(result: "Verification") -> str:
@@ -98,54 +98,36 @@ def _sentence(result: "Verification") -> str:
 
 
 def _where(difference: "Difference") -> str:
-    place = (
-        f"run {difference.run}, step {difference.step}, t = {difference.t:g} s, {difference.method or 'all methods'}"
-    )
-    values = [
-        f"    {what} {value!r} ({value.hex()})" if value is not None else f"    {what} nothing"
-        for what, value in (("recorded", difference.recorded), ("computed", difference.computed))
-    ]
-    ulps = "" if difference.ulps is None else f"\n    {difference.ulps} ulps apart"
-    return f"  first in {difference.field} at {place}:\n" + "\n".join(values) + ulps
+    place = f"run {difference.run}, step {difference.step}, t = {difference.t:g} s"
+    lines = [f"  first in {difference.field} at {place}, {difference.method or 'all methods'}:"]
+    for what, value in (("recorded", difference.recorded), ("computed", difference.computed)):
+        lines.append(f"    {what} nothing" if value is None else f"    {what} {value!r} ({value.hex()})")
+    if difference.ulps is not None:
+        lines.append(f"    {difference.ulps} ulps apart")
+    return "\n".join(lines)
 
 
-def _fields(file: Path, result: "Verification | RecordingError") -> dict[str, Any]:
+def _fields(path: Path, result: "Verification | RecordingError") -> dict[str, Any]:
     if isinstance(result, RecordingError):
-        return {
-            "file": str(file),
-            "complete": False,
-            "runs": 0,
-            "samples": 0,
-            "same_sin": None,
-            "identical": False,
-            "max_difference": None,
-            "first_difference": None,
-            "reason": str(result),
-        }
+        nothing: dict[str, Any] = {"complete": False, "runs": 0, "samples": 0, "same_sin": None, "identical": False}
+        return {"file": str(path), **nothing, "max_difference": None, "first_difference": None, "reason": str(result)}
+    first = result.first_difference
     return {
-        "file": str(file),
-        "complete": result.complete,
-        "runs": result.runs,
-        "samples": result.samples,
-        "same_sin": result.same_sin,
-        "identical": result.identical,
+        "file": str(path),
+        **fields_of(result, "complete", "runs", "samples", "same_sin", "identical"),
         "max_difference": result.max_difference if math.isfinite(result.max_difference) else None,
-        "first_difference": _difference(result.first_difference) if result.first_difference else None,
+        "first_difference": None if first is None else _difference_fields(first),
         "reason": result.reason,
     }
 
 
-def _difference(difference: "Difference") -> dict[str, Any]:
-    recorded, computed = difference.recorded, difference.computed
+def _difference_fields(difference: "Difference") -> dict[str, Any]:
+    values = fields_of(difference, "recorded", "computed")
     return {
-        "run": difference.run,
-        "step": difference.step,
-        "t": difference.t,
+        **fields_of(difference, "run", "step", "t"),
         "method": difference.method or None,
         "field": difference.field,
-        "recorded": recorded,
-        "computed": computed,
-        "recorded_hex": None if recorded is None else recorded.hex(),
-        "computed_hex": None if computed is None else computed.hex(),
+        **values,
+        **{f"{name}_hex": None if value is None else value.hex() for name, value in values.items()},
         "ulps": difference.ulps,
     }

@@ -1,4 +1,4 @@
-"""Stretches of numbers with round labels, each in the middle of a row of characters or at a place in time."""
+"""Axes: their range, round labels along them, and the part of a series in each of their columns."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -8,34 +8,43 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Floats = NDArray[np.float64]
+Ticks = list[tuple[float, str]]
 
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """A stretch of numbers."""
+    """A range of numbers with labels, which stand in the middle of a row of characters or at a moment."""
 
     low: float
     high: float
-    labels: dict[float, str]  # by the number they stand at
+    labels: dict[float, str]  # by value
 
     def share(self, values: ArrayLike) -> Floats:
-        """Where values lie on it, from 0 to 1; those outside at its ends."""
+        """Positions of values along the axis, from 0 to 1, clipped."""
         return np.clip((np.asarray(values, np.float64) - self.low) / (self.high - self.low), 0.0, 1.0)
 
     @property
     def label_width(self) -> int:
-        """Columns for the widest label; 5 at least, so that a chart does not jump with every digit."""
+        """Columns for the widest label; at least 5, so that a chart does not jump with every digit."""
         return max([5, *map(len, self.labels.values())])
 
 
-def decades(low: float, high: float, rows: int) -> Axis:
-    """An axis of log10 with room for low and high, and for two decades at least."""
+def nice(value: float) -> float:
+    """The smallest of 1, 2, 5, 10 times a power of ten that is not below the value."""
+    if not value > 0:
+        return 1.0
+    power = 10.0 ** math.floor(math.log10(value))
+    return next(power * factor for factor in (1, 2, 5, 10) if power * factor >= value * (1 - 1e-9))
+
+
+def log_axis(low: float, high: float, rows: int) -> Axis:
+    """A vertical axis of log10 from low to high or beyond, at least two decades long."""
     top = math.ceil(high)
     return _ruled(min(math.floor(low), top - 2), top, rows, (1, 2, 3, 4, 6, 8, 12, 24, 100, 400, 1000), _power)
 
 
-def decades_across(low: float, high: float, columns: int) -> Axis:
-    """The same from left to right, with a label in 8 columns at most."""
+def log_x_axis(low: float, high: float, columns: int) -> Axis:
+    """A horizontal axis of log10, with at most one label in 8 columns."""
     first, last = math.floor(low), max(math.ceil(high), math.floor(low) + 1)
     step = math.ceil((last - first) * 8 / columns)
     return Axis(first, last, {power: _power(power) for power in range(first, last + 1) if power % step == 0})
@@ -45,11 +54,11 @@ def _power(exponent: float, _: float = 1) -> str:
     return "1" + "0" * int(exponent) if 0 <= exponent <= 2 else f"1e{exponent:.0f}"
 
 
-def linear(low: float, high: float, rows: int) -> Axis:
-    """An axis from low to high, or around them where they hardly differ."""
-    margin = max(1e-4 * max(abs(low), abs(high)), 1e-16)
-    if high - low < margin:
-        low, high = low - margin, high + margin
+def linear_axis(low: float, high: float, rows: int) -> Axis:
+    """A vertical axis from low to high, or a little wider where they hardly differ."""
+    least = max(1e-4 * max(abs(low), abs(high)), 1e-16)
+    if high - low < least:
+        low, high = low - least, high + least
     power = math.floor(math.log10(high - low)) - 1
 
     def label(value: float, step: float) -> str:
@@ -62,7 +71,7 @@ def linear(low: float, high: float, rows: int) -> Axis:
 
 
 def _ruled(low: float, high: float, rows: int, steps: Sequence[float], label: Callable[[float, float], str]) -> Axis:
-    """An axis from low to high, or a little more, with labels equally many rows apart: two or more if possible."""
+    """An axis from low to high or a little beyond, with equally spaced labels, two or more rows apart if possible."""
 
     def rows_apart(step: float) -> int:
         top = math.ceil(high / step - 1e-9)
@@ -76,16 +85,104 @@ def _ruled(low: float, high: float, rows: int, steps: Sequence[float], label: Ca
     return Axis(bottom, top * step + row / 2, {number * step: label(number * step, step) for number in numbers})
 
 
-def times(start: float, end: float, columns: int, note: str = "") -> Axis:
-    """An axis of seconds labelled in s, min or h about every 10 columns; the last label has the unit and the note."""
-    size, unit = next(
-        (size, unit) for size, unit in ((3600, "h"), (60, "min"), (1, "s")) if end - start >= 5 * size or size == 1
-    )
-    least = (end - start) / size / max(columns / 10, 1)
-    decade = 10.0 ** math.floor(math.log10(least))
-    step = next(part * decade for part in (1, 2, 5, 10) if part * decade >= least * (1 - 1e-9))
-    numbers = range(math.ceil(start / size / step - 1e-9), math.floor(end / size / step + 1e-9) + 1)
-    labels = {number * step * size: f"{number * step:.6g}" for number in numbers}
+def time_axis(start: float, end: float, columns: int, note: str = "") -> Axis:
+    """An axis of seconds labelled in s, min or h about every 10 columns; the last label adds unit and note."""
+    size, unit = next((unit for unit in ((3600, "h"), (60, "min")) if end - start >= 5 * unit[0]), (1, "s"))
+    step = nice((end - start) / size / max(columns / 10, 1))
+    labels = {k * step * size: f"{k * step:.6g}" for k in _multiples(start / size, end / size, step, 1e-9)}
     if labels:
         labels[max(labels)] += f" {unit}{note}"
     return Axis(start, end, labels)
+
+
+def omega_ticks(low: float, high: float, most: int) -> Ticks:
+    """Positions and labels of about `most` values [rad/s]."""
+    step = nice((high - low) / most)
+    if low <= 0 <= high or step > 1e-4 * max(abs(low), abs(high)):
+        return [(k * step, compact(k * step)) for k in _multiples(low, high, step)]
+    return _around(round((low + high) / 2 / step) * step, low, high, step)
+
+
+def theta_ticks(low: float, high: float, most: int, wrap: bool) -> Ticks:
+    """Positions and labels of about `most` angles in pi; at high zoom one in full, others as offsets [rad]."""
+    share = (high - low) / math.pi / most
+    if high - low > 0.02 * math.pi:
+        step = next((quarters / 4 for quarters in (1, 2, 4) if quarters / 4 >= share > 0.1), nice(share))
+        return [(k * step * math.pi, in_pi(k * step, wrap)) for k in _multiples(low / math.pi, high / math.pi, step)]
+    step, middle = nice((high - low) / most), (low + high) / 2
+    turns = round(middle / math.pi)
+    anchor = turns * math.pi if low <= turns * math.pi <= high else round(middle / step) * step
+    return _around(anchor, low, high, step)
+
+
+def _multiples(low: float, high: float, step: float, slack: float = 1e-6) -> range:
+    return range(math.ceil(low / step - slack), math.floor(high / step + slack) + 1)
+
+
+def _around(anchor: float, low: float, high: float, step: float) -> Ticks:
+    """One value in full, the others as offsets from it."""
+    turns = anchor / math.pi
+    name = in_pi(turns) if turns == round(turns) else f"{anchor:.12g}"
+    return [
+        (anchor + k * step, compact(k * step, "+") if k else name)
+        for k in _multiples(low - anchor, high - anchor, step)
+    ]
+
+
+def compact(value: float, sign: str = "-") -> str:
+    """A number in few characters: "0.5", "-2e-7"."""
+    mantissa, e, exponent = f"{value:{sign}.6g}".partition("e")
+    return mantissa + (f"e{int(exponent)}" if e else "")
+
+
+def in_pi(turns: float, wrap: bool = False) -> str:
+    """A multiple of pi: "-pi", "3pi/4", "0.35pi"; wrapped, one from -pi to pi."""
+    if wrap and abs(turns) > 1:
+        turns = round(math.remainder(turns, 2), 12)
+    if turns == 0:
+        return "0"
+    for divisor in (1, 2, 4):
+        over = turns * divisor
+        if over == round(over):
+            factor = {1: "", -1: "-"}.get(round(over), str(round(over)))
+            return f"{factor}pi" + (f"/{divisor}" if divisor > 1 else "")
+    return f"{compact(turns)}pi"
+
+
+def time_span(x: Floats, seconds: float | None, columns: int) -> tuple[float, float]:
+    """First and last x of a chart.  Columns keep their place in time while the window moves."""
+    latest = float(x[-1]) if len(x) else 0.0
+    if seconds is None:
+        unit = 10 ** math.floor(math.log10(max(latest, 1.0))) / 10
+        return 0.0, max(math.ceil(latest / unit) * unit, 1.0)
+    column = seconds / columns
+    end = max(math.ceil(latest / column) * column, seconds)
+    return end - seconds, end
+
+
+def per_column(x: Floats, low: Floats, high: Floats, start: float, end: float, columns: int) -> tuple[Floats, Floats]:
+    """Lowest `low` and highest `high` (n, series) of the rows in each of `columns` parts of [start, end].
+
+    x ascends.  Returns (columns, series); nan where no row falls into a column.
+    """
+    lows, highs = np.full((columns, low.shape[1]), np.nan), np.full((columns, low.shape[1]), np.nan)
+    # A row on an edge belongs to the right-hand column, even if rounding puts the edge a little late.
+    edges = np.searchsorted(x, np.linspace(start, end, columns + 1) - 1e-9 * (end - start) / columns)
+    edges[-1] = np.searchsorted(x, end, "right")
+    filled = np.flatnonzero(edges[1:] > edges[:-1])
+    if len(filled):
+        last = edges[-1]
+        lows[filled] = np.fmin.reduceat(low[:last], edges[filled], axis=0)
+        highs[filled] = np.fmax.reduceat(high[:last], edges[filled], axis=0)
+    return lows, highs
+
+
+def held(x: Floats, values: Floats, start: float, end: float, columns: int, hold: float) -> Floats:
+    """Largest value of the last `hold` seconds at each column up to the last x, (columns, series)."""
+    column = (end - start) / columns
+    back = min(math.ceil(hold / column), columns)
+    _, highs = per_column(x, values, values, start - back * column, end, back + columns)
+    largest: Floats = np.fmax.reduce([highs[offset : offset + columns] for offset in range(back + 1)])
+    begun = math.ceil((x[-1] - start) / column) if len(x) else 0
+    largest[max(begun, 1) :] = np.nan
+    return largest

@@ -1,4 +1,4 @@
-"""Rows: a widget made of rows of characters with owners.  Only rows that changed are sent to the terminal."""
+"""CellWidget: a widget made of rows of characters with owners.  Only rows that changed are sent to the terminal."""
 
 from collections.abc import Sequence
 from itertools import zip_longest
@@ -10,11 +10,12 @@ from textual.geometry import Region, Size
 from textual.strip import Strip
 from textual.widget import Widget
 
-from tui.drawing.canvas import Picture, Span
+from tui.drawing.canvas import Picture
 from tui.drawing.large import thick
 from tui.drawing.palette import NOBODY, palette
 
-Row = Sequence[Span]
+Row = Sequence[tuple[str, int | Style]]
+"""Words next to each other, and whose they are; or how they look, where that is not an owner's colour."""
 
 PRESENT = "-present"
 """The app's class where pictures have thick lines."""
@@ -37,7 +38,7 @@ class CellWidget(Widget):
         super().__init__(id=id, classes=classes)
         self._rows: list[Row] = []
         self._picture: Picture | None = None
-        self._styles: dict[int, Style] = {}
+        self._styles: dict[int | Style, Style] = {}
         self._visible = False
         self.room = Size()  # asking Textual how large a widget is walks through the screen; and may change any time
 
@@ -68,10 +69,14 @@ class CellWidget(Widget):
         """Draw no more."""
         self._visible = False
 
-    def show(self, rows: Sequence[Row]) -> None:
-        """Show these rows."""
-        before, self._rows, self._picture = self._rows, list(rows), None
-        self._refresh_rows([y for y, (old, new) in enumerate(zip_longest(before, rows)) if old != new])
+    def show(self, rows: Sequence[Row], at_once: int | None = None) -> bool:
+        """Show these rows, or so many of those that changed; whether that was all."""
+        changed = [y for y, (old, new) in enumerate(zip_longest(self._rows, rows)) if old != new]
+        wait = [] if at_once is None else [y for y in changed if y < len(rows)][at_once:]
+        before = [*self._rows, *[()] * len(rows)]
+        self._rows, self._picture = [before[y] if y in wait else row for y, row in enumerate(rows)], None
+        self._refresh_rows([y for y in changed if y not in wait])
+        return not wait
 
     def show_picture(self, picture: Picture) -> None:
         """Show a picture."""
@@ -107,8 +112,10 @@ class CellWidget(Widget):
         super().notify_style_update()
         self._styles = {}
 
-    def _style(self, owner: int) -> Style:
+    def _style(self, owner: int | Style) -> Style:
         style = self._styles.get(owner)
         if style is None:  # walking the sheet's chain is slow
-            style = self._styles[owner] = self.style_of(owner, self.rich_style)
+            base = self.rich_style
+            style = base + owner if isinstance(owner, Style) else self.style_of(owner, base)
+            self._styles[owner] = style
         return style

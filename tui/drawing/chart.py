@@ -1,52 +1,40 @@
 """Arrays -> charts made of characters.  The only module that knows plotext.
 
-plotext 6 ends the process where a number is not finite or far outside the limits, so it gets
-nothing but numbers on the canvas.  It has one figure for the whole process, hence the lock.
+plotext 6 aborts the process if a number is not finite or far outside the limits, so it only gets
+numbers inside them.  It has one figure per process, hence the lock.
 """
 
 import re
 import threading
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from engine.methods import METHODS
-from tui.drawing.axes import Axis, Floats, decades, decades_across, linear, times
+from tui.drawing.axes import Axis, Floats, held, linear_axis, log_axis, log_x_axis, per_column, time_axis, time_span
 from tui.drawing.canvas import Canvas, Picture
-from tui.drawing.columns import held, per_column, span
 from tui.drawing.palette import FRAME, NOBODY, TEXT
 from tui.playback.history import Quantity, Window
 
-FLOOR = 1e-17  # a relative error of doubles below it says nothing; zeros are drawn here
-TOP = 1e6  # larger magnitudes are drawn here, so that a method that fails leaves room for the others
+FLOOR = 1e-17  # below the resolution of doubles; zeros are drawn here
+TOP = 1e6  # larger magnitudes are drawn here, so that a failing method leaves room for the others
 SMALLEST = (20, 5)  # columns, rows
 _ROOM = 4  # columns for the letters at the right end
-_FIRST_COLOUR = 32  # plotext is told owners as colours of the 256-colour palette, from this one on
+_FIRST_COLOUR = 32  # owners are passed through plotext as colours of the 256-colour palette, from this one
 
 _lock = threading.Lock()
 
 
 @dataclass(frozen=True, slots=True)
 class Series:
-    """Points with a mark at each, joined by lines; or, dotted, a reference line with its mark at the end."""
+    """Points with marks, joined by lines; or a dotted reference line with its mark at the end."""
 
     owner: int
     mark: str  # a letter; a few for a reference
-    x: ArrayLike  # (n,)
-    y: ArrayLike  # (n,)
+    x: Floats | Sequence[float]  # (n,)
+    y: Floats | Sequence[float]  # (n,); in what is plotted, x and y are in characters from the lower left corner
     dotted: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class _Curve:
-    """What plotext gets: columns and rows of the plot, counted from its lower left corner."""
-
-    owner: int
-    columns: Floats
-    rows: Floats
-    joined: bool = True
 
 
 def time_chart(
@@ -61,9 +49,9 @@ def time_chart(
 ) -> Picture:
     """A quantity of the shown methods over the last `seconds`, or over the whole run.
 
-    Linear, each column of characters reaches from the lowest to the highest value that falls into
-    it.  Logarithmic, it stands at the largest magnitude of the half swing that ends in it, or of
-    the column if that is longer; else zero crossings would tear the lines.
+    On a linear axis, each column of characters spans the lowest to the highest value in it.  On a
+    logarithmic axis, it shows the largest magnitude of the half swing that ends in it, or of the
+    column if that is longer; otherwise zero crossings would tear the lines.
     """
     if width < SMALLEST[0] or height < SMALLEST[1]:
         return _too_small(width, height, *SMALLEST)
@@ -73,16 +61,14 @@ def time_chart(
         low = high = np.log10(np.maximum(np.fmax(abs(low), abs(high)), FLOOR))
     y_axis = _y_axis(low, high, rows, log)
     columns = width - 1 - _ROOM - y_axis.label_width
-    start, end = span(window.x, seconds, columns)
+    start, end = time_span(window.x, seconds, columns)
     if log:
         low = high = held(window.x, high, start, end, columns, window.repeats)
     else:
         low, high = per_column(window.x, low, high, start, end, columns)
-    curves = [
-        _outline(owner, rows * y_axis.share(low[:, i]), rows * y_axis.share(high[:, i]))
-        for i, owner in enumerate(index)
-    ]
-    x_axis = times(start, end, columns, " run" if window.turned else "")
+    heights = [(rows * y_axis.share(side)).T for side in (low, high)]
+    curves = [_outline(*each) for each in zip(index, *heights, strict=True)]
+    x_axis = time_axis(start, end, columns, " run" if window.turned else "")
     picture = _plot(curves, x_axis, y_axis, width, height)
     _write_letters(picture, curves, rows, width - columns - _ROOM)
     return picture
@@ -91,31 +77,28 @@ def time_chart(
 def _y_axis(low: Floats, high: Floats, rows: int, log: bool) -> Axis:
     known = ~np.isnan(high).all(axis=0)
     if not known.any():
-        return decades(-4, 0, rows) if log else linear(-1, 1, rows)
-    bottom, top = float(np.nanmin(low)), float(np.nanmax(high))
-    if log:  # errors begin at zero: a decade below what is usual is low enough
-        bottom = float(np.nanmedian(low[:, known], axis=0).min()) - 1
-    return (decades if log else linear)(bottom, top, rows)
+        return log_axis(-4, 0, rows) if log else linear_axis(-1, 1, rows)
+    if not log:
+        return linear_axis(float(np.nanmin(low)), float(np.nanmax(high)), rows)
+    # Errors begin at zero: a decade below the smallest median is low enough.
+    return log_axis(float(np.nanmedian(low[:, known], axis=0).min()) - 1, float(np.nanmax(high)), rows)
 
 
 def loglog_chart(series: Sequence[Series], width: int, height: int, *, x_label: str, y_label: str) -> Picture:
-    """Points with marks over two logarithmic axes that hold them all, and dotted reference lines.
+    """Points with marks on two logarithmic axes that fit them all, and dotted reference lines.
 
-    Points that are not finite and positive are left out; of reference lines, what lies outside.
+    Points that are not finite and positive are left out; reference lines are clipped.
     """
     if width < SMALLEST[0] or height < SMALLEST[1] + 2:
         return _too_small(width, height, SMALLEST[0], SMALLEST[1] + 2)
     rows = height - 4
     points = [_logs(one) for one in series]
     marked = [some for one, some in zip(series, points, strict=True) if not one.dotted and len(some)]
-    (left, bottom), (right, top) = (
-        (np.min(np.concatenate(marked), axis=0), np.max(np.concatenate(marked), axis=0))
-        if marked
-        else ((0, -4), (1, 0))
-    )
-    y_axis = decades(bottom, top, rows)
+    corners = np.concatenate(marked or [np.array([(0.0, -4.0), (1.0, 0.0)])])
+    (left, bottom), (right, top) = corners.min(axis=0), corners.max(axis=0)
+    y_axis = log_axis(bottom, top, rows)
     columns = width - 1 - _ROOM - y_axis.label_width
-    x_axis = decades_across(left, right, columns)
+    x_axis = log_x_axis(left, right, columns)
     curves = []
     for one, (x, y) in zip(series, (some.T for some in points), strict=True):
         if one.dotted and len(x):
@@ -123,36 +106,37 @@ def loglog_chart(series: Sequence[Series], width: int, height: int, *, x_label: 
             x, y = across, np.interp(across, x, y, left=np.nan, right=np.nan)
             inside = (y >= y_axis.low) & (y <= y_axis.high)
             x, y = x[inside], y[inside]
-        curves.append(_Curve(one.owner, columns * x_axis.share(x), rows * y_axis.share(y), joined=not one.dotted))
-    picture = _plot(curves, x_axis, y_axis, width, height - 2)
-    for one, curve in zip(series, curves, strict=True):
-        for column, row in list(zip(curve.columns.tolist(), curve.rows.tolist(), strict=True))[
-            -1 if one.dotted else 0 :
-        ]:
-            at = min(width - columns - _ROOM + int(column), width - len(one.mark))
-            picture.write(_row(row, rows), at, one.mark, one.owner)
-    return Picture.stacked(_line(y_label, width), picture, _line(x_label.rjust(width), width))
+        curves.append(replace(one, x=columns * x_axis.share(x), y=rows * y_axis.share(y)))
+    blank = Canvas(width, 1).picture()
+    picture = Picture.stacked(blank, _plot(curves, x_axis, y_axis, width, height - 2), blank)
+    picture.write(0, 0, y_label, TEXT)
+    picture.write(height - 1, 0, x_label.rjust(width), TEXT)
+    for curve in curves:
+        for column, row in list(zip(curve.x, curve.y, strict=True))[-1 if curve.dotted else 0 :]:
+            at = min(width - columns - _ROOM + int(column), width - len(curve.mark))
+            picture.write(1 + _row(row, rows), at, curve.mark, curve.owner)
+    return picture
 
 
 def _logs(series: Series) -> Floats:
-    """log10 of the points that have one, (n, 2), in the order of x."""
+    """log10 of the finite positive points, (n, 2), sorted by x."""
     points = np.stack([np.asarray(series.x, np.float64), np.asarray(series.y, np.float64)], axis=1)
     points = points[(np.isfinite(points) & (points > 0)).all(axis=1)]
     return np.log10(points[np.argsort(points[:, 0], kind="stable")])
 
 
-def _outline(owner: int, low: Floats, high: Floats) -> _Curve:
-    """Through the lows and highs of columns, from each to the nearer end of the next."""
+def _outline(index: int, low: Floats, high: Floats) -> Series:
+    """A line through the lows and highs of all columns, in the order that keeps it short."""
     known = np.flatnonzero(~np.isnan(low))
     low, high = low[known], high[known]
     falling = np.diff(low + high, prepend=0.0) < 0
     heights = np.stack([np.where(falling, high, low), np.where(falling, low, high)], axis=1).ravel()
     distinct = np.stack([np.full(len(low), True), low != high], axis=1).ravel()
-    return _Curve(owner, np.repeat(known + 0.5, 2)[distinct], heights[distinct])
+    return Series(index, METHODS[index].letter, np.repeat(known + 0.5, 2)[distinct], heights[distinct])
 
 
-def _plot(curves: Sequence[_Curve], x_axis: Axis, y_axis: Axis, width: int, height: int) -> Picture:
-    """Let plotext draw curves, with the ends of the x axis at the first column and before the room for letters."""
+def _plot(curves: Sequence[Series], x_axis: Axis, y_axis: Axis, width: int, height: int) -> Picture:
+    """Let plotext draw curves; the x axis ends before the columns for the letters."""
     import plotext  # 0.1 s, so only after the first paint
 
     rows, columns = height - 2, width - 1 - y_axis.label_width
@@ -168,25 +152,22 @@ def _plot(curves: Sequence[_Curve], x_axis: Axis, y_axis: Axis, width: int, heig
             ruler = figure.ruler(name, 0)
             ruler.alignment(lim="edge")
             ruler.lim(0, size)
-            ruler.ticks((used * axis.share(list(axis.labels))).tolist(), _justified(axis, name))
+            labels = [label.rjust(axis.label_width) if name == "y" else label for label in axis.labels.values()]
+            ruler.ticks((used * axis.share(list(axis.labels))).tolist(), labels)
             ruler.pixel(_FIRST_COLOUR + TEXT)
         for curve in curves:
             marker = plotext.marker("braille", pixel=_FIRST_COLOUR + curve.owner)
-            signal = figure.signal(curve.columns.tolist(), curve.rows.tolist(), marker=marker)
-            figure.draw(signal.lines(curve.joined))
+            signal = figure.signal(np.asarray(curve.x).tolist(), np.asarray(curve.y).tolist(), marker=marker)
+            figure.draw(signal.lines(not curve.dotted))
         drawn = figure.build().string()
     return _parsed(drawn, width, height)
-
-
-def _justified(axis: Axis, name: str) -> list[str]:
-    return [label.rjust(axis.label_width) if name == "y" else label for label in axis.labels.values()]
 
 
 _CODES_OR_TEXT = re.compile(r"\x1b\[([\d;]*)m|([^\x1b]+)")
 
 
 def _parsed(drawn: str, width: int, height: int) -> Picture:
-    """Text with colour codes -> characters and owners.  rich's own reader takes ten times as long."""
+    """Text with colour codes -> characters and owners, ten times as fast as rich's own parser."""
     characters = np.full((height, width), ord(" "), np.uint32)
     owners = np.full((height, width), NOBODY, np.int8)
     for row, line in enumerate(drawn.split("\n")[:height]):
@@ -204,29 +185,23 @@ def _parsed(drawn: str, width: int, height: int) -> Picture:
     return Picture(characters, owners)
 
 
-def _write_letters(picture: Picture, curves: Sequence[_Curve], rows: int, left: int) -> None:
-    """Write each method's letter to the right of its line's end, in the nearest free cell."""
+def _write_letters(picture: Picture, curves: Sequence[Series], rows: int, left: int) -> None:
+    """Write each method's letter in the nearest free cell to the right of its line."""
     taken = set()
     for curve in curves:
-        if not len(curve.rows):
+        if not len(curve.x):
             continue
-        column, row = left + int(curve.columns[-1]) + 1, _row(curve.rows[-1], rows)
+        column, row = left + int(curve.x[-1]) + 1, _row(curve.y[-1], rows)
         places = [(row + down, column + right) for down in (0, 1, -1) for right in range(_ROOM)]
         place = next((place for place in places if 0 <= place[0] < rows and place not in taken), None)
         if place:
             taken.add(place)
-            picture.write(*place, METHODS[curve.owner].letter, curve.owner)
+            picture.write(*place, curve.mark, curve.owner)
 
 
 def _row(height: float, rows: int) -> int:
-    """The row of characters, from above, at a height over the lower edge."""
+    """The row of characters, from the top, at a height above the lower edge."""
     return min(max(rows - 1 - int(height), 0), rows - 1)
-
-
-def _line(text: str, width: int) -> Picture:
-    canvas = Canvas(width, 1)
-    canvas.label(0, 0, text, TEXT)
-    return canvas.picture()
 
 
 def _too_small(width: int, height: int, columns: int, rows: int) -> Picture:

@@ -12,7 +12,7 @@ from engine.run.stepping import Stepping, SteppingChange
 from tui.playback.so_far import RunSoFar
 
 if TYPE_CHECKING:
-    from recordings.recording import Place, Recording, Run
+    from recordings.recording import Recording, Run, SamplePlace
 
 FOLLOWED = 100  # samples: what lies closer ahead is played through, what lies further is jumped to
 TAIL = 1.0  # s of the past that are there at once after a jump, for the trails,
@@ -54,7 +54,7 @@ class ReplayCursor:
         """Go to the last sample before a moment [s]: through those between where they are few, else by a jump."""
         recording, at = self.recording, self._place
         target = recording.at(position + NANOSECOND) or at
-        ahead: list[Place] = []
+        ahead: list[SamplePlace] = []
         while at < target and len(ahead) < FOLLOWED and (following := recording.next(at)):
             ahead.append(at := following)
         if at < target:
@@ -96,7 +96,7 @@ class ReplayCursor:
                 yield [then + share * (clock - then) for share in shares]
                 known, before, then = len(milestones), step, clock
 
-    def _move(self, place: "Place") -> None:
+    def _move(self, place: "SamplePlace") -> None:
         """Show the sample at a place that is close to the last one."""
         clock, sample = self.recording.sample(place)
         assert isinstance(sample, Sample)
@@ -106,7 +106,7 @@ class ReplayCursor:
         self._place, self.clock = place, clock
         self.so_far.add(sample)
 
-    def _jump(self, place: "Place") -> None:
+    def _jump(self, place: "SamplePlace") -> None:
         """Show the sample at any place: the trails' past at once, the rest during the next frames."""
         self._place = place
         self.clock, sample = self.recording.sample(place)

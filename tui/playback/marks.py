@@ -13,7 +13,7 @@ from typing import Any
 from recordings import library
 from recordings.errors import printable
 from recordings.events import Event
-from recordings.names import MARKS
+from recordings.library import MARKS
 
 SCHEMA = "pendu.marks/1"
 SIZE_LIMIT = 1 << 20  # bytes

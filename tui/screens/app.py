@@ -1,10 +1,11 @@
-"""The app: themes, signals, and the stages."""
+"""PenduApp: themes, signals, and the screens of lab and replay."""
 
 import asyncio
 import os
 import signal
 import time
 from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import ClassVar
 
@@ -19,20 +20,20 @@ from textual.theme import BUILTIN_THEMES, Theme
 from tui.cli.errors import Exit
 from tui.drawing.cells import PRESENT
 from tui.drawing.palette import PALETTES, Palette
-from tui.screens.base import SMALLEST, SourceScreen
+from tui.screens.base import SourceScreen
 from tui.screens.modal import Commands
 from tui.terminal.character_sets import CharacterSetFilter
 from tui.terminal.check import is_gone
-from tui.terminal.options import CHARACTER_SETS, USUAL, CharacterSet, TerminalOptions
+from tui.terminal.options import CHARACTER_SETS, SMALLEST, USUAL, CharacterSet, TerminalOptions
 from tui.terminal.throughput import Throughput
 
 WIDTHS = [(0, "-tiny"), (SMALLEST[0], "-narrow"), (80, "-normal"), (120, "-wide")]
 HEIGHTS = [(0, "-flat"), (SMALLEST[1], "-low"), (24, "-middle"), (36, "-high")]
-"""The classes that the sheet knows a terminal's size by, each from so many columns or rows on."""
+"""The classes of a terminal's size in the style sheet, each from so many columns or rows on."""
 
 
 class PenduApp(App[Exit | OSError]):
-    """Shows a stage.  Returns how the program ends, or an error that made it end; None if the user left."""
+    """Shows the lab or a replay.  Returns the exit code, or an error that ended it; None if the user quit."""
 
     HORIZONTAL_BREAKPOINTS = WIDTHS
     VERTICAL_BREAKPOINTS = HEIGHTS
@@ -48,26 +49,26 @@ class PenduApp(App[Exit | OSError]):
 
     def __init__(
         self,
-        stage: SourceScreen,
-        opened: Callable[[Path], SourceScreen] | None = None,
-        display: TerminalOptions = USUAL,
+        screen: SourceScreen,
+        open_replay: Callable[[Path], SourceScreen] | None = None,
+        terminal: TerminalOptions = USUAL,
     ) -> None:
-        """`opened` makes the stage on which a recording is replayed; it may raise an exception with a sentence."""
+        """`open_replay` makes the screen for a recording; it may raise an exception with a sentence."""
         if not os.environ.get("NO_COLOR", "?"):
             del os.environ["NO_COLOR"]  # no-color.org: empty means nothing
         super().__init__(ansi_color=True if "NO_COLOR" in os.environ else None)  # else Textual would make greys of it
-        self.opened = opened
+        self.open_replay = open_replay
         for name, colours in PALETTES.items():
             self.register_theme(_theme(name, colours))
-        self.theme = display.theme
-        self.fps = display.fps
-        self.set_reactive(PenduApp.character_set, display.character_set)
-        self.set_class(display.present, PRESENT)
-        self.stages = [stage]
+        self.theme = terminal.theme
+        self.fps = terminal.fps
+        self.set_reactive(PenduApp.character_set, terminal.character_set)
+        self.set_class(terminal.present, PRESENT)
+        self.source_screens = [screen]
         self.throughput = Throughput()
 
     def get_driver_class(self) -> type[Driver]:
-        """Our own for Linux and its kin, unless another was asked for."""
+        """Ours in place of Textual's for Linux and its kin, unless another was asked for."""
         usual = super().get_driver_class()
         if usual.__module__ != "textual.drivers.linux_driver":
             return usual
@@ -78,27 +79,25 @@ class PenduApp(App[Exit | OSError]):
     def is_behind(self, urgent: bool = False) -> bool:
         """Whether frames are still on their way: on a slow line one more only adds to the delay.
 
-        What is urgent need not wait for what the system has taken already.
+        An urgent frame need not wait for what the system's buffer holds.
         """
         self.throughput.tick(time.monotonic())
         return self.throughput.is_full if urgent else self.throughput.is_busy
 
     @property
-    def stage(self) -> SourceScreen:
-        """The stage that follows the clock."""
-        return self.stages[-1]
+    def source_screen(self) -> SourceScreen:
+        """The screen that follows the clock; a text or a form may lie over it."""
+        return self.source_screens[-1]
 
     def get_default_screen(self) -> Screen[None]:
-        """The stage."""
-        return self.stage
+        return self.source_screen
 
     def on_source_screen_began(self, message: SourceScreen.Began) -> None:
-        """Another stage has taken over."""
-        if message.stage is not self.stage:
-            self.stages.append(message.stage)
+        if message.screen is not self.source_screen:
+            self.source_screens.append(message.screen)
 
     def on_mount(self) -> None:
-        """Leave in order when asked to by a signal, and paint everything anew after Ctrl+Z."""
+        """Leave in order when asked to by a signal, and paint everything again after Ctrl+Z."""
         self.app_resume_signal.subscribe(self, lambda _: self.refresh())
         loop = asyncio.get_running_loop()
         for name in ("SIGINT", "SIGTERM", "SIGHUP"):
@@ -114,56 +113,48 @@ class PenduApp(App[Exit | OSError]):
 
     def interrupt(self) -> None:
         """Finish the recording and leave, even if there is no terminal any more to take leave of."""
-        self.stage.source.close()
+        self.source_screen.source.close()
         if is_gone():
             os._exit(Exit.INTERRUPTED)
         self.exit(Exit.INTERRUPTED)
 
     def get_system_commands(self, screen: Screen[object]) -> Iterable[SystemCommand]:
-        """What the palette offers."""
         from recordings.library import GOLDEN, listing
-        from tui.screens.palette_entries import menu
+        from tui.screens.extras import palette_entries
 
-        recordings = [item.path for item in (*listing(), *listing(GOLDEN))] if self.opened else []
-        for entry in menu(self.stage.KEYS, self.stage.source.kind == "LIVE", recordings):
-            yield SystemCommand(entry.title, entry.about, self._doing(entry.action))
-
-    def _doing(self, action: str) -> Callable[[], None]:
-        return lambda: self.stage.call_next(self.stage.run_action, action)
+        recordings = [item.path for item in (*listing(), *listing(GOLDEN))] if self.open_replay else []
+        here = self.source_screen
+        for entry in palette_entries(here.KEYS, here.source.kind == "LIVE", recordings):
+            yield SystemCommand(entry.title, entry.about, partial(here.call_next, here.run_action, entry.action))
 
     def action_extra(self, name: str, *arguments: object) -> None:
-        """Do what is seldom wanted, and imported only then."""
         from tui.screens.extras import EXTRAS
 
-        EXTRAS[name](self, *arguments)
+        EXTRAS[name](self.source_screen, *arguments)
 
     def action_command_palette(self) -> None:
-        """Open the palette."""
         if not isinstance(self.screen, Commands):
             self.push_screen(Commands())
 
     def action_use_theme(self, name: str) -> None:
-        """Use another theme."""
         self.theme = name
 
     def action_present(self) -> None:
         """Use large numbers and thick lines, or the usual ones again."""
         self.toggle_class(PRESENT)
-        self.stage.show_now()
+        self.source_screen.show_now()
 
     def action_next_character_set(self) -> None:
-        """Draw with braille, half blocks, or ASCII."""
         self.character_set = CHARACTER_SETS[(CHARACTER_SETS.index(self.character_set) + 1) % len(CHARACTER_SETS)]
 
     def watch_character_set(self) -> None:
-        """Draw everything anew: no widget knows that its characters have become others."""
+        """Draw everything again: no widget knows that its characters have changed."""
         self.refresh_css(animate=False)
         for screen in self.screen_stack:
             for node in screen.walk_children(with_self=True):
                 node.refresh()
 
     def get_line_filters(self) -> Sequence[LineFilter]:
-        """What all lines pass through before they are shown."""
         return [*super().get_line_filters(), *(one for one in (_FILTERS[self.character_set],) if one.enabled)]
 
 

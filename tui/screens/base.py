@@ -1,10 +1,11 @@
-"""Stage: what the lab and the replay have in common: the frame's clock, the views, and how they look."""
+"""SourceScreen: what the lab's screen and the replay's share: the clock of the frames, the views, the settings."""
 
 import gc
 import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar, cast
+from pathlib import Path
+from typing import Any, ClassVar, Protocol, cast
 
 from textual.app import ComposeResult
 from textual.binding import BindingType
@@ -19,27 +20,34 @@ from tui.playback.playhead import doubled
 from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.screens.insight_line import InsightLine
-from tui.screens.key_line import Hint, KeyLine
+from tui.screens.key_line import KeyLine
+from tui.screens.keys import COMMON, hinted
 from tui.screens.status_line import StatusLine
 from tui.screens.too_small import TooSmall
 from tui.views import create, following
-from tui.views.keys import COMMON, Key, bindings, hints
+from tui.views.keys import Key, bindings
 from tui.views.view import View
-
-if TYPE_CHECKING:
-    from tui.screens.app import PenduApp
 
 READ, BUILT = 10, 5
 """How often a second what is read is brought up to date, and what has to be built."""
 
 STALL = 1.0  # s; a longer gap between frames was not lived: Ctrl+Z, a computer asleep, a line that was dead
 ALREADY = "There is a mark here already"
-SMALLEST = (60, 16)
-"""Columns and rows below which there is only a message."""
 
 
-def _first_source(stage: Any) -> Source:
-    source: Source = stage.first_source
+class Host(Protocol):
+    """What the screen needs of the app that shows it."""
+
+    fps: int
+    open_replay: Callable[[Path], "SourceScreen"] | None
+    """Makes the screen for a recording; may raise an exception with a sentence."""
+
+    def is_behind(self, urgent: bool = False) -> bool:
+        """Whether frames are still on their way, so that the terminal should get no more of them now."""
+
+
+def _first_source(screen: Any) -> Source:
+    source: Source = screen.first_source
     return source
 
 
@@ -48,9 +56,9 @@ class SourceScreen(Screen[None]):
 
     @dataclass
     class Began(Message):
-        """This stage follows the clock now."""
+        """This screen follows the clock now."""
 
-        stage: "SourceScreen"
+        screen: "SourceScreen"
 
     BINDINGS: ClassVar[list[BindingType]] = bindings(*COMMON)
     AUTO_FOCUS = ""  # keys belong to the screen until a pane is clicked
@@ -83,26 +91,27 @@ class SourceScreen(Screen[None]):
         for reactive in (SourceScreen.sample, SourceScreen.sample_10hz, SourceScreen.sample_5hz):
             self.set_reactive(reactive, source.sample)
 
+    @property
+    def host(self) -> Host:
+        return cast(Host, self.app)
+
     def compose(self) -> ComposeResult:
-        """Create what frames the views, and the first one."""
         yield StatusLine().data_bind(SourceScreen.source, sample=SourceScreen.sample_10hz)
         with Container(id="views"):
             yield self._create(self.view)
-        yield TooSmall(SMALLEST)
+        yield TooSmall()
         yield from self.more()
         yield InsightLine().data_bind(SourceScreen.source, sample=SourceScreen.sample_10hz)
-        yield KeyLine([Hint(key.shown, key.hint, key.action) for key in hints(self.KEYS)])
+        yield KeyLine(hinted(self.KEYS))
 
     def more(self) -> Iterable[Widget]:
         """What this screen has above the insight line."""
         return ()
 
     def on_mount(self) -> None:
-        """Wait for the first paint."""
         self.call_after_refresh(self._begin)
 
     def _begin(self) -> None:
-        """Follow the clock from now on."""
         try:
             self._prepare()
         except OSError as error:
@@ -112,8 +121,7 @@ class SourceScreen(Screen[None]):
         gc.freeze()  # what is there now stays: collecting it again and again would cost frames
         gc.enable()
         self.post_message(self.Began(self))
-        self._fps = cast("PenduApp", self.app).fps
-        self._timer = self.set_interval(1 / self._fps, self.frame)
+        self._timer = self.set_interval(1 / self.host.fps, self.frame)
         for notice in self._notices:
             self.notify(notice, timeout=15, markup=False)
 
@@ -129,19 +137,19 @@ class SourceScreen(Screen[None]):
             self._missed += now - seen
             now = seen
         sample = self.source.tick(now)
-        if cast("PenduApp", self.app).is_behind(urgent=self._late):
+        if self.host.is_behind(urgent=self._late):
             return
         self._frames += 1
         self.sample = sample
-        if self._late or self._frames % max(self._fps // READ, 1) == 0:
+        if self._late or self._frames % max(self.host.fps // READ, 1) == 0:
             self.sample_10hz = sample
-        if self._late or self._frames % max(self._fps // BUILT, 1) == 0:
+        if self._late or self._frames % max(self.host.fps // BUILT, 1) == 0:
             self.sample_5hz = sample
         self._late = False
 
     def show_now(self) -> None:
         """Show everything as it is, without waiting for its turn; on a line that is busy, as soon as it is not."""
-        self._late = cast("PenduApp", self.app).is_behind(urgent=True)
+        self._late = self.host.is_behind(urgent=True)
         if not self._late:
             self.sample = self.sample_10hz = self.sample_5hz = self.source.sample
 
@@ -150,31 +158,26 @@ class SourceScreen(Screen[None]):
         self._undo.append(undo)
 
     def change_shown(self, shown: Shown) -> None:
-        """Use another look."""
         before = self.shown
         self.remember(lambda: setattr(self, "shown", before))
         self.shown = shown
 
     def on_key_line_pressed(self, message: KeyLine.Pressed) -> None:
-        """A click on the key line does what the key does."""
         self.call_next(self.run_action, message.action)
 
     def action_pause(self) -> None:
-        """Stop, or go on."""
         self.source.pause(not self.source.playhead.paused)
         self.show_now()
 
     def action_step(self, n: int) -> None:
-        """Pause and go n steps on or back."""
+        """Pause and go n steps forward, or back if n is negative."""
         self.source.step(n)
         self.show_now()
 
     def action_speed(self, doublings: int) -> None:
-        """Double or halve the speed."""
         self.set_speed(doubled(self.source.playhead.speed, doublings))
 
     def action_real_time(self) -> None:
-        """Play a second in a second."""
         self.set_speed(1.0)
 
     def set_speed(self, speed: float) -> None:
@@ -186,27 +189,21 @@ class SourceScreen(Screen[None]):
             self.show_now()
 
     def action_show(self, number: int) -> None:
-        """Show or hide a method, or the exact swing."""
         self.change_shown(self.shown.toggled(number))
 
     def action_trails(self) -> None:
-        """Show or hide the trails."""
         self.change_shown(replace(self.shown, trails=not self.shown.trails))
 
     def action_log(self) -> None:
-        """Chart logarithmically, or linearly."""
         self.change_shown(replace(self.shown, log=not self.shown.log))
 
     def action_quantity(self) -> None:
-        """Chart the next quantity."""
         self.change_shown(self.shown.next_quantity())
 
     def action_window(self, direction: int) -> None:
-        """Chart more or less of the past."""
         self.change_shown(self.shown.next_window(direction > 0))
 
     def action_undo(self) -> None:
-        """Take back the last setting."""
         if self._undo:
             self._undo.pop()()
             self.show_now()
@@ -226,14 +223,13 @@ class SourceScreen(Screen[None]):
 
     def action_help(self) -> None:
         """Show the keys, those of what has the focus first."""
-        from tui.screens.help import Help
+        from tui.screens.text import TextScreen, help_text
 
         panes = self.query_one(f"#{self.view}", View).KEYS
         keys = (*panes, *self.KEYS) if self.focused is not None else (*self.KEYS, *panes)
-        self.app.push_screen(Help(keys, self.source))
+        self.app.push_screen(TextScreen("Help", help_text(keys, self.source)))
 
     def action_quit(self) -> None:
-        """Leave the program."""
         self.app.exit()
 
     def _create(self, name: str) -> View:

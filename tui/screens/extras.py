@@ -1,80 +1,107 @@
-"""What one does not need to watch the lab: its state in words, its events, cards, pictures, other recordings."""
+"""The command palette's entries, and the actions that are imported when first used: texts, screenshot, replay."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, NamedTuple
 
+from engine.methods import METHODS
+from engine.scenes import SCENES
 from recordings import library
 from tui.cli.errors import explained
+from tui.drawing.palette import PALETTES
 from tui.playback.live import Live
+from tui.screens.base import SourceScreen
 from tui.screens.text import TextScreen
-from tui.terminal.screenshot import save_picture
+from tui.terminal.screenshot import save_screenshot
 from tui.views import VIEWS
+from tui.views.keys import Key
 from tui.words.cards import method_card
 from tui.words.command_line import command
 from tui.words.describe import description
-from tui.words.events import diary
-
-if TYPE_CHECKING:
-    from tui.screens.app import PenduApp
+from tui.words.events import event_lines
 
 
-def show_description(app: "PenduApp") -> None:
-    """Say in words what runs and what is on screen."""
-    stage = app.stage
-    panes = [str(pane.border_title) for pane in stage.query("*") if pane.border_title and pane.is_on_screen]
-    shown = f"On screen: {VIEWS[stage.view].title}; {'; '.join(panes)}."
-    app.push_screen(TextScreen("In words", "\n".join([*description(stage.source), shown])))
+def show_description(screen: SourceScreen) -> None:
+    """Describe in words what runs and what is on screen."""
+    panes = [str(pane.border_title) for pane in screen.query("*") if pane.border_title and pane.is_on_screen]
+    shown = f"On screen: {VIEWS[screen.view].title}; {'; '.join(panes)}."
+    screen.app.push_screen(TextScreen("In words", "\n".join([*description(screen.source), shown])))
 
 
-def show_diary(app: "PenduApp") -> None:
+def show_events(screen: SourceScreen) -> None:
     """List all events."""
-    app.push_screen(TextScreen("Events", "\n".join(map(str, diary(app.stage.source)))))
+    screen.app.push_screen(TextScreen("Events", "\n".join(map(str, event_lines(screen.source)))))
 
 
-def show_card(app: "PenduApp", index: int) -> None:
+def show_card(screen: SourceScreen, key: str) -> None:
     """Show a method's card."""
-    app.push_screen(TextScreen("Method", method_card(index)))
+    index = next(index for index, method in enumerate(METHODS) if method.key == key)
+    screen.app.push_screen(TextScreen("Method", method_card(index)))
 
 
-def take_picture(app: "PenduApp") -> None:
-    """Save the screen beside the recordings."""
+def take_screenshot(screen: SourceScreen) -> None:
+    """Save the screen next to the recordings."""
     try:
-        picture, text = save_picture(app.export_screenshot(), library.folder())
+        picture, text = save_screenshot(screen.app.export_screenshot(), library.folder())
     except OSError as error:
-        app.notify(f"The screen cannot be saved: {explained(error)}", severity="warning", markup=False)
+        screen.notify(f"The screen cannot be saved: {explained(error)}", severity="warning", markup=False)
     else:
-        app.notify(f"Saved {picture} and {text.name}", markup=False)
+        screen.notify(f"Saved {picture} and {text.name}", markup=False)
 
 
-def copy_command(app: "PenduApp") -> None:
-    """Copy the command that reproduces the run, and show it: not every terminal has a clipboard."""
-    text = command(app.stage.source)
-    app.copy_to_clipboard(text)
-    app.notify(f"Copied: {text}", markup=False, timeout=15)
+def copy_command(screen: SourceScreen) -> None:
+    """Copy the command that shows this again, and show it: not every terminal has a clipboard."""
+    text = command(screen.source)
+    screen.app.copy_to_clipboard(text)
+    screen.notify(f"Copied: {text}", markup=False, timeout=15)
 
 
-def replay(app: "PenduApp", path: str) -> None:
-    """Finish what is on stage and replay a recording."""
-    assert app.opened is not None
+def replay(screen: SourceScreen, path: str) -> None:
+    """Finish what is on the screen and replay a recording."""
+    assert screen.host.open_replay is not None
     try:
-        stage = app.opened(Path(path))
+        other = screen.host.open_replay(Path(path))
     except Exception as error:
-        app.notify(str(explained(error)), severity="warning", markup=False)
+        screen.notify(str(explained(error)), severity="warning", markup=False)
         return
-    ended = app.stage
-    ended.end()
-    if isinstance(ended.source, Live) and ended.source.recorder is not None:
-        for file in ended.source.recorder.files:
-            app.notify(f"Recorded: {file}", markup=False)
-    app.push_screen(stage)
+    screen.end()
+    if isinstance(screen.source, Live) and screen.source.recorder is not None:
+        for file in screen.source.recorder.files:
+            screen.notify(f"Recorded: {file}", markup=False)
+    screen.app.push_screen(other)
 
 
 EXTRAS: dict[str, Callable[..., Any]] = {
     "describe": show_description,
-    "diary": show_diary,
+    "events": show_events,
     "card": show_card,
-    "picture": take_picture,
+    "screenshot": take_screenshot,
     "copy_command": copy_command,
     "replay": replay,
 }
+
+
+class PaletteEntry(NamedTuple):
+    """An entry and the action behind it."""
+
+    title: str
+    about: str
+    action: str
+
+
+def palette_entries(keys: Iterable[Key], live: bool, recordings: Iterable[Path]) -> list[PaletteEntry]:
+    """The entries; only a live lab can be given another scene."""
+    entry = PaletteEntry
+    return [
+        *(entry(f"{key.does} ({key.shown})", key.group, key.action) for key in keys if _is_offered(key)),
+        *(entry(f"scene {name}", scene.watch, f"start_scene({name!r})") for name, scene in SCENES.items() if live),
+        *(entry(f"method {method.label}", "its card", f"app.extra('card', {method.key!r})") for method in METHODS),
+        *(entry(f"theme {name}", "", f"app.use_theme({name!r})") for name in PALETTES),
+        entry("large numbers and thick lines, or not", "for a projector", "app.present"),
+        *(entry(f"replay {path.stem}", str(path), f"app.extra('replay', {str(path)!r})") for path in recordings),
+        entry("copy the command that reproduces this", "to the clipboard", "app.extra('copy_command')"),
+    ]
+
+
+def _is_offered(key: Key) -> bool:
+    return bool(key.does and key.action) and key.action != "command_palette"

@@ -2,57 +2,47 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 from textual import events
 from textual.message import Message
 
 from tui.drawing.cells import CellWidget, Row
 from tui.drawing.palette import FRAME, TEXT
+from tui.views.keys import Key
 
 
-class Hint(NamedTuple):
-    """A key as people read it, what it does, and the action behind it."""
-
-    key: str
-    label: str
-    action: str
-
-
-def key_row(hints: Sequence[Hint], width: int) -> tuple[Row, list[tuple[int, int, str]]]:
-    """The line, and (first column, end, action) of each hint on it.  Hints that do not fit are left out."""
+def key_row(keys: Sequence[Key], width: int) -> tuple[Row, list[tuple[int, int, str]]]:
+    """The line, and (first column, end, action) of each key on it.  Keys that do not fit are left out."""
     row: list[tuple[str, int]] = []
     places, column = [], 0
-    for hint in hints:
-        end = column + len(hint.key) + len(hint.label) + 3
+    for key in keys:
+        end = column + len(key.shown) + len(key.hint) + 3
         if end <= width:
-            row += [(f" {hint.key} ", TEXT), (f"{hint.label} ", FRAME)]
-            places.append((column, end, hint.action))
+            row += [(f" {key.shown} ", TEXT), (f"{key.hint} ", FRAME)]
+            places.append((column, end, key.action))
             column = end
     return row, places
 
 
 class KeyLine(CellWidget):
-    """The line."""
+    """The line; a click on a key is as if it were pressed."""
 
     @dataclass
     class Pressed(Message):
-        """A hint was clicked."""
+        """A key was clicked."""
 
         action: str
 
-    def __init__(self, hints: Sequence[Hint]) -> None:
+    def __init__(self, keys: Sequence[Key]) -> None:
         super().__init__()
-        self._hints = hints
+        self._keys = keys
         self._places: list[tuple[int, int, str]] = []
 
     def draw(self) -> None:
-        """Draw the line."""
-        row, self._places = key_row(self._hints, self.room.width)
+        row, self._places = key_row(self._keys, self.room.width)
         self.show([row])
 
     def on_click(self, event: events.Click) -> None:
-        """A click is the key's press."""
         for first, end, action in self._places:
             if first <= event.x < end:
                 self.post_message(self.Pressed(action))

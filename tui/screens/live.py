@@ -1,4 +1,4 @@
-"""Lab: the live screen, where the run can be changed."""
+"""LiveScreen: the lab, where the run can be changed."""
 
 from collections.abc import Callable
 from typing import ClassVar
@@ -9,7 +9,8 @@ from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene, SceneError
 from tui.playback.live import Live
 from tui.screens.base import ALREADY, SourceScreen
-from tui.views.keys import COMMON, LIVE, Key, bindings
+from tui.screens.keys import COMMON, LIVE
+from tui.views.keys import Key, bindings
 from tui.views.messages import SceneChosen, StepSizeChosen
 
 
@@ -21,7 +22,6 @@ class LiveScreen(SourceScreen):
 
     @property
     def live(self) -> Live:
-        """The source."""
         assert isinstance(self.source, Live)
         return self.source
 
@@ -32,7 +32,6 @@ class LiveScreen(SourceScreen):
             self.remember(lambda: self._do(lambda: self.live.start(before)))
 
     def set_stepping(self, stepping: Stepping) -> None:
-        """Step otherwise from here on."""
         before = self.live.stepping
         if self._do(lambda: self.live.set_stepping(stepping)):
             self.remember(lambda: self._do(lambda: self.live.set_stepping(before)))
@@ -48,24 +47,20 @@ class LiveScreen(SourceScreen):
         return True
 
     def on_scene_chosen(self, choice: SceneChosen) -> None:
-        """Start what was chosen in a view."""
         self.start(choice.scene)
 
     def on_step_size_chosen(self, choice: StepSizeChosen) -> None:
-        """Go on with what was chosen in a view."""
         self.set_stepping(choice.stepping)
 
     def action_restart(self) -> None:
-        """Begin again."""
         self.live.restart()
         self.show_now()
 
     def action_larger_h(self, direction: int) -> None:
-        """Go along 1, 2, 5 with h."""
+        """Take the next larger or smaller h of 1, 2, 5, 10, ..."""
         self.set_stepping(self.live.stepping.next(up=direction > 0))
 
     def action_reverse(self) -> None:
-        """Let time run the other way."""
         self.set_stepping(self.live.stepping.reversed())
 
     def action_equal_cost(self) -> None:
@@ -73,19 +68,16 @@ class LiveScreen(SourceScreen):
         self.set_stepping(self.live.stepping.toggled())
 
     def action_scene(self, direction: int) -> None:
-        """Start the next scene, or the previous one."""
-        names = list(SCENES)
-        name = self.live.scene.name
+        """Start the next scene, or the previous one if direction is -1."""
+        names, name = list(SCENES), self.live.scene.name
         at = names.index(name) + direction if name in SCENES else min(direction, 0)
         self.start(SCENES[names[at % len(names)]])
 
     def action_start_scene(self, name: str) -> None:
-        """Start a scene of the list."""
         self.start(SCENES[name])
 
     def action_start_values(self) -> None:
-        """Ask for the start values."""
-        from tui.screens.start_form import StartForm  # Textual's input field can wait until it is wanted
+        from tui.screens.start_form import StartForm  # Textual's input field is imported when it is needed
 
         def chosen(scene: Scene | None) -> None:
             if scene is not None:
@@ -94,7 +86,6 @@ class LiveScreen(SourceScreen):
         self.app.push_screen(StartForm(self.live.scene.altered(h=self.live.stepping.smallest)), chosen)
 
     def action_mark(self) -> None:
-        """Leave a mark in the recording."""
         text = ALREADY if self.live.is_marked else f"Mark at {self.live.sample.t:.2f} s"
         self.live.mark()
         self.notify(text, timeout=2)

@@ -1,4 +1,4 @@
-"""Player: the replay's screen, where one can go to any moment."""
+"""ReplayScreen: a recording, with any moment a key or a click away."""
 
 import asyncio
 import time
@@ -12,14 +12,15 @@ from tui.cli.errors import UserError, explained
 from tui.playback.live import Live
 from tui.playback.replay import Replay
 from tui.screens.base import ALREADY, SourceScreen
+from tui.screens.keys import COMMON, REPLAY
 from tui.screens.seek_bar import SeekBar
-from tui.views.keys import COMMON, REPLAY, Key, bindings
+from tui.views.keys import Key, bindings
 
 LONG = 100_000  # steps; a quarter of a second
 
 
 class ReplayScreen(SourceScreen):
-    """Shows a replay.  `go_live` makes the screen for a lab that goes on from the replayed moment."""
+    """Shows a replay.  `go_live` makes the screen for a lab that continues from the replayed moment."""
 
     BINDINGS: ClassVar[list[BindingType]] = bindings(*REPLAY)
     KEYS: ClassVar[tuple[Key, ...]] = (*REPLAY, *COMMON)
@@ -36,43 +37,37 @@ class ReplayScreen(SourceScreen):
 
     @property
     def replay(self) -> Replay:
-        """The source."""
         assert isinstance(self.source, Replay)
         return self.source
 
     def more(self) -> Iterator[Widget]:
-        """The bar above the insight line."""
         yield SeekBar().data_bind(SourceScreen.source, sample=SourceScreen.sample_10hz)
 
     def on_seek_bar_sought(self, message: SeekBar.Sought) -> None:
-        """Go there."""
         self.seek(message.position)
 
     def seek(self, position: float) -> None:
-        """Go to a moment of the recording clock."""
+        """Go to a position [s] of the recording."""
         self.replay.seek(position)
         self.show_now()
 
     def action_seek(self, seconds: float) -> None:
-        """Go some seconds on or back."""
         self.seek(self.replay.playhead.position + seconds)
 
     def action_part(self, share: float) -> None:
-        """Go on by a share of the whole, or back."""
+        """Go forward by a share of the whole, or back."""
         self.seek(self.replay.playhead.position + share * self.replay.length)
 
     def action_event(self, direction: int) -> None:
-        """Go to the next event, or to the one before."""
         self.replay.seek_event(direction)
         self.show_now()
 
     def action_reverse(self) -> None:
-        """Play the other way."""
         self.replay.set_speed(-self.replay.playhead.speed)
         self.show_now()
 
     def action_mark(self) -> None:
-        """Leave a mark beside the recording."""
+        """Leave a mark next to the recording, which itself stays as it is."""
         text = ALREADY if self.replay.is_marked else f"Mark at {self.replay.sample.t:.2f} s simulated"
         try:
             self.replay.mark()
@@ -83,7 +78,7 @@ class ReplayScreen(SourceScreen):
         self.show_now()
 
     def action_loop_end(self, number: int) -> None:
-        """Begin or end the loop here."""
+        """Set the loop's start (0) or end (1) here."""
         ends = list(self.replay.ends)
         ends[number] = self.replay.playhead.position
         self.replay.ends = (ends[0], ends[1])
@@ -91,12 +86,11 @@ class ReplayScreen(SourceScreen):
         self.show_now()
 
     def action_loop(self) -> None:
-        """Loop, or stop looping."""
         self.replay.looping = not self.replay.looping
         self.show_now()
 
     async def action_live(self) -> None:
-        """Go on live from here, when the past is known and the way here has been simulated again."""
+        """Continue live from here, once the run so far is known and simulated again up to here."""
         self.replay.pause(True)
         if not self.replay.fill():
             self.notify("Reading what came before ...", timeout=2)

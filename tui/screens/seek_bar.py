@@ -1,4 +1,4 @@
-"""SeekBar: where the replay stands, and what was done when."""
+"""SeekBar: the position in the replay, and its events."""
 
 from bisect import bisect_right
 from collections.abc import Sequence
@@ -7,13 +7,13 @@ from itertools import groupby
 
 from textual import events
 from textual.message import Message
-from textual.reactive import var
 
 from engine.run.lockstep import Sample
-from tui.drawing.cells import CellWidget, Row
+from tui.drawing.cells import Row
 from tui.drawing.palette import FRAME, TEXT, WARN
 from tui.playback.replay import Replay
 from tui.playback.source import Source
+from tui.views.view import Pane
 from tui.words.numbers import seconds
 
 LEAST = 24  # columns for the bar
@@ -53,11 +53,8 @@ def facts(replay: Replay, room: int) -> str:
     return text
 
 
-class SeekBar(CellWidget):
+class SeekBar(Pane):
     """The bar.  Click or drag on it to go elsewhere."""
-
-    source: var[Source | None] = var(None)
-    sample: var[Sample | None] = var(None)
 
     @dataclass
     class Sought(Message):
@@ -71,15 +68,9 @@ class SeekBar(CellWidget):
         self._length = 0.0  # of the recording
         self._dragging = False
 
-    def watch_sample(self) -> None:
-        """Follow the sample."""
-        self.draw()
-
-    def draw(self) -> None:
-        """Draw bar and facts."""
-        replay = self.source
-        if not isinstance(replay, Replay) or not self.drawable:
-            return
+    def paint(self, source: Source, sample: Sample) -> None:
+        assert isinstance(source, Replay)
+        replay = source
         text = facts(replay, self.room.width - LEAST - 3)
         self._length = replay.length
         self._columns = max(self.room.width - len(text) - 3, 1)
@@ -88,18 +79,15 @@ class SeekBar(CellWidget):
         self.show([[(" ", TEXT), *row, ("  " + text, TEXT)]])
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Go there, and follow the pointer until it is released."""
         self._dragging = True
         self.capture_mouse()
         self._seek(event)
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
-        """Follow the pointer."""
         if self._dragging:
             self._seek(event)
 
     def on_mouse_up(self, event: events.MouseUp) -> None:
-        """Stay there."""
         self._dragging = False
         self.release_mouse()
 

@@ -1,17 +1,17 @@
-"""StatusLine: what runs, how fast, from where, and what becomes of the recording."""
+"""StatusLine: what runs, how fast, from which start, and the state of the recording."""
 
 import math
 from typing import NamedTuple
 
 from rich.style import Style
-from textual.reactive import var
 
 from engine.run.lockstep import Sample
 from recordings.errors import printable
-from tui.drawing.cells import CellWidget, Row
+from tui.drawing.cells import Row
 from tui.drawing.palette import FRAME, TEXT, WARN
 from tui.playback.source import Source
-from tui.words.limits import limit_warning
+from tui.views.view import Pane
+from tui.words.findings import limit_warning
 from tui.words.numbers import file_size, percent, seconds
 
 BADGE = -10
@@ -37,7 +37,7 @@ def coarse(value: float) -> str:
 
 def status_row(source: Source, width: int) -> Row:
     """The line, as far as there is room."""
-    scene, playhead, pace, recording_status = source.scene, source.playhead, source.pace, source.recording_status
+    scene, playhead, pace, recording = source.scene, source.playhead, source.pace, source.recording_status
     z, live, named = abs(source.stepping.h) * scene.w0, source.kind == "LIVE", bool(scene.watch)
     warning = limit_warning([abs(h) * scene.w0 for h in source.stepping.own()])
     parts = [
@@ -52,40 +52,28 @@ def status_row(source: Source, width: int) -> Row:
     ]
     if pace.share < 0.99:
         parts.insert(2, _Part(10, f"real-time {percent(pace.share)}", WARN))
-    if recording_status is None:
+    if recording is None:
         parts.append(_Part(8, "not recorded", FRAME))
-    elif recording_status.failed:
+    elif recording.failed:
         parts.append(_Part(10, "NOT RECORDED", WARN))
     else:
         if live:
-            parts.append(_Part(8, f"REC {coarse(recording_status.seconds)}"))
-        parts.append(_Part(2, file_size(recording_status.bytes), FRAME))
-        parts.append(_Part(1, printable(recording_status.name), FRAME))
+            parts.append(_Part(8, f"REC {coarse(recording.seconds)}"))
+        parts.append(_Part(2, file_size(recording.bytes), FRAME))
+        parts.append(_Part(1, printable(recording.name), FRAME))
     badge = f" {source.kind} "
     while parts and len(badge) + sum(len(part.text) + 2 for part in parts) > width:
         parts.remove(min(parts))
     return [(badge, BADGE), *((text, owner) for part in parts for text, owner in (("  ", TEXT), part[1:]))]
 
 
-class StatusLine(CellWidget):
-    """The line."""
+class StatusLine(Pane):
+    """The line; LIVE and REPLAY stand out."""
 
-    source: var[Source | None] = var(None)
-    sample: var[Sample | None] = var(None)
-
-    def watch_sample(self) -> None:
-        """Follow the sample."""
-        self.draw()
-
-    def draw(self) -> None:
-        """Draw the line."""
-        if self.source is not None and self.drawable:
-            self.show([status_row(self.source, self.room.width)])
+    def paint(self, source: Source, sample: Sample) -> None:
+        self.show([status_row(source, self.room.width)])
 
     def style_of(self, owner: int, base: Style) -> Style:
-        """LIVE and REPLAY stand out."""
-        return (
-            super().style_of(WARN, base) + Style(reverse=True, bold=True)
-            if owner == BADGE
-            else super().style_of(owner, base)
-        )
+        if owner == BADGE:
+            return super().style_of(WARN, base) + Style(reverse=True, bold=True)
+        return super().style_of(owner, base)

@@ -1,4 +1,4 @@
-"""A still of the lab, the same to the letter whenever it is made: its clock is moved by hand."""
+"""A picture of the lab that is byte-identical every time, because its clock is moved by hand."""
 
 import asyncio
 import re
@@ -14,18 +14,18 @@ PATIENCE = 30.0  # s for the charts to be built
 
 
 async def still(
-    scene: Scene, seconds: float, size: tuple[int, int], display: TerminalOptions = USUAL, keys: Sequence[str] = ()
+    scene: Scene, seconds: float, size: tuple[int, int], terminal: TerminalOptions = USUAL, keys: Sequence[str] = ()
 ) -> str:
     """The lab as an SVG picture, `seconds` after the start and `keys` pressed since."""
     now = 0.0
     live = Live(scene, clock=lambda: 0.0)
-    stage = LiveScreen(live, clock=lambda: now)
-    app = PenduApp(stage, display=display)
+    screen = LiveScreen(live, clock=lambda: now)
+    app = PenduApp(screen, terminal=terminal)
     async with app.run_test(size=size) as pilot:
         for frame in range(round(seconds * FPS) + 1):
             now = frame / FPS
             live.tick(now)
-        stage.show_now()
+        screen.show_now()
         await pilot.press(*keys)
         await settled(app)
         await pilot.pause()
@@ -35,7 +35,7 @@ async def still(
 async def settled(app: PenduApp) -> None:
     """Wait until every pane that takes its time shows the newest data."""
     async with asyncio.timeout(PATIENCE):
-        while not all(getattr(pane, "settled", True) for pane in app.stage.query("#views *")):
+        while not all(getattr(pane, "settled", True) for pane in app.source_screen.query("#views *")):
             await asyncio.sleep(0.01)
 
 

@@ -1,5 +1,6 @@
-"""Reader: a text over the lab, to scroll in."""
+"""TextScreen: a text over the lab, to scroll in; and the text of the help."""
 
+from collections.abc import Sequence
 from typing import ClassVar
 
 from textual.app import ComposeResult
@@ -7,7 +8,20 @@ from textual.binding import Binding, BindingType
 from textual.containers import VerticalScroll
 from textual.widgets import Static
 
+from engine.methods import METHODS
+from tui.playback.source import Source
+from tui.screens.keys import key_list
 from tui.screens.modal import Modal
+from tui.views.keys import Key
+from tui.words.cards import method_card, scene_card
+from tui.words.describe import step_text
+
+
+def help_text(keys: Sequence[Key], source: Source) -> str:
+    """What to watch in the scene, the keys by group, and the methods."""
+    scene = source.scene
+    now = "" if source.stepping.h == scene.h else f"h = {step_text(source)}"
+    return "\n\n".join([scene_card(scene, now), key_list(keys), *map(method_card, range(len(METHODS)))])
 
 
 class TextScreen(Modal[None]):
@@ -20,11 +34,10 @@ class TextScreen(Modal[None]):
     def __init__(self, title: str, text: str) -> None:
         super().__init__()
         self.text = text
-        self._title = title
+        self.text_title = title
 
     def compose(self) -> ComposeResult:
-        """The text, with a frame."""
-        with VerticalScroll(id="reader") as scroll:
-            scroll.border_title = self._title
+        with VerticalScroll(id="text") as scroll:
+            scroll.border_title = self.text_title
             scroll.border_subtitle = "arrows scroll, Esc closes"
             yield Static(self.text, markup=False)

@@ -1,20 +1,16 @@
-"""TooSmall: what is said on a terminal on which nothing fits."""
+"""TooSmall: the message on a terminal that is too small for everything else."""
 
 from tui.drawing.canvas import Picture
 from tui.drawing.cells import CellWidget
 from tui.drawing.palette import TEXT
+from tui.terminal.options import SMALLEST
 
 
 class TooSmall(CellWidget):
-    """Have and need.  The keys go on working."""
-
-    def __init__(self, need: tuple[int, int]) -> None:
-        super().__init__()
-        self._need = need
+    """Says the size there is and the size it takes; the keys still work."""
 
     def draw(self) -> None:
-        """Draw the message."""
         columns, rows = self.room
-        need_columns, need_rows = self._need
-        text = f"This terminal has {columns}x{rows}, pendu needs {need_columns}x{need_rows}. Enlarge it, or q quits."
+        needed = "x".join(map(str, SMALLEST))
+        text = f"This terminal has {columns}x{rows}, pendu needs {needed}. Enlarge it, or q quits."
         self.show_picture(Picture.of_text(text, columns, rows, TEXT))

@@ -1,4 +1,4 @@
-"""Braille -> half blocks or ASCII, where the terminal has no more: all that is drawn passes through here."""
+"""Braille to half blocks or ASCII for terminals without it: a filter for everything that is drawn."""
 
 import unicodedata
 
@@ -33,7 +33,7 @@ _LIKE = {
 
 
 class _Ascii(dict[int, str]):
-    """For str.translate.  What has no likeness becomes question marks; every character keeps its width."""
+    """For str.translate.  A character with no likeness becomes question marks; each keeps its width."""
 
     def __missing__(self, code: int) -> str:
         character = chr(code)
@@ -43,7 +43,7 @@ class _Ascii(dict[int, str]):
 
 
 class CharacterSetFilter(LineFilter):
-    """Writes nothing that the terminal does not have."""
+    """Replaces the characters that the terminal does not have."""
 
     def __init__(self, character_set: CharacterSet) -> None:
         super().__init__(enabled=character_set != "braille")
@@ -53,6 +53,5 @@ class CharacterSetFilter(LineFilter):
             self._table.update((ord(character), like) for like, those in _LIKE.items() for character in those)
 
     def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
-        """The same segments in other characters."""
         table = self._table
         return [Segment(text.translate(table), style, control) for text, style, control in segments]

@@ -1,4 +1,4 @@
-"""The terminal: whether the lab can be shown on it, and whether it is still there."""
+"""Whether the lab can be shown on this terminal, and whether the terminal is still there."""
 
 import os
 import sys
@@ -23,7 +23,7 @@ def check_terminal() -> None:
 
 
 def is_gone() -> bool:
-    """Whether the terminal has been closed: who writes to it then fails, or waits forever."""
+    """Whether the terminal has been closed: writing to it fails then, or blocks for ever."""
     try:
         os.get_terminal_size(0)
     except OSError:

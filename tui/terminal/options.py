@@ -1,4 +1,4 @@
-"""How a terminal is made use of: colours, characters, mouse, frames; from options and what it says of itself."""
+"""Theme, characters, mouse and frames a second: from the command line, else from what the terminal reports."""
 
 import argparse
 from collections.abc import Mapping
@@ -9,10 +9,11 @@ from tui.cli.options import count
 from tui.drawing.palette import PALETTES
 
 CharacterSet = Literal["braille", "half", "ascii"]
-"""Pictures made of braille, of half blocks, or of nothing but ASCII, which lines and words are made of then, too."""
+"""What pictures are drawn with; with ASCII, all lines and words are ASCII, too."""
 
 CHARACTER_SETS: tuple[CharacterSet, ...] = get_args(CharacterSet)
 FPS, CALM_FPS, MOST_FPS = 30, 10, 60
+SMALLEST = (60, 16)  # columns, rows of a terminal that the lab fits on
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +31,7 @@ USUAL = TerminalOptions()
 
 
 def add_terminal_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options that say how the lab is shown; `display_of` reads them."""
+    """Add the options for showing the lab; `terminal_options_of` reads them."""
     group = add_picture_options(parser, "auto", "auto")
     group.add_argument("--plain", action="store_true", help="no screen but a sentence a second; Ctrl+C ends it")
     group.add_argument("--no-mouse", action="store_true", help="leave the mouse to the terminal; every click has a key")
@@ -40,7 +41,7 @@ def add_terminal_options(parser: argparse.ArgumentParser) -> None:
 
 
 def add_picture_options(parser: argparse.ArgumentParser, theme: str, character_set: str) -> argparse._ArgumentGroup:
-    """Add those of them that a picture of the lab has, too, with these defaults."""
+    """Add only those that also apply to a picture of the lab, with these defaults."""
     parser.set_defaults(no_mouse=False, fps=None)
     group = parser.add_argument_group(
         "display", "auto: as the terminal says it can; pendu-tui doctor tells what that is"
@@ -60,10 +61,10 @@ def _fps(text: str) -> int:
 
 
 def terminal_options_of(options: argparse.Namespace, environment: Mapping[str, str], encoding: str) -> TerminalOptions:
-    """The display that the options describe; what they leave open is for the terminal to say."""
+    """What the options ask for; `auto` is decided by the terminal's environment and encoding."""
     calm = environment.get("TEXTUAL_ANIMATIONS", "").lower() == "none"
     return TerminalOptions(
-        suited_theme(environment) if options.theme == "auto" else options.theme,
+        fitting_theme(environment) if options.theme == "auto" else options.theme,
         ("braille" if is_utf8(encoding) else "ascii") if options.pixels == "auto" else options.pixels,
         not options.no_mouse,
         options.fps or (CALM_FPS if calm else FPS),
@@ -72,12 +73,12 @@ def terminal_options_of(options: argparse.Namespace, environment: Mapping[str, s
 
 
 def is_utf8(encoding: str) -> bool:
-    """Whether an encoding is UTF-8, however it is spelt."""
+    """Whether an encoding is UTF-8, in any spelling."""
     return encoding.lower().replace("-", "").replace("_", "") == "utf8"
 
 
-def suited_theme(environment: Mapping[str, str]) -> str:
-    """The terminal's own colours where it has few or none are wanted, else the theme for its background.
+def fitting_theme(environment: Mapping[str, str]) -> str:
+    """The terminal's own colours if it has few or NO_COLOR is set, else the theme for its background.
 
     COLORFGBG, such as "0;15", ends with the background's number among the 16 colours: 7 and 9 to 15 are light.
     """
@@ -87,7 +88,7 @@ def suited_theme(environment: Mapping[str, str]) -> str:
 
 
 def colours(environment: Mapping[str, str]) -> int:
-    """How many colours the terminal says it has, by the variables that Rich goes by."""
+    """How many colours the terminal reports, by the variables that Rich reads."""
     if environment.get("COLORTERM", "").strip().lower() in ("truecolor", "24bit"):
         return 1 << 24
     term = environment.get("TERM", "").lower()

@@ -1,6 +1,6 @@
-"""The same picture in less than half the bytes: without the colours that are in force already.
+"""The same screen in less than half the bytes, for a slow line.
 
-Every piece of text comes with all of its colours before it and a reset behind it.  Pure.
+Textual sends each piece of text with all of its colours before it and a reset after it; most of them repeat.
 """
 
 import re
@@ -13,8 +13,8 @@ _COLOURS = re.compile(
 )
 
 
-def lean(sent: str) -> str:
-    """What shows the same on a terminal without colours and attributes in force, and leaves it so."""
+def without_repeated_colours(sent: str) -> str:
+    """The same screen in fewer bytes, for a terminal with no colours or attributes in force, before and after."""
     first, *rest = _SGR.split(sent)
     parts, now, wanted = [first], "", ""
     for codes, text in zip(rest[::2], rest[1::2], strict=True):
@@ -22,8 +22,8 @@ def lean(sent: str) -> str:
             wanted = codes.lstrip("0").lstrip(";")
         else:
             wanted = f"{wanted};{codes}" if wanted else codes
-        unseen = _INVISIBLE.fullmatch(text) or (text.isspace() and _same_for_blanks(now, wanted))
-        if wanted != now and not unseen:
+        invisible = _INVISIBLE.fullmatch(text) or (text.isspace() and _same_for_blanks(now, wanted))
+        if wanted != now and not invisible:
             parts.append(_change(now, wanted))
             now = wanted
         parts.append(text)
@@ -32,7 +32,7 @@ def lean(sent: str) -> str:
 
 @lru_cache(maxsize=1024)
 def _change(now: str, wanted: str) -> str:
-    """What leads from some codes in force to others."""
+    """The sequence that changes the codes in force from `now` to `wanted`."""
     before, after = _COLOURS.fullmatch(now), _COLOURS.fullmatch(wanted)
     if not (wanted and before and after):  # attributes can only be switched off together
         return f"\x1b[0;{wanted}m" if now and wanted else f"\x1b[{wanted or 0}m"
@@ -42,6 +42,6 @@ def _change(now: str, wanted: str) -> str:
 
 @lru_cache(maxsize=1024)
 def _same_for_blanks(now: str, wanted: str) -> bool:
-    """Whether nothing differs but the colour of letters."""
+    """Whether only the colour of letters differs, which a blank does not show."""
     before, after = _COLOURS.fullmatch(now), _COLOURS.fullmatch(wanted)
     return before is not None and after is not None and before[2] == after[2]

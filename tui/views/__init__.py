@@ -1,12 +1,13 @@
 """The views.  A view is a module here with a widget, and its entry in VIEWS."""
 
 from importlib import import_module
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-from tui.views.view import View
+if TYPE_CHECKING:  # the process that computes for a view starts sooner without Textual
+    from tui.views.view import View
 
 
-class Entry(NamedTuple):
+class ViewEntry(NamedTuple):
     """Where a view is, and how one gets there."""
 
     title: str
@@ -14,16 +15,16 @@ class Entry(NamedTuple):
     widget: str
 
 
-VIEWS: dict[str, Entry] = {
-    "lab": Entry("Lab", "tui.views.lab.view", "LabView"),
-    "phase": Entry("Phase space", "tui.views.phase.view", "PhaseView"),
-    "accuracy": Entry("Accuracy", "tui.views.accuracy.view", "AccuracyView"),
-    "stability": Entry("Stability", "tui.views.stability.view", "StabilityView"),
+VIEWS: dict[str, ViewEntry] = {
+    "lab": ViewEntry("Lab", "tui.views.lab.view", "LabView"),
+    "phase": ViewEntry("Phase space", "tui.views.phase.view", "PhaseView"),
+    "accuracy": ViewEntry("Accuracy", "tui.views.accuracy.view", "AccuracyView"),
+    "stability": ViewEntry("Stability", "tui.views.stability.view", "StabilityView"),
 }
 """In the order in which v goes through them."""
 
 
-def create(name: str) -> View:
+def create(name: str) -> "View":
     """The view of this name."""
     entry = VIEWS[name]
     widget: type[View] = getattr(import_module(entry.module), entry.widget)

@@ -1,59 +1,78 @@
 """Long computations in a process of their own, result by result.
 
-A thread would take the interpreter from the lab for milliseconds at a time; `multiprocessing` cannot
-start a process while Textual stands in for stderr.
+A thread would take the interpreter from the lab for milliseconds at a time.
 """
 
+import asyncio
+import multiprocessing
 import os
-import pickle
 import signal
-import subprocess
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from typing import TypeVar
+from collections.abc import AsyncIterator, Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager, redirect_stderr
+from multiprocessing import resource_tracker
+from threading import Thread
+from typing import Any, TypeVar
 
 Item = TypeVar("Item")
 
+ENVIRONMENT = {"PYTHONSAFEPATH": "1", "PYTHONWARNINGS": "ignore"}
+"""No module from the current folder, and no word of semaphores if the lab is killed."""
+
+_items: Iterator[Any]  # in the other process: what is left to compute
+
+
+async def computed(function: Callable[..., Iterator[Item]], *arguments: object) -> AsyncIterator[Item]:
+    """Yield what function(*arguments) yields, as another process computes it.
+
+    The function must be importable, and all values picklable.  The process is killed when this task
+    is cancelled, and ends when this process does, even if that is killed.
+    """
+    loop, others = asyncio.get_running_loop(), set(multiprocessing.active_children())
+    with _spawning():
+        executor = ProcessPoolExecutor(1, multiprocessing.get_context("spawn"), _begin, (function, arguments))
+        item = loop.run_in_executor(executor, _next)
+    ours = set(multiprocessing.active_children()) - others
+    try:
+        while (found := await asyncio.shield(item)) is not None:  # an executor stumbles over cancelled items
+            yield found
+            item = loop.run_in_executor(executor, _next)
+    finally:
+        for process in ours:
+            process.kill()
+        item.add_done_callback(asyncio.Future.exception)  # else asyncio complains that nobody asked for it
+        executor.shutdown()
+
 
 @contextmanager
-def elsewhere(function: Callable[..., Iterator[Item]], *arguments: object) -> Iterator[Iterator[Item]]:
-    """What function(*arguments) yields, as another process computes it.
-
-    The function must be importable, and all values picklable.  The process is ended when the
-    context is left; should this process end without a word, it ends with the next result.
-    """
-    command = [sys.executable, "-m", "tui.views.background"]
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
-        assert process.stdin is not None
-        assert process.stdout is not None
-        pickle.dump((function, arguments), process.stdin)
-        process.stdin.close()
-        try:
-            yield _received(process.stdout)
-        finally:
-            process.kill()
+def _spawning() -> Iterator[None]:
+    """Let processes be started: with the real stderr, deaf to Ctrl+C, and in ENVIRONMENT."""
+    before = {name: os.environ.get(name, "") for name in ENVIRONMENT}  # empty is as good as not set
+    os.environ.update(ENVIRONMENT)
+    try:
+        with redirect_stderr(sys.__stderr__):  # Textual's has no file number
+            resource_tracker.ensure_running()  # or it would be started now, and unblock the signal
+            signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+            yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+        os.environ.update(before)
 
 
-def _received(stream: object) -> Iterator[Item]:
-    while True:
-        try:
-            item: Item = pickle.load(stream)  # type: ignore[arg-type]
-        except EOFError:
-            return
-        yield item
+def _begin(function: Callable[..., Iterator[Item]], arguments: tuple[object, ...]) -> None:
+    global _items
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # nothing is to be written across the screen
+    os.nice(10)  # the lab comes first
+    Thread(target=_end_with_parent, daemon=True).start()
+    _items = function(*arguments)
 
 
-def main() -> None:
-    """The other process."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl+C is the lab's business
-    if hasattr(os, "nice"):
-        os.nice(10)  # the lab comes first
-    function, arguments = pickle.load(sys.stdin.buffer)
-    for item in function(*arguments):
-        pickle.dump(item, sys.stdout.buffer)
-        sys.stdout.buffer.flush()
+def _next() -> Any:
+    return next(_items, None)
 
 
-if __name__ == "__main__":
-    main()
+def _end_with_parent() -> None:
+    if (parent := multiprocessing.parent_process()) is not None:
+        parent.join()
+    os._exit(0)

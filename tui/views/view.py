@@ -1,27 +1,100 @@
-"""View: what fills the screen between the status line and the key line."""
+"""What views are made of: a View fills the screen between status line and key line with Panes; some are Choosers."""
 
-from typing import ClassVar
+from typing import ClassVar, Generic, TypeVar
 
 from textual.containers import Container
 from textual.reactive import var
 
+from engine.methods import METHODS
 from engine.run.lockstep import Sample
+from tui.drawing.cells import CellWidget
 from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.views.keys import Key
 
+Place = TypeVar("Place")
+
+DESCRIBED_FIRST = [method.key for method in METHODS].index("velocity_verlet")
+
 
 class View(Container):
-    """A view gets these from the screen, and hands them on to its widgets with data_bind."""
+    """A view gets these from the screen, and passes them on to its panes with data_bind."""
 
     KEYS: ClassVar[tuple[Key, ...]] = ()
-    """What the help says besides the screen's keys."""
+    """The keys of its panes, for the help."""
 
     source: var[Source | None] = var(None)
     sample: var[Sample | None] = var(None)
-    """Every frame, 30 a second."""
+    """Every frame."""
     sample_10hz: var[Sample | None] = var(None)
     """The sample as often as people can read it, 10 times a second."""
     sample_5hz: var[Sample | None] = var(None)
     """The sample as often as a chart is worth building, 5 times a second."""
     shown: var[Shown] = var(Shown())
+
+
+class Pane(CellWidget):
+    """Draws a source at one of its samples, again whenever one of the three values changes."""
+
+    source: var[Source | None] = var(None)
+    sample: var[Sample | None] = var(None)
+    shown: var[Shown] = var(Shown())
+
+    def watch_source(self) -> None:
+        self.draw()
+
+    def watch_sample(self) -> None:
+        self.draw()
+
+    def watch_shown(self) -> None:
+        self.draw()
+
+    @property
+    def is_live(self) -> bool:
+        """Whether the source is the lab, where runs can be started, and not a recording."""
+        return self.source is not None and self.source.kind == "LIVE"
+
+    def draw(self) -> None:
+        if self.source is not None and self.sample is not None and self.drawable:
+            self.paint(self.source, self.sample)
+
+    def paint(self, source: Source, sample: Sample) -> None:
+        """Show the sample; called when there is one, and room to show it."""
+        raise NotImplementedError
+
+
+class Chooser(Pane, Generic[Place], can_focus=True):
+    """A pane with a cursor, to choose how the lab is to go on; of one method it says more.
+
+    A recording has nothing to choose: there the arrows, enter and esc are the replay's.
+    """
+
+    def __init__(self, id: str | None = None) -> None:
+        super().__init__(id)
+        self.cursor: Place | None = None
+        self.index = DESCRIBED_FIRST  # of the method that is described
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        if action in ("choose", "cancel"):
+            return self.is_live and self.cursor is not None
+        return self.is_live or action != "move"
+
+    def choose(self, place: Place) -> None:
+        """Ask for what is at this place."""
+        raise NotImplementedError
+
+    def action_choose(self) -> None:
+        if (place := self.cursor) is not None:
+            self.cursor = None
+            self.choose(place)
+
+    def action_cancel(self) -> None:
+        self.cursor = None
+        self.draw()
+
+    def action_method(self, down: int) -> None:
+        """Describe the next of the methods that are shown."""
+        if shown := self.shown.indices:
+            at = shown.index(self.index) if self.index in shown else -1
+            self.index = shown[(at + down) % len(shown)]
+            self.draw()

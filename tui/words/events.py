@@ -1,51 +1,52 @@
-"""The diary of a sitting: what was done, and what the methods did, with the simulated times."""
+"""The list of events: the user's inputs and the methods' milestones, with their simulated times."""
 
 import math
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from engine.run.observer import Milestone
+from engine.run.verdict import Verdict
 from recordings.events import Event
-from tui.drawing.palette import FRAME, TEXT
 from tui.playback.source import Source
-from tui.words.findings import short, times
+from tui.words.findings import short_name
+from tui.words.numbers import two_digits
+
+VERDICTS: dict[Verdict, str] = {"bounded": "stays bounded", "drifts": "loses energy", "grows": "gains energy"}
 
 
-class Line(NamedTuple):
-    """A line of the diary."""
+class EventLine(NamedTuple):
+    """A line of the list."""
 
     run: int
     step: int
     t: float  # s, simulated
     text: str
-    owner: int  # whose colour it has
+    kind: Literal["change", "mark", "milestone"]
+    method: int | None = None  # of a milestone: index into METHODS
 
     def __str__(self) -> str:
         return f"{self.t:7.2f} {self.text}" if abs(self.t) < 1e4 else f"{self.t:7.1e} {self.text}"
 
 
-def diary(source: Source) -> list[Line]:
-    """Starts, changes and marks of all runs, and what happened in the one on screen; earliest first.
+def event_lines(source: Source) -> list[EventLine]:
+    """Starts, changes and marks of all runs, and the milestones of the one on screen; earliest first.
 
-    Pauses and speeds are no part of the diary: they change no number.
+    Pauses and speeds are not listed: they change no number.
     """
     run = source.sample.run
-    happened = [Line(run, each.step, each.t, happening_text(each), each.index) for each in source.milestones]
-    return sorted([*_done(source), *happened], key=lambda line: line[:2])  # stable: first what was done
+    milestones = [EventLine(run, m.step, m.t, milestone_text(m), "milestone", m.index) for m in source.milestones]
+    return sorted([*_inputs(source), *milestones], key=lambda line: line[:2])  # stable: inputs first
 
 
-def _done(source: Source) -> Iterator[Line]:
+def _inputs(source: Source) -> Iterator[EventLine]:
     marks = 0
     for event in [*source.events, *source.later_marks]:
+        where = event.run, event.step, event.t
         if event.kind == "mark":
             marks += 1
-            yield _line(event, f"mark {marks}" + (f": {event.text}" if event.text else ""), TEXT)
+            yield EventLine(*where, f"mark {marks}" + (f": {event.text}" if event.text else ""), "mark")
         elif event.kind in ("start", "set_h"):
-            yield _line(event, change_text(event), FRAME)
-
-
-def _line(event: Event, text: str, owner: int) -> Line:
-    return Line(event.run, event.step, event.t, text, owner)
+            yield EventLine(*where, change_text(event), "change")
 
 
 def change_text(event: Event) -> str:
@@ -55,17 +56,13 @@ def change_text(event: Event) -> str:
         numbers = f"{math.degrees(scene.theta):.4g}° {scene.omega:.4g} rad/s"
         return f"start {numbers if scene.name == 'custom' else scene.name}, h {scene.h:.4g} s"
     assert event.h is not None
-    backwards, equal = "time backwards, " if event.h < 0 else "", ", equal cost" if event.equal_cost else ""
+    backwards, equal = "time reversed, " if event.h < 0 else "", ", equal cost" if event.equal_cost else ""
     return f"{backwards}h {abs(event.h):.4g} s{equal}"
 
 
-def happening_text(milestone: Milestone) -> str:
-    """What a method did."""
-    name = short(milestone.method)
-    match milestone.kind:
-        case "over the top":
-            return f"{name} over the top, {times(1 + milestone.energy_error)} E0"
-        case "failed":
-            return f"{name} failed"
-        case "verdict":
-            return f"{name}: {milestone.verdict}"
+def milestone_text(milestone: Milestone) -> str:
+    """What a method does."""
+    name = short_name(milestone.method)
+    if milestone.kind == "over the top":
+        return f"{name} over the top, {two_digits(1 + milestone.energy_error)} E0"
+    return f"{name} {'failed' if milestone.kind == 'failed' else VERDICTS[milestone.verdict]}"

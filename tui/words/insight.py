@@ -1,22 +1,41 @@
-"""What to notice, a sentence at a time: from measured events and verdicts only."""
+"""The one sentence of the moment, from milestones and verdicts; and hints in the first minute."""
 
 import math
+from collections.abc import Iterable
 
 from engine.methods import METHODS
 from engine.run.lockstep import Sample
 from engine.run.observer import Milestone
 from engine.scenes import Scene
+from recordings.events import Event, EventKind
 from tui.playback.source import Source
-from tui.words.findings import failed, leaving, over_the_top, so_far, staying
+from tui.words.findings import ending, endings, leaving, so_far, staying
 
-WATCH = 8.0  # s of the clock during which a run's beginning says what to watch
-FRESH = 6.0  # s of the clock for which something is news
-RESTING = "Nothing moves: the pendulum started at rest where no force acts on it."
-TURN = 8.0  # s of the clock for which one of the lasting sentences stays
+WATCH = 8.0  # s of the clock at the beginning of a run, for the scene's own sentence
+FRESH = 6.0  # s of the clock for which a milestone is news
+TURN = 8.0  # s of the clock until the next of the lasting sentences
+RESTING = "Nothing moves: the pendulum started at rest in equilibrium."
+
+HINT_SHOWN = 6.0  # s
+HINTS: tuple[tuple[float, EventKind, str], ...] = (
+    (24.0, "pause", "Press space to pause, then . or , to step forward or back."),
+    (38.0, "set_h", "Press + for a larger step: which methods conserve energy?"),
+    (52.0, "start", "Click anywhere in phase space (F3) to start from there."),
+)
+"""Seconds on screen until the hint is due; the event which shows that the user knows it already; the hint."""
+
+
+def hint(seconds: float, events: Iterable[Event]) -> str:
+    """The hint that is due; "" if none is."""
+    for begin, kind, text in HINTS:
+        if begin <= seconds < begin + HINT_SHOWN:
+            known = any(event.kind == kind and (kind != "start" or event.run > 1) for event in events)
+            return "" if known else text
+    return ""
 
 
 def insight(source: Source) -> str:
-    """The sentence: nothing moves, time is back at its start, news, what to watch, or what is known, in turn."""
+    """The sentence: equilibrium, the return to t = 0, news, the scene's own sentence, or the lasting ones in turn."""
     sample, scene, returned = source.sample, source.scene, source.history.returned
     if source.exact.regime == "equilibrium":
         return RESTING
@@ -32,46 +51,35 @@ def insight(source: Source) -> str:
 
 
 def _news(source: Source, seconds: float) -> str:
-    """What has happened within the last simulated seconds; failures come first, then tops, then verdicts."""
-    sample, kinds = source.sample, ("failed", "over the top", "verdict")
-    recent = [each for each in source.milestones if (sample.step - each.step) * abs(source.stepping.h) < seconds]
-    newest = sorted(recent, key=lambda each: (-kinds.index(each.kind), each.step))
-    return next(filter(None, (_told(source, each) for each in reversed(newest))), "")
+    """The newest milestone of the last simulated seconds; failures first, then over the top, then verdicts."""
+    kinds = ("verdict", "over the top", "failed")
+    recent = [each for each in source.milestones if (source.sample.step - each.step) * abs(source.stepping.h) < seconds]
+    newest = sorted(recent, key=lambda each: (kinds.index(each.kind), each.step))
+    return next(filter(None, (_sentence(source, each) for each in reversed(newest))), "")
 
 
-def _told(source: Source, milestone: Milestone) -> str:
-    if milestone.kind == "failed":
-        return failed(milestone)
-    if milestone.kind == "over the top":
-        return over_the_top(milestone)
+def _sentence(source: Source, milestone: Milestone) -> str:
+    if milestone.kind != "verdict":
+        return ending(milestone)
     return staying(source) if milestone.verdict == "bounded" else leaving(source, milestone.index)
 
 
 def lasting(source: Source) -> list[str]:
-    """What is known of the run by now, what matters most first; at least one sentence."""
-    happened = {(each.kind, each.index): each for each in source.milestones}
-    failures = [failed(each) for (kind, _), each in happened.items() if kind == "failed"]
-    tops = [
-        over_the_top(each)
-        for (kind, index), each in happened.items()
-        if kind == "over the top" and ("failed", index) not in happened
-    ]
-    moves = [leaving(source, index) for index in range(len(METHODS)) if not happened.keys() & _gone(index)]
-    known = list(filter(None, [*failures, *tops, staying(source), *moves]))
+    """All that is known of the run, the most important first; at least one sentence."""
+    ended = endings(source)
+    ends = sorted(ended.values(), key=lambda each: (each.kind != "failed", each.step))
+    moves = [leaving(source, index) for index in range(len(METHODS)) if index not in ended]
+    known = list(filter(None, [*map(ending, ends), staying(source), *moves]))
     return [*known, *filter(None, [_watch(source)])] if known else [so_far(source)]
 
 
 def _watch(source: Source) -> str:
-    """What the scene says to watch, as long as its step size is in force."""
+    """The scene's own sentence, which holds for its own step size only."""
     return source.scene.watch if source.stepping.h == source.scene.h else ""
 
 
-def _gone(index: int) -> set[tuple[str, int]]:
-    return {("failed", index), ("over the top", index)}
-
-
 def return_text(scene: Scene, sample: Sample) -> str:
-    """How far each method is from its start, where time has run back to it: sqrt(dtheta² + (domega/w0)²)."""
+    """Each method's distance from the start when time has run back to it: sqrt(dtheta² + (domega/w0)²)."""
     misses = [
         "failed"
         if reading.diverged_at is not None
@@ -79,4 +87,4 @@ def return_text(scene: Scene, sample: Sample) -> str:
         for reading in sample.readings
     ]
     each = ", ".join(f"{method.letter} {miss}" for method, miss in zip(METHODS, misses, strict=True))
-    return f"Back at t = 0, the start is missed by {each} rad."
+    return f"Back at t = 0. Missed the start by {each} rad."

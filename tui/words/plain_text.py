@@ -1,4 +1,4 @@
-"""The lab without a screen: a sentence a second, and one for whatever happens.  For screen readers and logs."""
+"""The lab without a screen, for screen readers and logs: a sentence per second, and one for each event."""
 
 import time
 from collections.abc import Callable
@@ -6,8 +6,8 @@ from collections.abc import Callable
 from engine.methods import METHODS
 from tui.playback.source import Source
 from tui.words.describe import description
-from tui.words.events import diary
-from tui.words.findings import short
+from tui.words.events import event_lines
+from tui.words.findings import short_name
 from tui.words.insight import TURN, insight
 from tui.words.numbers import seconds
 
@@ -21,16 +21,16 @@ def plain(
     clock: Callable[[], float] = time.monotonic,
     sleep: Callable[[float], object] = time.sleep,
 ) -> None:
-    """Tell what runs, and then what happens, until somebody stops it or the recording is at its end."""
+    """Say what runs, then what happens, until `stopped` or the end of the recording."""
     for sentence in description(source):
         say(sentence)
     began, second, news = clock(), 0, False
     source.tick(began)
-    known = set(diary(source))
+    known = set(event_lines(source))
     while not stopped() and not (source.kind == "REPLAY" and source.playhead.paused):
         sleep(TICK)
         source.tick(clock())
-        for line in diary(source):
+        for line in event_lines(source):
             if line not in known:
                 known.add(line)
                 news = True
@@ -42,6 +42,6 @@ def plain(
 
 
 def numbers(source: Source) -> str:
-    """Time and energy errors."""
-    errors = [f"{short(m)} {r.energy_error:+.2g}" for m, r in zip(METHODS, source.sample.readings, strict=True)]
+    """As "3.00 s: energy errors Explicit Euler +0.4, …"."""
+    errors = [f"{short_name(m)} {r.energy_error:+.2g}" for m, r in zip(METHODS, source.sample.readings, strict=True)]
     return f"{seconds(source.sample.t)}: energy errors {', '.join(errors)}."

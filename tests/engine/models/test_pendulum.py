@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.models.exact_pendulum import ExactMotion
-from engine.models.pendulum import acceleration, energy, energy_reference, separatrix_energy
+from engine.models.pendulum import acceleration, energy, energy_reference, separatrix_energy, separatrix_margin
 from engine.scenes import Scene
 
 
@@ -41,6 +41,17 @@ def test_the_acceleration_is_minus_the_slope_of_the_energy(theta: float) -> None
 
 def test_upright_and_at_rest_it_has_the_energy_of_the_separatrix() -> None:
     assert energy(9.81, math.pi, 0.0) == separatrix_energy(9.81) == 2 * 9.81
+
+
+@given(theta=st.floats(-3, 3), omega=st.floats(-10, 10))
+def test_the_margin_is_what_the_energy_leaves_to_the_separatrix(theta: float, omega: float) -> None:
+    share = energy(9.81, theta, omega) / separatrix_energy(9.81)
+    assert separatrix_margin(9.81**0.5, theta, omega) == pytest.approx(1 - share, abs=1e-14)  # roundings below 6
+
+
+def test_the_margin_keeps_its_digits_where_the_energy_has_lost_them() -> None:
+    # cos²((pi - 1e-6)/2) is 2.5e-13; 1e-9 is what rounding of the angle itself costs: 2e-16 of 1e-6
+    assert separatrix_margin(9.81**0.5, math.pi - 1e-6, 0.0) == pytest.approx(2.5e-13, rel=1e-9)
 
 
 def test_errors_are_relative_to_the_start_or_where_that_has_no_energy_to_the_separatrix() -> None:

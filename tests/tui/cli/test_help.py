@@ -6,7 +6,6 @@ import pytest
 from tests.tui.command_line import pendu
 from tui.cli.dispatch import COMMANDS, command_of
 from tui.cli.errors import Exit
-from tui.cli.options import joined
 
 
 def test_help_names_every_command():
@@ -40,7 +39,7 @@ def test_the_help_of_a_command_ends_with_examples_that_its_parser_takes(name):
     for example in examples:
         words = shlex.split(example.split("|")[0])[1:]
         command = words.pop(0) if words and not words[0].startswith("-") else "live"
-        command_of(command)[0].parse_args(joined(words))
+        command_of(command)[0].parse_args(words)
 
 
 @pytest.mark.parametrize("name", COMMANDS)

@@ -6,13 +6,13 @@ from hypothesis import strategies as st
 
 from engine.scenes import DEFAULT_SCENE, SCENES, Scene, SceneError
 from tui.cli.errors import UserError
-from tui.cli.options import Parser, add_scene_options, angle, joined, scene_of
+from tui.cli.options import Parser, add_scene_options, angle, scene_of
 
 
 def scene_from(*arguments: str) -> Scene:
     parser = Parser(prog="pendu-tui test")
     add_scene_options(parser)
-    return scene_of(parser.parse_args(joined(arguments)))
+    return scene_of(parser.parse_args(list(arguments)))
 
 
 def test_without_options_the_scene_is_the_default_one():

@@ -2,11 +2,7 @@
 
 import csv
 import io
-import json
-import signal
-import subprocess
-import sys
-import time
+from itertools import islice
 
 import jsonschema
 import pytest
@@ -240,17 +236,16 @@ def test_extreme_starts_print_numbers_and_no_nan(extreme):
     assert "inf" not in text.out
 
 
-def test_ctrl_c_keeps_what_is_done():
-    program = "import sys; from tui.cli.dispatch import main; sys.exit(main())"
-    minutes = ["--time", "20", "--h-values", "0.1:1e-6:9", "--no-compiled"]
-    command = [sys.executable, "-c", program, "accuracy", *minutes, "--json"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        time.sleep(2)
-        process.send_signal(signal.SIGINT)
-        out, err = process.communicate(timeout=60)
-    assert process.returncode == 130
-    assert err == "pendu-tui: interrupted; what was done is kept.\n"
-    answer = json.loads(out)
-    jsonschema.validate(answer, SCHEMA)
-    assert answer["interrupted"]
-    assert 0 < len(answer["points"]) < 36
+def test_ctrl_c_keeps_what_is_done(monkeypatch):
+    measured = Study.points
+
+    def interrupted(study, rungs):
+        yield from islice(measured(study, rungs), 5)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Study, "points", interrupted)
+    told = pendu(*QUICK, "--target", "1e-4", "--json")
+    assert (told.code, told.err) == (130, "pendu-tui: interrupted; what was done is kept.\n")
+    jsonschema.validate(told.json, SCHEMA)
+    assert told.json["interrupted"]
+    assert (len(told.json["points"]), told.json["recommendation"]) == (5, None)

@@ -3,7 +3,7 @@ from types import SimpleNamespace
 import pytest
 
 from tests.tui.command_line import pendu
-from tui.commands.doctor import colours, encoding, folder, mouse, size, unfinished
+from tui.commands.doctor import colour, encoding, folder, mouse, size, unfinished
 
 
 def test_doctor_reports_and_never_fails():
@@ -53,7 +53,7 @@ def test_an_encoding_without_braille_is_answered_with_how_to_change_it():
     ],
 )
 def test_colours_are_read_from_the_environment(environment, found, advice):
-    finding = colours(environment)
+    finding = colour(environment)
     assert found in finding.found
     assert advice in finding.advice
     assert bool(finding.advice) == bool(advice)

@@ -9,8 +9,8 @@ from recordings.live_recorder import LiveRecorder
 from recordings.verify import verify
 from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PtyLab
-from tui.commands.live import recording_lab
 from tui.playback.live import Live
+from tui.screens.launch import live_screen
 
 
 def test_labs_that_are_opened_in_the_same_second_record_each_for_itself(tmp_path):
@@ -30,7 +30,7 @@ def test_labs_that_are_opened_in_the_same_second_record_each_for_itself(tmp_path
 def test_a_name_that_was_taken_meanwhile_is_replaced_only_if_nobody_gave_it(tmp_path, or_next):
     path = tmp_path / "now.mcap"
     live = Live(DEFAULT_SCENE)
-    lab = recording_lab(live, path, or_next=or_next)
+    lab = live_screen(live, path, or_next=or_next)
     other = LiveRecorder(path)
     if or_next:
         lab._prepare()

@@ -8,7 +8,7 @@ import pytest
 from recordings.library import GOLDEN
 from recordings.recording import Recording
 from recordings.verify import verify
-from tests.recordings.sittings import record, two_runs
+from tests.recordings.examples import record, two_runs
 from tests.tui.command_line import pendu
 
 

@@ -11,7 +11,7 @@ from engine.methods import METHODS
 from engine.scenes import SCENES, Scene
 from engine.stability.grid import Grid
 from engine.stability.outcomes import FATES, UNKNOWN
-from engine.stability.study import Study, amplitude
+from engine.stability.study import StabilityStudy, amplitude
 from tests.tui.command_line import pendu
 
 SMALL = ("--steps", 300, "--z-values", "0.1:3:12", "--theta-values", "0.5,2")
@@ -165,7 +165,7 @@ def test_before_the_scenes_own_z_its_cell_is_not_known(interrupted):
 
 def test_a_table_of_many_amplitudes_takes_the_memory_of_a_strip():
     tracemalloc.start()
-    rows, whole = Study(Scene(), np.linspace(0.1, 3, 2000).tolist(), steps=1).table()
+    rows, whole = StabilityStudy(Scene(), np.linspace(0.1, 3, 2000).tolist(), steps=1).table()
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert whole

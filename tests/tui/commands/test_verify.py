@@ -8,7 +8,7 @@ from mcap.writer import Writer
 from engine.run.lockstep import Sample
 from recordings.events import Entry
 from recordings.library import golden_names
-from tests.recordings.sittings import record, two_runs
+from tests.recordings.examples import record, two_runs
 from tests.tui.command_line import pendu
 
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from tui.drawing.axes import decades, decades_across, linear, times
+from tui.drawing.axes import linear_axis, log_axis, log_x_axis, time_axis
 
 ROWS = st.integers(3, 60)
 
@@ -16,10 +16,8 @@ def rows_of_labels(axis, rows):
 
 
 @given(st.floats(-17, 6), st.floats(0, 23), ROWS)
-def test_a_logarithmic_axis_holds_its_numbers_and_labels_decades_in_the_middle_of_rows_equally_far_apart(
-    low, size, rows
-):
-    axis = decades(low, low + size, rows)
+def test_a_logarithmic_axis_covers_its_range_and_labels_evenly_spaced_rows(low, size, rows):
+    axis = log_axis(low, low + size, rows)
     assert axis.low <= low
     assert low + size <= axis.high
     assert all(float(label) == pytest.approx(10.0**place) for place, label in axis.labels.items())
@@ -27,9 +25,9 @@ def test_a_logarithmic_axis_holds_its_numbers_and_labels_decades_in_the_middle_o
 
 
 @given(st.floats(-1e6, 1e6), st.floats(-1e6, 1e6), ROWS)
-def test_a_linear_axis_holds_its_numbers_and_labels_round_ones_in_the_middle_of_rows_equally_far_apart(a, b, rows):
+def test_a_linear_axis_covers_its_range_and_labels_evenly_spaced_rows(a, b, rows):
     low, high = min(a, b), max(a, b)
-    axis = linear(low, high, rows)
+    axis = linear_axis(low, high, rows)
     assert axis.low <= low
     assert high <= axis.high
     assert_even(rows_of_labels(axis, rows))
@@ -46,22 +44,22 @@ def assert_even(rows):
 
 
 @given(st.floats(-1e6, 1e6), st.floats(-1e6, 1e6), st.integers(8, 60))
-def test_an_axis_with_some_room_has_labels_enough_and_uses_at_least_a_third_of_it(a, b, rows):
+def test_an_axis_has_enough_labels_and_its_data_fills_at_least_a_third_of_it(a, b, rows):
     low, high = min(a, b), max(a, b)
     assume(high - low > max(1e-3 * max(abs(a), abs(b)), 1e-15))
-    axis = linear(low, high, rows)
+    axis = linear_axis(low, high, rows)
     assert 2 <= len(axis.labels) <= rows / 2 + 1
     assert high - low >= 0.33 * (axis.high - axis.low)  # 8 rows: the next round step, and whole rows between labels
 
 
 @given(st.floats(-1e6, 1e6), st.floats(0, 1), ROWS)
 def test_labels_stay_narrow_enough_for_the_smallest_chart(middle, spread, rows):
-    for axis in (linear(*sorted((middle, middle * (1 + spread))), rows), decades(-17, 6, rows)):
+    for axis in (linear_axis(*sorted((middle, middle * (1 + spread))), rows), log_axis(-17, 6, rows)):
         assert 5 <= axis.label_width <= 11  # a sign, the six digits that differ, and e-15
 
 
-def test_the_axes_that_the_lab_shows_most():
-    assert decades(-7.3, 0.6, 14).labels == {
+def test_the_most_common_axes_of_the_lab():
+    assert log_axis(-7.3, 0.6, 14).labels == {
         2: "100",
         0: "1",
         -2: "1e-2",
@@ -70,14 +68,14 @@ def test_the_axes_that_the_lab_shows_most():
         -8: "1e-8",
         -10: "1e-10",
     }
-    assert list(linear(-0.06, 4.3, 14).labels.values()) == ["-1", "0", "1", "2", "3", "4", "5"]
-    assert list(linear(4.503, 4.509, 10).labels.values()) == ["4.502", "4.504", "4.506", "4.508", "4.510"]
-    assert list(linear(-3e-7, 2e-7, 10).labels.values())[:2] == ["-4e-7", "-2e-7"]
+    assert list(linear_axis(-0.06, 4.3, 14).labels.values()) == ["-1", "0", "1", "2", "3", "4", "5"]
+    assert list(linear_axis(4.503, 4.509, 10).labels.values()) == ["4.502", "4.504", "4.506", "4.508", "4.510"]
+    assert list(linear_axis(-3e-7, 2e-7, 10).labels.values())[:2] == ["-4e-7", "-2e-7"]
 
 
 @given(st.floats(0, 1e9), st.floats(0.5, 1e6), st.integers(8, 200))
 def test_times_are_labelled_with_round_numbers_and_one_unit(start, size, columns):
-    axis = times(start, start + size, columns)
+    axis = time_axis(start, start + size, columns)
     labels = list(axis.labels.values())
     assert len(labels) <= columns / 10 + 2
     units = [label.partition(" ")[2] for label in labels]
@@ -86,14 +84,14 @@ def test_times_are_labelled_with_round_numbers_and_one_unit(start, size, columns
 
 
 def test_an_hour_is_labelled_in_minutes_and_a_window_in_seconds():
-    assert list(times(0, 3600, 70).labels.values()) == ["0", "10", "20", "30", "40", "50", "60 min"]
-    assert list(times(3.2, 23.2, 48).labels.values()) == ["5", "10", "15", "20 s"]
-    assert list(times(0, 20, 24, " run").labels.values()) == ["0", "10", "20 s run"]
+    assert list(time_axis(0, 3600, 70).labels.values()) == ["0", "10", "20", "30", "40", "50", "60 min"]
+    assert list(time_axis(3.2, 23.2, 48).labels.values()) == ["5", "10", "15", "20 s"]
+    assert list(time_axis(0, 20, 24, " run").labels.values()) == ["0", "10", "20 s run"]
 
 
 @given(st.floats(-300, 300), st.floats(0, 600), st.integers(9, 200))
-def test_decades_from_left_to_right_hold_their_numbers_and_do_not_crowd(low, size, columns):
-    axis = decades_across(low, low + size, columns)
+def test_a_horizontal_logarithmic_axis_covers_its_range_and_does_not_crowd_labels(low, size, columns):
+    axis = log_x_axis(low, low + size, columns)
     assert axis.low <= low
     assert low + size <= axis.high
     assert len(axis.labels) <= columns / 8 + 1
@@ -101,5 +99,5 @@ def test_decades_from_left_to_right_hold_their_numbers_and_do_not_crowd(low, siz
 
 
 def test_a_share_is_clipped_to_the_axis():
-    assert decades(-4, 0, 9).share([-100, 100]).tolist() == [0, 1]
-    assert np.isnan(decades(-4, 0, 9).share(np.nan))
+    assert log_axis(-4, 0, 9).share([-100, 100]).tolist() == [0, 1]
+    assert np.isnan(log_axis(-4, 0, 9).share(np.nan))

@@ -18,7 +18,7 @@ from tui.playback.cursor import DENSE, PIECES, pieces
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
-from tui.words.events import diary
+from tui.words.events import event_lines
 
 NANOSECOND = 1e-9  # what clocks in a file are rounded to
 LENGTH = 12.0  # s, of the eventful sitting
@@ -161,18 +161,18 @@ def test_the_next_event_and_the_one_before_are_found(table):
         assert table.replay.playhead.position == place
 
 
-def test_the_next_event_is_also_what_a_method_does_as_the_diary_lists_it(tmp_path):
+def test_the_next_event_may_be_a_milestone(tmp_path):
     table = Table(recorded(tmp_path / "drift.mcap", 20.0))
     listed = []
     for _ in range(3):
         table.replay.seek_event(1)
         table.replay.pause(True)
         table.run(1 / FPS)
-        listed.append([line.text for line in diary(table.replay)][sum(map(len, listed)) + 1 :])
+        listed.append([line.text for line in event_lines(table.replay)][sum(map(len, listed)) + 1 :])
     assert listed == [
         ["Explicit Euler over the top, 5.1 E0"],
-        ["Explicit Euler: grows", "RK4: drifts"],
-        ["Symplectic Euler: bounded", "Verlet: bounded"],
+        ["Explicit Euler gains energy", "RK4 loses energy"],
+        ["Symplectic Euler stays bounded", "Verlet stays bounded"],
     ]
     table.replay.seek_event(1)
     assert table.replay.playhead.position == table.replay.length

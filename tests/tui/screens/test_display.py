@@ -8,9 +8,9 @@ from rich.color import Color
 from tests.tui.conftest import lines_of
 from tests.tui.stage import key_of, lab
 from tui.drawing.palette import PALETTES, TEXT
+from tui.screens.keys import COMMON
 from tui.terminal.options import CHARACTER_SETS
 from tui.views import VIEWS
-from tui.views.keys import COMMON
 
 
 async def picture(theatre) -> str:

@@ -9,10 +9,10 @@ from tests.tui.stage import lab
 from tui.playback.history import QUANTITIES
 from tui.playback.live import Live
 from tui.playback.shown import WINDOWS
-from tui.screens.help import Help, help_text
+from tui.screens.keys import COMMON, LIVE
 from tui.screens.start_form import StartForm
 from tui.screens.status_line import StatusLine
-from tui.views.keys import COMMON, LIVE
+from tui.screens.text import TextScreen, help_text
 from tui.views.lab.error_table import ErrorTable
 from tui.views.lab.pendulums import Pendulum
 from tui.views.lab.time_chart import TimeChart
@@ -152,7 +152,7 @@ async def test_the_form_says_what_is_wrong_as_it_is_typed_and_does_not_start_tha
 async def test_help_and_palette_open_and_close_and_the_lab_runs_on_behind():
     async with lab() as theatre:
         await theatre.press("question_mark")
-        assert isinstance(theatre.app.screen, Help)
+        assert isinstance(theatre.app.screen, TextScreen)
         await theatre.run(1)
         assert theatre.source.sample.t == pytest.approx(1)
         await theatre.press("escape")

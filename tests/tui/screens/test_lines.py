@@ -14,10 +14,10 @@ from tui.playback.replay import Replay
 from tui.playback.shown import Shown
 from tui.playback.source import RecordingStatus
 from tui.screens.insight_line import fitted
-from tui.screens.key_line import Hint, key_row
+from tui.screens.key_line import key_row
+from tui.screens.keys import COMMON, LIVE, hinted
 from tui.screens.seek_bar import bar, facts
 from tui.screens.status_line import speed_text, status_row
-from tui.views.keys import COMMON, LIVE, hints
 from tui.views.lab.error_table import table
 
 
@@ -175,8 +175,8 @@ def test_a_sentence_that_does_not_fit_ends_in_an_ellipsis():
 
 
 def test_the_key_line_shows_whole_hints_each_a_button():
-    keys = [Hint(key.shown, key.hint, key.action) for key in hints((*LIVE, *COMMON))]
+    keys = hinted((*LIVE, *COMMON))
     row, places = key_row(keys, 60)
     assert text(row) == " space Pause  + Larger h  i Start  p Scene  ? Help  q Quit"
     for first, end, action in places:
-        assert action in [key.action for key in keys if f" {key.key} {key.label} " == (text(row) + " ")[first:end]]
+        assert action in [key.action for key in keys if f" {key.shown} {key.hint} " == (text(row) + " ")[first:end]]

@@ -12,7 +12,7 @@ from tui.terminal.options import (
     TerminalOptions,
     add_terminal_options,
     colours,
-    suited_theme,
+    fitting_theme,
     terminal_options_of,
 )
 
@@ -53,7 +53,7 @@ def test_what_is_asked_for_is_taken_whatever_the_terminal_says(theme, character_
     ],
 )
 def test_the_theme_follows_what_the_terminal_says(environment, theme):
-    assert suited_theme(XTERM | environment) == theme
+    assert fitting_theme(XTERM | environment) == theme
 
 
 @pytest.mark.parametrize(

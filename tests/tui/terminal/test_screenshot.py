@@ -8,7 +8,7 @@ from recordings import library
 from tests.tui.stage import lab
 from tui.screens.key_line import KeyLine
 from tui.screens.status_line import StatusLine
-from tui.terminal.screenshot import save_picture, text_of
+from tui.terminal.screenshot import save_screenshot, text_of
 from tui.views.lab.error_table import ErrorTable
 
 NOON = time.struct_time((2026, 11, 20, 12, 0, 0, 4, 324, 0))
@@ -34,7 +34,7 @@ def test_special_characters_come_through():
 
 
 def test_pictures_of_the_same_second_do_not_overwrite_each_other(tmp_path):
-    first, second = (save_picture("<svg/>", tmp_path / "new", NOON) for _ in range(2))
+    first, second = (save_screenshot("<svg/>", tmp_path / "new", NOON) for _ in range(2))
     assert [path.name for path in (*first, *second)] == [
         "2026-11-20T12-00-00.svg",
         "2026-11-20T12-00-00.txt",

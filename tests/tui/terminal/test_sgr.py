@@ -1,11 +1,11 @@
-"""What is sent in fewer bytes looks the same on a terminal."""
+"""The screen looks the same with fewer bytes sent."""
 
 import pyte
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tui.terminal.sgr import lean
+from tui.terminal.sgr import without_repeated_colours
 
 COLOURS = ["38;2;1;2;3", "38;2;9;9;9", "38;5;7", "31", "97"]
 GROUNDS = ["48;2;18;18;18", "48;5;3", "44", "107"]
@@ -40,9 +40,9 @@ def shown(*sent: str) -> list[object]:
 
 
 @given(st.lists(PIECES, max_size=12).map("".join), st.lists(PIECES, max_size=12).map("".join))
-def test_it_looks_the_same_write_after_write(one: str, other: str):
+def test_the_screen_looks_the_same_after_each_write(one: str, other: str):
     one, other = f"{one}\x1b[0m", f"{other}\x1b[0m"
-    assert shown(lean(one), lean(other)) == shown(one, other)
+    assert shown(without_repeated_colours(one), without_repeated_colours(other)) == shown(one, other)
 
 
 ON = ";48;2;18;18;18m"
@@ -58,5 +58,5 @@ ON = ";48;2;18;18;18m"
         (f"\x1b[31{ON}a\x1b[0m\x1b[5;9H\x1b[31{ON}b\x1b[0m", f"\x1b[31{ON}a\x1b[5;9Hb\x1b[0m"),
     ],
 )
-def test_what_is_in_force_is_not_said_again(sent: str, less: str):
-    assert lean(sent) == less
+def test_colours_in_force_are_not_sent_again(sent: str, less: str):
+    assert without_repeated_colours(sent) == less

@@ -154,6 +154,22 @@ def test_a_lab_that_was_stopped_goes_on_where_it_was(tmp_path, how):
     assert max(after - before for before, after in itertools.pairwise(times)) < 1.0
 
 
+def test_signals_that_come_while_the_lab_writes_do_not_freeze_it(tmp_path):
+    chance = random.Random(1)
+    with session(tmp_path) as pendu:
+        pendu.wait_for(RECORDING)
+        for number in [signal.SIGCONT] * 100 + [signal.SIGTSTP, signal.SIGCONT] * 10:
+            pendu.signal(number)
+            pendu.run(chance.uniform(0, 0.03))
+        pendu.run(0.5)
+        pendu.type(" ")
+        pendu.wait_for("paused")
+        pendu.type("q")
+        assert pendu.end() == 0
+    (path,) = tmp_path.iterdir()
+    assert verify(path).identical
+
+
 def standing(pendu: PtyLab) -> list[str]:
     """Pause; returns what is on the screen then."""
     pendu.wait_for("REC 1 s")

@@ -1,11 +1,11 @@
-"""A wire that carries less than is sent is found out, and then nothing waits in it."""
+"""A slow line is detected, and then hardly anything waits in it."""
 
 import math
 from collections import deque
 
 import pytest
 
-from tui.terminal.throughput import SYSTEMS, Throughput
+from tui.terminal.throughput import SYSTEM_BUFFER, Throughput
 
 FRAME, FPS = 3000, 30  # bytes, 1/s
 
@@ -25,7 +25,7 @@ class Line:
         for _ in range(round(seconds * FPS)):
             self.now += 1 / FPS
             self.held = max(0.0, self.held - self.rate / FPS)
-            while self.writing and self.held - sum(size for _, size in list(self.writing)[1:]) <= SYSTEMS:
+            while self.writing and self.held - sum(size for _, size in list(self.writing)[1:]) <= SYSTEM_BUFFER:
                 began, size = self.writing.popleft()
                 self.throughput.written(size, began, self.now)
                 if self.writing:
@@ -40,7 +40,7 @@ class Line:
     def send(self, size: int) -> None:
         self.throughput.send(size)
         self.held += size
-        if self.held <= SYSTEMS:
+        if self.held <= SYSTEM_BUFFER:
             self.throughput.written(size, self.now, self.now)
         else:
             self.writing.append((self.now, size))
@@ -54,16 +54,16 @@ def test_a_fast_line_gets_every_frame():
 
 
 @pytest.mark.parametrize("rate", [16_000, 64_000])
-def test_what_a_slow_line_holds_back_is_sent_less_often_and_comes_earlier(rate):
+def test_a_slow_line_gets_fewer_frames_and_each_arrives_earlier(rate):
     line = Line(rate)
-    assert line.run(10) > SYSTEMS / rate  # until it is found out
+    assert line.run(10) > SYSTEM_BUFFER / rate  # until it is found out
     line.frames = 0
     delays = [line.run(1) for _ in range(10)]
-    assert sorted(delays)[5] < 0.7 * SYSTEMS / rate
+    assert sorted(delays)[5] < 0.7 * SYSTEM_BUFFER / rate
     assert line.frames * FRAME > 0.6 * 10 * rate
 
 
-def test_a_line_that_has_become_better_is_used_again():
+def test_a_line_that_improved_gets_every_frame_again():
     line = Line(32_000)
     line.run(10)
     line.rate, line.frames = math.inf, 0
@@ -74,7 +74,7 @@ def test_a_line_that_has_become_better_is_used_again():
 
 
 @pytest.mark.parametrize("rate", [16_000, 64_000])
-def test_two_large_pictures_say_how_fast_the_line_is(rate):
+def test_two_large_frames_suffice_to_estimate_the_rate(rate):
     line = Line(rate)
     line.send(60_000)
     line.send(60_000)
@@ -83,7 +83,7 @@ def test_two_large_pictures_say_how_fast_the_line_is(rate):
 
 
 @pytest.mark.parametrize(("size", "seconds"), [(100, 33.0), (3000, 0.7), (60_000, 5.0)])
-def test_a_fast_line_that_once_stood_still_is_not_taken_for_a_slow_one(size, seconds):
+def test_one_stall_does_not_make_a_fast_line_slow(size, seconds):
     line = Line(math.inf)
     line.run(2)
     line.throughput.send(size)
@@ -96,7 +96,7 @@ def test_a_fast_line_that_once_stood_still_is_not_taken_for_a_slow_one(size, sec
     assert not line.throughput.is_slow
 
 
-def test_what_another_writer_has_not_written_is_not_waited_for():
+def test_a_restart_forgets_what_the_last_writer_did_not_write():
     throughput = Throughput()
     throughput.send(3000)
     assert throughput.is_busy

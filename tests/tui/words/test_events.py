@@ -1,4 +1,4 @@
-"""The diary: what was done and what happened, in order and in time."""
+"""The list of events: inputs and milestones, in order and with their times."""
 
 import pytest
 
@@ -12,7 +12,7 @@ from tui.playback.replay import Replay
 from tui.screens.app import PenduApp
 from tui.screens.live import LiveScreen
 from tui.views.lab.event_list import EventList
-from tui.words.events import diary
+from tui.words.events import event_lines
 
 DRIFT = SCENES["drift"]
 
@@ -24,23 +24,23 @@ def after(live: Live, seconds: float, begin: float = 0.0) -> Live:
 
 
 def texts(live: Live) -> list[str]:
-    return [line.text for line in diary(live)]
+    return [line.text for line in event_lines(live)]
 
 
-def test_the_diary_of_the_first_twenty_seconds():
-    lines = diary(after(Live(DRIFT, clock=lambda: 0.0), 20))
+def test_the_events_of_the_first_twenty_seconds():
+    lines = event_lines(after(Live(DRIFT, clock=lambda: 0.0), 20))
     assert [str(line) for line in lines] == [
         "   0.00 start drift, h 0.05 s",
         "   7.15 Explicit Euler over the top, 5.1 E0",
-        "   8.60 Explicit Euler: grows",
-        "   8.60 RK4: drifts",
-        "  17.20 Symplectic Euler: bounded",
-        "  17.20 Verlet: bounded",
+        "   8.60 Explicit Euler gains energy",
+        "   8.60 RK4 loses energy",
+        "  17.20 Symplectic Euler stays bounded",
+        "  17.20 Verlet stays bounded",
     ]
-    assert [line.owner for line in lines[1:]] == [0, 0, 3, 1, 2]
+    assert [line.method for line in lines] == [None, 0, 0, 3, 1, 2]
 
 
-def test_changes_and_marks_are_there_and_pauses_are_not():
+def test_changes_and_marks_are_listed_and_pauses_are_not():
     live = after(Live(DRIFT, clock=lambda: 0.0), 1)
     live.mark()
     live.pause(True)
@@ -57,15 +57,15 @@ def test_changes_and_marks_are_there_and_pauses_are_not():
         "mark 1",
         "h 0.1 s",
         "mark 2: question 2",
-        "time backwards, h 0.1 s",
+        "time reversed, h 0.1 s",
         "h 0.4 s, equal cost",
         "start 114.6° 0 rad/s, h 0.05 s",
         "h 0.2 s, equal cost",
     ]
-    assert [line.run for line in diary(live)] == [1] * 6 + [2] * 2
+    assert [line.run for line in event_lines(live)] == [1] * 6 + [2] * 2
 
 
-def test_marks_beside_a_recording_are_at_the_time_of_their_step(tmp_path):
+def test_marks_next_to_a_recording_have_the_time_of_their_step(tmp_path):
     live = Live(DRIFT, clock=lambda: 0.0)
     live.record(LiveRecorder(tmp_path / "run.mcap"))
     for change in (0.1, -0.02):
@@ -81,14 +81,14 @@ def test_marks_beside_a_recording_are_at_the_time_of_their_step(tmp_path):
             replay.seek(position)
             replay.mark(f"at {position}")
             times.append(replay.sample.t)
-        marks = [line for line in diary(replay) if line.text.startswith("mark")]
+        marks = [line for line in event_lines(replay) if line.text.startswith("mark")]
         assert [line.text for line in marks] == ["mark 1: at 1.0", "mark 2: at 3.0", "mark 3: at 4.5"]
         assert [line.t for line in marks] == pytest.approx(times)
         replay.seek(3.5)
-        assert "mark 3: at 4.5" not in [line.text for line in diary(replay)]
+        assert "mark 3: at 4.5" not in [line.text for line in event_lines(replay)]
 
 
-def test_after_a_step_back_there_is_no_future_in_it():
+def test_a_step_back_removes_what_comes_later():
     live = after(Live(DRIFT, clock=lambda: 0.0), 9)
     live.step(-20)
     assert texts(live)[-1] == "Explicit Euler over the top, 5.1 E0"
@@ -96,26 +96,26 @@ def test_after_a_step_back_there_is_no_future_in_it():
     assert texts(live) == ["start drift, h 0.05 s"]
 
 
-def test_a_method_that_failed_is_in_it():
+def test_a_failed_method_is_listed():
     live = Live(DRIFT.altered(theta=1e-150), clock=lambda: 0.0)
     while live.sample.readings[0].diverged_at is None:
         live.step(1000)
     assert "Explicit Euler failed" in texts(live)
 
 
-def test_lines_fit_into_the_pane_of_the_smallest_layout_that_has_one():
+def test_lines_fit_the_smallest_pane():
     for scene in SCENES.values():
-        assert all(len(str(line)) <= 46 for line in diary(after(Live(scene, clock=lambda: 0.0), 60)))
+        assert all(len(str(line)) <= 46 for line in event_lines(after(Live(scene, clock=lambda: 0.0), 60)))
 
 
-async def test_the_pane_shows_the_newest_last_and_is_there_only_where_there_is_room():
+async def test_the_pane_shows_the_newest_last_and_only_where_there_is_room():
     live = after(Live(DRIFT, clock=lambda: 0.0), 20)
     app = PenduApp(LiveScreen(live, clock=lambda: 20.0))
     async with app.run_test(size=(120, 40)) as pilot:
         await pilot.pause()
-        pane = app.stage.query_one(EventList)
-        app.stage.show_now()
-        assert pane.text.splitlines() == [str(line) for line in diary(live)][-pane.size.height :]
+        pane = app.source_screen.query_one(EventList)
+        app.source_screen.show_now()
+        assert pane.text.splitlines() == [str(line) for line in event_lines(live)][-pane.size.height :]
         assert pane.size.height >= 4
         await pilot.resize_terminal(80, 24)
         await pilot.pause()

@@ -1,16 +1,12 @@
-"""What the phase portrait says."""
+"""The exact motion in words."""
 
 import math
 
 import pytest
 
 from engine.models.exact_pendulum import ExactMotion
-from engine.phase_space.area import Neighbours
 from engine.scenes import Scene
-from tui.playback.live import Live
-from tui.playback.shown import Shown
-from tui.views.phase.facts import fact_rows
-from tui.words.motion import area_text, energy_share, motion_text, place_text, regime
+from tui.words.motion import energy_share, motion_text, regime
 
 W0 = Scene().w0
 
@@ -31,78 +27,13 @@ def test_the_regime_of_a_state(theta, omega, expected):
     assert regime(W0, theta, omega) == expected
 
 
-def test_the_energy_is_in_units_of_the_separatrix_and_near_it_the_distance_to_it():
+def test_the_energy_near_the_separatrix_is_written_as_its_distance_from_it():
     assert energy_share(W0, 0.0, W0) == "0.25"
     assert energy_share(W0, 0.0, 4 * W0) == "4"
     assert energy_share(W0, math.pi - 1e-6, 0.0) == "1 - 2.5e-13"
     assert energy_share(W0, math.pi, 2e-6 * W0) == "1 + 1.0e-12"
 
 
-@pytest.mark.parametrize("width", [10, 30, 46, 60, 78, 120])
-def test_a_place_is_said_in_the_words_there_is_room_for(width):
-    text = place_text(W0, 1.25, -0.5, width)
-    assert len(text) <= width
-    assert "1.25" in text
-    if width >= 46:
-        assert all(part in text for part in ("-0.5", "E/Es", "libration"))
-    if width >= 78:
-        assert "71.62°" in text
-
-
-def test_multiples_of_pi_are_called_so():
-    assert place_text(W0, math.pi, 0.0, 46) == "theta pi  omega 0  E/Es 1 - 3.7e-33  libration"
-    assert place_text(W0, -math.pi, 0.5, 46).startswith("theta -pi")
-
-
-def test_the_exact_swing_is_said_with_its_period():
+def test_the_exact_motion_has_its_period():
     assert motion_text(ExactMotion(Scene())) == "exact period 2.13914 s  E/Es 0.2298  libration"
     assert motion_text(ExactMotion(Scene(theta=0.0))) == "E/Es 0  equilibrium"
-
-
-@pytest.mark.parametrize(
-    ("ratio", "log", "text"),
-    [
-        (1.0, "+0.000e+00", "1"),
-        (1 + 2**-52, "+2.220e-16", "1 + 2.2e-16"),
-        (1 - 3e-7, "-3.000e-07", "1 - 3.0e-07"),
-        (0.99783850123, "-2.164e-03", "0.997838501"),
-        (3.42e12, "+2.886e+01", "3.420e+12"),
-        (0.0, "-", "< 1e-308"),
-        (math.inf, "-", "> 1e308"),
-    ],
-)
-def test_an_area_has_digits_enough_to_tell_it_from_one(ratio, log, text):
-    assert area_text(ratio) == (log, text)
-
-
-def test_the_table_tells_who_keeps_area():
-    live, neighbours = Live(Scene()), Neighbours(0.1)
-    live.step(200)
-    ring = neighbours.follow(live.scene, live.sample.run, live.sample.step, live.changes, 200)
-    lines = ["".join(text for text, _ in row) for row in fact_rows(live, Shown(), neighbours, ring, 80)]
-    assert [line.split()[0] for line in lines[2:]] == ["1", "2", "3", "4"]
-    assert "1 + " in lines[3] or "1 - " in lines[3] or " 1 " in lines[3]  # symplectic Euler, but for rounding
-    assert " 0.99997" in lines[5]  # RK4: a loss that four digits would not show
-    assert all(len(line) == len(lines[1]) for line in lines[2:])
-
-
-def test_the_table_says_when_the_ring_is_behind_or_not_there():
-    live, neighbours = Live(Scene()), Neighbours(0.1)
-    live.step(200)
-    ring = neighbours.follow(live.scene, live.sample.run, live.sample.step, live.changes, 50)
-    assert "150 steps behind" in fact_rows(live, Shown(), neighbours, ring, 80)[0][0][0]
-    without = fact_rows(live, Shown(), None, None, 80)
-    assert "g draws one" in without[0][0][0]
-    assert len(without) == 6
-
-
-@pytest.mark.parametrize("width", range(20, 90, 7))
-def test_a_number_that_does_not_fit_is_left_out_not_cut_off(width):
-    live = Live(Scene())
-    live.step(30)
-    wide = ["".join(text for text, _ in row) for row in fact_rows(live, Shown(), None, None, 80)]
-    rows = ["".join(text for text, _ in row) for row in fact_rows(live, Shown(), None, None, width)]
-    for whole, row in zip(wide[1:], rows[1:], strict=True):
-        assert len(row) <= max(width, 22)  # the names stay
-        assert whole.startswith(row)
-        assert whole[len(row) : len(row) + 1] in ("", " ")

@@ -7,18 +7,16 @@ from textwrap import wrap
 from typing import ClassVar
 
 from textual.binding import BindingType
-from textual.reactive import var
 
 from engine.accuracy.study import REASONS, ErrorKind, Point
 from engine.methods import METHODS
 from engine.run.lockstep import Sample
-from tui.drawing.cells import CellWidget
 from tui.drawing.palette import TEXT
-from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.views.accuracy.chart import POWERS, accuracy_chart
 from tui.views.keys import Key, bindings
 from tui.views.messages import StepSizeChosen
+from tui.views.view import Chooser
 
 WORDS = 2  # lines
 MOST_STEPS = 2_000_000  # of a run for the mark at the present h: some seconds
@@ -38,25 +36,14 @@ KEYS = (
 )
 
 
-class AccuracyPane(CellWidget, can_focus=True):
+class AccuracyPane(Chooser[int]):
     """Draws the points that there are, "you are here" for each method, and one of them in words."""
 
-    DEFAULT_CSS = """
-    AccuracyPane { border: round $panel-lighten-2; width: 1fr; height: 1fr; }
-    AccuracyPane { border-title-color: $foreground; border-subtitle-color: $foreground; }
-    AccuracyPane:focus { border: round $primary; }
-    """
     BINDINGS: ClassVar[list[BindingType]] = bindings(*KEYS)
-
-    source: var[Source | None] = var(None)
-    sample: var[Sample | None] = var(None)
-    shown: var[Shown] = var(Shown())
 
     def __init__(self) -> None:
         super().__init__()
         self.border_subtitle = LEGEND
-        self.index = 2  # the method that is spoken of
-        self.cursor: int | None = None  # a rung
         self.time, self.rungs = 0.0, list[int]()
         self.here: tuple[int, ...] = ()  # steps of each method at the present h
         self.points: dict[tuple[int, int], Point] = {}  # by method and steps
@@ -100,14 +87,9 @@ class AccuracyPane(CellWidget, can_focus=True):
     def _state(self) -> object:
         return frozenset(self.points), self.here, self.index, self.cursor, self.shown, self.room
 
-    def watch_sample(self) -> None:
-        """Draw what is new."""
-        if self._drawn != self._state:
-            self.draw()
-
-    def draw(self) -> None:
-        """Build the chart in a thread, unless one is being built; the next sample asks again."""
-        if self.drawable and not self._building:
+    def paint(self, source: Source, sample: Sample) -> None:
+        """Build a chart of what is new in a thread, unless one is being built; the next sample asks again."""
+        if self._drawn != self._state and not self._building:
             self._building = True
             self.run_worker(self._build(), group="chart")
 
@@ -132,22 +114,12 @@ class AccuracyPane(CellWidget, can_focus=True):
         point = self.aim
         if point is None:
             return "" if self.missing else "you are not on this chart: h is too large or too small"
-        place = "you are here" if self.cursor is None else "enter uses this h" if self._is_live else ""
+        place = "you are here" if self.cursor is None else "enter uses this h" if self.is_live else ""
         flaw = point.flaw(self.kind)
         return (
             f"{point.method.label} at h {point.h:.4g} s: {self.kind} error {point.error(self.kind):.1e}"
             f"{f' ({REASONS[flaw]})' if flaw else ''} for {point.force_evaluations} force evaluations; {place}"
         )
-
-    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """A recording's h cannot be chosen; its arrows and enter are not the pane's."""
-        if action in ("choose", "cancel"):
-            return self._is_live and self.cursor is not None
-        return self._is_live or action != "move"
-
-    @property
-    def _is_live(self) -> bool:
-        return self.source is not None and self.source.kind == "LIVE"
 
     def action_move(self, right: int) -> None:
         """Move the cursor along the method's points, to the right towards the dearer ones."""
@@ -160,20 +132,7 @@ class AccuracyPane(CellWidget, can_focus=True):
             self.cursor = min(max(at, 0), len(self.rungs) - 1)
             self.draw()
 
-    def action_method(self, down: int) -> None:
-        """Go to the next method that is shown."""
-        if shown := self.shown.indices:
-            at = shown.index(self.index) if self.index in shown else -1
-            self.index = shown[(at + down) % len(shown)]
-            self.draw()
-
-    def action_choose(self) -> None:
-        """Use the h of the cursor's point."""
-        if self.source is not None and (point := self.aim) is not None:
-            self.cursor = None
-            self.post_message(StepSizeChosen(self.source.stepping.with_own(point.method, point.h)))
-
-    def action_cancel(self) -> None:
-        """Leave the cursor."""
-        self.cursor = None
-        self.draw()
+    def choose(self, rung: int) -> None:
+        assert self.source is not None
+        h = self.time / self.rungs[rung]
+        self.post_message(StepSizeChosen(self.source.stepping.with_own(METHODS[self.index], h)))

@@ -1,16 +1,13 @@
 """AccuracyView: speed against accuracy for the pendulum on screen; the chart fills in as it is computed."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from textual.app import ComposeResult
-from textual.message import Message
-from textual.worker import get_current_worker
 
-from engine.accuracy.study import Point, measured, usual
+from engine.accuracy.study import measured, usual
 from engine.scenes import Scene
 from tui.views.accuracy.pane import KEYS, MOST_STEPS, AccuracyPane
-from tui.views.background import elsewhere
+from tui.views.background import computed
 from tui.views.view import View
 
 Start = tuple[float, float, float]
@@ -21,13 +18,6 @@ class AccuracyView(View):
     """Computes in a process of its own: all points for another start or pendulum, some for another h."""
 
     KEYS = KEYS
-
-    @dataclass
-    class Measured(Message):
-        """A point is there."""
-
-        start: Start
-        point: Point
 
     def __init__(self, id: str) -> None:
         super().__init__(id=id)
@@ -50,6 +40,7 @@ class AccuracyView(View):
         start = (scene.theta, scene.omega, scene.w0_squared)
         if start != self._start:
             self._start = start
+            self.workers.cancel_node(self)
             pane.begin(*usual(scene))
             self._compute(scene, pane.time, pane.rungs, "ladder")
             pane.here = ()
@@ -61,17 +52,8 @@ class AccuracyView(View):
                 self._compute(scene, pane.time, wanted, "here")
 
     def _compute(self, scene: Scene, time: float, rungs: Sequence[int], group: str) -> None:
-        self.run_worker(lambda: self._wait_for(scene, time, rungs), thread=True, group=group, exclusive=True)
+        self.run_worker(self._add_points(scene, time, rungs), group=group, exclusive=True, exit_on_error=False)
 
-    def _wait_for(self, scene: Scene, time: float, rungs: Sequence[int]) -> None:
-        worker, start = get_current_worker(), (scene.theta, scene.omega, scene.w0_squared)
-        with elsewhere(measured, scene, time, rungs) as found:
-            for point in found:
-                if worker.is_cancelled:
-                    return
-                self.post_message(self.Measured(start, point))
-
-    def on_accuracy_view_measured(self, message: Measured) -> None:
-        """Show it, unless there is another pendulum on screen by now."""
-        if message.start == self._start:
-            self.query_one(AccuracyPane).add(message.point)
+    async def _add_points(self, scene: Scene, time: float, rungs: Sequence[int]) -> None:
+        async for point in computed(measured, scene, time, rungs):
+            self.query_one(AccuracyPane).add(point)

@@ -4,16 +4,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from textual.reactive import var
-
 from engine.methods import METHODS, Method
 from engine.models.state import State
 from engine.run.lockstep import Reading, Sample
 from engine.run.verdict import Judgement
-from tui.drawing.cells import CellWidget, Row
+from tui.drawing.cells import Row
 from tui.drawing.palette import FRAME, TEXT, WARN, mark
 from tui.playback.shown import Shown
 from tui.playback.source import Source
+from tui.views.view import Pane
 from tui.words.numbers import decimal, scientific
 
 
@@ -97,26 +96,14 @@ def table(
     return rows
 
 
-class ErrorTable(CellWidget):
+class ErrorTable(Pane):
     """The table."""
 
-    source: var[Source | None] = var(None)
-    sample: var[Sample | None] = var(None)
-    shown: var[Shown] = var(Shown())
-
-    def watch_sample(self) -> None:
-        """Follow the sample."""
-        self.draw()
-
     def watch_shown(self) -> None:
-        """Follow the settings; hidden methods leave no gap."""
+        """Hidden methods leave no gap."""
         self.styles.height = 1 + len(self.shown.indices)
-        self.draw()
+        super().watch_shown()
 
-    def draw(self) -> None:
-        """Draw the table."""
-        source, sample = self.source, self.sample
-        if source is None or sample is None or not self.drawable:
-            return
+    def paint(self, source: Source, sample: Sample) -> None:
         exact = source.exact.at(sample.t)
         self.show(table(sample, source.judgements, exact, source.stepping.own(), self.shown, self.room.width))

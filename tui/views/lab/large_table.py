@@ -3,16 +3,15 @@
 import math
 from collections.abc import Sequence
 
-from textual.reactive import var
-
 from engine.methods import METHODS
 from engine.run.lockstep import Sample
 from engine.run.verdict import Judgement
-from tui.drawing.cells import CellWidget, Row
+from tui.drawing.cells import Row
 from tui.drawing.large import HEIGHT, large
 from tui.drawing.palette import mark
 from tui.playback.shown import Shown
 from tui.playback.source import Source
+from tui.views.view import Pane
 from tui.words.numbers import scientific
 
 DIGITS = 8  # of an energy error
@@ -39,25 +38,10 @@ def _cell(index: int, sample: Sample, judgement: Judgement, width: int) -> list[
     return [(line.ljust(width), index) for line in lines]
 
 
-class LargeTable(CellWidget):
-    """The table."""
+class LargeTable(Pane):
+    """The table.  It takes the room it needs."""
 
-    source: var[Source | None] = var(None)
-    sample: var[Sample | None] = var(None)
-    shown: var[Shown] = var(Shown())
-
-    def watch_sample(self) -> None:
-        """Follow the sample."""
-        self.draw()
-
-    def watch_shown(self) -> None:
-        """Follow the settings."""
-        self.draw()
-
-    def draw(self) -> None:
-        """Draw the table, and take the room it needs."""
-        if self.source is None or self.sample is None or not self.drawable:
-            return
-        rows = large_rows(self.sample, self.source.judgements, self.shown, self.room.width)
+    def paint(self, source: Source, sample: Sample) -> None:
+        rows = large_rows(sample, source.judgements, self.shown, self.room.width)
         self.styles.height = len(rows)
         self.show(rows)

@@ -2,25 +2,18 @@
 
 from collections.abc import Sequence
 
-from textual.reactive import var
-
 from engine.methods import METHODS
 from engine.run.lockstep import Sample
-from tui.drawing.cells import CellWidget
 from tui.drawing.palette import EXACT, mark
-from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.views.lab.pendulum_picture import Bob, pendulum_picture
+from tui.views.view import Pane
 
 TRAIL = 15  # samples, half a second at 30 frames a second
 
 
-class Pendulum(CellWidget):
+class Pendulum(Pane):
     """The pendulums of some methods; more than one are told apart by their letters."""
-
-    source: var[Source | None] = var(None)
-    sample: var[Sample | None] = var(None)
-    shown: var[Shown] = var(Shown())
 
     def __init__(self, indices: Sequence[int], id: str | None = None, classes: str | None = None) -> None:
         super().__init__(id, classes)
@@ -28,19 +21,7 @@ class Pendulum(CellWidget):
         alone = len(indices) == 1
         self.border_title = f"{mark(indices[0])} {METHODS[indices[0]].label}" if alone else "Pendulums"
 
-    def watch_sample(self) -> None:
-        """Follow the sample."""
-        self.draw()
-
-    def watch_shown(self) -> None:
-        """Follow the settings."""
-        self.draw()
-
-    def draw(self) -> None:
-        """Draw the sample and the way there."""
-        source, sample = self.source, self.sample
-        if source is None or sample is None or not self.drawable:
-            return
+    def paint(self, source: Source, sample: Sample) -> None:
         length = TRAIL if self.shown.trails else 0
         bobs = []
         if self.shown.exact:

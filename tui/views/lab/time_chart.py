@@ -3,17 +3,15 @@
 import asyncio
 from functools import partial
 
-from textual.reactive import var
-
 from engine.methods import METHODS
 from engine.models.exact_pendulum import ExactMotion
 from engine.run.lockstep import Sample
-from tui.drawing.cells import CellWidget
 from tui.drawing.chart import time_chart
 from tui.playback.history import Quantity
 from tui.playback.shown import Shown
 from tui.playback.source import Source
-from tui.words.findings import about
+from tui.views.view import Pane
+from tui.words.numbers import about
 
 NAMES: dict[Quantity, tuple[str, str]] = {
     "energy_error": ("energy error dE/E0", "|dE/E0|"),
@@ -36,12 +34,8 @@ def title(shown: Shown, exact: ExactMotion) -> str:
     return f"max {magnitude}{each}, {span}"
 
 
-class TimeChart(CellWidget):
+class TimeChart(Pane):
     """The chart.  It is built in a thread, always from the newest data; what comes too quickly is left out."""
-
-    source: var[Source | None] = var(None)
-    sample: var[Sample | None] = var(None)
-    shown: var[Shown] = var(Shown())
 
     def __init__(self, id: str | None = None) -> None:
         super().__init__(id)
@@ -60,22 +54,13 @@ class TimeChart(CellWidget):
     def _start(self) -> None:
         self.run_worker(self._build_on_demand(), group="chart")
 
-    def watch_sample(self) -> None:
-        """Follow the sample."""
-        self.draw()
-
-    def watch_shown(self) -> None:
-        """Follow the settings."""
-        self.draw()
-
-    def draw(self) -> None:
+    def paint(self, source: Source, sample: Sample) -> None:
         """Ask for a chart."""
-        if self.source is not None and self.drawable:
-            self._wanted.set()
-            text = title(self.shown, self.source.exact)
-            if text != self.border_title:  # setting it paints all of the pane
-                self.border_title = text
-                self.border_subtitle = NO_MODIFIED_ENERGY if self.shown.quantity == "shadow_error" else ""
+        self._wanted.set()
+        text = title(self.shown, source.exact)
+        if text != self.border_title:  # setting it paints all of the pane
+            self.border_title = text
+            self.border_subtitle = NO_MODIFIED_ENERGY if self.shown.quantity == "shadow_error" else ""
 
     async def _build_on_demand(self) -> None:
         while True:

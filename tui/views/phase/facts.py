@@ -1,12 +1,17 @@
-"""The table below the portrait: what each method made of the area around its start, and of its time and energy."""
+"""Words and numbers below the portrait: a state, and what each method made of area, time and energy."""
+
+import math
 
 from engine.methods import METHODS
+from engine.models.exact_pendulum import ExactMotion
+from engine.models.state import State
 from engine.phase_space.area import Neighbourhood, Neighbours
-from tui.drawing.canvas import Span
+from tui.drawing.axes import in_pi
+from tui.drawing.canvas import Canvas, Picture, Span
 from tui.drawing.palette import FRAME, TEXT, mark
 from tui.playback.shown import Shown
 from tui.playback.source import Source
-from tui.words.motion import area_text
+from tui.words.motion import energy_share, motion_text, regime
 from tui.words.numbers import scientific
 
 _NAME, _CELL = 22, 14
@@ -40,3 +45,43 @@ def _ring_text(source: Source, neighbours: Neighbours | None) -> str:
     behind = source.sample.step - neighbours.step
     text = f" A ring of neighbours, {neighbours.radius:g} rad around the start (g)"
     return f"{text}: {behind} steps behind" if behind else text
+
+
+def caption(exact: ExactMotion, aim: State | None, width: int) -> Picture:
+    """The line below the portrait: a state, if one is aimed at, and the exact motion as far as there is room."""
+    motion = motion_text(exact)
+    line = Canvas(width, 1).picture()
+    if aim is None:
+        line.write(0, 0, motion, FRAME)
+        return line
+    room = width - len(motion) - 2
+    line.write(0, 0, place_text(exact.scene.w0, *aim, room if room >= 60 else width), TEXT)
+    if room >= 60:
+        line.write(0, width - len(motion), motion, FRAME)
+    return line
+
+
+def place_text(w0: float, theta: float, omega: float, width: int) -> str:
+    """A state, its energy in units of the separatrix' and its regime, as wordy as fits."""
+    half_turns = round(theta / math.pi)
+    angle = in_pi(half_turns) if theta == half_turns * math.pi else f"{theta:.15g}"
+    motion = f"E/Es {energy_share(w0, theta, omega)}  {regime(w0, theta, omega)}"
+    texts = (
+        f"theta {angle} rad ({math.degrees(theta):.5g}°)  omega {omega:.15g} rad/s  {motion}",
+        f"theta {angle} rad  omega {omega:.15g} rad/s  {motion}",
+        f"theta {angle}  omega {omega:.15g}  {motion}",
+        f"{angle}, {omega:.15g}  {motion}",
+    )
+    return next((text for text in texts if len(text) <= width), texts[-1][:width])
+
+
+def area_text(ratio: float) -> tuple[str, str]:
+    """The sum of log det J, and the area ratio with the digits that tell it from 1: "1 + 2.2e-16", "0.997838501"."""
+    if not 0 < ratio < math.inf:
+        return "-", "> 1e308" if ratio else "< 1e-308"
+    logarithm = scientific(math.log(ratio), 10, 3)
+    if ratio == 1:
+        return logarithm, "1"
+    if abs(ratio - 1) < 1e-6:
+        return logarithm, f"1 {'+' if ratio > 1 else '-'} {abs(ratio - 1):.1e}"
+    return logarithm, f"{ratio:.9f}" if 1e-3 <= ratio < 1e3 else f"{ratio:.3e}"

@@ -1,30 +1,33 @@
-"""PhasePane: phase space to choose a start from, with the mouse or the keyboard."""
+"""PhasePane: phase space, the methods in it, and a start to choose with the mouse or the keyboard."""
 
 from typing import ClassVar
 
 from textual import events
 from textual.binding import BindingType
+from textual.message import Message
+from textual.reactive import var
 
 from engine.models.state import State
-from engine.phase_space.area import RADII
+from engine.phase_space.area import RADII, Neighbourhood, Neighbours
+from engine.run.lockstep import Sample
 from engine.scenes import SceneError
-from tui.views.keys import Key, bindings
+from tui.drawing.canvas import Picture
+from tui.playback.source import Source
+from tui.views.keys import Key, arrows, bindings
 from tui.views.messages import SceneChosen
-from tui.views.phase.display import PhaseDisplay
+from tui.views.phase.facts import caption
+from tui.views.phase.picture import method_points, phase_picture
+from tui.views.phase.portrait import Portrait
+from tui.views.phase.viewport import Viewport
+from tui.views.view import Chooser
 
+RING_STEPS = 100  # a frame; 52 µs each, so a ring that has to catch up costs 5 ms of a frame at most
 BIG_STEP = 8  # dots
 
 _GROUP = "phase space"
 KEYS = (
     Key("", "tab", "in the lab: to this pane, for its keys", "", _GROUP),
-    Key("left", "arrows", "crosshair, to choose a start", "move(-1, 0)", _GROUP),
-    Key("right", "", "", "move(1, 0)", _GROUP),
-    Key("up", "", "", "move(0, -1)", _GROUP),
-    Key("down", "", "", "move(0, 1)", _GROUP),
-    Key("shift+left", "shift+arrows", "crosshair in big steps", f"move({-BIG_STEP}, 0)", _GROUP),
-    Key("shift+right", "", "", f"move({BIG_STEP}, 0)", _GROUP),
-    Key("shift+up", "", "", f"move(0, {-BIG_STEP})", _GROUP),
-    Key("shift+down", "", "", f"move(0, {BIG_STEP})", _GROUP),
+    *arrows(_GROUP, "crosshair, to choose a start", BIG_STEP),
     Key("enter", "enter", "start at the crosshair", "choose", _GROUP),
     Key("escape", "esc", "leave the crosshair, cancel a drag", "cancel", _GROUP),
     Key("z", "z", "zoom in at the crosshair or the pointer", "zoom(0.5)", _GROUP),
@@ -39,80 +42,149 @@ KEYS = (
 )
 
 
-class PhasePane(PhaseDisplay):
-    """Click or Enter chooses a start; a drag shows the exact orbit through the pointer before.
+class PhasePane(Chooser[State]):
+    """Click or enter chooses a start; a drag first shows the exact orbit through the pointer.
 
     The wheel zooms; a drag with a modifier or another button moves the picture.
     """
 
     BINDINGS: ClassVar[list[BindingType]] = bindings(*KEYS)
 
+    wrap: var[bool] = var(True)
+    radius: var[float | None] = var(None)
+    """Of the ring of neighbours [rad]; None: no ring."""
+
+    class RingMoved(Message):
+        """The ring has caught up, or has come nearer, though the sample is the same."""
+
     def __init__(self, id: str | None = None, radius: float | None = None) -> None:
-        super().__init__(id, radius)
+        super().__init__(id)
+        self.set_reactive(PhasePane.radius, radius)
+        self.neighbours = None if radius is None else Neighbours(radius)
+        self.ring: Neighbourhood | None = None
+        self.pointer: tuple[int, int] | None = None  # the cell under it
+        self.aiming = False  # the pointer is about to choose a start
+        self.zoomed: Viewport | None = None  # None: the whole portrait
+        self._whole: Viewport | None = None
+        self._plot: Picture | None = None
+        self._catching_up = False
         self._panning: tuple[int, int] | None = None  # the cell where the picture was last moved to
 
-    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """A recording has no start to choose; its arrows, enter and esc are not the pane's."""
-        if action in ("move", "choose", "cancel"):
-            live = self.source is not None and self.source.kind == "LIVE"
-            return live and (action == "move" or self.crosshair is not None or self.aiming)
-        return True
+    @property
+    def settled(self) -> bool:
+        """Whether all of it is shown as it is now."""
+        return not (self.drawable and self._catching_up)
 
-    def action_move(self, right: int, down: int) -> None:
+    def watch_source(self) -> None:
+        self.border_title = f"Phase space: theta, omega ({'click: start, ' if self.is_live else ''}wheel: zoom)"
+        super().watch_source()
+
+    def watch_wrap(self) -> None:
+        """Begin again with the whole portrait."""
+        self._whole = self.zoomed = None
+        self.draw()
+
+    def watch_radius(self) -> None:
+        """Begin another ring at the run's start."""
+        self.neighbours = None if self.radius is None else Neighbours(self.radius)
+        self.ring = None
+        self.draw()
+
+    @property
+    def cells(self) -> tuple[int, int]:
+        """Columns and rows of the plot; a pane that is just being hidden still has one of each."""
+        return max(self.room.width, 1), max(self.room.height - 1, 1)
+
+    @property
+    def viewport(self) -> Viewport:
+        """What is in view."""
+        assert self.source is not None
+        columns, rows = self.cells
+        if self.zoomed is not None:
+            self.zoomed = self.zoomed.resized(columns, rows)
+            return self.zoomed
+        self._whole = Viewport.portrait(columns, rows, self.source.scene, self.wrap).steadied(self._whole)
+        return self._whole
+
+    @property
+    def aim(self) -> State | None:
+        """The state at the crosshair or, if there is none, under the pointer."""
+        if self.cursor is not None:
+            return self.cursor
+        return None if self.pointer is None else self.viewport.at_cell(*self.pointer)
+
+    def paint(self, source: Source, sample: Sample) -> None:
+        portrait = Portrait.of(self.viewport, source.scene.w0)
+        orbit = self.aim if self.aiming or self.cursor is not None else None
+        self._follow(source, sample)
+        points = method_points(source, sample, self.shown, self.ring)
+        self._plot = phase_picture(portrait, points, self.cursor, orbit)
+        self.tell()
+
+    def _follow(self, source: Source, sample: Sample) -> None:
+        """Let the ring keep up; where it has not, go on without waiting for the next sample."""
+        if self.neighbours is not None:
+            self.ring = self.neighbours.follow(source.scene, sample.run, sample.step, source.changes, RING_STEPS)
+            if self.neighbours.step < sample.step and not self._catching_up:
+                self._catching_up = True
+                self.set_timer(1 / 30, self._catch_up)
+
+    def _catch_up(self) -> None:
+        self._catching_up = False
+        self.draw()
+        self.post_message(self.RingMoved())
+
+    def tell(self) -> None:
+        """Describe in a line below the plot what is at the crosshair or under the pointer."""
+        if self.source is not None and self._plot is not None:
+            width = self._plot.characters.shape[1]
+            self.show_picture(Picture.stacked(self._plot, caption(self.source.exact, self.aim, width)))
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        return (action == "cancel" and self.aiming) or super().check_action(action, parameters)
+
+    def action_move(self, right: int, up: int) -> None:
         """Move the crosshair by dots; at the edge the picture moves."""
         if self.source is None or not self.drawable:
             return
         viewport = self.viewport
-        here = self.crosshair or self.aim or State(self.source.scene.theta, self.source.scene.omega)
-        x, y = float(viewport.x(here.theta)), float(viewport.y(here.omega))
-        if not (0 <= x < 2 * viewport.columns and 0 <= y < 4 * viewport.rows):
-            x, y = viewport.middle
-        x, y = x + right, y + down
-        self.crosshair = viewport.at(x, y)
-        over = min(x - 1, 0) + max(x - 2 * viewport.columns + 1, 0), min(y - 1, 0) + max(y - 4 * viewport.rows + 1, 0)
-        if any(over) and not (self.wrap and self.zoomed is None and over[1] == 0):
-            self.zoomed = viewport.panned(-over[0], -over[1])
+        here = self.aim or State(self.source.scene.theta, self.source.scene.omega)
+        self.cursor, moved = viewport.stepped(here, right, up)
+        goes_round = self.wrap and self.zoomed is None and moved.omega == viewport.omega
+        if moved != viewport and not goes_round:
+            self.zoomed = moved
         self.draw()
 
-    def action_choose(self) -> None:
-        """Start at the crosshair."""
-        if self.crosshair is not None:
-            chosen, self.crosshair = self.crosshair, None
-            self._start_at(chosen)
-
-    def _start_at(self, state: State) -> None:
+    def choose(self, state: State) -> None:
         """Ask for a run from here with the step size in force."""
         assert self.source is not None
         try:
             scene = self.source.scene.altered(theta=state.theta, omega=state.omega, h=self.source.stepping.smallest)
-        except SceneError as error:  # far out, omega may be no pendulum's
+        except SceneError as error:  # far out, omega may be beyond a scene's limits
             self.notify(str(error), severity="warning")
         else:
             self.post_message(SceneChosen(scene))
         self.draw()
 
     def action_cancel(self) -> None:
-        """Leave the crosshair, or a drag."""
-        self.crosshair, self.aiming = None, False
-        self.draw()
+        self.aiming = False
+        super().action_cancel()
 
     def action_zoom(self, factor: float) -> None:
         """Zoom at the crosshair, which comes to the middle, or at the pointer, or else at the middle."""
         middle = self.viewport.middle
-        if self.crosshair is not None:
-            x, y = self.viewport.x(self.crosshair.theta), self.viewport.y(self.crosshair.omega)
+        if self.cursor is not None:
+            x, y = self.viewport.x(self.cursor.theta), self.viewport.y(self.cursor.omega)
             self.zoomed = self.viewport.panned(middle[0] - float(x), middle[1] - float(y))
         elif self.pointer is not None:
             middle = 2 * self.pointer[0] + 1, 4 * self.pointer[1] + 2
         self._zoom(factor, *middle)
 
     def action_whole(self) -> None:
-        """Show the whole portrait."""
         self.zoomed = None
         self.draw()
 
     def action_wrap(self) -> None:
-        """Show angles within a turn, or where they are."""
         self.wrap = not self.wrap
 
     def action_radius(self, direction: int) -> None:
@@ -128,12 +200,11 @@ class PhasePane(PhaseDisplay):
         self.capture_mouse()
         if event.button != 1 or event.shift or event.ctrl or event.meta:
             self._panning = cell
-        elif self.source is not None and self.source.kind == "LIVE":
-            self.crosshair, self.pointer, self.aiming = None, cell, True
+        elif self.is_live:
+            self.cursor, self.pointer, self.aiming = None, cell, True
             self.draw()
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
-        """Say what is under the pointer; choose, or move the picture."""
         held = self.aiming or self._panning is not None
         self.pointer = self._cell(event, clamp=held)
         if self._panning is not None and self.pointer is not None:
@@ -148,24 +219,19 @@ class PhasePane(PhaseDisplay):
         """Choose the start under the pointer, or stop moving the picture."""
         self.release_mouse()
         self._panning = None
-        if self.aiming:
+        if self.aiming and (cell := self._cell(event, clamp=True)) is not None:
             self.aiming = False
-            cell = self._cell(event, clamp=True)
-            assert cell is not None
-            self._start_at(self.viewport.at_cell(*cell))
+            self.choose(self.viewport.at_cell(*cell))
 
     def on_leave(self) -> None:
-        """Nothing is under the pointer any more."""
         if not self.aiming:
             self.pointer = None
             self.tell()
 
     def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
-        """Zoom in at the pointer."""
         self._wheel(event, 0.8)
 
     def on_mouse_scroll_down(self, event: events.MouseScrollDown) -> None:
-        """Zoom out from the pointer."""
         self._wheel(event, 1.25)
 
     def _wheel(self, event: events.MouseEvent, factor: float) -> None:

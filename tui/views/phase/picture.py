@@ -6,18 +6,24 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from engine.methods import METHODS
+from engine.phase_space.area import Neighbourhood
+from engine.run.lockstep import Sample
 from tui.drawing.canvas import Canvas, Picture
-from tui.drawing.palette import EXACT, FAINT, FRAME, TEXT
+from tui.drawing.palette import EXACT, FAINT, FRAME, TEXT, faint
+from tui.playback.shown import Shown
+from tui.playback.source import Source
 from tui.views.phase.portrait import Portrait
 from tui.views.phase.viewport import Viewport
 
+TRAIL = 300  # samples, ten seconds at 30 frames a second
 _MOVING = (EXACT, *range(FAINT))
 _BESIDE = ((2, 0), (-2, 0), (0, -1), (0, 1), (2, -1), (-2, 1))  # columns, rows from a point to its letter
 Track = tuple[ArrayLike, ArrayLike]  # theta [rad], omega [rad/s]
 
 
 @dataclass(frozen=True, slots=True)
-class Point:
+class PhasePoint:
     """Where one method is, was, and what it made of its neighbours."""
 
     theta: float  # rad
@@ -28,10 +34,21 @@ class Point:
     ring: Track | None = None
 
 
+def method_points(source: Source, sample: Sample, shown: Shown, ring: Neighbourhood | None) -> list[PhasePoint]:
+    """The points that are to be shown of a sample, the exact one first."""
+    length = TRAIL if shown.trails else 0
+    points = [PhasePoint(*source.exact.at(sample.t), EXACT, "x")] if shown.exact else []
+    for index in shown.indices:
+        reading, trail = sample.readings[index], source.history.trail(index, length)
+        around = None if ring is None else ring.rings[index]
+        points.append(PhasePoint(reading.theta, reading.omega, index, METHODS[index].letter, trail, around))
+    return points
+
+
 @np.errstate(over="ignore", invalid="ignore")  # a method may be farther out than dots can be counted
 def phase_picture(
     portrait: Portrait,
-    points: Sequence[Point],
+    points: Sequence[PhasePoint],
     crosshair: tuple[float, float] | None = None,
     orbit: tuple[float, float] | None = None,
 ) -> Picture:
@@ -50,7 +67,7 @@ def phase_picture(
     if orbit is not None:
         canvas.points(*portrait.orbit(*orbit), EXACT)
     for point in points:
-        canvas.points(viewport.x(point.trail[0]), viewport.y(point.trail[1]), _faint(point.owner))
+        canvas.points(viewport.x(point.trail[0]), viewport.y(point.trail[1]), faint(point.owner))
     for point in points:
         if point.ring is not None:
             canvas.line(*_closed(viewport, point.ring), point.owner)
@@ -59,10 +76,6 @@ def phase_picture(
         canvas.disc(x, y, 1.6, point.owner, hollow=point.owner == EXACT)
         _letter(canvas, x, y, point)
     return _with_words(canvas.picture(), portrait)
-
-
-def _faint(owner: int) -> int:
-    return owner + FAINT if owner >= 0 else owner
 
 
 def _closed(viewport: Viewport, ring: Track) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -75,7 +88,7 @@ def _closed(viewport: Viewport, ring: Track) -> tuple[NDArray[np.float64], NDArr
     return np.insert(x, across, np.nan), np.insert(y, across, np.nan)
 
 
-def _letter(canvas: Canvas, x: float, y: float, point: Point) -> None:
+def _letter(canvas: Canvas, x: float, y: float, point: PhasePoint) -> None:
     """Write the point's letter into the first free cell around it, or at the edge nearest to it."""
     if not (np.isfinite(x) and np.isfinite(y)):
         return

@@ -3,29 +3,21 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from engine.models.pendulum import separatrix_margin
+from tui.drawing.axes import nice, omega_ticks, theta_ticks
 from tui.drawing.palette import FRAME, TEXT
-from tui.drawing.phase_axes import nice, omega_ticks, theta_ticks
 from tui.views.phase.viewport import Viewport
 
 Dots = tuple[NDArray[np.intp], NDArray[np.intp]]  # x, y
 Cells = NDArray[np.bool_]  # (rows, columns)
 Word = tuple[int, int, str, int]  # column, row, text, owner
 _CURVES = 8  # about so many energies are in view
-
-
-def margin(w0: float, theta: Any, omega: Any) -> Any:
-    """1 - E/E_separatrix: 1 at rest, 0 on the separatrix, negative in rotation; numbers or arrays.
-
-    The product of two numbers of which one is exact near the separatrix, where 1 - E/E_separatrix
-    itself would cancel.
-    """
-    c, v = np.cos(np.asarray(theta) / 2), np.asarray(omega) / (2 * w0)
-    return (c - v) * (c + v)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,11 +32,12 @@ class Portrait:
     words: tuple[Word, ...]
 
     @classmethod
+    @lru_cache(maxsize=2)  # for the lab's pane and the view's
     def of(cls, viewport: Viewport, w0: float) -> "Portrait":
         """Draw the portrait of all pendulums with natural frequency w0 [rad/s]."""
         x, y = np.arange(2 * viewport.columns) + 0.5, np.arange(4 * viewport.rows) + 0.5
         omega = viewport.omega_at(y)[:, None]
-        field = margin(w0, viewport.theta_at(x), omega)
+        field = separatrix_margin(w0, viewport.theta_at(x), omega, np.cos)
         curves, separatrix = _border(_level(field)), _border(field < 0, heavy=True)
         return cls(
             viewport,
@@ -57,7 +50,7 @@ class Portrait:
 
     def orbit(self, theta: float, omega: float) -> Dots:
         """The exact orbit through a state."""
-        value = margin(self.w0, theta, omega)
+        value = separatrix_margin(self.w0, theta, omega, np.cos)
         curve = _border(self.margin < value)
         if value < 0:  # the same energy belongs to two orbits, one for each sense of rotation
             rows = self.viewport.omega_at(np.arange(len(curve)) + 0.5)

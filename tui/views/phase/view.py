@@ -16,7 +16,6 @@ class PhaseView(View):
     """The portrait, and the table below it."""
 
     KEYS = KEYS
-    DEFAULT_CSS = "PhaseView #facts { height: 6; }"
 
     def compose(self) -> ComposeResult:
         """Create the panes."""
@@ -35,7 +34,7 @@ class PhaseView(View):
         """Follow the sample with the numbers."""
         self._write_facts()
 
-    def on_phase_display_ring_moved(self) -> None:
+    def on_phase_pane_ring_moved(self) -> None:
         """Follow the ring with them."""
         self._write_facts()
 

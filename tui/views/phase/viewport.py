@@ -115,8 +115,26 @@ class Viewport:
             theta = math.remainder(theta, math.tau)
         return replace(self, theta=theta, omega=self.omega + down * self.omega_per_dot)
 
+    def stepped(self, start: State, right: float, up: float) -> tuple[State, "Viewport"]:
+        """A state so many dots from another one, or from the middle if that is out of view; and a viewport with it."""
+        x, y = float(self.x(start.theta)), float(self.y(start.omega))
+        width, height = 2 * self.columns, 4 * self.rows
+        if not (0 <= x < width and 0 <= y < height):
+            x, y = self.middle
+        x, y = x + right, y - up
+        over = min(x - 1, 0) + max(x - width + 1, 0), min(y - 1, 0) + max(y - height + 1, 0)
+        return self.at(x, y), self.panned(-over[0], -over[1]) if any(over) else self
+
+    def steadied(self, before: "Viewport | None") -> "Viewport":
+        """The one before, if it shows about as much: the picture does not jump with every new start."""
+        if before is None or (before.columns, before.rows) != (self.columns, self.rows):
+            return self
+        return before if 0.7 < self.omega_per_dot / before.omega_per_dot < 1.3 else self
+
     def resized(self, columns: int, rows: int) -> "Viewport":
         """The same stretch of phase space on another rectangle."""
+        if (columns, rows) == (self.columns, self.rows):
+            return self
         return replace(
             self,
             columns=columns,

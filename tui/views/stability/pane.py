@@ -1,44 +1,148 @@
-"""StabilityPane: the map of stability, to choose h and amplitude from with the mouse or the keyboard."""
+"""StabilityPane: the map of stability, a panel per method, to choose h and amplitude from with mouse or keyboard."""
 
+import textwrap
 from typing import ClassVar
 
 from textual import events
 from textual.binding import BindingType
 
-from tui.views.keys import Key, bindings
+from engine.methods import METHODS
+from engine.run.lockstep import Sample
+from engine.stability.grid import Grid
+from engine.stability.outcomes import Cells
+from engine.stability.study import amplitude
+from tui.drawing.cells import Row
+from tui.drawing.palette import NOBODY, Palette, palette
+from tui.playback.source import Source
+from tui.views.keys import Key, arrows, bindings
 from tui.views.messages import SceneChosen
-from tui.views.stability.display import StabilityDisplay
-from tui.views.stability.picture import MARGIN, place_at
+from tui.views.stability.picture import MARGIN, Segments, legend, panel, place_at, side_by_side, title
+from tui.views.stability.words import note, verdict
+from tui.views.view import Chooser
 
+WORDS = 2  # lines
+SOME = 4  # rows of what was computed that are sent with a sample: a key waits for what is on its way
+ROOMY = 28  # rows from which on there is room for all of the legend
 BIG_STEP = 5  # cells of the map
 
 _GROUP = "stability"
 KEYS = (
-    Key("left", "arrows", "cursor, to choose h and amplitude", "move(-1, 0)", _GROUP),
-    Key("right", "", "", "move(1, 0)", _GROUP),
-    Key("up", "", "", "move(0, 1)", _GROUP),
-    Key("down", "", "", "move(0, -1)", _GROUP),
-    Key("shift+left", "shift+arrows", "cursor in big steps", f"move({-BIG_STEP}, 0)", _GROUP),
-    Key("shift+right", "", "", f"move({BIG_STEP}, 0)", _GROUP),
-    Key("shift+up", "", "", f"move(0, {BIG_STEP})", _GROUP),
-    Key("shift+down", "", "", f"move(0, {-BIG_STEP})", _GROUP),
+    *arrows(_GROUP, "cursor, to choose h and amplitude", BIG_STEP),
     Key("enter", "enter", "start with the cursor's h and amplitude", "choose", _GROUP),
-    Key("tab", "tab", "the next method in words", "next_method", _GROUP),
+    Key("tab", "tab", "the next method in words", "method(1)", _GROUP),
     Key("escape", "esc", "leave the cursor", "cancel", _GROUP),
     Key("", "click", "start with that h and amplitude", "", _GROUP),
 )
 
 
-class StabilityPane(StabilityDisplay):
-    """A click, or Enter at the cursor, starts a run at rest; the pointer and the cursor say what is there."""
+class StabilityPane(Chooser[tuple[int, int]]):
+    """Draws what is known of the map.  A click, or enter at the cursor, starts a run at rest.
+
+    Places on the map are indices of z and theta.
+    """
 
     BINDINGS: ClassVar[list[BindingType]] = bindings(*KEYS)
 
-    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """A recording has no start to choose; its arrows, enter and esc are not the pane's."""
-        if action in ("move", "choose", "cancel"):
-            return self._is_live and (action == "move" or self.cursor is not None)
-        return True
+    def __init__(self, grid: Grid) -> None:
+        super().__init__()
+        self.grid = grid
+        self.cells: Cells = grid.unknown()
+        self.complete = False  # nothing will be added to them
+        self.pointer: tuple[int, int] | None = None
+        self._panels: dict[int, list[Segments]] = {}  # by method, as they were last drawn
+        self._drawn_for: object = None
+        self._is_filled = False  # there are cells that the panels do not show yet
+        self._is_shown = True  # as far as it was drawn
+
+    @property
+    def settled(self) -> bool:
+        """Whether the map is complete, and shown if there is room."""
+        return self.complete and not (self.drawable and (self._is_filled or not self._is_shown))
+
+    def fill(self, z: slice, method: int, cells: Cells) -> None:
+        """Take in some of the map; it is drawn with one of the next samples."""
+        self.cells[z, method] = cells
+        self._is_filled = True
+
+    def here(self, index: int) -> tuple[float, float] | None:
+        """The (z, amplitude) of a method on screen, if it swings."""
+        if self.source is None or (theta := amplitude(self.source.scene)) is None:
+            return None
+        return abs(self.source.stepping.own()[index]) * self.source.scene.w0, theta
+
+    def aim(self, index: int) -> tuple[int, int] | None:
+        """The place that is described for a method: at the cursor, under the pointer, or nearest to here."""
+        if self.cursor or self.pointer:
+            return self.cursor or self.pointer
+        if (here := self.here(index)) is None or here[0] > self.grid.z[-1]:
+            return None
+        return int(abs(self.grid.z - here[0]).argmin()), int(abs(self.grid.theta - here[1]).argmin())
+
+    def paint(self, source: Source, sample: Sample) -> None:
+        """Show at once what the user has changed, and a few rows at a time what has been computed."""
+        columns, rows = self.panel_size()
+        if columns <= 2 * MARGIN:
+            return
+        drawn_for = source.scene, source.stepping.own(), self.shown, self.app.theme, self.room, self.cursor, self.index
+        changed = drawn_for != self._drawn_for
+        if changed or (self._is_filled and self._is_shown):
+            self._drawn_for, self._is_filled, self._is_shown = drawn_for, False, False
+            cursor = (self.grid.z[self.cursor[0]], self.grid.theta[self.cursor[1]]) if self.cursor else None
+            for index in self.shown.indices:
+                self._panels[index] = panel(
+                    self.grid,
+                    self.cells,
+                    index,
+                    columns,
+                    rows,
+                    self._colours,
+                    here=cursor or self.here(index),
+                    w0=source.scene.w0,
+                )
+        if not self._is_shown:
+            self.tell(None if changed else SOME)
+
+    def tell(self, at_once: int | None = None) -> None:
+        """Describe a swing above each panel and below all; show that and the panels, or so many rows of them."""
+        if not self._panels or not self.drawable:
+            return
+        columns = self.panel_size()[0]
+        panels = [
+            [title(index, columns, self._colours, self._note(index)), *self._panels[index][1:]]
+            for index in self.shown.indices
+        ]
+        said = [*textwrap.wrap(self._verdict(), max(self.room.width - 1, 1)), "", ""][:WORDS]
+        words: list[Row] = [[(f" {line}", NOBODY)] for line in said]
+        rows = [*map(_row, side_by_side(panels, 2)), *words, *map(_row, self._legend())]
+        self._is_shown = self.show(rows, at_once)
+
+    @property
+    def _colours(self) -> Palette | None:
+        return None if self.app.no_color or self.app.native_ansi_color else palette(self.app.theme)
+
+    def panel_size(self) -> tuple[int, int]:
+        """Columns of a panel, and rows of its map: two panels in a row, below them words and the legend."""
+        lines = -(-len(self.shown.indices) // 2) or 1
+        return (self.room.width - 2) // 2, max(1, (self.room.height - WORDS - len(self._legend())) // lines - 2)
+
+    def _legend(self) -> list[Segments]:
+        lines = legend(self.grid.steps, self._colours, self.room.width + 2)  # as if the frame were part of it
+        return lines if self.room.height >= ROOMY else lines[:1]
+
+    def _note(self, index: int) -> str:
+        if (aim := self.aim(index)) is None:
+            return ""
+        z, theta = aim
+        return note(METHODS[index], self.grid.theta[theta], self.grid.z[z], self.cells[z, index, theta])
+
+    def _verdict(self) -> str:
+        shown = self.shown.indices
+        index = self.index if self.index in shown else shown[0] if shown else 0
+        if self.source is None or not shown or (aim := self.aim(index)) is None:
+            return ""
+        z, theta = aim
+        cells, w0 = self.cells[:, index, theta], self.source.scene.w0
+        return verdict(METHODS[index], self.grid.theta[theta], self.grid.z, cells, z, w0)
 
     def action_move(self, right: int, up: int) -> None:
         """Move the cursor by cells of the map."""
@@ -46,51 +150,28 @@ class StabilityPane(StabilityDisplay):
         self.cursor = min(max(z + right, 0), len(self.grid.z) - 1), min(max(theta + up, 0), len(self.grid.theta) - 1)
         self.draw()
 
-    def action_choose(self) -> None:
-        """Start with the cursor's h and amplitude."""
-        if self.cursor is not None:
-            chosen, self.cursor = self.cursor, None
-            self._choose(*chosen)
-
-    def action_cancel(self) -> None:
-        """Leave the cursor."""
-        self.cursor = None
-        self.draw()
-
-    def action_next_method(self) -> None:
-        """Speak of the next method that is shown."""
-        shown = self.shown.indices
-        self.index = next((index for index in shown if index > self.index), shown[0] if shown else 0)
-        self.tell()
+    def choose(self, place: tuple[int, int]) -> None:
+        assert self.source is not None
+        (z, theta), scene = place, self.source.scene
+        h = float(self.grid.z[z]) / scene.w0
+        self.post_message(SceneChosen(scene.altered(theta=float(self.grid.theta[theta]), omega=0.0, h=h)))
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
-        """Say what is under the pointer."""
         if (under := self._under(event)) != self.pointer:
             self.pointer = under
             self.tell()
 
     def on_leave(self) -> None:
-        """Nothing is under the pointer any more."""
         self.pointer = None
         self.tell()
 
     def on_click(self, event: events.Click) -> None:
-        """Start with what was clicked on."""
-        if (under := self._under(event)) is not None and self._is_live:
+        if (under := self._under(event)) is not None and self.is_live:
             self.cursor = None
-            self._choose(*under)
-
-    @property
-    def _is_live(self) -> bool:
-        return self.source is not None and self.source.kind == "LIVE"
-
-    def _choose(self, z: int, theta: int) -> None:
-        assert self.source is not None
-        scene, h = self.source.scene, float(self.grid.z[z]) / self.source.scene.w0
-        self.post_message(SceneChosen(scene.altered(theta=float(self.grid.theta[theta]), omega=0.0, h=h)))
+            self.choose(under)
 
     def _under(self, event: events.MouseEvent) -> tuple[int, int] | None:
-        """The map's cell under the pointer; its method is the one spoken of from now on."""
+        """The place under the pointer; its method is the one described from now on."""
         columns, rows = self.panel_size()
         x, y = event.get_content_offset_capture(self)
         across, column = divmod(x, columns + 2)
@@ -100,3 +181,7 @@ class StabilityPane(StabilityDisplay):
             return None
         self.index = shown[number]
         return place_at(self.grid, row - 1, column - MARGIN, rows, columns - MARGIN)
+
+
+def _row(segments: Segments) -> Row:
+    return [(segment.text, segment.style or NOBODY) for segment in segments]

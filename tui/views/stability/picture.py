@@ -6,7 +6,7 @@ them, so that no failure vanishes.
 
 import math
 from collections.abc import Iterator, Sequence
-from itertools import groupby, zip_longest
+from itertools import groupby
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +26,7 @@ MARGIN = 4  # for the labels of the amplitudes
 SHADES = 16  # from lost at once to lost at the end, and again from there to held exactly
 
 Scores = NDArray[np.float64]
-Line = list[Segment]
+Segments = list[Segment]
 
 
 def scores(cells: Cells, steps: int) -> Scores:
@@ -39,7 +39,7 @@ def scores(cells: Cells, steps: int) -> Scores:
     return np.select([cells["fate"] == UNKNOWN, cells["fate"] == HOLDS], [-1.0, 1 + digits], survived)
 
 
-def picture(grid: Grid, cells: Cells, columns: int, palette: Palette | None) -> list[Line]:
+def picture(grid: Grid, cells: Cells, columns: int, palette: Palette | None) -> list[Segments]:
     """All panels and the legend, `columns` wide; with no palette, characters instead of colours."""
     across = 2 if columns >= 70 else 1
     width = (columns - 2 * (across - 1)) // across
@@ -48,21 +48,13 @@ def picture(grid: Grid, cells: Cells, columns: int, palette: Palette | None) -> 
     return [*side_by_side(panels, across), *legend(grid.steps, palette, columns)]
 
 
-def side_by_side(panels: Sequence[Sequence[Line]], across: int) -> list[Line]:
+def side_by_side(panels: Sequence[Sequence[Segments]], across: int) -> list[Segments]:
     """The lines of panels of one size, some beside each other."""
     return [
         [segment for number, line in enumerate(lines) for segment in ([Segment("  ")] if number else []) + line]
         for first in range(0, len(panels), across)
         for lines in zip(*panels[first : first + across], strict=True)
     ]
-
-
-def differing(before: Line, after: Line) -> int:
-    """How many columns there are up to the last one in which two lines differ: Textual sends a row from its start."""
-    if before == after:
-        return 0
-    cells = [[(character, part.style) for part in line for character in part.text] for line in (before, after)]
-    return max((x for x, (old, new) in enumerate(zip_longest(*cells), 1) if old != new), default=0)
 
 
 def panel(
@@ -75,7 +67,7 @@ def panel(
     *,
     here: tuple[float, float] | None = None,
     w0: float | None = None,
-) -> list[Line]:
+) -> list[Segments]:
     """One method's panel: its title, `rows` of the map, and the axis.
 
     `here` is a (z, theta) to mark.  With w0 [1/s] the axis says h instead of z.
@@ -113,7 +105,7 @@ def panel(
     return [*lines, [Segment(" " * MARGIN + axis)]]
 
 
-def title(index: int, columns: int, palette: Palette | None, note: str = "") -> Line:
+def title(index: int, columns: int, palette: Palette | None, note: str = "") -> Segments:
     """The line above a panel, with a note behind the method's name or, where there is no room, instead of it."""
     texts = [f"{'':{MARGIN}}{mark(index)} {name}{note}" for name in (f"{METHODS[index].label}  ", "")]
     text = next((text for text in texts if len(text) <= columns), texts[-1])
@@ -164,7 +156,7 @@ def character(score: float, steps: int) -> str:
     return "#" if score > 1 + 4 / 12 else "+" if score > 1 + 1 / 12 else "-"
 
 
-def legend(steps: int, palette: Palette | None, columns: int = 80) -> list[Line]:
+def legend(steps: int, palette: Palette | None, columns: int = 80) -> list[Segments]:
     """What colours, characters and lines mean."""
     limit, threshold, catching = (sign if palette else _WITHOUT_COLOUR[sign] for sign in (LIMIT, THRESHOLD, CATCHING))
     lines = [Segment(f"{limit} linear limit   {threshold} chaos loose above   ")]

@@ -1,15 +1,12 @@
 """StabilityView: where each method loses a swing, for the pendulum on screen; the map fills in as it is computed."""
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from textual.app import ComposeResult
-from textual.message import Message
-from textual.worker import get_current_worker
 
-from engine.stability.grid import Grid, Piece, pieces
-from tui.views.background import elsewhere
+from engine.stability.grid import Grid, pieces
+from tui.views.background import computed
 from tui.views.stability.pane import KEYS, StabilityPane
 from tui.views.view import View
 
@@ -22,12 +19,6 @@ class StabilityView(View):
 
     KEYS = KEYS
 
-    @dataclass
-    class Computed(Message):
-        """A piece of the map is there."""
-
-        piece: Piece
-
     def compose(self) -> ComposeResult:
         """Create the pane."""
         grid = Grid((np.arange(48) + 0.5) * math.pi / 48, (np.arange(80) + 0.5) * 3 / 80, PASSES[-1])
@@ -37,22 +28,14 @@ class StabilityView(View):
         """The keys are the map's from the start."""
         pane = self.query_one(StabilityPane)
         pane.focus()
-        self.run_worker(lambda: self._wait_for(pane.grid), thread=True)
+        self.run_worker(self._fill(pane), exit_on_error=False)
 
-    def _wait_for(self, grid: Grid) -> None:
-        worker = get_current_worker()
-        with elsewhere(pieces, grid, PASSES) as found:
-            for piece in found:
-                if worker.is_cancelled:
-                    return
-                self.post_message(self.Computed(piece))
-
-    def on_stability_view_computed(self, message: Computed) -> None:
-        """Show it, and how far it is in tenths: with a new title, Textual sends all of the pane again."""
-        piece, pane = message.piece, self.query_one(StabilityPane)
-        pane.fill(piece.z, piece.method, piece.cells)
-        pane.complete = piece.done == 1 and piece.steps == PASSES[-1]
-        state = "" if pane.complete else f", computing {int(10 * piece.done) / 10:.0%}"
-        title = f"Stability: h across, amplitude up; {piece.steps} steps{state}"
-        if title != pane.border_title:
-            pane.border_title = title
+    async def _fill(self, pane: StabilityPane) -> None:
+        """Compute the map, and show how far it is in tenths: with a new title, Textual sends all of the pane again."""
+        async for piece in computed(pieces, pane.grid, PASSES):
+            pane.fill(piece.z, piece.method, piece.cells)
+            pane.complete = piece.done == 1 and piece.steps == PASSES[-1]
+            state = "" if pane.complete else f", computing {int(10 * piece.done) / 10:.0%}"
+            title = f"Stability: h across, amplitude up; {piece.steps} steps{state}"
+            if title != pane.border_title:
+                pane.border_title = title

@@ -8,10 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.models.exact_pendulum import ExactMotion
-from engine.models.pendulum import energy, separatrix_energy
+from engine.models.pendulum import separatrix_margin
 from engine.scenes import SCENES, Scene
-from tui.drawing.phase_axes import in_pi, omega_ticks, theta_ticks
-from tui.views.phase.portrait import Portrait, margin
+from tui.drawing.axes import in_pi, omega_ticks, theta_ticks
+from tui.views.phase.portrait import Portrait
 from tui.views.phase.viewport import Viewport
 
 DRIFT = SCENES["drift"]
@@ -24,17 +24,6 @@ def at_the_top(span: float, columns: int = 47, rows: int = 17) -> Viewport:
     return viewport.zoomed(span / viewport.theta_span, columns, 2 * rows)
 
 
-@given(st.floats(-3, 3), st.floats(-10, 10))
-def test_the_margin_is_what_the_energy_leaves_to_the_separatrix(theta, omega):
-    share = energy(W0 * W0, theta, omega) / separatrix_energy(W0 * W0)
-    assert margin(W0, theta, omega) == pytest.approx(1 - share, abs=1e-14)  # roundings of numbers below 4
-
-
-def test_the_margin_keeps_its_digits_where_the_energy_has_lost_them():
-    # cos²((pi - 1e-6)/2) is 2.5e-13; 1e-9 is what rounding of the angle itself costs: 2e-16 of 1e-6
-    assert margin(W0, math.pi - 1e-6, 0.0) == pytest.approx(2.5e-13, rel=1e-9)
-
-
 @pytest.mark.parametrize("span", [math.tau, 0.1, 1e-6])
 def test_the_separatrix_is_where_libration_and_rotation_meet_at_every_zoom(span):
     viewport = at_the_top(span)
@@ -42,7 +31,7 @@ def test_the_separatrix_is_where_libration_and_rotation_meet_at_every_zoom(span)
     assert len(portrait.separatrix[0])
     for x, y in zip(*portrait.separatrix, strict=True):
         around = [(x + i + 0.5, y + j + 0.5) for i in (-1, 0, 1) for j in (-1, 0, 1)]
-        values = [margin(W0, viewport.theta_at(i), viewport.omega_at(j)) for i, j in around]
+        values = [separatrix_margin(W0, viewport.theta_at(i), viewport.omega_at(j)) for i, j in around]
         assert min(values) <= 0 <= max(values)
 
 
@@ -66,7 +55,7 @@ def test_the_three_regimes_are_named_where_they_are(scene, size):
     for column, row, text, _ in portrait.words:
         if text in ("libration", "rotation"):
             for at in range(column, column + len(text)):
-                value = margin(scene.w0, viewport.theta_at(2.0 * at + 1), viewport.omega_at(4.0 * row + 2))
+                value = separatrix_margin(scene.w0, viewport.theta_at(2.0 * at + 1), viewport.omega_at(4.0 * row + 2))
                 assert (value > 0) == (text == "libration")
 
 

@@ -99,7 +99,7 @@ async def test_f3_shows_all_of_it_and_the_arrows_are_its_keys(size):
         await bench.view("f3")
         assert bench.pane.has_focus
         await bench.pilot.press("shift+right", "up")
-        crosshair = bench.pane.crosshair
+        crosshair = bench.pane.cursor
         await bench.pilot.press("enter")
         assert (bench.live.scene.theta, bench.live.scene.omega) == tuple(crosshair)
         await bench.view("f2")
@@ -195,7 +195,7 @@ async def test_reversed_time_tells_at_its_start_how_far_each_method_misses_it():
         await bench.run(5)
         await bench.pilot.press("b")
         await bench.run(6)
-        assert bench.lab.query_one(InsightLine).text.startswith(" Back at t = 0, the start is missed by e ")
+        assert bench.lab.query_one(InsightLine).text.startswith(" Back at t = 0. Missed the start by e ")
 
 
 async def test_e_comes_by_the_shadow_energies():
@@ -236,4 +236,4 @@ async def test_in_a_replay_the_arrows_still_seek(tmp_path: Path):
         pane.focus()
         await pilot.press("right", "right")
         assert replay.playhead.position == pytest.approx(2.0)
-        assert pane.crosshair is None
+        assert pane.cursor is None

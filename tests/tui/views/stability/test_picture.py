@@ -4,14 +4,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from rich.segment import Segment
-from rich.style import Style
 
 from engine.methods import METHODS
 from engine.stability.grid import Grid
 from engine.stability.outcomes import CELL, DRIFTS, GROWS, HOLDS, UNKNOWN
 from tui.drawing.palette import PALETTES
-from tui.views.stability.picture import character, colour, differing, panel, picture, scores, worst
+from tui.views.stability.picture import character, colour, panel, picture, scores, worst
 
 STEPS = 1000
 
@@ -32,26 +30,6 @@ def half_lost(fate: int = GROWS) -> tuple[Grid, np.ndarray]:
 
 def text(lines: list) -> str:
     return "\n".join("".join(segment.text for segment in line).rstrip() for line in lines)
-
-
-LINES = st.lists(st.builds(Segment, st.text("ab", max_size=4), st.sampled_from([None, Style(bold=True)])), max_size=5)
-
-
-def cells_of(line: list[Segment]) -> list[tuple[str, Style | None]]:
-    return [(character, part.style) for part in line for character in part.text]
-
-
-@given(LINES, LINES)
-def test_painting_up_to_where_two_lines_differ_makes_one_of_the_other(before, after):
-    new = cells_of(after)
-    width = max(len(new), len(cells_of(before)))
-    blank = (" ", None)
-    painted = [*cells_of(before), *[blank] * width][:width]
-    target = [*new, *[blank] * width][:width]
-    end = differing(before, after)
-    painted[:end] = target[:end]
-    assert painted == target
-    assert (cells_of(before) == new) == (end == 0)
 
 
 def test_a_panel_without_colour_is_readable_characters():

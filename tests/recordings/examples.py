@@ -19,7 +19,7 @@ def start(run: int = 1, scene: Scene = SCENE) -> Event:
 
 
 def two_runs() -> list[Entry]:
-    """Everything that a sitting can hold: two runs, the second going on from the past of the first, and all events."""
+    """Everything that a recording can hold: two runs, of which the second continues from the first, and all events."""
     entries = []
 
     def note(clock: float, value: Sample | Event) -> None:

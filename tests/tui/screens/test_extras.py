@@ -12,16 +12,15 @@ from engine.scenes import SCENES
 from recordings.library import GOLDEN, listing
 from recordings.live_recorder import LiveRecorder
 from tests.tui.stage import Theatre, lab, on_stage
-from tui.commands.replay import player
 from tui.drawing.palette import PALETTES
 from tui.playback.live import Live
 from tui.screens.app import PenduApp
-from tui.screens.extras import EXTRAS
+from tui.screens.extras import EXTRAS, palette_entries
+from tui.screens.keys import COMMON, LIVE, REPLAY
+from tui.screens.launch import open_replay, replay_screen
 from tui.screens.live import LiveScreen
-from tui.screens.palette_entries import menu
 from tui.screens.replay import ReplayScreen
 from tui.views import VIEWS
-from tui.views.keys import COMMON, LIVE, REPLAY
 from tui.words.cards import method_card
 from tui.words.command_line import command
 
@@ -31,7 +30,7 @@ DRIFT = GOLDEN / "drift.mcap"
 async def chosen(theatre: Theatre, title: str) -> None:
     """Do what an entry does."""
     stage = theatre.stage
-    entries = {entry.title: entry for entry in menu(stage.KEYS, True, [item.path for item in listing()])}
+    entries = {entry.title: entry for entry in palette_entries(stage.KEYS, True, [item.path for item in listing()])}
     stage.call_next(stage.run_action, entries[title].action)
     await theatre.pilot.pause()
 
@@ -48,7 +47,7 @@ async def found(theatre: Theatre, words: str) -> None:
 
 
 def titles(keys=(*LIVE, *COMMON), live=True, recordings=(DRIFT,)) -> list[str]:
-    return [entry.title for entry in menu(keys, live, recordings)]
+    return [entry.title for entry in palette_entries(keys, live, recordings)]
 
 
 def test_it_has_every_key_scene_view_method_theme_and_recording():
@@ -73,10 +72,10 @@ def test_a_replay_cannot_be_given_a_scene():
 
 @pytest.mark.parametrize("stage", [LiveScreen, ReplayScreen])
 def test_there_is_an_action_behind_every_entry(stage):
-    for entry in menu(stage.KEYS, stage is LiveScreen, [Path("it's here.mcap")]):
+    for entry in palette_entries(stage.KEYS, stage is LiveScreen, [Path("it's here.mcap")]):
         where, action, parameters = parse(entry.action)
         assert hasattr(PenduApp if where == "app" else stage, f"action_{action}")
-        assert action != "aid" or parameters[0] in EXTRAS
+        assert action != "extra" or parameters[0] in EXTRAS
 
 
 async def test_a_scene_a_theme_and_a_card_can_be_chosen():
@@ -102,7 +101,7 @@ async def test_a_recording_is_replayed_and_the_sitting_before_it_is_finished(tmp
     live = Live(SCENES["spin"], clock=lambda: 0.0)
     live.record(LiveRecorder(tmp_path / "now.mcap"))
     async with on_stage(lambda clock: LiveScreen(live, clock), (100, 30)) as theatre:
-        theatre.app.opened = lambda path: player(path, no_record=True)
+        theatre.app.open_replay = lambda path: replay_screen(open_replay(path), no_record=True)
         offered = [command.title for command in theatre.app.get_system_commands(theatre.stage)]
         assert {"replay earlier", "replay drift", "replay spin"} <= set(offered)
         await theatre.run(1)
@@ -111,7 +110,7 @@ async def test_a_recording_is_replayed_and_the_sitting_before_it_is_finished(tmp
         assert theatre.source.recording.path.name == "earlier.mcap"
         assert (tmp_path / "now.mcap").exists()
         assert f"Recorded: {tmp_path / 'now.mcap'}" in [note.message for note in theatre.app._notifications]
-        assert [stage.source.kind for stage in theatre.app.stages] == ["LIVE", "REPLAY"]
+        assert [stage.source.kind for stage in theatre.app.source_screens] == ["LIVE", "REPLAY"]
         theatre.source.close()
 
 
@@ -119,7 +118,7 @@ async def test_a_file_that_is_no_recording_changes_nothing(tmp_path, monkeypatch
     monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path))
     (tmp_path / "broken.mcap").write_bytes(b"nothing")
     async with lab(size=(100, 30)) as theatre:
-        theatre.app.opened = lambda path: player(path, no_record=True)
+        theatre.app.open_replay = lambda path: replay_screen(open_replay(path), no_record=True)
         await chosen(theatre, "replay broken")
         assert theatre.source.kind == "LIVE"
         assert "broken.mcap" in [note.message for note in theatre.app._notifications][-1]

@@ -1,0 +1,43 @@
+"""Rows of characters on a screen: which of them are sent."""
+
+from rich.style import Style
+from textual.app import App, ComposeResult
+
+from tui.drawing.cells import CellWidget
+from tui.drawing.palette import NOBODY, TEXT
+
+
+class CellApp(App[None]):
+    """A widget of cells that keeps what it asked to be sent."""
+
+    def compose(self) -> ComposeResult:
+        yield CellWidget()
+
+    def on_mount(self) -> None:
+        self.cells = self.query_one(CellWidget)
+        self.sent: list[int] = []
+        self.cells._refresh_rows = self.sent.extend
+
+
+async def test_only_rows_that_changed_are_sent_and_no_more_than_asked_for():
+    rows = [[(letter, TEXT)] for letter in "abcd"]
+    app = CellApp()
+    async with app.run_test(size=(4, 4)):
+        assert not app.cells.show(rows, at_once=2)
+        assert app.cells.text == "a\nb\n\n"
+        assert app.cells.show(rows, at_once=2)
+        assert app.cells.text == "a\nb\nc\nd"
+        rows[2] = [("C", TEXT)]
+        assert app.cells.show(rows)
+        assert app.cells.show(rows[:3], at_once=0)
+        assert app.sent == [0, 1, 2, 3, 2, 3]
+        assert app.cells.text == "a\nb\nC"
+
+
+async def test_a_row_may_bring_its_own_style():
+    app = CellApp()
+    async with app.run_test(size=(4, 4)):
+        app.cells.show([[("x", Style(color="#010203", reverse=True)), ("y", NOBODY)]])
+        x, y = list(app.cells.render_line(0))[:2]
+        assert (x.text, x.style.color.name, x.style.reverse) == ("x", "#010203", True)
+        assert x.style.bgcolor == y.style.bgcolor

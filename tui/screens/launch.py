@@ -1,0 +1,132 @@
+"""Open the lab or a replay, show it (or print it as sentences), and say where the recording is."""
+
+import argparse
+import os
+import shlex
+import sys
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tui.cli.errors import Exit, UserError
+from tui.cli.output import progress, warn
+
+if TYPE_CHECKING:  # Textual is imported only where there is a screen, NumPy and mcap only when they are needed
+    from tui.playback.live import Live
+    from tui.playback.replay import Replay
+    from tui.playback.source import Source
+    from tui.screens.base import SourceScreen
+    from tui.screens.live import LiveScreen
+    from tui.screens.replay import ReplayScreen
+
+
+def recording_path(file: Path | None) -> Path:
+    """Where to record: the given file, or a new one in the library.  Raises UserError or OSError if it cannot be."""
+    from recordings import library
+
+    if file is not None and file.exists():
+        raise UserError(f"{file} exists already: choose another name, or remove it.", Exit.DISK)
+    path = file or library.new_path()
+    if file is None:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    if not path.parent.is_dir() or not os.access(path.parent, os.W_OK | os.X_OK):
+        raise UserError(
+            f"{path.parent} is no folder that can be written: choose another one with --record or PENDU_RECORDINGS,"
+            " or record nothing with --no-record.",
+            Exit.DISK,
+        )
+    return path
+
+
+def recover_leftovers(folder: Path) -> list[str]:
+    """Recover what killed labs left unfinished in a folder, and print a sentence about each."""
+    from tui.words import recovered
+
+    sentences = recovered.recover_leftovers(folder, progress)
+    for sentence in sentences:
+        warn(sentence)
+    return sentences
+
+
+def start_recording(live: "Live", path: Path | None, or_next: bool) -> None:
+    """Record the lab at a path, if there is one; `or_next`: or under the next free name."""
+    if path is not None:
+        from recordings.live_recorder import LiveRecorder  # brings mcap
+
+        live.record(LiveRecorder(path, or_next=or_next))
+
+
+def live_screen(live: "Live", path: Path | None, notices: Sequence[str] = (), or_next: bool = True) -> "LiveScreen":
+    """The lab's screen; recording starts after its first paint."""
+    from tui.screens.live import LiveScreen
+
+    return LiveScreen(live, prepare=partial(start_recording, live, path, or_next), notices=notices)
+
+
+def open_replay(path: Path) -> "Replay":
+    """A recording to be replayed.  Raises UserError if there is nothing in it."""
+    from recordings.recording import Recording
+    from tui.playback.marks import Marks
+    from tui.playback.replay import Replay
+
+    with progress(f"looking through {path.name}") as show_progress:
+        recording = Recording.open(path, progress=show_progress)
+    if recording.at(0.0) is None:
+        raise UserError(f"{path}: no samples are left in it, so there is nothing to see.", Exit.INPUT_UNREADABLE)
+    return Replay(recording, Marks(path))
+
+
+def replay_screen(replay: "Replay", no_record: bool) -> "ReplayScreen":
+    """The replay's screen; a lab that continues from it is recorded in the library, or not at all."""
+    from tui.screens.replay import ReplayScreen
+
+    def go_live(live: "Live") -> "LiveScreen":
+        return live_screen(live, None if no_record else recording_path(None))
+
+    reason = replay.recording.reason
+    notices = [f"This recording is not whole: {reason}. What is intact is shown."] if reason else []
+    return ReplayScreen(replay, go_live, notices=notices)
+
+
+def show(screen: "SourceScreen", options: argparse.Namespace) -> int:
+    """Run the app with this screen first, and say goodbye; returns the exit code."""
+    from tui.screens.app import PenduApp
+    from tui.terminal.options import terminal_options_of
+
+    assert sys.__stderr__ is not None  # where Textual draws
+    terminal = terminal_options_of(options, os.environ, sys.__stderr__.encoding)
+    app = PenduApp(screen, lambda path: replay_screen(open_replay(path), options.no_record), terminal)
+    result = app.run(mouse=terminal.mouse)
+    app.source_screen.source.close()
+    if isinstance(result, OSError):
+        raise result
+    for each in app.source_screens:
+        say_goodbye(each.source)
+    return app.return_code or Exit.FINE if result is None else result
+
+
+def print_sentences(source: "Source") -> int:
+    """Print what happens as sentences until a signal such as Ctrl+C ends it, which is how it should end."""
+    from tui.cli.files import stop_requests
+    from tui.words.plain_text import plain
+
+    try:
+        with stop_requests() as stopped:
+            plain(source, partial(print, flush=True), stopped)
+    finally:
+        source.close()
+    say_goodbye(source)
+    return Exit.FINE
+
+
+def say_goodbye(source: "Source") -> None:
+    """Print where a lab was recorded and how to replay it."""
+    from tui.playback.live import Live
+
+    if not isinstance(source, Live) or source.recorder is None:
+        return
+    for file in source.recorder.files:
+        print(f"recorded: {file}\nsee it again: pendu-tui replay {shlex.quote(str(file))}")
+    if source.recorder.failed:
+        warn(f"the recording stopped: {source.recorder.failed}")
