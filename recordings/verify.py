@@ -17,6 +17,7 @@ from pathlib import Path
 from engine.methods import METHODS, Method
 from engine.run.compiled import tiered
 from engine.run.lockstep import Lockstep, Reading, Sample
+from engine.run.stepping import Stepping
 from engine.scenes import SceneError
 from recordings.errors import RecordingError, named
 from recordings.events import Event
@@ -141,7 +142,7 @@ class Rerun:
             self._go(event.step)
             for lockstep in self._locksteps:
                 try:
-                    lockstep.set_h(event.h, event.equal_cost)
+                    lockstep.set_stepping(Stepping(event.h, event.equal_cost))
                 except SceneError as error:
                     raise RecordingError(f"run {self.run} cannot have been recorded: {error}") from error
 

@@ -9,6 +9,7 @@ from typing import Any
 from textual.pilot import Pilot
 
 from engine.run.lockstep import Sample
+from engine.run.stepping import Stepping
 from engine.scenes import DEFAULT_SCENE, SCENES, Scene
 from recordings.live_recorder import LiveRecorder
 from recordings.recording import Recording
@@ -83,15 +84,15 @@ def eventful(path: Path) -> Path:
     return recorded(
         path,
         2.0,
-        lambda live: live.set_h(0.1),
+        lambda live: live.set_stepping(Stepping(0.1)),
         2.0,
         lambda live: live.mark("here"),
-        lambda live: live.set_h(-0.1),
+        lambda live: live.set_stepping(Stepping(-0.1)),
         1.0,
         lambda live: live.start(SCENES["spin"]),
         4.0,
         lambda live: live.step(-40),
-        lambda live: live.set_h(0.05),
+        lambda live: live.set_stepping(Stepping(0.05)),
         lambda live: live.pause(False),
         3.0,
     )

@@ -26,8 +26,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from engine.run.compiled import available
-    from tui.commands.run import COMPILED_FROM
+    from engine.run.compiled import COMPILED_FROM, available
 
     methods = _measured()
     if options.json:

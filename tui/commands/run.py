@@ -5,6 +5,7 @@ import math
 import time
 from contextlib import nullcontext
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +20,7 @@ from tui.words.numbers import file_size
 
 if TYPE_CHECKING:
     from engine.run.lockstep import Sample
-    from engine.run.verdict import Trend
+    from engine.run.observer import RunObserver
 
 EXAMPLES = """\
 examples:
@@ -35,7 +36,6 @@ LARGE = 200e6  # bytes of a recording that deserve a warning; half a minute to w
 SAMPLE_BYTES = 320  # of a recording, measured with h from 0.01 to 0.05 s
 MOST_SAMPLES = 20_000  # of a run that is not recorded: enough for every verdict, and little work next to the steps
 AT_ONCE = 1_000_000  # steps in a batch, about a second; Ctrl+C is only seen between batches
-COMPILED_FROM = 1_000_000  # steps: below, compiling takes longer than it saves
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -72,9 +72,9 @@ def run(options: argparse.Namespace) -> int:
         check_free(options.record, options.force)
         _announce(steps, every)
     began = time.perf_counter()
-    sample, trends, stopped = _simulate(scene, options, steps, every)
+    sample, observer, stopped = _simulate(scene, options, steps, every)
     wall_seconds = time.perf_counter() - began
-    rows = _rows(scene, sample, trends)
+    rows = _rows(sample, observer)
     if options.json:
         fields = {"scene": asdict(scene), "time": sample.t, "steps": sample.step, "wall_seconds": wall_seconds}
         write_json("run", {**fields, "methods": rows})
@@ -98,11 +98,10 @@ def _announce(steps: int, every: int) -> None:
         )
 
 
-def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int) -> "tuple[Sample, list[Trend], bool]":
-    """The last sample, each method's trend, and whether a signal stopped the run before its end."""
-    from engine.models.exact_pendulum import ExactMotion
+def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int) -> "tuple[Sample, RunObserver, bool]":
+    """The last sample, what was observed, and whether a signal stopped the run before its end."""
     from engine.run import compiled, loops
-    from engine.run.verdict import Trend
+    from engine.run.observer import RunObserver
     from recordings.headless import simulate
 
     recorder: Any = nullcontext()
@@ -110,38 +109,34 @@ def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int)
         from recordings.recorder import Recorder
 
         recorder = Recorder(options.record, wall=None, overwrite=options.force)
-    exact = ExactMotion(scene)
-    trends = [Trend(period := exact.period or math.tau / scene.w0) for _ in METHODS]
-    per_turn = period / scene.h if exact.regime == "rotation" else math.inf
-    fast = not options.no_compiled and steps >= COMPILED_FROM and compiled.available()
+    observer = RunObserver(scene)
+    fitting = loops.plain if options.no_compiled else partial(compiled.tiered, ahead=steps)
     with stop_requests() as stopped, progress(f"{steps:,} steps") as show, recorder as recording:
-        for sample in simulate(scene, options.time, recording, every, loops=compiled.compiled if fast else loops.plain):
-            for trend, reading in zip(trends, sample.readings, strict=True):
-                trend.read(sample.t, reading, per_turn)
+        for sample in simulate(scene, options.time, recording, every, loops=fitting):
+            observer.add(sample)
             show(sample.step, steps)
             if stopped() and sample.step < steps:
-                return sample, trends, True
-    return sample, trends, False
+                return sample, observer, True
+    return sample, observer, False
 
 
-def _rows(scene: Scene, sample: "Sample", trends: "list[Trend]") -> list[dict[str, Any]]:
+def _rows(sample: "Sample", observer: "RunObserver") -> list[dict[str, Any]]:
     """The results by method, as in --json.  A method that diverged has no theta to compare."""
     from engine.accuracy.study import evaluations
-    from engine.models.exact_pendulum import ExactMotion
     from recordings.fields import NUMBERS
 
-    exact = ExactMotion(scene).at(sample.t).theta
+    exact = observer.exact.at(sample.t).theta
     rows = []
-    for method, reading, trend in zip(METHODS, sample.readings, trends, strict=True):
+    for method, reading, judgement in zip(METHODS, sample.readings, observer.judgements, strict=True):
         end = reading.diverged_at
         rows.append(
             {
                 "method": method.key,
                 **fields_of(reading, *NUMBERS),
                 "theta_error": abs(reading.theta - exact) if end is None else None,
-                "drift_per_second": trend.judgement.slope,
-                "verdict": trend.judgement.verdict,
-                "force_evaluations": evaluations(method, sample.step if end is None else round(end / scene.h)),
+                "drift_per_second": judgement.slope,
+                "verdict": judgement.verdict,
+                "force_evaluations": evaluations(method, sample.step if end is None else round(end / observer.scene.h)),
                 "diverged_at": end,
             }
         )

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from textual.message import Message
 
+from engine.run.stepping import Stepping
 from engine.scenes import Scene
 
 
@@ -18,4 +19,4 @@ class SceneChosen(Message):
 class StepSizeChosen(Message):
     """The user wants to go on with this step size."""
 
-    h: float  # s, without the sign of time's direction
+    stepping: Stepping

@@ -202,7 +202,7 @@ def test_csv_has_a_line_for_each_point_with_all_digits(tmp_path):
         (["--h-values", "0.1:0:5"], ["above zero"]),
         (["--h-values", "0.1:0.01:9999"], ["not a list of step sizes"]),
         (["--h-values", "30:0.1:3", "--time", "20"], ["longer than the time"]),
-        (["--h-values", "1e9:0.1:3"], ["no usable step"]),
+        (["--h-values", "1e9:0.1:3"], ["not a usable step"]),
         (["--time", "nan"], ["above zero"]),
         (["--time", "1e300"], ["out of range"]),
         (["--time", "1e9"], ["take hours", "--h-values"]),

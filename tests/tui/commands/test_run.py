@@ -148,7 +148,7 @@ def test_a_gate_that_does_not_hold_is_exit_0():
 
 @pytest.mark.skipif(not available(), reason="Numba is not installed")
 def test_compiled_and_plain_runs_print_the_same_numbers(monkeypatch):
-    monkeypatch.setattr("tui.commands.run.COMPILED_FROM", 1)
+    monkeypatch.setattr("engine.run.compiled.COMPILED_FROM", 1)
     arguments = ("run", "--scene", "near-separatrix", "--time", 20, "--json")
     compiled, plain = pendu(*arguments).json, pendu(*arguments, "--no-compiled").json
     assert compiled["methods"] == plain["methods"]

@@ -3,6 +3,7 @@
 import pytest
 
 from engine.methods import METHODS
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES
 from tests.tui.harness import lab
 from tui.playback.live import Live
@@ -60,7 +61,7 @@ def test_the_help_begins_with_what_to_watch_and_ends_with_the_methods():
 def test_the_help_shows_the_current_step_next_to_the_scenes():
     live = Live(SCENES["drift"])
     assert "now" not in words(scene_card(live.scene))
-    live.set_h(-0.4, equal_cost=True)
+    live.set_stepping(Stepping(-0.4, equal_cost=True))
     text = words(help_text(LIVE, live))
     assert (
         "step h = 0.05 s, z = h w0 = 0.1566 now h = 0.4 s, z = 1.25; at equal cost, the cheaper methods split it"

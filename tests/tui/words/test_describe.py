@@ -5,6 +5,7 @@ import re
 import pytest
 
 from engine.methods import METHODS
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES
 from tests.tui.harness import after, lab
 from tui.playback.live import Live
@@ -49,8 +50,8 @@ def test_before_a_verdict_a_method_s_sentence_gives_its_error():
     [
         (lambda live: live.pause(True), "is paused"),
         (lambda live: live.set_speed(0.5), "runs at 0.5 times real time"),
-        (lambda live: live.set_h(-0.05), "time runs backwards"),
-        (lambda live: live.set_h(0.2, equal_cost=True), "at equal cost"),
+        (lambda live: live.set_stepping(Stepping(-0.05)), "time runs backwards"),
+        (lambda live: live.set_stepping(Stepping(0.2, equal_cost=True)), "at equal cost"),
         (lambda live: live.start(SCENES["spin"]), "one turn takes 0.98 s"),
     ],
 )

@@ -2,6 +2,7 @@
 
 import pytest
 
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES
 from recordings.recording import Recording
 from tests.tui.harness import after, recorded
@@ -39,11 +40,11 @@ def test_changes_and_marks_are_listed_and_pauses_are_not():
     live.pause(True)
     live.pause(False)
     live.set_speed(2)
-    live.set_h(0.1)
+    live.set_stepping(Stepping(0.1))
     live.step(1)
     live.mark("question 2")
-    live.set_h(-0.1)
-    live.set_h(0.4, equal_cost=True)
+    live.set_stepping(Stepping(-0.1))
+    live.set_stepping(Stepping(0.4, equal_cost=True))
     live.start(DRIFT.altered(theta=2.0))
     assert texts(live) == [
         "start drift, h 0.05 s",
@@ -59,8 +60,8 @@ def test_changes_and_marks_are_listed_and_pauses_are_not():
 
 
 def test_marks_next_to_a_recording_have_the_time_of_their_step(tmp_path):
-    changes = (2.0, lambda live: live.set_h(0.1), 2.0, lambda live: live.set_h(-0.02), 1.0)
-    path = recorded(tmp_path / "run.mcap", *changes)
+    larger, backwards = (lambda live, h=h: live.set_stepping(Stepping(h)) for h in (0.1, -0.02))
+    path = recorded(tmp_path / "run.mcap", 2.0, larger, 2.0, backwards, 1.0)
     with Recording.open(path) as recording:
         replay = Replay(recording, Marks(path), clock=lambda: 0.0)
         times = []

@@ -6,6 +6,7 @@ import pytest
 
 from engine.methods import METHODS
 from engine.run.lockstep import Lockstep
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES
 from tests.tui.harness import FPS, Lab, after
 from tui.playback.live import Live
@@ -114,7 +115,7 @@ def test_there_is_no_forecast_where_it_would_be_a_guess():
     assert forecast(after(SCENES["drift"], 40), EXPLICIT) is None  # grows ever faster
     assert forecast(after(SCENES["drift"], 40), VERLET) is None  # stays
     live = after(SCENES["drift"], 20)
-    live.set_h(0.1)
+    live.set_stepping(Stepping(0.1))
     for _ in range(400):
         live.step(1)
     assert live.judgements[RK4].verdict == "drifts"
@@ -170,7 +171,7 @@ def test_a_run_begins_with_what_to_watch():
 
 def test_with_another_step_size_what_to_watch_is_left_out():
     live = after(SCENES["crossover"], 1)
-    live.set_h(0.1)
+    live.set_stepping(Stepping(0.1))
     assert insight(live) == so_far(live)
     for _ in range(400):
         live.step(1)

@@ -12,7 +12,7 @@ from engine.accuracy.study import REASONS, ErrorKind, Point
 from engine.methods import METHODS
 from engine.run.lockstep import Sample
 from tui.drawing.palette import TEXT
-from tui.playback.source import EQUAL_PARTS, Source
+from tui.playback.source import Source
 from tui.views.accuracy.chart import POWERS, accuracy_chart
 from tui.views.keys import Key, bindings
 from tui.views.messages import StepSizeChosen
@@ -134,5 +134,5 @@ class AccuracyPane(Chooser[int]):
 
     def choose(self, rung: int) -> None:
         assert self.source is not None
-        part = EQUAL_PARTS[self.index] if self.source.equal_cost else 1
-        self.post_message(StepSizeChosen(self.time / self.rungs[rung] * part))
+        h = self.time / self.rungs[rung]
+        self.post_message(StepSizeChosen(self.source.stepping.with_own(METHODS[self.index], h)))

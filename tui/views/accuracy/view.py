@@ -6,7 +6,6 @@ from textual.app import ComposeResult
 
 from engine.accuracy.study import measured, usual
 from engine.scenes import Scene
-from tui.playback.source import own_h
 from tui.views.accuracy.pane import KEYS, MOST_STEPS, AccuracyPane
 from tui.views.background import computed
 from tui.views.view import View
@@ -45,7 +44,7 @@ class AccuracyView(View):
             pane.begin(*usual(scene))
             self._compute(scene, pane.time, pane.rungs, "ladder")
             pane.here = ()
-        here = tuple(max(1, round(pane.time / abs(h))) for h in own_h(self.source))
+        here = tuple(max(1, round(pane.time / abs(h))) for h in self.source.stepping.own())
         if here != pane.here:
             pane.here = here
             known = {*pane.rungs, *(steps for _, steps in pane.points)}

@@ -11,7 +11,7 @@ from engine.run.verdict import Judgement
 from tui.drawing.cells import Row
 from tui.drawing.palette import FRAME, TEXT, WARN, mark
 from tui.playback.shown import Shown
-from tui.playback.source import Source, own_h
+from tui.playback.source import Source
 from tui.views.view import Pane
 from tui.words.numbers import decimal, scientific
 
@@ -106,4 +106,4 @@ class ErrorTable(Pane):
 
     def paint(self, source: Source, sample: Sample) -> None:
         exact = source.exact.at(sample.t)
-        self.show(table(sample, source.judgements, exact, own_h(source), self.shown, self.room.width))
+        self.show(table(sample, source.judgements, exact, source.stepping.own(), self.shown, self.room.width))

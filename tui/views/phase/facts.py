@@ -5,8 +5,7 @@ import math
 from engine.methods import METHODS
 from engine.models.exact_pendulum import ExactMotion
 from engine.models.state import State
-from engine.phase_space.area import Neighbourhood
-from engine.phase_space.neighbours import Neighbours
+from engine.phase_space.area import Neighbourhood, Neighbours
 from tui.drawing.axes import in_pi
 from tui.drawing.canvas import Canvas, Picture, Span
 from tui.drawing.palette import FRAME, TEXT, mark

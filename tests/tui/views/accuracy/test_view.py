@@ -9,6 +9,7 @@ from textual.pilot import Pilot
 
 from engine.accuracy.study import Study, ladder
 from engine.methods import METHODS
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene
 from recordings.library import resolve
 from recordings.recording import Recording
@@ -87,19 +88,19 @@ async def test_enter_uses_the_h_of_the_cursors_point_and_u_takes_it_back():
         run = live.sample.run
         await pilot.press("enter")
         await complete(pilot, pane)
-        assert live.h == point.h != 0.05
+        assert live.stepping.h == point.h != 0.05
         assert live.sample.run == run  # h changes, the run goes on
         assert pane.here[VERLET] == point.steps
         assert pane.cursor is None
         await pilot.press("u")
-        assert live.h == 0.05
+        assert live.stepping.h == 0.05
 
 
 async def test_while_time_runs_backwards_the_chosen_h_is_negative():
     async with accuracy_view() as (pilot, pane, live):
         await pilot.press("b", "left", "enter")
         await complete(pilot, pane)
-        assert live.h == pytest.approx(-5.0 / RUNGS[1])
+        assert live.stepping.h == pytest.approx(-5.0 / RUNGS[1])
 
 
 async def test_at_equal_cost_every_method_is_at_its_own_h():
@@ -108,7 +109,7 @@ async def test_at_equal_cost_every_method_is_at_its_own_h():
         await complete(pilot, pane)
         assert pane.here == (100, 100, 100, 25)
         await pilot.press("left", "left", "enter")
-        assert live.h == pytest.approx(4 * 5.0 / RUNGS[0])
+        assert live.stepping.h == pytest.approx(4 * 5.0 / RUNGS[0])
 
 
 async def test_another_h_moves_the_mark_and_another_start_the_points():
@@ -156,7 +157,7 @@ async def test_the_cursor_stays_on_the_ladder_and_esc_leaves_it():
 async def test_an_h_that_is_too_large_or_too_small_has_no_mark():
     async with accuracy_view() as (pilot, pane, live):
         for h in (20.0, 1e-7):
-            live.set_h(h)
+            live.set_stepping(Stepping(h))
             await pilot.pause(0.5)
             assert pane.settled
             assert "X" not in pane.text
@@ -183,6 +184,6 @@ async def test_a_replay_shows_it_and_keeps_its_arrows():
         await pilot.press("right")
         assert replay.playhead.position == pytest.approx(1.0, abs=0.05)
         assert pane.cursor is None
-        h = replay.h
+        h = replay.stepping.h
         await pilot.press("enter")
-        assert math.copysign(replay.h, 1) == h
+        assert math.copysign(replay.stepping.h, 1) == h

@@ -6,6 +6,7 @@ import pytest
 from textual.widgets import Static
 
 from engine.phase_space.area import Neighbourhood
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene
 from recordings.recording import Recording
 from tests.tui.harness import Theatre, lab, recorded
@@ -71,7 +72,7 @@ async def test_the_view_shows_who_keeps_the_area_around_the_start():
         await theatre.press("f3")
         await theatre.run(20)
         ring = Neighbourhood(DRIFT, RADIUS)
-        ring.advance(theatre.source.sample.step, DRIFT.h)
+        ring.advance(theatre.source.sample.step, Stepping(DRIFT.h))
         assert shown(theatre).ring.area_ratios == ring.area_ratios
         lines = theatre.stage.query_one("#facts", CellWidget).text.splitlines()
         assert "0.1 rad around the start" in lines[0]

@@ -159,10 +159,10 @@ async def test_a_larger_step_beyond_a_limit_is_warned_of_and_taken(monkeypatch: 
     async with stability_view(monkeypatch, scene) as (pilot, pane, live):
         status = pane.screen.query_one(StatusLine)
         await pilot.press("plus")
-        assert live.h == 2.0
+        assert live.stepping.h == 2.0
         assert "beyond" not in status.text
         await pilot.press("plus")
-        assert live.h == 5.0
+        assert live.stepping.h == 5.0
         assert "z 5  unstable: s v (z > 2), r (z > 2.83)" in status.text
         assert pane.aim(VERLET) is None  # it is beyond the map, too
 
