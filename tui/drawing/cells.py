@@ -66,11 +66,9 @@ class CellWidget(Widget):
         """Bring what is shown up to date."""
 
     def on_resize(self) -> None:
-        """Draw for the new size."""
         self._fit()
 
     def on_show(self) -> None:
-        """Draw what has changed meanwhile."""
         self._visible = True
         self._fit()
 
@@ -81,7 +79,6 @@ class CellWidget(Widget):
         self.draw()
 
     def on_hide(self) -> None:
-        """Draw no more."""
         self._visible = False
 
     def show(self, rows: Sequence[Row], at_once: int | None = None) -> bool:
@@ -94,7 +91,6 @@ class CellWidget(Widget):
         return not wait
 
     def show_picture(self, picture: Picture) -> None:
-        """Show a picture."""
         if self.app.has_class(PRESENT):
             picture = thick(picture)
         changed, self._picture = changed_rows(self._picture, picture), picture
@@ -113,7 +109,6 @@ class CellWidget(Widget):
         return "\n".join("".join(text for text, _ in row).rstrip() for row in self._rows)
 
     def render_line(self, y: int) -> Strip:
-        """One row."""
         row = self._rows[y] if y < len(self._rows) else ()
         strip = Strip([Segment(text, self._style(owner)) for text, owner in row])
         return strip.adjust_cell_length(self.room.width, self._style(NOBODY))

@@ -1,4 +1,4 @@
-"""What views ask of the lab."""
+"""Messages from a view to the lab."""
 
 from dataclasses import dataclass
 
@@ -17,6 +17,6 @@ class SceneChosen(Message):
 
 @dataclass
 class StepSizeChosen(Message):
-    """The user wants to go on with this step size."""
+    """The user wants to continue with this step size."""
 
     stepping: Stepping

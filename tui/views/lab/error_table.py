@@ -1,4 +1,4 @@
-"""ErrorTable: what each method reads now, and what is known of its energy error."""
+"""ErrorTable: each method's state and energy error now, and the verdict on its error so far."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from tui.words.numbers import decimal, scientific
 
 
 class TableLine(NamedTuple):
-    """All that a line of the table is made of."""
+    """What the cells of a line are made from."""
 
     method: Method
     reading: Reading
@@ -66,7 +66,7 @@ def theta_error(line: TableLine) -> float:
 
 
 def verdict(line: TableLine) -> str:
-    """The verdict in a word; a method that has diverged has failed."""
+    """The verdict in a word; "failed" for a method that has diverged."""
     return "failed" if line.reading.diverged_at is not None else line.judgement.verdict
 
 
@@ -97,7 +97,7 @@ def table(
 
 
 class ErrorTable(Pane):
-    """The table."""
+    """As many columns as fit."""
 
     def watch_shown(self) -> None:
         """Hidden methods leave no gap."""

@@ -48,7 +48,7 @@ def _cell(index: int, sample: Sample, judgement: Judgement, width: int) -> list[
 
 
 class LargeTable(Pane):
-    """The table.  It takes the room it needs."""
+    """Takes as many rows as it needs."""
 
     def paint(self, source: Source, sample: Sample) -> None:
         rows = large_rows(sample, source.judgements, self.shown, self.room.width)

@@ -1,4 +1,4 @@
-"""Pendulum: one or all methods' pendulums on one pivot, made of characters.
+"""Pendulum: one method's pendulum, or all on one pivot, in braille.
 
 Dots are square in a cell twice as high as wide, so x and y have the same physical scale.  The
 pivot is exactly in the middle: explicit Euler goes over the top.
@@ -27,7 +27,7 @@ class Bob:
     theta: float  # rad from the downward vertical
     owner: int
     trail: ArrayLike = ()  # rad; where it was, drawn faintly
-    letter: str = ""  # written beside it, so that colour is not alone
+    letter: str = ""  # written next to it, so that colour is not alone
     ghost: bool = False  # the exact swing: dotted and hollow
     diverged: bool = False  # its numbers ended here: crossed out
 
@@ -62,7 +62,7 @@ def pendulum_picture(columns: int, rows: int, bobs: Sequence[Bob]) -> Picture:
 
 
 class Pendulum(Pane):
-    """The pendulums of some methods; more than one are told apart by their letters."""
+    """The pendulums of some methods; if there are several, with their letters."""
 
     def __init__(self, indices: Sequence[int], id: str | None = None, classes: str | None = None) -> None:
         super().__init__(id, classes)

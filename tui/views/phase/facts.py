@@ -20,7 +20,7 @@ _NAME, _CELL = 22, 14
 def fact_rows(
     source: Source, shown: Shown, neighbours: Neighbours | None, ring: Neighbourhood | None, width: int
 ) -> list[list[Span]]:
-    """The rows; of the columns, the first ones that fit."""
+    """A line about the ring, the heads, and a row for each method; the first columns that fit."""
     exact, fit = source.exact.at(source.sample.t), max((width - _NAME) // _CELL, 0)
     heads = ("sum log det J", "area", "theta error", "dE/E0")[:fit]
     rows: list[list[Span]] = [

@@ -55,7 +55,7 @@ class PhasePane(Chooser[State]):
     """Of the ring of neighbours [rad]; None: no ring."""
 
     class RingMoved(Message):
-        """The ring has caught up, or has come nearer, though the sample is the same."""
+        """The ring has moved on towards the sample, which is the same."""
 
     def __init__(self, id: str | None = None, radius: float | None = None) -> None:
         super().__init__(id)
@@ -72,7 +72,7 @@ class PhasePane(Chooser[State]):
 
     @property
     def settled(self) -> bool:
-        """Whether all of it is shown as it is now."""
+        """Whether the ring shown is that of the sample."""
         return not (self.drawable and self._catching_up)
 
     def watch_source(self) -> None:
@@ -80,7 +80,6 @@ class PhasePane(Chooser[State]):
         super().watch_source()
 
     def watch_wrap(self) -> None:
-        """Begin again with the whole portrait."""
         self._whole = self.zoomed = None
         self.draw()
 
@@ -97,7 +96,6 @@ class PhasePane(Chooser[State]):
 
     @property
     def viewport(self) -> Viewport:
-        """What is in view."""
         assert self.source is not None
         columns, rows = self.cells
         if self.zoomed is not None:

@@ -145,7 +145,6 @@ class StabilityPane(Chooser[tuple[int, int]]):
         return verdict(METHODS[index], self.grid.theta[theta], self.grid.z, cells, z, w0)
 
     def action_move(self, right: int, up: int) -> None:
-        """Move the cursor by cells of the map."""
         z, theta = self.aim(self.index) or (0, 0)
         self.cursor = min(max(z + right, 0), len(self.grid.z) - 1), min(max(theta + up, 0), len(self.grid.theta) - 1)
         self.draw()

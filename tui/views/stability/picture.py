@@ -31,7 +31,7 @@ Segments = list[Segment]
 
 
 def scores(cells: Cells, steps: int) -> Scores:
-    """How well each swing fared: -1 not computed; 0 to 1 lost, early to late; 1 to 2 held, energy error large to small.
+    """A score per swing: -1 not computed; 0 to 1 lost, early to late; 1 to 2 stable, energy error large to small.
 
     Both parts are logarithmic, in steps survived and in the largest energy error.
     """
@@ -50,7 +50,7 @@ def picture(grid: Grid, cells: Cells, columns: int, palette: Palette | None) -> 
 
 
 def side_by_side(panels: Sequence[Sequence[Segments]], across: int) -> list[Segments]:
-    """The lines of panels of one size, some beside each other."""
+    """The lines of panels of one size, `across` of them next to each other."""
     return [
         [segment for number, line in enumerate(lines) for segment in ([Segment("  ")] if number else []) + line]
         for first in range(0, len(panels), across)
@@ -71,7 +71,7 @@ def panel(
 ) -> list[Segments]:
     """One method's panel: its title, `rows` of the map, and the axis.
 
-    `here` is a (z, theta) to mark.  With w0 [1/s] the axis says h instead of z.
+    `here` is a (z, theta) to mark.  With w0 [1/s] the axis shows h instead of z.
     """
     method, width = grid.methods[index], columns - MARGIN
     overlay: dict[tuple[int, int] | None, str] = {
@@ -139,7 +139,7 @@ def worst(values: Scores, columns: int, rows: int) -> Scores:
 
 
 def colour(score: float, index: int, palette: Palette) -> str:
-    """Held: the method's colour, brighter for a smaller energy error.  Lost: the alarm's, darker for sooner."""
+    """Stable: the method's colour, brighter for a smaller energy error.  Lost: the warning colour, darker if sooner."""
     if score < 0:
         return palette.background
     if score < 1:
@@ -148,7 +148,7 @@ def colour(score: float, index: int, palette: Palette) -> str:
 
 
 def character(score: float, steps: int) -> str:
-    """The same without colour: # + - held, by energy error; lost within 10 steps, a dot, after 10^n steps, n."""
+    """The same without colour: # + - stable, by energy error; lost within 10 steps: a dot, after 10^n steps: n."""
     if score < 0:
         return " "
     if score < 1:
