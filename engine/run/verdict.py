@@ -5,14 +5,14 @@ the stream is cut into bins of a swing or more, and of a bin only its band is ke
 middle of a band hardly wobbles, whatever the phase at which the bin was cut.  When there are 64 bins
 they merge pairwise.
 
-- `grows` and `drifts`: the energy error no longer comes back to its value at the start.  The band of the
+- `grows` and `loses`: the energy error no longer comes back to its value at the start.  The band of the
   last quarter of the bins misses it by half its own width; or by a sixteenth, if that is more than the
   whole energy of the start.  A bounded motion comes back to where it began, so this is final for as long
   as the Trend lives.  Where rounding alone could have carried the error there, it must also have gone
   steadily.
 - `bounded`: it does come back, and a line through the middles of the bands, with three times its
   uncertainty, would take more than 500 periods to move by half the band's width.  RK4, the one method
-  that drifts slowly, takes 1 to 50 in libration and moderate rotation, and 360 at 100 rad/s and h·w0 = 0.003.
+  that loses energy slowly, takes 1 to 50 in libration and moderate rotation, and 360 at 100 rad/s and h·w0 = 0.003.
 - `too early`: neither, yet.
 
 A rotation of fewer than three steps a turn beats with its steps, and a bounded energy error may stay away from
@@ -30,7 +30,7 @@ from typing import Literal, NamedTuple
 
 from engine.run.lockstep import Reading
 
-Verdict = Literal["too early", "bounded", "drifts", "grows"]
+Verdict = Literal["too early", "bounded", "loses", "grows"]
 
 _BINS = 64
 _LEAST_BINS = 4
@@ -136,7 +136,7 @@ class Trend:
             return None
         if self._beats and gap <= 1:
             return None
-        return "grows" if low > self._first else "drifts"
+        return "grows" if low > self._first else "loses"
 
     def _steady(self) -> bool:
         """Whether the steps from bin to bin agree, five times better than those of a random walk."""

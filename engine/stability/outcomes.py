@@ -21,10 +21,10 @@ BAND = 0.5
 """How far, as a fraction, energy may go above the highest and below the lowest that the method's own
 bounded wobble on the linear oscillator takes it to (engine.stability.linear.wobble)."""
 
-FATES = ("holds", "over the top", "grows", "drifts")
+FATES = ("holds", "over the top", "grows", "loses")
 """What becomes of a swing: it stays, |theta| passes pi, its energy leaves the band upwards or downwards."""
 
-HOLDS, OVER_THE_TOP, GROWS, DRIFTS = range(len(FATES))
+HOLDS, OVER_THE_TOP, GROWS, LOSES = range(len(FATES))
 UNKNOWN = 255  # the fate of a cell that was not computed
 
 CELL = np.dtype([("steps", "<i4"), ("error", "<f8"), ("fate", "u1")])
@@ -62,7 +62,7 @@ def outcomes(method: Method, theta: Floats, z: Floats, steps: int) -> Cells:
             gone = index[lost]
             cells["steps"][gone] = step
             cells["error"][gone] = worst[lost] / start[lost]
-            cells["fate"][gone] = np.where(over, OVER_THE_TOP, np.where(above, GROWS, DRIFTS))[lost]
+            cells["fate"][gone] = np.where(over, OVER_THE_TOP, np.where(above, GROWS, LOSES))[lost]
             kept = ~lost
             phase = (phase[0][kept], phase[1][kept])
             index, h, start, floor, ceiling, worst = (a[kept] for a in (index, h, start, floor, ceiling, worst))
@@ -78,7 +78,7 @@ class Failure:
 
     z: float
     steps: int  # survived
-    reason: str  # over the top | grows | drifts | resonance | chaotic
+    reason: str  # over the top | grows | loses | resonance | chaotic
 
 
 def first_failure(method: Method, theta: float, z: Floats, cells: Cells) -> Failure | None:
@@ -97,9 +97,9 @@ def first_failure(method: Method, theta: float, z: Floats, cells: Cells) -> Fail
 def reason(method: Method, theta: float, z: float, fate: int, steps: int = 10_000) -> str:
     """Why the swing from theta [rad] is lost at z; its fate, but for a symplectic method below its linear limit.
 
-    There energy neither grows nor drifts for good: the orbit is chaotic, or it is regular and a
+    There energy neither grows nor falls for good: the orbit is chaotic, or it is regular and a
     resonance of step and swing carries it out of the band.  Which of the two, `steps` steps tell.
     """
-    if fate in (GROWS, DRIFTS) and method.symplectic and z < method.linear_limit:
+    if fate in (GROWS, LOSES) and method.symplectic and z < method.linear_limit:
         return "chaotic" if is_chaotic(method.step, theta, z, steps) else "resonance"
     return FATES[fate]

@@ -3,7 +3,7 @@
 The truth comes from a run of 5000 periods (50 000 beyond h·w0 = 1), of which each period's lowest and
 highest energy error are looked at, with hindsight and none of the verdict's own reasoning.  In the last
 tenth of the run,
-- `grows` or `drifts`: the middle lies outside the band of the first eight periods by more than that
+- `grows` or `loses`: the middle lies outside the band of the first eight periods by more than that
   band's width, or the error no longer comes back to within 5 % of the late band's width of 0;
 - `bounded`: neither.
 
@@ -49,7 +49,7 @@ def truth(bands: list[tuple[float, float]]) -> str:
     if middle > early_high + early_width or late_low > near:
         return "grows"
     if middle < early_low - early_width or late_high < -near:
-        return "drifts"
+        return "loses"
     return "bounded"
 
 

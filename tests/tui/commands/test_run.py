@@ -36,7 +36,7 @@ def test_the_table_shows_which_method_gains_conserves_and_loses_energy():
         ("Explicit Euler", "grows"),
         ("Symplectic Euler", "bounded"),
         ("Velocity Verlet", "bounded"),
-        ("RK4", "drifts"),
+        ("RK4", "loses"),
     ]:
         (line,) = (line for line in lines if line.startswith(label))
         assert verdict in line
@@ -137,7 +137,7 @@ def test_a_gate_that_holds_is_exit_1_and_the_numbers_are_printed():
 
 
 def test_a_gate_may_ask_for_the_verdict():
-    assert pendu("run", "--time", 100, "--fail-if", "rk4.verdict == drifts").code == 1
+    assert pendu("run", "--time", 100, "--fail-if", "rk4.verdict == loses").code == 1
     assert pendu("run", "--time", 100, "--fail-if", "velocity_verlet.verdict != bounded").code == 0
     assert pendu("run", "--time", 1, "--fail-if", "rk4.verdict == 'too early'").code == 1
 

@@ -214,7 +214,7 @@ def test_a_lab_that_goes_on_from_here_knows_what_was_known(tmp_path):
     assert table.replay.fill()
     known = table.replay.milestones, table.replay.judgements, table.replay.history.window().t
     live = table.replay.live()
-    assert [judgement.verdict for judgement in live.judgements] == ["grows", "bounded", "bounded", "drifts"]
+    assert [judgement.verdict for judgement in live.judgements] == ["grows", "bounded", "bounded", "loses"]
     assert (live.milestones, live.judgements) == known[:2]
     np.testing.assert_array_equal(live.history.window().t, known[2])
     while table.replay.sample.step < table.samples[-1].value.step:

@@ -133,7 +133,7 @@ async def test_the_lab_that_goes_on_knows_what_the_replay_knew_even_right_after_
             while not isinstance(theatre.stage, LiveScreen):
                 await theatre.pilot.pause(0.01)
         verdicts = [judgement.verdict for judgement in theatre.source.judgements]
-        assert verdicts == ["grows", "bounded", "bounded", "drifts"]
+        assert verdicts == ["grows", "bounded", "bounded", "loses"]
         assert "over the top" in theatre.text(EventList)
 
 

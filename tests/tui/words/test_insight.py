@@ -118,7 +118,7 @@ def test_there_is_no_forecast_where_it_would_be_a_guess():
     live.set_stepping(Stepping(0.1))
     for _ in range(400):
         live.step(1)
-    assert live.judgements[RK4].verdict == "drifts"
+    assert live.judgements[RK4].verdict == "loses"
     assert forecast(live, RK4) is None  # the band of this h is not known
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from engine.methods import METHODS
-from engine.stability.outcomes import CELL, DRIFTS, GROWS, HOLDS, OVER_THE_TOP, UNKNOWN, outcomes
+from engine.stability.outcomes import CELL, LOSES, GROWS, HOLDS, OVER_THE_TOP, UNKNOWN, outcomes
 from tui.views.stability.words import note, verdict
 from tui.words.findings import limit_warning
 
@@ -42,7 +42,7 @@ def test_a_verdict_says_when_there_is_no_cliff_or_no_verdict_yet():
     ("method", "cell", "text"),
     [
         (RK4, (300, 2.34e-3, HOLDS), "holds, 2e-03"),
-        (RK4, (80, 0.5, DRIFTS), "drifts, step 81"),
+        (RK4, (80, 0.5, LOSES), "loses, step 81"),
         (EULER, (3, 0.5, GROWS), "grows, step 4"),
         (RK4, (0, 0.0, UNKNOWN), "…"),
     ],
