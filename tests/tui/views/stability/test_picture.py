@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from engine.methods import METHODS
 from engine.stability.grid import Grid
-from engine.stability.outcomes import CELL, LOSES, GROWS, HOLDS, UNKNOWN
+from engine.stability.outcomes import CELL, GROWS, HOLDS, LOSES, UNKNOWN
 from tui.drawing.palette import PALETTES
 from tui.views.stability.picture import character, colour, panel, picture, scores, worst
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from engine.methods import METHODS
-from engine.stability.outcomes import CELL, LOSES, GROWS, HOLDS, OVER_THE_TOP, UNKNOWN, outcomes
+from engine.stability.outcomes import CELL, GROWS, HOLDS, LOSES, OVER_THE_TOP, UNKNOWN, outcomes
 from tui.views.stability.words import note, verdict
 from tui.words.findings import limit_warning
 
