@@ -66,7 +66,7 @@ def test_at_80_columns_it_says_which_run_it_is_at_which_step_and_whether_that_is
     live.set_stepping(Stepping(-0.2, equal_cost=True))
     live.set_speed(0.25)
     live.playhead = live.playhead.moved_to(0.0)
-    live.sample = replace(live.sample, t=725.0)
+    live.so_far.sample = replace(live.sample, t=725.0)
     assert text(status_row(live, 80)) == (
         " LIVE   backwards  1/4×  t 12 min 05 s  h -0.2 s equal cost  z 0.626  REC 1 min"
     )
@@ -137,7 +137,7 @@ def test_every_table_is_rectangular_and_fits(width):
 def test_hidden_methods_are_not_in_the_table_and_failed_ones_are_called_so():
     live = lab(1.0)
     readings = live.sample.readings
-    live.sample = replace(live.sample, readings=(*readings[:3], replace(readings[3], diverged_at=0.8)))
+    live.so_far.sample = replace(live.sample, readings=(*readings[:3], replace(readings[3], diverged_at=0.8)))
     lines = rows(live, 80, Shown(shown=(False, True, False, True))).splitlines()
     assert [line[0] for line in lines] == ["m", "2", "4"]
     assert "failed" in lines[2]
