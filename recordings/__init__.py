@@ -1,17 +1,16 @@
 """Recordings: MCAP in and out.
 
-The bytes of a file become numbers in one way, and each module is a stretch of it:
+    samples, events --format--> messages --recorder--> file --framing--> chunks --contents--> samples, events
+                                                        |
+                                                        +-- summary   what is where, from its end  > recording
+                                                        +-- scan      every byte, past any damage  > verify, recover
 
-    bytes > framing > chunks of messages > layout > entries: samples and events, by format
-               |
-               +-- walk      the whole file in order, every checksum, past damage > verify, recover
-               +-- summary   what is where, from its end: one look                > recording (the player)
+- What a file holds: `events`; `fields`, the one table of names and units; `format`, messages to bytes and back.
+- Writing: `recorder` writes one file, `live_recorder` goes on when the disk fails, `headless` runs without a screen.
+- Reading: `framing` takes records apart, `contents` knows channels and chunks, by the `summary` or by a `scan`.
+- Using: `recording` gives any moment, `verify` re-simulates each run, `recover` salvages what is intact, also of
+  killed labs, `export` writes CSV.
+- Files: `library` (the folder and the names), `lock` (who is using a file), `errors`.
 
-`index` is what `recording` opens a file with: by the summary or, where that does not hold, by a walk.
-
-- What a file holds: `events`, `format` (to bytes and back), `schemas` (for other viewers).
-- Writing: `recorder` one file, `sitting` a sitting whatever becomes of the disk, `headless` a run without a screen.
-- Reading: `recording` any moment, `export` all of it as CSV, `verify` by a `rerun` of each run, `recover` what is
-  intact as a new file, `rescue` that for what a killed sitting left.
-- Files: `names`, `lock` (who is using one), `library` (the folder), `errors`.
+Data: `golden/` has the bundled recordings, `viewers/` a layout for Foxglove.
 """

@@ -1,4 +1,4 @@
-"""What can go wrong with a recording, and how a recording's text becomes safe to print."""
+"""Errors: what can go wrong with a recording, and how text from a file becomes safe to print."""
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -22,24 +22,35 @@ class DiskError(OSError):
 
 
 class NameTakenError(DiskError):
-    """A recording that cannot be made under this name, because there is another one."""
+    """A recording that cannot be made because its name is taken."""
 
 
 @contextmanager
 def named(path: Path) -> Iterator[None]:
-    """Name the file in what goes wrong with it."""
+    """Turn whatever goes wrong while `path` is read into a RecordingError that names it."""
     try:
         yield
     except RecordingError as error:
         raise RecordingError(f"{printable(str(path))}: {error}.") from error
     except DiskError:
         raise
-    except OSError as error:  # while reading: what is written raises the one above
+    except OSError as error:
         raise RecordingError(f"{printable(str(path))}: {error.strerror or error}.") from error
 
 
+@contextmanager
+def writing(path: Path) -> Iterator[None]:
+    """Turn whatever the disk does while `path` is written into a DiskError."""
+    try:
+        yield
+    except DiskError:
+        raise
+    except OSError as error:
+        raise DiskError(error.strerror or str(error), path, error.errno or 0) from error
+
+
 def printable(text: str, limit: int = TEXT_LIMIT) -> str:
-    """`text` with nothing in it that a terminal would obey: no escapes, line ends or bidirectional overrides."""
+    """`text` without anything that controls a terminal: no escapes, line ends or bidirectional overrides."""
     text = text if len(text) <= limit else text[: limit - 1] + "…"
     if text.isprintable():
         return text
@@ -47,5 +58,5 @@ def printable(text: str, limit: int = TEXT_LIMIT) -> str:
 
 
 def printable_items(texts: Mapping[str, str]) -> dict[str, str]:
-    """A file's names and values, likewise."""
+    """`printable` for both the names and the values of a mapping."""
     return {printable(name): printable(value) for name, value in texts.items()}

@@ -1,4 +1,4 @@
-"""Event: what was done to a sitting.  Entry: anything in a recording, with its place on the clock."""
+"""Event: what was done in the lab.  Entry: a sample or an event, with its time in the recording."""
 
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
@@ -11,11 +11,11 @@ EventKind = Literal["start", "set_h", "mark", "pause", "resume", "speed", "stop"
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """Something done to a sitting.  It applies before `step` of `run`.
+    """Something done in the lab.  It applies before `step` of `run`.
 
-    With the samples it is all that replay and verification need: a run is its `start` (the scene
-    and the methods) and its `set_h`; the other kinds change no number.  A run that goes on from
-    the past of another one begins with that one's start and repeats its `set_h` up to there.
+    Replay and verification need only events and samples: a `start` (the scene and the methods) and
+    the `set_h` after it determine a run; the other kinds change no number.  A run that continues
+    from an earlier step of another one begins with that one's start and repeats its `set_h`.
     """
 
     kind: EventKind
@@ -31,7 +31,7 @@ class Event:
 
 
 class Entry(NamedTuple):
-    """A sample or an event at its place in a recording."""
+    """A sample or an event at its time in a recording."""
 
-    clock: float  # s, the recording clock: running time since the sitting began, pauses excluded
+    clock: float  # s, the recording clock: running time since the recording began, pauses excluded
     value: Sample | Event

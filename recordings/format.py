@@ -1,8 +1,8 @@
-"""The format: topics, schemas and version; samples and events to bytes and back, side by side.
+"""The format: topics and version; samples and events to bytes and back, side by side, by the table in `fields`.
 
-One topic a method, one message a reading: scalars that Foxglove, PlotJuggler and pandas plot at once.
+One topic per method, one message per reading: scalars that Foxglove, PlotJuggler and pandas plot directly.
 The messages of one sample are consecutive, in the order of the run's methods, and share their clock.
-What is read is checked field by field; anything else than what is written here raises RecordingError.
+Reading checks every field; anything that is not written here raises RecordingError.
 """
 
 import hashlib
@@ -11,13 +11,14 @@ import math
 import struct
 from dataclasses import replace
 from functools import cache
-from typing import Any, NoReturn, cast
+from typing import Any, NoReturn
 
 from engine.methods import METHODS
 from engine.run.lockstep import Reading, Sample
 from engine.scenes import Scene, SceneError
 from recordings.errors import RecordingError, printable
 from recordings.events import Event
+from recordings.fields import EXTREMES, NUMBERS, SCENE_NUMBERS, VALUES, left_out, values_of
 
 FORMAT_VERSION = 1
 PROFILE = "pendu"  # in the file's header
@@ -28,8 +29,8 @@ CLOCK_LIMIT = 1e9  # s, 30 years
 MESSAGE_LIMIT = 1 << 16  # bytes; ours stay below 1 kB
 STEP_LIMIT = 1 << 53
 
-_READING_NUMBERS = ("t", "theta", "omega", "energy", "energy_error", "max_energy_error")
-SCENE_NUMBERS = ("theta", "omega", "length", "gravity", "h")
+_NUMBERS = ("t", *NUMBERS)
+_ENERGY_ERROR = NUMBERS.index("energy_error")
 _KNOWN_METHODS = frozenset(method.key for method in METHODS)
 
 
@@ -40,7 +41,7 @@ def topic(method: str) -> str:
 
 @cache
 def sin_fingerprint() -> str:
-    """A checksum of this machine's sin over 4096 arguments from 1e-8 to 1e8: bits can be demanded only where it agrees.
+    """A checksum of this machine's sin over 4096 arguments from 1e-8 to 1e8: where it differs, so do runs' bits.
 
     Another libm, or the same one on another processor, rounds one value in 1400 the other way.
     """
@@ -49,36 +50,20 @@ def sin_fingerprint() -> str:
 
 
 def without_extremes(sample: Sample) -> Sample:
-    """The sample as the first of its run, or after a gap: nothing is known of the steps before."""
-    return replace(
-        sample,
-        readings=tuple(
-            replace(reading, energy_error_low=reading.energy_error, energy_error_high=reading.energy_error)
-            for reading in sample.readings
-        ),
-    )
+    """The sample as the first of its run or the first after a gap, where the steps before it are unknown."""
+    readings = (replace(reading, **dict.fromkeys(EXTREMES, reading.energy_error)) for reading in sample.readings)
+    return replace(sample, readings=tuple(readings))
 
 
 def encode_readings(sample: Sample) -> list[bytes]:
-    """One message a method, in order.  An extreme that is the energy error itself is left out."""
+    """One message per method, in order, without the values of `left_out`."""
     messages = []
     for reading in sample.readings:
-        fields = {
-            "run": sample.run,
-            "step": sample.step,
-            "t": sample.t,
-            "theta": reading.theta,
-            "omega": reading.omega,
-            "energy": reading.energy,
-            "energy_error": reading.energy_error,
-            "max_energy_error": reading.max_energy_error,
-        }
-        if reading.energy_error_low != reading.energy_error:
-            fields["energy_error_low"] = reading.energy_error_low
-        if reading.energy_error_high != reading.energy_error:
-            fields["energy_error_high"] = reading.energy_error_high
-        if reading.diverged_at is not None:
-            fields["diverged_at"] = reading.diverged_at
+        fields = {"run": sample.run, "step": sample.step, "t": sample.t}
+        fields |= zip(VALUES, values_of(reading), strict=True)
+        for name, value in left_out(reading.energy_error).items():
+            if fields[name] == value:
+                del fields[name]
         messages.append(_dumps(fields))
     return messages
 
@@ -86,20 +71,18 @@ def encode_readings(sample: Sample) -> list[bytes]:
 def decode_reading(data: bytes) -> tuple[int, int, float, Reading]:
     """(run, step, t, reading) of one message."""
     fields = _loads(data)
-    values = [fields.get(name) for name in _READING_NUMBERS]
+    values: list[Any] = [fields.get(name) for name in _NUMBERS]
     for value in values:
-        if type(value) is not float or value - value != 0.0:  # not finite; done so because it is an hour's decoding
-            values = [_number(fields, name) for name in _READING_NUMBERS]
-    t, theta, omega, energy, energy_error, max_energy_error = cast(list[float], values)
-    low = _number(fields, "energy_error_low") if "energy_error_low" in fields else energy_error
-    high = _number(fields, "energy_error_high") if "energy_error_high" in fields else energy_error
-    diverged_at = _number(fields, "diverged_at") if "diverged_at" in fields else None
-    reading = Reading(theta, omega, energy, energy_error, max_energy_error, low, high, diverged_at)
-    return _count(fields, "run"), _count(fields, "step"), t, reading
+        if type(value) is not float or value - value != 0.0:  # not finite; a fast test, because hours are decoded
+            values = [_number(fields, name) for name in _NUMBERS]
+    t, *values = values
+    absent = left_out(values[_ENERGY_ERROR])
+    values += [_number(fields, name) if name in fields else value for name, value in absent.items()]
+    return _count(fields, "run"), _count(fields, "step"), t, Reading(*values)
 
 
 def encode_event(event: Event) -> bytes:
-    """One message."""
+    """The message of an event."""
     fields: dict[str, Any] = {"run": event.run, "step": event.step, "t": event.t, "kind": event.kind}
     if event.scene is not None:
         fields["scene"] = event.scene.name
@@ -115,7 +98,7 @@ def encode_event(event: Event) -> bytes:
 
 
 def decode_event(data: bytes) -> Event:
-    """The event of one message."""
+    """The event of a message."""
     fields = _loads(data)
     run, step, t, kind = _count(fields, "run"), _count(fields, "step"), _number(fields, "t"), _text(fields, "kind")
     match kind:
@@ -134,7 +117,7 @@ def decode_event(data: bytes) -> Event:
             return Event("mark", run, step, t, text=_text(fields, "text", "") or None)
         case "pause" | "resume" | "stop":
             return Event(kind, run, step, t)
-    raise RecordingError(f"there is no event {kind!r}")
+    raise RecordingError(f"unknown kind of event {kind!r}")
 
 
 _dumps_text = json.JSONEncoder(separators=(",", ":"), allow_nan=False).encode
@@ -148,7 +131,7 @@ def _dumps(fields: dict[str, Any]) -> bytes:
 
 
 def _not_a_number(literal: str) -> NoReturn:
-    raise RecordingError(f"{literal} is no number that a recording can hold")
+    raise RecordingError(f"{literal} is not a finite number")
 
 
 _loads_text = json.JSONDecoder(parse_constant=_not_a_number).raw_decode
@@ -156,13 +139,13 @@ _loads_text = json.JSONDecoder(parse_constant=_not_a_number).raw_decode
 
 def _loads(data: bytes) -> dict[str, Any]:
     if len(data) > MESSAGE_LIMIT:
-        raise RecordingError(f"a message of {len(data)} bytes is none of ours")
+        raise RecordingError(f"unexpected message of {len(data)} bytes")
     try:
         fields, end = _loads_text(text := data.decode())
     except (ValueError, RecursionError) as error:
         raise RecordingError("a message is not JSON") from error
     if type(fields) is not dict or text[end:].strip():
-        raise RecordingError("a message is no JSON object")
+        raise RecordingError("a message is not a JSON object")
     if "nonfinite" in fields:
         raise RecordingError("a message holds numbers that are not finite")
     return fields
@@ -173,28 +156,28 @@ def _number(fields: dict[str, Any], name: str) -> float:
     if type(value) is int and abs(value) < STEP_LIMIT:  # other writers drop the ".0"
         value = float(value)
     if type(value) is not float or not math.isfinite(value):
-        raise RecordingError(f"a message has no finite number {name!r}")
+        raise RecordingError(f"{name!r} of a message is not a finite number")
     return value
 
 
 def _count(fields: dict[str, Any], name: str) -> int:
     value = fields.get(name)
     if type(value) is not int or not 0 <= value < STEP_LIMIT:
-        raise RecordingError(f"a message has no count {name!r}")
+        raise RecordingError(f"{name!r} of a message is not a whole number")
     return value
 
 
 def _text(fields: dict[str, Any], name: str, default: str | None = None) -> str:
     value = fields.get(name, default)
     if type(value) is not str:
-        raise RecordingError(f"a message has no text {name!r}")
+        raise RecordingError(f"{name!r} of a message is not a text")
     return printable(value)
 
 
 def _flag(fields: dict[str, Any], name: str) -> bool:
     value = fields.get(name, False)
     if type(value) is not bool:
-        raise RecordingError(f"a message has {name!r} neither true nor false")
+        raise RecordingError(f"{name!r} of a message is neither true nor false")
     return value
 
 
@@ -204,7 +187,7 @@ def _methods(fields: dict[str, Any]) -> tuple[str, ...]:
         raise RecordingError("a start names no methods")
     for method in methods:
         if type(method) is not str or method not in _KNOWN_METHODS:
-            raise RecordingError(f"this version knows no method {printable(str(method))!r}")
+            raise RecordingError(f"unknown method {printable(str(method))!r}")
     if len(set(methods)) < len(methods):
         raise RecordingError("a start names a method twice")
     return tuple(methods)

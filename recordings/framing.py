@@ -1,8 +1,8 @@
 """MCAP as bytes: where its records lie, whether they are intact, and what a chunk holds.
 
-The one place where files of strangers are taken apart.  Sizes are bounded before anything is read or
-decompressed, and whatever is wrong becomes a RecordingError.  We do not use mcap's own readers here:
-without a summary they return nothing, and they decompress whatever a file declares.
+The one place where untrusted files are taken apart.  Sizes are bounded before anything is read or
+decompressed, and whatever is wrong becomes a RecordingError.  mcap's own readers are of no use here:
+without a summary they return nothing, and they decompress whatever size a file declares.
 """
 
 import struct
@@ -43,7 +43,7 @@ _READERS: dict[Opcode, Callable[[ReadDataStream], McapRecord]] = {
 
 
 class Message(NamedTuple):
-    """As it stands in a chunk."""
+    """A message as stored in a chunk."""
 
     channel: int
     sequence: int
@@ -62,22 +62,20 @@ class Chunk(NamedTuple):
 
 
 def read_chunk(content: bytes) -> Chunk:
-    """The chunk of a record's content.  Raises RecordingError if a bit of it is wrong."""
+    """The chunk of a record's content.  Raises RecordingError if any bit of it is wrong."""
     if len(content) < CHUNK_HEADER:
         raise RecordingError("a chunk is too short")
     start, end, size, crc = _CHUNK.unpack_from(content)
-    name_length = int.from_bytes(content[_CHUNK.size : _CHUNK.size + 4], "little")
-    if content[_CHUNK.size : _CHUNK.size + 8] != _ZSTD:
-        name = content[_CHUNK.size + 4 : _CHUNK.size + 4 + name_length][:16].decode("ascii", "replace")
-        raise RecordingError(f"a chunk is compressed as {name!r}; only zstd is read")
+    if content[_CHUNK.size : _CHUNK.size + len(_ZSTD)] != _ZSTD:
+        raise RecordingError("a chunk is not compressed with zstd")
     if len(content) - CHUNK_HEADER != int.from_bytes(content[CHUNK_HEADER - 8 : CHUNK_HEADER], "little"):
         raise RecordingError("a chunk's length is wrong")
     if size > RECORD_LIMIT:
-        raise RecordingError(f"a chunk declares {size} bytes, more than any recording of ours has in one")
+        raise RecordingError(f"unexpected chunk of {size} bytes")
     compressed = content[CHUNK_HEADER:]
     try:
         if zstandard.frame_content_size(compressed) not in (-1, size):  # decompress() would obey the frame
-            raise RecordingError("a chunk declares two sizes")
+            raise RecordingError("a chunk declares two different sizes")
         decompressor = zstandard.ZstdDecompressor(max_window_size=RECORD_LIMIT)
         data = decompressor.decompress(compressed, max_output_size=size, allow_extra_data=False)
     except (zstandard.ZstdError, MemoryError) as error:
@@ -111,14 +109,14 @@ def _records(data: bytes) -> tuple[list[Channel], list[Message]]:
             raise RecordingError("a record in a chunk is cut short") from error
         at += length
         if len(channels) > CHANNEL_LIMIT:
-            raise RecordingError("a chunk declares more channels than any recording of ours has")
+            raise RecordingError("unexpectedly many channels in a chunk")
     if at != len(data):
         raise RecordingError("a record in a chunk is cut short")
     return channels, messages
 
 
 def read_record(opcode: int, content: bytes) -> McapRecord | None:
-    """The record of this content; None for an index, whose form alone is looked at.
+    """The record of this content; None for an index, of which only the form is checked.
 
     Records other than chunks have no checksum of their own, but their lengths must agree.
     """
@@ -127,13 +125,13 @@ def read_record(opcode: int, content: bytes) -> McapRecord | None:
             raise RecordingError("an index is damaged")
         return None
     if len(content) > SMALL_LIMIT:
-        raise RecordingError(f"a record has {len(content)} bytes, more than any of its kind in a recording of ours")
+        raise RecordingError(f"unexpected record of {len(content)} bytes")
     stream = ReadDataStream(BytesIO(content))
     try:
         record = _READERS[Opcode(opcode)](stream)
     except KeyError as error:
-        raise RecordingError("no record of ours begins where one should") from error
-    except (McapError, ValueError, struct.error) as error:
+        raise RecordingError("unexpected kind of record") from error
+    except (McapError, ValueError, OverflowError, struct.error) as error:
         raise RecordingError("a record is damaged") from error
     if stream.count != len(content):
         raise RecordingError("a record's length is wrong")
@@ -143,7 +141,7 @@ def read_record(opcode: int, content: bytes) -> McapRecord | None:
 def record_at(stream: BinaryIO, offset: int) -> tuple[int, bytes] | None:
     """(opcode, content) of the record there; None if the file ends within it.
 
-    Raises RecordingError for what can be no record.
+    Raises RecordingError for anything that cannot be a record.
     """
     stream.seek(offset)
     header = stream.read(RECORD.size)
@@ -151,15 +149,15 @@ def record_at(stream: BinaryIO, offset: int) -> tuple[int, bytes] | None:
         return None
     opcode, length = RECORD.unpack(header)
     if not 0 < opcode <= _LAST_OPCODE:
-        raise RecordingError("no record begins where one should")
+        raise RecordingError("there is no record where one should begin")
     if length > RECORD_LIMIT:
-        raise RecordingError(f"a record declares {length} bytes, more than any recording of ours has in one")
+        raise RecordingError(f"unexpected record of {length} bytes")
     content = stream.read(length)
     return (opcode, content) if len(content) == length else None
 
 
 class Search:
-    """Looks for intact chunks past damage, and gives up on a file that has little but false ones."""
+    """Looks for intact chunks past damage, and gives up on a file that is full of false ones."""
 
     def __init__(self, stream: BinaryIO) -> None:
         self._stream, self._left = stream, SEARCH_LIMIT

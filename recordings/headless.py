@@ -1,10 +1,11 @@
-"""Runs without a screen: the clock of their recordings is the simulated time, so the same run gives the same bytes."""
+"""Headless runs.  The clock of their recordings is the simulated time, so the same run gives the same bytes."""
 
 from collections.abc import Callable, Iterator, Sequence
 
 from engine.methods import METHODS, Method
 from engine.run.lockstep import Lockstep, Sample
 from engine.run.loops import Loops, plain
+from engine.run.stepping import Stepping
 from engine.scenes import Scene
 from recordings.events import Event
 from recordings.recorder import Recorder
@@ -28,7 +29,7 @@ def segments(scene: Scene, time: float, changes: Changes = ()) -> Iterator[tuple
 
 
 def steps_for(scene: Scene, time: float, changes: Changes = ()) -> int:
-    """How many steps make up this much simulated time [s]."""
+    """The number of steps in this much simulated time [s]."""
     return [last for _, last, _ in segments(scene, time, changes)][-1]
 
 
@@ -40,11 +41,11 @@ def simulate(
     changes: Changes = (),
     loops: Callable[[Method], Loops] = plain,
 ) -> Iterator[Sample]:
-    """Run a scene for `time` [s] and yield its samples, the last one being the result; record them as they come.
+    """Run a scene for `time` [s]; record and yield its samples, of which the last is the result.
 
     Samples are `sample_every` steps apart, or 1/30 s rounded to whole steps; always the first and the
-    last step and the step of each change.  Memory does not grow.  The recorder is the caller's to close;
-    give it no wall clock and the recording has the same bytes each time.
+    last step and the step of each change.  Memory does not grow.  The caller closes the recorder;
+    without a wall clock, the recording has the same bytes each time.
     """
     lockstep = Lockstep(scene, loops=loops)
     clock = 0.0  # s, simulated; goes up while t goes down
@@ -60,9 +61,9 @@ def simulate(
     record(sample := lockstep.sample())
     yield sample
     for first, last, h in segments(scene, time, changes):
-        if h != lockstep.h:
+        if h != lockstep.stepping.h:
             record(Event("set_h", 1, first, lockstep.t, h=h))
-            lockstep.set_h(h)
+            lockstep.set_stepping(Stepping(h))
         begin = clock
         every = sample_every or max(1, round(SAMPLE_EVERY / abs(h)))
         while lockstep.step < last:

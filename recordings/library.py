@@ -6,14 +6,18 @@ from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from difflib import get_close_matches
+from itertools import chain, count
+from os.path import lexists
 from pathlib import Path
 
 import platformdirs
 
 from recordings.errors import RecordingError, printable
 from recordings.lock import in_use
-from recordings.names import MARKS, PART, SUFFIX, free_path
 
+SUFFIX = ".mcap"
+PART = ".part"  # appended to the name of a recording that is not finished
+MARKS = ".marks.json"  # appended to the name of a recording: what was marked while it was replayed
 GOLDEN = Path(__file__).parent / "golden"
 
 
@@ -26,6 +30,17 @@ class Item:
     modified: float  # s since 1970
 
 
+def part_of(path: Path) -> Path:
+    """Where a recording is until it is finished."""
+    return path.with_name(path.name + PART)
+
+
+def free_path(path: Path) -> Path:
+    """`path`, or the first of NAME-2, NAME-3, … that no recording has, finished or not."""
+    numbered = (path.with_name(f"{path.stem}-{n}{path.suffix}") for n in count(2))
+    return next(free for free in chain([path], numbered) if not lexists(free) and not lexists(part_of(free)))
+
+
 def folder() -> Path:
     """$PENDU_RECORDINGS, or recordings in the user's data folder.  It need not exist."""
     chosen = os.environ.get("PENDU_RECORDINGS")
@@ -33,12 +48,12 @@ def folder() -> Path:
 
 
 def new_path(where: Path | None = None, now: time.struct_time | None = None) -> Path:
-    """A name that no recording has yet, by date and time."""
+    """A free name, by date and time."""
     return free_path((where or folder()) / (time.strftime("%Y-%m-%dT%H-%M-%S", now or time.localtime()) + SUFFIX))
 
 
 def listing(where: Path | None = None) -> list[Item]:
-    """The finished recordings, newest first.  None, where there is no folder."""
+    """The finished recordings, newest first."""
     items = []
     for path in _files(where or folder(), SUFFIX):
         with suppress(OSError):  # deleted meanwhile
@@ -48,7 +63,7 @@ def listing(where: Path | None = None) -> list[Item]:
 
 
 def resolve(name: str, where: Path | None = None) -> Path:
-    """The recording that `name` means: a file, `latest`, one of the library, or one that came with the program.
+    """The recording of this name: a file, `latest`, one of the library, or a bundled one.
 
     Raises RecordingError, a sentence, if there is none.
     """
@@ -58,7 +73,7 @@ def resolve(name: str, where: Path | None = None) -> Path:
     if name == "latest":
         items = listing(where)
         if not items:
-            raise RecordingError(f"There is no recording in {printable(str(where))} yet; pendu-tui makes one.")
+            raise RecordingError(f"No recordings in {printable(str(where))} yet; start pendu-tui to make one.")
         return items[0].path
     golden = golden_names()
     if name in golden:
@@ -76,17 +91,17 @@ def resolve(name: str, where: Path | None = None) -> Path:
 
 
 def golden_names() -> list[str]:
-    """The recordings that come with the program."""
+    """The bundled recordings."""
     return sorted(path.stem for path in GOLDEN.glob("*" + SUFFIX))
 
 
 def leftovers(where: Path | None = None) -> list[Path]:
-    """Recordings that were begun and not finished, and that nobody is working on."""
+    """Unfinished recordings that no lab is writing any more."""
     return [path for path in _files(where or folder(), SUFFIX + PART) if not in_use(path)]
 
 
 def to_prune(items: Sequence[Item], keep: int | None = None, size: int | None = None) -> list[Item]:
-    """Which to delete so that only the `keep` newest are left, with no more than `size` bytes in all."""
+    """What to delete so that only the `keep` newest are left, with at most `size` bytes in all."""
     newest_first = sorted(items, key=lambda item: item.modified, reverse=True)
     total = 0
     for place, item in enumerate(newest_first):
@@ -97,10 +112,7 @@ def to_prune(items: Sequence[Item], keep: int | None = None, size: int | None = 
 
 
 def prune(items: Iterable[Item]) -> list[Item]:
-    """Delete these recordings, and the marks beside them; return what was deleted.
-
-    What somebody is replaying stays, and what cannot be deleted.
-    """
+    """Delete these recordings with their marks, except those in use; return what could be deleted."""
     deleted = []
     for item in items:
         with suppress(OSError):

@@ -1,24 +1,24 @@
-"""SittingRecorder: records a sitting whatever becomes of the disk."""
+"""LiveRecorder: records what the lab does, whatever becomes of the disk."""
 
 import time
 from contextlib import suppress
 from pathlib import Path
 
 from engine.run.lockstep import Sample
-from recordings.errors import DiskError, NameTakenError
+from recordings.errors import DiskError, NameTakenError, writing
 from recordings.events import Entry, Event
-from recordings.names import free_path
-from recordings.recorder import Recorder, WallClock, trouble
+from recordings.library import free_path
+from recordings.recorder import Recorder, WallClock
 
 RETRY_EVERY = 5.0  # s of the recording clock
 
 
 class LiveRecorder:
-    """A recorder that survives trouble with the disk: the sitting goes on, and so does the recording, in a new file.
+    """A recorder that survives a failing disk: the lab goes on, and so does the recording, in a new file.
 
     Opening the first file may raise DiskError; nothing after that does.  With `or_next`, a name that another
-    sitting has taken meanwhile becomes the next free one.  `failed` says in a sentence why nothing is being
-    recorded right now.  Every file begins with the start and the changes of h of its run, so each replays and
+    lab has taken meanwhile becomes the next free one.  `failed` is a sentence on why nothing is being recorded
+    now, or None.  Every file begins with the start and the changes of h of its run, so each replays and
     verifies by itself.
     """
 
@@ -28,7 +28,7 @@ class LiveRecorder:
         self.files: list[Path] = []  # that hold something and are no longer written to
         self._path, self._wall = path, wall
         self._run: list[Event] = []  # of the run: its start and its changes of h
-        self._zero = self._failed_at = 0.0  # s of the sitting's clock: where the file begins, the last failure
+        self._zero = self._failed_at = 0.0  # s of the lab's clock: where the file begins, the last failure
         self._recorder = self._opened() if or_next else Recorder(path, wall)
 
     @property
@@ -38,16 +38,13 @@ class LiveRecorder:
 
     @property
     def bytes(self) -> int:
-        """Its size."""
         return self._recorder.bytes
 
     @property
     def seconds(self) -> float:
-        """Its length."""
         return self._recorder.seconds
 
     def event(self, event: Event, clock: float) -> None:
-        """Record an event."""
         if event.kind == "start":
             self._run = []
         self._write(Entry(clock, event))
@@ -55,11 +52,10 @@ class LiveRecorder:
             self._run.append(event)
 
     def sample(self, sample: Sample, clock: float) -> None:
-        """Record a sample."""
         self._write(Entry(clock, sample))
 
     def close(self) -> None:
-        """Finish the file; `failed` says if that was impossible.  What still happens then is not recorded."""
+        """Finish the file; `failed` is set if that was impossible.  Nothing after it is recorded."""
         self._closed = True
         if self.failed is None:
             try:
@@ -99,11 +95,9 @@ class LiveRecorder:
                 return Recorder(free_path(self._path), self._wall)
 
     def _reopen(self, clock: float) -> None:
-        try:
+        with writing(self._path):
             self._path.parent.mkdir(parents=True, exist_ok=True)
             recorder = self._opened()
-        except OSError as error:
-            raise trouble(error, self._path) from error
         self._recorder, self._zero = recorder, clock
         for event in self._run:
             recorder.event(event, 0.0)

@@ -1,9 +1,9 @@
 """Who is using a recording: a writer holds an exclusive lock on it, a reader a shared one.
 
-Locks end with their process, however it ends, so a leftover is told from a recording in progress.
+A lock ends with its process, however that ends, so a leftover differs from a recording in progress.
+Only POSIX has such locks; elsewhere nothing is locked.
 """
 
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -11,48 +11,30 @@ from typing import IO, Any, BinaryIO
 
 from recordings.errors import RecordingError
 
-if sys.platform == "win32":  # where a file that is open can be neither renamed nor deleted anyway
 
-    def hold(file: IO[Any], shared: bool = False) -> None:
-        """Lock an open file until it is closed."""
+def hold(file: IO[Any], shared: bool = False) -> None:
+    """Lock an open file until it is closed, where the file system has locks."""
+    with suppress(OSError):  # writers block (others only probe a new file); readers go on without the lock
+        _lock(file, shared, wait=not shared)
 
-    def in_use(path: Path) -> bool:
-        """Whether somebody records into this file or replays it.  In doubt, somebody does."""
-        with suppress(OSError):
-            path.rename(path)
-            return False
-        return True
 
-    @contextmanager
-    def alone_with(path: Path) -> Iterator[None]:
-        """Have the file to oneself."""
-        yield
-
-else:
-    import fcntl
-
-    def hold(file: IO[Any], shared: bool = False) -> None:
-        """Lock an open file until it is closed, where the file system has locks."""
-        # A writer waits: on its new file nobody else has more than a look.  A reader need not have the lock.
-        with suppress(OSError):
-            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB if shared else fcntl.LOCK_EX)
-
-    def in_use(path: Path) -> bool:
-        """Whether somebody records into this file or replays it.  In doubt, somebody does."""
-        try:
-            with path.open("rb") as file:
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            return True
-        return False
-
-    @contextmanager
-    def alone_with(path: Path) -> Iterator[None]:
-        """Have the file to oneself; raises FileNotFoundError if whoever had it before has taken it away."""
+def in_use(path: Path) -> bool:
+    """Whether a recorder or a reader has this file open.  In doubt, yes."""
+    try:
         with path.open("rb") as file:
-            hold(file)
-            path.stat()
-            yield
+            _lock(file, shared=False, wait=False)
+    except OSError:
+        return True
+    return False
+
+
+@contextmanager
+def alone_with(path: Path) -> Iterator[None]:
+    """Have the file to oneself; raises FileNotFoundError if its former user has moved it meanwhile."""
+    with path.open("rb") as file:
+        hold(file)
+        path.stat()
+        yield
 
 
 def open_file(path: Path) -> BinaryIO:
@@ -66,3 +48,11 @@ def open_file(path: Path) -> BinaryIO:
         raise RecordingError("this is a pipe, which can be read only once; save it as a file first")
     hold(file, shared=True)
     return file
+
+
+def _lock(file: IO[Any], shared: bool, wait: bool) -> None:
+    try:
+        import fcntl
+    except ImportError:
+        return
+    fcntl.flock(file, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | (0 if wait else fcntl.LOCK_NB))

@@ -1,8 +1,9 @@
-"""Recorder: a sitting into a file, so that at most the last second is lost whatever happens to the process.
+"""Recorder: writes samples and events to a file, and loses at most the last second if the process is killed.
 
-Everything goes to NAME.mcap.part, which is renamed to NAME.mcap when it is finished.
+It writes to NAME.mcap.part, which becomes NAME.mcap when it is finished.
 """
 
+import json
 import os
 import platform
 import time
@@ -11,14 +12,14 @@ from contextlib import suppress
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from types import TracebackType
 from typing import Self
 
 from mcap.writer import CompressionType, Writer
 
 from engine.run.lockstep import Sample
-from recordings.errors import DiskError, NameTakenError
+from recordings.errors import DiskError, NameTakenError, writing
 from recordings.events import Event
+from recordings.fields import EVENT_SCHEMA, SAMPLE_SCHEMA, SCENE_NUMBERS
 from recordings.format import (
     CLOCK_LIMIT,
     CLOCK_OFFSET,
@@ -26,31 +27,29 @@ from recordings.format import (
     FORMAT_VERSION,
     METADATA,
     PROFILE,
-    SCENE_NUMBERS,
     encode_event,
     encode_readings,
     sin_fingerprint,
     topic,
     without_extremes,
 )
+from recordings.library import part_of
 from recordings.lock import hold
-from recordings.names import part_of
-from recordings.schemas import EVENT_SCHEMA, SAMPLE_SCHEMA, encode_schema
 
 FLUSH_EVERY = 0.9  # s of the recording clock; with a frame's delay the loss at kill -9 stays below 1 s
 FLUSH_EVENTS_EVERY = 0.25  # s; a key held down gives 30 events a second
-FLUSH_BYTES = 1 << 17  # of messages in one chunk, however dense the samples; all that counts where nobody sits
+FLUSH_BYTES = 1 << 17  # of messages in one chunk, however dense the samples; the only limit in headless runs
 
 WallClock = Callable[[], int]  # ns since 1970
 
 
 class Recorder:
-    """Writes one recording.  The first thing it is given is a start.
+    """Writes one recording, which begins with a start.
 
     Clocks are in seconds since the recording began, pauses excluded.  Headless recordings have no
-    `wall` clock: nothing in them tells when or where they were made, so the same run gives the same
-    bytes.  `facts` are the metadata of the recording of which this one is a copy.  Any trouble with the
-    disk raises DiskError; after one, only `abandon` is of use.
+    `wall` clock: nothing in them depends on when or where they were made, so the same run gives the
+    same bytes.  `facts` are the metadata of the recording that is copied, if one is.  A failing disk
+    raises DiskError; after that, only `abandon` is of use.
     """
 
     def __init__(
@@ -66,29 +65,27 @@ class Recorder:
         self.bytes = 0  # size of the file so far
         self.samples = 0
         self._wall, self._facts = wall, facts
-        self._sits = wall is not None and facts is None  # or its seconds are none that somebody waited for
+        self._flush_by_time = wall is not None and facts is None  # real time passes while it records
         self._last: Sample | None = None
         self._channels: dict[str, int] = {}
         self._log_time = CLOCK_OFFSET
         self._paused = self._stopped = False
         self._event_waits = False
         self._flushed_at, self._unflushed = 0.0, 0
-        try:
+        with writing(self.part):
             if path.exists() and not overwrite:
                 raise NameTakenError("a file of this name exists already; choose another name", path)
-            self._file = self.part.open("xb", buffering=1 << 20)
-        except FileExistsError as error:
-            raise NameTakenError(
-                "is being recorded, or left over from a recording that was not finished; choose another name", self.part
-            ) from error
-        except OSError as error:
-            raise trouble(error, self.part) from error
+            try:
+                self._file = self.part.open("xb", buffering=1 << 20)
+            except FileExistsError as error:
+                why = "is in use by a running recording or left over from an unfinished one; choose another name"
+                raise NameTakenError(why, self.part) from error
         hold(self._file)
         self._writer = Writer(self._file, chunk_size=1 << 62, compression=CompressionType.ZSTD, enable_data_crcs=True)
         self._writer.start(PROFILE, f"pendu-tui {_version()}")
 
     def event(self, event: Event, clock: float) -> None:
-        """Write an event; what it changes is on disk a quarter of a second later at the latest."""
+        """Write an event; it is on disk within a quarter of a second."""
         if event.kind == "start":
             self._last = None  # or a recording that ends here would have a stop of the run before
             if not self._channels:
@@ -100,9 +97,9 @@ class Recorder:
         self._flush_if_due(urgent=self._paused)
 
     def sample(self, sample: Sample, clock: float, encoded: Sequence[bytes] | None = None) -> None:
-        """Write a sample, unless it is the last one again.  A copy passes on the messages that it has `encoded`.
+        """Write a sample, unless it was the last one written.  A copy passes the messages that it read as `encoded`.
 
-        Steps ascend within a run.  Extremes are those since the sample before, so a run's first has none.
+        Steps ascend within a run.  Extremes are those since the previous sample, so a run's first has none.
         """
         last = self._last
         if last is None or last.run != sample.run:
@@ -117,19 +114,16 @@ class Recorder:
         self._flush_if_due(urgent=self._paused or last is None or last.run != sample.run)
 
     def flush(self) -> None:
-        """Bring everything so far to the disk's cache, where it survives the death of this process."""
-        try:
+        """Hand everything so far to the system, where it survives the death of this process."""
+        with writing(self.part):
             self._writer.flush()  # type: ignore[no-untyped-call]
-            there = self.part.stat()
-        except OSError as error:
-            raise trouble(error, self.part) from error
-        if not os.path.samestat(there, os.fstat(self._file.fileno())):
-            raise DiskError("another file has taken its place", self.part)
+            if not os.path.samestat(self.part.stat(), os.fstat(self._file.fileno())):
+                raise DiskError("the file was replaced", self.part)
         self.bytes = self._file.tell()
         self._flushed_at, self._unflushed, self._event_waits = self.seconds, 0, False
 
     def close(self) -> None:
-        """Finish the recording: a stop, the summary, and its own name.  A recording without a start leaves no file."""
+        """Finish the recording: a stop, the summary, and its final name.  Without a start, leave no file."""
         if self._file.closed:
             return
         if not self._channels:
@@ -140,20 +134,19 @@ class Recorder:
                 last = self._last
                 self._add([(EVENTS, encode_event(Event("stop", last.run, last.step, last.t)))], self.seconds)
             self.flush()
-            self._writer.finish()  # type: ignore[no-untyped-call]
-            self._file.flush()
-            os.fsync(self._file.fileno())
-            self.bytes = self._file.tell()
-            if os.name == "nt":
-                self._file.close()  # Windows renames no open file; elsewhere the lock is kept until the name is right
-            self.part.replace(self.path)
-            self._file.close()
-        except OSError as error:
+            with writing(self.part):
+                self._writer.finish()  # type: ignore[no-untyped-call]
+                self._file.flush()
+                os.fsync(self._file.fileno())
+                self.bytes = self._file.tell()
+                self.part.replace(self.path)  # still locked, until the name is right
+                self._file.close()
+        except DiskError:
             self.abandon()
-            raise trouble(error, self.part) from error
+            raise
 
     def abandon(self) -> None:
-        """Let go of the file as it is.  What was flushed stays in NAME.mcap.part; an empty one is removed."""
+        """Leave the file as it is.  What was flushed stays in NAME.mcap.part; an empty one is removed."""
         if self._file.closed:
             return
         with suppress(OSError):
@@ -165,9 +158,7 @@ class Recorder:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
-    ) -> None:
+    def __exit__(self, kind: object, error: BaseException | None, traceback: object) -> None:
         if isinstance(error, DiskError):
             self.abandon()
         else:
@@ -177,34 +168,32 @@ class Recorder:
         metadata = self._facts if self._facts is not None else _metadata(start, self._wall)
         facts = {"format": str(FORMAT_VERSION), "sin": metadata["sin"]}
         self._writer.add_metadata(METADATA, dict(metadata))
-        schema = self._writer.register_schema("pendu.Event", "jsonschema", encode_schema(EVENT_SCHEMA))
-        self._channels[EVENTS] = self._writer.register_channel(EVENTS, "json", schema, facts)
-        schema = self._writer.register_schema("pendu.Sample", "jsonschema", encode_schema(SAMPLE_SCHEMA))
-        for method in start.methods:
-            self._channels[topic(method)] = self._writer.register_channel(topic(method), "json", schema, {})
         self._topics = [topic(method) for method in start.methods]
+        for schema, topics, claims in ((EVENT_SCHEMA, [EVENTS], facts), (SAMPLE_SCHEMA, self._topics, {})):
+            data = json.dumps(schema, separators=(",", ":")).encode()
+            known = self._writer.register_schema(schema["title"], "jsonschema", data)
+            for name in topics:
+                self._channels[name] = self._writer.register_channel(name, "json", known, claims)
 
     def _add(self, messages: list[tuple[str, bytes]], clock: float) -> None:
-        """Hand messages to the writer: all checked before the first, because a rejected one spoils its chunk."""
+        """Hand messages to the writer.  All are checked first, because a rejected one spoils its chunk."""
         if not self._channels:
             raise ValueError("a recording begins with a start")
         if not 0 <= clock <= CLOCK_LIMIT:  # nor nan
-            raise ValueError(f"{clock} is no reading of a recording clock")
+            raise ValueError(f"{clock} is not a reading of a recording clock")
         self._log_time = max(self._log_time, CLOCK_OFFSET + round(clock * 1e9))
         self.seconds = max(self.seconds, clock)
         publish_time = self._log_time if self._wall is None else self._wall()
         sequence = self.samples % (1 << 32)
-        try:
+        with writing(self.part):
             for name, data in messages:
                 self._writer.add_message(self._channels[name], self._log_time, data, publish_time, sequence)
                 self._unflushed += len(data)
-        except OSError as error:
-            raise trouble(error, self.part) from error
 
     def _flush_if_due(self, urgent: bool = False) -> None:
         age = self.seconds - self._flushed_at
         every = FLUSH_EVENTS_EVERY if self._event_waits else FLUSH_EVERY
-        if urgent or (self._sits and age >= every) or self._unflushed > FLUSH_BYTES:
+        if urgent or (self._flush_by_time and age >= every) or self._unflushed > FLUSH_BYTES:
             self.flush()
 
 
@@ -214,7 +203,7 @@ def _version() -> str:
 
 
 def _metadata(start: Event, wall: WallClock | None) -> dict[str, str]:
-    """For people; verification needs none of it but the fingerprint, which stands under a checksum as well."""
+    """For people.  Verification needs only the fingerprint, and takes it from the events' channel."""
     assert start.scene is not None
     metadata = {
         "format": str(FORMAT_VERSION),
@@ -229,10 +218,3 @@ def _metadata(start: Event, wall: WallClock | None) -> dict[str, str]:
         metadata["python"] = platform.python_version()
         metadata["platform"] = f"{platform.system()} {platform.machine()}"
     return metadata
-
-
-def trouble(error: OSError, path: Path) -> DiskError:
-    """The error as ours."""
-    if isinstance(error, DiskError):
-        return error
-    return DiskError(error.strerror or str(error), path, error.errno or 0)

@@ -1,4 +1,4 @@
-"""Recover: what is intact of a damaged or unfinished recording, as a whole one, and what was lost.
+"""Recover: write what is intact of a damaged or unfinished recording as a whole one, and count what was lost.
 
 Chunks are kept or dropped as they are; no number is repaired, guessed or changed.
 """
@@ -10,22 +10,22 @@ from typing import BinaryIO
 
 from mcap.opcode import Opcode
 
-from engine.run.lockstep import Lockstep, Sample
-from engine.scenes import SceneError
-from recordings.errors import DiskError, RecordingError, named
+from engine.run.lockstep import Sample
+from recordings.contents import layout_of
+from recordings.errors import DiskError, RecordingError, named, printable, writing
 from recordings.events import Event
 from recordings.format import CLOCK_OFFSET, encode_readings, without_extremes
 from recordings.framing import Message
-from recordings.layout import Layout, layout_of
-from recordings.lock import open_file
-from recordings.names import free_path, part_of
-from recordings.recorder import Recorder, trouble
-from recordings.scan import Gap, Progress, Walk
+from recordings.library import PART, free_path, part_of
+from recordings.lock import alone_with, open_file
+from recordings.recorder import Recorder
+from recordings.scan import Gap, Intact, Scan, ShowProgress
+from recordings.verify import Rerun
 
 
 @dataclass(frozen=True, slots=True)
 class Recovery:
-    """What came of it.  What a cut-off end held is counted only as far as the file tells."""
+    """The result of a recovery.  What a cut-off end held is counted only as far as the file shows it."""
 
     file: Path
     out: Path
@@ -39,36 +39,70 @@ class Recovery:
     runs_broken: tuple[int, ...]  # that lost a change of h: they play, but do not verify
 
 
-def recover(path: Path, out: Path, progress: Progress | None = None, overwrite: bool = False) -> Recovery:
+@dataclass(frozen=True, slots=True)
+class Rescue:
+    """What became of a recording that a killed lab left unfinished."""
+
+    saved: Path | None  # the recording made of it; None if nothing could be saved
+    kept: Path | None  # where the leftover is now; None if all of it is in `saved`, or it was empty
+    recovery: Recovery | None
+    reason: str | None  # why nothing could be saved, a sentence
+
+
+def rescue(leftover: Path, progress: ShowProgress | None = None) -> Rescue:
+    """Make a recording of a leftover.
+
+    The leftover is removed once all of it is in the recording, or if it was empty; otherwise it is renamed, so
+    that it is not found again.  Raises OSError if the disk fails.
+    """
+    with alone_with(leftover):
+        if leftover.stat().st_size == 0:
+            leftover.unlink()
+            return Rescue(None, None, None, f"{printable(str(leftover))}: the file is empty.")
+        name = leftover.with_name(leftover.name.removesuffix(PART))
+        try:
+            recovery = recover(leftover, free_path(name), progress)
+        except RecordingError as error:
+            return Rescue(None, _put_aside(leftover, ".unreadable"), None, str(error))
+        if recovery.damaged:
+            return Rescue(recovery.out, _put_aside(leftover, ".damaged"), recovery, None)
+        leftover.unlink()
+        saved = recovery.out if name.exists() else recovery.out.rename(name)
+        return Rescue(saved, None, recovery, None)
+
+
+def _put_aside(path: Path, suffix: str) -> Path:
+    return path.rename(free_path(path.with_name(path.name + suffix)))
+
+
+def recover(path: Path, out: Path, progress: ShowProgress | None = None, overwrite: bool = False) -> Recovery:
     """Write what is intact of `path` to `out`, which appears only when it is whole.
 
     Raises RecordingError if nothing can be saved, DiskError if `out` cannot be written.
     """
     if out.exists() and path.exists() and out.samefile(path):
-        raise DiskError("is the recording that is to be recovered; choose another name", out)
+        raise DiskError("is the recording to recover; choose another name", out)
     if not (part_of(out).exists() and path.exists() and part_of(out).samefile(path)):
         return _recover(path, out, progress, overwrite)
     if out.exists() and not overwrite:
         raise DiskError("a file of this name exists already; choose another name", out)
-    recovery = _recover(path, free_path(out), progress)  # what is left has the name under which `out` would be made
-    try:
+    recovery = _recover(path, free_path(out), progress)  # the .part of `out` is the file that is read
+    with writing(out):
         return replace(recovery, out=recovery.out.replace(out))
-    except OSError as error:
-        raise trouble(error, out) from error
 
 
-def _recover(path: Path, out: Path, progress: Progress | None, overwrite: bool = False) -> Recovery:
+def _recover(path: Path, out: Path, progress: ShowProgress | None, overwrite: bool = False) -> Recovery:
     with named(path), open_file(path) as stream:
-        walk = Walk(stream, progress)
-        salvage = _Salvage(walk, out, overwrite)
+        scan = Scan(stream, progress)
+        salvage = _Salvage(scan, out, overwrite)
         try:
-            for piece in walk:
+            for piece in scan:
                 if isinstance(piece, Gap):
                     salvage.pass_over(piece, stream)
                 else:
-                    salvage.keep(piece.layout, piece.chunk.messages)
+                    salvage.keep(piece)
             if salvage.kept == 0:
-                raise walk.nothing("saved")
+                raise scan.nothing("saved")
         except BaseException:
             salvage.give_up()
             raise
@@ -78,12 +112,11 @@ def _recover(path: Path, out: Path, progress: Progress | None, overwrite: bool =
 class _Salvage:
     """The copy, as far as it has come."""
 
-    def __init__(self, walk: Walk, out: Path, overwrite: bool) -> None:
-        self._walk, self._out, self._overwrite = walk, out, overwrite
+    def __init__(self, scan: Scan, out: Path, overwrite: bool) -> None:
+        self._scan, self._out, self._overwrite = scan, out, overwrite
         self._recorder: Recorder | None = None
         self._publish_time = 0
-        self._timekeeper: Lockstep | None = None  # of the run being kept; without methods, it only tells the time
-        self._step = -1  # of the last sample kept in this run
+        self._rerun: Rerun | None = None  # of the run being kept; without methods, it only knows the time of a step
         self._broken = False  # something was lost since the last sample kept
         self._next_sequence = 0
         self._clock = self._end = 0.0  # s; of the last sample kept, and of the last thing known of
@@ -93,7 +126,7 @@ class _Salvage:
         self._runs_broken: set[int] = set()
 
     def pass_over(self, gap: Gap, stream: BinaryIO) -> None:
-        """Note what the header of a lost chunk still tells."""
+        """Note what the header of a lost chunk still shows."""
         self._broken = True
         stream.seek(gap.offset)
         header = stream.read(25)  # opcode, length, start, end
@@ -104,74 +137,59 @@ class _Salvage:
                 if 0 <= start - self._clock < 1 and 0 <= end - start < 1:
                     self._end = end
 
-    def keep(self, layout: Layout, messages: list[Message]) -> None:
+    def keep(self, piece: Intact) -> None:
         """Copy what a chunk holds of runs whose start is known."""
+        layout = piece.layout
         if self._recorder is None:
-            facts = self._walk.metadata | {"format": str(layout.version), "sin": layout.sin, "recovered": "yes"}
+            facts = self._scan.metadata | {"format": str(layout.version), "sin": layout.sin, "recovered": "yes"}
             self._recorder = Recorder(self._out, lambda: self._publish_time, self._overwrite, facts)
-        for parts, (clock, value) in layout.entries(messages):
+        for parts, (clock, value) in layout.entries(piece.chunk.messages):
             self._publish_time = parts[0].publish_time
             if isinstance(value, Event) and value.kind == "start":
-                self._begin(value)
-            if self._timekeeper is None or value.run != self._timekeeper.run:
+                if self._rerun is not None and value.run <= self._rerun.run:
+                    raise RecordingError("its runs are not in order")
+                self._rerun = Rerun(value, methods=())
+            if self._rerun is None or value.run != self._rerun.run:
                 self._runs_lost.add(value.run)
                 self._broken = True
             elif isinstance(value, Event):
-                self._keep_event(value, clock)
+                self._rerun.follow(value)
+                self._recorder.event(value, clock)
             else:
-                self._keep_sample(value, clock, parts)
+                (computed,) = self._rerun.reach(value.step)
+                if computed.t != value.t:
+                    self._runs_broken.add(value.run)
+                self._recorder.sample(value, clock, self._encoded(value, clock, parts))
+                self.kept += 1
+                self._clock = clock
             self._end = max(self._end, clock)
 
-    def _begin(self, start: Event) -> None:
-        if self._timekeeper is not None and start.run <= self._timekeeper.run:
-            raise RecordingError("its runs are not in order")
-        assert start.scene is not None
-        self._timekeeper, self._step = Lockstep(start.scene, start.run, ()), -1
-
-    def _keep_event(self, event: Event, clock: float) -> None:
-        assert self._recorder is not None
-        assert self._timekeeper is not None
-        if event.kind == "set_h" and event.h is not None:
-            self._timekeeper.advance(event.step - self._timekeeper.step)
-            try:
-                self._timekeeper.set_h(event.h)
-            except SceneError as error:
-                raise RecordingError(f"run {event.run} cannot have been recorded: {error}") from error
-        self._recorder.event(event, clock)
-
-    def _keep_sample(self, sample: Sample, clock: float, parts: list[Message]) -> None:
-        assert self._recorder is not None
-        assert self._timekeeper is not None
-        if sample.step <= self._step:
-            raise RecordingError(f"the steps of run {sample.run} are not in order")
+    def _encoded(self, sample: Sample, clock: float, parts: list[Message]) -> list[bytes]:
+        """The messages of a sample, which after a gap knows no extremes.  Count what the gap has cost."""
         sequence, encoded = parts[0].sequence, [part.data for part in parts]
         missing = max(0, sequence - self._next_sequence)
         if self._broken or missing:
             self._lost += missing
             self._seconds_lost += clock - self._clock
             encoded = encode_readings(without_extremes(sample))
-        self._timekeeper.advance(sample.step - self._timekeeper.step)
-        if self._timekeeper.t != sample.t:
-            self._runs_broken.add(sample.run)
-        self._recorder.sample(sample, clock, encoded)
-        self.kept += 1
-        self._broken, self._step, self._clock, self._next_sequence = False, sample.step, clock, sequence + 1
+        self._broken, self._next_sequence = False, sequence + 1
+        return encoded
 
     def finished(self, path: Path) -> Recovery:
         """Finish the copy."""
         assert self._recorder is not None
         self._recorder.close()
-        summary = self._walk.summary
-        if summary and summary.statistics:  # which tells of all that was there
+        summary = self._scan.summary
+        if summary and summary.statistics:  # which counts all that was there
             layout = layout_of(summary.channels.values())
             self._lost = layout.samples(summary.statistics.channel_message_counts) - self.kept
-            self._chunks_lost = len(summary.chunks) - len(self._walk.chunks)
+            self._chunks_lost = len(summary.chunks) - len(self._scan.chunks)
             self._end = (summary.statistics.message_end_time - CLOCK_OFFSET) / 1e9
         return Recovery(
             file=path,
             out=self._out,
-            damaged=self._walk.damaged,
-            reason=self._walk.reason,
+            damaged=self._scan.damaged,
+            reason=self._scan.reason,
             samples_kept=self.kept,
             samples_lost=self._lost,
             chunks_lost=self._chunks_lost,

@@ -1,7 +1,7 @@
-"""Walk: a file from its first byte to its last, past whatever is damaged.  It is checked, not trusted."""
+"""Scan: read a file from its first byte to its last, past any damage, and check everything."""
 
 import zlib
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from io import SEEK_END
@@ -11,42 +11,42 @@ from typing import BinaryIO
 from mcap.opcode import Opcode
 from mcap.records import Channel, DataEnd, Header, Metadata
 
+from recordings.contents import Contents, Layout, layout_of
 from recordings.errors import RecordingError, printable_items
 from recordings.format import METADATA, PROFILE
 from recordings.framing import CHANNEL_LIMIT, MAGIC, RECORD, Chunk, Search, read_chunk, read_record, record_at
-from recordings.layout import Layout, check_times, layout_of
 from recordings.summary import Chunks, Summary, find_summary, read_summary
 
-Progress = Callable[[int, int], None]
-"""Called with what is done and what there is in all: bytes, or samples."""
+ShowProgress = Callable[[int, int], None]
+"""Called with how much is done and how much there is: bytes, or samples."""
 
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """A stretch of a file that is unreadable."""
+    """An unreadable stretch of a file."""
 
-    offset: int  # where it begins
+    offset: int
 
 
 @dataclass(frozen=True, slots=True)
 class Intact:
-    """A chunk that is as it was written."""
+    """A chunk as it was written."""
 
     offset: int
     layout: Layout
     chunk: Chunk
 
 
-class Walk:
-    """The intact chunks of a file and the gaps between them, in order.  What was found out is known at the end.
+class Scan:
+    """The intact chunks of a file and the gaps between them, in order.  Its attributes are final at the end.
 
-    Raises RecordingError for what is no recording of ours, and for chunks whose clock runs backwards.
+    Raises RecordingError for a file that is not one of ours, and for chunks whose clock runs backwards.
 
     `complete`: finished by the recorder, and every checksum right.  `damaged`: something was changed or
-    lost; a recording that merely was not finished is not.  `reason`: the first thing wrong, a clause.
+    lost; a recording that was only not finished is not.  `reason`: the first thing wrong, a clause.
     """
 
-    def __init__(self, stream: BinaryIO, progress: Progress | None = None) -> None:
+    def __init__(self, stream: BinaryIO, progress: ShowProgress | None = None) -> None:
         self.complete = self.damaged = False
         self.reason: str | None = None
         self._profile = PROFILE
@@ -57,29 +57,34 @@ class Walk:
         start = stream.read(len(MAGIC))
         if not start:
             raise RecordingError("the file is empty")
-        if sum(map(eq, start, MAGIC)) < len(start) / 2:  # less would be damage, which the walk then finds
-            raise RecordingError("this is no MCAP file")
+        if sum(map(eq, start, MAGIC)) < len(start) / 2:  # fewer wrong bytes are damage, which the scan finds
+            raise RecordingError("this is not an MCAP file")
         self._begins_right = start == MAGIC[: len(start)]
-        found = find_summary(stream)
-        self.summary: Summary | None = found[0] if found else None
-        self._data_end = found[1] if found else None
+        self.summary = find_summary(stream)
         self.chunks = Chunks()  # the intact ones so far
         self.messages: Counter[int] = Counter()  # in them, by channel
-        self._time = 0
         self.layout: Layout | None = None  # once a chunk was met
-        self.channels: dict[int, Channel] = dict(self.summary.channels) if self.summary else {}
+        self.channels = dict(self.summary.channels) if self.summary else {}
 
     def nothing(self, done: str) -> RecordingError:
         """Why nothing in it can be read, verified or saved."""
         if self._profile != PROFILE:
-            return RecordingError("this is an MCAP file, but no recording of pendu-tui")
+            return RecordingError("this is an MCAP file, but not a recording of pendu-tui")
         return RecordingError(f"nothing in it can be {done}: {self.reason or 'it has no samples'}")
+
+    def contents(self) -> Contents:
+        """What the file holds, by a scan to its end.  Raises RecordingError if nothing in it can be read."""
+        deque(self, maxlen=0)
+        if self.layout is None:
+            raise self.nothing("read")
+        samples = self.layout.samples(self.messages)
+        return Contents(self.layout, self.chunks, samples, self.metadata, self.complete, self.damaged, self.reason)
 
     def __iter__(self) -> Iterator[Intact | Gap]:
         offset, crc = len(MAGIC), zlib.crc32(MAGIC)
         search = Search(self._stream)
         if not self._begins_right:
-            self.damaged, self.reason = True, "it does not begin as an MCAP file does"
+            self._damage("its first bytes are damaged")
         while True:
             if self._progress:
                 self._progress(offset, self.size)
@@ -110,7 +115,7 @@ class Walk:
                             return
             except RecordingError as error:
                 following = search.next_chunk(offset + 1)
-                self.damaged, self.reason = True, self.reason or f"{error} (at byte {offset})"
+                self._damage(f"{error} (at byte {offset})")
                 yield Gap(offset)
                 if following is None:
                     return
@@ -118,9 +123,9 @@ class Walk:
                 continue
             if chunk:
                 if self.layout is None:
-                    self.layout = self._layout()
-                check_times(self._time, chunk.start, chunk.end)
-                self._time = chunk.end
+                    if self.damaged and not self.channels:
+                        raise self.nothing("read")
+                    self.layout = layout_of(self.channels.values())
                 found = Counter(message.channel for message in chunk.messages)
                 self.messages += found
                 self.chunks.add(offset, chunk.start, chunk.end, self.layout.events in found)
@@ -133,28 +138,25 @@ class Walk:
             self.channels[channel.id] = channel
             self.layout = None
         if len(self.channels) > CHANNEL_LIMIT:
-            raise RecordingError("it declares more channels than any recording of ours has")
-
-    def _layout(self) -> Layout:
-        if self.damaged and not self.channels:
-            raise self.nothing("read")
-        return layout_of(self.channels.values())
+            raise RecordingError("unexpectedly many channels")
 
     def _end(self, offset: int, right: bool) -> None:
-        """Check what follows the data; all that is wrong there is damage without a gap."""
+        """Check what follows the data.  Damage there leaves no gap."""
         if not right:
-            self.damaged, self.reason = True, self.reason or "its checksum is wrong"
-        elif self.summary is None or offset != self._data_end:
+            self._damage("its checksum is wrong")
+        elif self.summary is None or offset != self.summary.data_end:
             try:
-                whole = read_summary(self._stream, offset + RECORD.size + 4) is not None
-                self.damaged = self.damaged or whole  # and yet not where the footer says
+                if read_summary(self._stream, offset):
+                    self._damage("its summary is not where its footer says")
                 self.reason = self.reason or "the file ends within its summary"
             except RecordingError as error:
-                self.damaged, self.reason = True, self.reason or str(error)
-        elif not self.damaged and not self._agrees(self.summary):
-            self.damaged, self.reason = True, "its summary contradicts what is in it"
-        else:
-            self.complete = not self.damaged
+                self._damage(str(error))
+        elif not self._agrees(self.summary):
+            self._damage("its summary contradicts what is in it")
+        self.complete = self.reason is None
+
+    def _damage(self, reason: str) -> None:
+        self.damaged, self.reason = True, self.reason or reason
 
     def _agrees(self, summary: Summary) -> bool:
         statistics = summary.statistics

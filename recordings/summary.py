@@ -1,4 +1,4 @@
-"""The summary at a file's end: what is where, so that opening and seeking need not read the rest."""
+"""Summary: what is where, from a file's end, so that opening and seeking need not read the rest."""
 
 import struct
 import zlib
@@ -11,7 +11,7 @@ from mcap.opcode import Opcode
 from mcap.records import Channel, Statistics
 
 from recordings.errors import RecordingError
-from recordings.format import EVENTS
+from recordings.format import CLOCK_LIMIT, CLOCK_OFFSET, EVENTS
 from recordings.framing import CHANNEL_LIMIT, MAGIC, RECORD, SMALL_LIMIT, read_record, record_at
 
 CHUNK_LIMIT = 2_000_000  # a chunk every 0.9 s for three weeks; 50 MB of Chunks
@@ -24,7 +24,7 @@ _DATA_END = struct.Struct("<BQI")
 
 @dataclass(slots=True)
 class Chunks:
-    """Where the chunks of a file are, by columns: 25 bytes a chunk where objects would take 200."""
+    """Where the chunks of a file are, in columns: 25 bytes per chunk, where objects would take 200."""
 
     offsets: "array[int]" = field(default_factory=lambda: array("Q"))
     starts: "array[int]" = field(default_factory=lambda: array("Q"))  # ns, log_time
@@ -35,9 +35,12 @@ class Chunks:
         return len(self.offsets)
 
     def add(self, offset: int, start: int, end: int, eventful: bool) -> None:
-        """Add the next one.  Raises RecordingError where they are too many to be held."""
+        """Add the next one.  Raises RecordingError if its times cannot follow, or if there are too many."""
         if len(self) == CHUNK_LIMIT:
-            raise RecordingError("it is longer than any recording of ours")
+            raise RecordingError("it has unexpectedly many chunks")
+        before = self.ends[-1] if self.ends else CLOCK_OFFSET
+        if not before <= start <= end <= CLOCK_OFFSET + CLOCK_LIMIT * 1e9:
+            raise RecordingError("its clock runs backwards or for centuries")
         self.offsets.append(offset)
         self.starts.append(start)
         self.ends.append(end)
@@ -46,8 +49,10 @@ class Chunks:
 
 @dataclass(slots=True)
 class Summary:
-    """What a summary says.  Its own checksum was right."""
+    """A summary whose checksum was right."""
 
+    data_end: int  # where the data before it end in the file,
+    data_crc: int  # and their checksum
     channels: dict[int, Channel] = field(default_factory=dict)
     statistics: Statistics | None = None
     chunks: Chunks = field(default_factory=Chunks)
@@ -55,17 +60,16 @@ class Summary:
 
     def take(self, opcode: int, content: bytes) -> None:
         """Take in a record.  Raises RecordingError for one that is damaged."""
-        match opcode:
-            case Opcode.CHUNK_INDEX:
-                self._take_index(content)
-            case Opcode.METADATA_INDEX:
-                self.metadata_offsets.append(int.from_bytes(content[:8], "little"))
-            case Opcode.CHANNEL | Opcode.STATISTICS:
-                match read_record(opcode, content):
-                    case Channel() as channel:
-                        self.channels[channel.id] = channel
-                    case Statistics() as statistics:
-                        self.statistics = statistics
+        if opcode == Opcode.CHUNK_INDEX:
+            self._take_index(content)
+        elif opcode == Opcode.METADATA_INDEX:
+            self.metadata_offsets.append(int.from_bytes(content[:8], "little"))
+        elif opcode in (Opcode.CHANNEL, Opcode.STATISTICS):
+            record = read_record(opcode, content)
+            if isinstance(record, Channel):
+                self.channels[record.id] = record
+            elif isinstance(record, Statistics):
+                self.statistics = record
 
     def _take_index(self, content: bytes) -> None:
         try:
@@ -73,19 +77,24 @@ class Summary:
             channels = [at[0] for at in _CHANNEL_OFFSET.iter_unpack(content[_INDEX.size : _INDEX.size + length])]
         except struct.error as error:
             raise RecordingError("its index is damaged") from error
-        if len(content) > SMALL_LIMIT or end < start:
+        if len(content) > SMALL_LIMIT:
             raise RecordingError("its index is damaged")
         known = self.channels  # all of them: every writer puts channels before chunk indexes
         eventful = not channels or any(channel not in known or known[channel].topic == EVENTS for channel in channels)
         self.chunks.add(offset, start, end, eventful)
 
 
-def read_summary(stream: BinaryIO, start: int) -> Summary | None:
-    """The summary that begins at `start`, where DataEnd ends, and ends with the file.
+def read_summary(stream: BinaryIO, data_end: int) -> Summary | None:
+    """The summary after the DataEnd record at this offset; it must end with the file.
 
     None if it is cut off; RecordingError if it is damaged.
     """
-    summary, offset, crc, others = Summary(), start, 0, 0
+    offset = data_end + _DATA_END.size
+    stream.seek(data_end)
+    opcode, length, data_crc = _DATA_END.unpack(stream.read(_DATA_END.size).ljust(_DATA_END.size))
+    if (opcode, length) != (Opcode.DATA_END, 4) or data_crc == 0:
+        raise RecordingError("its data do not end where the summary begins")
+    summary, start, crc, others = Summary(data_end, data_crc), offset, 0, 0
     while record := record_at(stream, offset):
         opcode, content = record
         header = RECORD.pack(opcode, len(content))
@@ -94,7 +103,7 @@ def read_summary(stream: BinaryIO, start: int) -> Summary | None:
         summary.take(opcode, content)
         others += opcode != Opcode.CHUNK_INDEX
         if others > OTHER_LIMIT:
-            raise RecordingError("its summary lists more than any recording of ours has")
+            raise RecordingError("its summary is unexpectedly long")
         crc = zlib.crc32(content, zlib.crc32(header, crc))
         offset += len(header) + len(content)
     else:
@@ -103,7 +112,7 @@ def read_summary(stream: BinaryIO, start: int) -> Summary | None:
     if after != MAGIC:
         if MAGIC.startswith(after):
             return None
-        raise RecordingError("it goes on after its end")
+        raise RecordingError("data follows its end")
     if len(content) != _FOOTER.size or _FOOTER.unpack(content)[0] != start:
         raise RecordingError("its footer is damaged")
     expected = _FOOTER.unpack(content)[2]
@@ -112,22 +121,14 @@ def read_summary(stream: BinaryIO, start: int) -> Summary | None:
     return summary
 
 
-def find_summary(stream: BinaryIO) -> tuple[Summary, int, int] | None:
-    """(summary, where DataEnd begins, CRC of all before it) by way of the footer; None if anything is amiss."""
-    size = stream.seek(0, SEEK_END)
-    tail = RECORD.size + _FOOTER.size + len(MAGIC)
-    stream.seek(max(0, size - tail))
-    footer = stream.read(tail)
-    if len(footer) < tail or RECORD.unpack_from(footer) != (Opcode.FOOTER, _FOOTER.size):
-        return None
-    start = _FOOTER.unpack_from(footer, RECORD.size)[0]
-    data_end = start - _DATA_END.size
-    if not len(MAGIC) <= data_end < size - tail:
-        return None
-    stream.seek(data_end)
-    opcode, length, crc = _DATA_END.unpack(stream.read(_DATA_END.size))
+def find_summary(stream: BinaryIO) -> Summary | None:
+    """The summary, by way of the footer; None if anything is wrong."""
+    footer = stream.seek(0, SEEK_END) - RECORD.size - _FOOTER.size - len(MAGIC)
     try:
-        summary = read_summary(stream, start)
+        record = record_at(stream, max(0, footer))
+        if record is None or record[0] != Opcode.FOOTER:
+            return None
+        data_end = int.from_bytes(record[1][:8], "little") - _DATA_END.size
+        return read_summary(stream, data_end) if len(MAGIC) <= data_end < footer else None
     except RecordingError:
         return None
-    return (summary, data_end, crc) if summary and (opcode, length) == (Opcode.DATA_END, 4) and crc else None

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from tests.recordings.sittings import record, two_runs
+from tests.recordings.examples import record, two_runs
 from tests.tui.command_line import pendu
 
 FIELDS = Path(__file__).with_name("json_fields.json")

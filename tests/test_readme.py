@@ -14,6 +14,7 @@ import pytest
 
 from engine.methods import METHODS
 from engine.run.lockstep import Lockstep
+from engine.run.stepping import Stepping
 from engine.scenes import DEFAULT_SCENE
 from recordings.export import COLUMNS
 from tests.tui.command_line import pendu
@@ -225,7 +226,7 @@ def test_beyond_z_2_the_pendulum_catches_verlet():
 def test_with_time_reversed_verlet_comes_back_and_symplectic_euler_does_not():
     lockstep = Lockstep(DEFAULT_SCENE)
     for h in (DEFAULT_SCENE.h, -DEFAULT_SCENE.h):
-        lockstep.set_h(h)
+        lockstep.set_stepping(Stepping(h))
         lockstep.advance(200)
     missed = {
         method.key: abs(reading.theta - DEFAULT_SCENE.theta)

@@ -1,4 +1,4 @@
-"""The step's own derivative, by complex step: what stability, chaos, area and symplecticity are read from.
+"""The derivative of a step, by complex step; stability, chaos, area and symplecticity follow from it.
 
 step(x + i·tiny·v) = step(x) + i·tiny·J v + O(tiny²).  Squire & Trapp, SIAM Review 40 (1998) 110.
 """

@@ -62,7 +62,7 @@ class Trend:
     """One method's energy error over time.  Another h or another start needs another Trend."""
 
     def __init__(self, period: float) -> None:
-        """`period` [s] is that of the exact swing, or 2 pi/w0 where that has none."""
+        """`period` [s] is that of the exact motion, or 2 pi/w0 where that has none."""
         self._period = self._width = period
         self._bins: list[_Bin] = []
         self.judgement = Judgement()  # what is known by now
@@ -78,7 +78,7 @@ class Trend:
         Without the extremes the calls must be closer than a quarter of a period, or the wobble seen
         through the gaps can look like a trend.
         """
-        if self._samples < 0:  # the extremes before the start are none of this trend's
+        if self._samples < 0:  # the extremes before the start are not of this trend
             self._start, self._first = t, energy_error
             low = high = energy_error
         lowest, highest = energy_error if low is None else low, energy_error if high is None else high

@@ -17,7 +17,7 @@ from engine.scenes import DEFAULT_SCENE
 from tui.drawing.canvas import Canvas, Picture
 from tui.drawing.chart import time_chart
 from tui.playback.history import ErrorHistory, Window
-from tui.views.lab.pendulum_picture import Bob, pendulum_picture
+from tui.views.lab.pendulums import Bob, pendulum_picture
 
 BUDGETS = {  # ms
     "canvas_4x3000_points": 1.0,

@@ -1,6 +1,6 @@
-"""A lab on which somebody presses keys until it is killed: python -m tests.recordings.killed FILE LOG.
+"""A lab with random key presses, until it is killed: python -m tests.recordings.killed FILE LOG.
 
-Each frame it appends to LOG the time and the last sample that its recorder has taken: that is what it knew.
+Each frame it appends to LOG the time and the last sample that its recorder has taken.
 """
 
 import os
@@ -10,8 +10,9 @@ import time
 from pathlib import Path
 
 from engine.run.lockstep import Sample
+from engine.run.stepping import Stepping
 from recordings.live_recorder import LiveRecorder
-from tests.recordings.sittings import SCENE
+from tests.recordings.examples import SCENE
 from tui.playback.live import Live
 
 FRAME = 1 / 30  # s
@@ -20,15 +21,15 @@ KEYS = (
     *8 * [lambda live: live.step(1)],
     lambda live: live.step(10),
     lambda live: live.step(-3),
-    lambda live: live.set_h(0.02),
-    lambda live: live.set_h(-0.05),
+    lambda live: live.set_stepping(Stepping(0.02)),
+    lambda live: live.set_stepping(Stepping(-0.05)),
     lambda live: live.mark("here"),
     lambda live: live.restart(),
 )
 
 
 class Noting(LiveRecorder):
-    """Keeps in mind what it was given last."""
+    """Remembers its last sample."""
 
     last = 0, 0
 

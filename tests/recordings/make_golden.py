@@ -1,4 +1,4 @@
-"""Make the recordings that come with the program: python -m tests.recordings.make_golden.
+"""Make the bundled recordings: python -m tests.recordings.make_golden.
 
 The same bytes each time.  Run it only when a scene is meant to change: these files are what later
 versions of the methods are measured against.
@@ -10,8 +10,7 @@ from typing import NamedTuple
 
 from engine.scenes import Scene
 from recordings.headless import Changes, simulate
-from recordings.library import GOLDEN
-from recordings.names import SUFFIX
+from recordings.library import GOLDEN, SUFFIX
 from recordings.recorder import Recorder
 
 

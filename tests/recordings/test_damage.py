@@ -14,9 +14,9 @@ from recordings.events import Event
 from recordings.format import without_extremes
 from recordings.recording import Recording
 from recordings.recover import recover
-from recordings.scan import Walk
+from recordings.scan import Scan
 from recordings.verify import verify
-from tests.recordings.sittings import record, tiny, two_runs
+from tests.recordings.examples import record, tiny, two_runs
 
 
 @pytest.fixture(autouse=True)
@@ -33,7 +33,7 @@ class Damaged:
         with Recording.open(whole) as recording:
             self.entries = list(recording.entries())
         with whole.open("rb") as stream:
-            self.chunks = [piece.offset for piece in Walk(stream)]
+            self.chunks = [piece.offset for piece in Scan(stream)]
         self.path, self.out = tmp_path / "damaged.mcap", tmp_path / "out.mcap"
         self.recovered = set()
 
@@ -90,7 +90,7 @@ def damaged():
 
 
 @pytest.mark.parametrize("part", range(4))
-def test_what_is_left_of_a_recording_cut_at_any_byte_verifies_but_is_never_called_complete(damaged, part):
+def test_a_recording_cut_at_any_byte_verifies_but_is_never_called_complete(damaged, part):
     for length in range(part, len(damaged.data), 4):
         damaged.write(damaged.data[:length])
         verification = damaged.check_verify_and_info()
@@ -132,7 +132,7 @@ def test_recover_saves_every_chunk_but_the_changed_one(damaged, part):
             assert recovery.samples_kept == 3
 
 
-def test_damage_in_many_places_of_a_sitting_of_two_runs_never_yields_a_number_that_was_not_recorded(tmp_path):
+def test_damage_in_many_places_never_yields_a_number_that_was_not_recorded(tmp_path):
     damaged = Damaged(record(tmp_path / "whole.mcap", two_runs()), tmp_path)
     chance = random.Random(1)
     lost = 0

@@ -1,8 +1,8 @@
-"""The format: what is written reads back the same, and nothing else is read."""
+"""The format: messages read back the same, and anything else is refused."""
 
 import json
 import math
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import jsonschema
 import pytest
@@ -13,6 +13,7 @@ from engine.run.lockstep import Reading, Sample
 from engine.scenes import LIMITS, Scene
 from recordings.errors import TEXT_LIMIT, RecordingError, printable
 from recordings.events import Event
+from recordings.fields import EVENT_SCHEMA, NUMBERS, SAMPLE_SCHEMA, VALUES
 from recordings.format import (
     decode_event,
     decode_reading,
@@ -21,8 +22,7 @@ from recordings.format import (
     sin_fingerprint,
     without_extremes,
 )
-from recordings.schemas import EVENT_SCHEMA, SAMPLE_SCHEMA
-from tests.recordings.sittings import METHOD_KEYS, SCENE, start
+from tests.recordings.examples import METHOD_KEYS, SCENE, start
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
 counts = st.integers(0, 2**53 - 1)
@@ -59,26 +59,24 @@ events = st.one_of(
 )
 
 
+def test_the_table_of_fields_has_every_value_of_a_reading_in_its_order():
+    assert tuple(field.name for field in fields(Reading)) == VALUES
+
+
 @given(samples)
-def test_every_finite_double_of_a_sample_survives_to_the_bit(sample):
+def test_every_finite_double_of_a_sample_reads_back_with_the_same_bits(sample):
     messages = encode_readings(sample)
     for message, reading in zip(messages, sample.readings, strict=True):
         run, step, t, again = decode_reading(message)
         assert (run, step, t) == (sample.run, sample.step, sample.t)
         assert again == reading
-        for name in (
-            "theta",
-            "omega",
-            "energy",
-            "energy_error",
-            "max_energy_error",
-        ):  # -0.0 == 0.0, but their hex differs
+        for name in NUMBERS:  # -0.0 == 0.0, but their hex differs
             assert float.hex(getattr(again, name)) == float.hex(getattr(reading, name))
         jsonschema.validate(json.loads(message), SAMPLE_SCHEMA)
 
 
 @given(events)
-def test_every_event_survives(event):
+def test_every_event_reads_back_the_same(event):
     message = encode_event(event)
     assert decode_event(message) == event
     jsonschema.validate(json.loads(message), EVENT_SCHEMA)
@@ -94,13 +92,13 @@ def test_a_schema_is_as_simple_as_the_simplest_viewer_needs(schema):
     assert set(schema["required"]) <= set(schema["properties"])
 
 
-def test_a_number_that_is_not_finite_is_never_written():
+def test_a_nonfinite_number_is_never_written():
     reading = Reading(1.0, math.nan, 0.0, 0.0, 0.0, 0.0, 0.0)
     with pytest.raises(ValueError, match="JSON compliant"):
         encode_readings(Sample(1, 0, 0.0, (reading,)))
 
 
-def test_extremes_that_say_nothing_new_take_no_room():
+def test_extremes_equal_to_the_energy_error_are_left_out():
     plain = Reading(1.0, 0.0, 4.0, 0.5, 0.5, 0.5, 0.5)
     assert b"low" not in encode_readings(Sample(1, 0, 0.0, (plain,)))[0]
     wide = replace(plain, energy_error_low=-0.5)
@@ -113,26 +111,26 @@ GOOD = json.loads(encode_readings(Sample(1, 2, 0.5, (Reading(1.0, 0.0, 4.0, 0.5,
 
 @pytest.mark.parametrize("name", list(SAMPLE_SCHEMA["properties"]))
 @pytest.mark.parametrize("value", ["null", '"1.0"', "NaN", "Infinity", "1e999", "true", "[1.0]", "{}", "1" + 400 * "0"])
-def test_a_field_that_is_no_finite_number_is_refused(name, value):
+def test_a_field_that_is_not_a_finite_number_is_refused(name, value):
     text = json.dumps(GOOD | {name: "HERE"}).replace('"HERE"', value)
     with pytest.raises(RecordingError):
         decode_reading(text.encode())
 
 
 @pytest.mark.parametrize("name", SAMPLE_SCHEMA["required"])
-def test_a_field_that_is_missing_is_refused(name):
+def test_a_missing_field_is_refused(name):
     with pytest.raises(RecordingError, match=name):
         decode_reading(json.dumps({key: value for key, value in GOOD.items() if key != name}).encode())
 
 
 @pytest.mark.parametrize("name", ["run", "step"])
 @pytest.mark.parametrize("value", [-1, 2**53, 1.0])
-def test_a_count_is_a_whole_number_that_can_be_reached(name, value):
+def test_a_count_is_a_whole_number_in_range(name, value):
     with pytest.raises(RecordingError, match=name):
         decode_reading(json.dumps(GOOD | {name: value}).encode())
 
 
-def test_numbers_of_writers_that_drop_the_fraction_are_read():
+def test_numbers_without_a_fraction_are_read():
     assert decode_reading(json.dumps(GOOD | {"theta": 1}).encode())[3].theta == 1.0
 
 
@@ -141,7 +139,7 @@ def test_numbers_of_writers_that_drop_the_fraction_are_read():
     [b"", b"{", b"[]", b"null", b"\xff", b"{} {}", b"[" * 60_000, b'{"run": 1, "nonfinite": {}}', b" " * 70_000],
     ids=["empty", "cut", "list", "null", "not text", "two", "deep", "nonfinite", "long"],
 )
-def test_what_is_no_message_of_ours_is_refused(data):
+def test_an_unexpected_message_is_refused(data):
     with pytest.raises(RecordingError):
         decode_reading(data)
     with pytest.raises(RecordingError):
@@ -169,13 +167,13 @@ START = json.loads(encode_event(start()))
         {"methods": ["rk4", "rk4"]},
     ],
 )
-def test_a_start_that_no_lab_can_have_made_is_refused(wrong):
+def test_an_impossible_start_is_refused(wrong):
     with pytest.raises(RecordingError):
         decode_event(json.dumps(START | wrong).encode())
 
 
 @pytest.mark.parametrize("text", ["\x1b[2J", "\x9b31m", "a\nb", "\u202egpj.exe", "\ud800", "\x00", "é\u0301\x7f"])
-def test_texts_of_a_file_cannot_steer_a_terminal(text):
+def test_texts_of_a_file_cannot_control_a_terminal(text):
     assert printable(text).isprintable()
     mark = Event("mark", 1, 0, 0.0, text=text)
     assert decode_event(encode_event(mark)).text == printable(text)
@@ -183,7 +181,7 @@ def test_texts_of_a_file_cannot_steer_a_terminal(text):
     assert named.name == named.watch == printable(text)
 
 
-def test_a_text_of_a_file_is_cut_to_what_a_screen_has_room_for():
+def test_a_long_text_of_a_file_is_cut():
     assert len(printable("x" * 10_000)) == 200
     assert printable("x" * 200) == "x" * 200
 

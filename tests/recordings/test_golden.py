@@ -1,4 +1,4 @@
-"""The recordings that come with the program are what every later version of the methods is measured against."""
+"""The bundled recordings: every later version of the methods is compared with them."""
 
 import json
 from pathlib import Path
@@ -13,8 +13,8 @@ from recordings.format import sin_fingerprint, without_extremes
 from recordings.library import GOLDEN, golden_names
 from recordings.recording import Recording
 from recordings.verify import verify
+from tests.recordings.examples import two_runs
 from tests.recordings.make_golden import RECORDINGS, make
-from tests.recordings.sittings import two_runs
 
 ROOM = 64_000  # bytes; they are in every installation
 
@@ -29,7 +29,7 @@ def test_a_golden_recording_verifies(name):
 
 
 @pytest.mark.parametrize("name", golden_names())
-def test_a_golden_recording_comes_out_the_same_when_it_is_made_again(name, tmp_path):
+def test_making_a_golden_recording_again_gives_the_same(name, tmp_path):
     make(name, tmp_path / "again.mcap")
     make(name, tmp_path / "and again.mcap")
     again = (tmp_path / "again.mcap").read_bytes()
@@ -39,7 +39,7 @@ def test_a_golden_recording_comes_out_the_same_when_it_is_made_again(name, tmp_p
             assert list(golden.entries()) == list(made.entries())
 
 
-def test_they_are_the_ones_that_are_made_and_small():
+def test_the_golden_recordings_are_those_we_make_and_small():
     assert set(golden_names()) == set(RECORDINGS)
     assert {"drift", "changes-of-h", "reversed-time", "near-separatrix", "spin"} <= set(RECORDINGS)
     assert all(path.stat().st_size < ROOM for path in GOLDEN.iterdir())
@@ -69,7 +69,7 @@ def last_readings(name):
         return run.scene, dict(zip(recording.methods, sample.readings, strict=True))
 
 
-def test_each_shows_what_it_says_is_to_be_watched():
+def test_each_golden_recording_shows_what_its_text_says():
     scene, end = last_readings("drift")
     assert end["explicit_euler"].theta < -7  # over the top
     assert end["velocity_verlet"].max_energy_error < 0.01
@@ -89,7 +89,7 @@ def test_each_shows_what_it_says_is_to_be_watched():
 
 
 def test_the_shipped_layout_shows_what_is_in_a_recording():
-    layout = json.loads((GOLDEN.parent / "foxglove_layout.json").read_text())
+    layout = json.loads((GOLDEN.parent / "viewers" / "foxglove_layout.json").read_text())
     panels = layout["configById"]
 
     def shown(node):
@@ -105,7 +105,7 @@ def test_the_shipped_layout_shows_what_is_in_a_recording():
     assert panels["RawMessages!events"]["topicPath"] == "/pendu/events"
 
 
-def test_the_table_has_a_row_for_each_sample_and_method_and_every_number_reads_back_the_same(tmp_path):
+def test_the_csv_has_a_row_for_each_sample_and_method_and_every_number(tmp_path):
     path = tmp_path / "drift.csv"
     with Recording.open(GOLDEN / "drift.mcap") as recording, path.open("w", newline="") as out:
         assert export.write_csv(recording, out) == recording.samples

@@ -14,7 +14,7 @@ from recordings.recorder import Recorder
 from recordings.recording import Recording
 from recordings.recover import recover
 from recordings.verify import verify
-from tests.recordings.sittings import SCENE
+from tests.recordings.examples import SCENE
 
 
 def test_samples_are_a_thirtieth_of_a_second_apart_with_the_first_and_the_last():
@@ -53,7 +53,7 @@ def test_stretches_of_constant_h_follow_each_other_and_make_up_the_time(time, ch
     assert steps_for(SCENE, time, changes) == stretches[-1][1]
 
 
-def test_the_clock_of_a_recording_goes_on_while_time_runs_backwards(tmp_path):
+def test_the_recording_clock_goes_forward_while_simulated_time_runs_backwards(tmp_path):
     with Recorder(tmp_path / "a.mcap", wall=None) as recorder:
         *_, last = simulate(SCENE, 4.0, recorder, changes=[(20, -0.1)])
     assert last.t == 0.0
@@ -64,7 +64,7 @@ def test_the_clock_of_a_recording_goes_on_while_time_runs_backwards(tmp_path):
     assert verify(tmp_path / "a.mcap").identical
 
 
-def test_a_run_of_an_hour_has_no_chunk_for_each_of_its_seconds(tmp_path):
+def test_an_hour_of_a_headless_run_has_few_chunks(tmp_path):
     with Recorder(tmp_path / "a.mcap", wall=None) as recorder:
         samples = sum(1 for _ in simulate(SCENE, 3600.0, recorder, sample_every=10))
     with Recording.open(tmp_path / "a.mcap") as recording:

@@ -1,4 +1,4 @@
-"""Files of strangers: one sentence, little memory, nothing printed raw, nothing written elsewhere."""
+"""Untrusted files: one sentence, little memory, nothing printed raw, nothing written elsewhere."""
 
 import json
 import os
@@ -23,10 +23,10 @@ from recordings.framing import read_chunk
 from recordings.recorder import FLUSH_EVERY, Recorder
 from recordings.recording import EVENT_LIMIT, Recording
 from recordings.recover import recover
-from recordings.scan import Walk
+from recordings.scan import Scan
 from recordings.summary import CHUNK_LIMIT, Chunks
 from recordings.verify import verify
-from tests.recordings.sittings import METHOD_KEYS, record, start, two_runs
+from tests.recordings.examples import METHOD_KEYS, record, start, two_runs
 
 SECOND = 1_000_000_000
 
@@ -88,18 +88,18 @@ def out(tmp_path):
     ("data", "why"),
     [
         (b"", "the file is empty"),
-        (b"hello", "this is no MCAP file"),
-        (b"\x1b[31m" * 1000, "this is no MCAP file"),
-        (bytes(100_000), "this is no MCAP file"),
+        (b"hello", "this is not an MCAP file"),
+        (b"\x1b[31m" * 1000, "this is not an MCAP file"),
+        (bytes(100_000), "this is not an MCAP file"),
         (framing.MAGIC, "nothing in it can be read: the recording was not finished"),
-        (framing.MAGIC + b"\x1b[31m" * 1000, "nothing in it can be read: no record begins where one should"),
-        (framing.MAGIC + struct.pack("<BQ", 6, 1 << 62), "nothing in it can be read: a record declares"),
+        (framing.MAGIC + b"\x1b[31m" * 1000, "nothing in it can be read: there is no record where one should begin"),
+        (framing.MAGIC + struct.pack("<BQ", 6, 1 << 62), "nothing in it can be read: unexpected record of"),
         (framing.MAGIC + struct.pack("<BQ", 1, 100), "nothing in it can be read: the recording was not finished"),
         (framing.MAGIC * 2, "nothing in it can be read"),
     ],
     ids=["empty", "text", "escapes", "zeros", "magic", "magic and escapes", "huge length", "cut header", "magic twice"],
 )
-def test_what_is_no_recording_is_refused_in_a_sentence(tmp_path, data, why):
+def test_a_file_that_is_not_a_recording_is_refused_in_a_sentence(tmp_path, data, why):
     path = tmp_path / "x.mcap"
     path.write_bytes(data)
     sentences = refused(path, tmp_path)
@@ -109,7 +109,7 @@ def test_what_is_no_recording_is_refused_in_a_sentence(tmp_path, data, why):
 
 
 @pytest.mark.parametrize("name", ["missing.mcap", "folder", "\x1b[31mred.mcap"])
-def test_what_cannot_be_opened_is_refused_in_a_sentence(tmp_path, name):
+def test_a_file_that_cannot_be_opened_is_refused_in_a_sentence(tmp_path, name):
     (tmp_path / "folder").mkdir()
     for attempt in (Recording.open, verify):
         with pytest.raises(RecordingError, match=r"No such file|Is a directory") as caught:
@@ -126,7 +126,7 @@ def test_a_pipe_is_refused_in_a_sentence(tmp_path):
     os.close(writer)
 
 
-def test_a_disk_that_cannot_be_read_is_a_file_that_cannot_be_read(tmp_path, monkeypatch):
+def test_an_unreadable_disk_is_reported_as_an_unreadable_file(tmp_path, monkeypatch):
     path = record(tmp_path / "a.mcap", two_runs())
 
     def broken(*_):
@@ -138,7 +138,7 @@ def test_a_disk_that_cannot_be_read_is_a_file_that_cannot_be_read(tmp_path, monk
             attempt(path)
 
 
-def test_a_file_of_another_program_is_said_to_be_one(tmp_path):
+def test_a_file_of_another_program_is_recognized(tmp_path):
     for options in (
         {},
         {"compression": CompressionType.LZ4},
@@ -155,20 +155,20 @@ def test_a_file_of_another_program_is_said_to_be_one(tmp_path):
             writer.finish()
         sentences = refused(path, tmp_path)
         assert len(sentences) == 4
-        assert "an MCAP file, but no recording of pendu-tui" in sentences[0]
+        assert "an MCAP file, but not a recording of pendu-tui" in sentences[0]
 
 
 @pytest.mark.parametrize(
     ("facts", "why"),
     [
-        ({}, "without the version of its format"),
-        ({"format": "\x1b[2J"}, "without the version of its format"),
-        ({"format": "0x1"}, "without the version of its format"),
-        ({"format": "9" * 5000}, "without the version of its format"),
+        ({}, "or its format version is missing"),
+        ({"format": "\x1b[2J"}, "or its format version is missing"),
+        ({"format": "0x1"}, "or its format version is missing"),
+        ({"format": "9" * 5000}, "or its format version is missing"),
         ({"format": "2"}, "has format 2"),
     ],
 )
-def test_a_format_that_we_do_not_know_is_refused(tmp_path, facts, why):
+def test_an_unknown_format_is_refused(tmp_path, facts, why):
     forger = Forger(tmp_path / "x.mcap", facts)
     forger.event(start())
     assert any(why in sentence for sentence in refused(forger.done(), tmp_path))
@@ -212,6 +212,13 @@ print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
     assert int(grown) < 60_000  # kB
 
 
+def test_a_chunk_that_declares_another_length_than_it_has_is_damaged():
+    record = bomb(100)[len(framing.MAGIC) + framing.RECORD.size :]
+    length = framing.CHUNK_HEADER - 8  # where its data's length stands
+    with pytest.raises(RecordingError, match="a chunk's length is wrong"):
+        read_chunk(record[:length] + struct.pack("<Q", 1 << 40) + record[framing.CHUNK_HEADER :])
+
+
 @pytest.mark.parametrize(("lie", "looked_at"), [(0, 10), (1, 0)], ids=["plausible sizes", "sizes that disagree"])
 def test_a_file_of_false_chunks_costs_no_more_than_a_limit(tmp_path, monkeypatch, lie, looked_at):
     length, path = 1_000_000, tmp_path / "x.mcap"
@@ -237,7 +244,7 @@ def test_a_million_channels_are_refused_at_the_first_few(tmp_path):
         writer.add_message(channel, SECOND, b"{}", SECOND)
         writer.finish()
     sentences = refused(path, tmp_path)
-    assert "more channels than any recording of ours has" in sentences[0]
+    assert "unexpectedly many channels" in sentences[0]
 
 
 @pytest.mark.parametrize(
@@ -254,7 +261,7 @@ def test_a_million_channels_are_refused_at_the_first_few(tmp_path):
     ],
     ids=["nan", "null", "infinite", "text", "cut", "deep", "escape", "long"],
 )
-def test_numbers_that_are_none_are_refused(tmp_path, change):
+def test_invalid_numbers_are_refused(tmp_path, change):
     forger = Forger(tmp_path / "x.mcap")
     forger.event(start())
     forger.sample(two_runs()[1].value, change=change)
@@ -269,7 +276,7 @@ def test_numbers_that_are_none_are_refused(tmp_path, change):
     assert not list((tmp_path / "out").iterdir())
 
 
-def test_runs_whose_samples_are_none_do_not_keep_the_player_from_opening(tmp_path):
+def test_runs_without_valid_samples_do_not_keep_the_player_from_opening(tmp_path):
     forger = Forger(tmp_path / "x.mcap")
     for run in (1, 2):
         forger.event(start(run))
@@ -281,7 +288,7 @@ def test_runs_whose_samples_are_none_do_not_keep_the_player_from_opening(tmp_pat
 
 
 @pytest.mark.parametrize("records", [1, 70, 1000])
-def test_metadata_without_end_are_not_taken_in(tmp_path, records):
+def test_oversized_metadata_are_skipped(tmp_path, records):
     forger = Forger(tmp_path / "x.mcap")
     forger.event(start())
     forger.writer.flush()
@@ -295,7 +302,7 @@ def test_metadata_without_end_are_not_taken_in(tmp_path, records):
 
 
 @pytest.mark.parametrize("times", [(5, 4), (0, 1), (1, 1 << 63), ((1 << 64) - 1,) * 2])
-def test_a_clock_that_runs_backwards_or_before_its_zero_or_for_centuries_is_refused(tmp_path, times):
+def test_an_impossible_clock_is_refused(tmp_path, times):
     forger = Forger(tmp_path / "x.mcap")
     forger.event(start(), times[0] * SECOND if times[0] < 9 else times[0])
     forger.writer.flush()
@@ -304,18 +311,18 @@ def test_a_clock_that_runs_backwards_or_before_its_zero_or_for_centuries_is_refu
     assert "clock" in sentences[0]
 
 
-def test_samples_that_are_not_whole_are_refused(tmp_path):
+def test_incomplete_samples_are_refused(tmp_path):
     for leave_out in range(4):
         forger = Forger(tmp_path / "x.mcap")
         forger.event(start())
         for place, (channel, data) in enumerate(zip(forger.methods, encode_readings(two_runs()[1].value), strict=True)):
             if place != leave_out:
                 forger.writer.add_message(channel, SECOND, data, SECOND)
-        with pytest.raises(RecordingError, match="a sample is not whole"):
+        with pytest.raises(RecordingError, match="a sample is incomplete"):
             verify(forger.done())
 
 
-def test_of_events_without_end_the_first_are_taken_in_and_that_is_said(tmp_path, monkeypatch):
+def test_of_too_many_events_the_first_are_shown(tmp_path, monkeypatch):
     monkeypatch.setattr("recordings.recording.EVENT_LIMIT", 1_000)
     forger = Forger(tmp_path / "x.mcap")
     mark = encode_event(Event("mark", 1, 0, 0.0))
@@ -325,10 +332,10 @@ def test_of_events_without_end_the_first_are_taken_in_and_that_is_said(tmp_path,
     with Recording.open(forger.done()) as recording:
         assert len(recording.events) == 1_000
         assert not recording.complete
-        assert recording.reason == "only its first 1000 events are taken in"
+        assert recording.reason == "only its first 1000 events are shown"
 
 
-def test_a_sitting_with_many_changes_and_many_steps_back_opens_whole(tmp_path):
+def test_a_recording_with_many_changes_and_many_steps_back_opens_completely(tmp_path):
     assert EVENT_LIMIT > 2 * 28_307  # events of 310 changes of h, after which somebody stepped back 110 times
     path = tmp_path / "a.mcap"
     changes = [Event("set_h", 1, step, step / 10, h=0.1) for step in range(200)]
@@ -342,27 +349,27 @@ def test_a_sitting_with_many_changes_and_many_steps_back_opens_whole(tmp_path):
         assert len(recording.events) == 119 * 201 + 1  # the stop
 
 
-def test_three_weeks_of_a_sitting_are_within_the_limit_of_chunks_and_that_takes_little_memory():
+def test_three_weeks_of_recording_are_within_the_limit_of_chunks_and_take_little_memory():
     assert CHUNK_LIMIT * FLUSH_EVERY > 20 * 86_400
     chunks = Chunks()
     for second in range(10_000):
-        chunks.add(second, second, second, eventful=False)
+        chunks.add(second, SECOND + second, SECOND + second, eventful=False)
     columns = (chunks.offsets, chunks.starts, chunks.ends, chunks.eventful)
     a_chunk = sum(map(sys.getsizeof, columns)) / len(chunks)
     assert a_chunk * CHUNK_LIMIT < 60e6  # bytes, twice where a summary is compared with what is in the file
 
 
-def test_a_recording_of_more_chunks_than_can_be_held_is_refused_in_a_sentence(tmp_path, monkeypatch):
+def test_a_recording_of_too_many_chunks_is_refused_in_a_sentence(tmp_path, monkeypatch):
     path = record(tmp_path / "a.mcap", two_runs())
     with path.open("rb") as stream:
-        found = len(list(Walk(stream)))
+        found = len(list(Scan(stream)))
     monkeypatch.setattr("recordings.summary.CHUNK_LIMIT", found)
     assert verify(path).complete
     monkeypatch.setattr("recordings.summary.CHUNK_LIMIT", found - 1)
-    assert refused(path, tmp_path) == [f"{path}: it is longer than any recording of ours."] * 4
+    assert refused(path, tmp_path) == [f"{path}: it has unexpectedly many chunks."] * 4
 
 
-def test_texts_of_a_stranger_are_harmless_wherever_they_come_out(tmp_path):
+def test_texts_of_untrusted_files_are_printable_everywhere(tmp_path):
     evil = "\x1b]0;owned\x07[red]\u202e../../etc/passwd\n"
     forger = Forger(tmp_path / "x.mcap", {"format": "1", "sin": evil})
     forger.writer.add_metadata("pendu.recording", {evil: evil})
@@ -377,7 +384,7 @@ def test_texts_of_a_stranger_are_harmless_wherever_they_come_out(tmp_path):
 
 
 @pytest.mark.parametrize("check", [False, True])
-def test_a_file_that_another_program_wrote_without_message_indexes_plays(tmp_path, check):
+def test_a_file_without_message_indexes_plays(tmp_path, check):
     forger = Forger(tmp_path / "x.mcap", index_types=IndexType.ALL & ~IndexType.MESSAGE)
     forger.event(start())
     forger.writer.flush()
@@ -387,7 +394,7 @@ def test_a_file_that_another_program_wrote_without_message_indexes_plays(tmp_pat
         assert [run.number for run in recording.runs] == [1]
 
 
-def test_a_summary_that_lies_is_found_by_a_check_and_does_not_mislead_the_player(tmp_path):
+def test_a_false_summary_is_found_by_a_check_and_does_not_mislead_the_player(tmp_path):
     path = record(tmp_path / "x.mcap", two_runs())
     data = path.read_bytes()
     footer = data[-37:-8]
@@ -413,7 +420,7 @@ def test_a_summary_that_lies_is_found_by_a_check_and_does_not_mislead_the_player
 
 
 @given(st.binary(max_size=400))
-def test_no_bytes_whatever_escape_as_another_error(tmp_path_factory, data):
+def test_any_bytes_raise_only_our_error(tmp_path_factory, data):
     folder = tmp_path_factory.mktemp("any")
     path = folder / "x.mcap"
     path.write_bytes(framing.MAGIC + data)
@@ -427,7 +434,7 @@ def test_no_bytes_whatever_escape_as_another_error(tmp_path_factory, data):
     content=st.binary(max_size=60),
     cut=st.integers(0, 20),
 )
-def test_no_record_whatever_escapes_as_another_error(tmp_path_factory, opcode, content, cut):
+def test_any_record_raises_only_our_error(tmp_path_factory, opcode, content, cut):
     folder = tmp_path_factory.mktemp("any")
     path = record(folder / "x.mcap", two_runs()[:4])
     whole = path.read_bytes()

@@ -1,4 +1,4 @@
-"""kill -9 at any moment, whatever was pressed: what is left plays, verifies, and lacks less than the last second."""
+"""kill -9 at any moment: the leftover plays, verifies, and lacks less than the last second."""
 
 import random
 import signal
@@ -12,7 +12,7 @@ import pytest
 
 from recordings.library import leftovers
 from recordings.recording import Recording
-from recordings.rescue import rescue
+from recordings.recover import rescue
 from recordings.verify import verify
 from tests.tui.pty_lab import PtyLab
 
@@ -56,7 +56,7 @@ def kill_one(folder, after):
     return loss, verify(saved)
 
 
-def test_what_a_killed_lab_leaves_plays_verifies_and_lacks_less_than_a_second(tmp_path):
+def test_a_killed_lab_leaves_a_recording_that_verifies_and_lacks_less_than_a_second(tmp_path):
     chance = random.Random()
     moments = [chance.uniform(0.0, 2.5) for _ in range(KILLS)]
     with ThreadPoolExecutor(4) as pool:  # labs sleep most of the time
@@ -68,7 +68,7 @@ def test_what_a_killed_lab_leaves_plays_verifies_and_lacks_less_than_a_second(tm
 
 
 @pytest.mark.parametrize("after", [0.0, 0.7])
-def test_the_real_lab_that_is_killed_while_paused_has_every_single_step_on_disk(tmp_path, after):
+def test_a_lab_killed_while_paused_has_every_single_step_on_disk(tmp_path, after):
     with PtyLab("live", "--record", str(tmp_path / "a.mcap")) as lab:
         lab.wait_for("RK4")
         lab.run(after)

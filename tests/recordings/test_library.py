@@ -1,4 +1,4 @@
-"""The library: where recordings are, which one a name means, and which may go."""
+"""The library: where recordings are, which one a name means, and which to prune."""
 
 import os
 import time
@@ -8,11 +8,10 @@ import pytest
 
 from recordings import library
 from recordings.errors import RecordingError
-from recordings.library import GOLDEN, Item, leftovers, listing, new_path, prune, resolve, to_prune
-from recordings.names import free_path
+from recordings.library import GOLDEN, Item, free_path, leftovers, listing, new_path, prune, resolve, to_prune
 from recordings.recorder import Recorder
 from recordings.recording import Recording
-from tests.recordings.sittings import start, tiny
+from tests.recordings.examples import start, tiny
 from tui.playback.marks import Mark, Marks
 
 NOON = time.struct_time((2026, 11, 20, 12, 0, 0, 4, 324, 0))
@@ -33,13 +32,13 @@ def fill(folder, **ages):
     return [folder / f"{name}.mcap" for name in ages]
 
 
-def test_recordings_live_where_the_environment_says_or_in_the_users_data(folder, monkeypatch):
+def test_the_library_is_set_by_the_environment_or_in_the_users_data(folder, monkeypatch):
     assert library.folder() == folder
     monkeypatch.delenv("PENDU_RECORDINGS")
     assert library.folder().parts[-2:] == ("pendu-tui", "recordings")
 
 
-def test_a_new_recording_is_named_by_its_time_and_never_like_another(folder):
+def test_a_new_recording_has_a_free_name_with_the_time(folder):
     assert new_path(now=NOON) == folder / "2026-11-20T12-00-00.mcap"
     folder.mkdir()
     (folder / "2026-11-20T12-00-00.mcap.part").touch()
@@ -66,7 +65,7 @@ def test_the_list_is_newest_first_and_empty_without_a_folder(folder):
     assert listing()[0].bytes == new.stat().st_size
 
 
-def test_a_name_means_a_file_or_the_latest_or_one_of_the_library_or_one_that_came_with_the_program(folder, tmp_path):
+def test_a_name_is_a_file_or_the_latest_or_one_of_the_library_or_a_bundled_one(folder, tmp_path):
     old, new = fill(folder, old=100, new=1)
     elsewhere = tiny(tmp_path / "elsewhere.mcap")
     assert resolve(str(elsewhere)) == elsewhere
@@ -78,20 +77,20 @@ def test_a_name_means_a_file_or_the_latest_or_one_of_the_library_or_one_that_cam
 @pytest.mark.parametrize(
     ("name", "why"),
     [
-        ("latest", "There is no recording in .*library yet"),
+        ("latest", "No recordings in .*library yet"),
         ("drfit", "did you mean drift?"),
         ("/no/such.mcap", "choose a file, or one of latest, changes-of-h, drift"),
         ("../../etc/passwd.mcap", "choose a file"),
         ("\x1b[2J", "There is no recording '�"),
     ],
 )
-def test_a_name_that_means_nothing_is_answered_with_what_might_be_meant(name, why):
+def test_an_unknown_name_is_refused_with_a_suggestion(name, why):
     with pytest.raises(RecordingError, match=why) as caught:
         resolve(name)
     assert str(caught.value).isprintable()
 
 
-def test_a_recording_in_progress_is_no_leftover(folder):
+def test_a_recording_in_progress_is_not_a_leftover(folder):
     folder.mkdir()
     (folder / "killed.mcap.part").touch()
     with Recorder(folder / "running.mcap") as recorder:
@@ -114,7 +113,7 @@ def test_a_large_recording_does_not_make_room_for_older_ones(folder):
     assert [item.path.name for item in to_prune(items, size=500)] == ["large", "old"]
 
 
-def test_what_is_in_use_is_never_deleted(folder):
+def test_a_recording_in_use_is_never_deleted(folder):
     replayed, idle = fill(folder, replayed=2, idle=1)
     with Recorder(folder / "running.mcap") as recorder, Recording.open(replayed):
         recorder.event(start(), 0.0)
@@ -123,7 +122,7 @@ def test_what_is_in_use_is_never_deleted(folder):
     assert [path.name for path in sorted(folder.iterdir())] == ["replayed.mcap", "running.mcap"]
 
 
-def test_a_recording_that_is_gone_already_is_no_trouble(folder):
+def test_pruning_skips_a_recording_that_is_already_gone(folder):
     fill(folder, gone=1)
     items = listing()
     items[0].path.unlink()
@@ -138,7 +137,7 @@ def test_marks_go_with_their_recording(folder):
     assert not list(folder.iterdir())
 
 
-def test_what_cannot_be_deleted_does_not_keep_the_others(folder, monkeypatch):
+def test_a_recording_that_cannot_be_deleted_does_not_stop_the_others(folder, monkeypatch):
     stubborn, other = fill(folder, stubborn=1, other=2)
     unlink = Path.unlink
 
@@ -152,7 +151,7 @@ def test_what_cannot_be_deleted_does_not_keep_the_others(folder, monkeypatch):
     assert list(folder.iterdir()) == [stubborn]
 
 
-def test_a_folder_does_not_hide_what_has_its_name(folder, tmp_path, monkeypatch):
+def test_a_folder_does_not_hide_a_bundled_recording_of_the_same_name(folder, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "drift").mkdir()
     assert resolve("drift") == GOLDEN / "drift.mcap"

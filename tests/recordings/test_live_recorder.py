@@ -1,4 +1,4 @@
-"""A sitting goes on whatever becomes of the disk, and so does its recording."""
+"""The lab goes on if the disk fails, and so does its recording."""
 
 import errno
 import os
@@ -8,13 +8,14 @@ import sys
 import pytest
 
 from engine.run.lockstep import Lockstep
+from engine.run.stepping import Stepping
 from recordings.errors import DiskError
 from recordings.events import Event
+from recordings.library import free_path
 from recordings.live_recorder import RETRY_EVERY, LiveRecorder
-from recordings.names import free_path
 from recordings.recording import Recording
 from recordings.verify import verify
-from tests.recordings.sittings import SCENE, start
+from tests.recordings.examples import SCENE, start
 
 
 class Lab:
@@ -34,7 +35,7 @@ class Lab:
             self.recorder.sample(self.lockstep.sample(), self.clock)
 
     def set_h(self, h):
-        self.lockstep.set_h(h)
+        self.lockstep.set_stepping(Stepping(h))
         self.recorder.event(Event("set_h", 1, self.lockstep.step, self.lockstep.t, h=h), self.clock)
 
 
@@ -55,7 +56,7 @@ def fail(lab, monkeypatch):
     monkeypatch.setattr(lab.recorder._recorder._writer, "flush", flush)
 
 
-def test_a_sitting_without_trouble_is_one_file(lab):
+def test_without_failures_a_recording_is_one_file(lab):
     lab.run(3.0)
     lab.recorder.close()
     assert lab.recorder.failed is None
@@ -63,7 +64,7 @@ def test_a_sitting_without_trouble_is_one_file(lab):
     assert verify(lab.recorder.path).complete
 
 
-def test_a_full_disk_is_said_and_the_sitting_goes_on(lab, monkeypatch):
+def test_a_full_disk_is_reported_and_the_lab_goes_on(lab, monkeypatch):
     lab.run(3.0)
     fail(lab, monkeypatch)
     lab.run(2.0)
@@ -99,7 +100,7 @@ def test_recording_resumes_in_a_new_file_that_replays_and_verifies_by_itself(lab
         assert recording.sample(recording.at(99.0)).value.step == lab.lockstep.step
 
 
-def test_a_restart_while_nothing_is_recorded_is_what_the_new_file_begins_with(lab, monkeypatch):
+def test_after_a_restart_during_a_failure_the_new_file_begins_with_the_new_run(lab, monkeypatch):
     lab.run(1.0)
     fail(lab, monkeypatch)
     lab.run(1.0)
@@ -113,7 +114,7 @@ def test_a_restart_while_nothing_is_recorded_is_what_the_new_file_begins_with(la
     assert verify(lab.recorder.files[-1]).identical
 
 
-def test_two_sittings_that_chose_the_same_name_are_two_recordings(tmp_path, monkeypatch):
+def test_two_labs_that_chose_the_same_name_make_two_recordings(tmp_path, monkeypatch):
     monkeypatch.setattr("recordings.live_recorder.free_path", Looks(free_path))
     path = tmp_path / "now.mcap"
     recorders = [LiveRecorder(path, or_next=True) for _ in range(2)]
@@ -126,7 +127,7 @@ def test_two_sittings_that_chose_the_same_name_are_two_recordings(tmp_path, monk
 
 
 class Looks:
-    """Two sittings look for a free name before either takes it: the second look finds what the first did."""
+    """Two labs look for a free name before either takes it: the second finds what the first did."""
 
     def __init__(self, shown):
         self.shown, self.found = shown, []
@@ -136,14 +137,14 @@ class Looks:
         return self.found[-1]
 
 
-def test_a_name_that_somebody_gave_is_not_changed(tmp_path):
+def test_a_given_name_is_not_changed(tmp_path):
     recorder = LiveRecorder(tmp_path / "mine.mcap")
     with pytest.raises(DiskError, match="choose another name"):
         LiveRecorder(tmp_path / "mine.mcap")
     recorder.close()
 
 
-def test_trouble_that_lasts_is_tried_again_now_and_then_and_leaves_no_rubbish(lab, tmp_path, monkeypatch):
+def test_a_lasting_failure_is_retried_now_and_then_and_leaves_no_files(lab, tmp_path, monkeypatch):
     lab.run(1.0)
     tries = []
 
@@ -160,7 +161,7 @@ def test_trouble_that_lasts_is_tried_again_now_and_then_and_leaves_no_rubbish(la
     assert [path.name for path in (tmp_path / "library").iterdir()] == ["lab.mcap.part"]
 
 
-def test_a_folder_that_was_removed_is_said_and_made_again(lab, tmp_path):
+def test_a_removed_folder_is_reported_and_made_again(lab, tmp_path):
     lab.run(1.0)
     lab.recorder.path.with_name("lab.mcap.part").unlink()
     (tmp_path / "library").rmdir()
@@ -173,7 +174,7 @@ def test_a_folder_that_was_removed_is_said_and_made_again(lab, tmp_path):
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="nothing is forbidden to root")
-def test_a_folder_that_may_no_longer_be_written_is_said(lab, tmp_path):
+def test_a_folder_that_became_read_only_is_reported(lab, tmp_path):
     lab.run(1.0)
     (tmp_path / "library").chmod(0)
     lab.run(2.0)
@@ -182,7 +183,7 @@ def test_a_folder_that_may_no_longer_be_written_is_said(lab, tmp_path):
     assert "Permission denied" in failed
 
 
-def test_a_first_file_that_cannot_be_written_is_an_error_at_once(tmp_path):
+def test_a_first_file_that_cannot_be_written_raises_at_once(tmp_path):
     with pytest.raises(DiskError, match="No such file"):
         LiveRecorder(tmp_path / "no" / "lab.mcap")
 
@@ -203,7 +204,7 @@ print(*lab.recorder.files)
 """
 
 
-def test_a_real_limit_of_the_system_is_survived_too(tmp_path):
+def test_a_real_file_size_limit_is_survived(tmp_path):
     done = subprocess.run(
         [sys.executable, "-c", LIMITED, str(tmp_path / "lab.mcap")], capture_output=True, text=True, check=True
     )
@@ -218,7 +219,7 @@ def test_a_real_limit_of_the_system_is_survived_too(tmp_path):
         assert verify(tmp_path / name).identical
 
 
-def test_what_happens_after_the_end_is_not_recorded_and_does_no_harm(lab):
+def test_nothing_is_recorded_after_the_end(lab):
     lab.run(1.0)
     lab.recorder.close()
     samples = Recording.open(lab.recorder.path).samples

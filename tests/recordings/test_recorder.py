@@ -1,4 +1,4 @@
-"""The recorder: valid files for every reader, in time, whatever the disk does."""
+"""The recorder: valid files, written in time, even if the disk fails."""
 
 import errno
 import json
@@ -12,16 +12,17 @@ from mcap.records import Chunk, DataEnd, Footer, Message, Metadata, Statistics
 from mcap.stream_reader import StreamReader
 
 from engine.run.lockstep import Lockstep
+from engine.run.stepping import Stepping
 from recordings.errors import DiskError
 from recordings.events import Event
 from recordings.format import decode_event
 from recordings.headless import simulate
+from recordings.library import free_path, part_of
 from recordings.lock import in_use
-from recordings.names import free_path, part_of
 from recordings.recorder import FLUSH_EVERY, Recorder
 from recordings.recording import Recording
 from recordings.verify import verify
-from tests.recordings.sittings import METHOD_KEYS, SCENE, record, start, tiny, two_runs
+from tests.recordings.examples import METHOD_KEYS, SCENE, record, start, tiny, two_runs
 
 FRAME = 1 / 30
 
@@ -49,7 +50,7 @@ def play(recorder, seconds, begin=0.0):
         recorder.sample(lockstep.sample(), frame * FRAME)
 
 
-def test_a_recording_is_valid_to_a_strict_reader_that_we_did_not_write(tmp_path):
+def test_a_recording_is_valid_to_mcaps_strict_reader(tmp_path):
     path = record(tmp_path / "a.mcap", two_runs(), wall=lambda: 1_700_000_000_000_000_000)
     with path.open("rb") as file:
         records = list(StreamReader(file, validate_crcs=True).records)
@@ -100,7 +101,7 @@ def test_log_times_never_decrease_and_are_never_zero_even_if_the_clock_jumps_bac
     assert times == sorted(times)
 
 
-def test_live_messages_carry_the_wall_clock_and_headless_ones_the_clock_of_the_simulation(tmp_path):
+def test_live_messages_carry_the_wall_clock_and_headless_ones_simulated_time(tmp_path):
     for wall, expected in ((lambda: 42, {42}), (None, {1_000_000_000, 1_500_000_000, 2_000_000_000})):
         path = tmp_path / f"{wall is None}.mcap"
         record(path, two_runs()[:4], wall)
@@ -119,7 +120,7 @@ def test_the_same_headless_run_gives_the_same_bytes(tmp_path):
     assert run("a.mcap") == run("b.mcap")
 
 
-def test_metadata_tell_people_what_made_a_live_recording_and_nothing_of_the_machine_in_a_headless_one(tmp_path):
+def test_metadata_describe_the_machine_in_live_recordings_only(tmp_path):
     def metadata(path):
         with path.open("rb") as file:
             (found,) = [record for record in StreamReader(file).records if isinstance(record, Metadata)]
@@ -134,7 +135,7 @@ def test_metadata_tell_people_what_made_a_live_recording_and_nothing_of_the_mach
     assert live["started"].startswith("2023-11-1")
 
 
-def test_a_sample_at_the_step_of_the_last_one_is_not_written_twice(recorder):
+def test_a_repeated_sample_is_not_written(recorder):
     lockstep = Lockstep(SCENE)
     recorder.sample(lockstep.sample(), 0.1)
     assert recorder.samples == 1
@@ -143,7 +144,7 @@ def test_a_sample_at_the_step_of_the_last_one_is_not_written_twice(recorder):
     assert recorder.samples == 2
 
 
-def test_the_first_sample_of_a_run_knows_no_extremes(tmp_path):
+def test_the_first_sample_of_a_run_has_no_extremes(tmp_path):
     lockstep = Lockstep(SCENE, run=2)
     lockstep.advance(7)
     sample = lockstep.sample()
@@ -165,7 +166,7 @@ def test_the_first_sample_of_a_run_knows_no_extremes(tmp_path):
         (lambda recorder, sample: recorder.event(start(scene=replace(SCENE, watch=70_000 * "x")), 0.0), "bytes"),
     ],
 )
-def test_what_cannot_be_written_is_refused_before_it_spoils_a_chunk(recorder, write, why):
+def test_invalid_input_is_refused_before_it_spoils_a_chunk(recorder, write, why):
     lockstep = Lockstep(SCENE)
     lockstep.advance(1)
     sample = lockstep.sample()
@@ -195,7 +196,7 @@ def test_a_recording_without_a_start_leaves_no_file(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-def test_at_most_a_second_is_lost_whenever_the_process_dies(recorder):
+def test_at_most_a_second_is_lost_when_the_process_dies(recorder):
     lockstep = Lockstep(SCENE)
     for frame in range(1, 200):
         clock = frame * FRAME
@@ -210,7 +211,7 @@ def test_a_change_is_on_disk_within_a_quarter_of_a_second_and_a_pause_at_once(re
     recorder.event(Event("set_h", 1, 30, 3.0, h=0.05), 1.0)
     lockstep = Lockstep(SCENE)
     lockstep.advance(30)
-    lockstep.set_h(0.05)
+    lockstep.set_stepping(Stepping(0.05))
     for frame in range(31, 40):
         lockstep.advance(1)
         recorder.sample(lockstep.sample(), frame * FRAME)
@@ -221,7 +222,7 @@ def test_a_change_is_on_disk_within_a_quarter_of_a_second_and_a_pause_at_once(re
     assert left_by(recorder)[-1].value.text == "now"
 
 
-def test_a_single_step_while_paused_is_on_disk_at_once_because_the_clock_stands(recorder):
+def test_a_single_step_while_paused_is_on_disk_at_once(recorder):
     play(recorder, 1.0)
     lockstep = Lockstep(SCENE)
     lockstep.advance(30)
@@ -244,7 +245,7 @@ def test_a_key_held_down_does_not_flush_thirty_times_a_second(recorder):
     assert 3 <= rest.count(b"\x04\x00\x00\x00zstd") <= 4  # chunks
 
 
-def test_the_status_line_finds_path_size_and_length(recorder):
+def test_size_and_length_are_known_while_recording(recorder):
     play(recorder, 2.0)
     recorder.flush()
     assert recorder.bytes == recorder.part.stat().st_size
@@ -260,14 +261,14 @@ def test_a_recording_in_progress_is_in_use_and_a_finished_one_is_not(recorder):
     assert not in_use(recorder.path)
 
 
-def test_closing_twice_is_closing_once(recorder):
+def test_closing_twice_is_allowed(recorder):
     recorder.close()
     data = recorder.path.read_bytes()
     recorder.close()
     assert recorder.path.read_bytes() == data
 
 
-def test_no_recording_is_overwritten_unless_that_is_asked_for(tmp_path):
+def test_a_recording_is_overwritten_only_on_request(tmp_path):
     path = tiny(tmp_path / "a.mcap")
     before = path.read_bytes()
     with pytest.raises(DiskError, match="exists already"):
@@ -280,15 +281,15 @@ def test_no_recording_is_overwritten_unless_that_is_asked_for(tmp_path):
     assert path.read_bytes() != before
 
 
-def test_two_labs_never_write_into_one_file(tmp_path, recorder):
-    with pytest.raises(DiskError, match="is being recorded"):
+def test_two_labs_never_write_to_the_same_file(tmp_path, recorder):
+    with pytest.raises(DiskError, match="is in use by a running recording"):
         Recorder(recorder.path)
     assert free_path(recorder.path).name == "live-2.mcap"
     part_of(tmp_path / "live-2.mcap").touch()
     assert free_path(recorder.path).name == "live-3.mcap"
 
 
-def test_a_folder_that_is_not_there_is_said_in_a_sentence(tmp_path):
+def test_a_missing_folder_is_reported_in_a_sentence(tmp_path):
     with pytest.raises(DiskError, match="No such file or directory"):
         Recorder(tmp_path / "no" / "a.mcap")
 
@@ -310,7 +311,7 @@ class FullDisk:
 
 
 @pytest.mark.parametrize("room", [0, 10, 500, 3_000])
-def test_a_full_disk_is_one_error_of_ours_and_what_was_written_stays_readable(recorder, room, monkeypatch):
+def test_a_full_disk_raises_our_error_and_leaves_a_readable_file(recorder, room, monkeypatch):
     play(recorder, 2.0)
     recorder.flush()
     written = left_by(recorder)
@@ -326,17 +327,17 @@ def test_a_full_disk_is_one_error_of_ours_and_what_was_written_stays_readable(re
     assert verify(recorder.part).identical
 
 
-def test_a_file_that_was_removed_or_replaced_is_noticed_within_a_second(recorder):
+def test_the_recorder_notices_a_removed_or_replaced_file_within_a_second(recorder):
     play(recorder, 1.0)
     recorder.part.unlink()
     with pytest.raises(DiskError, match="No such file"):
         play(recorder, 1.0, begin=1.0)
     recorder.part.touch()
-    with pytest.raises(DiskError, match="another file"):
+    with pytest.raises(DiskError, match="was replaced"):
         recorder.flush()
 
 
-def test_a_run_that_is_interrupted_leaves_a_whole_recording_of_what_was_run(tmp_path):
+def test_an_interrupted_run_leaves_a_complete_recording(tmp_path):
     path = tmp_path / "a.mcap"
 
     def interrupted_run():

@@ -1,4 +1,4 @@
-"""Reading: any moment of a recording, whole or not."""
+"""Reading: any moment of a recording, complete or not."""
 
 from dataclasses import replace
 
@@ -7,18 +7,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.run.lockstep import Lockstep, Sample
+from recordings.contents import CHECK_LIMIT
 from recordings.errors import RecordingError
 from recordings.events import Entry, Event
 from recordings.headless import simulate
-from recordings.index import CHECK_LIMIT
 from recordings.recorder import Recorder
 from recordings.recording import Recording
-from tests.recordings.sittings import METHOD_KEYS, SCENE, record, start, tiny, two_runs
+from tests.recordings.examples import METHOD_KEYS, SCENE, record, start, tiny, two_runs
 
 
 @pytest.fixture(scope="module")
 def path(tmp_path_factory):
-    return record(tmp_path_factory.mktemp("reading") / "sitting.mcap", two_runs())
+    return record(tmp_path_factory.mktemp("reading") / "a.mcap", two_runs())
 
 
 @pytest.fixture(params=[False, True], ids=["by its summary", "checked"])
@@ -48,7 +48,7 @@ def places(recording):
         place = recording.next(place)
 
 
-def test_everything_that_was_recorded_is_read_in_order(recording):
+def test_everything_recorded_is_read_in_order(recording):
     entries = list(recording.entries())
     assert [clock for clock, _ in entries] == [clock for clock, _ in expected()]
     for (_, value), (_, was) in zip(entries, expected(), strict=True):
@@ -59,7 +59,7 @@ def test_everything_that_was_recorded_is_read_in_order(recording):
             assert (value.run, value.step, value.t) == (was.run, was.step, was.t)
 
 
-def test_what_is_in_it_is_known_at_once(recording):
+def test_the_facts_of_a_recording_are_known_at_opening(recording):
     assert recording.complete
     assert not recording.damaged
     assert recording.reason is None
@@ -71,7 +71,7 @@ def test_what_is_in_it_is_known_at_once(recording):
     assert recording.metadata["scene"] == "test"
 
 
-def test_runs_are_the_chapters(recording):
+def test_runs_have_their_scene_times_and_steps(recording):
     first, second = recording.runs
     assert (first.number, first.scene, first.begin, first.end, first.steps) == (1, SCENE, 0.0, 2.5, 16)
     assert first.events == 5  # set_h, speed, pause, mark, resume
@@ -82,7 +82,7 @@ def test_events_come_with_their_time(recording):
     assert recording.events == tuple((clock, value) for clock, value in expected() if isinstance(value, Event))
 
 
-def test_stepping_meets_every_sample_both_ways_also_those_at_which_the_clock_stands(recording):
+def test_stepping_reaches_every_sample_in_both_directions(recording):
     forth = list(places(recording))
     samples = [recording.sample(place) for place in forth]
     assert [entry for entry in recording.entries() if isinstance(entry.value, Sample)] == samples
@@ -94,7 +94,7 @@ def test_stepping_meets_every_sample_both_ways_also_those_at_which_the_clock_sta
 
 
 @given(clock=st.floats(-1, 6).map(nanoseconds) | st.sampled_from([clock for clock, _ in two_runs()]))
-def test_a_moment_is_the_last_sample_at_or_before_it_or_else_the_first(path, clock):
+def test_a_time_gives_the_last_sample_before_it_or_else_the_first(path, clock):
     with Recording.open(path) as recording:
         samples = [entry for entry in recording.entries() if isinstance(entry.value, Sample)]
         before = [entry for entry in samples if entry.clock <= clock]
@@ -102,7 +102,7 @@ def test_a_moment_is_the_last_sample_at_or_before_it_or_else_the_first(path, clo
 
 
 @given(st.floats(0, 6).map(nanoseconds), st.floats(0, 6).map(nanoseconds))
-def test_a_window_of_time_holds_what_lies_in_it(path, start, end):
+def test_a_time_window_gives_the_entries_in_it(path, start, end):
     with Recording.open(path) as recording:
         assert list(recording.entries(start, end)) == [
             entry for entry in recording.entries() if start <= entry.clock <= end
@@ -110,7 +110,7 @@ def test_a_window_of_time_holds_what_lies_in_it(path, start, end):
 
 
 @given(st.integers(1, 1_000_000))
-def test_a_moment_that_a_file_cannot_hold_is_the_nearest_nanosecond(tmp_path_factory, frame):
+def test_a_time_is_rounded_to_the_nearest_nanosecond(tmp_path_factory, frame):
     clock = frame / 30  # what a lab's frames may have
     path = tmp_path_factory.mktemp("moment") / "a.mcap"
     record(path, [*two_runs()[:2], Entry(clock, two_runs()[2].value)])
@@ -119,7 +119,7 @@ def test_a_moment_that_a_file_cannot_hold_is_the_nearest_nanosecond(tmp_path_fac
         assert len(list(recording.entries(clock, clock))) == 2  # the sample and the stop
 
 
-def test_the_entries_of_a_window_need_not_all_be_read(recording):
+def test_the_entries_of_a_window_are_read_lazily(recording):
     assert next(iter(recording.entries(2.0))).clock == 2.0
 
 
@@ -135,7 +135,7 @@ def test_a_recording_in_progress_opens_with_what_is_on_disk(tmp_path):
             assert recording.sample(recording.at(1.0)).value.t == pytest.approx(1.0)  # ten steps of 0.1
 
 
-def test_a_recording_without_samples_opens_and_has_no_moment(tmp_path):
+def test_a_recording_without_samples_opens_and_has_no_place(tmp_path):
     path = record(tmp_path / "a.mcap", two_runs()[:1])
     with Recording.open(path) as recording:
         assert recording.at(0.0) is None
@@ -163,7 +163,7 @@ def damaged_chunk(path, chunk):
     return bytes(data)
 
 
-def test_a_damaged_recording_opens_without_what_is_damaged_and_says_so(path, tmp_path):
+def test_a_damaged_recording_opens_without_its_damaged_chunks(path, tmp_path):
     (tmp_path / "a.mcap").write_bytes(damaged_chunk(path, 2))
     with Recording.open(path) as whole, Recording.open(tmp_path / "a.mcap") as recording:
         assert recording.damaged
@@ -173,8 +173,8 @@ def test_a_damaged_recording_opens_without_what_is_damaged_and_says_so(path, tmp
         assert all(entry in all_of_it for entry in kept)
 
 
-def test_damage_in_a_file_too_long_to_be_checked_when_it_opens_shows_as_it_is_played(path, tmp_path, monkeypatch):
-    monkeypatch.setattr("recordings.index.CHECK_LIMIT", 0)
+def test_damage_in_a_file_too_long_to_check_at_opening_shows_while_it_plays(path, tmp_path, monkeypatch):
+    monkeypatch.setattr("recordings.contents.CHECK_LIMIT", 0)
     assert CHECK_LIMIT > 10_000_000
     (tmp_path / "a.mcap").write_bytes(damaged_chunk(path, 2))
     with Recording.open(tmp_path / "a.mcap") as recording:
@@ -204,11 +204,11 @@ def test_a_run_whose_start_is_lost_is_not_shown(path, tmp_path):
 def test_a_newer_format_is_refused_in_a_sentence(tmp_path, monkeypatch, check):
     monkeypatch.setattr("recordings.recorder.FORMAT_VERSION", 2)
     path = tiny(tmp_path / "newer.mcap")
-    with pytest.raises(RecordingError, match="has format 2, and this pendu-tui knows formats up to 1; install a newer"):
+    with pytest.raises(RecordingError, match="has format 2, this pendu-tui reads formats up to 1; install a newer"):
         Recording.open(path, check)
 
 
-def test_methods_are_those_that_were_recorded(tmp_path):
+def test_the_methods_are_the_recorded_ones(tmp_path):
     with Recording.open(tiny(tmp_path / "a.mcap")) as recording:
         assert recording.methods == ("velocity_verlet",)
         assert len(recording.sample(recording.at(0.0)).value.readings) == 1

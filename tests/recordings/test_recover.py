@@ -1,4 +1,4 @@
-"""Recover: what is intact becomes a whole recording, and what is lost is said."""
+"""Recover: what is intact becomes a complete recording, and losses are counted."""
 
 import json
 
@@ -7,13 +7,15 @@ from mcap.records import Message
 from mcap.stream_reader import StreamReader
 
 from engine.run.lockstep import Lockstep, Sample
+from engine.run.stepping import Stepping
 from recordings.errors import DiskError, RecordingError
 from recordings.events import Entry, Event
+from recordings.library import leftovers
 from recordings.recorder import Recorder
 from recordings.recording import Recording
-from recordings.recover import recover
+from recordings.recover import recover, rescue
 from recordings.verify import verify
-from tests.recordings.sittings import SCENE, record, start, two_runs
+from tests.recordings.examples import SCENE, record, start, tiny, two_runs
 
 
 def chunks(path):
@@ -51,7 +53,7 @@ def ten_seconds(path, changes=(), runs=1):
                 lockstep.advance(step - lockstep.step)
                 if step in dict(changes):
                     recorder.event(Event("set_h", run, step, lockstep.t, h=dict(changes)[step]), zero + step / 10)
-                    lockstep.set_h(dict(changes)[step])
+                    lockstep.set_stepping(Stepping(dict(changes)[step]))
                 recorder.sample(lockstep.sample(), zero + step / 10)
     return path
 
@@ -79,7 +81,7 @@ def test_a_whole_recording_is_copied_message_by_message(tmp_path, out):
         assert now.metadata["recovered"] == "yes"
 
 
-def test_an_unfinished_recording_is_finished_and_nothing_is_said_to_be_damaged(tmp_path, out):
+def test_an_unfinished_recording_is_finished_and_not_called_damaged(tmp_path, out):
     with Recorder(tmp_path / "a.mcap") as recorder:
         for clock, value in two_runs():
             recorder.event(value, clock) if isinstance(value, Event) else recorder.sample(value, clock)
@@ -93,7 +95,7 @@ def test_an_unfinished_recording_is_finished_and_nothing_is_said_to_be_damaged(t
     assert verification.identical
 
 
-def test_a_lost_chunk_costs_its_samples_and_the_next_ones_extremes(tmp_path, out):
+def test_a_lost_chunk_costs_its_samples_and_the_extremes_of_the_next_sample(tmp_path, out):
     path = ten_seconds(tmp_path / "a.mcap")
     with Recording.open(path) as recording:
         whole = [value for _, value in recording.entries() if isinstance(value, Sample)]
@@ -146,7 +148,7 @@ def starts_in(path, place):
     return [value.run for _, value in entries if isinstance(value, Event) and value.kind == "start"]
 
 
-def test_a_run_that_lost_a_change_of_h_keeps_its_samples_and_is_named(tmp_path, out):
+def test_a_run_that_lost_a_change_of_h_keeps_its_samples_and_is_listed(tmp_path, out):
     path = ten_seconds(tmp_path / "a.mcap", changes=[(55, 0.05)])
     with Recording.open(path) as recording:
         place = recording.at(5.4).chunk  # the event was flushed with what was before it
@@ -161,12 +163,12 @@ def test_the_file_to_be_recovered_is_never_overwritten(tmp_path):
     data = path.read_bytes()
     for out in (path, tmp_path / "x" / ".." / "a.mcap"):
         (tmp_path / "x").mkdir(exist_ok=True)
-        with pytest.raises(DiskError, match="is the recording that is to be recovered"):
+        with pytest.raises(DiskError, match="is the recording to recover"):
             recover(path, out, overwrite=True)
     assert path.read_bytes() == data
 
 
-def test_another_file_is_overwritten_only_when_that_is_asked_for(tmp_path, out):
+def test_an_existing_file_is_overwritten_only_on_request(tmp_path, out):
     path = record(tmp_path / "a.mcap", two_runs())
     out.write_text("precious")
     with pytest.raises(DiskError, match="exists already"):
@@ -176,14 +178,14 @@ def test_another_file_is_overwritten_only_when_that_is_asked_for(tmp_path, out):
     assert verify(out).complete
 
 
-def test_nothing_is_left_behind_where_nothing_can_be_saved(tmp_path, out):
+def test_a_recovery_that_saves_nothing_leaves_nothing_behind(tmp_path, out):
     path = spoil(ten_seconds(tmp_path / "a.mcap"), 0)
     with pytest.raises(RecordingError, match=r"a\.mcap: nothing in it can be saved: a chunk"):
         recover(path, out)
     assert [file.name for file in tmp_path.iterdir()] == ["a.mcap"]
 
 
-def test_nothing_is_left_behind_when_it_is_interrupted(tmp_path, out):
+def test_an_interrupted_recovery_leaves_nothing_behind(tmp_path, out):
     path = ten_seconds(tmp_path / "a.mcap")
 
     def interrupt(done, size):
@@ -220,7 +222,7 @@ def backwards(sample):
     return [json.dumps(fields | {"step": 100 - fields["step"]}).encode() for fields in messages]
 
 
-def test_a_sitting_in_pauses_keeps_its_events(tmp_path, out):
+def test_marks_without_samples_are_recovered(tmp_path, out):
     entries = [*two_runs()[:2], *(Entry(0.0, Event("mark", 1, 0, 0.0, text=f"{i}")) for i in range(5))]
     path = record(tmp_path / "a.mcap", entries)
     recover(path, out)
@@ -228,16 +230,100 @@ def test_a_sitting_in_pauses_keeps_its_events(tmp_path, out):
         assert [event.text for _, event in recording.events if event.kind == "mark"] == list("01234")
 
 
-def test_what_is_left_can_be_recovered_under_the_name_it_was_to_have(tmp_path):
-    whole = record(tmp_path / "sitting.mcap", two_runs())
-    part = whole.rename(tmp_path / "sitting.mcap.part")
+def test_a_leftover_can_be_recovered_under_its_own_name(tmp_path):
+    whole = record(tmp_path / "a.mcap", two_runs())
+    part = whole.rename(tmp_path / "a.mcap.part")
     data = part.read_bytes()
     recovery = recover(part, whole)
     assert recovery.out == whole
     assert verify(whole).complete
-    assert {path.name for path in tmp_path.iterdir()} == {"sitting.mcap", "sitting.mcap.part"}
+    assert {path.name for path in tmp_path.iterdir()} == {"a.mcap", "a.mcap.part"}
     assert part.read_bytes() == data
     with pytest.raises(DiskError, match="exists already"):
         recover(part, whole)
     assert recover(part, whole, overwrite=True).samples_kept == 10
-    assert {path.name for path in tmp_path.iterdir()} == {"sitting.mcap", "sitting.mcap.part"}
+    assert {path.name for path in tmp_path.iterdir()} == {"a.mcap", "a.mcap.part"}
+
+
+def left_behind(path, spoil=False):
+    """What a lab leaves that is killed while it records."""
+    recorder = Recorder(path)
+    for clock, value in two_runs()[:5]:
+        recorder.event(value, clock) if isinstance(value, Event) else recorder.sample(value, clock)
+    recorder.flush()
+    middle = recorder.bytes - 200
+    recorder.abandon()
+    if spoil:
+        data = bytearray(recorder.part.read_bytes())
+        data[middle] ^= 0xFF
+        recorder.part.write_bytes(data)
+    return recorder.part
+
+
+def test_a_leftover_becomes_a_recording_under_its_own_name(tmp_path):
+    left_behind(tmp_path / "a.mcap")
+    (done,) = map(rescue, leftovers(tmp_path))
+    assert done.saved == tmp_path / "a.mcap"
+    assert done.kept is None
+    assert done.recovery.samples_kept == 4
+    assert [path.name for path in tmp_path.iterdir()] == ["a.mcap"]
+    verification = verify(done.saved)
+    assert verification.complete
+    assert verification.identical
+
+
+def test_a_recording_of_the_same_name_is_not_overwritten(tmp_path):
+    other = tiny(tmp_path / "b.mcap").rename(tmp_path / "a.mcap")
+    data = other.read_bytes()
+    part = left_behind(tmp_path / "c.mcap").rename(tmp_path / "a.mcap.part")
+    done = rescue(part)
+    assert done.saved == tmp_path / "a-2.mcap"
+    assert other.read_bytes() == data
+
+
+def test_a_damaged_leftover_is_kept_next_to_what_was_saved_of_it(tmp_path):
+    part = left_behind(tmp_path / "a.mcap", spoil=True)
+    data = part.read_bytes()
+    done = rescue(part)
+    assert done.recovery.damaged
+    assert done.kept == tmp_path / "a.mcap.part.damaged"
+    assert done.kept.read_bytes() == data
+    assert verify(done.saved).identical
+    assert leftovers(tmp_path) == []
+
+
+def test_an_unreadable_leftover_is_kept_and_reported_once(tmp_path):
+    (tmp_path / "a.mcap.part").write_bytes(b"\x89MCAP0\r\n" + bytes(50))
+    (done,) = map(rescue, leftovers(tmp_path))
+    assert done.saved is None
+    assert "nothing in it can be saved" in done.reason
+    assert done.kept.read_bytes() == b"\x89MCAP0\r\n" + bytes(50)
+    assert leftovers(tmp_path) == []
+
+
+def test_an_empty_leftover_is_removed_and_reported(tmp_path):
+    (tmp_path / "a.mcap.part").touch()
+    (done,) = map(rescue, leftovers(tmp_path))
+    assert "the file is empty" in done.reason
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_lab_that_is_running_is_left_alone(tmp_path):
+    with Recorder(tmp_path / "a.mcap") as recorder:
+        recorder.event(start(), 0.0)
+        recorder.sample(two_runs()[1].value, 0.0)
+        assert leftovers(tmp_path) == []
+    assert verify(tmp_path / "a.mcap").complete
+
+
+def test_a_leftover_is_not_lost_if_the_disk_is_full(tmp_path, monkeypatch):
+    part = left_behind(tmp_path / "a.mcap")
+
+    def full(self):
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as elsewhere:
+        elsewhere.setattr("mcap.writer.Writer.flush", full)
+        with pytest.raises(OSError, match="No space left"):
+            rescue(part)
+    assert [path.name for path in tmp_path.iterdir()] == ["a.mcap.part"]

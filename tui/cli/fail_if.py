@@ -19,20 +19,11 @@ from typing import Any, get_args
 
 from engine.methods import METHODS
 from engine.run.verdict import Verdict
+from recordings.fields import NUMBERS
 from tui.cli.errors import UserError
 from tui.cli.options import did_you_mean
 
-FIELDS = (
-    "theta",
-    "omega",
-    "energy",
-    "energy_error",
-    "max_energy_error",
-    "theta_error",
-    "drift_per_second",
-    "force_evaluations",
-    "diverged_at",
-)
+FIELDS = (*NUMBERS, "theta_error", "drift_per_second", "force_evaluations", "diverged_at")
 """The fields of `run --json` that are numbers."""
 
 Values = Mapping[str, Mapping[str, float | str | None]]  # method key -> field -> value

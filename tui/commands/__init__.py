@@ -1,9 +1,10 @@
-"""The subcommands, one module each.
+"""The subcommands, one module each; only the chosen one is imported.
 
-A module `tui.commands.NAME` has
-- a docstring, which --help shows, and `EXAMPLES`, which --help shows below the options;
-- `add_options(parser)`, which adds its options;
-- `run(options) -> int`, which does it and returns the exit code, or raises UserError.
-Its name and one line about it stand in COMMANDS in tui/cli/dispatch.py.  Only the chosen module is imported,
-and a module imports Textual, NumPy or Rich no earlier than in `run`.
+On screen: `live`, `replay`, and their `keys`; `snapshot` saves a picture.  Studies: `accuracy`, `stability`, which
+print with `reports`.  Runs and recordings: `run`, `verify`, `info`, `recover`, `export`, `recordings`.  Lists and
+help: `scenes`, `methods`, `doctor`, `completion`.
+
+A module has a docstring and `EXAMPLES`, which --help shows above and below the options; `add_options(parser)`; and
+`run(options) -> int`, which returns the exit code or raises UserError.  It imports Textual, NumPy or Rich no
+earlier than in `run`.  Its name and a line about it stand in COMMANDS in tui/cli/dispatch.py.
 """

@@ -1,4 +1,4 @@
-"""Axes: a stretch of numbers, the round labels along it, and what of a series falls into each of its columns."""
+"""Axes: their range, round labels along them, and the part of a series in each of their columns."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -13,19 +13,19 @@ Ticks = list[tuple[float, str]]
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """A stretch of numbers, with labels in the middle of a row of characters or at a place in time."""
+    """A range of numbers with labels, which stand in the middle of a row of characters or at a moment."""
 
     low: float
     high: float
-    labels: dict[float, str]  # by the number they stand at
+    labels: dict[float, str]  # by value
 
     def share(self, values: ArrayLike) -> Floats:
-        """Where values lie on it, from 0 to 1; those outside at its ends."""
+        """Positions of values along the axis, from 0 to 1, clipped."""
         return np.clip((np.asarray(values, np.float64) - self.low) / (self.high - self.low), 0.0, 1.0)
 
     @property
     def label_width(self) -> int:
-        """Columns for the widest label; 5 at least, so that a chart does not jump with every digit."""
+        """Columns for the widest label; at least 5, so that a chart does not jump with every digit."""
         return max([5, *map(len, self.labels.values())])
 
 
@@ -38,7 +38,7 @@ def nice(value: float) -> float:
 
 
 def log_axis(low: float, high: float, rows: int) -> Axis:
-    """An upright axis of log10 with room for low and high, and for two decades at least."""
+    """A vertical axis of log10 from low to high or beyond, at least two decades long."""
     top = math.ceil(high)
     return _ruled(min(math.floor(low), top - 2), top, rows, (1, 2, 3, 4, 6, 8, 12, 24, 100, 400, 1000), _power)
 
@@ -55,7 +55,7 @@ def _power(exponent: float, _: float = 1) -> str:
 
 
 def linear_axis(low: float, high: float, rows: int) -> Axis:
-    """An upright axis from low to high, or around them where they hardly differ."""
+    """A vertical axis from low to high, or a little wider where they hardly differ."""
     least = max(1e-4 * max(abs(low), abs(high)), 1e-16)
     if high - low < least:
         low, high = low - least, high + least
@@ -71,7 +71,7 @@ def linear_axis(low: float, high: float, rows: int) -> Axis:
 
 
 def _ruled(low: float, high: float, rows: int, steps: Sequence[float], label: Callable[[float, float], str]) -> Axis:
-    """An axis from low to high, or a little more, with labels equally many rows apart: two or more if possible."""
+    """An axis from low to high or a little beyond, with equally spaced labels, two or more rows apart if possible."""
 
     def rows_apart(step: float) -> int:
         top = math.ceil(high / step - 1e-9)
@@ -86,7 +86,7 @@ def _ruled(low: float, high: float, rows: int, steps: Sequence[float], label: Ca
 
 
 def time_axis(start: float, end: float, columns: int, note: str = "") -> Axis:
-    """An axis of seconds labelled in s, min or h about every 10 columns; the last label has the unit and the note."""
+    """An axis of seconds labelled in s, min or h about every 10 columns; the last label adds unit and note."""
     size, unit = next((unit for unit in ((3600, "h"), (60, "min")) if end - start >= 5 * unit[0]), (1, "s"))
     step = nice((end - start) / size / max(columns / 10, 1))
     labels = {k * step * size: f"{k * step:.6g}" for k in _multiples(start / size, end / size, step, 1e-9)}
@@ -96,7 +96,7 @@ def time_axis(start: float, end: float, columns: int, note: str = "") -> Axis:
 
 
 def omega_ticks(low: float, high: float, most: int) -> Ticks:
-    """Places and labels of about `most` numbers [rad/s]."""
+    """Positions and labels of about `most` values [rad/s]."""
     step = nice((high - low) / most)
     if low <= 0 <= high or step > 1e-4 * max(abs(low), abs(high)):
         return [(k * step, compact(k * step)) for k in _multiples(low, high, step)]
@@ -104,7 +104,7 @@ def omega_ticks(low: float, high: float, most: int) -> Ticks:
 
 
 def theta_ticks(low: float, high: float, most: int, wrap: bool) -> Ticks:
-    """Places and labels of about `most` angles: in pi, and where one sees little of a turn, in rad from one of them."""
+    """Positions and labels of about `most` angles in pi; at high zoom one in full, others as offsets [rad]."""
     share = (high - low) / math.pi / most
     if high - low > 0.02 * math.pi:
         step = next((quarters / 4 for quarters in (1, 2, 4) if quarters / 4 >= share > 0.1), nice(share))
@@ -120,7 +120,7 @@ def _multiples(low: float, high: float, step: float, slack: float = 1e-6) -> ran
 
 
 def _around(anchor: float, low: float, high: float, step: float) -> Ticks:
-    """A number in full, and others by how far they are from it."""
+    """One value in full, the others as offsets from it."""
     turns = anchor / math.pi
     name = in_pi(turns) if turns == round(turns) else f"{anchor:.12g}"
     return [
@@ -130,7 +130,7 @@ def _around(anchor: float, low: float, high: float, step: float) -> Ticks:
 
 
 def compact(value: float, sign: str = "-") -> str:
-    """As few characters as needed: "0.5", "-2e-7"."""
+    """A number in few characters: "0.5", "-2e-7"."""
     mantissa, e, exponent = f"{value:{sign}.6g}".partition("e")
     return mantissa + (f"e{int(exponent)}" if e else "")
 
@@ -150,7 +150,7 @@ def in_pi(turns: float, wrap: bool = False) -> str:
 
 
 def time_span(x: Floats, seconds: float | None, columns: int) -> tuple[float, float]:
-    """First and last x of a chart.  Columns keep their place in time while the window moves on."""
+    """First and last x of a chart.  Columns keep their place in time while the window moves."""
     latest = float(x[-1]) if len(x) else 0.0
     if seconds is None:
         unit = 10 ** math.floor(math.log10(max(latest, 1.0))) / 10
@@ -166,7 +166,7 @@ def per_column(x: Floats, low: Floats, high: Floats, start: float, end: float, c
     x ascends.  Returns (columns, series); nan where no row falls into a column.
     """
     lows, highs = np.full((columns, low.shape[1]), np.nan), np.full((columns, low.shape[1]), np.nan)
-    # A row on an edge belongs to the right, even if the edge comes out a little late when the window has moved on.
+    # A row on an edge belongs to the right-hand column, even if rounding puts the edge a little late.
     edges = np.searchsorted(x, np.linspace(start, end, columns + 1) - 1e-9 * (end - start) / columns)
     edges[-1] = np.searchsorted(x, end, "right")
     filled = np.flatnonzero(edges[1:] > edges[:-1])

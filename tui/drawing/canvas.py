@@ -1,9 +1,8 @@
 """Points and lines -> characters.
 
 A canvas has 2×4 dots in every cell.  Coordinates are in dots, x to the right and y downwards from
-the upper left corner; dot (i, j) covers [i, i+1) × [j, j+1).  Dots of different owners share a cell
-and all stay; the cell has the colour of the owner who drew there last.  What lies outside, or is
-not finite, is not drawn.
+the upper left corner; dot (i, j) covers [i, i+1) × [j, j+1).  Dots of several owners can share a cell,
+which has the colour of the last one drawn.  Points outside or not finite are not drawn.
 """
 
 import itertools
@@ -16,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from tui.drawing.palette import NOBODY
 
 Span = tuple[str, int]
-"""Characters next to each other that have the same owner."""
+"""Adjacent characters with the same owner."""
 
 _BITS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]], np.uint8)  # Unicode's order of braille dots
 _GLYPHS = np.array([ord(" "), *range(0x2801, 0x2900)], np.uint32)
@@ -30,7 +29,7 @@ class Picture:
     owners: NDArray[np.int8]  # (rows, columns)
 
     def row(self, y: int) -> list[Span]:
-        """The runs of row y, from the left; together as wide as the picture, which may have no column at all."""
+        """The spans of row y, from the left; none if the picture has no columns."""
         text = self.characters[y].astype("<u4").tobytes().decode("utf-32-le")
         owners = self.owners[y]
         starts = [0, *(np.flatnonzero(owners[1:] != owners[:-1]) + 1).tolist(), len(text)] if text else []
@@ -38,11 +37,11 @@ class Picture:
 
     @property
     def text(self) -> str:
-        """The characters alone, line by line, without blanks at the ends."""
+        """The characters alone, one line per row, without trailing blanks."""
         return "\n".join("".join(text for text, _ in self.row(y)).rstrip() for y in range(len(self.characters)))
 
     def write(self, row: int, column: int, text: str, owner: int) -> None:
-        """Replace the characters from a cell on, as far as there are any."""
+        """Replace characters, beginning at a cell; text beyond the edges is cut off."""
         for at, character in enumerate(text, column):
             if 0 <= at < self.characters.shape[1]:
                 self.characters[row, at], self.owners[row, at] = ord(character), owner
@@ -57,7 +56,7 @@ class Picture:
 
     @classmethod
     def of_text(cls, text: str, columns: int, rows: int, owner: int) -> "Picture":
-        """A text wrapped and centred, as far as it fits."""
+        """A text wrapped and centred; lines that do not fit are cut off."""
         lines = textwrap.wrap(text, max(columns, 1))[:rows]
         canvas = Canvas(columns, rows)
         for row, line in enumerate(lines, (rows - len(lines)) // 2):
@@ -66,7 +65,7 @@ class Picture:
 
 
 class Canvas:
-    """Something to draw on, `columns` × `rows` cells large."""
+    """A drawing area of `columns` × `rows` cells."""
 
     def __init__(self, columns: int, rows: int) -> None:
         self.columns, self.rows = columns, rows
@@ -93,7 +92,7 @@ class Canvas:
 
     def disc(self, x: float, y: float, radius: float, owner: int, hollow: bool = False) -> None:
         """Set the dots whose centres are within `radius` of (x, y); hollow: only the rim, one dot wide."""
-        if not (abs(x) < 1e6 and abs(y) < 1e6):  # elsewhere, or not finite
+        if not (abs(x) < 1e6 and abs(y) < 1e6):  # far outside, or not finite
             return
         i, j = np.meshgrid(
             np.arange(np.floor(x - radius), np.ceil(x + radius) + 1),
@@ -104,17 +103,17 @@ class Canvas:
         self.points(i[inside], j[inside], owner)
 
     def label(self, column: int, row: int, text: str, owner: int) -> None:
-        """Write text from a cell on, over any dots; what does not fit is cut off."""
+        """Write text over any dots, beginning at a cell; text beyond the edges is cut off."""
         for at, character in enumerate(text, column):
             if 0 <= at < self.columns and 0 <= row < self.rows:
                 self._labels[row, at] = character, owner
 
     def is_free(self, column: int, row: int) -> bool:
-        """Whether a label may go to a cell: it is on the canvas and has none yet."""
+        """Whether a cell is on the canvas and has no label yet."""
         return 0 <= column < self.columns and 0 <= row < self.rows and (row, column) not in self._labels
 
     def picture(self) -> Picture:
-        """What has been drawn so far."""
+        """The characters and owners drawn so far."""
         cells = self._dots.reshape(self.rows, 4, self.columns, 2)
         bits = np.zeros((self.rows, self.columns), np.uint8)
         for down in range(4):
@@ -129,7 +128,7 @@ class Canvas:
 def _along(
     x: NDArray[np.float64], y: NDArray[np.float64], width: int, height: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Points along a polyline as far as it lies on the canvas: one in each column of dots, or row where it is steep."""
+    """Points along the visible part of a polyline: one per column of dots, or per row where it is steep."""
     with np.errstate(all="ignore"):
         x0, y0, dx, dy = x[:-1], y[:-1], np.diff(x), np.diff(y)
         # Liang and Barsky (1984): the part [first, last] of each segment that is inside, as fractions of it.

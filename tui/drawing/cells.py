@@ -11,7 +11,6 @@ from textual.strip import Strip
 from textual.widget import Widget
 
 from tui.drawing.canvas import Picture
-from tui.drawing.large import thick
 from tui.drawing.palette import NOBODY, palette
 
 Row = Sequence[tuple[str, int | Style]]
@@ -19,6 +18,22 @@ Row = Sequence[tuple[str, int | Style]]
 
 PRESENT = "-present"
 """The app's class where pictures have thick lines."""
+
+
+def _grown(bits: int) -> int:
+    """The dots of a braille cell, each as wide as the cell and two rows high."""
+    rows = (0x09, 0x12, 0x24, 0xC0)  # two dots each, from the top
+    neighbours = (*rows[1:], rows[2])
+    return sum({dots for row, other in zip(rows, neighbours, strict=True) if bits & row for dots in (row, other)})
+
+
+_THICK = np.array([0x2800 + _grown(bits) for bits in range(256)], np.uint32)
+
+
+def thick(picture: Picture) -> Picture:
+    """The picture with thick lines; words stay as they are."""
+    codes = picture.characters
+    return Picture(np.where(codes & ~np.uint32(0xFF) == 0x2800, _THICK[codes & 0xFF], codes), picture.owners)
 
 
 def changed_rows(before: Picture | None, after: Picture) -> list[int]:
@@ -51,11 +66,9 @@ class CellWidget(Widget):
         """Bring what is shown up to date."""
 
     def on_resize(self) -> None:
-        """Draw for the new size."""
         self._fit()
 
     def on_show(self) -> None:
-        """Draw what has changed meanwhile."""
         self._visible = True
         self._fit()
 
@@ -66,7 +79,6 @@ class CellWidget(Widget):
         self.draw()
 
     def on_hide(self) -> None:
-        """Draw no more."""
         self._visible = False
 
     def show(self, rows: Sequence[Row], at_once: int | None = None) -> bool:
@@ -79,7 +91,6 @@ class CellWidget(Widget):
         return not wait
 
     def show_picture(self, picture: Picture) -> None:
-        """Show a picture."""
         if self.app.has_class(PRESENT):
             picture = thick(picture)
         changed, self._picture = changed_rows(self._picture, picture), picture
@@ -98,7 +109,6 @@ class CellWidget(Widget):
         return "\n".join("".join(text for text, _ in row).rstrip() for row in self._rows)
 
     def render_line(self, y: int) -> Strip:
-        """One row."""
         row = self._rows[y] if y < len(self._rows) else ()
         strip = Strip([Segment(text, self._style(owner)) for text, owner in row])
         return strip.adjust_cell_length(self.room.width, self._style(NOBODY))

@@ -1,7 +1,7 @@
 """Arrays -> charts made of characters.  The only module that knows plotext.
 
-plotext 6 ends the process where a number is not finite or far outside the limits, so it gets
-nothing but numbers on the canvas.  It has one figure for the whole process, hence the lock.
+plotext 6 aborts the process if a number is not finite or far outside the limits, so it only gets
+numbers inside them.  It has one figure per process, hence the lock.
 """
 
 import re
@@ -17,18 +17,18 @@ from tui.drawing.canvas import Canvas, Picture
 from tui.drawing.palette import FRAME, NOBODY, TEXT
 from tui.playback.history import Quantity, Window
 
-FLOOR = 1e-17  # a relative error of doubles below it says nothing; zeros are drawn here
-TOP = 1e6  # larger magnitudes are drawn here, so that a method that fails leaves room for the others
+FLOOR = 1e-17  # below the resolution of doubles; zeros are drawn here
+TOP = 1e6  # larger magnitudes are drawn here, so that a failing method leaves room for the others
 SMALLEST = (20, 5)  # columns, rows
 _ROOM = 4  # columns for the letters at the right end
-_FIRST_COLOUR = 32  # plotext is told owners as colours of the 256-colour palette, from this one on
+_FIRST_COLOUR = 32  # owners are passed through plotext as colours of the 256-colour palette, from this one
 
 _lock = threading.Lock()
 
 
 @dataclass(frozen=True, slots=True)
 class Series:
-    """Points with a mark at each, joined by lines; or, dotted, a reference line with its mark at the end."""
+    """Points with marks, joined by lines; or a dotted reference line with its mark at the end."""
 
     owner: int
     mark: str  # a letter; a few for a reference
@@ -49,9 +49,9 @@ def time_chart(
 ) -> Picture:
     """A quantity of the shown methods over the last `seconds`, or over the whole run.
 
-    Linear, each column of characters reaches from the lowest to the highest value that falls into
-    it.  Logarithmic, it stands at the largest magnitude of the half swing that ends in it, or of
-    the column if that is longer; else zero crossings would tear the lines.
+    On a linear axis, each column of characters spans the lowest to the highest value in it.  On a
+    logarithmic axis, it shows the largest magnitude of the half swing that ends in it, or of the
+    column if that is longer; otherwise zero crossings would tear the lines.
     """
     if width < SMALLEST[0] or height < SMALLEST[1]:
         return _too_small(width, height, *SMALLEST)
@@ -80,14 +80,14 @@ def _y_axis(low: Floats, high: Floats, rows: int, log: bool) -> Axis:
         return log_axis(-4, 0, rows) if log else linear_axis(-1, 1, rows)
     if not log:
         return linear_axis(float(np.nanmin(low)), float(np.nanmax(high)), rows)
-    # Errors begin at zero: a decade below what is usual is low enough.
+    # Errors begin at zero: a decade below the smallest median is low enough.
     return log_axis(float(np.nanmedian(low[:, known], axis=0).min()) - 1, float(np.nanmax(high)), rows)
 
 
 def loglog_chart(series: Sequence[Series], width: int, height: int, *, x_label: str, y_label: str) -> Picture:
-    """Points with marks over two logarithmic axes that hold them all, and dotted reference lines.
+    """Points with marks on two logarithmic axes that fit them all, and dotted reference lines.
 
-    Points that are not finite and positive are left out; of reference lines, what lies outside.
+    Points that are not finite and positive are left out; reference lines are clipped.
     """
     if width < SMALLEST[0] or height < SMALLEST[1] + 2:
         return _too_small(width, height, SMALLEST[0], SMALLEST[1] + 2)
@@ -119,14 +119,14 @@ def loglog_chart(series: Sequence[Series], width: int, height: int, *, x_label: 
 
 
 def _logs(series: Series) -> Floats:
-    """log10 of the points that have one, (n, 2), in the order of x."""
+    """log10 of the finite positive points, (n, 2), sorted by x."""
     points = np.stack([np.asarray(series.x, np.float64), np.asarray(series.y, np.float64)], axis=1)
     points = points[(np.isfinite(points) & (points > 0)).all(axis=1)]
     return np.log10(points[np.argsort(points[:, 0], kind="stable")])
 
 
 def _outline(index: int, low: Floats, high: Floats) -> Series:
-    """Through the lows and highs of columns, from each to the nearer end of the next."""
+    """A line through the lows and highs of all columns, in the order that keeps it short."""
     known = np.flatnonzero(~np.isnan(low))
     low, high = low[known], high[known]
     falling = np.diff(low + high, prepend=0.0) < 0
@@ -136,7 +136,7 @@ def _outline(index: int, low: Floats, high: Floats) -> Series:
 
 
 def _plot(curves: Sequence[Series], x_axis: Axis, y_axis: Axis, width: int, height: int) -> Picture:
-    """Let plotext draw curves, with the ends of the x axis at the first column and before the room for letters."""
+    """Let plotext draw curves; the x axis ends before the columns for the letters."""
     import plotext  # 0.1 s, so only after the first paint
 
     rows, columns = height - 2, width - 1 - y_axis.label_width
@@ -167,7 +167,7 @@ _CODES_OR_TEXT = re.compile(r"\x1b\[([\d;]*)m|([^\x1b]+)")
 
 
 def _parsed(drawn: str, width: int, height: int) -> Picture:
-    """Text with colour codes -> characters and owners.  rich's own reader takes ten times as long."""
+    """Text with colour codes -> characters and owners, ten times as fast as rich's own parser."""
     characters = np.full((height, width), ord(" "), np.uint32)
     owners = np.full((height, width), NOBODY, np.int8)
     for row, line in enumerate(drawn.split("\n")[:height]):
@@ -186,7 +186,7 @@ def _parsed(drawn: str, width: int, height: int) -> Picture:
 
 
 def _write_letters(picture: Picture, curves: Sequence[Series], rows: int, left: int) -> None:
-    """Write each method's letter to the right of its line's end, in the nearest free cell."""
+    """Write each method's letter in the nearest free cell to the right of its line."""
     taken = set()
     for curve in curves:
         if not len(curve.x):
@@ -200,7 +200,7 @@ def _write_letters(picture: Picture, curves: Sequence[Series], rows: int, left: 
 
 
 def _row(height: float, rows: int) -> int:
-    """The row of characters, from above, at a height over the lower edge."""
+    """The row of characters, from the top, at a height above the lower edge."""
     return min(max(rows - 1 - int(height), 0), rows - 1)
 
 

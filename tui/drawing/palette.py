@@ -1,7 +1,7 @@
-"""Who a character belongs to, and the colours of a theme.
+"""The owners of characters, and their colours in each theme.
 
-Pictures name an owner for every character; only here does an owner become a colour.  Colour is
-never alone: methods also have a digit and a letter.
+Every character of a picture has an owner, a method or one of those below; only here does an owner become
+a colour.  Colour is never alone: methods also have a digit and a letter.
 """
 
 from dataclasses import dataclass
@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from engine.methods import METHODS
 
 EXACT, FRAME, TEXT, WARN, NOBODY = -1, -2, -3, -4, -5
-"""Owners besides the methods, which are their index in METHODS: the exact swing, axes, words, alarms, nothing."""
+"""Owners that are not methods (those are their index in METHODS): exact motion, axes, text, warnings, blanks."""
 
 FAINT = 64
-"""Added to a method's index: the same method, faintly, as in trails."""
+"""Added to a method's index: its fainter colour, for trails."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +27,7 @@ class Palette:
     background: str
 
     def colour(self, owner: int) -> str:
-        """The colour of an owner.  A fifth method gets the first one's colour in another shade, and so on."""
+        """The colour of an owner; a fifth method gets another shade of the first one's colour, and so on."""
         if owner >= FAINT:
             return mixed(self.colour(owner - FAINT), self.background, 0.5)
         if owner >= 0:
@@ -36,10 +36,10 @@ class Palette:
         return {EXACT: self.exact, FRAME: self.frame, WARN: self.warn}.get(owner, self.text)
 
 
-# The methods' colours are computed for contrast and for separation under all kinds of colour blindness:
-# their worst pair is 19.5 (dark), 16.0 (light) and 21.6 (high-contrast, where all have 7:1) apart in OKLab,
-# where red, green, yellow and blue reach 3.5.  The terminal's own colours are 14.4 apart on black in the
-# palettes of xterm, VGA, Tango and Windows.
+# The methods' colours are optimised for contrast and for separation under all kinds of colour blindness:
+# the worst pair is 19.5 (dark), 16.0 (light) and 21.6 (high-contrast, all with 7:1) apart in OKLab, compared
+# with 3.5 for red, green, yellow and blue.  The terminal's own colours are at least 14.4 apart on black in
+# the palettes of xterm, VGA, Tango and Windows.
 PALETTES = {
     "dark": Palette(
         methods=("#DF9F20", "#8888DD", "#4CE5E5", "#FBFB51"),
@@ -77,12 +77,12 @@ PALETTES = {
 
 
 def palette(theme: str) -> Palette:
-    """The palette of this name; of a theme that is not ours, the one that its name comes nearest to."""
+    """The palette of this name; for other themes, the one that suits the name best."""
     return PALETTES.get(theme) or PALETTES["ansi" if "ansi" in theme else "light" if "light" in theme else "dark"]
 
 
 def faint(owner: int) -> int:
-    """The owner of a method's trail; the others have no fainter shade."""
+    """The owner of a method's trail; other owners have no fainter shade."""
     return owner + FAINT if owner >= 0 else owner
 
 

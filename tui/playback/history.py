@@ -1,12 +1,13 @@
 """The past of a run: every recent sample, and extremes of ever more samples the older they are.
 
 Level 0 holds the last samples as they were, each further level the lows and highs of pairs of rows
-of the level below, all in rings of the same capacity.  Memory so grows with the logarithm of the
+of the level below, all in rings of the same capacity.  So memory grows with the logarithm of the
 run's length only: an hour at 60 samples a second takes eight levels.
 """
 
 import itertools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -14,15 +15,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from engine.methods import METHODS
-from engine.models.exact_pendulum import ExactMotion
-from engine.models.pendulum import energy, energy_scale
 from engine.models.state import State
 from engine.run.lockstep import Sample
-from engine.run.modified_energy_errors import ModifiedEnergyErrors
-from engine.scenes import Scene
+from engine.run.observer import RunObserver
 
 Quantity = Literal["energy_error", "theta_error", "shadow_error", "energy"]
 QUANTITIES: tuple[Quantity, ...] = ("energy_error", "theta_error", "shadow_error", "energy")
+_STORED = QUANTITIES[:3]  # the energy follows from its error
 
 Floats = NDArray[np.float64]
 _UNKNOWN = State(math.nan, math.nan)
@@ -30,7 +29,7 @@ _UNKNOWN = State(math.nan, math.nan)
 
 @dataclass(frozen=True, slots=True)
 class Window:
-    """A stretch of the past; rows in the order in which they were run."""
+    """A stretch of the past; rows in the order in which they were simulated."""
 
     x: Floats  # s, (n,): simulated time run through, which goes up even while t goes down
     t: Floats  # s, (n,): simulated time
@@ -44,7 +43,7 @@ class _Level:
     """A ring of rows, numbered from the run's start on; it holds [first, count)."""
 
     def __init__(self, capacity: int) -> None:
-        shape = (capacity, len(QUANTITIES), len(METHODS))
+        shape = (capacity, len(_STORED), len(METHODS))
         self.capacity = capacity
         self.first = self.count = 0
         self.steps = np.zeros(capacity, np.int64)  # at the end of the row
@@ -56,7 +55,6 @@ class _Level:
         return np.arange(max(first, self.first), max(end, self.first)) % self.capacity
 
     def append(self, step: int, times: tuple[float, float], low: ArrayLike, high: ArrayLike) -> None:
-        """Add a row."""
         at = self.count % self.capacity
         self.steps[at], self.times[at], self.low[at], self.high[at] = step, times, low, high
         self._grow(1)
@@ -84,21 +82,18 @@ class _Level:
 
 
 class ErrorHistory:
-    """The past of one run, up to the last sample added.  Another start is another History."""
+    """The past of one run, up to the last sample added."""
 
-    def __init__(self, scene: Scene, capacity: int = 2048) -> None:
-        self._start_energy: float = energy(scene.w0_squared, scene.theta, scene.omega)
-        self._scale = energy_scale(scene.w0_squared, self._start_energy)
-        exact = ExactMotion(scene)
+    def __init__(self, observer: RunObserver, capacity: int = 2048) -> None:
+        exact, self._reference = observer.exact, observer.reference
         self._repeats = (exact.period or 0.0) / (2 if exact.regime == "libration" else 1)
         self._run = 0
         self._levels = [_Level(capacity)]
-        self._states = np.zeros((capacity, len(METHODS) + 1, 2))  # beside level 0; the exact swing comes last
-        self._shadows = ModifiedEnergyErrors(scene.w0_squared, self._scale)
+        self._states = np.zeros((capacity, len(METHODS) + 1, 2))  # next to level 0; the exact motion comes last
         self.returned: Sample | None = None  # where simulated time last was back at 0
 
-    def add(self, sample: Sample, exact: State | None = None, equal_cost: bool = False) -> None:
-        """Add the sample of a frame, and the exact swing at its time; the steps to it were at equal cost or not.
+    def add(self, sample: Sample, exact: State | None = None, modified: Sequence[float] | None = None) -> None:
+        """Add the sample of a frame, the exact motion at its time, and the errors of the modified energies.
 
         The same sample again changes nothing.  An earlier one, and one of a run that goes on from
         this one's past, first takes back everything from its step on.
@@ -110,21 +105,19 @@ class ErrorHistory:
         if latest and sample.step <= latest[0]:
             self.rewind(sample.step - 1)
             latest = self._latest()
-        x = latest[1] + abs(sample.t - latest[2]) if latest else abs(sample.t)
+        x = abs(sample.t)
+        if latest:
+            step, before, t = latest
+            x = before + abs(sample.t - t)
+            if abs(sample.t) < 1e-6 * abs((sample.t - t) / (sample.step - step)):  # t is rounded
+                self.returned = sample
 
         finest, reference = self._levels[0], exact or _UNKNOWN
         states = [State(reading.theta, reading.omega) for reading in sample.readings]
-        shadow_errors = [math.nan] * len(METHODS)
-        if latest and finest.count > finest.first:
-            h = (sample.t - latest[2]) / (sample.step - latest[0])
-            before = [State(*row) for row in self._states[(finest.count - 1) % finest.capacity, :-1].tolist()]
-            shadow_errors = self._shadows.between(before, states, h, equal_cost)
-            if abs(sample.t) < 1e-6 * abs(h):  # t is rounded
-                self.returned = sample
         self._states[finest.count % finest.capacity] = [*states, reference]
         theta_errors = [theta - reference.theta for theta, _ in states]
         low, high = (
-            (errors, theta_errors, shadow_errors, [self._start_energy + self._scale * error for error in errors])
+            (errors, theta_errors, modified or [math.nan] * len(METHODS))
             for errors in zip(
                 *((reading.energy_error_low, reading.energy_error_high) for reading in sample.readings), strict=True
             )
@@ -185,11 +178,16 @@ class ErrorHistory:
         return Window(
             x=times[:, 0],
             t=times[:, 1],
-            low={quantity: low[:, i] for i, quantity in enumerate(QUANTITIES)},
-            high={quantity: high[:, i] for i, quantity in enumerate(QUANTITIES)},
+            low=self._quantities(low),
+            high=self._quantities(high),
             repeats=self._repeats,
             turned=bool(len(times)) and not math.isclose(times[-1, 0], times[-1, 1], rel_tol=1e-9),
         )
+
+    def _quantities(self, rows: Floats) -> dict[Quantity, Floats]:
+        stored: dict[Quantity, Floats] = {quantity: rows[:, i] for i, quantity in enumerate(_STORED)}
+        start, scale = self._reference
+        return {**stored, "energy": start + scale * stored["energy_error"]}
 
     @staticmethod
     def _reaches(level: _Level, start: float) -> bool:

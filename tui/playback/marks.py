@@ -1,6 +1,6 @@
-"""Marks that are made while a recording is replayed.  They are kept beside it; the recording itself is not touched.
+"""Marks made during a replay.  They are kept next to the recording, which is not touched.
 
-Those of a recording that came with the program are kept in the library: its own folder is the program's.
+Those of a bundled recording are kept in the library, because its own folder is the program's.
 """
 
 import json
@@ -13,7 +13,7 @@ from typing import Any
 from recordings import library
 from recordings.errors import printable
 from recordings.events import Event
-from recordings.names import MARKS
+from recordings.library import MARKS
 
 SCHEMA = "pendu.marks/1"
 SIZE_LIMIT = 1 << 20  # bytes

@@ -48,15 +48,3 @@ def doubled(speed: float, times: int) -> float:
     """The speed doubled so many times, halved if negative, within SPEED_LIMITS; its sign stays."""
     low, high = SPEED_LIMITS
     return math.copysign(min(max(abs(speed) * 2.0**times, low), high), speed)
-
-
-def next_h(h: float, up: bool) -> float:
-    """The next step size [s] along 1, 2, 5, 10, …; its sign stays."""
-    size = abs(h)
-    decade = math.floor(math.log10(size))
-    ladder = [digit * 10.0**power for power in (decade - 1, decade, decade + 1) for digit in (1, 2, 5)]
-    if up:
-        size = min(rung for rung in ladder if rung > size * (1 + 1e-9))
-    else:
-        size = max(rung for rung in ladder if rung < size * (1 - 1e-9))
-    return math.copysign(float(f"{size:.1g}"), h)

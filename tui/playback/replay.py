@@ -4,22 +4,18 @@ import time
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Literal
+from operator import itemgetter
+from typing import TYPE_CHECKING
 
-from engine.models.exact_pendulum import ExactMotion
 from engine.run.lockstep import Sample
-from engine.run.observer import Milestone
-from engine.run.rewindable import Pitch
-from engine.run.verdict import Judgement
-from engine.scenes import Scene
+from engine.run.stepping import Stepping
 from recordings.events import Event
-from tui.playback.highlights import Highlights
-from tui.playback.history import ErrorHistory
+from tui.playback.cursor import ReplayCursor
 from tui.playback.live import Live
 from tui.playback.marks import Mark, Marks, mark_event
 from tui.playback.playhead import Pace, Playhead
-from tui.playback.reel import ReplayCursor
-from tui.playback.source import RecordingStatus, is_marked
+from tui.playback.so_far import RunSoFar
+from tui.playback.source import RecordingStatus, Source
 
 if TYPE_CHECKING:
     from recordings.recording import Recording, Run
@@ -27,32 +23,35 @@ if TYPE_CHECKING:
 FILL_BUDGET = 0.006  # s of each frame for reading the past
 
 
-class Replay:
+class Replay(Source):
     """A recording on screen.  The playhead is on the recording clock."""
 
-    kind: Literal["REPLAY"] = "REPLAY"
-    pace = Pace()
+    kind = "REPLAY"
 
     def __init__(self, recording: "Recording", marks: Marks, clock: Callable[[], float] = time.perf_counter) -> None:
         self.recording = recording
+        self.length = recording.length  # s
         self.marks = marks
         self.playhead = Playhead()
+        self.pace = Pace()
         self.ends: tuple[float | None, float | None] = (None, None)
         """Of the loop, on the recording clock [s]; None: the recording's own."""
         self.looping = False
         self._clock = clock
-        self._reel = ReplayCursor(recording)
-        self._highlights = Highlights(recording)
+        self._cursor = ReplayCursor(recording)
+        self._search = self._cursor.milestone_times()
+        self._milestone_times: list[float] = []  # s, on the recording clock, as far as known by now
+        self._all_events = [event for _, event in recording.events]
+        self._events = self._all_events[:0]
 
     @property
-    def sample(self) -> Sample:
-        """All methods at the playhead."""
-        return self._reel.sample
+    def so_far(self) -> RunSoFar:
+        return self._cursor.so_far
 
     @property
     def run(self) -> "Run":
         """The run on screen."""
-        return self._reel.run
+        return self._cursor.run
 
     @property
     def loop(self) -> tuple[float, float] | None:
@@ -62,75 +61,22 @@ class Replay:
         return (min(start, end), max(start, end)) if self.looping else None
 
     @property
-    def length(self) -> float:
-        """Of the recording [s]."""
-        return self.recording.length
-
-    @property
-    def scene(self) -> Scene:
-        """The scene of the run on screen."""
-        return self.run.scene
-
-    @property
-    def exact(self) -> ExactMotion:
-        """The exact motion of that scene."""
-        return self._reel.past.exact
-
-    @property
-    def history(self) -> ErrorHistory:
-        """The past of the run, up to the sample; after a jump it grows for some frames."""
-        return self._reel.past.history
-
-    @property
-    def judgements(self) -> Sequence[Judgement]:
-        """The verdicts on the run up to the sample."""
-        return self._reel.past.observer.judgements
-
-    @property
-    def milestones(self) -> Sequence[Milestone]:
-        """What the methods did up to the sample."""
-        return self._reel.past.observer.milestones(self.sample.step)
-
-    @property
     def events(self) -> Sequence[Event]:
-        """What was done up to the playhead."""
-        return [event for _, event in self.recording.events[: self.events_done]]
+        done = bisect_right(self.recording.events, self.playhead.position, key=itemgetter(0))
+        if done != len(self._events):
+            self._events = self._all_events[:done]
+        return self._events
 
     @property
     def later_marks(self) -> Sequence[Event]:
-        """The marks beside the recording, up to the playhead."""
-        events = [event for _, event in self.recording.events]
-        return [mark_event(mark, events) for mark in self.marks if mark.clock <= self.playhead.position]
+        return [mark_event(mark, self._all_events) for mark in self.marks if mark.clock <= self.playhead.position]
 
     @property
-    def events_done(self) -> int:
-        """How many events lie behind the playhead."""
-        return bisect_right(self.recording.events, self.playhead.position, key=lambda pair: pair[0])
-
-    @property
-    def changes(self) -> list[tuple[int, Pitch]]:
-        """(step, pitch) of the changes of how this run steps, so far."""
-        return [
-            (event.step, Pitch(event.h, event.equal_cost))
-            for event in self.events
-            if event.run == self.sample.run and event.h is not None and event.step <= self.sample.step
-        ]
-
-    @property
-    def h(self) -> float:
-        """The step size in force [s]."""
-        changes = self.changes
-        return changes[-1][1].h if changes else self.scene.h
-
-    @property
-    def equal_cost(self) -> bool:
-        """Whether all methods spend the same number of force evaluations."""
-        changes = self.changes
-        return bool(changes) and changes[-1][1].equal_cost
+    def stepping(self) -> Stepping:
+        return self._cursor.changes(self.playhead.position)[-1].stepping
 
     @property
     def recording_status(self) -> RecordingStatus:
-        """The recording."""
         return RecordingStatus(self.recording.path.name, self.length, self.recording.bytes)
 
     def tick(self, now: float) -> Sample:
@@ -138,19 +84,20 @@ class Replay:
         self.playhead = self.playhead.at(now)
         if not self.playhead.paused:
             self._stay_inside()
-            self._reel.go_to(self.playhead.position)
+            self._cursor.go_to(self.playhead.position)
         self.fill()
         return self.sample
 
     def fill(self) -> bool:
-        """Read more of the past, and look further ahead; whether the past of the sample is known by now."""
+        """Read more of the past, and then look for milestones; whether the past of the sample is known by now."""
         until = self._clock() + FILL_BUDGET
-        for read in (self._reel.fill, self._highlights.find):
-            read(lambda: self._clock() < until)
-        return self._reel.filled
+        filled = self._cursor.fill(lambda: self._clock() < until)
+        while self._clock() < until and (times := next(self._search, None)) is not None:
+            self._milestone_times += times
+        return filled
 
     def pause(self, paused: bool) -> None:
-        """Stop or go on; from the end, go on from the start."""
+        """Pause or go on; from the end, go on from the start."""
         self.playhead = replace(self.playhead, paused=paused)
         position, backwards = self.playhead.position, self.playhead.speed < 0
         if not paused and position == (0.0 if backwards else self.length):
@@ -161,19 +108,18 @@ class Replay:
         self.playhead = replace(self.playhead, speed=speed)
 
     def step(self, n: int) -> Sample:
-        """Pause and go n samples on, or back where n is negative."""
         self.pause(True)
-        self._reel.step(n)
-        self.playhead = self.playhead.moved_to(self._reel.clock)
+        self._cursor.step(n)
+        self.playhead = self.playhead.moved_to(self._cursor.clock)
         return self.sample
 
     def seek(self, position: float) -> None:
         """Go to a moment of the recording clock [s], or to the nearer end."""
         self.playhead = self.playhead.moved_to(min(max(position, 0.0), self.length))
-        self._reel.go_to(self.playhead.position)
+        self._cursor.go_to(self.playhead.position)
 
     def seek_event(self, direction: int) -> None:
-        """Go to the next event, mark or highlight, or to the one before."""
+        """Go to the next event, mark or milestone, or to the previous one."""
         position = self.playhead.position
         if direction > 0:
             self.seek(min((tick for tick in self.ticks if tick > position + 1e-6), default=self.length))
@@ -182,21 +128,20 @@ class Replay:
 
     @property
     def ticks(self) -> list[float]:
-        """Where on the recording clock something was done, marked, or happened as far as that is known by now [s]."""
+        """The events, marks and milestones known by now, on the recording clock [s]."""
         done = (clock for clock, event in self.recording.events if event.kind != "stop")
-        return sorted({*done, *(mark.clock for mark in self.marks), *self._highlights.clocks})
+        return sorted({*done, *(mark.clock for mark in self.marks), *self._milestone_times})
 
     def mark(self, text: str | None = None) -> None:
-        """Leave a mark at the sample, unless it has one; it is kept beside the recording, which is not touched."""
-        if not is_marked(self):
+        """Leave a mark at the sample, unless it has one; it is kept next to the recording, which is not touched."""
+        if not self.is_marked:
             self.marks.add(Mark(self.playhead.position, self.sample.run, self.sample.step, text))
 
     def live(self) -> Live:
         """A lab that goes on from here with the same bits, and with what is known of the past."""
-        return Live(self.scene, changes=self.changes, step=self.sample.step, past=self._reel.past)
+        return Live(self.scene, changes=self._cursor.changes(self.playhead.position)[1:], so_far=self.so_far)
 
     def close(self) -> None:
-        """Let go of the file."""
         self.recording.close()
 
     def _stay_inside(self) -> None:

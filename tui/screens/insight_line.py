@@ -22,7 +22,7 @@ class InsightLine(Pane):
     def paint(self, source: Source, sample: Sample) -> None:
         status = source.recording_status
         if status is not None and status.failed:
-            text, owner = f"Nothing is being recorded: {status.failed}", WARN
+            text, owner = f"Not recording: {status.failed}", WARN
         else:
             text, owner = self._hint(source) or insight(source), TEXT
         self.show([[(f" {line}", owner)] for line in fitted(text, self.room.width - 2, self.room.height)])

@@ -11,7 +11,6 @@ from textual.widget import Widget
 from tui.cli.errors import UserError, explained
 from tui.playback.live import Live
 from tui.playback.replay import Replay
-from tui.playback.source import is_marked
 from tui.screens.base import ALREADY, SourceScreen
 from tui.screens.keys import COMMON, REPLAY
 from tui.screens.seek_bar import SeekBar
@@ -69,7 +68,7 @@ class ReplayScreen(SourceScreen):
 
     def action_mark(self) -> None:
         """Leave a mark next to the recording, which itself stays as it is."""
-        text = ALREADY if is_marked(self.replay) else f"Mark at {self.replay.sample.t:.2f} s"
+        text = ALREADY if self.replay.is_marked else f"Mark at {self.replay.sample.t:.2f} s"
         try:
             self.replay.mark()
         except OSError as error:

@@ -9,7 +9,7 @@ from engine.run.lockstep import Sample
 from recordings.errors import printable
 from tui.drawing.cells import Row
 from tui.drawing.palette import FRAME, TEXT, WARN
-from tui.playback.source import Source, own_h
+from tui.playback.source import Source
 from tui.views.view import Pane
 from tui.words.findings import limit_warning
 from tui.words.numbers import file_size, percent, seconds
@@ -38,13 +38,13 @@ def coarse(value: float) -> str:
 def status_row(source: Source, width: int) -> Row:
     """The line, as far as there is room."""
     scene, playhead, pace, recording = source.scene, source.playhead, source.pace, source.recording_status
-    z, live, named = abs(source.h) * scene.w0, source.kind == "LIVE", bool(scene.watch)
-    warning = limit_warning([abs(h) * scene.w0 for h in own_h(source)])
+    z, live, named = abs(source.stepping.h) * scene.w0, source.kind == "LIVE", bool(scene.watch)
+    warning = limit_warning([abs(h) * scene.w0 for h in source.stepping.own()])
     parts = [
-        _Part(12, "paused " if playhead.paused else "backwards" if source.h < 0 else "running"),
+        _Part(12, "paused " if playhead.paused else "backwards" if source.stepping.h < 0 else "running"),
         _Part(7, speed_text(playhead.speed)),
         _Part(11, f"t {seconds(source.sample.t)}"),
-        _Part(11, f"h {source.h:.4g} s{' equal cost' if source.equal_cost else ''}"),
+        _Part(11, f"h {source.stepping.h:.4g} s{' equal cost' if source.stepping.equal_cost else ''}"),
         _Part(10, f"z {z:.3g}", WARN if warning else TEXT),
         *([_Part(9, warning, WARN)] if warning else []),
         _Part(6 if named else 3, f"scene {scene.name}" if named else f"{scene.name} scene", FRAME),

@@ -5,7 +5,7 @@ import re
 import time
 from pathlib import Path
 
-from recordings.names import free_path
+from recordings.library import free_path
 
 CELL = 12.2  # the width of a cell in Rich's SVG pictures
 _TEXT = re.compile(r'<text [^>]*x="([\d.]+)"[^>]*clip-path="url\(#terminal-(?:\d+-)?line-(\d+)\)">([^<]*)</text>')

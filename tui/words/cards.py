@@ -1,4 +1,4 @@
-"""Cards: what is claimed of a method, and what a scene is, as text to read."""
+"""Cards: the properties of a method, and of a scene, as text."""
 
 import math
 import textwrap
@@ -9,24 +9,24 @@ from engine.scenes import Scene
 from tui.drawing.palette import mark
 from tui.words.motion import motion_text
 
-WIDTH = 72  # characters; what 80 columns leave beside frame and scroll bar
+WIDTH = 72  # characters; of 80 columns, frame and scroll bar take the rest
 _HEAD = 14
 
 
 def method_card(index: int) -> str:
-    """All that is claimed of a method; every line is a field of METHODS, and tested there."""
+    """A method's properties; every line is a tested field of METHODS."""
     method = METHODS[index]
-    limit, area = f"z = h w0 up to {method.linear_limit:.4g}, where swings are small", "area in phase space"
+    limit = f"up to z = h w0 = {method.linear_limit:.4g} (small swings)" if method.linear_limit else "at no h"
     return _card(
         f"{mark(index)} {method.label}",
         {
             "also called": ", ".join(method.other_names),
             "formula": method.formula,
-            "order": f"{method.order}: half the step makes the error {2**method.order} times smaller",
-            "costs": f"{method.force_evaluations} force evaluation{'s' * (method.force_evaluations > 1)} a step",
-            "symplectic": f"yes: it keeps {area}" if method.symplectic else f"no: {area} changes",
-            "reversible": "yes: turned round, it returns to its start" if method.reversible else "no",
-            "stable": limit if method.linear_limit else "none: at no h",
+            "order": f"{method.order}: halving h divides the error by {2**method.order}",
+            "costs": f"{method.force_evaluations} force evaluation{'s' * (method.force_evaluations > 1)} per step",
+            "symplectic": "yes: conserves phase-space area" if method.symplectic else "no: phase-space area changes",
+            "reversible": "yes: run backwards, it returns to its start" if method.reversible else "no",
+            "stable": limit,
             "used in": method.used,
             "reference": method.reference,
         },
@@ -34,7 +34,7 @@ def method_card(index: int) -> str:
 
 
 def scene_card(scene: Scene, now: str = "") -> str:
-    """What a scene is, and what to watch; `now`: the step in force, where that is another one."""
+    """A scene and what to watch in it; `now`: the current step, if it differs from the scene's."""
     return _card(
         f"Scene {scene.name}",
         {

@@ -1,4 +1,4 @@
-"""The command that shows what is on the screen again."""
+"""The shell command that brings back what is on the screen."""
 
 import shlex
 
@@ -9,9 +9,9 @@ from tui.playback.source import Source
 
 
 def command(source: Source) -> str:
-    """For a lab its scene; where the step size has changed since, and for a replay, the moment of the recording.
+    """For a lab, its scene; for a replay, or once the step size has changed, this moment of the recording.
 
-    A lab that changed its step size and records nothing can only be started again.
+    A lab that changed its step size and does not record can only be started again from its scene.
     """
     if isinstance(source, Replay):
         return _moment(str(source.recording.path), source.playhead.position)
@@ -27,7 +27,7 @@ def _moment(file: str, position: float) -> str:
 
 
 def scene_arguments(scene: Scene) -> list[str]:
-    """The options that make a scene, to the last bit."""
+    """The options that reproduce a scene to the last bit."""
     if SCENES.get(scene.name) == scene:
         return ["--scene", scene.name]
     changes = {name: getattr(scene, name) for name in (*LIMITS, "h")}

@@ -1,4 +1,4 @@
-"""The run in a few plain sentences, for those who cannot see the screen, or not all of it."""
+"""The state of the lab or replay in a few sentences, for readers who cannot see the screen."""
 
 import math
 
@@ -9,18 +9,19 @@ from tui.words.numbers import about, seconds
 
 
 def description(source: Source) -> list[str]:
-    """What runs and what each method does, a line a thought."""
+    """The run, each method and the recording, one sentence each."""
     return [*_run(source), *(method_sentence(source, index) for index in range(len(METHODS))), _recording(source)]
 
 
 def _run(source: Source) -> list[str]:
     scene, playhead, sample = source.scene, source.playhead, source.sample
     kind = "The lab" if source.kind == "LIVE" else "The replay"
-    state = "is paused" if playhead.paused else f"runs at {playhead.speed:.4g} times real time"
-    regime = {"libration": "swings", "rotation": "turns over and over"}.get(source.exact.regime)
-    motion = f"; it {regime}, once in {about(source.exact.period)}" if regime and source.exact.period else ""
+    speed = "in real time" if playhead.speed == 1 else f"at {playhead.speed:.4g} times real time"
+    state = "is paused" if playhead.paused else f"runs {speed} and is"
+    cycle = {"libration": "swing", "rotation": "turn"}.get(source.exact.regime)
+    motion = f"; one {cycle} takes {about(source.exact.period)}" if cycle and source.exact.period else ""
     return [
-        f"{kind} {state}, at {seconds(sample.t)} of run {sample.run}, scene {scene.name}.",
+        f'{kind} {state} at {seconds(sample.t)} of run {sample.run} of the scene "{scene.name}".',
         f"The pendulum is {scene.length:.4g} m long and started at {math.degrees(scene.theta):.4g} degrees "
         f"with {scene.omega:.4g} radians per second{motion}.",
         f"The step size is {step_text(source)}.",
@@ -28,29 +29,30 @@ def _run(source: Source) -> list[str]:
 
 
 def step_text(source: Source) -> str:
-    """The step in force: "0.2 s, z = 0.626; at equal cost, some take it in parts; time runs backwards"."""
-    parts = "; at equal cost, some take it in parts" if source.equal_cost else ""
-    backwards = "; time runs backwards" if source.h < 0 else ""
-    return f"{abs(source.h):.4g} s, z = {abs(source.h) * source.scene.w0:.3g}{parts}{backwards}"
+    """The current step: "0.2 s, z = 0.626; at equal cost, the cheaper methods split it; time runs backwards"."""
+    parts = "; at equal cost, the cheaper methods split it" if source.stepping.equal_cost else ""
+    backwards = "; time runs backwards" if source.stepping.h < 0 else ""
+    return f"{abs(source.stepping.h):.4g} s, z = {abs(source.stepping.h) * source.scene.w0:.3g}{parts}{backwards}"
 
 
 def method_sentence(source: Source, index: int) -> str:
-    """What a method does: its end, its way over the top, its verdict, or its error so far."""
+    """Whether a method failed or went over the top; if not, its verdict or its error so far."""
     method, reading = METHODS[index], source.sample.readings[index]
     if milestone := endings(source).get(index):
         return ending(milestone)
     if source.judgements[index].verdict == "bounded":
-        return f"{method.label} stays within a band: its energy is off by {reading.max_energy_error:.2g} at most."
+        return f"{method.label} stays bounded: its largest energy error is {reading.max_energy_error:.2g}."
     return leaving(source, index) or (
-        f"{method.label} is off by {reading.energy_error:+.2g} of its energy; it is too early for a verdict."
+        f"{method.label} has an energy error of {reading.energy_error:+.2g}; it is too early for a verdict."
     )
 
 
 def _recording(source: Source) -> str:
     status = source.recording_status
     if status is None:
-        return "Nothing is recorded."
+        return "Not recording."
     if status.failed:
-        return f"Nothing is being recorded: {status.failed}"
-    verb = "Recorded so far" if source.kind == "LIVE" else "The recording"
-    return f"{verb}: {seconds(status.seconds)} in {status.name}."
+        return f"Not recording: {status.failed}"
+    if source.kind == "LIVE":
+        return f"Recorded so far: {seconds(status.seconds)} in {status.name}."
+    return f"The recording {status.name} is {seconds(status.seconds)} long."

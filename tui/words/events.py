@@ -1,14 +1,17 @@
-"""The list of events: what was done, and what the methods did, with the simulated times."""
+"""The list of events: the user's inputs and the methods' milestones, with their simulated times."""
 
 import math
 from collections.abc import Iterator
 from typing import Literal, NamedTuple
 
 from engine.run.observer import Milestone
+from engine.run.verdict import Verdict
 from recordings.events import Event
 from tui.playback.source import Source
 from tui.words.findings import short_name
 from tui.words.numbers import two_digits
+
+VERDICTS: dict[Verdict, str] = {"bounded": "stays bounded", "drifts": "loses energy", "grows": "gains energy"}
 
 
 class EventLine(NamedTuple):
@@ -19,7 +22,7 @@ class EventLine(NamedTuple):
     t: float  # s, simulated
     text: str
     kind: Literal["change", "mark", "milestone"]
-    method: int | None = None  # whose milestone, an index into METHODS
+    method: int | None = None  # of a milestone: index into METHODS
 
     def __str__(self) -> str:
         return f"{self.t:7.2f} {self.text}" if abs(self.t) < 1e4 else f"{self.t:7.1e} {self.text}"
@@ -32,10 +35,10 @@ def event_lines(source: Source) -> list[EventLine]:
     """
     run = source.sample.run
     milestones = [EventLine(run, m.step, m.t, milestone_text(m), "milestone", m.index) for m in source.milestones]
-    return sorted([*_done(source), *milestones], key=lambda line: line[:2])  # stable: first what was done
+    return sorted([*_inputs(source), *milestones], key=lambda line: line[:2])  # stable: inputs first
 
 
-def _done(source: Source) -> Iterator[EventLine]:
+def _inputs(source: Source) -> Iterator[EventLine]:
     marks = 0
     for event in [*source.events, *source.later_marks]:
         where = event.run, event.step, event.t
@@ -53,13 +56,13 @@ def change_text(event: Event) -> str:
         numbers = f"{math.degrees(scene.theta):.4g}° {scene.omega:.4g} rad/s"
         return f"start {numbers if scene.name == 'custom' else scene.name}, h {scene.h:.4g} s"
     assert event.h is not None
-    backwards, equal = "time backwards, " if event.h < 0 else "", ", equal cost" if event.equal_cost else ""
+    backwards, equal = "time reversed, " if event.h < 0 else "", ", equal cost" if event.equal_cost else ""
     return f"{backwards}h {abs(event.h):.4g} s{equal}"
 
 
 def milestone_text(milestone: Milestone) -> str:
-    """What a method did."""
+    """What a method does."""
     name = short_name(milestone.method)
     if milestone.kind == "over the top":
         return f"{name} over the top, {two_digits(1 + milestone.energy_error)} E0"
-    return f"{name} failed" if milestone.kind == "failed" else f"{name}: {milestone.verdict}"
+    return f"{name} {'failed' if milestone.kind == 'failed' else VERDICTS[milestone.verdict]}"

@@ -1,4 +1,4 @@
-"""What the methods do, in sentences.  Each says only what was measured; a forecast extends a measured drift."""
+"""What the methods do, in sentences.  Each states only what was measured; a forecast extrapolates a measured slope."""
 
 import math
 from collections.abc import Sequence
@@ -10,28 +10,28 @@ from tui.playback.source import Source
 from tui.words.numbers import about, two_digits
 
 LARGEST_BAND = 0.2
-"""Of the energy: beyond, what is lost on the way there changes the drift itself."""
-LONGEST = 1000 * 86400.0  # s; further ahead nobody waits
+"""Of the energy: a larger loss changes the rate of loss itself."""
+LONGEST = 1000 * 86400.0  # s; nobody waits longer
 
 
 class Forecast(NamedTuple):
-    """When a method that drifts will have a larger energy error than one that stays within a band."""
+    """When the energy error of a method that loses energy will pass that of a bounded one."""
 
     seconds: float  # from now on, simulated
     other: Method
 
 
 def short_name(method: Method) -> str:
-    """The last word of a method's name, where no other ends with it: "Verlet", but "Symplectic Euler"."""
+    """The last word of a method's name if no other name ends with it: "Verlet", but "Symplectic Euler"."""
     last = method.label.split()[-1]
     return last if sum(each.label.endswith(last) for each in METHODS) == 1 else method.label
 
 
 def forecast(source: Source, index: int) -> Forecast | None:
-    """When the drift of a method, if it goes on, takes it out of the narrowest band that it is still in.
+    """When a method's steady loss of energy will take its error past the smallest maximum that it is still below.
 
-    None without a drift that is known to a tenth; after a change of the step size, for then the largest
-    errors of the run are not those of this step size; and for bands too wide or times too long.
+    None unless the slope is known to a tenth; after a change of the step size, because the run's maxima
+    then belong to another step size; and if the maximum is too large or the time too long.
     """
     judgement, error = source.judgements[index], source.sample.readings[index].energy_error
     slope, uncertainty = judgement.slope, judgement.uncertainty
@@ -47,58 +47,58 @@ def forecast(source: Source, index: int) -> Forecast | None:
 
 
 def _bands(source: Source) -> list[tuple[float, int]]:
-    """The largest energy error of each method that is bounded, smallest first."""
+    """The largest energy error of each bounded method, with its index, smallest first."""
     pairs = enumerate(zip(source.sample.readings, source.judgements, strict=True))
     return sorted((reading.max_energy_error, i) for i, (reading, judged) in pairs if judged.verdict == "bounded")
 
 
 def endings(source: Source) -> dict[int, Milestone]:
-    """By index, what happened to a method that is no longer judged by its energy: it failed, or went over the top."""
+    """The methods, by index, that failed or went over the top: their verdict no longer matters."""
     found = [each for each in source.milestones if each.kind != "verdict"]
     return {each.index: each for each in sorted(found, key=lambda each: each.kind == "failed")}
 
 
 def ending(milestone: Milestone) -> str:
-    """A method whose numbers ended, or that went where the exact swing never comes."""
+    """The sentence on a method that failed, or that went over the top, where the exact pendulum never gets."""
     name = milestone.method.label
     if milestone.kind == "failed":
         return f"{name} failed at {milestone.t:.4g} s: its numbers are no longer finite."
     ratio = two_digits(1 + milestone.energy_error)
-    return f"{name} went over the top at {milestone.t:.3g} s with {ratio} times the start's energy."
+    return f"{name} went over the top at {milestone.t:.3g} s with {ratio} times its initial energy."
 
 
 def staying(source: Source) -> str:
-    """The methods that keep their energy; "" if none is known to."""
+    """The sentence on the bounded methods; "" if there are none yet."""
     bounded = [(m, j) for m, j in zip(METHODS, source.judgements, strict=True) if j.verdict == "bounded"]
     if not bounded:
         return ""
-    period = source.exact.period or math.tau / source.scene.w0  # what verdicts count in
+    period = source.exact.period or math.tau / source.scene.w0  # the unit of Judgement.periods
     seconds = min(judgement.periods for _, judgement in bounded) * period
     *names, last = [short_name(method) for method, _ in bounded]
     who = f"{', '.join(names)} and {last} stay" if names else f"{last} stays"
-    return f"{who} within a band, no trend in {about(seconds)}."
+    return f"{who} bounded; no trend over {about(seconds)}."
 
 
 def leaving(source: Source, index: int) -> str:
-    """A method that gains or loses energy; "" if it is not known to."""
+    """The sentence on a method that gains or loses energy; "" if that is not known."""
     judgement = source.judgements[index]
     slope = {"grows": 1, "drifts": -1}.get(judgement.verdict, 0) * (judgement.slope or 0)
     if slope <= 0:
         return ""
     verb = "gains" if judgement.verdict == "grows" else "loses"
-    what = f"{short_name(METHODS[index])} {verb} {slope:.2g}"
+    what = f"{short_name(METHODS[index])} {verb} {two_digits(100 * slope)} % of E0/s"
     if ahead := forecast(source, index):
         other = short_name(ahead.other)
-        return f"{what} per second: at this h it leaves {other}'s band in about {about(ahead.seconds)}."
+        return f"{what}; its error will pass {other}'s in about {about(ahead.seconds)}."
     error, bands = abs(source.sample.readings[index].energy_error), _bands(source)
     if bands and error > bands[0][0] > 0:
         ratio, other = two_digits(error / bands[0][0]), short_name(METHODS[bands[0][1]])
-        return f"{what} per second: its error is {ratio} times {other}'s largest."
-    return f"{what} of its energy per second."
+        return f"{what}; its error is {ratio} times {other}'s maximum."
+    return f"{what}."
 
 
 def so_far(source: Source) -> str:
-    """The largest energy errors, of the best method and of the worst, while it is too early for more."""
+    """The largest energy errors of the best and of the worst method, for as long as there is no verdict."""
     errors = sorted((reading.max_energy_error, index) for index, reading in enumerate(source.sample.readings))
     (least, nearest), (most, furthest) = errors[0], errors[-1]
     near, far = short_name(METHODS[nearest]), short_name(METHODS[furthest])
@@ -106,13 +106,13 @@ def so_far(source: Source) -> str:
 
 
 def limit_warning(zs: Sequence[float]) -> str:
-    """As "beyond limit 2 of s, v", the methods by their letters; "" below all limits.  `zs` are in METHODS' order.
+    """As "unstable: s v (z > 2), r (z > 2.83)", the methods by their letters; "" below all limits.
 
-    Explicit Euler has no limit to be beyond.
+    `zs` are in the order of METHODS.  Explicit Euler has no limit: it is never stable.
     """
     letters: dict[float, list[str]] = {}
     for method, z in zip(METHODS, zs, strict=True):
         if 0 < method.linear_limit < z:
             letters.setdefault(method.linear_limit, []).append(method.letter)
-    each = "; ".join(f"{limit:.3g} of {', '.join(who)}" for limit, who in letters.items())
-    return f"beyond limit {each}" if each else ""
+    each = ", ".join(f"{' '.join(who)} (z > {limit:.3g})" for limit, who in letters.items())
+    return f"unstable: {each}" if each else ""

@@ -1,4 +1,4 @@
-"""What to notice, a sentence at a time, from measured events and verdicts only; and hints in the first minute."""
+"""The one sentence of the moment, from milestones and verdicts; and hints in the first minute."""
 
 import math
 from collections.abc import Iterable
@@ -11,18 +11,18 @@ from recordings.events import Event, EventKind
 from tui.playback.source import Source
 from tui.words.findings import ending, endings, leaving, so_far, staying
 
-WATCH = 8.0  # s of the clock during which a run's beginning says what to watch
-FRESH = 6.0  # s of the clock for which something is news
-TURN = 8.0  # s of the clock for which one of the lasting sentences stays
-RESTING = "Nothing moves: the pendulum started at rest where no force acts on it."
+WATCH = 8.0  # s of the clock at the beginning of a run, for the scene's own sentence
+FRESH = 6.0  # s of the clock for which a milestone is news
+TURN = 8.0  # s of the clock until the next of the lasting sentences
+RESTING = "Nothing moves: the pendulum started at rest in equilibrium."
 
 HINT_SHOWN = 6.0  # s
 HINTS: tuple[tuple[float, EventKind, str], ...] = (
-    (24.0, "pause", "Press space to pause; . and , then go step by step."),
-    (38.0, "set_h", "Press + for a larger step: who still keeps the energy?"),
+    (24.0, "pause", "Press space to pause, then . or , to step forward or back."),
+    (38.0, "set_h", "Press + for a larger step: which methods conserve energy?"),
     (52.0, "start", "Click anywhere in phase space (F3) to start from there."),
 )
-"""When, in s since the lab is on screen; the event that shows that it is known already; and the hint."""
+"""Seconds on screen until the hint is due; the event which shows that the user knows it already; the hint."""
 
 
 def hint(seconds: float, events: Iterable[Event]) -> str:
@@ -35,7 +35,7 @@ def hint(seconds: float, events: Iterable[Event]) -> str:
 
 
 def insight(source: Source) -> str:
-    """The sentence: nothing moves, time is back at its start, news, what to watch, or what is known, in turn."""
+    """The sentence: equilibrium, the return to t = 0, news, the scene's own sentence, or the lasting ones in turn."""
     sample, scene, returned = source.sample, source.scene, source.history.returned
     if source.exact.regime == "equilibrium":
         return RESTING
@@ -47,13 +47,13 @@ def insight(source: Source) -> str:
     if abs(sample.t) < WATCH * pace and (text := _watch(source)):
         return text
     sentences = lasting(source)
-    return sentences[int(sample.step * abs(source.h) / (TURN * pace)) % len(sentences)]
+    return sentences[int(sample.step * abs(source.stepping.h) / (TURN * pace)) % len(sentences)]
 
 
 def _news(source: Source, seconds: float) -> str:
-    """The newest of the last simulated seconds; failures come first, then ways over the top, then verdicts."""
+    """The newest milestone of the last simulated seconds; failures first, then over the top, then verdicts."""
     kinds = ("verdict", "over the top", "failed")
-    recent = [each for each in source.milestones if (source.sample.step - each.step) * abs(source.h) < seconds]
+    recent = [each for each in source.milestones if (source.sample.step - each.step) * abs(source.stepping.h) < seconds]
     newest = sorted(recent, key=lambda each: (kinds.index(each.kind), each.step))
     return next(filter(None, (_sentence(source, each) for each in reversed(newest))), "")
 
@@ -65,7 +65,7 @@ def _sentence(source: Source, milestone: Milestone) -> str:
 
 
 def lasting(source: Source) -> list[str]:
-    """What is known of the run by now, what matters most first; at least one sentence."""
+    """All that is known of the run, the most important first; at least one sentence."""
     ended = endings(source)
     ends = sorted(ended.values(), key=lambda each: (each.kind != "failed", each.step))
     moves = [leaving(source, index) for index in range(len(METHODS)) if index not in ended]
@@ -74,12 +74,12 @@ def lasting(source: Source) -> list[str]:
 
 
 def _watch(source: Source) -> str:
-    """What the scene says to watch, as long as its step size is in force."""
-    return source.scene.watch if source.h == source.scene.h else ""
+    """The scene's own sentence, which holds for its own step size only."""
+    return source.scene.watch if source.stepping.h == source.scene.h else ""
 
 
 def return_text(scene: Scene, sample: Sample) -> str:
-    """How far each method is from its start, where time has run back to it: sqrt(dtheta² + (domega/w0)²)."""
+    """Each method's distance from the start when time has run back to it: sqrt(dtheta² + (domega/w0)²)."""
     misses = [
         "failed"
         if reading.diverged_at is not None
@@ -87,4 +87,4 @@ def return_text(scene: Scene, sample: Sample) -> str:
         for reading in sample.readings
     ]
     each = ", ".join(f"{method.letter} {miss}" for method, miss in zip(METHODS, misses, strict=True))
-    return f"Back at t = 0, the start is missed by {each} rad."
+    return f"Back at t = 0. Missed the start by {each} rad."

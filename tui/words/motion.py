@@ -5,13 +5,13 @@ from engine.models.pendulum import separatrix_margin
 
 
 def regime(w0: float, theta: float, omega: float) -> str:
-    """Which motion goes through a state."""
+    """The kind of exact motion through a state: "libration", "rotation" or "separatrix"."""
     value = separatrix_margin(w0, theta, omega)
     return "separatrix" if value == 0 else "libration" if value > 0 else "rotation"
 
 
 def energy_share(w0: float, theta: float, omega: float) -> str:
-    """The energy in units of the separatrix'; near 1 as its distance from there, which is what then matters."""
+    """Energy over the energy of the separatrix; near 1, as the difference from 1: "1 - 2.5e-13"."""
     value = separatrix_margin(w0, theta, omega)
     if value != 0 and abs(value) < 1e-3:
         return f"1 {'-' if value > 0 else '+'} {abs(value):.1e}"
@@ -19,7 +19,7 @@ def energy_share(w0: float, theta: float, omega: float) -> str:
 
 
 def motion_text(exact: ExactMotion) -> str:
-    """The exact motion: its period, energy and regime."""
+    """As "exact period 2.139 s  E/Es 0.2298  libration"."""
     scene = exact.scene
     energy = f"E/Es {energy_share(scene.w0, scene.theta, scene.omega)}  {exact.regime}"
     return energy if exact.period is None else f"exact period {exact.period:.6g} s  {energy}"

@@ -1,13 +1,13 @@
-"""Numbers -> text: of a fixed width for tables, as people say them in sentences.
+"""Numbers -> text: of a fixed width for tables, short for sentences.
 
-Never wider than asked, and never "nan" or "inf": what is not a number is a hyphen.
+Tables get the width that they ask for, and a hyphen instead of "nan" or "inf".
 """
 
 import math
 
 
 def decimal(value: float | None, width: int, decimals: int = 3) -> str:
-    """With a sign and as many decimals as fit, else in scientific notation: " +1.000", "+1.2e+09"."""
+    """With a sign and as many decimals as fit, or in scientific notation: " +1.000", "+1.2e+09"."""
     if value is None or not math.isfinite(value):
         return "-".rjust(width)
     for places in range(decimals, -1, -1):
@@ -18,7 +18,7 @@ def decimal(value: float | None, width: int, decimals: int = 3) -> str:
 
 
 def scientific(value: float | None, width: int, digits: int = 1, sign: str = "+") -> str:
-    """As "+3.3e+00", with fewer digits where the exponent needs the room.  `sign` "-": only if negative."""
+    """As "+3.3e+00", with fewer digits if the exponent needs the room.  `sign` "-": a sign only if negative."""
     if value is None or not math.isfinite(value):
         return "-".rjust(width)
     for places in range(digits, -1, -1):
@@ -46,7 +46,7 @@ def seconds(value: float) -> str:
 
 
 def about(seconds: float) -> str:
-    """A duration with two digits or so: "40 s", "32 min", "8.4 h", "12 days"."""
+    """A duration with about two digits: "40 s", "32 min", "8.4 h", "12 days"."""
     units = (("days", 86400), ("h", 3600), ("min", 60), ("s", 1))
     unit, size = next((unit for unit in units if seconds >= 2 * unit[1]), units[-1])
     value = seconds / size
@@ -54,10 +54,8 @@ def about(seconds: float) -> str:
 
 
 def two_digits(value: float) -> str:
-    """A positive number with two digits or so: "0.66", "4.3", "440", "1.3e+06"."""
-    if not 0.095 <= value < 99_999.5:
-        return f"{value:.1e}"
-    return f"{value:.2f}" if value < 0.95 else f"{value:.1f}" if value < 9.95 else f"{value:.0f}"
+    """A positive number with about two digits: "0.00029", "0.66", "4.3", "440", "1.3e+06"."""
+    return f"{value:#.2g}" if value < 9.95 else f"{value:.0f}" if value < 99_999.5 else f"{value:.1e}"
 
 
 def file_size(count: int) -> str:

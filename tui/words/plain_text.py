@@ -1,4 +1,4 @@
-"""The lab without a screen: a sentence a second, and one for whatever happens.  For screen readers and logs."""
+"""The lab without a screen, for screen readers and logs: a sentence per second, and one for each event."""
 
 import time
 from collections.abc import Callable
@@ -21,7 +21,7 @@ def plain(
     clock: Callable[[], float] = time.monotonic,
     sleep: Callable[[float], object] = time.sleep,
 ) -> None:
-    """Tell what runs, and then what happens, until somebody stops it or the recording is at its end."""
+    """Say what runs, then what happens, until `stopped` or the end of the recording."""
     for sentence in description(source):
         say(sentence)
     began, second, news = clock(), 0, False
@@ -42,6 +42,6 @@ def plain(
 
 
 def numbers(source: Source) -> str:
-    """Time and energy errors."""
+    """As "3.00 s: energy errors Explicit Euler +0.4, …"."""
     errors = [f"{short_name(m)} {r.energy_error:+.2g}" for m, r in zip(METHODS, source.sample.readings, strict=True)]
     return f"{seconds(source.sample.t)}: energy errors {', '.join(errors)}."

@@ -1,4 +1,4 @@
-"""Recordings that were begun and never finished: recovered at the next start, and never behind the user's back."""
+"""Recordings left unfinished by a lab that was killed: recovered at the next start, and reported."""
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager
@@ -9,33 +9,33 @@ from recordings.errors import printable
 from recordings.library import leftovers
 
 if TYPE_CHECKING:
-    from recordings.rescue import Rescue
+    from recordings.recover import Rescue
 
 Progress = Callable[[str], AbstractContextManager[Callable[[float, float], None]]]
 
 
 def recover_leftovers(folder: Path, progress: Progress) -> list[str]:
-    """Make whole recordings of what is left in the folder; returns a sentence on each, whatever the disk does."""
+    """Recover all unfinished recordings in a folder; returns a sentence on each, also where the disk fails."""
     sentences = []
     for part in leftovers(folder):
-        from recordings.rescue import rescue  # brings mcap, so only where there is something to do
+        from recordings.recover import rescue  # imports mcap, so only if there is something to do
 
         try:
             with progress(f"recovering {printable(part.name)}") as show:
-                sentences.append(told(rescue(part, show)))
+                sentences.append(outcome(rescue(part, show)))
         except FileNotFoundError:
             pass  # another lab was quicker
         except OSError as error:
             why = error.strerror or error
-            sentences.append(f"{printable(str(part))} was left unfinished, and cannot be recovered now: {why}.")
+            sentences.append(f"The unfinished recording {printable(str(part))} cannot be recovered now: {why}.")
     return sentences
 
 
-def told(rescue: "Rescue") -> str:
-    """A sentence on what became of a leftover."""
-    kept = f" What was left is kept as {printable(str(rescue.kept))}." if rescue.kept else ""
+def outcome(rescue: "Rescue") -> str:
+    """What became of an unfinished recording."""
+    kept = f" The original is kept as {printable(str(rescue.kept))}." if rescue.kept else ""
     if rescue.saved is None or rescue.recovery is None:
-        return f"A recording was left unfinished and cannot be recovered: {rescue.reason}{kept}"
+        return f"An unfinished recording cannot be recovered: {rescue.reason}{kept}"
     lost = rescue.recovery.samples_lost
-    losses = f"; {lost} samples are lost" if lost else ""
-    return f"A recording was left unfinished; it was recovered as {printable(str(rescue.saved))}{losses}.{kept}"
+    losses = f", {lost} samples are lost" if lost else ""
+    return f"An unfinished recording was recovered: {printable(str(rescue.saved))}{losses}.{kept}"

@@ -156,7 +156,7 @@ def test_seconds_are_the_shortest_of_several_runs_with_their_spread():
 
 
 def test_a_time_and_steps_that_make_no_usable_h_are_refused():
-    with pytest.raises(SceneError, match="no usable step"):
+    with pytest.raises(SceneError, match="not a usable step"):
         Study(DRIFT, 1e6).run(R, 1)
 
 

@@ -13,6 +13,7 @@ import pytest
 from engine.methods import METHODS
 from engine.models.exact_pendulum import ExactMotion
 from engine.run.lockstep import Lockstep
+from engine.run.stepping import Stepping
 from engine.run.verdict import Judgement, Trend
 from engine.scenes import SCENES, Scene
 
@@ -100,7 +101,7 @@ def test_a_new_trend_may_begin_anywhere_in_a_swing(h: float) -> None:
     for steps in (5, 13, 29, 47):
         lockstep = Lockstep(scene)
         lockstep.advance(steps)
-        lockstep.set_h(h)
+        lockstep.set_stepping(Stepping(h))
         given = follow(lockstep, [max(1, round(1 / 30 / h))] * 6000, trends(scene))
         assert given == [["too early", true] for true in BELOW_THE_LIMITS]
 
@@ -108,7 +109,7 @@ def test_a_new_trend_may_begin_anywhere_in_a_swing(h: float) -> None:
 def test_backwards_in_time_the_same_methods_gain_keep_and_lose() -> None:
     scene = SCENES["drift"]
     lockstep = Lockstep(scene)
-    lockstep.set_h(-scene.h)
+    lockstep.set_stepping(Stepping(-scene.h))
     given = follow(lockstep, samples(scene, 40), trends(scene))
     assert given == [["too early", true] for true in BELOW_THE_LIMITS]
 

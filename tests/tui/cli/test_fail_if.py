@@ -66,7 +66,7 @@ def test_parentheses_join_as_in_python() -> None:
         "",
     ],
 )
-def test_what_is_not_made_of_comparisons_is_refused_and_never_run(text: str) -> None:
+def test_any_other_expression_is_refused_and_never_evaluated(text: str) -> None:
     with pytest.raises(UserError, match="is not a comparison"):
         parse(text)
 

@@ -4,7 +4,7 @@ import pytest
 
 from recordings.library import GOLDEN
 from tests.tui.command_line import pendu
-from tests.tui.stage import key_of, lab, player
+from tests.tui.harness import key_of, lab, player
 from tui.views import VIEWS
 
 NAMES = {  # of keys that Textual calls something else

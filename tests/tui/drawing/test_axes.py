@@ -16,9 +16,7 @@ def rows_of_labels(axis, rows):
 
 
 @given(st.floats(-17, 6), st.floats(0, 23), ROWS)
-def test_a_logarithmic_axis_holds_its_numbers_and_labels_decades_in_the_middle_of_rows_equally_far_apart(
-    low, size, rows
-):
+def test_a_logarithmic_axis_covers_its_range_and_labels_evenly_spaced_rows(low, size, rows):
     axis = log_axis(low, low + size, rows)
     assert axis.low <= low
     assert low + size <= axis.high
@@ -27,7 +25,7 @@ def test_a_logarithmic_axis_holds_its_numbers_and_labels_decades_in_the_middle_o
 
 
 @given(st.floats(-1e6, 1e6), st.floats(-1e6, 1e6), ROWS)
-def test_a_linear_axis_holds_its_numbers_and_labels_round_ones_in_the_middle_of_rows_equally_far_apart(a, b, rows):
+def test_a_linear_axis_covers_its_range_and_labels_evenly_spaced_rows(a, b, rows):
     low, high = min(a, b), max(a, b)
     axis = linear_axis(low, high, rows)
     assert axis.low <= low
@@ -46,7 +44,7 @@ def assert_even(rows):
 
 
 @given(st.floats(-1e6, 1e6), st.floats(-1e6, 1e6), st.integers(8, 60))
-def test_an_axis_with_some_room_has_labels_enough_and_uses_at_least_a_third_of_it(a, b, rows):
+def test_an_axis_has_enough_labels_and_its_data_fills_at_least_a_third_of_it(a, b, rows):
     low, high = min(a, b), max(a, b)
     assume(high - low > max(1e-3 * max(abs(a), abs(b)), 1e-15))
     axis = linear_axis(low, high, rows)
@@ -60,7 +58,7 @@ def test_labels_stay_narrow_enough_for_the_smallest_chart(middle, spread, rows):
         assert 5 <= axis.label_width <= 11  # a sign, the six digits that differ, and e-15
 
 
-def test_the_axes_that_the_lab_shows_most():
+def test_the_most_common_axes_of_the_lab():
     assert log_axis(-7.3, 0.6, 14).labels == {
         2: "100",
         0: "1",
@@ -92,7 +90,7 @@ def test_an_hour_is_labelled_in_minutes_and_a_window_in_seconds():
 
 
 @given(st.floats(-300, 300), st.floats(0, 600), st.integers(9, 200))
-def test_decades_from_left_to_right_hold_their_numbers_and_do_not_crowd(low, size, columns):
+def test_a_horizontal_logarithmic_axis_covers_its_range_and_does_not_crowd_labels(low, size, columns):
     axis = log_x_axis(low, low + size, columns)
     assert axis.low <= low
     assert low + size <= axis.high

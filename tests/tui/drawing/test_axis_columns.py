@@ -19,7 +19,7 @@ def rows(draw):
 
 
 @given(rows(), st.integers(1, 30))
-def test_every_column_has_the_lowest_low_and_the_highest_high_of_its_rows(data, columns):
+def test_a_column_has_the_lowest_low_and_the_highest_high_of_its_rows(data, columns):
     x, low, high = data
     lows, highs = per_column(x, low, high, 0, 40, columns)
     edges = np.linspace(0, 40, columns + 1) - 1e-9 * 40 / columns  # rows on an edge belong to the right
@@ -37,7 +37,7 @@ def test_every_column_has_the_lowest_low_and_the_highest_high_of_its_rows(data, 
 
 
 @given(rows(), st.integers(1, 30), st.floats(0, 50))
-def test_a_held_column_is_the_largest_of_those_before_it_and_ends_with_the_data(data, columns, hold):
+def test_a_held_column_is_the_largest_of_the_columns_before_it_up_to_the_end_of_the_data(data, columns, hold):
     x, _, high = data
     largest = held(x, high, 0, 40, columns, hold)
     plain = per_column(x, high, high, 0, 40, columns)[1]
@@ -50,7 +50,7 @@ def test_a_held_column_is_the_largest_of_those_before_it_and_ends_with_the_data(
             assert (largest[column, series] == expected) or (np.isnan(largest[column, series]) and expected == -np.inf)
 
 
-def test_what_was_before_the_chart_is_held_into_its_first_columns():
+def test_values_from_before_the_chart_are_held_into_its_first_columns():
     x = np.array([0.5, 1.5, 2.5])
     values = np.array([[9.0], [1.0], [2.0]])
     assert held(x, values, 1, 3, 2, 0.0).ravel().tolist() == [1, 2]
@@ -58,7 +58,7 @@ def test_what_was_before_the_chart_is_held_into_its_first_columns():
 
 
 @given(st.floats(0, 1e9), st.floats(1, 1e4), st.integers(5, 200))
-def test_a_window_ends_at_the_last_moment_to_a_column_and_columns_keep_their_place(latest, seconds, columns):
+def test_a_window_ends_within_a_column_of_the_last_moment_and_columns_keep_their_place(latest, seconds, columns):
     start, end = time_span(np.array([0.0, latest]), seconds, columns)
     assert end - start == pytest.approx(seconds, rel=1e-4)  # 1e9 s less 20 s has few digits left
     assert latest <= end * (1 + 1e-9)
@@ -67,7 +67,7 @@ def test_a_window_ends_at_the_last_moment_to_a_column_and_columns_keep_their_pla
 
 
 @given(st.floats(0, 1e9))
-def test_the_whole_run_fills_nine_tenths_of_the_chart(latest):
+def test_the_whole_run_fills_at_least_nine_tenths_of_the_chart(latest):
     start, end = time_span(np.array([0.0, latest]), None, 50)
     assert start == 0
     assert max(latest, 1) <= end * (1 + 1e-9)

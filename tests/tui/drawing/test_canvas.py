@@ -37,21 +37,21 @@ def test_a_dot_is_where_it_was_put():
 
 
 @given(st.lists(st.tuples(ANY, ANY)))
-def test_what_is_outside_or_not_a_number_is_not_drawn_and_everything_else_is(points):
+def test_points_outside_or_not_finite_are_the_only_ones_not_drawn(points):
     x, y = np.array(points).reshape(-1, 2).T
     picture = drawn(lambda canvas: canvas.points(x, y, 0))
     inside = {(int(i), int(j)) for i, j in points if 0 <= i < 2 * COLUMNS and 0 <= j < 4 * ROWS}
     assert dots(picture) == inside
 
 
-def test_dots_of_several_owners_share_a_cell_and_the_last_gives_it_its_colour():
+def test_dots_of_several_owners_share_a_cell_and_the_last_one_owns_it():
     canvas = Canvas(2, 1)
     canvas.points([0, 2], [0, 0], 0)
     canvas.points(1, 3, 1)
     assert canvas.picture().row(0) == [("⢁", 1), ("⠁", 0)]
 
 
-def test_a_row_is_as_few_runs_as_it_can_be():
+def test_a_row_has_as_few_spans_as_possible():
     canvas = Canvas(6, 1)
     canvas.points([0, 2, 6], [0, 0, 0], 2)
     assert canvas.picture().row(0) == [("⠁⠁", 2), (" ", NOBODY), ("⠁", 2), ("  ", NOBODY)]
@@ -95,13 +95,13 @@ def test_a_line_that_leaves_the_canvas_is_the_same_inside_it(points):
 
 
 @given(st.lists(st.tuples(ANY, ANY), max_size=5))
-def test_any_numbers_make_a_line_without_harm(points):
+def test_any_numbers_make_a_line(points):
     x, y = np.array(points).reshape(-1, 2).T
     assert drawn(lambda canvas: canvas.line(x, y, 0)).characters.shape == (ROWS, COLUMNS)
 
 
 @pytest.mark.parametrize("far", [1e20, 1e300, np.nan, np.inf])
-def test_a_line_from_far_away_or_nowhere_takes_no_longer_than_the_canvas_is_wide(far):
+def test_a_line_from_far_away_has_no_more_dots_than_the_canvas_is_long(far):
     assert len(dots(drawn(lambda canvas: canvas.line([far, 5, -far], [far, 5, -far], 0)))) <= 2 * COLUMNS + 4 * ROWS
 
 
@@ -117,13 +117,13 @@ def test_a_disc_is_round_because_dots_are_square():
 
 
 @given(ANY, ANY)
-def test_a_disc_anywhere_is_drawn_as_far_as_it_is_on_the_canvas(x, y):
+def test_a_disc_is_clipped_to_the_canvas(x, y):
     inside = dots(drawn(lambda canvas: canvas.disc(x, y, 2.5, 0)))
     assert all(np.hypot(i + 0.5 - x, j + 0.5 - y) <= 2.5 for i, j in inside)
     assert inside or not (0 <= x <= 2 * COLUMNS and 0 <= y <= 4 * ROWS)
 
 
-def test_a_label_stands_over_dots_whenever_they_are_drawn_and_is_cut_off_at_the_edge():
+def test_a_label_covers_dots_and_is_cut_off_at_the_edge():
     canvas = Canvas(6, 1)
     canvas.label(3, 0, "label", 1)
     canvas.line([0, 12], [0, 0], 0)
@@ -133,7 +133,7 @@ def test_a_label_stands_over_dots_whenever_they_are_drawn_and_is_cut_off_at_the_
     assert not canvas.is_free(6, 0)
 
 
-def test_a_text_is_wrapped_into_the_middle():
+def test_a_text_is_wrapped_and_centred():
     picture = Picture.of_text("A chart needs 20×5 characters.", 12, 5, TEXT)
     assert picture.text == "\n  A chart\n needs 20×5\ncharacters.\n"
     assert Picture.of_text("too long for this", 3, 2, TEXT).characters.shape == (2, 3)

@@ -54,7 +54,7 @@ def runs(draw):
 
 @settings(max_examples=50)
 @given(runs(), st.integers(0, COUNT - 1), st.integers(30, 60), st.integers(8, 16))
-def test_on_a_linear_axis_every_column_shows_its_lowest_and_its_highest_value(run, index, width, height):
+def test_on_a_linear_axis_every_column_shows_its_lowest_and_highest_value(run, index, width, height):
     x, values = run
     found, dot, columns = plotted(chart(window(x, values), width, height, log=False, seconds=10, shown=[index]), False)
     for extremes in per_column(x, values[:, None], values[:, None], *time_span(x, 10, columns), columns):
@@ -77,7 +77,7 @@ def test_on_a_logarithmic_axis_every_column_shows_its_largest_magnitude(run, rep
 
 @settings(max_examples=150)
 @given(st.data())
-def test_whatever_the_numbers_and_the_size_a_chart_comes_out(data):
+def test_any_numbers_and_any_size_make_a_chart(data):
     """What plotext cannot bear would end the process, and with it this test run."""
     count = data.draw(st.integers(0, 30))
     x = np.cumsum(data.draw(arrays(np.float64, count, elements=st.floats(0, 1e6))))
@@ -102,7 +102,7 @@ def test_whatever_the_numbers_and_the_size_a_chart_comes_out(data):
     st.integers(1, 70),
     st.integers(1, 25),
 )
-def test_whatever_the_points_a_loglog_chart_comes_out(data, width, height):
+def test_any_points_make_a_loglog_chart(data, width, height):
     series = [
         Series(owner, "esvr?"[owner], [x for x, _ in points], [y for _, y in points], dotted)
         for owner, (points, dotted) in enumerate(data)
@@ -174,37 +174,37 @@ def test_speed_against_accuracy():
 
 @given(st.sets(st.integers(0, COUNT - 1)))
 @settings(max_examples=20)
-def test_every_shown_method_has_its_letter_and_no_other_has(shown):
+def test_only_shown_methods_have_letters(shown):
     letters = "".join(
         line[6:] for line in chart(window([1, 2, 3], [1, 1, 1]), shown=sorted(shown)).text.splitlines()[:-2]
     )
     assert {letter for letter in letters if letter.isalpha()} == {METHODS[index].letter for index in shown}
 
 
-def test_zeros_are_drawn_at_the_floor_and_not_lost():
+def test_zeros_are_drawn_at_the_floor():
     picture = chart(window([1, 2, 3, 4], [0, 0, 0, 0]), 40, 12, shown=[3])
     assert "1e-17" in picture.text or "1e-18" in picture.text
     assert "⣀" in picture.text or "⠤" in picture.text
 
 
-def test_owners_are_those_of_the_methods():
+def test_a_line_is_owned_by_its_method():
     picture = chart(window([1, 2, 3], [1, 1, 1]), shown=[2])
     assert set(picture.owners.ravel().tolist()) == {2, FRAME, TEXT, NOBODY}
 
 
-def test_a_method_that_has_failed_leaves_room_for_the_others():
+def test_a_failed_method_leaves_room_for_the_others():
     picture = chart(window([1, 2], [[1e300, 1e-3, 1e-3, 1e-5]] * 2))
     labels = [float(line.partition("┤")[0]) for line in picture.text.splitlines() if "┤" in line]
     assert 1e6 <= max(labels) <= 1e8
     assert min(labels) <= 1e-4
 
 
-def test_where_time_has_turned_the_axis_says_that_it_is_the_time_run():
+def test_after_a_reversal_the_axis_is_labelled_as_time_run():
     assert "20 s run" in chart(window([1, 2], [1, 2], turned=True), seconds=20).text
 
 
 @pytest.mark.parametrize("size", [(SMALLEST[0] - 1, 30), (80, SMALLEST[1] - 1)])
-def test_too_small_a_place_gets_a_sentence(size):
+def test_a_chart_that_is_too_small_is_replaced_by_a_sentence(size):
     assert "A chart needs 20×5" in " ".join(chart(window([1, 2], [1, 2]), *size).text.split())
 
 
@@ -214,7 +214,7 @@ def test_the_smallest_chart_still_has_its_lines_and_labels():
     )
 
 
-def test_charts_asked_for_by_several_threads_do_not_disturb_each_other():
+def test_charts_can_be_drawn_in_several_threads():
     def build(number):
         return chart(window(range(20), np.full(20, 10.0**-number)), seconds=20, shown=[number % COUNT]).text
 

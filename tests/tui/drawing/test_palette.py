@@ -72,13 +72,13 @@ def test_methods_are_told_apart_by_the_colour_blind(theme, apart):
 
 
 @THEMES
-def test_what_is_read_has_the_contrast_that_wcag_asks_of_text(theme):
+def test_text_has_the_contrast_required_by_wcag(theme):
     colours = PALETTES[theme]
     for owner in (*range(len(METHODS)), EXACT, TEXT, WARN):
         assert contrast(colours.colour(owner), colours.background) >= 4.5
 
 
-def test_in_high_contrast_all_that_is_read_has_the_contrast_of_wcags_strictest_level():
+def test_in_high_contrast_text_meets_the_strictest_level_of_wcag():
     colours = PALETTES["high-contrast"]
     for owner in (*range(len(METHODS)), EXACT, FRAME, TEXT, WARN):
         assert contrast(colours.colour(owner), colours.background) >= 7
@@ -101,12 +101,12 @@ def test_methods_are_told_apart_in_the_terminals_own_16_colours(terminal):
     assert min(contrast(method, black) for method in methods) >= 4.1  # of text 4.5 is asked, of graphics 3
 
 
-def test_of_the_terminals_own_colours_trails_have_the_darker_ones():
+def test_with_the_terminals_own_colours_trails_have_the_darker_ones():
     assert [PALETTES["ansi"].colour(index + FAINT) for index in range(4)] == ["red", "blue", "cyan", "yellow"]
 
 
 @THEMES
-def test_lines_are_seen_and_trails_are_fainter_than_their_methods(theme):
+def test_lines_are_visible_and_trails_are_fainter_than_their_methods(theme):
     colours = PALETTES[theme]
     assert contrast(colours.colour(FRAME), colours.background) >= 3  # WCAG's bound for graphics
     for owner in range(len(METHODS)):
@@ -120,7 +120,7 @@ def test_a_fifth_and_a_ninth_method_have_colours_of_their_own(theme):
     assert len({colours.colour(index) for index in range(12)}) == 12
 
 
-def test_characters_of_nobody_have_the_colour_of_text():
+def test_blanks_have_the_colour_of_text():
     assert PALETTES["dark"].colour(NOBODY) == PALETTES["dark"].text
 
 
@@ -134,7 +134,7 @@ def test_characters_of_nobody_have_the_colour_of_text():
         ("nord", "dark"),
     ],
 )
-def test_other_themes_have_the_palette_that_their_names_say(theme, name):
+def test_other_themes_get_the_palette_that_suits_their_name(theme, name):
     assert palette(theme) is PALETTES[name]
 
 

@@ -11,7 +11,7 @@ from engine.methods import METHODS
 from engine.scenes import SCENES
 from recordings.library import GOLDEN, listing
 from recordings.live_recorder import LiveRecorder
-from tests.tui.stage import Theatre, lab, on_stage
+from tests.tui.harness import Theatre, lab, on_stage
 from tui.drawing.palette import PALETTES
 from tui.playback.live import Live
 from tui.screens.app import PenduApp

@@ -4,14 +4,15 @@ from dataclasses import replace
 
 import pytest
 
+from engine.run.stepping import Stepping
 from engine.scenes import DEFAULT_SCENE
-from tests.tui.sitting import FPS, eventful
+from tests.tui.harness import after, eventful
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.playhead import Pace
 from tui.playback.replay import Replay
 from tui.playback.shown import Shown
-from tui.playback.source import RecordingStatus, own_h
+from tui.playback.source import RecordingStatus
 from tui.screens.insight_line import fitted
 from tui.screens.key_line import key_row
 from tui.screens.keys import COMMON, LIVE, hinted
@@ -24,11 +25,8 @@ def text(row) -> str:
     return "".join(words for words, _ in row).rstrip()
 
 
-def lab(seconds: float = 12.0, scene=DEFAULT_SCENE) -> Live:
-    live = Live(scene, clock=lambda: 0.0)
-    for frame in range(round(seconds * FPS) + 1):
-        live.tick(frame / FPS)
-    return live
+def lab(seconds: float = 12.0) -> Live:
+    return after(DEFAULT_SCENE, seconds)
 
 
 class Taped(Live):
@@ -65,7 +63,7 @@ def test_the_status_line_leaves_out_what_matters_least_and_never_runs_over(width
 def test_at_80_columns_it_says_which_run_it_is_at_which_step_and_whether_that_is_recorded():
     live = taped()
     assert "  z 0.157  scene drift  REC 1 min" in text(status_row(live, 80))
-    live.set_h(-0.2, equal_cost=True)
+    live.set_stepping(Stepping(-0.2, equal_cost=True))
     live.set_speed(0.25)
     live.playhead = live.playhead.moved_to(0.0)
     live.sample = replace(live.sample, t=725.0)
@@ -99,7 +97,7 @@ def test_speeds_are_read_as_people_say_them():
 def rows(live: Live, width: int, shown: Shown | None = None) -> str:
     exact = live.exact.at(live.sample.t)
     return "\n".join(
-        text(row) for row in table(live.sample, live.judgements, exact, own_h(live), shown or Shown(), width)
+        text(row) for row in table(live.sample, live.judgements, exact, live.stepping.own(), shown or Shown(), width)
     )
 
 

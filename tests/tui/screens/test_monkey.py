@@ -15,9 +15,9 @@ from recordings.library import resolve
 from recordings.live_recorder import LiveRecorder
 from recordings.recording import Recording
 from recordings.verify import verify
+from tests.tui.harness import on_stage
 from tests.tui.monkey import ESCDELAY, SIZE, play, play_on_stage
 from tests.tui.pty_lab import PtyLab
-from tests.tui.stage import on_stage
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay

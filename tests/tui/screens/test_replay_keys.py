@@ -9,8 +9,7 @@ import pytest
 
 from engine.scenes import DEFAULT_SCENE
 from recordings.recording import Recording
-from tests.tui.sitting import eventful, recorded
-from tests.tui.stage import on_stage, player
+from tests.tui.harness import eventful, on_stage, player, recorded
 from tui.cli.errors import UserError
 from tui.playback.live import Live
 from tui.playback.marks import Marks

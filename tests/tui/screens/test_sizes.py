@@ -4,8 +4,7 @@ import random
 
 import pytest
 
-from tests.tui.sitting import eventful
-from tests.tui.stage import lab, player
+from tests.tui.harness import eventful, lab, player
 from tui.screens.seek_bar import SeekBar
 from tui.screens.status_line import StatusLine
 from tui.screens.too_small import TooSmall

@@ -10,7 +10,7 @@ from engine.scenes import DEFAULT_SCENE, SCENES
 from recordings.library import resolve
 from tests.tui.command_line import pendu
 from tests.tui.conftest import SNAPSHOTS
-from tests.tui.stage import player
+from tests.tui.harness import player
 from tui.screens.still import normalised, still
 from tui.terminal.options import TerminalOptions
 

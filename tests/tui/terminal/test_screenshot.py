@@ -5,7 +5,7 @@ import time
 import pytest
 
 from recordings import library
-from tests.tui.stage import lab
+from tests.tui.harness import lab
 from tui.screens.key_line import KeyLine
 from tui.screens.status_line import StatusLine
 from tui.terminal.screenshot import save_screenshot, text_of

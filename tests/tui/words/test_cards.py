@@ -1,10 +1,11 @@
-"""Cards say what METHODS and SCENES say, and nothing else."""
+"""Cards show what METHODS and SCENES hold, and nothing else."""
 
 import pytest
 
 from engine.methods import METHODS
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES
-from tests.tui.stage import lab
+from tests.tui.harness import lab
 from tui.playback.live import Live
 from tui.screens.keys import COMMON, LIVE, REPLAY
 from tui.screens.text import help_text
@@ -25,25 +26,25 @@ def test_a_method_card_has_every_claim(index):
     method, card = METHODS[index], words(method_card(index))
     for claim in (method.label, *method.other_names, method.formula, method.reference, method.used):
         assert words(claim) in card
-    assert f"order {method.order}: half the step makes the error {2**method.order} times smaller" in card
+    assert f"order {method.order}: halving h divides the error by {2**method.order}" in card
     assert f"costs {method.force_evaluations} force evaluation" in card
     assert ("symplectic yes" in card, "reversible yes" in card) == (method.symplectic, method.reversible)
-    assert (f"up to {method.linear_limit:.4g}" in card) if method.linear_limit else ("stable none" in card)
+    assert (f"stable up to z = h w0 = {method.linear_limit:.4g}" if method.linear_limit else "stable at no h") in card
 
 
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
-def test_a_scene_card_says_what_to_watch_and_has_the_numbers(scene):
+def test_a_scene_card_has_what_to_watch_and_the_numbers(scene):
     card = words(scene_card(scene))
     assert words(scene.watch) in card
     for number in (scene.omega, scene.length, scene.gravity, scene.h):
         assert f"{number:.5g}" in card
 
 
-def test_a_scene_that_has_nothing_to_watch_says_so_by_silence():
+def test_a_scene_of_ones_own_has_nothing_to_watch():
     assert "watch" not in scene_card(SCENES["drift"].altered(theta=2.0))
 
 
-def test_no_line_is_longer_than_the_reader_is_wide():
+def test_lines_fit_the_text_screen():
     for card in (*map(method_card, range(len(METHODS))), *map(scene_card, SCENES.values())):
         assert max(map(len, card.splitlines())) <= WIDTH
     for keys in ((*LIVE, *COMMON), (*REPLAY, *COMMON), phase.KEYS, accuracy.KEYS, stability.KEYS):
@@ -57,16 +58,19 @@ def test_the_help_begins_with_what_to_watch_and_ends_with_the_methods():
     assert text.index("Time\n") < text.index("Display\n") < text.index(METHODS[0].formula)
 
 
-def test_the_help_has_the_step_in_force_beside_the_one_of_the_scene():
+def test_the_help_shows_the_current_step_next_to_the_scenes():
     live = Live(SCENES["drift"])
     assert "now" not in words(scene_card(live.scene))
-    live.set_h(-0.4, equal_cost=True)
+    live.set_stepping(Stepping(-0.4, equal_cost=True))
     text = words(help_text(LIVE, live))
-    assert "step h = 0.05 s, z = h w0 = 0.1566 now h = 0.4 s, z = 1.25; at equal cost" in text
+    assert (
+        "step h = 0.05 s, z = h w0 = 0.1566 now h = 0.4 s, z = 1.25; at equal cost, the cheaper methods split it"
+        in text
+    )
     assert "time runs backwards" in text
 
 
-async def test_the_help_begins_with_the_keys_of_what_has_the_focus():
+async def test_the_help_begins_with_the_keys_of_the_focused_pane():
     async with lab() as theatre:
         for view, pane, first in ((None, None, "Run"), (None, PhasePane, "Phase space"), ("f5", None, "Stability")):
             if view:

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from engine.run.stepping import Stepping
 from engine.scenes import LIMITS, SCENES, Scene
 from recordings.library import GOLDEN
 from recordings.live_recorder import LiveRecorder
@@ -27,7 +28,7 @@ def options_of(text: str):
 
 
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
-def test_a_scene_of_the_list_is_called_by_its_name(scene):
+def test_a_listed_scene_is_given_by_name(scene):
     text = command(Live(scene))
     assert text == f"pendu-tui live --scene {scene.name}"
     assert scene_of(options_of(text)) == scene
@@ -39,7 +40,7 @@ def test_a_scene_of_the_list_is_called_by_its_name(scene):
     length=st.floats(0.01, 100),
     h=st.floats(1e-3, 0.1),
 )
-def test_any_other_scene_comes_back_to_the_last_bit(theta, omega, length, h):
+def test_other_scenes_are_reproduced_to_the_last_bit(theta, omega, length, h):
     scene = Scene(theta=theta, omega=omega, length=length, h=h)
     again = scene_of(options_of(command(Live(scene))))
     assert (again.theta, again.omega, again.length, again.gravity, again.h) == (theta, omega, length, scene.gravity, h)
@@ -49,12 +50,12 @@ def test_the_speed_is_kept():
     assert options_of(command(Live(SCENES["spin"], speed=0.25))).speed == 0.25
 
 
-def test_a_run_whose_step_size_changed_is_found_in_its_recording(tmp_path):
+def test_after_a_change_of_step_size_the_command_points_into_the_recording(tmp_path):
     live = Live(SCENES["drift"], clock=lambda: 0.0)
     live.record(LiveRecorder(tmp_path / "my run.mcap"))
     for frame in range(61):
         live.tick(frame / 30)
-    live.set_h(0.1)
+    live.set_stepping(Stepping(0.1))
     options = options_of(command(live))
     live.close()
     assert Path(options.file) == tmp_path / "my run.mcap"
@@ -62,7 +63,7 @@ def test_a_run_whose_step_size_changed_is_found_in_its_recording(tmp_path):
     assert options.paused
 
 
-def test_a_replay_is_found_where_it_stands():
+def test_the_command_of_a_replay_starts_where_it_stands():
     path = GOLDEN / "drift.mcap"
     replay = Replay(Recording.open(path), Marks(path))
     replay.seek(1.5)

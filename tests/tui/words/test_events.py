@@ -1,10 +1,11 @@
-"""The diary: what was done and what happened, in order and in time."""
+"""The list of events: inputs and milestones, in order and with their times."""
 
 import pytest
 
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES
-from recordings.live_recorder import LiveRecorder
 from recordings.recording import Recording
+from tests.tui.harness import after, recorded
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
@@ -16,47 +17,41 @@ from tui.words.events import event_lines
 DRIFT = SCENES["drift"]
 
 
-def after(live: Live, seconds: float, begin: float = 0.0) -> Live:
-    for frame in range(round(seconds * 30) + 1):
-        live.tick(begin + frame / 30)
-    return live
-
-
 def texts(live: Live) -> list[str]:
     return [line.text for line in event_lines(live)]
 
 
-def test_the_diary_of_the_first_twenty_seconds():
-    lines = event_lines(after(Live(DRIFT, clock=lambda: 0.0), 20))
+def test_the_events_of_the_first_twenty_seconds():
+    lines = event_lines(after(DRIFT, 20))
     assert [str(line) for line in lines] == [
         "   0.00 start drift, h 0.05 s",
         "   7.15 Explicit Euler over the top, 5.1 E0",
-        "   8.60 Explicit Euler: grows",
-        "   8.60 RK4: drifts",
-        "  17.20 Symplectic Euler: bounded",
-        "  17.20 Verlet: bounded",
+        "   8.60 Explicit Euler gains energy",
+        "   8.60 RK4 loses energy",
+        "  17.20 Symplectic Euler stays bounded",
+        "  17.20 Verlet stays bounded",
     ]
     assert [line.method for line in lines] == [None, 0, 0, 3, 1, 2]
 
 
-def test_changes_and_marks_are_there_and_pauses_are_not():
-    live = after(Live(DRIFT, clock=lambda: 0.0), 1)
+def test_changes_and_marks_are_listed_and_pauses_are_not():
+    live = after(DRIFT, 1)
     live.mark()
     live.pause(True)
     live.pause(False)
     live.set_speed(2)
-    live.set_h(0.1)
+    live.set_stepping(Stepping(0.1))
     live.step(1)
     live.mark("question 2")
-    live.set_h(-0.1)
-    live.set_h(0.4, equal_cost=True)
+    live.set_stepping(Stepping(-0.1))
+    live.set_stepping(Stepping(0.4, equal_cost=True))
     live.start(DRIFT.altered(theta=2.0))
     assert texts(live) == [
         "start drift, h 0.05 s",
         "mark 1",
         "h 0.1 s",
         "mark 2: question 2",
-        "time backwards, h 0.1 s",
+        "time reversed, h 0.1 s",
         "h 0.4 s, equal cost",
         "start 114.6° 0 rad/s, h 0.05 s",
         "h 0.2 s, equal cost",
@@ -64,15 +59,9 @@ def test_changes_and_marks_are_there_and_pauses_are_not():
     assert [line.run for line in event_lines(live)] == [1] * 6 + [2] * 2
 
 
-def test_marks_beside_a_recording_are_at_the_time_of_their_step(tmp_path):
-    live = Live(DRIFT, clock=lambda: 0.0)
-    live.record(LiveRecorder(tmp_path / "run.mcap"))
-    for change in (0.1, -0.02):
-        after(live, 2, live.playhead.seen or 0.0)
-        live.set_h(change)
-    after(live, 1, live.playhead.seen)
-    live.close()
-    path = tmp_path / "run.mcap"
+def test_marks_next_to_a_recording_have_the_time_of_their_step(tmp_path):
+    larger, backwards = (lambda live, h=h: live.set_stepping(Stepping(h)) for h in (0.1, -0.02))
+    path = recorded(tmp_path / "run.mcap", 2.0, larger, 2.0, backwards, 1.0)
     with Recording.open(path) as recording:
         replay = Replay(recording, Marks(path), clock=lambda: 0.0)
         times = []
@@ -87,28 +76,28 @@ def test_marks_beside_a_recording_are_at_the_time_of_their_step(tmp_path):
         assert "mark 3: at 4.5" not in [line.text for line in event_lines(replay)]
 
 
-def test_after_a_step_back_there_is_no_future_in_it():
-    live = after(Live(DRIFT, clock=lambda: 0.0), 9)
+def test_a_step_back_removes_what_comes_later():
+    live = after(DRIFT, 9)
     live.step(-20)
     assert texts(live)[-1] == "Explicit Euler over the top, 5.1 E0"
     live.step(-20)
     assert texts(live) == ["start drift, h 0.05 s"]
 
 
-def test_a_method_that_failed_is_in_it():
+def test_a_failed_method_is_listed():
     live = Live(DRIFT.altered(theta=1e-150), clock=lambda: 0.0)
     while live.sample.readings[0].diverged_at is None:
         live.step(1000)
     assert "Explicit Euler failed" in texts(live)
 
 
-def test_lines_fit_into_the_pane_of_the_smallest_layout_that_has_one():
+def test_lines_fit_the_smallest_pane():
     for scene in SCENES.values():
-        assert all(len(str(line)) <= 46 for line in event_lines(after(Live(scene, clock=lambda: 0.0), 60)))
+        assert all(len(str(line)) <= 46 for line in event_lines(after(scene, 60)))
 
 
-async def test_the_pane_shows_the_newest_last_and_is_there_only_where_there_is_room():
-    live = after(Live(DRIFT, clock=lambda: 0.0), 20)
+async def test_the_pane_shows_the_newest_last_and_only_where_there_is_room():
+    live = after(DRIFT, 20)
     app = PenduApp(LiveScreen(live, clock=lambda: 20.0))
     async with app.run_test(size=(120, 40)) as pilot:
         await pilot.pause()

@@ -1,7 +1,7 @@
-"""Each hint comes once, and to those who need it."""
+"""Each hint is shown once, unless the user knows it already."""
 
 from recordings.events import Event
-from tests.tui.stage import lab
+from tests.tui.harness import lab
 from tui.screens.insight_line import InsightLine
 from tui.words.insight import HINT_SHOWN, HINTS, hint
 
@@ -14,19 +14,19 @@ def shown(events: list[Event]) -> list[str]:
     return [text for before, text in zip(["", *told], told, strict=False) if text != before and text]
 
 
-def test_each_hint_comes_once_for_some_seconds():
+def test_each_hint_is_shown_once_for_some_seconds():
     assert shown([FIRST_START]) == [text for _, _, text in HINTS]
     assert sum(bool(hint(seconds / 10, [])) for seconds in range(1200)) == len(HINTS) * HINT_SHOWN * 10
 
 
-def test_who_has_done_it_is_not_told_how():
+def test_a_hint_is_left_out_once_its_key_was_used():
     for known, event in enumerate(
         [Event("pause", 1, 3, 0.1), Event("set_h", 1, 3, 0.1, h=0.1), Event("start", 2, 0, 0.0)]
     ):
         assert shown([FIRST_START, event]) == [text for n, (_, _, text) in enumerate(HINTS) if n != known]
 
 
-async def test_hints_are_on_the_insight_line_and_leave_it_again():
+async def test_hints_come_and_go_on_the_insight_line():
     async with lab(size=(60, 16)) as theatre:
         said = []
         for _ in range(31):

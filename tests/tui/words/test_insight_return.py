@@ -1,10 +1,11 @@
-"""What is said when time has run back to its start."""
+"""The insight when time has run back to the start."""
 
 import re
 from dataclasses import replace
 
 import pytest
 
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES
 from tui.playback.live import Live
 from tui.words.insight import insight, return_text
@@ -16,16 +17,16 @@ def misses(text: str) -> dict[str, float]:
 
 def there_and_back(scene_name: str, steps: int) -> Live:
     live = Live(SCENES[scene_name])
-    for h in (live.h, -live.h):
-        if h != live.h:
-            live.set_h(h)
+    for h in (live.stepping.h, -live.stepping.h):
+        if h != live.stepping.h:
+            live.set_stepping(Stepping(h))
         for _ in range(steps):
             live.step(1)
     return live
 
 
 @pytest.mark.parametrize("scene", ["drift", "large-swing", "gentle"])
-def test_ten_seconds_there_and_back_tell_who_is_reversible(scene):
+def test_ten_seconds_there_and_back_show_which_methods_are_reversible(scene):
     live = there_and_back(scene, round(10 / SCENES[scene].h))
     text = insight(live)
     assert text.startswith("Back at t = 0")
@@ -37,20 +38,20 @@ def test_ten_seconds_there_and_back_tell_who_is_reversible(scene):
     assert missed["e"] > 1e-2
 
 
-def test_it_is_said_for_a_while_only():
+def test_the_distances_are_shown_for_a_while_only():
     live = there_and_back("drift", 40)
     assert "Back" in insight(live)
-    live.step(round(9 / live.h * -1))
+    live.step(round(9 / live.stepping.h * -1))
     assert "Back" not in insight(live)
 
 
-def test_before_time_is_back_nothing_is_said_of_it():
+def test_nothing_is_shown_before_time_is_back():
     live = there_and_back("drift", 40)
     live.step(-1)
     assert "Back" not in insight(live)
 
 
-def test_a_method_that_failed_is_not_said_to_have_missed():
+def test_a_failed_method_has_no_distance():
     sample = there_and_back("drift", 10).sample
     euler, *others = sample.readings
     sample = replace(sample, readings=(replace(euler, diverged_at=0.5), *others))

@@ -27,13 +27,13 @@ def test_the_regime_of_a_state(theta, omega, expected):
     assert regime(W0, theta, omega) == expected
 
 
-def test_the_energy_is_in_units_of_the_separatrix_and_near_it_the_distance_to_it():
+def test_the_energy_near_the_separatrix_is_written_as_its_distance_from_it():
     assert energy_share(W0, 0.0, W0) == "0.25"
     assert energy_share(W0, 0.0, 4 * W0) == "4"
     assert energy_share(W0, math.pi - 1e-6, 0.0) == "1 - 2.5e-13"
     assert energy_share(W0, math.pi, 2e-6 * W0) == "1 + 1.0e-12"
 
 
-def test_the_exact_swing_is_said_with_its_period():
+def test_the_exact_motion_has_its_period():
     assert motion_text(ExactMotion(Scene())) == "exact period 2.13914 s  E/Es 0.2298  libration"
     assert motion_text(ExactMotion(Scene(theta=0.0))) == "E/Es 0  equilibrium"

@@ -3,7 +3,7 @@ from pathlib import Path
 
 from recordings.recording import Recording
 from recordings.verify import verify
-from tests.tui.sitting import Sitting
+from tests.tui.harness import Lab
 from tui.words.recovered import recover_leftovers
 
 
@@ -12,20 +12,20 @@ def recover_in(folder: Path) -> list[str]:
 
 
 def left_unfinished(path: Path) -> Path:
-    """What a sitting leaves whose process was killed."""
-    sitting = Sitting(path)
-    sitting.run(3.0)
-    assert sitting.live.recorder is not None
-    sitting.live.recorder._recorder._file.close()
+    """What a killed lab leaves."""
+    lab = Lab(record=path)
+    lab.run(3.0)
+    assert lab.live.recorder is not None
+    lab.live.recorder._recorder._file.close()
     return path.with_name(path.name + ".part")
 
 
-def test_where_nothing_is_left_nothing_is_said(tmp_path):
+def test_without_leftovers_there_is_no_sentence(tmp_path):
     assert recover_in(tmp_path) == []
     assert recover_in(tmp_path / "no such folder") == []
 
 
-def test_what_is_left_becomes_a_whole_recording_and_is_told(tmp_path):
+def test_a_leftover_becomes_a_complete_recording_and_is_reported(tmp_path):
     part = left_unfinished(tmp_path / "one.mcap")
     (said,) = recover_in(tmp_path)
     (whole,) = tmp_path.iterdir()
@@ -36,7 +36,7 @@ def test_what_is_left_becomes_a_whole_recording_and_is_told(tmp_path):
     assert recover_in(tmp_path) == []
 
 
-def test_what_cannot_be_recovered_is_kept_told_once_and_stops_nothing(tmp_path):
+def test_what_cannot_be_recovered_is_kept_and_reported_once(tmp_path):
     (tmp_path / "bad.mcap.part").write_bytes(b"nothing of ours")
     left_unfinished(tmp_path / "good.mcap")
     said = recover_in(tmp_path)
@@ -47,10 +47,10 @@ def test_what_cannot_be_recovered_is_kept_told_once_and_stops_nothing(tmp_path):
 
 
 def test_a_recording_in_progress_is_left_alone(tmp_path):
-    sitting = Sitting(tmp_path / "one.mcap")
-    sitting.run(1.0)
+    lab = Lab(record=tmp_path / "one.mcap")
+    lab.run(1.0)
     assert recover_in(tmp_path) == []
-    sitting.live.close()
+    lab.live.close()
     assert [path.name for path in tmp_path.iterdir()] == ["one.mcap"]
 
 
@@ -70,7 +70,7 @@ def test_a_full_disk_does_not_keep_the_lab_from_starting(tmp_path, monkeypatch):
     assert not part.exists()
 
 
-def test_what_another_lab_recovers_first_is_passed_over(tmp_path, monkeypatch):
+def test_leftovers_recovered_by_another_lab_are_skipped(tmp_path, monkeypatch):
     one, two = left_unfinished(tmp_path / "one.mcap"), left_unfinished(tmp_path / "two.mcap")
     monkeypatch.setattr("tui.words.recovered.leftovers", lambda folder: [one, two])
     one.unlink()

@@ -131,7 +131,7 @@ def _map_ended(done: int, grid: Grid) -> int:
     return _ended(done == len(grid.z), f"{done} of the map's {len(grid.z)} z were computed and are kept")
 
 
-def _ended(whole: bool, kept: str = "the swings known by then to be lost are kept") -> int:
+def _ended(whole: bool, kept: str = "swings already found lost are kept") -> int:
     if whole:
         return Exit.FINE
     warn(f"interrupted; {kept}.")
@@ -142,10 +142,10 @@ def _print_linear(z: float) -> None:
     def limit(z: float) -> str:
         return f"{z:.9f}" if z else "none"
 
-    print("Linear oscillator: largest multiplier of one step, from its Jacobian; stable up to z = h·w0")
+    print("Linear oscillator: spectral radius of one step; stable up to z = h·w0")
     print_table(
         "lrrr",
-        ("method", "stable to z, measured", "theory", f"|multiplier| at z = {z:.4g}"),
+        ("method", "stable to z, measured", "theory", f"spectral radius at z = {z:.4g}"),
         (
             (m.label, limit(linear_limit(m.step)), limit(m.linear_limit), f"{amplification(m.step, z):.9f}")
             for m in METHODS
@@ -156,11 +156,11 @@ def _print_linear(z: float) -> None:
 def _print_pendulum(rows: Sequence[Row], study: StabilityStudy) -> None:
     """Print where swings are lost, and how far from there the scene is."""
     scene = study.scene
-    print(f"\nPendulum: a swing is lost if within {study.steps} steps it goes over the top, or its energy comes to lie")
-    print(f"{100 * BAND:.0f} % outside the wobble that the method has on the linear oscillator")
+    print(f"\nPendulum: a swing counts as lost if within {study.steps} steps it goes over the top or its energy leaves")
+    print(f"the linear oscillator's band by {100 * BAND:.0f} %")
     print_table(
         "lrrrlrlr",
-        ("method", "amplitude", "lost from z", "h, s", "how", "at step", f"at z = {scene.z:.4g}", "cliff / z"),
+        ("method", "amplitude", "first lost at z", "h [s]", "failure", "at step", f"at z = {scene.z:.4g}", "margin"),
         (_cells(row, scene) for row in rows),
     )
 

@@ -1,4 +1,4 @@
-"""AccuracyPane: the chart of speed against accuracy, to choose h from with the keyboard."""
+"""AccuracyPane: the chart of cost against accuracy, to choose h from with the keyboard."""
 
 import asyncio
 from collections.abc import Sequence
@@ -12,7 +12,7 @@ from engine.accuracy.study import REASONS, ErrorKind, Point
 from engine.methods import METHODS
 from engine.run.lockstep import Sample
 from tui.drawing.palette import TEXT
-from tui.playback.source import EQUAL_PARTS, Source
+from tui.playback.source import Source
 from tui.views.accuracy.chart import POWERS, accuracy_chart
 from tui.views.keys import Key, bindings
 from tui.views.messages import StepSizeChosen
@@ -37,7 +37,7 @@ KEYS = (
 
 
 class AccuracyPane(Chooser[int]):
-    """Draws the points that there are, "you are here" for each method, and one of them in words."""
+    """Draws the points known so far, with a mark at the present h of each method, and describes one of them."""
 
     BINDINGS: ClassVar[list[BindingType]] = bindings(*KEYS)
 
@@ -51,7 +51,7 @@ class AccuracyPane(Chooser[int]):
         self._building = False
 
     def begin(self, time: float, rungs: Sequence[int]) -> None:
-        """Wait for other points."""
+        """Start over: points of other step counts, or of another pendulum, are to come."""
         self.time, self.rungs, self.points, self.cursor = time, list(rungs), {}, None
 
     def add(self, point: Point) -> None:
@@ -78,7 +78,7 @@ class AccuracyPane(Chooser[int]):
 
     @property
     def aim(self) -> Point | None:
-        """The point that is spoken of: the cursor's, or the one here."""
+        """The point that is described: at the cursor, or at the present h."""
         if self.cursor is not None:
             return self.points.get((self.index, self.rungs[self.cursor]))
         return self.points.get((self.index, self.here[self.index])) if self.here else None
@@ -122,7 +122,7 @@ class AccuracyPane(Chooser[int]):
         )
 
     def action_move(self, right: int) -> None:
-        """Move the cursor along the method's points, to the right towards the dearer ones."""
+        """Move the cursor along the method's points; those to the right cost more."""
         if self.rungs:
             if self.cursor is None:
                 steps = self.here[self.index] if self.here else self.rungs[0]
@@ -134,5 +134,5 @@ class AccuracyPane(Chooser[int]):
 
     def choose(self, rung: int) -> None:
         assert self.source is not None
-        part = EQUAL_PARTS[self.index] if self.source.equal_cost else 1
-        self.post_message(StepSizeChosen(self.time / self.rungs[rung] * part))
+        h = self.time / self.rungs[rung]
+        self.post_message(StepSizeChosen(self.source.stepping.with_own(METHODS[self.index], h)))

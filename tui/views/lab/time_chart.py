@@ -19,13 +19,13 @@ NAMES: dict[Quantity, tuple[str, str]] = {
     "shadow_error": ("shadow energy error", "|shadow error|"),
     "energy": ("energy per m L² [1/s²]", "energy [1/s²]"),
 }
-"""Of the quantity itself, and of its magnitude, which is charted logarithmically."""
+"""Of the quantity itself, and of its magnitude for a logarithmic chart."""
 
 NO_MODIFIED_ENERGY = f"only {' and '.join(m.letter for m in METHODS if m.modified_energy)} have a shadow energy"
 
 
 def title(shown: Shown, exact: ExactMotion) -> str:
-    """What the chart shows, and of how much of the past."""
+    """What the chart shows, and for how long back."""
     name, magnitude = NAMES[shown.quantity]
     span = "all" if shown.seconds is None else about(shown.seconds)
     if not shown.log:
@@ -35,7 +35,7 @@ def title(shown: Shown, exact: ExactMotion) -> str:
 
 
 class TimeChart(Pane):
-    """The chart.  It is built in a thread, always from the newest data; what comes too quickly is left out."""
+    """Builds the chart in a thread, always from the newest data; samples that come too quickly are skipped."""
 
     def __init__(self, id: str | None = None) -> None:
         super().__init__(id)
@@ -55,7 +55,6 @@ class TimeChart(Pane):
         self.run_worker(self._build_on_demand(), group="chart")
 
     def paint(self, source: Source, sample: Sample) -> None:
-        """Ask for a chart."""
         self._wanted.set()
         text = title(self.shown, source.exact)
         if text != self.border_title:  # setting it paints all of the pane

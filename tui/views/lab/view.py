@@ -1,4 +1,4 @@
-"""LabView: four pendulums, the chart of their errors, phase space, the diary, and the table."""
+"""LabView: four pendulums, the chart of their errors, phase space, the events, and the table."""
 
 from collections.abc import Iterator
 
@@ -17,12 +17,11 @@ from tui.views.view import View
 
 
 class LabView(View):
-    """Which panes there are and how large is the sheet's business: it depends on the terminal."""
+    """The style sheet decides which panes there are and how large, by the size of the terminal."""
 
     KEYS = KEYS
 
     def compose(self) -> ComposeResult:
-        """Create the panes."""
         with Horizontal():
             with Container(id="side"):
                 with Grid(id="pendulums"):

@@ -5,8 +5,7 @@ import math
 from engine.methods import METHODS
 from engine.models.exact_pendulum import ExactMotion
 from engine.models.state import State
-from engine.phase_space.area import Neighbourhood
-from engine.phase_space.neighbours import Neighbours
+from engine.phase_space.area import Neighbourhood, Neighbours
 from tui.drawing.axes import in_pi
 from tui.drawing.canvas import Canvas, Picture, Span
 from tui.drawing.palette import FRAME, TEXT, mark
@@ -21,7 +20,7 @@ _NAME, _CELL = 22, 14
 def fact_rows(
     source: Source, shown: Shown, neighbours: Neighbours | None, ring: Neighbourhood | None, width: int
 ) -> list[list[Span]]:
-    """The rows; of the columns, the first ones that fit."""
+    """A line about the ring, the heads, and a row for each method; the first columns that fit."""
     exact, fit = source.exact.at(source.sample.t), max((width - _NAME) // _CELL, 0)
     heads = ("sum log det J", "area", "theta error", "dE/E0")[:fit]
     rows: list[list[Span]] = [

@@ -8,12 +8,11 @@ from textual.message import Message
 from textual.reactive import var
 
 from engine.models.state import State
-from engine.phase_space.area import Neighbourhood
-from engine.phase_space.neighbours import RADII, Neighbours
+from engine.phase_space.area import RADII, Neighbourhood, Neighbours
 from engine.run.lockstep import Sample
 from engine.scenes import SceneError
 from tui.drawing.canvas import Picture
-from tui.playback.source import Source, least_h
+from tui.playback.source import Source
 from tui.views.keys import Key, arrows, bindings
 from tui.views.messages import SceneChosen
 from tui.views.phase.facts import caption
@@ -56,7 +55,7 @@ class PhasePane(Chooser[State]):
     """Of the ring of neighbours [rad]; None: no ring."""
 
     class RingMoved(Message):
-        """The ring has caught up, or has come nearer, though the sample is the same."""
+        """The ring has moved on towards the sample, which is the same."""
 
     def __init__(self, id: str | None = None, radius: float | None = None) -> None:
         super().__init__(id)
@@ -73,7 +72,7 @@ class PhasePane(Chooser[State]):
 
     @property
     def settled(self) -> bool:
-        """Whether all of it is shown as it is now."""
+        """Whether the ring shown is that of the sample."""
         return not (self.drawable and self._catching_up)
 
     def watch_source(self) -> None:
@@ -81,7 +80,6 @@ class PhasePane(Chooser[State]):
         super().watch_source()
 
     def watch_wrap(self) -> None:
-        """Begin again with the whole portrait."""
         self._whole = self.zoomed = None
         self.draw()
 
@@ -98,7 +96,6 @@ class PhasePane(Chooser[State]):
 
     @property
     def viewport(self) -> Viewport:
-        """What is in view."""
         assert self.source is not None
         columns, rows = self.cells
         if self.zoomed is not None:
@@ -125,7 +122,7 @@ class PhasePane(Chooser[State]):
     def _follow(self, source: Source, sample: Sample) -> None:
         """Let the ring keep up; where it has not, go on without waiting for the next sample."""
         if self.neighbours is not None:
-            self.ring = self.neighbours.follow(source.scene, sample.run, sample.step, source.events, RING_STEPS)
+            self.ring = self.neighbours.follow(source.scene, sample.run, sample.step, source.changes, RING_STEPS)
             if self.neighbours.step < sample.step and not self._catching_up:
                 self._catching_up = True
                 self.set_timer(1 / 30, self._catch_up)
@@ -160,7 +157,7 @@ class PhasePane(Chooser[State]):
         """Ask for a run from here with the step size in force."""
         assert self.source is not None
         try:
-            scene = self.source.scene.altered(theta=state.theta, omega=state.omega, h=least_h(self.source))
+            scene = self.source.scene.altered(theta=state.theta, omega=state.omega, h=self.source.stepping.smallest)
         except SceneError as error:  # far out, omega may be beyond a scene's limits
             self.notify(str(error), severity="warning")
         else:

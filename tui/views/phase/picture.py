@@ -1,4 +1,4 @@
-"""States of the methods -> a picture of phase space, on the theoretical portrait."""
+"""Points in phase space, with trails and rings -> a picture on the theoretical portrait."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ Track = tuple[ArrayLike, ArrayLike]  # theta [rad], omega [rad/s]
 
 @dataclass(frozen=True, slots=True)
 class PhasePoint:
-    """Where one method is, was, and what it made of its neighbours."""
+    """Where a method is, where it was, and its ring of neighbouring starts."""
 
     theta: float  # rad
     omega: float  # rad/s
@@ -102,7 +102,7 @@ def _letter(canvas: Canvas, x: float, y: float, point: PhasePoint) -> None:
 
 
 def _with_words(picture: Picture, portrait: Portrait) -> Picture:
-    """The portrait's words, each as a whole or not at all; a point, a ring or an orbit goes before them."""
+    """The picture with the portrait's words, except those that would cover part of a point, a ring or an orbit."""
     for column, row, text, owner in portrait.words:
         cells = row, slice(column, column + len(text))
         if np.isin(picture.owners[cells], _MOVING).any():

@@ -22,7 +22,7 @@ _CURVES = 8  # about so many energies are in view
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Portrait:
-    """What does not move, for one viewport: computed once, drawn with every frame."""
+    """The part that does not move, for one viewport: computed once, drawn in each frame."""
 
     viewport: Viewport
     w0: float
@@ -59,7 +59,7 @@ class Portrait:
 
 
 def _level(field: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Which of the energies in view each dot has: evenly spaced in amplitude, or in the slowest omega of a rotation."""
+    """The band of energy of each dot: evenly spaced in amplitude, for rotations in their smallest omega."""
     spacing = np.where(field > 0, np.arcsin(np.sqrt(np.clip(field, 0, 1))), -np.sqrt(np.maximum(-field, 0)))
     step = nice(float(spacing.max() - spacing.min()) / _CURVES)
     return np.floor(spacing / step).astype(np.int64)

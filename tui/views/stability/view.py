@@ -1,4 +1,4 @@
-"""StabilityView: where each method loses a swing, for the pendulum on screen; the map fills in as it is computed."""
+"""StabilityView: where each method becomes unstable; the map fills in as it is computed."""
 
 import math
 
@@ -11,21 +11,19 @@ from tui.views.stability.pane import KEYS, StabilityPane
 from tui.views.view import View
 
 PASSES = (300, 10_000)
-"""Steps of each swing: a first picture at once, then the lasting one."""
+"""Steps of each swing: a first map at once, then the final one."""
 
 
 class StabilityView(View):
-    """The map, which depends on z and amplitude only: another scene moves "here" and the axis, not the map."""
+    """The map depends on z and amplitude only: another scene moves the mark and the axis, not the map."""
 
     KEYS = KEYS
 
     def compose(self) -> ComposeResult:
-        """Create the pane."""
         grid = Grid((np.arange(48) + 0.5) * math.pi / 48, (np.arange(80) + 0.5) * 3 / 80, PASSES[-1])
         yield StabilityPane(grid).data_bind(View.source, View.shown, sample=View.sample_10hz)
 
     def on_mount(self) -> None:
-        """The keys are the map's from the start."""
         pane = self.query_one(StabilityPane)
         pane.focus()
         self.run_worker(self._fill(pane), exit_on_error=False)

@@ -1,4 +1,4 @@
-"""What a map of stability says about one swing, in words."""
+"""One swing of the stability map in words."""
 
 import math
 from typing import Any
@@ -13,7 +13,7 @@ CHAOS_STEPS = 2000
 
 
 def note(method: Method, theta: float, z: float, cell: Any) -> str:
-    """What becomes of a swing, in a few words."""
+    """The outcome of a swing in a few words."""
     if cell["fate"] == UNKNOWN:
         return "…"
     if cell["fate"] == HOLDS:
@@ -22,7 +22,7 @@ def note(method: Method, theta: float, z: float, cell: Any) -> str:
 
 
 def verdict(method: Method, theta: float, zs: Floats, cells: Cells, at: int, w0: float) -> str:
-    """What becomes of the swing from theta [rad] at zs[at], and how far the nearest cliff is; `cells` go along zs."""
+    """The outcome of the swing from theta [rad] at zs[at], and the nearest h with another; `cells` go along zs."""
     cell = cells[at]
     place = f"{method.label} at h {zs[at] / w0:.3g} s, {math.degrees(theta):.3g} deg:"
     if cell["fate"] == UNKNOWN:

@@ -1,6 +1,5 @@
 """F4: speed against accuracy for the pendulum on screen."""
 
-import asyncio
 import math
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -10,14 +9,14 @@ from textual.pilot import Pilot
 
 from engine.accuracy.study import Study, ladder
 from engine.methods import METHODS
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene
 from recordings.library import resolve
 from recordings.recording import Recording
+from tests.tui.harness import until, view_of
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
-from tui.screens.app import PenduApp
-from tui.screens.base import SourceScreen
 from tui.screens.live import LiveScreen
 from tui.screens.replay import ReplayScreen
 from tui.views.accuracy.chart import MARKS
@@ -25,7 +24,6 @@ from tui.views.accuracy.pane import HERE, AccuracyPane
 
 RUNGS = ladder(5.0, 0.2, 0.01, 4)
 VERLET = 2
-PATIENCE = 30  # s; a program that ended would be waited for in vain
 
 
 @pytest.fixture(autouse=True)
@@ -38,24 +36,13 @@ def said(pane: AccuracyPane) -> str:
     return " ".join(pane.text.rsplit("force evaluations\n", 1)[1].split())
 
 
+def is_complete(pane: AccuracyPane) -> bool:
+    """It has the points of the other process and those of the current step, and its chart shows them."""
+    return pane.settled and set(enumerate(pane.here)) <= set(pane.points)
+
+
 async def complete(pilot: Pilot[object], pane: AccuracyPane) -> None:
-    """Wait for the points of another process, for those here, and for the chart."""
-    async with asyncio.timeout(PATIENCE):
-        while not (pane.settled and set(enumerate(pane.here)) <= set(pane.points)):
-            await pilot.pause(0.05)
-
-
-@asynccontextmanager
-async def view_of(stage: SourceScreen, size: tuple[int, int]) -> AsyncIterator[tuple[Pilot[object], AccuracyPane]]:
-    app = PenduApp(stage)
-    async with app.run_test(size=size) as pilot:
-        await pilot.press("f4")
-        async with asyncio.timeout(PATIENCE):
-            while not app.screen.query(AccuracyPane):
-                await pilot.pause(0.01)
-        pane = app.screen.query_one(AccuracyPane)
-        await complete(pilot, pane)
-        yield pilot, pane
+    await until(pilot, lambda: is_complete(pane))
 
 
 @asynccontextmanager
@@ -65,7 +52,7 @@ async def accuracy_view(
     """The view of a paused lab, once it is complete."""
     live = Live(scene)
     live.pause(True)
-    async with view_of(LiveScreen(live), size) as (pilot, pane):
+    async with view_of(LiveScreen(live), "f4", AccuracyPane, is_complete, size) as (pilot, pane):
         yield pilot, pane, live
 
 
@@ -101,19 +88,19 @@ async def test_enter_uses_the_h_of_the_cursors_point_and_u_takes_it_back():
         run = live.sample.run
         await pilot.press("enter")
         await complete(pilot, pane)
-        assert live.h == point.h != 0.05
+        assert live.stepping.h == point.h != 0.05
         assert live.sample.run == run  # h changes, the run goes on
         assert pane.here[VERLET] == point.steps
         assert pane.cursor is None
         await pilot.press("u")
-        assert live.h == 0.05
+        assert live.stepping.h == 0.05
 
 
 async def test_while_time_runs_backwards_the_chosen_h_is_negative():
     async with accuracy_view() as (pilot, pane, live):
         await pilot.press("b", "left", "enter")
         await complete(pilot, pane)
-        assert live.h == pytest.approx(-5.0 / RUNGS[1])
+        assert live.stepping.h == pytest.approx(-5.0 / RUNGS[1])
 
 
 async def test_at_equal_cost_every_method_is_at_its_own_h():
@@ -122,7 +109,7 @@ async def test_at_equal_cost_every_method_is_at_its_own_h():
         await complete(pilot, pane)
         assert pane.here == (100, 100, 100, 25)
         await pilot.press("left", "left", "enter")
-        assert live.h == pytest.approx(4 * 5.0 / RUNGS[0])
+        assert live.stepping.h == pytest.approx(4 * 5.0 / RUNGS[0])
 
 
 async def test_another_h_moves_the_mark_and_another_start_the_points():
@@ -170,7 +157,7 @@ async def test_the_cursor_stays_on_the_ladder_and_esc_leaves_it():
 async def test_an_h_that_is_too_large_or_too_small_has_no_mark():
     async with accuracy_view() as (pilot, pane, live):
         for h in (20.0, 1e-7):
-            live.set_h(h)
+            live.set_stepping(Stepping(h))
             await pilot.pause(0.5)
             assert pane.settled
             assert "X" not in pane.text
@@ -191,11 +178,12 @@ async def test_a_replay_shows_it_and_keeps_its_arrows():
     path = resolve("drift")
     replay = Replay(Recording.open(path), Marks(path))
     replay.pause(True)
-    async with view_of(ReplayScreen(replay, lambda live: LiveScreen(live)), (80, 30)) as (pilot, pane):
+    screen = ReplayScreen(replay, lambda live: LiveScreen(live))
+    async with view_of(screen, "f4", AccuracyPane, is_complete, (80, 30)) as (pilot, pane):
         assert said(pane).endswith("you are here")
         await pilot.press("right")
         assert replay.playhead.position == pytest.approx(1.0, abs=0.05)
         assert pane.cursor is None
-        h = replay.h
+        h = replay.stepping.h
         await pilot.press("enter")
-        assert math.copysign(replay.h, 1) == h
+        assert math.copysign(replay.stepping.h, 1) == h

@@ -62,9 +62,9 @@ def test_a_symplectic_swing_is_lost_to_a_resonance_or_to_chaos(theta: float, z: 
     [
         (0.5, ""),
         (2.0, ""),
-        (2.05, "beyond limit 2 of s, v"),
-        (2.82, "beyond limit 2 of s, v"),
-        (2.9, "beyond limit 2 of s, v; 2.83 of r"),
+        (2.05, "unstable: s v (z > 2)"),
+        (2.82, "unstable: s v (z > 2)"),
+        (2.9, "unstable: s v (z > 2), r (z > 2.83)"),
     ],
 )
 def test_a_step_beyond_a_linear_limit_is_warned_of(z: float, warning: str):
@@ -73,4 +73,4 @@ def test_a_step_beyond_a_linear_limit_is_warned_of(z: float, warning: str):
 
 def test_at_equal_cost_only_the_dearest_method_may_be_beyond_its_limit():
     assert limit_warning([0.7, 0.7, 0.7, 2.8]) == ""
-    assert limit_warning([0.725, 0.725, 0.725, 2.9]) == "beyond limit 2.83 of r"
+    assert limit_warning([0.725, 0.725, 0.725, 2.9]) == "unstable: r (z > 2.83)"

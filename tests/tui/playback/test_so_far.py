@@ -1,4 +1,4 @@
-"""Shadow energies along a run, and what a return to t = 0 shows."""
+"""Modified energies along a run, and what a return to t = 0 shows."""
 
 import math
 from pathlib import Path
@@ -7,15 +7,16 @@ import numpy as np
 import pytest
 
 from engine.methods import METHODS
-from engine.models.exact_pendulum import ExactMotion
-from engine.run.lockstep import Lockstep
+from engine.run.rewindable import RewindableRun
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene
 from recordings.recording import Recording
-from tests.tui.sitting import recorded
+from tests.tui.harness import recorded
 from tui.playback.history import ErrorHistory
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
+from tui.playback.so_far import RunSoFar
 
 DRIFT = SCENES["drift"]
 INDEX = {method.key: i for i, method in enumerate(METHODS)}
@@ -23,14 +24,15 @@ INDEX = {method.key: i for i, method in enumerate(METHODS)}
 
 def run(scene: Scene, *stretches: tuple[int, float], equal_cost: bool = False) -> ErrorHistory:
     """The history of a run, a sample a step."""
-    lockstep, history, exact = Lockstep(scene), ErrorHistory(scene), ExactMotion(scene)
-    history.add(lockstep.sample(), exact.at(0.0))
+    course = RewindableRun(scene, 1)
+    so_far = RunSoFar(scene, course.changes)
+    so_far.add(course.sample())
     for steps, h in stretches:
-        lockstep.set_h(h, equal_cost)
+        course.set_stepping(Stepping(h, equal_cost))
         for _ in range(steps):
-            lockstep.advance(1)
-            history.add(lockstep.sample(), exact.at(lockstep.t), equal_cost)
-    return history
+            course.forward(1)
+            so_far.add(course.sample())
+    return so_far.history
 
 
 def largest(history: ErrorHistory, quantity: str) -> np.ndarray:
@@ -83,9 +85,9 @@ def test_a_replay_shows_what_the_lab_showed(tmp_path: Path):
         tmp_path / "sitting.mcap",
         live.append,
         2.0,
-        lambda lab: lab.set_h(0.1, True),
+        lambda lab: lab.set_stepping(Stepping(0.1, True)),
         2.0,
-        lambda lab: lab.set_h(0.1),
+        lambda lab: lab.set_stepping(Stepping(0.1)),
         1.0,
     )
     replay = Replay(Recording.open(path), Marks(path), clock=lambda: 0.0)

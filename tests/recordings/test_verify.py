@@ -1,4 +1,4 @@
-"""Verify: what was recorded comes out again to the last bit, or it is said where it does not."""
+"""Verify: re-simulation gives the recorded bits, or says where it does not."""
 
 import math
 from dataclasses import replace
@@ -11,14 +11,12 @@ from engine.models.pendulum import acceleration
 from engine.run import loops
 from engine.run.lockstep import Lockstep, Sample
 from engine.scenes import SCENES
-from recordings import rerun
 from recordings.errors import RecordingError
 from recordings.events import Entry, Event
 from recordings.headless import simulate
 from recordings.recorder import Recorder
-from recordings.rerun import Difference
-from recordings.verify import verify
-from tests.recordings.sittings import SCENE, record, start, tiny, two_runs
+from recordings.verify import TOLERANCE, Difference, verify
+from tests.recordings.examples import SCENE, record, start, tiny, two_runs
 
 
 def altered(entries, at, method, **numbers):
@@ -33,7 +31,7 @@ def reading_of(entries, at, method):
     return entries[at].value.readings[method]
 
 
-def test_a_sitting_of_several_runs_and_changes_of_h_verifies(tmp_path):
+def test_a_recording_of_several_runs_and_changes_of_h_verifies(tmp_path):
     path = record(tmp_path / "a.mcap", two_runs(), wall=lambda: 5)
     verification = verify(path)
     assert verification.complete
@@ -62,7 +60,7 @@ def test_every_scene_verifies_however_it_is_sampled(tmp_path_factory, scene, tim
 
 @pytest.mark.parametrize("field", ["theta", "omega", "energy", "energy_error", "max_energy_error", "energy_error_low"])
 @pytest.mark.parametrize("method", [0, 3])
-def test_one_unit_in_the_last_place_is_found_and_told_so_that_someone_can_act(tmp_path, field, method):
+def test_one_unit_in_the_last_place_is_found_and_reported_in_detail(tmp_path, field, method):
     entries, at = two_runs(), 3
     right = getattr(reading_of(entries, at, method), field)
     wrong = math.nextafter(right, math.inf)
@@ -77,7 +75,7 @@ def test_one_unit_in_the_last_place_is_found_and_told_so_that_someone_can_act(tm
     assert verification.max_difference == difference.size == abs(wrong - right)
 
 
-def test_a_time_that_is_not_the_steps_is_found(tmp_path):
+def test_a_wrong_time_is_found(tmp_path):
     entries = two_runs()
     clock, sample = entries[3]
     entries[3] = Entry(clock, replace(sample, t=0.61))
@@ -85,7 +83,7 @@ def test_a_time_that_is_not_the_steps_is_found(tmp_path):
     assert (difference.method, difference.field, difference.recorded) == ("", "t", 0.61)
 
 
-def test_minus_zero_is_not_zero(tmp_path):
+def test_minus_zero_differs_from_zero(tmp_path):
     entries = [Entry(0.0, start(scene=replace(SCENE, theta=0.0)))]
     lockstep = Lockstep(replace(SCENE, theta=0.0))
     entries.append(Entry(0.0, lockstep.sample()))
@@ -94,19 +92,19 @@ def test_minus_zero_is_not_zero(tmp_path):
     assert (difference.field, difference.ulps) == ("omega", 1)
 
 
-def test_a_method_that_is_said_to_have_diverged_and_has_not_is_found(tmp_path):
+def test_a_wrong_time_of_divergence_is_found(tmp_path):
     difference = verify(record(tmp_path / "a.mcap", altered(two_runs(), 3, 1, diverged_at=0.5))).first_difference
     assert (difference.field, difference.recorded, difference.computed) == ("diverged_at", 0.5, None)
     assert difference.ulps is None
     assert difference.size == math.inf
 
 
-def test_a_change_of_h_that_is_missing_is_found(tmp_path):
+def test_a_missing_change_of_h_is_found(tmp_path):
     entries = [entry for entry in two_runs() if getattr(entry.value, "kind", "") != "set_h"]
     assert not verify(record(tmp_path / "a.mcap", entries)).identical
 
 
-def test_the_first_difference_is_told_and_the_largest_measured(tmp_path):
+def test_the_first_difference_is_reported_and_the_largest_measured(tmp_path):
     entries = altered(altered(two_runs(), 3, 0, theta=1.0), 8, 2, theta=500.0)
     verification = verify(record(tmp_path / "a.mcap", entries))
     assert verification.first_difference.step == 6
@@ -114,7 +112,7 @@ def test_the_first_difference_is_told_and_the_largest_measured(tmp_path):
 
 
 @given(st.floats(-1e300, 1e300) | st.floats(-1e-322, 1e-322), st.integers(0, 50))
-def test_ulps_count_doubles_also_across_zero(value, n):
+def test_ulps_count_doubles_across_zero_too(value, n):
     other = value
     for _ in range(n):
         other = math.nextafter(other, -math.inf)
@@ -126,15 +124,15 @@ def test_ulps_count_doubles_also_across_zero(value, n):
     ("entries", "why"),
     [
         (two_runs()[:1], "it has no samples"),
-        ([*two_runs()[:4], Entry(1.0, replace(two_runs()[3].value, run=7, step=9))], "run 7 lies outside"),
+        ([*two_runs()[:4], Entry(1.0, replace(two_runs()[3].value, run=7, step=9))], "data of run 7 lies outside"),
         ([*two_runs()[:4], Entry(1.0, Event("set_h", 1, 2, 0.2, h=0.2)), *two_runs()[4:5]], "not in order"),
         ([*two_runs()[:4], Entry(1.0, Event("set_h", 1, 6, 0.6, h=0.0))], "cannot have been recorded: h = 0 s"),
-        ([*two_runs()[:4], Entry(1.0, Event("set_h", 1, 10**15, 0.6, h=0.1))], "more than can be simulated again"),
+        ([*two_runs()[:4], Entry(1.0, Event("set_h", 1, 10**15, 0.6, h=0.1))], "more than can be re-simulated"),
         ([Entry(0.0, replace(start(), step=5)), *two_runs()[1:3]], "does not begin at its start"),
         ([*two_runs()[:4], Entry(1.0, start(1))], "runs are not in order"),
     ],
 )
-def test_what_no_lab_can_have_recorded_is_refused_in_a_sentence(tmp_path, entries, why):
+def test_an_impossible_recording_is_refused_in_a_sentence(tmp_path, entries, why):
     path = record(tmp_path / "a.mcap", entries)
     with pytest.raises(RecordingError, match=why) as caught:
         verify(path)
@@ -176,20 +174,20 @@ def test_a_recording_from_a_machine_with_another_sin_verifies_within_the_toleran
     assert not verify(path).identical  # or it was no other sin
 
 
-def test_beyond_the_tolerance_a_difference_is_a_difference_also_where_sin_differs(tmp_path, monkeypatch):
+def test_a_difference_beyond_the_tolerance_is_found_even_if_sin_differs(tmp_path, monkeypatch):
     entries = two_runs()
     right = reading_of(entries, 7, 2).theta
     monkeypatch.setattr("recordings.recorder.sin_fingerprint", lambda: "another")
-    near = right * (1 + rerun.TOLERANCE / 2)
+    near = right * (1 + TOLERANCE / 2)
     verification = verify(record(tmp_path / "a.mcap", altered(entries, 7, 2, theta=near)))
     assert verification.identical
     assert verification.max_difference == abs(near - right)
-    outside = altered(entries, 7, 2, theta=right * (1 + 1e3 * rerun.TOLERANCE))
+    outside = altered(entries, 7, 2, theta=right * (1 + 1e3 * TOLERANCE))
     difference = verify(record(tmp_path / "b.mcap", outside)).first_difference
     assert (difference.method, difference.field, difference.computed) == ("velocity_verlet", "theta", right)
 
 
-def test_another_formula_is_found_also_where_sin_differs(tmp_path, monkeypatch):
+def test_another_formula_is_found_even_if_sin_differs(tmp_path, monkeypatch):
     path = tmp_path / "a.mcap"
     monkeypatch.setattr("recordings.recorder.sin_fingerprint", lambda: "another")
     with Recorder(path, wall=None) as recorder:
@@ -201,7 +199,7 @@ def test_another_formula_is_found_also_where_sin_differs(tmp_path, monkeypatch):
     assert not verify(path).identical
 
 
-def test_progress_is_told_in_bytes(tmp_path):
+def test_progress_is_counted_in_bytes(tmp_path):
     path = record(tmp_path / "a.mcap", two_runs())
     told = []
     verify(path, lambda done, size: told.append((done, size)))

@@ -1,0 +1,98 @@
+"""Fields: the one table of what the messages of a recording hold, with units.
+
+Messages, their schemas, the columns of a CSV, `verify`, `run --json` and `--fail-if` take names and units from here.
+"""
+
+from operator import attrgetter
+from typing import Any, NamedTuple, get_args
+
+from recordings.events import EventKind
+
+
+class Field(NamedTuple):
+    """One value of a message."""
+
+    name: str
+    unit: str = ""  # of a number that has one
+    about: str = ""  # what a viewer shows of a value without a unit
+    type: str = "number"  # of JSON
+    required: bool = True  # in every message of its kind
+
+    @property
+    def column(self) -> str:
+        """Its name in a table, with the unit."""
+        unit = {"rad/s": "rad_per_s", "s^-2": "per_s2"}.get(self.unit, self.unit)
+        return f"{self.name}_{unit}" if unit else self.name
+
+    @property
+    def schema(self) -> dict[str, Any]:
+        """Its JSON Schema: one type, no references, because the simplest viewer needs that."""
+        about = self.unit or self.about
+        items = {"items": {"type": "string"}} if self.type == "array" else {}
+        return {"type": self.type, **({"description": about} if about else {}), **items}
+
+
+MOMENT = (Field("run", type="integer"), Field("step", type="integer"), Field("t", "s"))
+"""Where in a recording a message belongs; in every message."""
+
+READING = (
+    Field("theta", "rad"),
+    Field("omega", "rad/s"),
+    Field("energy", "s^-2"),
+    Field("energy_error", about="(E - E0) / E0"),
+    Field("max_energy_error", about="over every step so far"),
+    Field("energy_error_low", about="since the sample before", required=False),
+    Field("energy_error_high", about="since the sample before", required=False),
+    Field("diverged_at", "s", required=False),
+)
+"""One method in a sample: the attributes of a Reading, in order.  `verify` compares all of them."""
+
+SCENE_NUMBERS = ("theta", "omega", "length", "gravity", "h")
+"""The attributes of a Scene that are numbers."""
+
+EVENT = (
+    Field("kind", about=" ".join(get_args(EventKind)), type="string"),
+    Field("scene", type="string", required=False),
+    Field("watch", type="string", required=False),
+    Field("theta", "rad", required=False),
+    Field("omega", "rad/s", required=False),
+    Field("length", "m", required=False),
+    Field("gravity", "m/s^2", required=False),
+    Field("h", "s", required=False),
+    Field("equal_cost", type="boolean", required=False),
+    Field("methods", type="array", required=False),
+    Field("speed", about="times real time", required=False),
+    Field("text", type="string", required=False),
+)
+"""An event: its kind, and what that kind needs."""
+
+VALUES = tuple(field.name for field in READING)
+NUMBERS = tuple(field.name for field in READING if field.required)
+EXTREMES = ("energy_error_low", "energy_error_high")
+
+values_of = attrgetter(*VALUES)
+"""The values of a Reading, in the order of VALUES."""
+numbers_of = attrgetter(*NUMBERS)
+"""Those of them that are always there."""
+
+
+def left_out(energy_error: float) -> dict[str, float | None]:
+    """Values that a message leaves out: extremes equal to the energy error, and that the method has not diverged."""
+    return {"energy_error_low": energy_error, "energy_error_high": energy_error, "diverged_at": None}
+
+
+def schema_of(title: str, about: str, fields: tuple[Field, ...]) -> dict[str, Any]:
+    """The JSON Schema of a kind of message."""
+    return {
+        "title": title,
+        "description": about,
+        "type": "object",
+        "properties": {field.name: field.schema for field in fields},
+        "required": [field.name for field in fields if field.required],
+    }
+
+
+SAMPLE_SCHEMA = schema_of(
+    "pendu.Sample", "A method at a step; theta from the downward vertical, energy per m L^2.", (*MOMENT, *READING)
+)
+EVENT_SCHEMA = schema_of("pendu.Event", "What was done before this step of this run.", (*MOMENT, *EVENT))
