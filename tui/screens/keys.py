@@ -52,7 +52,7 @@ LIVE = (
     Key("P,shift+p", "P", "previous scene", "scene(-1)", _RUN),
     Key("r", "r", "restart", "restart", _RUN, "Restart"),
     Key("b", "b", "reverse time", "reverse", _RUN, "Reverse"),
-    Key("n", "n", "equal cost: RK4 takes one step while the others take four", "equal_cost", _RUN, "Equal cost"),
+    Key("n", "n", "equal cost: RK4 takes one step while others take four", "equal_cost", _RUN, "Equal cost"),
     Key("m", "m", "mark this moment", "mark", _RUN, "Mark"),
     Key("full_stop", ".", "one step forward", "step(1)", _RUN),
     Key("comma", ",", "one step back", "step(-1)", _RUN),

@@ -102,4 +102,4 @@ def test_leftovers_are_counted_and_answered_with_what_saves_them():
 def test_without_a_terminal_the_lab_does_not_start_and_doctor_says_so():
     (finding,) = [f for f in pendu("doctor", "--json").json["findings"] if f["what"] == "lab"]
     assert finding["found"] == "cannot start here"
-    assert "pendu-tui run needs none" in finding["advice"]
+    assert "Use pendu-tui run" in finding["advice"]

@@ -55,7 +55,7 @@ def test_the_help_begins_with_what_to_watch_and_ends_with_the_methods():
     text = help_text((*LIVE, *COMMON), Live(SCENES["drift"]))
     assert text.startswith(scene_card(SCENES["drift"]))
     assert text.endswith(method_card(len(METHODS) - 1))
-    assert text.index("Time\n") < text.index("What is shown\n") < text.index(METHODS[0].formula)
+    assert text.index("Time\n") < text.index("Display\n") < text.index(METHODS[0].formula)
 
 
 def test_the_help_shows_the_current_step_next_to_the_scenes():
@@ -72,7 +72,7 @@ def test_the_help_shows_the_current_step_next_to_the_scenes():
 
 async def test_the_help_begins_with_the_keys_of_the_focused_pane():
     async with lab() as theatre:
-        for view, pane, first in ((None, None, "The run"), (None, PhasePane, "Phase space"), ("f5", None, "Stability")):
+        for view, pane, first in ((None, None, "Run"), (None, PhasePane, "Phase space"), ("f5", None, "Stability")):
             if view:
                 await theatre.press(view)
                 await theatre.pilot.pause()
@@ -81,5 +81,5 @@ async def test_the_help_begins_with_the_keys_of_the_focused_pane():
             await theatre.press("question_mark")
             groups = [part.partition("\n")[0] for part in theatre.app.screen.text.split("\n\n")]
             assert groups[1] == first
-            assert {"The run", "Time", "What is shown", "The program"} < set(groups)
+            assert {"Run", "Time", "Display", "Program"} < set(groups)
             await theatre.press("escape")
