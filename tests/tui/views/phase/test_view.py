@@ -114,7 +114,7 @@ async def test_the_view_shows_who_keeps_the_area_around_the_start():
         ring.advance(bench.live.sample.step, DRIFT.h)
         assert bench.pane.ring.area_ratios == ring.area_ratios
         lines = bench.lab.query_one("#facts", CellWidget).text.splitlines()
-        assert "0.1 rad around the start" in lines[0]
+        assert "radius 0.1 rad" in lines[0]
         assert f"{ring.area_ratios[3]:.9f}" in lines[5]
 
 
@@ -206,7 +206,7 @@ async def test_e_comes_by_the_shadow_energies():
             if "shadow" in chart.border_title:
                 break
         assert "shadow error" in chart.border_title
-        assert chart.border_subtitle == "only s and v have a shadow energy"
+        assert chart.border_subtitle == "shadow energy is known for s and v only"
         for _ in range(200):
             await bench.pilot.pause(0.01)
             if chart.settled:
