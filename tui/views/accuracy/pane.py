@@ -22,7 +22,7 @@ WORDS = 2  # lines
 MOST_STEPS = 2_000_000  # of a run for the mark at the present h: some seconds
 HERE, CURSOR = "X", "O"
 POWERS_OF_H = ", ".join(POWERS[order] for order in sorted({method.order for method in METHODS}))
-LEGEND = f"{HERE} you are here; x failed; ~ only rounding; dotted: error as {POWERS_OF_H}"
+LEGEND = f"{HERE} current h  x useless  ~ rounding limit  dotted: slopes {POWERS_OF_H}"
 
 _GROUP = "accuracy"
 KEYS = (
@@ -104,8 +104,8 @@ class AccuracyPane(Chooser[int]):
         chart = partial(accuracy_chart, points, kind, "evaluations", width, max(height - WORDS, 1), marks=marks)
         picture = await asyncio.to_thread(chart)
         rows = [picture.row(y) for y in range(len(picture.characters))]
-        state_text = f", computing: {self.missing} points to come" if self.missing else ""
-        self.border_title = f"Accuracy over {self.time:g} s: {kind} error up, force evaluations across{state_text}"
+        state_text = f", computing: {self.missing} points left" if self.missing else ""
+        self.border_title = f"Accuracy over {self.time:g} s: {kind} error vs. force evaluations{state_text}"
         said = wrap(self._words(), max(width - 2, 1), max_lines=WORDS, placeholder=" …")
         self.show([*rows, *([(f" {line}", TEXT)] for line in said)])
         self._drawn, self._building = state, False
@@ -113,8 +113,8 @@ class AccuracyPane(Chooser[int]):
     def _words(self) -> str:
         point = self.aim
         if point is None:
-            return "" if self.missing else "you are not on this chart: h is too large or too small"
-        place = "you are here" if self.cursor is None else "enter uses this h" if self.is_live else ""
+            return "" if self.missing else "the current h is not on this chart: it is too large or too small"
+        place = "current h" if self.cursor is None else "Enter: use this h" if self.is_live else ""
         flaw = point.flaw(self.kind)
         return (
             f"{point.method.label} at h {point.h:.4g} s: {self.kind} error {point.error(self.kind):.1e}"

@@ -3,6 +3,8 @@
 import asyncio
 from functools import partial
 
+from textual.content import Content
+
 from engine.methods import METHODS
 from engine.models.exact_pendulum import ExactMotion
 from engine.run.lockstep import Sample
@@ -21,7 +23,7 @@ NAMES: dict[Quantity, tuple[str, str]] = {
 }
 """Of the quantity itself, and of its magnitude for a logarithmic chart."""
 
-NO_MODIFIED_ENERGY = f"only {' and '.join(m.letter for m in METHODS if m.modified_energy)} have a shadow energy"
+NO_MODIFIED_ENERGY = f"shadow energy is known for {' and '.join(m.letter for m in METHODS if m.modified_energy)} only"
 
 
 def title(shown: Shown, exact: ExactMotion) -> str:
@@ -41,6 +43,7 @@ class TimeChart(Pane):
         super().__init__(id)
         self._wanted = asyncio.Event()
         self._building = False
+        self._title = ""
 
     @property
     def settled(self) -> bool:
@@ -57,8 +60,9 @@ class TimeChart(Pane):
     def paint(self, source: Source, sample: Sample) -> None:
         self._wanted.set()
         text = title(self.shown, source.exact)
-        if text != self.border_title:  # setting it paints all of the pane
-            self.border_title = text
+        if text != self._title:  # setting it paints all of the pane
+            self._title = text
+            self.border_title = Content(text)  # as markup, units in brackets would be gone
             self.border_subtitle = NO_MODIFIED_ENERGY if self.shown.quantity == "shadow_error" else ""
 
     async def _build_on_demand(self) -> None:

@@ -22,7 +22,7 @@ def fact_rows(
 ) -> list[list[Span]]:
     """A line about the ring, the heads, and a row for each method; the first columns that fit."""
     exact, fit = source.exact.at(source.sample.t), max((width - _NAME) // _CELL, 0)
-    heads = ("sum log det J", "area", "theta error", "dE/E0")[:fit]
+    heads = ("ln area ratio", "area/area0", "theta error", "dE/E0")[:fit]
     rows: list[list[Span]] = [
         [(_ring_text(source, neighbours)[:width], TEXT)],
         [(" " * _NAME + "".join(head.rjust(_CELL) for head in heads), FRAME)],
@@ -41,9 +41,9 @@ def fact_rows(
 
 def _ring_text(source: Source, neighbours: Neighbours | None) -> str:
     if neighbours is None:
-        return " No ring of neighbours, no area: g draws one."
+        return " Press g to draw a ring of neighbouring starts and measure its area."
     behind = source.sample.step - neighbours.step
-    text = f" A ring of neighbours, {neighbours.radius:g} rad around the start (g)"
+    text = f" Ring of neighbouring starts, radius {neighbours.radius:g} rad (g: larger, G: smaller)"
     return f"{text}: {behind} steps behind" if behind else text
 
 

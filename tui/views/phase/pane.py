@@ -27,7 +27,7 @@ BIG_STEP = 8  # dots
 _GROUP = "phase space"
 KEYS = (
     Key("", "tab", "in the lab: to this pane, for its keys", "", _GROUP),
-    *arrows(_GROUP, "crosshair, to choose a start", BIG_STEP),
+    *arrows(_GROUP, "crosshair", "choose a start", BIG_STEP),
     Key("enter", "enter", "start at the crosshair", "choose", _GROUP),
     Key("escape", "esc", "leave the crosshair, cancel a drag", "cancel", _GROUP),
     Key("z", "z", "zoom in at the crosshair or the pointer", "zoom(0.5)", _GROUP),

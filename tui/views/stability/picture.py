@@ -160,18 +160,18 @@ def character(score: float, steps: int) -> str:
 def legend(steps: int, palette: Palette | None, columns: int = 80) -> list[Segments]:
     """What colours, characters and lines mean."""
     limit, threshold, catching = (sign if palette else _WITHOUT_COLOUR[sign] for sign in (LIMIT, THRESHOLD, CATCHING))
-    lines = [Segment(f"{limit} linear limit   {threshold} chaos loose above   ")]
-    orbit = [Segment(f"{catching} catching orbit   up: amplitude, deg")]
+    lines = [Segment(f"{limit} linear limit   {threshold} global chaos above   ")]
+    orbit = [Segment(f"{catching} stable 2-cycle   y: amplitude [deg]")]
     if palette is None:
-        held = [Segment("held: error < 1e-4 #  < 0.1 +  above -   ")]
-        lost = [Segment("lost: at step < 10 .  < 100 1  < 1000 2")]
+        held = [Segment("stable: error <1e-4 #  <0.1 +  above -   ")]
+        lost = [Segment("lost: at step <10 .  <100 1  <1000 2")]
     else:
         held, lost = (
             [Segment("█", Style(color=colour(low + 0.999 * part / 7, EXAMPLE, palette))) for part in range(8)]
             for low in (1.0, 0.0)
         )
-        held = [Segment("held: energy error 1 "), *held, Segment(" 1e-12   ")]
-        lost = [Segment("lost: at once "), *lost, Segment(f" at step {steps}")]
+        held = [Segment("stable, energy error 1 "), *held, Segment(" 1e-12   ")]
+        lost = [Segment("lost at step 1 "), *lost, Segment(f" {steps}")]
     return [held + lost, lines + orbit] if columns >= 80 else [held, lost, lines, orbit]
 
 

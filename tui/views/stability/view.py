@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 from textual.app import ComposeResult
+from textual.content import Content
 
 from engine.stability.grid import Grid, pieces
 from tui.views.background import computed
@@ -30,10 +31,11 @@ class StabilityView(View):
 
     async def _fill(self, pane: StabilityPane) -> None:
         """Compute the map, and show how far it is in tenths: with a new title, Textual sends all of the pane again."""
+        shown = ""
         async for piece in computed(pieces, pane.grid, PASSES):
             pane.fill(piece.z, piece.method, piece.cells)
             pane.complete = piece.done == 1 and piece.steps == PASSES[-1]
             state = "" if pane.complete else f", computing {int(10 * piece.done) / 10:.0%}"
-            title = f"Stability: h across, amplitude up; {piece.steps} steps{state}"
-            if title != pane.border_title:
-                pane.border_title = title
+            title = f"Stability after {piece.steps} steps: step size h [s] vs. amplitude [deg]{state}"
+            if title != shown:
+                shown, pane.border_title = title, Content(title)  # as markup, units in brackets would be gone

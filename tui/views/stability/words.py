@@ -17,7 +17,7 @@ def note(method: Method, theta: float, z: float, cell: Any) -> str:
     if cell["fate"] == UNKNOWN:
         return "…"
     if cell["fate"] == HOLDS:
-        return f"holds, {cell['error']:.0e}"
+        return f"stable, {cell['error']:.0e}"
     return f"{_reason(method, theta, z, cell)}, step {cell['steps'] + 1}"
 
 
@@ -30,12 +30,12 @@ def verdict(method: Method, theta: float, zs: Floats, cells: Cells, at: int, w0:
     holds = cell["fate"] == HOLDS
     other = np.flatnonzero((cells["fate"] == HOLDS) != holds)
     if not len(other):
-        cliff = "; no h on this map loses it" if holds else "; no h on this map holds it"
+        cliff = "; stable at every h on this map" if holds else "; lost at every h on this map"
     else:
         nearest = zs[other[np.abs(other - at).argmin()]] / w0
-        cliff = f"; lost at h {nearest:.3g} s" if holds else f"; holds at h {nearest:.3g} s"
+        cliff = f"; lost at h {nearest:.3g} s" if holds else f"; stable at h {nearest:.3g} s"
     if holds:
-        return f"{place} holds, energy error {cell['error']:.1e}{cliff}"
+        return f"{place} stable, energy error {cell['error']:.1e}{cliff}"
     return f"{place} lost at step {cell['steps'] + 1}, {_reason(method, theta, zs[at], cell)}{cliff}"
 
 

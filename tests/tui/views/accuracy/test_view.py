@@ -63,15 +63,15 @@ async def test_the_points_fill_in_and_are_the_engines():
             assert (found.theta_error, found.energy_error) == (point.theta_error, point.energy_error)
         assert "energy error, the largest of all steps" in pane.text
         assert all(pane.text.count(letter) for letter in "esvr")
-        assert pane.border_title == "Accuracy over 5 s: energy error up, force evaluations across"
-        assert pane.border_subtitle == "X you are here; x failed; ~ only rounding; dotted: error as h, h², h⁴"
+        assert pane.border_title == "Accuracy over 5 s: energy error vs. force evaluations"
+        assert pane.border_subtitle == "X current h  x useless  ~ rounding limit  dotted: slopes h, h², h⁴"
         assert set(MARKS.values()) | {HERE} == {"X", "x", "~"}
 
 
-async def test_it_says_where_you_are():
+async def test_the_current_h_is_marked_and_described():
     async with accuracy_view() as (pilot, pane, _live):
         assert pane.text.count("X") == 4
-        assert said(pane) == "Velocity Verlet at h 0.05 s: energy error 5.7e-03 for 101 force evaluations; you are here"
+        assert said(pane) == "Velocity Verlet at h 0.05 s: energy error 5.7e-03 for 101 force evaluations; current h"
         await pilot.press("tab")
         await complete(pilot, pane)
         assert said(pane).startswith("RK4 at h 0.05 s: ")
@@ -82,7 +82,7 @@ async def test_enter_uses_the_h_of_the_cursors_point_and_u_takes_it_back():
         await pilot.press("left", "right", "right")
         await complete(pilot, pane)
         assert "O" in pane.text
-        assert said(pane).endswith("enter uses this h")
+        assert said(pane).endswith("Enter: use this h")
         point = pane.aim
         assert point is not None
         run = live.sample.run
@@ -134,7 +134,7 @@ async def test_the_charts_quantity_chooses_the_error_and_hidden_methods_are_not_
         await pilot.press("e", "1")
         await complete(pilot, pane)
         assert "theta error" in pane.text
-        assert "theta error up" in str(pane.border_title)
+        assert "theta error vs." in str(pane.border_title)
         chart = pane.text.split("\n", 1)[1].rsplit("force evaluations", 2)[0]
         assert "v" in chart
         assert not {"x", "~"} & set(chart.replace("1e", ""))  # explicit Euler alone is lost
@@ -161,7 +161,7 @@ async def test_an_h_that_is_too_large_or_too_small_has_no_mark():
             await pilot.pause(0.5)
             assert pane.settled
             assert "X" not in pane.text
-            assert said(pane) == "you are not on this chart: h is too large or too small"
+            assert said(pane) == "the current h is not on this chart: it is too large or too small"
 
 
 @pytest.mark.parametrize("size", [(60, 16), (80, 24), (200, 60)])
@@ -180,7 +180,7 @@ async def test_a_replay_shows_it_and_keeps_its_arrows():
     replay.pause(True)
     screen = ReplayScreen(replay, lambda live: LiveScreen(live))
     async with view_of(screen, "f4", AccuracyPane, is_complete, (80, 30)) as (pilot, pane):
-        assert said(pane).endswith("you are here")
+        assert said(pane).endswith("current h")
         await pilot.press("right")
         assert replay.playhead.position == pytest.approx(1.0, abs=0.05)
         assert pane.cursor is None

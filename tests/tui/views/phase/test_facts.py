@@ -62,7 +62,7 @@ def test_the_table_says_when_the_ring_is_behind_or_not_there():
     ring = neighbours.follow(live.scene, live.sample.run, live.sample.step, live.changes, 50)
     assert "150 steps behind" in fact_rows(live, Shown(), neighbours, ring, 80)[0][0][0]
     without = fact_rows(live, Shown(), None, None, 80)
-    assert "g draws one" in without[0][0][0]
+    assert "Press g" in without[0][0][0]
     assert len(without) == 6
 
 

@@ -75,7 +75,7 @@ async def test_the_view_shows_who_keeps_the_area_around_the_start():
         ring.advance(theatre.source.sample.step, Stepping(DRIFT.h))
         assert shown(theatre).ring.area_ratios == ring.area_ratios
         lines = theatre.stage.query_one("#facts", CellWidget).text.splitlines()
-        assert "0.1 rad around the start" in lines[0]
+        assert "radius 0.1 rad" in lines[0]
         assert f"{ring.area_ratios[3]:.9f}" in lines[5]
 
 
@@ -167,7 +167,7 @@ async def test_e_comes_by_the_shadow_energies():
             if "shadow" in chart.border_title:
                 break
         assert "shadow error" in chart.border_title
-        assert chart.border_subtitle == "only s and v have a shadow energy"
+        assert chart.border_subtitle == "shadow energy is known for s and v only"
         for _ in range(200):
             await theatre.pilot.pause(0.01)
             if chart.settled:
