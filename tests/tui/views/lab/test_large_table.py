@@ -4,7 +4,7 @@ import textwrap
 
 import pytest
 
-from tests.tui.stage import lab
+from tests.tui.harness import lab
 from tui.drawing.cells import PRESENT
 from tui.views.lab.error_table import ErrorTable
 from tui.views.lab.large_table import CELL, DIGITS, HEIGHT, LargeTable, large
