@@ -137,7 +137,7 @@ async def test_the_form_says_what_is_wrong_as_it_is_typed_and_does_not_start_tha
         await theatre.press("i")
         form = theatre.app.screen
         verdict = form.query_one("#verdict")
-        for keys, words in (("abc", "no angle"), ("1e99", "out of range"), ("", "no angle")):
+        for keys, words in (("abc", "not an angle"), ("1e99", "out of range"), ("", "not an angle")):
             await theatre.press("home", "shift+end", "delete", *keys)
             await theatre.pilot.pause()
             assert words in str(verdict.render())

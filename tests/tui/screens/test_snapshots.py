@@ -94,8 +94,8 @@ def test_the_command_writes_the_same_picture(tmp_path):
     [
         (["--size", "10x10"], "60x16"),
         (["--size", "big"], "120x40"),
-        (["--time", "nan"], "no time"),
-        (["--time", "-1"], "no time"),
+        (["--time", "nan"], "not a valid time"),
+        (["--time", "-1"], "not a valid time"),
         (["--theme", "pink"], "dark"),
         (["--scene", "drfit"], "did you mean drift"),
     ],
@@ -112,7 +112,7 @@ def test_a_still_is_not_written_under_a_name_that_says_it_were_something_else(tm
 
 
 def test_a_folder_that_is_not_there_is_refused_before_anything_is_drawn(tmp_path):
-    assert pendu("snapshot", "-o", tmp_path / "no" / "x.svg").refused(5, "there is no folder")
+    assert pendu("snapshot", "-o", tmp_path / "no" / "x.svg").refused(5, "no folder")
 
 
 async def test_a_still_is_the_same_to_the_letter_whenever_it_is_made():

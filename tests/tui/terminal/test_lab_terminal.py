@@ -168,7 +168,7 @@ def test_a_file_that_is_no_recording_is_a_sentence_and_exit_3(tmp_path, content)
         (("live", "--scene", "drfit"), 2, "did you mean drift"),
         (("live", "--record", "x.mcap", "--no-record"), 2, "not allowed"),
         (("replay", "no-such"), 3, "no recording"),
-        (("replay", "drift", "--speed", "fast"), 2, "no number"),
+        (("replay", "drift", "--speed", "fast"), 2, "not a number"),
     ],
 )
 def test_bad_input_is_refused_before_the_terminal_is_looked_at(arguments, code, words):

@@ -43,8 +43,8 @@ def _ring_text(source: Source, neighbours: Neighbours | None) -> str:
     if neighbours is None:
         return " Press g to draw a ring of neighbouring starts and measure its area."
     behind = source.sample.step - neighbours.step
-    text = f" Ring of neighbouring starts, radius {neighbours.radius:g} rad (g: larger, G: smaller)"
-    return f"{text}: {behind} steps behind" if behind else text
+    text = f" Ring of neighbouring starts, radius {neighbours.radius:g} rad"
+    return f"{text}: {behind} steps behind" if behind else f"{text} (g: larger, G: smaller)"
 
 
 def caption(exact: ExactMotion, aim: State | None, width: int) -> Picture:

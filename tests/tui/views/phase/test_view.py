@@ -9,7 +9,7 @@ from engine.phase_space.area import Neighbourhood
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene
 from recordings.recording import Recording
-from tests.tui.harness import Theatre, lab, recorded
+from tests.tui.harness import Theatre, lab, recorded, until
 from tui.drawing.cells import CellWidget
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
@@ -71,6 +71,7 @@ async def test_the_view_shows_who_keeps_the_area_around_the_start():
     async with lab() as theatre:
         await theatre.press("f3")
         await theatre.run(20)
+        await until(theatre.pilot, lambda: shown(theatre).neighbours.step == theatre.source.sample.step)
         ring = Neighbourhood(DRIFT, RADIUS)
         ring.advance(theatre.source.sample.step, Stepping(DRIFT.h))
         assert shown(theatre).ring.area_ratios == ring.area_ratios
