@@ -62,7 +62,7 @@ def outcomes(method: Method, theta: Floats, z: Floats, steps: int) -> Cells:
     ceiling = (1 + BAND) * highest[where] * start
     reach = np.array([widest(method.step, value) for value in distinct.tolist()])[where] * theta
     worst, amplitude = np.zeros(len(theta)), theta.copy()
-    index = np.arange(len(theta))
+    index: NDArray[Any] = np.arange(len(theta))
     cells = np.zeros(len(theta), CELL)
     cells["steps"] = steps
     for step in range(steps):

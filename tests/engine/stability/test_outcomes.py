@@ -197,7 +197,7 @@ def test_the_limit_moves_with_the_steps_that_it_rests_on() -> None:
         ("explicit_euler", 2.0, 0.008, 0.02, "over the top"),
         ("symplectic_euler", 0.1, 1.9, 2.3, "over the top"),
         ("symplectic_euler", 2.0, 0.9, 1.3, "over the top"),
-        ("velocity_verlet", 0.1, 1.9, 2.4, "over the top"),
+        ("velocity_verlet", 0.1, 1.9, 2.4, "chaotic"),
         ("velocity_verlet", 3.0, 0.5, 0.8, "over the top"),
         ("rk4", 1.0, 0.3, 0.6, "loses"),
         ("rk4", 3.0, 0.3, 0.6, "loses"),
@@ -212,7 +212,7 @@ def test_methods_fail_each_in_its_way(key: str, theta: float, start: float, end:
 
 
 def test_a_symplectic_swing_in_the_chaotic_sea_is_called_chaotic_before_it_goes_over() -> None:
-    assert failure_of("velocity_verlet", 1.0, np.array([1.0, 1.535]), 2000) == (1.535, "chaotic")
+    assert failure_of("velocity_verlet", 1.0, np.array([1.0, 1.52]), 2000) == (1.52, "chaotic")
 
 
 def test_a_swing_that_holds_on_the_whole_ladder_has_no_failure() -> None:
