@@ -109,8 +109,8 @@ def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int)
         from recordings.recorder import Recorder
 
         recorder = Recorder(options.record, wall=None, overwrite=options.force)
-    observer = RunObserver(scene)
     fitting = loops.plain if options.no_compiled else partial(compiled.tiered, ahead=steps)
+    observer = RunObserver(scene, fitting)
     with stop_requests() as stopped, progress(f"{steps:,} steps") as show, recorder as recording:
         for sample in simulate(scene, options.time, recording, every, loops=fitting):
             observer.add(sample)

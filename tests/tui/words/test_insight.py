@@ -35,7 +35,7 @@ def test_the_first_minute_of_the_default_scene():
         said |= {second: text} if second in said else {}
     assert said[5] == SCENES["drift"].watch
     assert said[8].startswith("Explicit Euler went over the top at 7.15 s with ")
-    assert said[18] == "Symplectic Euler and Verlet stay bounded; no trend over 17 s."
+    assert said[18] == "Symplectic Euler and Verlet stay bounded; no trend over 18 s."
     assert said[31] == SCENES["drift"].watch
     assert re.fullmatch(r"Symplectic Euler and Verlet stay bounded; no trend over \d\d s\.", said[45])
 
@@ -47,7 +47,7 @@ def test_every_second_of_every_scene_has_a_sentence_that_fits_on_its_line():
             assert 10 < len(lab.run(1).removesuffix(".")) <= WIDTH
 
 
-@pytest.mark.parametrize("speed", [0.25, 1.0, 16.0])
+@pytest.mark.parametrize("speed", [0.5, 1.0, 16.0])
 def test_news_stays_equally_long_at_any_speed(speed):
     lab, seen = Told(SCENES["drift"], speed), 0
     while lab.live.sample.t < 7.15 + FRESH * speed + 1:
