@@ -159,7 +159,7 @@ def test_a_failure_comes_first_and_is_all_that_is_said_of_its_method():
     while live.sample.readings[EXPLICIT].diverged_at is None:
         live.step(1000)
     when = live.sample.readings[EXPLICIT].diverged_at
-    failure = f"Explicit Euler failed at {when:.4g} s: its numbers are no longer finite."
+    failure = f"Explicit Euler failed at {when:.4g} s: its energy error is no longer finite."
     assert insight(live) == failure
     assert [text for text in lasting(live) if "Explicit" in text] == [failure]
 
