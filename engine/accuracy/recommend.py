@@ -101,7 +101,7 @@ def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most
             best, in_vain = point, 0
         else:
             in_vain += point.flaw(kind) == "rounding"
-        if in_vain == IN_VAIN:
+        if in_vain == IN_VAIN or (in_vain and steps == most_steps):
             return Attempt(method, best, f"rounding stops it at {best.error(kind):.1e}")
         if steps == most_steps:
             return Attempt(method, best, _still(best, kind))

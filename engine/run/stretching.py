@@ -3,7 +3,7 @@
 import cmath
 import math
 
-from engine.methods import Step
+from engine.methods import Method, Step
 from engine.models.pendulum import acceleration
 from engine.models.state import Phase
 
@@ -41,3 +41,17 @@ class Stretching:
             self._along = theta / length, omega / length
             self.log += math.log(length)
             self.steps += steps
+
+
+def conserved_ellipse(method: Method, w0_squared: float, h: float) -> tuple[float, float, float] | None:
+    """What a symplectic step keeps of small swings: the form -c theta² + (a - d) theta omega + b omega².
+
+    ((a, b), (c, d)) is the step's Jacobian at the bottom, in units where w0 = 1.  None where that is no ellipse.
+    """
+    if not method.symplectic:
+        return None
+    w0 = math.sqrt(w0_squared)
+    a, c = stretched(method.step, w0_squared, (0.0, 0.0), (1.0, 0.0), h, 1)
+    b, d = stretched(method.step, w0_squared, (0.0, 0.0), (0.0, 1.0), h, 1)
+    c, b = c / w0, b * w0
+    return (-c, a - d, b) if (a - d) ** 2 / 4 + b * c < 0 else None

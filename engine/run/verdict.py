@@ -20,8 +20,7 @@ Any other method is judged by the bands of its energy error.
   take more than 500 periods to move it by half the band's width.
 The last three take 4096 steps or more, and 64 periods.
 
-`too early`: none of these, yet.  In a rotation of fewer than three steps a turn, which beats with its steps, that may
-last.  tests/truths.py tells what runs of a million steps came to, on 3312 cells.
+`too early`: none of these, yet; for long in a rotation of fewer than three steps a turn, which beats with them.
 """
 
 import math
@@ -32,7 +31,7 @@ from typing import Literal, NamedTuple
 from engine.methods import Method
 from engine.models.state import Phase
 from engine.run.bands import FLOOR, MOST_BINS, Bands, hull, rising, steady
-from engine.run.stretching import Stretching, stretched
+from engine.run.stretching import Stretching, conserved_ellipse
 
 Verdict = Literal["too early", "bounded", "drifts", "grows", "chaotic", "caught", "wanders"]
 
@@ -81,7 +80,7 @@ def stride(period: float, h: float) -> int:
 
 
 class Judge:
-    """Judges one method from a start on.  Another h or another start needs another Judge."""
+    """Judges one method from a start on; another h needs another Judge."""
 
     def __init__(self, method: Method, w0_squared: float, scale: float, h: float, period: float) -> None:
         """`h` [s] is the method's own step; `period` [s] is that of the exact motion, or 2 pi/w0 if it has none.
@@ -94,7 +93,7 @@ class Judge:
         self._width = max(LEAST_STEPS, round(period / abs(h)))  # steps of a bin, at first
         self._energy, self._modified = Bands(self._width), Bands(self._width)
         self._neighbours = Stretching(method.step, w0_squared, h)
-        self._form = _conserved_ellipse(method, w0_squared, h)
+        self._form = conserved_ellipse(method, w0_squared, h)
         self._ellipse = (math.inf, 0.0)  # lowest and highest size seen
         self._omegas = (math.inf, -math.inf)  # rad/s
         self._first: Look | None = None
@@ -103,10 +102,7 @@ class Judge:
         self.judgement = Judgement()
 
     def look(self, steps: int, look: Look) -> None:
-        """Look at the method so many of its own steps after the first look, which is at 0.
-
-        Looks are `stride` steps apart, or there is a gap.
-        """
+        """Look at the method so many of its own steps after the first look; `stride` apart, or there is a gap."""
         phase = look.theta, look.omega
         if self._first is None:
             self._first, self._before = look, phase
@@ -251,17 +247,3 @@ class Judge:
         spread = width / max(typical, FLOOR)
         moved = max(abs(late_low - low), abs(late_high - high))
         return max(spread, 4.0) if moved > width / 4 else spread
-
-
-def _conserved_ellipse(method: Method, w0_squared: float, h: float) -> tuple[float, float, float] | None:
-    """What a symplectic step keeps of small swings: the form -c theta² + (a - d) theta omega + b omega².
-
-    ((a, b), (c, d)) is the step's Jacobian at the bottom, in units where w0 = 1.  None where that is no ellipse.
-    """
-    if not method.symplectic:
-        return None
-    w0 = math.sqrt(w0_squared)
-    a, c = stretched(method.step, w0_squared, (0.0, 0.0), (1.0, 0.0), h, 1)
-    b, d = stretched(method.step, w0_squared, (0.0, 0.0), (0.0, 1.0), h, 1)
-    c, b = c / w0, b * w0
-    return (-c, a - d, b) if (a - d) ** 2 / 4 + b * c < 0 else None
