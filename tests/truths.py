@@ -34,10 +34,10 @@ ALLOWED: dict[str, tuple[tuple[str, ...], ...]] = {
     "c": (("chaotic",),),  # and fenced in
     "w": (("chaotic",), ("chaotic", "wanders"), ("wanders",)),
     "g": (("grows",),),
-    "d": (("drifts",),),
-    "k": (("grows",), ("drifts",), ("grows", "caught"), ("drifts", "caught"), ("caught",)),
-    "K": (("bounded",), ("grows", "caught"), ("drifts", "caught"), ("caught",)),  # in a band that holds the start
-    "B": (("bounded",), ("drifts",), ("grows",), ("caught",)),  # moves by less than 1e-10, or hardly beside its wobble
+    "d": (("loses",),),
+    "k": (("grows",), ("loses",), ("grows", "caught"), ("loses", "caught"), ("caught",)),
+    "K": (("bounded",), ("grows", "caught"), ("loses", "caught"), ("caught",)),  # in a band that holds the start
+    "B": (("bounded",), ("loses",), ("grows",), ("caught",)),  # moves by less than 1e-10, or hardly beside its wobble
 }
 
 

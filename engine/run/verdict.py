@@ -13,7 +13,7 @@ within a band, or chaotic.
 - `wanders`: and h·omega has moved by more than 2 pi, so there is no fence: the energy diffuses.
 
 Any other method is judged by the bands of its energy error.
-- `grows` and `drifts`: the error no longer comes back to its value at the start.  Taken back when it does.
+- `grows` and `loses`: the error no longer comes back to its value at the start.  Taken back when it does.
 - `caught`: it stays away from the start and has stopped: the second half of the run lies in one band.
 - `wanders`: it goes far up and down, and neither steadily nor within a band.
 - `bounded`: it touches its start, and its slope, which is not significant, and three times its uncertainty would
@@ -33,7 +33,7 @@ from engine.models.state import Phase
 from engine.run.bands import FLOOR, MOST_BINS, Bands, hull, rising, steady
 from engine.run.stretching import Stretching, conserved_ellipse
 
-Verdict = Literal["too early", "bounded", "drifts", "grows", "chaotic", "caught", "wanders"]
+Verdict = Literal["too early", "bounded", "loses", "grows", "chaotic", "caught", "wanders"]
 
 LOOKS = 8  # a period
 LEAST_PERIODS = 8  # for `bounded`
@@ -185,7 +185,7 @@ class Judge:
         assert self._first is not None
         bands, verdict, left = self._energy, self.judgement.verdict, self._has_left()
         if hull(bands.recent(0.25))[1] < AT_REST:
-            return "drifts"
+            return "loses"
         low, high = hull(bands.recent(0.25))
         many = self._steps >= max(MOST_BINS * self._width, LONG)
         longer = self._steps >= max(MOST_BINS * self._width, 4 * LONG)
@@ -197,7 +197,7 @@ class Judge:
                 return "caught"
             if longer and spread > 4.5 and 0.25 < rising(bands.recent(0.5)) < 0.75:
                 return "wanders"
-        if verdict in ("caught", "wanders") or (verdict in ("grows", "drifts") and self._is_away(low, high)):
+        if verdict in ("caught", "wanders") or (verdict in ("grows", "loses") and self._is_away(low, high)):
             return verdict
         if left:
             return left
@@ -222,7 +222,7 @@ class Judge:
             share = rising(bands.bins)
             if len(bands.bins) < 24 or 0.1 < share < 0.9:
                 return None
-        return "grows" if low > self._first.error else "drifts"
+        return "grows" if low > self._first.error else "loses"
 
     def _gap(self, low: float, high: float) -> float:
         """How far a band is from the start's error; below 0 inside."""

@@ -25,12 +25,12 @@ bounded wobble on the linear oscillator takes it to (engine.stability.linear.wob
 WOBBLE = 1.1  # times as wide as the linear oscillator: what swings wider is held with a larger wobble
 CHAOS_STEPS = 2000  # for which the neighbours of a swing that wobbles are followed
 
-FATES = ("holds", "over the top", "grows", "drifts", "holds, wobbling", "caught", "chaotic")
+FATES = ("holds", "over the top", "grows", "loses", "holds, wobbling", "caught", "chaotic")
 """What becomes of a swing: it swings as wide as it should; |theta| passes pi; its energy leaves the band upwards or
 downwards; it stays, with a larger wobble; an orbit of period two holds it, beyond a symplectic method's linear
 limit; neighbouring swings part exponentially."""
 
-HOLDS, OVER_THE_TOP, GROWS, DRIFTS, WOBBLES, CAUGHT, CHAOTIC = range(len(FATES))
+HOLDS, OVER_THE_TOP, GROWS, LOSES, WOBBLES, CAUGHT, CHAOTIC = range(len(FATES))
 HELD = (HOLDS, WOBBLES, CAUGHT)
 UNKNOWN = 255  # the fate of a cell that was not computed
 
@@ -98,7 +98,7 @@ class Failure:
 
     z: float
     steps: int  # survived
-    reason: str  # over the top | grows | drifts | chaotic
+    reason: str  # over the top | grows | loses | chaotic
 
 
 def first_failure(z: Floats, cells: Cells, within: int | None = None) -> Failure | None:

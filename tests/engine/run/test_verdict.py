@@ -21,7 +21,7 @@ E, S, V, R = METHODS
 LOOPS = compiled.compiled if compiled.available() else plain  # the same bits
 CELLS = list(truths())
 SAMPLED = CELLS[::23]  # 23 and the 36 steps of a line have no divisor in common: every start and step has its turn
-BELOW_THE_LIMITS = ["grows", "bounded", "bounded", "drifts"]
+BELOW_THE_LIMITS = ["grows", "bounded", "bounded", "loses"]
 
 
 def course(method, scene: Scene, steps: int) -> list[str]:
@@ -92,7 +92,7 @@ def test_what_is_caught_is_called_caught_and_what_wanders_wanders() -> None:
 
 
 def test_rk4_that_has_lost_everything_is_not_caught() -> None:
-    assert course(R, Scene(h=1.2 / Scene().w0), 6000) == ["drifts"]
+    assert course(R, Scene(h=1.2 / Scene().w0), 6000) == ["loses"]
 
 
 def change(step: int, t: float, h: float) -> SteppingChange:

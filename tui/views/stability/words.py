@@ -13,7 +13,7 @@ def note(cell: Any) -> str:
     """The outcome of a swing in a few words."""
     if cell["fate"] == UNKNOWN:
         return "…"
-    fate = FATES[cell["fate"]]
+    fate = _said(cell)
     return f"{fate}, step {cell['steps'] + 1}" if is_lost(cell) else f"{fate}, {cell['error']:.0e}"
 
 
@@ -23,7 +23,7 @@ def verdict(method: Method, theta: float, zs: Floats, cells: Cells, at: int, w0:
     place = f"{method.label} at h {zs[at] / w0:.3g} s, {math.degrees(theta):.3g} deg:"
     if cell["fate"] == UNKNOWN:
         return f"{place} not computed yet"
-    holds, fate = not is_lost(cell), FATES[cell["fate"]]
+    holds, fate = not is_lost(cell), _said(cell)
     other = np.flatnonzero(np.isin(cells["fate"], HELD) != holds)
     if not len(other):
         cliff = "; stable at every h on this map" if holds else "; lost at every h on this map"
@@ -33,3 +33,8 @@ def verdict(method: Method, theta: float, zs: Floats, cells: Cells, at: int, w0:
     if holds:
         return f"{place} {fate}, energy error {cell['error']:.1e}{cliff}"
     return f"{place} lost at step {cell['steps'] + 1}, {fate}{cliff}"
+
+
+def _said(cell: Any) -> str:
+    """The fate of a swing; "holds" is said of methods, "stable" of swings."""
+    return FATES[cell["fate"]].replace("holds", "stable")

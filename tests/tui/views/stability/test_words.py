@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from engine.methods import METHODS
-from engine.stability.outcomes import CAUGHT, CELL, DRIFTS, GROWS, HOLDS, OVER_THE_TOP, UNKNOWN, outcomes
+from engine.stability.outcomes import CAUGHT, CELL, GROWS, HOLDS, LOSES, OVER_THE_TOP, UNKNOWN, outcomes
 from tui.views.stability.words import note, verdict
 from tui.words.findings import limit_warning
 
@@ -41,9 +41,9 @@ def test_a_verdict_says_when_there_is_no_cliff_or_no_verdict_yet():
 @pytest.mark.parametrize(
     ("cell", "text"),
     [
-        ((300, 2.34e-3, HOLDS), "holds, 2e-03"),
+        ((300, 2.34e-3, HOLDS), "stable, 2e-03"),
         ((300, 2.34e-3, CAUGHT), "caught, 2e-03"),
-        ((80, 0.5, DRIFTS), "drifts, step 81"),
+        ((80, 0.5, LOSES), "loses, step 81"),
         ((3, 0.5, GROWS), "grows, step 4"),
         ((0, 0.0, UNKNOWN), "…"),
     ],
@@ -53,7 +53,7 @@ def test_a_note_fits_behind_a_methods_name(cell, text):
 
 
 @pytest.mark.parametrize(
-    ("theta", "z", "what"), [(0.5, 1.43, "holds, wobbling, 6e-01"), (1.0, 1.52, "chaotic, step 2001")]
+    ("theta", "z", "what"), [(0.5, 1.43, "stable, wobbling, 6e-01"), (1.0, 1.52, "chaotic, step 2001")]
 )
 def test_a_symplectic_swing_wobbles_at_a_resonance_or_is_chaotic(theta: float, z: float, what: str):
     (cell,) = outcomes(VERLET, np.array([theta]), np.array([z]), 2000)
