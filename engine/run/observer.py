@@ -4,6 +4,7 @@ Nothing here is recorded: it follows from the samples, so a replay shows what th
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -11,13 +12,12 @@ from engine.methods import METHODS, Method
 from engine.models.exact_pendulum import ExactMotion
 from engine.models.pendulum import acceleration, energy, energy_reference
 from engine.models.state import Phase
+from engine.run.judging import MOST_STEPS, Judging
 from engine.run.lockstep import Sample
+from engine.run.loops import Loops, plain
 from engine.run.stepping import Stepping, SteppingChange
-from engine.run.verdict import Judgement, Trend, Verdict
+from engine.run.verdict import Judgement, Verdict
 from engine.scenes import Scene
-
-MOST_STEPS = 20_000
-"""Steps between two samples that are taken again to find when a method went over the top, 20 ms at worst."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,8 +39,10 @@ class Milestone:
 class RunObserver:
     """Watches one run, live, replayed or without a screen, sample by sample."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, loops: Callable[[Method], Loops] = plain) -> None:
+        """`loops` take the steps between samples again."""
         self.scene = scene
+        self._loops = loops
         self.exact = exact = ExactMotion(scene)
         self.reference = energy_reference(scene.w0_squared, scene.theta, scene.omega)
         self.seen = -1
@@ -56,7 +58,7 @@ class RunObserver:
     @property
     def judgements(self) -> list[Judgement]:
         """The verdicts on the run since the last change of the stepping."""
-        return [trend.judgement for trend in self._trends]
+        return [judging.judgement for judging in self._judgings] or [Judgement()] * len(METHODS)
 
     def milestones(self, step: int) -> list[Milestone]:
         """What happened up to a step, in its order."""
@@ -66,11 +68,9 @@ class RunObserver:
         """The stepping changes here: verdicts begin anew, and what came later has never been."""
         self._milestones = self.milestones(step)
         self._modified_starts = {at: starts for at, starts in self._modified_starts.items() if at < step}
-        self._trends = [Trend(self._period) for _ in METHODS]
+        self._judgings: list[Judging] = []
         if self._before is not None and self._before.step == step:
-            self._begin = self._before.t
-            for trend, reading in zip(self._trends, self._before.readings, strict=True):
-                trend.read(0.0, reading)
+            self._begin = self._before
         else:
             self._before, self.seen = None, step - 1
 
@@ -86,18 +86,17 @@ class RunObserver:
             self.judge_anew(change.step)
         before, self._before, self.seen = self._before, sample, sample.step
         if before is None:
-            self._begin = sample.t  # s, simulated time at which the trends begin
-        h, passed = abs(change.stepping.h), abs(sample.t - self._begin)
-        steps_per_turn = self._period / h if h and self.exact.regime == "rotation" else math.inf
-        for index, (trend, reading) in enumerate(zip(self._trends, sample.readings, strict=True)):
-            known = trend.judgement.verdict
-            trend.read(passed, reading, steps_per_turn)
-            step, error, verdict = sample.step, reading.energy_error, trend.judgement.verdict
-            if reading.diverged_at is not None:
-                if self._is_new("failed", index):
-                    self._milestones.append(Milestone("failed", index, step, reading.diverged_at, error))
-            elif verdict != known:
-                self._milestones.append(Milestone("verdict", index, step, sample.t, error, verdict))
+            self._begin = sample
+        if not self._judgings:
+            self._judgings = self._begun(change.stepping)
+        for index, (judging, reading) in enumerate(zip(self._judgings, sample.readings, strict=True)):
+            for since, error, verdict in judging.follow(sample.step - self._begin.step, reading):
+                if reading.diverged_at is None:
+                    t = self._begin.t + since * change.stepping.h
+                    self._milestones.append(Milestone("verdict", index, self._begin.step + since, t, error, verdict))
+            if reading.diverged_at is not None and self._is_new("failed", index):
+                error = reading.energy_error
+                self._milestones.append(Milestone("failed", index, sample.step, reading.diverged_at, error))
             if (
                 before is not None
                 and self._is_over(reading.theta)
@@ -105,6 +104,17 @@ class RunObserver:
                 and self._is_new("over the top", index)
             ):
                 self._milestones.append(self._crossing(index, before, sample, change.stepping))
+
+    def _begun(self, stepping: Stepping) -> list[Judging]:
+        """A judging of each method from the sample on at which this stepping begins."""
+        scene, reference = self.scene, self.reference
+        judgings = [
+            Judging(method, reference, scene.w0_squared, stepping.h, part, self._period, self._loops(method).advance)
+            for method, part in zip(METHODS, stepping.parts(), strict=True)
+        ]
+        for judging, reading in zip(judgings, self._begin.readings, strict=True):
+            judging.follow(0, reading)
+        return judgings
 
     def modified_energy_errors(self, before: Sample | None, sample: Sample, change: SteppingChange) -> list[float]:
         """How far each method's modified energy is from where it was when the stepping last changed, relative.

@@ -79,7 +79,7 @@ def run(options: argparse.Namespace) -> int:
         fields = {"scene": asdict(scene), "time": sample.t, "steps": sample.step, "wall_seconds": wall_seconds}
         write_json("run", {**fields, "methods": rows})
     else:
-        _print(scene, sample, wall_seconds, rows)
+        _print(scene, sample, wall_seconds, rows, observer)
     if stopped:
         warn(f"interrupted at t = {sample.t:g} s, showing the results up to then.")
         return Exit.INTERRUPTED
@@ -109,8 +109,8 @@ def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int)
         from recordings.recorder import Recorder
 
         recorder = Recorder(options.record, wall=None, overwrite=options.force)
-    observer = RunObserver(scene)
     fitting = loops.plain if options.no_compiled else partial(compiled.tiered, ahead=steps)
+    observer = RunObserver(scene, fitting)
     with stop_requests() as stopped, progress(f"{steps:,} steps") as show, recorder as recording:
         for sample in simulate(scene, options.time, recording, every, loops=fitting):
             observer.add(sample)
@@ -143,10 +143,14 @@ def _rows(sample: "Sample", observer: "RunObserver") -> list[dict[str, Any]]:
     return rows
 
 
-def _print(scene: Scene, sample: "Sample", wall_seconds: float, rows: list[dict[str, Any]]) -> None:
+def _print(
+    scene: Scene, sample: "Sample", wall_seconds: float, rows: list[dict[str, Any]], observer: "RunObserver"
+) -> None:
     print(f"{scene_line(scene, 'h')}, z = h·w0 = {scene.z:.4g}")
     pace = f", {sample.step / wall_seconds / 1e6:.3g} million a second" if wall_seconds > 1 else ""
     print(f"{sample.step} steps to t = {sample.t:g} s in {wall_seconds:.2f} s{pace}\n")
+    from tui.words.findings import ending
+
     forms = {"energy_error": "+.2e", "max_energy_error": ".2e", "drift_per_second": "+.1e", "theta_error": ".2e"}
     table = []
     for method, row in zip(METHODS, rows, strict=True):
@@ -156,3 +160,6 @@ def _print(scene: Scene, sample: "Sample", wall_seconds: float, rows: list[dict[
         table.append((method.label, verdict, *numbers, str(row["force_evaluations"])))
     headers = ("energy error", "largest", "per second", "theta error [rad]", "force evaluations")
     print_table("llrrrrr", ("method", "verdict", *headers), table)
+    for top in observer.milestones(sample.step):
+        if top.kind == "over the top":
+            print(ending(top))

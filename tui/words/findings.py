@@ -62,7 +62,7 @@ def ending(milestone: Milestone) -> str:
     """The sentence on a method that failed, or that went over the top, where the exact pendulum never gets."""
     name = milestone.method.label
     if milestone.kind == "failed":
-        return f"{name} failed at {milestone.t:.4g} s: its numbers are no longer finite."
+        return f"{name} failed at {milestone.t:.4g} s: its energy error is no longer finite."
     ratio = two_digits(1 + milestone.energy_error)
     return f"{name} went over the top at {milestone.t:.3g} s with {ratio} times its initial energy."
 

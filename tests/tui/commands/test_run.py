@@ -38,7 +38,7 @@ def test_the_table_shows_which_method_gains_conserves_and_loses_energy():
         ("Velocity Verlet", "bounded"),
         ("RK4", "loses"),
     ]:
-        (line,) = (line for line in lines if line.startswith(label))
+        line = next(line for line in lines if line.startswith(label))
         assert verdict in line
 
 
@@ -174,3 +174,9 @@ def test_a_run_that_is_stopped_finishes_its_recording(tmp_path, number):
     assert result.complete
     assert result.identical
     assert not part.exists()
+
+
+def test_a_method_that_went_over_the_top_is_named_with_its_time():
+    text = pendu("run", "--time", 10).out
+    assert "Explicit Euler went over the top at 7.15 s" in text
+    assert text.count("over the top") == 1

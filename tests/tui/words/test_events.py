@@ -26,10 +26,10 @@ def test_the_events_of_the_first_twenty_seconds():
     assert [str(line) for line in lines] == [
         "   0.00 start drift, h 0.05 s",
         "   7.15 Explicit Euler over the top, 5.1 E0",
-        "   8.60 Explicit Euler gains energy",
-        "   8.60 RK4 loses energy",
-        "  17.20 Symplectic Euler stays bounded",
-        "  17.20 Verlet stays bounded",
+        "   9.00 Explicit Euler gains energy",
+        "   9.00 RK4 loses energy",
+        "  18.00 Symplectic Euler stays bounded",
+        "  18.00 Verlet stays bounded",
     ]
     assert [line.method for line in lines] == [None, 0, 0, 3, 1, 2]
 

@@ -35,7 +35,7 @@ def test_the_first_minute_of_the_default_scene():
         said |= {second: text} if second in said else {}
     assert said[5] == SCENES["drift"].watch
     assert said[8].startswith("Explicit Euler went over the top at 7.15 s with ")
-    assert said[18] == "Symplectic Euler and Verlet stay bounded; no trend over 17 s."
+    assert said[18] == "Symplectic Euler and Verlet stay bounded; no trend over 18 s."
     assert said[31] == SCENES["drift"].watch
     assert re.fullmatch(r"Symplectic Euler and Verlet stay bounded; no trend over \d\d s\.", said[45])
 
@@ -47,7 +47,7 @@ def test_every_second_of_every_scene_has_a_sentence_that_fits_on_its_line():
             assert 10 < len(lab.run(1).removesuffix(".")) <= WIDTH
 
 
-@pytest.mark.parametrize("speed", [0.25, 1.0, 16.0])
+@pytest.mark.parametrize("speed", [0.5, 1.0, 16.0])
 def test_news_stays_equally_long_at_any_speed(speed):
     lab, seen = Told(SCENES["drift"], speed), 0
     while lab.live.sample.t < 7.15 + FRESH * speed + 1:
@@ -159,7 +159,7 @@ def test_a_failure_comes_first_and_is_all_that_is_said_of_its_method():
     while live.sample.readings[EXPLICIT].diverged_at is None:
         live.step(1000)
     when = live.sample.readings[EXPLICIT].diverged_at
-    failure = f"Explicit Euler failed at {when:.4g} s: its numbers are no longer finite."
+    failure = f"Explicit Euler failed at {when:.4g} s: its energy error is no longer finite."
     assert insight(live) == failure
     assert [text for text in lasting(live) if "Explicit" in text] == [failure]
 

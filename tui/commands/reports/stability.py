@@ -16,7 +16,7 @@ from engine.methods import METHODS
 from engine.scenes import Scene
 from engine.stability.grid import Grid
 from engine.stability.linear import amplification, linear_limit
-from engine.stability.outcomes import BAND, CELL, FATES, HOLDS, UNKNOWN, Cells
+from engine.stability.outcomes import BAND, CELL, FATES, UNKNOWN, Cells, is_lost
 from engine.stability.study import Row, StabilityStudy
 from tui.cli.errors import Exit
 from tui.cli.files import whole_file
@@ -156,8 +156,8 @@ def _print_linear(z: float) -> None:
 def _print_pendulum(rows: Sequence[Row], study: StabilityStudy) -> None:
     """Print where swings are lost, and how far from there the scene is."""
     scene = study.scene
-    print(f"\nPendulum: a swing counts as lost if within {study.steps} steps it goes over the top or its energy leaves")
-    print(f"the linear oscillator's band by {100 * BAND:.0f} %")
+    print(f"\nPendulum: a swing counts as lost if within {study.steps} steps it goes over the top or becomes chaotic;")
+    print(f"without a symplectic method also if its energy leaves the linear oscillator's band by {100 * BAND:.0f} %")
     print_table(
         "lrrrlrlr",
         ("method", "amplitude", "first lost at z", "h [s]", "failure", "at step", f"at z = {scene.z:.4g}", "margin"),
@@ -167,7 +167,7 @@ def _print_pendulum(rows: Sequence[Row], study: StabilityStudy) -> None:
 
 def _cells(row: Row, scene: Scene) -> tuple[str, ...]:
     found, fate = row.failure, int(row.here["fate"])
-    here = {HOLDS: "holds", UNKNOWN: "-"}.get(fate, f"lost at step {row.here['steps'] + 1}")
+    here = f"lost at step {row.here['steps'] + 1}" if is_lost(row.here) else "-" if fate == UNKNOWN else FATES[fate]
     where, margin = ("-",) * 4, "-"
     if found:
         where = (f"{found.z:.4g}", f"{found.z / scene.w0:.3g}", found.reason, str(found.steps + 1))

@@ -133,7 +133,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
         if (aim := self.aim(index)) is None:
             return ""
         z, theta = aim
-        return note(METHODS[index], self.grid.theta[theta], self.grid.z[z], self.cells[z, index, theta])
+        return note(self.cells[z, index, theta])
 
     def _verdict(self) -> str:
         shown = self.shown.indices

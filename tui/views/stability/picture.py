@@ -16,7 +16,7 @@ from rich.style import Style
 from engine.methods import METHODS, Method
 from engine.stability.chaos import GREENE_Z
 from engine.stability.grid import Grid
-from engine.stability.outcomes import HOLDS, UNKNOWN, Cells
+from engine.stability.outcomes import HELD, UNKNOWN, Cells
 from tui.drawing.palette import Palette, mark, mixed
 
 EXACT_ENOUGH = 1e-12  # energy errors below it are drawn alike
@@ -37,7 +37,7 @@ def scores(cells: Cells, steps: int) -> Scores:
     """
     survived = np.log1p(cells["steps"]) / math.log1p(steps)
     digits = np.log10(np.clip(cells["error"], EXACT_ENOUGH, 1)) / math.log10(EXACT_ENOUGH)
-    return np.select([cells["fate"] == UNKNOWN, cells["fate"] == HOLDS], [-1.0, 1 + digits], survived)
+    return np.select([cells["fate"] == UNKNOWN, np.isin(cells["fate"], HELD)], [-1.0, 1 + digits], survived)
 
 
 def picture(grid: Grid, cells: Cells, columns: int, palette: Palette | None) -> list[Segments]:
