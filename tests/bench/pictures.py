@@ -17,7 +17,7 @@ from engine.scenes import DEFAULT_SCENE
 from tui.drawing.canvas import Canvas, Picture
 from tui.drawing.chart import time_chart
 from tui.playback.history import ErrorHistory, Window
-from tui.views.lab.pendulums import Bob, pendulum_picture
+from tui.views.lab.pendulums import Bob, pendulum_sketch
 
 BUDGETS = {  # ms
     "canvas_4x3000_points": 1.0,
@@ -97,7 +97,7 @@ def main() -> None:
     random = np.random.default_rng(1)
     history, add = long_run()
     window, whole = history.window(20.0), history.window()
-    trail = history.trail(0, 40)[0]
+    trail = history.trail(0, 40)[0].tolist()
     chart = time_chart(window, "energy_error", 160, 40, seconds=20.0)
     milliseconds = {
         "canvas_4x3000_points": least(scattered(random)),
@@ -106,7 +106,7 @@ def main() -> None:
         "chart_160x40_whole_run": least(lambda: time_chart(whole, "energy_error", 160, 40)),
         "chart_160x40_linear": least(lambda: time_chart(window, "energy_error", 160, 40, seconds=20.0, log=False)),
         "chart_160x40_as_runs": least(lambda: [chart.row(y) for y in range(40)]),
-        "pendulum_23x18": least(lambda: pendulum_picture(23, 18, [Bob(1.0, 0, trail=trail)])),
+        "pendulum_23x18": least(lambda: pendulum_sketch(23, 18, [Bob(1.0, 0, trail=trail)])),
         "history_add": add,
         "history_window_20_s": least(lambda: history.window(20.0)),
         "history_window_whole_run": least(lambda: history.window()),

@@ -7,7 +7,7 @@ import numpy as np
 
 from tui.drawing.canvas import Picture
 from tui.drawing.palette import EXACT, FAINT, FRAME, NOBODY
-from tui.views.lab.pendulum_picture import Bob, pendulum_picture
+from tui.views.lab.pendulums import Bob, pendulum_sketch
 
 GOLDEN = Path(__file__).with_name("pendulums.txt")
 OWNERS = {NOBODY: " ", FRAME: "+", EXACT: "x"} | dict(enumerate("0123")) | dict(enumerate("abcd", FAINT))
@@ -25,7 +25,7 @@ def drawn() -> list[str]:
             trail = theta - chance.uniform(0.0, 0.2) * np.arange(chance.choice((0, 15)))[::-1]
             owner, letter = (index, "esvr"[index]) if count > 1 else (chance.randrange(4), "")
             bobs.append(Bob(theta, owner, trail, letter, diverged=chance.random() < 0.1))
-        pictures.append(f"{number}: {columns}x{rows}\n{as_text(pendulum_picture(columns, rows, bobs))}")
+        pictures.append(f"{number}: {columns}x{rows}\n{as_text(pendulum_sketch(columns, rows, bobs).picture())}")
     return pictures
 
 

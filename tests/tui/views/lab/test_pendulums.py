@@ -7,13 +7,13 @@ from hypothesis import strategies as st
 
 from tests.tui.drawing.test_canvas import dots
 from tui.drawing.palette import EXACT, FAINT, FRAME
-from tui.views.lab.pendulums import Bob, pendulum_picture
+from tui.views.lab.pendulums import Bob, pendulum_sketch
 
 ANGLE = st.integers(1, 10_000).map(lambda number: number * 0.6180339887)  # never a tie between two dots
 
 
 def picture(columns, rows, *bobs):
-    return pendulum_picture(columns, rows, bobs)
+    return pendulum_sketch(columns, rows, bobs).picture()
 
 
 def owners(picture):
