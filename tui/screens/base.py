@@ -51,8 +51,14 @@ def _first_source(screen: Any) -> Source:
     return source
 
 
+class _Views(Container):
+    BLANK = True  # a view covers it
+
+
 class SourceScreen(Screen[None]):
     """Shows a source, following a clock that is passed in."""
+
+    BLANK = True  # everything on it is covered
 
     @dataclass
     class Began(Message):
@@ -97,7 +103,7 @@ class SourceScreen(Screen[None]):
 
     def compose(self) -> ComposeResult:
         yield StatusLine().data_bind(SourceScreen.source, sample=SourceScreen.sample_10hz)
-        with Container(id="views"):
+        with _Views(id="views"):
             yield self._create(self.view)
         yield TooSmall()
         yield from self.more()

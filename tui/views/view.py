@@ -20,6 +20,7 @@ DESCRIBED_FIRST = [method.key for method in METHODS].index("velocity_verlet")
 class View(Container):
     """A view gets these from the screen, and passes them on to its panes with data_bind."""
 
+    BLANK = True  # panes cover it
     KEYS: ClassVar[tuple[Key, ...]] = ()
     """The keys of its panes, for the help."""
 

@@ -16,19 +16,31 @@ from tui.views.phase.pane import KEYS, PhasePane
 from tui.views.view import View
 
 
+class _Row(Horizontal):
+    BLANK = True  # its panes cover it, so Textual need not ask the sheet how it looks with every paint
+
+
+class _Box(Container):
+    BLANK = True
+
+
+class _Square(Grid):
+    BLANK = True
+
+
 class LabView(View):
     """The style sheet decides which panes there are and how large, by the size of the terminal."""
 
     KEYS = KEYS
 
     def compose(self) -> ComposeResult:
-        with Horizontal():
-            with Container(id="side"):
-                with Grid(id="pendulums"):
+        with _Row():
+            with _Box(id="side"):
+                with _Square(id="pendulums"):
                     yield from self._pendulums()
                 yield EventList().data_bind(View.source, sample=View.sample_10hz)
             yield self._following(Pendulum(range(len(METHODS)), id="overlay"))
-            with Container(id="charts"):
+            with _Box(id="charts"):
                 yield TimeChart().data_bind(View.source, View.shown, sample=View.sample_5hz)
                 yield PhasePane().data_bind(View.source, View.sample, View.shown)
         yield ErrorTable().data_bind(View.source, View.shown, sample=View.sample_10hz)
