@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tui.drawing.palette import NOBODY
+from tui.drawing.sketch import disc
 
 Span = tuple[str, int]
 """Adjacent characters with the same owner."""
@@ -74,33 +75,36 @@ class Canvas:
         self._owners = np.full((rows, columns), NOBODY, np.int8)
         self._labels: dict[tuple[int, int], tuple[str, int]] = {}  # (row, column) -> character, owner
 
-    def points(self, x: ArrayLike, y: ArrayLike, owner: int) -> None:
-        """Set the dots at x, y (numbers or arrays of one shape)."""
+    def copy(self) -> "Canvas":
+        """The same dots, to draw more on; labels are not copied."""
+        copied = Canvas(self.columns, self.rows)
+        copied._dots, copied._owners = self._dots.copy(), self._owners.copy()
+        return copied
+
+    def points(self, x: ArrayLike, y: ArrayLike, owner: ArrayLike) -> None:
+        """Set the dots at x, y (numbers or arrays of one shape); `owner` is one, or one for each."""
         with np.errstate(invalid="ignore"):
             i = np.floor(np.atleast_1d(np.asarray(x, np.float64)))
             j = np.floor(np.atleast_1d(np.asarray(y, np.float64)))
             inside = (i >= 0) & (i < self.width) & (j >= 0) & (j < self.height)
         i, j = i[inside].astype(np.intp), j[inside].astype(np.intp)
         self._dots[j, i] = 1
-        self._owners[j >> 2, i >> 1] = owner
+        self._owners[j >> 2, i >> 1] = owner[inside] if isinstance(owner, np.ndarray) else owner
 
-    def line(self, x: ArrayLike, y: ArrayLike, owner: int, dotted: bool = False) -> None:
-        """Join the points x, y (arrays of n) with straight lines, broken where a point is not finite."""
-        i, j = _along(np.asarray(x, np.float64), np.asarray(y, np.float64), self.width, self.height)
+    def line(self, x: ArrayLike, y: ArrayLike, owner: ArrayLike, dotted: bool = False) -> None:
+        """Join the points x, y (arrays of n) with straight lines, broken where a point is not finite.
+
+        `owner` is one, or an array of n with that of the line from each point on.
+        """
+        i, j, segment = _along(np.asarray(x, np.float64), np.asarray(y, np.float64), self.width, self.height)
         every = 3 if dotted else 1
-        self.points(i[::every], j[::every], owner)
+        self.points(i[::every], j[::every], owner[segment][::every] if isinstance(owner, np.ndarray) else owner)
 
     def disc(self, x: float, y: float, radius: float, owner: int, hollow: bool = False) -> None:
         """Set the dots whose centres are within `radius` of (x, y); hollow: only the rim, one dot wide."""
-        if not (abs(x) < 1e6 and abs(y) < 1e6):  # far outside, or not finite
-            return
-        i, j = np.meshgrid(
-            np.arange(np.floor(x - radius), np.ceil(x + radius) + 1),
-            np.arange(np.floor(y - radius), np.ceil(y + radius) + 1),
-        )
-        distance = np.hypot(i + 0.5 - x, j + 0.5 - y)
-        inside = (distance <= radius) & (distance > radius - 1 if hollow else True)
-        self.points(i[inside], j[inside], owner)
+        if abs(x) < 1e6 and abs(y) < 1e6:  # not elsewhere, and finite
+            i, j = np.reshape(disc(x, y, radius, hollow), (-1, 2)).T
+            self.points(i, j, owner)
 
     def label(self, column: int, row: int, text: str, owner: int) -> None:
         """Write text over any dots, beginning at a cell; text beyond the edges is cut off."""
@@ -127,7 +131,7 @@ class Canvas:
 
 def _along(
     x: NDArray[np.float64], y: NDArray[np.float64], width: int, height: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.intp]]:
     """Points along the visible part of a polyline: one per column of dots, or per row where it is steep."""
     with np.errstate(all="ignore"):
         x0, y0, dx, dy = x[:-1], y[:-1], np.diff(x), np.diff(y)
@@ -149,4 +153,5 @@ def _along(
         nth = np.arange(len(segment)) - np.repeat(np.cumsum(counts) - counts, counts)
         centre = begin[segment] + np.sign(step)[segment] * nth + 0.5
         share = np.where(step[segment] == 0, 0.0, np.clip((centre - start[segment]) / step[segment], 0.0, 1.0))
-        return x0[segment] + share * dx[segment], y0[segment] + share * dy[segment]
+        x, y = x0[segment] + share * dx[segment], y0[segment] + share * dy[segment]
+        return x, y, np.flatnonzero(drawn)[segment]

@@ -7,16 +7,25 @@ dozen numbers costs more than the numbers.
 from collections.abc import Iterable
 from functools import cached_property
 from math import floor
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from tui.drawing.canvas import Picture, Span
 from tui.drawing.palette import NOBODY
+
+if TYPE_CHECKING:
+    from tui.drawing.canvas import Picture, Span
 
 _DOTS = (0x01, 0x08, 0x02, 0x10, 0x04, 0x20, 0x40, 0x80)  # of a cell row by row, as Unicode's bits of braille
 _BRAILLE = 0x2800
 _OWNER = 21  # bits of a character; above them, its owner
 _CODE = (1 << _OWNER) - 1
+
+
+def disc(x: float, y: float, radius: float, hollow: bool) -> list[tuple[int, int]]:
+    """The dots whose centres are within `radius` of (x, y); hollow: only the rim, one dot wide."""
+    most, least = radius * radius, (radius - 1) ** 2 if hollow and radius > 1 else -1.0
+    across = [(i, (i + 0.5 - x) ** 2) for i in range(floor(x - radius), floor(x + radius) + 2)]
+    down = [(j, (j + 0.5 - y) ** 2) for j in range(floor(y - radius), floor(y + radius) + 2)]
+    return [(i, j) for j, dy in down for i, dx in across if least < dx + dy <= most]
 
 
 class Sketch:
@@ -54,11 +63,7 @@ class Sketch:
 
     def disc(self, x: float, y: float, radius: float, owner: int, hollow: bool = False) -> None:
         """Set the dots whose centres are within `radius` of (x, y); hollow: only the rim, one dot wide."""
-        most, least = radius * radius, (radius - 1) ** 2 if hollow and radius > 1 else -1.0
-        across = [(i, (i + 0.5 - x) ** 2) for i in range(floor(x - radius), floor(x + radius) + 2)]
-        for j in range(floor(y - radius), floor(y + radius) + 2):
-            down = (j + 0.5 - y) ** 2
-            self.points([(i, j) for i, right in across if least < right + down <= most], owner)
+        self.points(disc(x, y, radius, hollow), owner)
 
     def label(self, column: int, row: int, text: str, owner: int) -> None:
         """Write text from a cell on, over any dots; what does not fit is cut off."""
@@ -71,11 +76,11 @@ class Sketch:
         inside = 0 <= column < self.columns and 0 <= row < self.rows
         return inside and row * self.columns + column not in self._labels
 
-    def row(self, y: int) -> list[Span]:
+    def row(self, y: int) -> "list[Span]":
         """Row y from the left, as Picture.row."""
         start, columns = y * self.columns, self.columns
         values = [*map(self.cells.get, range(start, start + columns))]
-        spans: list[Span] = []
+        spans: list[tuple[str, int]] = []
         text, owner = "", NOBODY
         for value in values:
             whose = NOBODY if value is None else (value >> _OWNER) + NOBODY
@@ -96,8 +101,12 @@ class Sketch:
         """What has been drawn, once all has been, by row · columns + column."""
         return self._cells | self._labels
 
-    def picture(self) -> Picture:
+    def picture(self) -> "Picture":
         """The same as a picture."""
+        import numpy as np
+
+        from tui.drawing.canvas import Picture
+
         characters = np.full(self.columns * self.rows, ord(" "), np.uint32)
         owners = np.full(self.columns * self.rows, NOBODY, np.int8)
         for cell, value in self.cells.items():
