@@ -33,6 +33,23 @@ class View(Container):
     """The sample as often as a chart is worth building, 5 times a second."""
     shown: var[Shown] = var(Shown())
 
+    def __init__(self, id: str | None = None) -> None:
+        super().__init__(id=id)
+        self._moving: list[Pane] = []
+
+    def moving(self, pane: "Pane") -> "Pane":
+        """A pane that follows every frame: it gets the sample directly, for data_bind takes longer than drawing."""
+        self._moving.append(pane)
+        return pane.data_bind(View.source, View.shown)
+
+    def on_mount(self) -> None:
+        self.watch_sample()
+
+    def watch_sample(self) -> None:
+        for pane in self._moving:
+            pane.set_reactive(Pane.sample, self.sample)
+            pane.draw()
+
 
 class Pane(CellWidget):
     """Draws a source at one of its samples, again whenever one of the three values changes."""

@@ -39,19 +39,16 @@ class LabView(View):
                 with _Square(id="pendulums"):
                     yield from self._pendulums()
                 yield EventList().data_bind(View.source, sample=View.sample_10hz)
-            yield self._following(Pendulum(range(len(METHODS)), id="overlay"))
+            yield self.moving(Pendulum(range(len(METHODS)), id="overlay"))
             with _Box(id="charts"):
                 yield TimeChart().data_bind(View.source, View.shown, sample=View.sample_5hz)
-                yield PhasePane().data_bind(View.source, View.sample, View.shown)
+                yield self.moving(PhasePane())
         yield ErrorTable().data_bind(View.source, View.shown, sample=View.sample_10hz)
         yield LargeTable().data_bind(View.source, View.shown, sample=View.sample_10hz)
 
     def _pendulums(self) -> Iterator[Widget]:
         for index in range(len(METHODS)):
-            yield self._following(Pendulum([index]))
-
-    def _following(self, pendulum: Pendulum) -> Widget:
-        return pendulum.data_bind(View.source, View.sample, View.shown)
+            yield self.moving(Pendulum([index]))
 
     def watch_shown(self) -> None:
         """Hidden methods leave their room to the others."""
