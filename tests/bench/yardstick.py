@@ -181,9 +181,9 @@ def paused_lab() -> dict[str, Figures]:
     with tempfile.TemporaryDirectory() as folder, lab(folder) as program:
         program.type(" ")
         program.run(2.0)
-        switches = program.switches()
+        before = program.wakes()
         figures = watched(program)
-        wakes = (program.switches() - switches) / SECONDS
+        wakes = (program.wakes() - before) / SECONDS
         end(program)
     names = ("percent", "kilobytes_per_second")
     return {"paused": {name: round(figures[name], 2) for name in names} | {"wakes_per_second": round(wakes, 1)}}

@@ -145,10 +145,9 @@ class PtyLab:
         fields = Path(f"/proc/{self.pid}/stat").read_text().rpartition(")")[2].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
-    def switches(self) -> int:
-        """How often its threads have gone to sleep so far, to be woken again."""
-        tasks = Path(f"/proc/{self.pid}/task").glob("*/status")
-        counts = (re.search(r"^voluntary_ctxt_switches:\s*(\d+)", task.read_text(), re.M) for task in tasks)
-        return sum(int(count[1]) for count in counts if count)
+    def wakes(self) -> int:
+        """How often its main thread has gone to sleep so far, to be woken again."""
+        status = Path(f"/proc/{self.pid}/status").read_text()
+        return int(re.findall(r"^voluntary_ctxt_switches:\s*(\d+)", status, re.M)[0])
 
     usage: resource.struct_rusage

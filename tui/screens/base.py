@@ -13,12 +13,14 @@ from textual.containers import Container
 from textual.message import Message
 from textual.reactive import Initialize, var
 from textual.screen import Screen
+from textual.timer import Timer
 from textual.widget import Widget
 
 from engine.run.lockstep import Sample
 from tui.playback.playhead import doubled
 from tui.playback.shown import Shown
 from tui.playback.source import Source
+from tui.screens.frame_rate import FrameRate
 from tui.screens.insight_line import InsightLine
 from tui.screens.key_line import KeyLine
 from tui.screens.keys import COMMON, hinted
@@ -28,8 +30,8 @@ from tui.views import create, following
 from tui.views.keys import Key, bindings
 from tui.views.view import View
 
-READ, BUILT = 10, 5
-"""How often a second numbers that people read are updated, and charts, which take time to build."""
+READ, BUILT, RESTING = 10, 5, 4
+"""How often a second numbers that people read are updated, charts, which take time to build, and a lab at rest."""
 
 STALL = 1.0  # s; a longer gap between frames does not count as time: Ctrl+Z, a computer asleep, a dead line
 ALREADY = "Already marked"
@@ -91,6 +93,9 @@ class SourceScreen(Screen[None]):
         self.first_source = source
         self.clock = clock
         self._frames = 0
+        self._rate = FrameRate(1)
+        self._timer: Timer | None = None  # from the first paint on
+        self._resting = False
         self._missed = 0.0  # s of the clock while the program was stopped
         self._late = False  # the next frame shows everything
         self._undo: list[Callable[[], object]] = []
@@ -127,13 +132,15 @@ class SourceScreen(Screen[None]):
         gc.freeze()  # what exists now stays: collecting it again and again would cost frames
         gc.enable()
         self.post_message(self.Began(self))
-        self._timer = self.set_interval(1 / self.host.fps, self.frame)
+        self._rate = FrameRate(self.host.fps)
+        self._timer = self.set_interval(1 / self._rate.rate, self.frame)
         for notice in self._notices:
             self.notify(notice, timeout=15, markup=False)
 
     def end(self) -> None:
         """Stop following the clock: another screen takes over."""
-        self._timer.stop()
+        if self._timer is not None:
+            self._timer.stop()
         self.source.close()
 
     def frame(self) -> None:
@@ -143,21 +150,34 @@ class SourceScreen(Screen[None]):
             self._missed += now - seen
             now = seen
         sample = self.source.tick(now)
+        if not self._resting and self._rate.frame(self.clock(), time.process_time()):
+            self.query_one(StatusLine).frames = self._rate.rate if self._rate.is_slow else None
+            self._keep_time(anew=True)
         if self.host.is_behind(urgent=self._late):
             return
         self._frames += 1
         self.sample = sample
-        if self._late or self._frames % max(self.host.fps // READ, 1) == 0:
+        if self._late or self._frames % max(self._rate.rate // READ, 1) == 0:
             self.sample_10hz = sample
-        if self._late or self._frames % max(self.host.fps // BUILT, 1) == 0:
+        if self._late or self._frames % max(self._rate.rate // BUILT, 1) == 0:
             self.sample_5hz = sample
         self._late = False
+        self._keep_time()
+
+    def _keep_time(self, anew: bool = False) -> None:
+        """Wake as often as there may be something new: seldom while only a key can change what is shown."""
+        resting = self.source.is_at_rest
+        if self._timer is not None and (anew or resting != self._resting):
+            self._resting = resting
+            self._timer.stop()
+            self._timer = self.set_interval(1 / (RESTING if resting else self._rate.rate), self.frame)
 
     def show_now(self) -> None:
         """Show everything at once; on a busy line, with the next frame that it can carry."""
         self._late = self.host.is_behind(urgent=True)
         if not self._late:
             self.sample = self.sample_10hz = self.sample_5hz = self.source.sample
+        self._keep_time()
 
     def remember(self, undo: Callable[[], object]) -> None:
         """Keep the function that undoes a change."""
@@ -172,6 +192,7 @@ class SourceScreen(Screen[None]):
         self.call_next(self.run_action, message.action)
 
     def action_pause(self) -> None:
+        self.frame()  # so that the clock goes on from here, and not from the last of the few frames of a lab at rest
         self.source.pause(not self.source.playhead.paused)
         self.show_now()
 
