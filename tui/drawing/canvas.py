@@ -13,13 +13,23 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tui.drawing.palette import NOBODY
-from tui.drawing.sketch import disc
+from tui.drawing.sketch import Sketch, disc
 
 Span = tuple[str, int]
 """Adjacent characters with the same owner."""
 
 _BITS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]], np.uint8)  # Unicode's order of braille dots
 _GLYPHS = np.array([ord(" "), *range(0x2801, 0x2900)], np.uint32)
+
+
+def _grown(bits: int) -> int:
+    """The dots of a braille cell, each as wide as the cell and two rows high."""
+    rows = (0x09, 0x12, 0x24, 0xC0)  # two dots each, from the top
+    neighbours = (*rows[1:], rows[2])
+    return sum({dots for row, other in zip(rows, neighbours, strict=True) if bits & row for dots in (row, other)})
+
+
+_THICK = np.array([0x2800 + _grown(bits) for bits in range(256)], np.uint32)
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +64,27 @@ class Picture:
             np.concatenate([picture.characters for picture in pictures]),
             np.concatenate([picture.owners for picture in pictures]),
         )
+
+    def thick(self) -> "Picture":
+        """The picture with thick lines; words stay as they are."""
+        codes = self.characters
+        return Picture(np.where(codes & ~np.uint32(0xFF) == 0x2800, _THICK[codes & 0xFF], codes), self.owners)
+
+    @classmethod
+    def of_sketch(cls, sketch: Sketch) -> "Picture":
+        """The same as a picture."""
+        picture = Canvas(sketch.columns, sketch.rows).picture()
+        for cell, code, owner in sketch.letters:
+            at = divmod(cell, sketch.columns)
+            picture.characters[at], picture.owners[at] = code, owner
+        return picture
+
+    def changed_rows(self, before: "Picture | None") -> list[int]:
+        """The rows that differ from those of a picture before; all of them where there is nothing to compare with."""
+        if before is None or before.characters.shape != self.characters.shape:
+            return list(range(len(self.characters)))
+        changed = (before.characters != self.characters) | (before.owners != self.owners)
+        return np.flatnonzero(changed.any(axis=1)).tolist()
 
     @classmethod
     def of_text(cls, text: str, columns: int, rows: int, owner: int) -> "Picture":

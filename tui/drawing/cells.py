@@ -3,9 +3,8 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from itertools import zip_longest
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
-import numpy as np
 from rich.cells import cell_len
 from rich.segment import Segment
 from rich.style import Style
@@ -15,39 +14,17 @@ from textual.geometry import Region, Size, Spacing
 from textual.strip import Strip
 from textual.widget import Widget
 
-from tui.drawing.canvas import Picture
 from tui.drawing.palette import NOBODY, palette
 from tui.drawing.sketch import Sketch
+
+if TYPE_CHECKING:
+    from tui.drawing.canvas import Picture  # brings NumPy, which can wait for the first paint
 
 Row = Sequence[tuple[str, int | Style]]
 """Words next to each other, and whose they are; or how they look, where that is not an owner's colour."""
 
 PRESENT = "-present"
 """The app's class where pictures have thick lines."""
-
-
-def _grown(bits: int) -> int:
-    """The dots of a braille cell, each as wide as the cell and two rows high."""
-    rows = (0x09, 0x12, 0x24, 0xC0)  # two dots each, from the top
-    neighbours = (*rows[1:], rows[2])
-    return sum({dots for row, other in zip(rows, neighbours, strict=True) if bits & row for dots in (row, other)})
-
-
-_THICK = np.array([0x2800 + _grown(bits) for bits in range(256)], np.uint32)
-
-
-def thick(picture: Picture) -> Picture:
-    """The picture with thick lines; words stay as they are."""
-    codes = picture.characters
-    return Picture(np.where(codes & ~np.uint32(0xFF) == 0x2800, _THICK[codes & 0xFF], codes), picture.owners)
-
-
-def changed_rows(before: Picture | None, after: Picture) -> list[int]:
-    """The rows that differ; all of them where there is nothing to compare with."""
-    if before is None or before.characters.shape != after.characters.shape:
-        return list(range(len(after.characters)))
-    changed = (before.characters != after.characters) | (before.owners != after.owners)
-    return np.flatnonzero(changed.any(axis=1)).tolist()
 
 
 _NO_GUTTER, _BLACK = Spacing(), Color(0, 0, 0)
@@ -130,17 +107,18 @@ class CellWidget(Widget):
         self._refresh_rows([y for y in changed if y not in wait])
         return not wait
 
-    def show_picture(self, picture: Picture) -> None:
+    def show_picture(self, picture: "Picture") -> None:
         if self.app.has_class(PRESENT):
-            picture = thick(picture)
-        changed, self._picture, self._sketch = changed_rows(self._picture, picture), picture, None
+            picture = picture.thick()
+        changed, self._picture, self._sketch = picture.changed_rows(self._picture), picture, None
         self._picture_width = picture.characters.shape[1]
         self._replace_rows(changed, picture.row, len(picture.characters))
 
     def show_sketch(self, sketch: Sketch) -> None:
-        """Show a sketch."""
         if self.app.has_class(PRESENT):
-            self.show_picture(sketch.picture())
+            from tui.drawing.canvas import Picture
+
+            self.show_picture(Picture.of_sketch(sketch))
             return
         changed, self._picture, self._sketch = sketch.changed_rows(self._sketch), None, sketch
         self._picture_width = sketch.columns

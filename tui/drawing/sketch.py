@@ -7,12 +7,8 @@ dozen numbers costs more than the numbers.
 from collections.abc import Iterable
 from functools import cached_property
 from math import floor
-from typing import TYPE_CHECKING
 
 from tui.drawing.palette import NOBODY
-
-if TYPE_CHECKING:
-    from tui.drawing.canvas import Picture, Span
 
 _DOTS = (0x01, 0x08, 0x02, 0x10, 0x04, 0x20, 0x40, 0x80)  # of a cell row by row, as Unicode's bits of braille
 _BRAILLE = 0x2800
@@ -76,7 +72,7 @@ class Sketch:
         inside = 0 <= column < self.columns and 0 <= row < self.rows
         return inside and row * self.columns + column not in self._labels
 
-    def row(self, y: int) -> "list[Span]":
+    def row(self, y: int) -> list[tuple[str, int]]:
         """Row y from the left, as Picture.row."""
         start, columns = y * self.columns, self.columns
         values = [*map(self.cells.get, range(start, start + columns))]
@@ -101,15 +97,7 @@ class Sketch:
         """What has been drawn, once all has been, by row · columns + column."""
         return self._cells | self._labels
 
-    def picture(self) -> "Picture":
-        """The same as a picture."""
-        import numpy as np
-
-        from tui.drawing.canvas import Picture
-
-        characters = np.full(self.columns * self.rows, ord(" "), np.uint32)
-        owners = np.full(self.columns * self.rows, NOBODY, np.int8)
-        for cell, value in self.cells.items():
-            characters[cell], owners[cell] = value & _CODE, (value >> _OWNER) + NOBODY
-        shape = self.rows, self.columns
-        return Picture(characters.reshape(shape), owners.reshape(shape))
+    @property
+    def letters(self) -> Iterable[tuple[int, int, int]]:
+        """Cell, code point and owner of all that has been drawn."""
+        return ((cell, value & _CODE, (value >> _OWNER) + NOBODY) for cell, value in self.cells.items())

@@ -79,7 +79,7 @@ class Pendulum(Pane):
                     Bob(
                         reading.theta,
                         index,
-                        trail=source.history.trail(index, length)[0].tolist(),
+                        trail=source.history.thetas(index, length),
                         letter=METHODS[index].letter if len(self._indices) > 1 else "",
                         diverged=reading.diverged_at is not None,
                     )

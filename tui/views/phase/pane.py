@@ -1,6 +1,6 @@
 """PhasePane: phase space, the methods in it, and a start to choose with the mouse or the keyboard."""
 
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from textual import events
 from textual.binding import BindingType
@@ -8,18 +8,17 @@ from textual.message import Message
 from textual.reactive import var
 
 from engine.models.state import State
-from engine.phase_space.area import RADII, Neighbourhood, Neighbours
 from engine.run.lockstep import Sample
 from engine.scenes import SceneError
-from tui.drawing.canvas import Picture
 from tui.playback.source import Source
 from tui.views.keys import Key, arrows, bindings
 from tui.views.messages import SceneChosen
-from tui.views.phase.facts import caption
-from tui.views.phase.picture import method_points, phase_picture
-from tui.views.phase.portrait import Portrait
 from tui.views.phase.viewport import Viewport
 from tui.views.view import Chooser
+
+if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
+    from engine.phase_space.area import Neighbourhood, Neighbours
+    from tui.drawing.canvas import Picture
 
 RING_STEPS = 100  # a frame; 52 µs each, so a ring that has to catch up costs 5 ms of a frame at most
 BIG_STEP = 8  # dots
@@ -60,7 +59,8 @@ class PhasePane(Chooser[State]):
     def __init__(self, id: str | None = None, radius: float | None = None) -> None:
         super().__init__(id)
         self.set_reactive(PhasePane.radius, radius)
-        self.neighbours = None if radius is None else Neighbours(radius)
+        self.neighbours: Neighbours | None = None
+        self._begun = False
         self.ring: Neighbourhood | None = None
         self.pointer: tuple[int, int] | None = None  # the cell under it
         self.aiming = False  # the pointer is about to choose a start
@@ -73,7 +73,14 @@ class PhasePane(Chooser[State]):
     @property
     def settled(self) -> bool:
         """Whether the ring shown is that of the sample."""
-        return not (self.drawable and self._catching_up)
+        return self._begun and not (self.drawable and self._catching_up)
+
+    def on_mount(self) -> None:
+        self.call_after_refresh(self._begin)  # NumPy, which takes long to import, waits for the first paint
+
+    def _begin(self) -> None:
+        self._begun = True
+        self.draw()
 
     def watch_source(self) -> None:
         self.border_title = f"Phase space: theta, omega ({'click: start, ' if self.is_live else ''}wheel: zoom)"
@@ -85,8 +92,7 @@ class PhasePane(Chooser[State]):
 
     def watch_radius(self) -> None:
         """Begin another ring at the run's start."""
-        self.neighbours = None if self.radius is None else Neighbours(self.radius)
-        self.ring = None
+        self.neighbours = self.ring = None
         self.draw()
 
     @property
@@ -112,15 +118,21 @@ class PhasePane(Chooser[State]):
         return None if self.pointer is None else self.viewport.at_cell(*self.pointer)
 
     def paint(self, source: Source, sample: Sample) -> None:
-        portrait = Portrait.of(self.viewport, source.scene.w0)
+        if not self._begun:
+            return
+        from tui.views.phase.picture import source_picture
+
         orbit = self.aim if self.aiming or self.cursor is not None else None
         self._follow(source, sample)
-        points = method_points(source, sample, self.shown, self.ring)
-        self._plot = phase_picture(portrait, points, self.cursor, orbit)
+        self._plot = source_picture(self.viewport, source, sample, self.shown, self.ring, self.cursor, orbit)
         self.tell()
 
     def _follow(self, source: Source, sample: Sample) -> None:
         """Let the ring keep up; where it has not, go on without waiting for the next sample."""
+        if self.neighbours is None and self.radius is not None:
+            from engine.phase_space.area import Neighbours
+
+            self.neighbours = Neighbours(self.radius)
         if self.neighbours is not None:
             self.ring = self.neighbours.follow(source.scene, sample.run, sample.step, source.changes, RING_STEPS)
             if self.neighbours.step < sample.step and not self._catching_up:
@@ -135,8 +147,9 @@ class PhasePane(Chooser[State]):
     def tell(self) -> None:
         """Describe in a line below the plot what is at the crosshair or under the pointer."""
         if self.source is not None and self._plot is not None:
-            width = self._plot.characters.shape[1]
-            self.show_picture(Picture.stacked(self._plot, caption(self.source.exact, self.aim, width)))
+            from tui.views.phase.facts import captioned
+
+            self.show_picture(captioned(self._plot, self.source.exact, self.aim))
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         return (action == "cancel" and self.aiming) or super().check_action(action, parameters)
@@ -187,6 +200,8 @@ class PhasePane(Chooser[State]):
 
     def action_radius(self, direction: int) -> None:
         """Take the next larger ring, or the next smaller one; the ends are joined by none."""
+        from engine.phase_space.area import RADII
+
         radii = (None, *RADII)
         self.radius = radii[(radii.index(self.radius) + direction) % len(radii)]
 

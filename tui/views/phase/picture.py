@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engine.methods import METHODS
+from engine.models.state import State
 from engine.phase_space.area import Neighbourhood
 from engine.run.lockstep import Sample
 from tui.drawing.canvas import Canvas, Picture
@@ -35,6 +36,14 @@ class PhasePoint:
     letter: str
     trail: Track = _NOWHERE
     ring: Track | None = None
+
+
+def source_picture(
+    viewport: Viewport, source: Source, sample: Sample, shown: Shown, ring: Neighbourhood | None, *aims: State | None
+) -> Picture:
+    """What is to be shown of a sample, with the crosshair and the state whose orbit is shown, if any."""
+    portrait = Portrait.of(viewport, source.scene.w0)
+    return phase_picture(portrait, method_points(source, sample, shown, ring), *aims)
 
 
 def method_points(source: Source, sample: Sample, shown: Shown, ring: Neighbourhood | None) -> list[PhasePoint]:

@@ -25,7 +25,8 @@ def drawn() -> list[str]:
             trail = theta - chance.uniform(0.0, 0.2) * np.arange(chance.choice((0, 15)))[::-1]
             owner, letter = (index, "esvr"[index]) if count > 1 else (chance.randrange(4), "")
             bobs.append(Bob(theta, owner, trail, letter, diverged=chance.random() < 0.1))
-        pictures.append(f"{number}: {columns}x{rows}\n{as_text(pendulum_sketch(columns, rows, bobs).picture())}")
+        picture = Picture.of_sketch(pendulum_sketch(columns, rows, bobs))
+        pictures.append(f"{number}: {columns}x{rows}\n{as_text(picture)}")
     return pictures
 
 
