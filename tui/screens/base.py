@@ -9,18 +9,16 @@ from typing import Any, ClassVar, Protocol, cast
 
 from textual.app import ComposeResult
 from textual.binding import BindingType
-from textual.containers import Container
 from textual.message import Message
 from textual.reactive import Initialize, var
 from textual.screen import Screen
-from textual.timer import Timer
 from textual.widget import Widget
 
 from engine.run.lockstep import Sample
+from tui.playback.frame_rate import FrameTimer
 from tui.playback.playhead import doubled
 from tui.playback.shown import Shown
 from tui.playback.source import Source
-from tui.screens.frame_rate import FrameRate
 from tui.screens.insight_line import InsightLine
 from tui.screens.key_line import KeyLine
 from tui.screens.keys import COMMON, hinted
@@ -28,10 +26,10 @@ from tui.screens.status_line import StatusLine
 from tui.screens.too_small import TooSmall
 from tui.views import create, following
 from tui.views.keys import Key, bindings
-from tui.views.view import View
+from tui.views.view import Box, View
 
-READ, BUILT, RESTING = 10, 5, 4
-"""How often a second numbers that people read are updated, charts, which take time to build, and a lab at rest."""
+READ, BUILT = 10, 5
+"""How often a second numbers that people read are updated, and charts, which take time to build."""
 
 STALL = 1.0  # s; a longer gap between frames does not count as time: Ctrl+Z, a computer asleep, a dead line
 ALREADY = "Already marked"
@@ -51,10 +49,6 @@ class Host(Protocol):
 def _first_source(screen: Any) -> Source:
     source: Source = screen.first_source
     return source
-
-
-class _Views(Container):
-    BLANK = True  # a view covers it
 
 
 class SourceScreen(Screen[None]):
@@ -93,9 +87,7 @@ class SourceScreen(Screen[None]):
         self.first_source = source
         self.clock = clock
         self._frames = 0
-        self._rate = FrameRate(1)
-        self._timer: Timer | None = None  # from the first paint on
-        self._resting = False
+        self._timer = FrameTimer(lambda seconds: self.set_interval(seconds, self.frame))
         self._missed = 0.0  # s of the clock while the program was stopped
         self._late = False  # the next frame shows everything
         self._undo: list[Callable[[], object]] = []
@@ -108,7 +100,7 @@ class SourceScreen(Screen[None]):
 
     def compose(self) -> ComposeResult:
         yield StatusLine().data_bind(SourceScreen.source, sample=SourceScreen.sample_10hz)
-        with _Views(id="views"):
+        with Box(id="views"):
             yield self._create(self.view)
         yield TooSmall()
         yield from self.more()
@@ -132,15 +124,13 @@ class SourceScreen(Screen[None]):
         gc.freeze()  # what exists now stays: collecting it again and again would cost frames
         gc.enable()
         self.post_message(self.Began(self))
-        self._rate = FrameRate(self.host.fps)
-        self._timer = self.set_interval(1 / self._rate.rate, self.frame)
+        self._timer.begin(self.host.fps)
         for notice in self._notices:
             self.notify(notice, timeout=15, markup=False)
 
     def end(self) -> None:
         """Stop following the clock: another screen takes over."""
-        if self._timer is not None:
-            self._timer.stop()
+        self._timer.stop()
         self.source.close()
 
     def frame(self) -> None:
@@ -150,34 +140,25 @@ class SourceScreen(Screen[None]):
             self._missed += now - seen
             now = seen
         sample = self.source.tick(now)
-        if not self._resting and self._rate.frame(self.clock(), time.process_time()):
-            self.query_one(StatusLine).frames = self._rate.rate if self._rate.is_slow else None
-            self._keep_time(anew=True)
+        if self._timer.frame(self.clock(), time.process_time()):
+            self.query_one(StatusLine).frames = self._timer.lowered
+        self._timer.rest(self.source.is_at_rest)
         if self.host.is_behind(urgent=self._late):
             return
         self._frames += 1
         self.sample = sample
-        if self._late or self._frames % max(self._rate.rate // READ, 1) == 0:
+        if self._late or self._timer.is_turn(self._frames, READ):
             self.sample_10hz = sample
-        if self._late or self._frames % max(self._rate.rate // BUILT, 1) == 0:
+        if self._late or self._timer.is_turn(self._frames, BUILT):
             self.sample_5hz = sample
         self._late = False
-        self._keep_time()
-
-    def _keep_time(self, anew: bool = False) -> None:
-        """Wake as often as there may be something new: seldom while only a key can change what is shown."""
-        resting = self.source.is_at_rest
-        if self._timer is not None and (anew or resting != self._resting):
-            self._resting = resting
-            self._timer.stop()
-            self._timer = self.set_interval(1 / (RESTING if resting else self._rate.rate), self.frame)
 
     def show_now(self) -> None:
         """Show everything at once; on a busy line, with the next frame that it can carry."""
         self._late = self.host.is_behind(urgent=True)
         if not self._late:
             self.sample = self.sample_10hz = self.sample_5hz = self.source.sample
-        self._keep_time()
+        self._timer.rest(self.source.is_at_rest)
 
     def remember(self, undo: Callable[[], object]) -> None:
         """Keep the function that undoes a change."""

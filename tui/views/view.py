@@ -17,10 +17,15 @@ Place = TypeVar("Place")
 DESCRIBED_FIRST = [method.key for method in METHODS].index("velocity_verlet")
 
 
-class View(Container):
+class Box(Container):
+    """A container that its children cover, so that Textual need not ask the sheet how it looks with every paint."""
+
+    BLANK = True
+
+
+class View(Box):
     """A view gets these from the screen, and passes them on to its panes with data_bind."""
 
-    BLANK = True  # panes cover it
     KEYS: ClassVar[tuple[Key, ...]] = ()
     """The keys of its panes, for the help."""
 
@@ -36,13 +41,22 @@ class View(Container):
     def __init__(self, id: str | None = None) -> None:
         super().__init__(id=id)
         self._moving: list[Pane] = []
+        self._late: list[Pane] = []
 
-    def moving(self, pane: "Pane") -> "Pane":
-        """A pane that follows every frame: it gets the sample directly, for data_bind takes longer than drawing."""
-        self._moving.append(pane)
+    def moving(self, pane: "Pane", late: bool = False) -> "Pane":
+        """A pane that follows every frame: it gets the sample directly, for data_bind takes longer than drawing.
+
+        A late one draws after the first paint only, since NumPy takes long to import.
+        """
+        (self._late if late else self._moving).append(pane)
         return pane.data_bind(View.source, View.shown)
 
     def on_mount(self) -> None:
+        self.watch_sample()
+        self.call_after_refresh(self._begin)
+
+    def _begin(self) -> None:
+        self._moving += self._late
         self.watch_sample()
 
     def watch_sample(self) -> None:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from textual.app import ComposeResult
-from textual.containers import Container, Grid, Horizontal
+from textual.containers import Grid, Horizontal
 from textual.widget import Widget
 
 from engine.methods import METHODS
@@ -13,14 +13,10 @@ from tui.views.lab.large_table import LargeTable
 from tui.views.lab.pendulums import Pendulum
 from tui.views.lab.time_chart import TimeChart
 from tui.views.phase.pane import KEYS, PhasePane
-from tui.views.view import View
+from tui.views.view import Box, View
 
 
 class _Row(Horizontal):
-    BLANK = True  # its panes cover it, so Textual need not ask the sheet how it looks with every paint
-
-
-class _Box(Container):
     BLANK = True
 
 
@@ -35,14 +31,14 @@ class LabView(View):
 
     def compose(self) -> ComposeResult:
         with _Row():
-            with _Box(id="side"):
+            with Box(id="side"):
                 with _Square(id="pendulums"):
                     yield from self._pendulums()
                 yield EventList().data_bind(View.source, sample=View.sample_10hz)
             yield self.moving(Pendulum(range(len(METHODS)), id="overlay"))
-            with _Box(id="charts"):
+            with Box(id="charts"):
                 yield TimeChart().data_bind(View.source, View.shown, sample=View.sample_5hz)
-                yield self.moving(PhasePane())
+                yield self.moving(PhasePane(), late=True)
         yield ErrorTable().data_bind(View.source, View.shown, sample=View.sample_10hz)
         yield LargeTable().data_bind(View.source, View.shown, sample=View.sample_10hz)
 

@@ -60,27 +60,19 @@ class PhasePane(Chooser[State]):
         super().__init__(id)
         self.set_reactive(PhasePane.radius, radius)
         self.neighbours: Neighbours | None = None
-        self._begun = False
         self.ring: Neighbourhood | None = None
         self.pointer: tuple[int, int] | None = None  # the cell under it
         self.aiming = False  # the pointer is about to choose a start
+        self._catching_up = False
         self.zoomed: Viewport | None = None  # None: the whole portrait
         self._whole: Viewport | None = None
         self._plot: Picture | None = None
-        self._catching_up = False
         self._panning: tuple[int, int] | None = None  # the cell where the picture was last moved to
 
     @property
     def settled(self) -> bool:
         """Whether the ring shown is that of the sample."""
-        return self._begun and not (self.drawable and self._catching_up)
-
-    def on_mount(self) -> None:
-        self.call_after_refresh(self._begin)  # NumPy, which takes long to import, waits for the first paint
-
-    def _begin(self) -> None:
-        self._begun = True
-        self.draw()
+        return self.sample is not None and not (self.drawable and self._catching_up)
 
     def watch_source(self) -> None:
         self.border_title = f"Phase space: theta, omega ({'click: start, ' if self.is_live else ''}wheel: zoom)"
@@ -118,8 +110,6 @@ class PhasePane(Chooser[State]):
         return None if self.pointer is None else self.viewport.at_cell(*self.pointer)
 
     def paint(self, source: Source, sample: Sample) -> None:
-        if not self._begun:
-            return
         from tui.views.phase.picture import source_picture
 
         orbit = self.aim if self.aiming or self.cursor is not None else None
@@ -129,11 +119,10 @@ class PhasePane(Chooser[State]):
 
     def _follow(self, source: Source, sample: Sample) -> None:
         """Let the ring keep up; where it has not, go on without waiting for the next sample."""
-        if self.neighbours is None and self.radius is not None:
+        if self.radius is not None:
             from engine.phase_space.area import Neighbours
 
-            self.neighbours = Neighbours(self.radius)
-        if self.neighbours is not None:
+            self.neighbours = self.neighbours or Neighbours(self.radius)
             self.ring = self.neighbours.follow(source.scene, sample.run, sample.step, source.changes, RING_STEPS)
             if self.neighbours.step < sample.step and not self._catching_up:
                 self._catching_up = True

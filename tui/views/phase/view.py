@@ -18,7 +18,7 @@ class PhaseView(View):
     KEYS = KEYS
 
     def compose(self) -> ComposeResult:
-        yield self.moving(PhasePane(radius=RADIUS))
+        yield self.moving(PhasePane(radius=RADIUS), late=True)
         yield CellWidget(id="facts")
 
     def on_show(self) -> None:

@@ -1,6 +1,6 @@
 import pytest
 
-from tui.screens.frame_rate import FrameRate
+from tui.playback.frame_rate import FrameRate
 
 
 class Machine:
