@@ -21,9 +21,7 @@ if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
     from tui.drawing.canvas import Picture
 
 RING_STEPS = 100  # a frame; 52 µs each, so a ring that has to catch up costs 5 ms of a frame at most
-BIG_STEP = 8  # dots
-
-_GROUP = "phase space"
+BIG_STEP, _GROUP = 8, "phase space"  # dots
 KEYS = (
     Key("", "tab", "in the lab: to this pane, for its keys", "", _GROUP),
     *arrows(_GROUP, "crosshair", "choose a start", BIG_STEP),
@@ -105,9 +103,7 @@ class PhasePane(Chooser[State]):
     @property
     def aim(self) -> State | None:
         """The state at the crosshair or, if there is none, under the pointer."""
-        if self.cursor is not None:
-            return self.cursor
-        return None if self.pointer is None else self.viewport.at_cell(*self.pointer)
+        return self.cursor or (None if self.pointer is None else self.viewport.at_cell(*self.pointer))
 
     def paint(self, source: Source, sample: Sample) -> None:
         from tui.views.phase.picture import source_picture
