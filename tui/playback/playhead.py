@@ -16,7 +16,7 @@ class Playhead:
     def at(self, now: float) -> "Playhead":
         """The playhead when the clock reads `now` [s]; a clock that stands or jumps back moves nothing."""
         elapsed = 0.0 if self.seen is None or self.paused else max(0.0, now - self.seen)
-        return replace(self, position=self.position + elapsed * self.speed, seen=now)
+        return Playhead(self.position + elapsed * self.speed, self.speed, self.paused, now)
 
     def moved_to(self, position: float) -> "Playhead":
         """The same playhead elsewhere."""

@@ -39,6 +39,7 @@ class Replay(Source):
         self.looping = False
         self._clock = clock
         self._cursor = ReplayCursor(recording)
+        self._filled = False  # all of the past read, and all milestones found
         self._search = self._cursor.milestone_times()
         self._milestone_times: list[float] = []  # s, on the recording clock, as far as known by now
         self._all_events = [event for _, event in recording.events]
@@ -76,6 +77,11 @@ class Replay(Source):
         return self._cursor.changes(self.playhead.position)[-1].stepping
 
     @property
+    def is_at_rest(self) -> bool:
+        """Paused, with all of the past read and all milestones found."""
+        return self.playhead.paused and self._filled
+
+    @property
     def recording_status(self) -> RecordingStatus:
         return RecordingStatus(self.recording.path.name, self.length, self.recording.bytes)
 
@@ -92,8 +98,10 @@ class Replay(Source):
         """Read more of the past, and then look for milestones; whether the past of the sample is known by now."""
         until = self._clock() + FILL_BUDGET
         filled = self._cursor.fill(lambda: self._clock() < until)
+        times: list[float] | None = []
         while self._clock() < until and (times := next(self._search, None)) is not None:
             self._milestone_times += times
+        self._filled = filled and times is None
         return filled
 
     def pause(self, paused: bool) -> None:
@@ -115,6 +123,7 @@ class Replay(Source):
 
     def seek(self, position: float) -> None:
         """Go to a moment of the recording clock [s], or to the nearer end."""
+        self._filled = False
         self.playhead = self.playhead.moved_to(min(max(position, 0.0), self.length))
         self._cursor.go_to(self.playhead.position)
 

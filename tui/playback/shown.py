@@ -1,9 +1,12 @@
 """Shown: which methods and quantities are on screen, and how.  Nothing in it changes a number."""
 
 from dataclasses import dataclass, replace
+from typing import Literal, get_args
 
 from engine.methods import METHODS
-from tui.playback.history import QUANTITIES, Quantity
+
+Quantity = Literal["energy_error", "theta_error", "shadow_error", "energy"]
+QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
 
 WINDOWS: tuple[float | None, ...] = (5.0, 20.0, 60.0, 300.0, 1800.0, None)
 """How much of the past the chart shows [s]; None: the whole run."""

@@ -95,6 +95,11 @@ class Source(ABC):
         """The recording; None where nothing is recorded."""
 
     @property
+    def is_at_rest(self) -> bool:
+        """Whether the clock alone changes nothing."""
+        return self.playhead.paused
+
+    @property
     def is_marked(self) -> bool:
         """Whether the sample on screen has a mark."""
         here = self.sample.run, self.sample.step

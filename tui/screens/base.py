@@ -9,13 +9,13 @@ from typing import Any, ClassVar, Protocol, cast
 
 from textual.app import ComposeResult
 from textual.binding import BindingType
-from textual.containers import Container
 from textual.message import Message
 from textual.reactive import Initialize, var
 from textual.screen import Screen
 from textual.widget import Widget
 
 from engine.run.lockstep import Sample
+from tui.playback.frame_rate import FrameTimer
 from tui.playback.playhead import doubled
 from tui.playback.shown import Shown
 from tui.playback.source import Source
@@ -26,7 +26,7 @@ from tui.screens.status_line import StatusLine
 from tui.screens.too_small import TooSmall
 from tui.views import create, following
 from tui.views.keys import Key, bindings
-from tui.views.view import View
+from tui.views.view import Box, View
 
 READ, BUILT = 10, 5
 """How often a second numbers that people read are updated, and charts, which take time to build."""
@@ -53,6 +53,8 @@ def _first_source(screen: Any) -> Source:
 
 class SourceScreen(Screen[None]):
     """Shows a source, following a clock that is passed in."""
+
+    BLANK = True  # everything on it is covered
 
     @dataclass
     class Began(Message):
@@ -85,6 +87,7 @@ class SourceScreen(Screen[None]):
         self.first_source = source
         self.clock = clock
         self._frames = 0
+        self._timer = FrameTimer(lambda seconds: self.set_interval(seconds, self.frame))
         self._missed = 0.0  # s of the clock while the program was stopped
         self._late = False  # the next frame shows everything
         self._undo: list[Callable[[], object]] = []
@@ -97,7 +100,7 @@ class SourceScreen(Screen[None]):
 
     def compose(self) -> ComposeResult:
         yield StatusLine().data_bind(SourceScreen.source, sample=SourceScreen.sample_10hz)
-        with Container(id="views"):
+        with Box(id="views"):
             yield self._create(self.view)
         yield TooSmall()
         yield from self.more()
@@ -121,7 +124,7 @@ class SourceScreen(Screen[None]):
         gc.freeze()  # what exists now stays: collecting it again and again would cost frames
         gc.enable()
         self.post_message(self.Began(self))
-        self._timer = self.set_interval(1 / self.host.fps, self.frame)
+        self._timer.begin(self.host.fps)
         for notice in self._notices:
             self.notify(notice, timeout=15, markup=False)
 
@@ -137,13 +140,16 @@ class SourceScreen(Screen[None]):
             self._missed += now - seen
             now = seen
         sample = self.source.tick(now)
+        if self._timer.frame(self.clock(), time.process_time()):
+            self.query_one(StatusLine).frames = self._timer.lowered
+        self._timer.rest(self.source.is_at_rest)
         if self.host.is_behind(urgent=self._late):
             return
         self._frames += 1
         self.sample = sample
-        if self._late or self._frames % max(self.host.fps // READ, 1) == 0:
+        if self._late or self._timer.is_turn(self._frames, READ):
             self.sample_10hz = sample
-        if self._late or self._frames % max(self.host.fps // BUILT, 1) == 0:
+        if self._late or self._timer.is_turn(self._frames, BUILT):
             self.sample_5hz = sample
         self._late = False
 
@@ -152,6 +158,7 @@ class SourceScreen(Screen[None]):
         self._late = self.host.is_behind(urgent=True)
         if not self._late:
             self.sample = self.sample_10hz = self.sample_5hz = self.source.sample
+        self._timer.rest(self.source.is_at_rest)
 
     def remember(self, undo: Callable[[], object]) -> None:
         """Keep the function that undoes a change."""
@@ -166,6 +173,7 @@ class SourceScreen(Screen[None]):
         self.call_next(self.run_action, message.action)
 
     def action_pause(self) -> None:
+        self.frame()  # so that the clock goes on from here, and not from the last of the few frames of a lab at rest
         self.source.pause(not self.source.playhead.paused)
         self.show_now()
 

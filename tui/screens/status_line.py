@@ -4,6 +4,7 @@ import math
 from typing import NamedTuple
 
 from rich.style import Style
+from textual.reactive import var
 
 from engine.run.lockstep import Sample
 from recordings.errors import printable
@@ -35,8 +36,8 @@ def coarse(value: float) -> str:
     return f"{int(value)} s" if value < 60 else f"{int(value / 60)} min" if value < 3600 else seconds(value)
 
 
-def status_row(source: Source, width: int) -> Row:
-    """The line, as far as there is room."""
+def status_row(source: Source, width: int, frames: int | None = None) -> Row:
+    """The line, as far as there is room; `frames` a second where the machine is too slow for more."""
     scene, playhead, pace, recording = source.scene, source.playhead, source.pace, source.recording_status
     z, live, named = abs(source.stepping.h) * scene.w0, source.kind == "LIVE", bool(scene.watch)
     warning = limit_warning([abs(h) * scene.w0 for h in source.stepping.own()])
@@ -52,6 +53,8 @@ def status_row(source: Source, width: int) -> Row:
     ]
     if pace.share < 0.99:
         parts.insert(2, _Part(10, f"only {percent(pace.share)} of {speed_text(playhead.speed)}", WARN))
+    if frames is not None:
+        parts.append(_Part(9, f"{frames} frames/s", WARN))
     if recording is None:
         parts.append(_Part(8, "not recorded", FRAME))
     elif recording.failed:
@@ -70,8 +73,10 @@ def status_row(source: Source, width: int) -> Row:
 class StatusLine(Pane):
     """The line; LIVE and REPLAY stand out."""
 
+    frames: var[int | None] = var(None)
+
     def paint(self, source: Source, sample: Sample) -> None:
-        self.show([status_row(source, self.room.width)])
+        self.show([status_row(source, self.room.width, self.frames)])
 
     def style_of(self, owner: int, base: Style) -> Style:
         if owner == BADGE:

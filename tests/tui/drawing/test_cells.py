@@ -7,7 +7,7 @@ from textual.app import App, ComposeResult
 
 from tests.tui.drawing.test_canvas import dots
 from tui.drawing.canvas import Canvas
-from tui.drawing.cells import CellWidget, thick
+from tui.drawing.cells import CellWidget
 from tui.drawing.palette import NOBODY, TEXT
 
 
@@ -53,16 +53,16 @@ def test_thick_lines_cover_the_thin_ones_and_are_two_dots_thick(points):
     for x, y in points:
         canvas.points(x, y, 1)
     thin = canvas.picture()
-    grown = dots(thick(thin))
+    grown = dots(thin.thick())
     assert points <= grown
     for x, y in grown:
         assert (x ^ 1, y) in grown
         assert {(x, y - 1), (x, y + 1)} & grown
     assert {(x // 2, y // 4) for x, y in grown} == {(x // 2, y // 4) for x, y in points}
-    assert thick(thin).owners is thin.owners
+    assert thin.thick().owners is thin.owners
 
 
 def test_thick_lines_leave_words_alone():
     canvas = Canvas(6, 1)
     canvas.label(0, 0, "wörd\u2802", TEXT)
-    assert thick(canvas.picture()).text[:4] == "wörd"
+    assert canvas.picture().thick().text[:4] == "wörd"

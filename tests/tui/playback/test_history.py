@@ -12,7 +12,8 @@ from engine.run.lockstep import Lockstep, Reading, Sample
 from engine.run.observer import RunObserver
 from engine.scenes import DEFAULT_SCENE, SCENES
 from tui.drawing.palette import EXACT
-from tui.playback.history import QUANTITIES, ErrorHistory
+from tui.playback.history import ErrorHistory
+from tui.playback.shown import QUANTITIES
 
 CAPACITY = 8  # small, so that few samples reach many levels
 
@@ -83,8 +84,8 @@ def test_memory_grows_by_one_level_only_when_the_run_gets_twice_as_long():
     for step in range(20_000):
         history.add(sample(step))
         if step + 1 in (63, 64, 127, 128, 1023, 1024, 20_000):
-            assert len(history._levels) == 1 + max(math.floor(math.log2((step + 1) / 64)) + 1, 0)
-    assert all(len(level.steps) == 64 for level in history._levels)
+            assert len(history.levels.levels) == 1 + max(math.floor(math.log2((step + 1) / 64)) + 1, 0)
+    assert all(len(level.steps) == 64 for level in history.levels.levels)
 
 
 def test_half_a_swing_is_what_errors_repeat_after_and_a_turn_in_rotation():

@@ -6,9 +6,8 @@ import pytest
 
 from engine.scenes import DEFAULT_SCENE, SCENES
 from tests.tui.harness import lab
-from tui.playback.history import QUANTITIES
 from tui.playback.live import Live
-from tui.playback.shown import WINDOWS
+from tui.playback.shown import QUANTITIES, WINDOWS
 from tui.screens.keys import COMMON, LIVE
 from tui.screens.start_form import StartForm
 from tui.screens.status_line import StatusLine

@@ -9,7 +9,6 @@ import pytest
 from engine.scenes import DEFAULT_SCENE, SCENES
 from recordings.library import resolve
 from tests.tui.command_line import pendu
-from tests.tui.conftest import SNAPSHOTS
 from tests.tui.harness import player
 from tui.screens.still import normalised, still
 from tui.terminal.options import TerminalOptions
@@ -82,11 +81,11 @@ async def test_the_form_and_the_help_lie_over_the_lab(text_snapshot):
     text_snapshot("lab-help", await still(DEFAULT_SCENE, SECONDS, (120, 40), keys=["question_mark"]))
 
 
-def test_the_command_writes_the_same_picture(tmp_path):
+def test_the_command_writes_the_same_picture(tmp_path, snapshot):
     out = tmp_path / "lab.svg"
     outcome = pendu("snapshot", "--time", SECONDS, "-o", out)
     assert (outcome.code, outcome.out, outcome.err) == (0, "", "")
-    assert out.read_text(encoding="utf-8") == (SNAPSHOTS / "lab-120x40-dark.svg").read_text(encoding="utf-8")
+    snapshot("lab-120x40-dark", out.read_text(encoding="utf-8"))
 
 
 @pytest.mark.parametrize(

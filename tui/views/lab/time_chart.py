@@ -8,9 +8,7 @@ from textual.content import Content
 from engine.methods import METHODS
 from engine.models.exact_pendulum import ExactMotion
 from engine.run.lockstep import Sample
-from tui.drawing.chart import time_chart
-from tui.playback.history import Quantity
-from tui.playback.shown import Shown
+from tui.playback.shown import Quantity, Shown
 from tui.playback.source import Source
 from tui.views.view import Pane
 from tui.words.numbers import about
@@ -66,6 +64,8 @@ class TimeChart(Pane):
             self.border_subtitle = NO_MODIFIED_ENERGY if self.shown.quantity == "shadow_error" else ""
 
     async def _build_on_demand(self) -> None:
+        from tui.drawing.chart import time_chart  # brings NumPy, which can wait for the first paint
+
         while True:
             await self._wanted.wait()
             self._wanted.clear()

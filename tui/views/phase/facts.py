@@ -47,8 +47,12 @@ def _ring_text(source: Source, neighbours: Neighbours | None) -> str:
     return f"{text}: {behind} steps behind" if behind else f"{text} (g: larger, G: smaller)"
 
 
-def caption(exact: ExactMotion, aim: State | None, width: int) -> Picture:
-    """The line below the portrait: a state, if one is aimed at, and the exact motion as far as there is room."""
+def captioned(plot: Picture, exact: ExactMotion, aim: State | None) -> Picture:
+    """The portrait, and a line below it: a state, if one is aimed at, and the exact motion as far as there is room."""
+    return Picture.stacked(plot, _caption(exact, aim, plot.characters.shape[1]))
+
+
+def _caption(exact: ExactMotion, aim: State | None, width: int) -> Picture:
     motion = motion_text(exact)
     line = Canvas(width, 1).picture()
     if aim is None:

@@ -18,7 +18,7 @@ class PhaseView(View):
     KEYS = KEYS
 
     def compose(self) -> ComposeResult:
-        yield PhasePane(radius=RADIUS).data_bind(View.source, View.sample, View.shown)
+        yield self.moving(PhasePane(radius=RADIUS), late=True)
         yield CellWidget(id="facts")
 
     def on_show(self) -> None:

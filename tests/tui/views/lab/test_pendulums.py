@@ -6,14 +6,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.tui.drawing.test_canvas import dots
+from tui.drawing.canvas import Picture
 from tui.drawing.palette import EXACT, FAINT, FRAME
-from tui.views.lab.pendulums import Bob, pendulum_picture
+from tui.views.lab.pendulums import Bob, pendulum_sketch
 
 ANGLE = st.integers(1, 10_000).map(lambda number: number * 0.6180339887)  # never a tie between two dots
 
 
 def picture(columns, rows, *bobs):
-    return pendulum_picture(columns, rows, bobs)
+    return Picture.of_sketch(pendulum_sketch(columns, rows, bobs))
 
 
 def owners(picture):

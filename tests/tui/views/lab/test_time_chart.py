@@ -4,8 +4,7 @@ from itertools import product
 
 from engine.models.exact_pendulum import ExactMotion
 from engine.scenes import SCENES
-from tui.playback.history import QUANTITIES
-from tui.playback.shown import WINDOWS, Shown
+from tui.playback.shown import QUANTITIES, WINDOWS, Shown
 from tui.views.lab.time_chart import title
 
 
