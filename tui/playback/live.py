@@ -44,6 +44,7 @@ class Live(Source):
         self._events: list[Event] = []
         self._recorded = Playhead()  # the recording clock: it stands while the lab is paused, whatever the speed
         self._clock = clock
+        self._observing = 0.0  # s a step, lately: verdicts take longer than the steps themselves
         self._runs = 1
         run = RewindableRun(scene, 1, patient)
         if so_far is not None:
@@ -85,15 +86,21 @@ class Live(Source):
         self.playhead, self._recorded = before.at(now), self._recorded.at(now)
         if self.playhead.paused or before.seen is None:
             return self.sample
-        began, target = self._clock(), self._run.step_at(self.playhead.position)
+        began, first, target = self._clock(), self._run.step, self._run.step_at(self.playhead.position)
         target = int(min(target, self._run.home))  # so that a sample shows what each method misses its start by
-        while (left := target - self._run.step) > 0 and self._clock() - began < FRAME_BUDGET:
+        while (left := target - self._run.step) > 0:
+            if self._clock() - began + (self._run.step - first) * self._observing >= FRAME_BUDGET:
+                break
             self._run.forward(min(left, CHUNK))
         due = self.playhead.position - before.position
         if left > 0:
             self.playhead = self.playhead.moved_to(self._run.x)
         self.pace = self.pace.after(max(0.0, now - before.seen), due, self.playhead.position - before.position)
-        return self._take_sample()
+        simulated = self._clock()
+        sample = self._take_sample()
+        if steps := self._run.step - first:
+            self._observing = (self._clock() - simulated) / steps
+        return sample
 
     def step(self, n: int) -> Sample:
         self.pause(True)

@@ -116,7 +116,7 @@ def test_the_chart_has_letters_for_points_and_dotted_lines_for_orders():
 
 
 def test_every_point_on_the_chart_is_where_its_cost_and_its_error_are():
-    points = list(Study(SCENES["drift"], 20.0).points(ladder(20.0, 0.1, 0.0002, 4)))
+    points = list(Study(SCENES["drift"], 20.0).points(ladder(20.0, 0.1, 0.00005, 4)))
     lines = accuracy_chart([p for p in points if p.method.key == "rk4"], "theta", "evaluations", 80, 24).text.split(
         "\n"
     )
@@ -144,7 +144,7 @@ def test_the_numbers_are_the_same_without_numba():
 
 
 def test_useless_points_are_kept_with_their_reason():
-    points = pendu("accuracy", "--time", "20", "--h-values", "0.2:0.0002:4", "--json").json["points"]
+    points = pendu("accuracy", "--time", "20", "--h-values", "0.2:0.00005:4", "--json").json["points"]
     assert {(p["method"], p["reason"]) for p in points if not p["valid"]} == {
         ("explicit_euler", REASONS["lost"]),
         ("rk4", REASONS["rounding"]),

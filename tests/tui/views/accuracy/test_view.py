@@ -120,9 +120,8 @@ async def test_another_h_moves_the_mark_and_another_start_the_points():
         assert pane.here == (50,) * 4
         assert before.items() <= pane.points.items()
         live.start(SCENES["large-swing"])
-        await pilot.pause(0.3)
+        await until(pilot, lambda: not before.items() & pane.points.items())
         await complete(pilot, pane)
-        assert not before.items() & pane.points.items()
         assert (
             pane.points[VERLET, RUNGS[0]].theta_error
             == Study(SCENES["large-swing"], 5.0).run(METHODS[VERLET], RUNGS[0]).theta_error
@@ -158,9 +157,7 @@ async def test_an_h_that_is_too_large_or_too_small_has_no_mark():
     async with accuracy_view() as (pilot, pane, live):
         for h in (20.0, 1e-7):
             live.set_stepping(Stepping(h))
-            await pilot.pause(0.5)
-            assert pane.settled
-            assert "X" not in pane.text
+            await until(pilot, lambda: pane.settled and "X" not in pane.text)
             assert said(pane) == "the current h is not on this chart: it is too large or too small"
 
 

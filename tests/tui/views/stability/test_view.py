@@ -10,7 +10,7 @@ from engine.scenes import SCENES, Scene
 from engine.stability.outcomes import UNKNOWN
 from recordings.library import resolve
 from recordings.recording import Recording
-from tests.tui.harness import view_of
+from tests.tui.harness import until, view_of
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
@@ -109,8 +109,7 @@ async def test_tab_goes_through_the_methods_in_words(monkeypatch: pytest.MonkeyP
 async def test_the_axis_is_that_of_the_scenes_pendulum(monkeypatch: pytest.MonkeyPatch):
     async with stability_view(monkeypatch) as (pilot, pane, live):
         live.start(Scene(length=4 * 9.81))  # w0 = 1/2, so h = 2 z
-        await pilot.pause(0.3)
-        assert "h 3 " in pane.text
+        await until(pilot, lambda: "h 3 " in pane.text)
 
 
 async def test_hidden_methods_leave_their_panels_to_the_others(monkeypatch: pytest.MonkeyPatch):
