@@ -33,8 +33,7 @@ from recordings.format import (
     topic,
     without_extremes,
 )
-from recordings.library import part_of
-from recordings.lock import hold
+from recordings.library import hold, part_of
 
 FLUSH_EVERY = 0.9  # s of the recording clock; with a frame's delay the loss at kill -9 stays below 1 s
 FLUSH_EVENTS_EVERY = 0.25  # s; a key held down gives 30 events a second
@@ -193,6 +192,7 @@ class Recorder:
     def _flush_if_due(self, urgent: bool = False) -> None:
         age = self.seconds - self._flushed_at
         every = FLUSH_EVENTS_EVERY if self._event_waits else FLUSH_EVERY
+        urgent = urgent and self._facts is None  # a copy can be made again
         if urgent or (self._flush_by_time and age >= every) or self._unflushed > FLUSH_BYTES:
             self.flush()
 

@@ -4,8 +4,10 @@ Nothing here is recorded: it follows from the samples, so a replay tells what th
 """
 
 import math
+from bisect import bisect_right, insort
 from collections.abc import Iterator
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Literal
 
 from engine.methods import METHODS, Method
@@ -38,6 +40,9 @@ class Milestone:
         return METHODS[self.index]
 
 
+_step = attrgetter("step")
+
+
 class RunObserver:
     """Watches one run, sample by sample."""
 
@@ -60,11 +65,12 @@ class RunObserver:
 
     def milestones(self, step: int) -> list[Milestone]:
         """What happened up to a step, in its order."""
-        return sorted((each for each in self._milestones if each.step <= step), key=lambda each: each.step)
+        return self._milestones[: bisect_right(self._milestones, step, key=_step)]
 
     def judge_anew(self, step: int) -> None:
         """The step size changes here: verdicts begin anew, and what came later has never been."""
         self._milestones = self.milestones(step)
+        self._known = {(each.kind, each.index) for each in self._milestones}
         self._trends = [Trend(self._period) for _ in METHODS]
         if self._before is not None and self._before.step == step:
             for trend, reading in zip(self._trends, self._before.readings, strict=True):
@@ -89,8 +95,10 @@ class RunObserver:
                 self._note(Milestone("failed", index, sample.step, reading.diverged_at, reading.energy_error))
             elif verdict != known:
                 milestone = Milestone("verdict", index, sample.step, sample.t, reading.energy_error, verdict)
-                self._milestones.append(milestone)
-            if before is not None and self.is_over(reading.theta) and not self.is_over(before.readings[index].theta):
+                insort(self._milestones, milestone, key=_step)
+            if before is None or ("over the top", index) in self._known:
+                continue
+            if self.is_over(reading.theta) and not self.is_over(before.readings[index].theta):
                 self._note(self._crossing(index, before, sample))
 
     def is_over(self, theta: float) -> bool:
@@ -99,8 +107,9 @@ class RunObserver:
 
     def _note(self, milestone: Milestone) -> None:
         """Keep what happens to a method but once."""
-        if not any((each.kind, each.index) == (milestone.kind, milestone.index) for each in self._milestones):
-            self._milestones.append(milestone)
+        if (milestone.kind, milestone.index) not in self._known:
+            self._known.add((milestone.kind, milestone.index))
+            insort(self._milestones, milestone, key=_step)
 
     def _crossing(self, index: int, before: Sample, sample: Sample) -> Milestone:
         """Where between two samples a method goes over the top.

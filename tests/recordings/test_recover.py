@@ -143,7 +143,7 @@ def test_a_run_that_lost_its_start_is_dropped_and_counted(tmp_path, out):
 def starts_in(path, place):
     """The runs that start in a chunk."""
     with Recording.open(path) as recording:
-        entries = recording._entries(place)
+        entries = recording._decoded(place).entries
     return [value.run for _, value in entries if isinstance(value, Event) and value.kind == "start"]
 
 

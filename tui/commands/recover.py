@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from recordings.errors import printable
 from tui.cli.errors import Exit
-from tui.cli.files import check_free
+from tui.cli.files import check_free, interruptible
 from tui.cli.options import add_file, add_recording
 from tui.cli.output import progress, write_json
 from tui.words.numbers import seconds
@@ -35,7 +35,7 @@ def run(options: argparse.Namespace) -> int:
 
     path = resolve(options.file)
     check_free(options.output, options.force)
-    with progress(printable(path.name)) as show:
+    with interruptible(), progress(printable(path.name)) as show:
         recovery = recover(path, options.output, show, options.force)
     if options.json:
         write_json("recover", asdict(recovery) | {"file": str(recovery.file), "out": str(recovery.out)})

@@ -1,10 +1,8 @@
 """Highlights: when in a recording its methods did something; found run by run, while the replay plays."""
 
-from collections import defaultdict
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
-from recordings.events import Event
 from tui.playback.past import RunSoFar, pieces
 
 if TYPE_CHECKING:
@@ -24,12 +22,12 @@ class Highlights:
             pass
 
     def _find(self, recording: "Recording") -> Iterator[object]:
-        events: dict[int, list[Event]] = defaultdict(list)
-        for _, event in recording.events:
-            events[event.run].append(event)
         for run in recording.runs:
-            past, known, before, then = RunSoFar(run.scene, events[run.number]), 0, 0, run.begin
             yield run
+            if run.steps == 0:
+                continue
+            events = (event for _, event in recording.events.of(run.number))
+            past, known, before, then = RunSoFar(run.scene, events), 0, 0, run.begin
             for clock in past.read(recording, run.number, pieces(run.begin, run.end), run.steps + 1):
                 milestones, step = past.observer.milestones(past.observer.seen), past.observer.seen
                 for each in milestones[known:]:  # of a long run not every sample is read

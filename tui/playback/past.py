@@ -42,8 +42,10 @@ class RunSoFar:
     def read(self, recording: "Recording", run: int, pieces: list[tuple[float, float]], last: int) -> Iterator[float]:
         """Add what pieces of the recording clock hold of a run before step `last`; yields each sample's clock."""
         for start, end in pieces:
-            for clock, value in recording.entries(start, end):
-                if value.run == run and isinstance(value, Sample) and self.observer.seen < value.step < last:
+            for clock, value in recording.entries(start, end, run):
+                if value.run > run:
+                    return
+                if isinstance(value, Sample) and self.observer.seen < value.step < last:
                     self.add(value)
                     yield clock
 

@@ -7,7 +7,8 @@ from engine.run.lockstep import Sample
 from tui.playback.past import RunSoFar, pieces
 
 if TYPE_CHECKING:
-    from recordings.recording import Recording, Run, SamplePlace
+    from recordings.recording import Recording, SamplePlace
+    from recordings.timeline import Run
 
 FOLLOWED = 100  # samples: what lies closer ahead is played through, what lies further is jumped to
 TAIL = 1.0  # s of the past that are there at once after a jump, for the trails,
@@ -84,7 +85,7 @@ class ReplayCursor:
         self.clock, value = self.recording.sample(place)
         assert isinstance(value, Sample)
         self.sample = value
-        self.run = next(run for run in self.recording.runs if run.number == value.run)
+        self.run = self.recording.runs[self.recording.runs.place(value.run)]
         self.past = self._nothing_known()
         tail = [(max(self.run.begin, self.clock - TAIL), self.clock)]
         for _ in self.past.read(self.recording, value.run, tail, value.step):
@@ -94,7 +95,7 @@ class ReplayCursor:
 
     def _nothing_known(self) -> RunSoFar:
         """The past before any of it has been read."""
-        return RunSoFar(self.run.scene, [event for _, event in self.recording.events if event.run == self.run.number])
+        return RunSoFar(self.run.scene, (event for _, event in self.recording.events.of(self.run.number)))
 
     def _fill(self) -> Iterator[object]:
         """Read the past of the sample, and then that of the samples that have come since: the recent past, then all."""

@@ -1,9 +1,10 @@
 """Replay: a recording that follows the clock, forwards and backwards."""
 
 import time
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from operator import attrgetter, itemgetter
 from typing import TYPE_CHECKING, Literal
 
 from engine.models.exact_pendulum import ExactMotion
@@ -16,14 +17,16 @@ from recordings.events import Event
 from tui.playback.highlights import Highlights
 from tui.playback.history import ErrorHistory
 from tui.playback.live import Live
-from tui.playback.marks import Mark, Marks, mark_event
+from tui.playback.marks import Mark, Marks, mark_events
 from tui.playback.playhead import Pace, Playhead
 from tui.playback.reel import ReplayCursor
 from tui.playback.source import RecordingStatus, is_marked
 
 if TYPE_CHECKING:
-    from recordings.recording import Recording, Run
+    from recordings.recording import Recording
+    from recordings.timeline import Run
 
+EVENTS_SHOWN = 2000
 FILL_BUDGET = 0.006  # s of each frame for reading the past
 
 
@@ -43,6 +46,14 @@ class Replay:
         self._clock = clock
         self._reel = ReplayCursor(recording)
         self._highlights = Highlights(recording)
+        self._done: list[Event] = []  # what was computed last, and for what:
+        self._done_known = -1  # events
+        self._mark_events: list[Event] = []
+        self._changes: list[tuple[int, Pitch]] = []
+        self._change_places: list[int] = []  # among the events
+        self._changes_known = -1  # run
+        self._ticks: list[float] = []
+        self._ticks_known: tuple[int, int] | None = None  # marks, highlights
 
     @property
     def sample(self) -> Sample:
@@ -93,40 +104,57 @@ class Replay:
 
     @property
     def events(self) -> Sequence[Event]:
-        """What was done up to the playhead."""
-        return [event for _, event in self.recording.events[: self.events_done]]
+        """What was done up to the playhead; of very much, the last."""
+        done = self.events_done
+        if self._done_known != done:
+            recent = self.recording.events[max(0, done - EVENTS_SHOWN) : done]
+            self._done_known, self._done = done, [event for _, event in recent]
+        return self._done
 
     @property
     def later_marks(self) -> Sequence[Event]:
         """The marks beside the recording, up to the playhead."""
-        events = [event for _, event in self.recording.events]
-        return [mark_event(mark, events) for mark in self.marks if mark.clock <= self.playhead.position]
+        marks = list(self.marks)
+        if len(self._mark_events) != len(marks):
+            self._mark_events = list(mark_events(marks, self.recording.events))
+        done = bisect_right(marks, self.playhead.position, key=attrgetter("clock"))
+        return self._mark_events[max(0, done - EVENTS_SHOWN) : done]
 
     @property
     def events_done(self) -> int:
         """How many events lie behind the playhead."""
-        return bisect_right(self.recording.events, self.playhead.position, key=lambda pair: pair[0])
+        return bisect_right(self.recording.events.clocks, self.playhead.position)
 
     @property
     def changes(self) -> list[tuple[int, Pitch]]:
         """(step, pitch) of the changes of how this run steps, so far."""
-        return [
-            (event.step, Pitch(event.h, event.equal_cost))
-            for event in self.events
-            if event.run == self.sample.run and event.h is not None and event.step <= self.sample.step
-        ]
+        changed = self._changed
+        return self._changes[:changed]
+
+    @property
+    def _changed(self) -> int:
+        """How many of the run's changes there were so far."""
+        run = self.run.number
+        if self._changes_known != run:
+            events = self.recording.events
+            self._changes_known = run
+            found = [(at, event) for at in events.places(run) if (event := events[at][1]).h is not None]
+            self._change_places = [at for at, _ in found]
+            self._changes = [(event.step, Pitch(event.h or 0.0, event.equal_cost)) for _, event in found]
+        done = bisect_left(self._change_places, self.events_done)
+        return min(done, bisect_right(self._changes, self.sample.step, key=itemgetter(0)))
 
     @property
     def h(self) -> float:
         """The step size in force [s]."""
-        changes = self.changes
-        return changes[-1][1].h if changes else self.scene.h
+        changed = self._changed
+        return self._changes[changed - 1][1].h if changed else self.scene.h
 
     @property
     def equal_cost(self) -> bool:
         """Whether all methods spend the same number of force evaluations."""
-        changes = self.changes
-        return bool(changes) and changes[-1][1].equal_cost
+        changed = self._changed
+        return bool(changed) and self._changes[changed - 1][1].equal_cost
 
     @property
     def recording_status(self) -> RecordingStatus:
@@ -183,8 +211,11 @@ class Replay:
     @property
     def ticks(self) -> list[float]:
         """Where on the recording clock something was done, marked, or happened as far as that is known by now [s]."""
-        done = (clock for clock, event in self.recording.events if event.kind != "stop")
-        return sorted({*done, *(mark.clock for mark in self.marks), *self._highlights.clocks})
+        marks, found = [mark.clock for mark in self.marks], self._highlights.clocks
+        if self._ticks_known != (len(marks), len(found)):
+            self._ticks_known = len(marks), len(found)
+            self._ticks = sorted({*self.recording.events.done(), *marks, *found})
+        return self._ticks
 
     def mark(self, text: str | None = None) -> None:
         """Leave a mark at the sample, unless it has one; it is kept beside the recording, which is not touched."""
