@@ -48,6 +48,8 @@ def _sentence(recovery: "Recovery") -> str:
     lines = [f"{printable(str(recovery.out))}: {recovery.samples_kept} samples saved."]
     if recovery.reason:
         lines.append(f"What was wrong: {recovery.reason}.")
+    elif not recovery.runs_lost and not recovery.runs_broken:
+        return "\n".join([*lines, "Nothing was lost."])
     chunks = f"{recovery.chunks_lost} chunk{'' if recovery.chunks_lost == 1 else 's'}"
     if recovery.chunks_lost and not recovery.samples_lost:
         lines.append(f"Lost: {chunks}; how many samples were there, or came after, the file does not tell.")

@@ -42,7 +42,7 @@ class Replay:
         self.playhead = Playhead()
         self.ends: tuple[float | None, float | None] = (None, None)
         """Of the loop, on the recording clock [s]; None: the recording's own."""
-        self.looping = False
+        self.looping = self._closed = False
         self._clock = clock
         self._reel = ReplayCursor(recording)
         self._highlights = Highlights(recording)
@@ -68,9 +68,12 @@ class Replay:
     @property
     def loop(self) -> tuple[float, float] | None:
         """From where to where to play again and again [s]."""
-        start, end = self.ends
+        return self.stretch(*self.ends) if self.looping else None
+
+    def stretch(self, start: float | None, end: float | None) -> tuple[float, float] | None:
+        """What a loop with these ends would play [s]; None if that has no length."""
         start, end = 0.0 if start is None else start, self.length if end is None else end
-        return (min(start, end), max(start, end)) if self.looping else None
+        return (min(start, end), max(start, end)) if start != end else None
 
     @property
     def length(self) -> float:
@@ -163,6 +166,8 @@ class Replay:
 
     def tick(self, now: float) -> Sample:
         """Follow the clock to `now`: stop at the ends, or go round in the loop."""
+        if self._closed:  # by another screen, and this one's last frame was already due
+            return self.sample
         self.playhead = self.playhead.at(now)
         if not self.playhead.paused:
             self._stay_inside()
@@ -172,6 +177,8 @@ class Replay:
 
     def fill(self) -> bool:
         """Read more of the past, and look further ahead; whether the past of the sample is known by now."""
+        if self._closed:
+            return True
         until = self._clock() + FILL_BUDGET
         for read in (self._reel.fill, self._highlights.find):
             read(lambda: self._clock() < until)
@@ -191,12 +198,15 @@ class Replay:
     def step(self, n: int) -> Sample:
         """Pause and go n samples on, or back where n is negative."""
         self.pause(True)
-        self._reel.step(n)
+        if not self._closed:
+            self._reel.step(n)
         self.playhead = self.playhead.moved_to(self._reel.clock)
         return self.sample
 
     def seek(self, position: float) -> None:
         """Go to a moment of the recording clock [s], or to the nearer end."""
+        if self._closed:
+            return
         self.playhead = self.playhead.moved_to(min(max(position, 0.0), self.length))
         self._reel.go_to(self.playhead.position)
 
@@ -227,7 +237,8 @@ class Replay:
         return Live(self.scene, changes=self.changes, step=self.sample.step, past=self._reel.past)
 
     def close(self) -> None:
-        """Let go of the file."""
+        """Let go of the file, and stand still."""
+        self._closed = True
         self.recording.close()
 
     def _stay_inside(self) -> None:

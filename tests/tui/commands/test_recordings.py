@@ -76,7 +76,9 @@ def test_recover_overwrites_nothing_unless_by_force(tmp_path):
 
 
 def test_recover_knows_recordings_by_the_names_that_replay_knows(tmp_path):
-    assert "samples saved" in pendu("recover", "drift", "-o", tmp_path / "saved.mcap").out
+    told = pendu("recover", "drift", "-o", tmp_path / "saved.mcap").out
+    assert "samples saved" in told
+    assert told.endswith("\nNothing was lost.\n")
     assert pendu("recover", "drfit", "-o", tmp_path / "other.mcap").refused(3, "did you mean drift?")
 
 
