@@ -23,7 +23,7 @@ def explicit_euler(acceleration: Acceleration, phase: Phase, h: float) -> Phase:
     """Explicit (forward) Euler: both updates from the old state.
 
     theta' = theta + h omega,  omega' = omega + h a(theta).  Order 1.  Not symplectic: the step's
-    determinant is 1 + h² w0² cos theta.  Hairer, Lubich & Wanner (2006), I.1.1.
+    determinant is 1 + h² w0² cos theta.  Hairer, Lubich & Wanner (2006), I.1.2.
     """
     theta, omega = phase
     return theta + h * omega, omega + h * acceleration(theta)
@@ -56,7 +56,8 @@ def velocity_verlet(acceleration: Acceleration, phase: Phase, h: float) -> Phase
 def rk4(acceleration: Acceleration, phase: Phase, h: float) -> Phase:
     """The classical Runge-Kutta method of order 4.
 
-    Neither symplectic (it loses a little area, det - 1 ~ h⁶) nor reversible.
+    Neither symplectic nor reversible: det - 1 ~ h⁶, so it loses a little area on most of the plane and gains
+    some beside upright.
     Hairer, Lubich & Wanner (2006), II.1.1.
     """
     theta, omega = phase
@@ -110,8 +111,8 @@ METHODS: tuple[Method, ...] = (
         reversible=False,
         linear_limit=0.0,
         other_names=("forward Euler",),
-        reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), I.1.1",
-        used="equations with noise (Euler-Maruyama): Brian 2 [brian2.readthedocs.io, Numerical integration]",
+        reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), I.1.2",
+        used="equations with additive noise (Euler-Maruyama): Brian 2 [brian2.readthedocs.io, Numerical integration]",
     ),
     Method(
         key="symplectic_euler",
@@ -127,7 +128,7 @@ METHODS: tuple[Method, ...] = (
         linear_limit=2.0,
         other_names=("semi-implicit Euler", "Euler-Cromer"),
         reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), I.1.2",
-        used="games and robots: the default of MuJoCo [mujoco.readthedocs.io, Computation]",
+        used="robots and physics simulation: the default of MuJoCo [mujoco.readthedocs.io, XML Reference, integrator]",
         modified_energy=symplectic_euler_modified_energy,
     ),
     Method(
@@ -161,6 +162,6 @@ METHODS: tuple[Method, ...] = (
         linear_limit=2 * math.sqrt(2),
         other_names=("classical Runge-Kutta",),
         reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), II.1.1",
-        used="smooth motion over short times: MuJoCo, integrator RK4 [mujoco.readthedocs.io, Computation]",
+        used="energy-conserving systems in MuJoCo, integrator RK4 [mujoco.readthedocs.io, Computation]",
     ),
 )

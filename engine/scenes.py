@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass, replace
 
-LIMITS = {  # inclusive; beyond them a value is a slip of the keyboard, not a pendulum
+LIMITS = {  # inclusive; beyond them a value is a typing error, not a pendulum
     "theta": (-1e9, 1e9),
     "omega": (-1e9, 1e9),
     "length": (1e-6, 1e6),
@@ -22,8 +22,7 @@ def check_h(h: float, w0: float) -> None:
     low, high = Z_LIMITS
     if not math.isfinite(h) or not low <= abs(h) * w0 <= high:
         raise SceneError(
-            f"h = {h:g} s is no usable step: give one from {low / w0:.2g} to {high / w0:.2g} s, "
-            f"{0.15 / w0:.1g} for example."
+            f"h = {h:g} s is not a usable step; use {low / w0:.2g} to {high / w0:.2g} s, for example {0.15 / w0:.1g}."
         )
 
 
@@ -44,11 +43,11 @@ class Scene:
             value = getattr(self, field)
             if not low <= value <= high:  # also refuses nan
                 raise SceneError(
-                    f"{field} = {value:g} {UNITS[field]} is out of range: give {low:g} to {high:g} {UNITS[field]}."
+                    f"{field} = {value:g} {UNITS[field]} is out of range; use {low:g} to {high:g} {UNITS[field]}."
                 )
         if self.h <= 0:
             raise SceneError(
-                f"h = {self.h:g} s is no usable step: give a positive one, {0.15 / self.w0:.1g} for example."
+                f"h = {self.h:g} s is not a usable step; use a positive one, for example {0.15 / self.w0:.1g}."
             )
         check_h(self.h, self.w0)
 

@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 from engine.methods import METHODS, Method
 from engine.run.lockstep import Lockstep, Sample
 from engine.run.loops import Loops, plain
+from engine.run.stepping import Stepping
 from engine.scenes import Scene
 from recordings.events import Event
 from recordings.recorder import Recorder
@@ -60,9 +61,9 @@ def simulate(
     record(sample := lockstep.sample())
     yield sample
     for first, last, h in segments(scene, time, changes):
-        if h != lockstep.h:
+        if h != lockstep.stepping.h:
             record(Event("set_h", 1, first, lockstep.t, h=h))
-            lockstep.set_h(h)
+            lockstep.set_stepping(Stepping(h))
         begin = clock
         every = sample_every or max(1, round(SAMPLE_EVERY / abs(h)))
         while lockstep.step < last:

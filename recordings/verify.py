@@ -17,7 +17,8 @@ from pathlib import Path
 from engine.methods import METHODS, Method
 from engine.run.compiled import tiered
 from engine.run.lockstep import Lockstep, Reading, Sample
-from engine.scenes import SceneError, check_h
+from engine.run.stepping import Stepping
+from engine.scenes import SceneError
 from recordings.errors import RecordingError, named
 from recordings.events import Event
 from recordings.fields import EXTREMES, NUMBERS, VALUES, numbers_of
@@ -152,7 +153,7 @@ class Rerun:
             if event.step < max(self._reached, self._sampled):
                 raise RecordingError(f"the steps of run {self.run} are not in order")
             try:
-                check_h(event.h, self._locksteps[0].scene.w0)
+                Stepping(event.h, event.equal_cost).check(self._locksteps[0].scene.w0)
             except SceneError as error:
                 raise RecordingError(f"run {self.run} cannot have been recorded: {error}") from error
             self._reached = event.step
@@ -171,7 +172,7 @@ class Rerun:
             assert change.h is not None
             self._go(change.step)
             for lockstep in self._locksteps:
-                lockstep.set_h(change.h, change.equal_cost)
+                lockstep.set_stepping(Stepping(change.h, change.equal_cost))
         self._changes.clear()
         self._go(step)
         return [lockstep.sample() for lockstep in self._locksteps]

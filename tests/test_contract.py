@@ -26,6 +26,7 @@ COMMANDS = {
     "recover": ["recover", "cut.mcap", "-o", "saved.mcap", "--json"],
     "recordings": ["recordings", "--json"],
     "recordings prune": ["recordings", "prune", "--keep", "1", "--json"],
+    "keys": ["keys", "--json"],
     "scenes": ["scenes", "--json"],
     "methods": ["methods", "--json"],
     "doctor": ["doctor", "--json"],

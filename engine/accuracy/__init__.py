@@ -1,1 +1,5 @@
-"""Map to come."""
+"""Speed against accuracy.
+
+`study` measures errors and costs over a ladder of step sizes; `rounding` is the floor below which none helps;
+`recommend` searches for the cheapest step size that reaches a target, and for the most accurate within a budget.
+"""

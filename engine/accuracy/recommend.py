@@ -16,6 +16,7 @@ MOST_EVALUATIONS = 20_000_000  # of a run; some seconds in plain Python
 TOLERANCE = 0.02  # to which the fewest steps are found
 CONFIRMING_COMPARISONS = 10_000
 CONFIRMING_RUNS = 20  # that are given up after so many
+IN_VAIN = 2  # doublings of the steps that lower an error no more: then rounding stops it
 REFINED = 1.1  # times the steps must reach the target, too: an error that happens to cross zero is no accuracy
 
 
@@ -94,13 +95,21 @@ def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most
     too_few, steps = 0, min(most_steps, math.ceil(study.time * fastest))
     if not steps:
         return Attempt(method, None, _no_h(most))
+    best, in_vain = None, 0
     while (point := study.run(method, steps)).error(kind) > target:
-        if point.flaw(kind) == "rounding":
-            return Attempt(method, point, f"rounding stops it at {point.error(kind):.1e}")
+        if best is None or point.error(kind) < best.error(kind):
+            best, in_vain = point, 0
+        else:
+            in_vain += point.flaw(kind) == "rounding"
+        if in_vain == IN_VAIN or (in_vain and steps == most_steps):
+            return Attempt(method, best, f"rounding stops it at {best.error(kind):.1e}")
         if steps == most_steps:
-            return Attempt(method, point, _still(point, kind))
-        factor = (point.error(kind) / target) ** (1 / method.order) if point.flaw(kind) is None else math.inf
-        too_few, steps = steps, min(most_steps, math.ceil(steps * min(max(factor, 1.1), 4.0)))
+            return Attempt(method, best, _still(best, kind))
+        flaw = point.flaw(kind)
+        factor = 2.0 if flaw == "rounding" else 4.0
+        if flaw is None:
+            factor = min(max((point.error(kind) / target) ** (1 / method.order), 1.1), factor)
+        too_few, steps = steps, min(most_steps, math.ceil(steps * factor))
     while steps - too_few > max(1, TOLERANCE * steps):
         middle = max(too_few + 1, math.isqrt(too_few * steps))
         if study.run(method, middle).error(kind) <= target:

@@ -35,7 +35,7 @@ FITTED_BELOW = 0.1  # rad; larger errors are not yet proportional to a power of 
 Flaw = Literal["lost", "rounding", "diverged"]
 REASONS: dict[Flaw, str] = {
     "lost": "as far off as the swing is wide, or as the energy is large",
-    "rounding": "no larger than what rounding adds up to",
+    "rounding": "made of rounding: a smaller h no longer reduces it",
     "diverged": "the numbers overflowed",
 }
 
@@ -106,8 +106,29 @@ class Study:
     def run(self, method: Method, steps: int, comparisons: int = COMPARISONS) -> Point:
         """Take this many steps; at least `comparisons` of them, the last included, meet the exact swing.
 
+        An error counts as rounding where it is no larger than rounding may be, and where it was measured to be: with
+        a half and a quarter of the steps it is not larger by what the method's order promises, nor by half of that.
+
         Raises SceneError where time/steps is no usable h.
         """
+        errors, diverged = self._errors(method, steps, comparisons)
+        if diverged:
+            return Point(method, self.time, steps, *errors, Flaws("diverged", "diverged", "diverged"))
+        floors = [floor * math.sqrt(steps) for floor in (self._theta_floor, self._energy_floor, self._theta_floor)]
+        sizes = self._width, 1.0, self._width
+        pairs = zip(errors, sizes, strict=True)
+        flaws: list[Flaw | None] = ["lost" if error >= size else None for error, size in pairs]
+        if any(error <= floor for error, floor in zip(errors, floors, strict=True)):
+            half, quarter = (self._errors(method, max(1, steps // part), comparisons)[0] for part in (2, 4))
+            least = 2 ** (method.order - 1)
+            for kind, (error, floor) in enumerate(zip(errors, floors, strict=True)):
+                refined = error * least <= half[kind] and half[kind] * least <= quarter[kind]
+                if flaws[kind] is None and error <= floor and not refined:
+                    flaws[kind] = "rounding"
+        return Point(method, self.time, steps, *errors, Flaws(*flaws))
+
+    def _errors(self, method: Method, steps: int, comparisons: int) -> tuple[tuple[float, float, float], bool]:
+        """The largest errors in theta [rad] and energy, the last in theta; and whether the numbers overflowed."""
         lockstep = Lockstep(self.scene.altered(h=self.time / steps), methods=(method,), loops=self.loops)
         stride = max(1, steps // comparisons)
         theta_error = final_error = 0.0
@@ -116,28 +137,17 @@ class Study:
             (reading,) = lockstep.sample().readings
             final_error = abs(reading.theta - self.exact.at(lockstep.t).theta)
             theta_error = max(theta_error, final_error)
-        energy_error, energy_floor = reading.max_energy_error, self._energy_floor * math.sqrt(steps)
-        theta_floor = self._theta_floor * math.sqrt(steps)
-        flaws = Flaws(
-            theta=_flaw(theta_error, theta_floor, self._width),
-            energy=_flaw(energy_error, energy_floor, 1.0),
-            final=_flaw(final_error, theta_floor, self._width),
-        )
-        if reading.diverged_at is not None:
-            flaws = Flaws("diverged", "diverged", "diverged")
-        return Point(method, self.time, steps, theta_error, energy_error, final_error, flaws)
+        return (theta_error, reading.max_energy_error, final_error), reading.diverged_at is not None
+
+    def may_be_rounding(self, point: Point) -> bool:
+        """Whether a point's error in theta is no larger than what rounding adds up to, by the estimate from above."""
+        return point.theta_error <= self._theta_floor * math.sqrt(point.steps)
 
     def points(self, ladder: Sequence[int]) -> Iterator[Point]:
         """A point for every number of steps and every method."""
         for steps in ladder:
             for method in METHODS:
                 yield self.run(method, steps)
-
-
-def _flaw(error: float, floor: float, size: float) -> Flaw | None:
-    if error >= size:
-        return "lost"
-    return "rounding" if error <= floor else None
 
 
 def timed(point: Point, scene: Scene, clock: Clock, loops: Callable[[Method], Loops] = plain) -> Point:
@@ -182,8 +192,10 @@ def orders(scene: Scene, time: float, loops: Callable[[Method], Loops] = plain) 
     """
     study = Study(scene, min(time, ExactMotion(scene).period or math.tau / scene.w0), loops)
     usable = [steps for steps in ORDER_STEPS if study.time / steps * scene.w0 >= Z_LIMITS[0]]
+    runs = {method: [study.run(method, steps, ORDER_COMPARISONS) for steps in usable] for method in METHODS}
     return [
-        Order(method, _slope([study.run(method, steps, ORDER_COMPARISONS) for steps in usable])) for method in METHODS
+        Order(method, _slope([point for point in points if not study.may_be_rounding(point)]))
+        for method, points in runs.items()
     ]
 
 

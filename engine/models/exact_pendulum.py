@@ -1,4 +1,4 @@
-"""The exact swing: the closed-form motion from any start state, the reference of every error in theta.
+"""The exact motion in closed form, from any start; the reference of every error in theta.
 
 Notation as in the books: k² = sin²(theta0/2) + omega0²/(4 w0²), D = 1 - k².  D > 0 is libration,
 D < 0 rotation, D = 0 the separatrix.  Everything near the separatrix hangs on D, whose two terms

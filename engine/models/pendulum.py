@@ -5,7 +5,7 @@ theta'' = -w0² sin theta.  Mass cancels; energies are per unit m·L², in s⁻�
 
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 from engine.models.state import Acceleration
 
@@ -45,6 +45,17 @@ def separatrix_margin(w0: float, theta: Any, omega: Any, cos: Callable[[Any], An
     return (c - v) * (c + v)
 
 
-def energy_scale(w0_squared: float, start_energy: float) -> float:
-    """What relative energy errors are relative to: the start's energy, or 2 w0² where that is zero."""
-    return start_energy if start_energy > 0 else separatrix_energy(w0_squared)
+class EnergyReference(NamedTuple):
+    """What the energy errors of a run are relative to."""
+
+    start: float  # s⁻², the energy at the start
+    scale: float  # s⁻², the same, or 2 w0² where that is zero
+
+    def error(self, energy: float) -> float:
+        return (energy - self.start) / self.scale
+
+
+def energy_reference(w0_squared: float, theta: float, omega: float) -> EnergyReference:
+    """The reference of a run that starts at theta [rad] and omega [rad/s]."""
+    start: float = energy(w0_squared, theta, omega)
+    return EnergyReference(start, start if start > 0 else separatrix_energy(w0_squared))

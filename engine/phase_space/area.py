@@ -1,6 +1,7 @@
 """Area in phase space: a ring of neighbouring starts, and how much each method changes what it encloses."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,10 +10,11 @@ from engine.methods import METHODS, Method
 from engine.models.pendulum import acceleration
 from engine.models.state import Phase
 from engine.phase_space.tangent import jacobian
-from engine.run.lockstep import parts
+from engine.run.stepping import Stepping, SteppingChange, change_before
 from engine.scenes import Scene
 
 Ring = tuple[NDArray[np.float64], NDArray[np.float64]]  # theta [rad] and omega [rad/s] of the neighbours
+RADII = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5)  # rad, worth looking at
 
 
 class _Carried:
@@ -53,15 +55,14 @@ class Neighbourhood:
         """Area now over area at the start, in the limit of a small ring; inf beyond a double's range."""
         return tuple(math.exp(c.log_area) if c.log_area < 709 else math.inf for c in self._carried)
 
-    def advance(self, n: int, h: float, equal_cost: bool = False) -> None:
-        """Carry everything on by n steps of size h [s], at equal cost or not (see Lockstep)."""
+    def advance(self, n: int, stepping: Stepping) -> None:
+        """Carry everything forward by n steps of the lockstep."""
         with np.errstate(over="ignore", invalid="ignore"):
-            for carried, own in zip(self._carried, parts(), strict=True):
-                cut = own if equal_cost else 1
-                for _ in range(n * cut):
+            for carried, part in zip(self._carried, stepping.parts(), strict=True):
+                for _ in range(n * part):
                     if carried.lost:
                         break
-                    self._step(carried, h / cut)
+                    self._step(carried, stepping.h / part)
 
     def _step(self, carried: _Carried, h: float) -> None:
         step = carried.method.step
@@ -77,3 +78,32 @@ class Neighbourhood:
             carried.lost = True
             return
         carried.phase, carried.ring, carried.log_area = phase, ring, log_area
+
+
+class Neighbours:
+    """The neighbours of a run's start, carried along to the step on screen.
+
+    They begin at the run's start and take the run's own steps, changes of the stepping included, so
+    what they show does not depend on when the ring was switched on.  Going back starts over.
+    """
+
+    def __init__(self, radius: float) -> None:
+        self.radius = radius  # rad
+        self.step = 0
+        self._begun: tuple[Scene, int] | None = None
+        self._taken: list[SteppingChange] = []  # the changes that steps were taken with
+        self._ring: Neighbourhood | None = None
+
+    def follow(self, scene: Scene, run: int, step: int, changes: Sequence[SteppingChange], most: int) -> Neighbourhood:
+        """Come nearer to a step of a run by `most` steps or less; `changes` are the run's, its start's first."""
+        known = [change for change in changes if change.step < self.step]
+        if self._ring is None or self._begun != (scene, run) or step < self.step or known != self._taken:
+            self._ring = Neighbourhood(scene, self.radius)
+            self._begun, self.step = (scene, run), 0
+        target = min(step, self.step + most)
+        while self.step < target:
+            stop = min([target, *(change.step for change in changes if change.step > self.step)])
+            self._ring.advance(stop - self.step, change_before(changes, stop).stepping)
+            self.step = stop
+        self._taken = [change for change in changes if change.step < self.step]
+        return self._ring

@@ -1,4 +1,4 @@
-"""The step's own derivative, by complex step: what stability, chaos, area and symplecticity are read from.
+"""The derivative of a step, by complex step; stability, chaos, area and symplecticity follow from it.
 
 step(x + i·tiny·v) = step(x) + i·tiny·J v + O(tiny²).  Squire & Trapp, SIAM Review 40 (1998) 110.
 """
@@ -15,7 +15,7 @@ _TINY = 1e-100  # a complex step has no subtraction, so it may be as small as on
 
 def tangent_map(step: Step, force: Acceleration, phase: Phase, along: Phase, h: float) -> tuple[Phase, Phase]:
     """The phase after one step, and J·along, what a small displacement `along` has become; `force` takes complexes."""
-    displaced = complex(phase[0], _TINY * along[0]), complex(phase[1], _TINY * along[1])
+    displaced = phase[0] + 1j * (_TINY * along[0]), phase[1] + 1j * (_TINY * along[1])
     theta, omega = step(force, displaced, h)
     return (theta.real, omega.real), (theta.imag / _TINY, omega.imag / _TINY)
 

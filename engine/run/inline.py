@@ -61,7 +61,7 @@ def _definition(function: Callable[..., Any]) -> ast.FunctionDef:
 
 
 def _formulas(method: Method) -> list[ast.stmt]:
-    """The statements that take theta and omega a step on."""
+    """The statements that carry theta and omega one step forward."""
     match [node for node in _definition(method.step).body if not isinstance(node, ast.Expr)]:
         case [opening, *formulas, ast.Return(value=ast.Tuple() as following)]:
             if ast.unparse(opening) == _OPENING and all(isinstance(formula, ast.Assign) for formula in formulas):

@@ -1,13 +1,13 @@
 """All methods side by side on one scene, step by step."""
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from engine.methods import METHODS, Method
-from engine.models.pendulum import energy, energy_scale
+from engine.models.pendulum import energy_reference
 from engine.models.state import Phase
 from engine.run.loops import Advance, Loops, plain
+from engine.run.stepping import Stepping
 from engine.scenes import Scene, check_h
 
 
@@ -32,20 +32,14 @@ class Reading:
 class Sample:
     """All methods' readings at one step, in the order of METHODS."""
 
-    run: int  # counts from 1 within a sitting
+    run: int  # counts from 1 within a recording
     step: int  # steps since the run's start
     t: float  # s, simulated; goes down while h is negative
     readings: tuple[Reading, ...]
 
 
-def parts(methods: Sequence[Method] = METHODS) -> tuple[int, ...]:
-    """In how many parts each method takes a step at equal cost: 4, 4, 4 and 1 for METHODS."""
-    most = math.lcm(*(method.force_evaluations for method in methods))
-    return tuple(most // method.force_evaluations for method in methods)
-
-
 class _Track:
-    """One method's course through a run."""
+    """One method's way through a run."""
 
     __slots__ = ("advance", "diverged_at", "energy", "high", "low", "parts", "phase", "run_high", "run_low")
 
@@ -59,13 +53,10 @@ class _Track:
 
 
 class Lockstep:
-    """The methods in lockstep.  Same scene and same `set_h`, same bits, however the steps are cut.
+    """The methods in lockstep.  The same scene and stepping give the same bits, however the steps are cut.
 
-    `scene.h` is the step size at the start, `h` the one in force.  Time is `t_base + n·h`, never a
-    running sum.  A method whose numbers stop being finite is frozen, the others go on.
-
-    At equal cost a method that needs fewer force evaluations takes a step of `h` in so many equal parts
-    that all need the same number of them: RK4 one step of h, the others four of h/4.
+    `scene.h` is the step size at the start, `stepping` what is in force.  Time is `t_base + n·h`, never a
+    running sum.  A method whose numbers stop being finite is frozen; the others go on.
     """
 
     def __init__(
@@ -78,38 +69,32 @@ class Lockstep:
         self.scene = scene
         self.run = run
         self.step = 0
-        self.h = scene.h
-        self.equal_cost = False
+        self.stepping = Stepping(scene.h)
         self._t_base, self._base_step = 0.0, 0
-        self._start_energy: float = energy(scene.w0_squared, scene.theta, scene.omega)
-        self._scale = energy_scale(scene.w0_squared, self._start_energy)
-        self._limit = min(1.0, self._scale) * 1e300  # so that relative errors are finite, too
-        self._tracks = [_Track(loops(method).advance, scene, self._start_energy) for method in methods]
-        self._parts = parts(methods)
+        self._reference = energy_reference(scene.w0_squared, scene.theta, scene.omega)
+        self._limit = min(1.0, self._reference.scale) * 1e300  # so that relative errors are finite, too
+        self._tracks = [_Track(loops(method).advance, scene, self._reference.start) for method in methods]
+        self._methods = tuple(methods)
 
     @property
     def t(self) -> float:
         """Simulated time [s]."""
-        return self._t_base + (self.step - self._base_step) * self.h
+        return self._t_base + (self.step - self._base_step) * self.stepping.h
 
-    def set_h(self, h: float, equal_cost: bool = False) -> None:
-        """Use step size h [s] from the next step on, at equal cost or not; a negative h runs time backwards.
-
-        Raises SceneError for a step size that is zero, not finite or absurd.
-        """
-        check_h(h, self.scene.w0)
+    def set_stepping(self, stepping: Stepping) -> None:
+        """Step like this from the next step on.  Raises SceneError for an h that is zero, not finite or absurd."""
+        check_h(stepping.h, self.scene.w0)
         self._t_base, self._base_step = self.t, self.step
-        self.h, self.equal_cost = h, equal_cost
-        for track, own in zip(self._tracks, self._parts, strict=True):
-            track.parts = own if equal_cost else 1
+        self.stepping = stepping
+        for track, part in zip(self._tracks, stepping.parts(self._methods), strict=True):
+            track.parts = part
 
     def advance(self, n: int) -> None:
-        """Move every method on by n steps."""
         w0_squared = self.scene.w0_squared
         for track in self._tracks:
             if track.diverged_at is not None:
                 continue
-            h, steps = self.h / track.parts, n * track.parts
+            h, steps = self.stepping.h / track.parts, n * track.parts
             done, track.phase, value, low, high = track.advance(w0_squared, track.phase, h, steps, self._limit)
             if done:
                 track.energy = value
@@ -119,24 +104,22 @@ class Lockstep:
         self.step += n
 
     def sample(self) -> Sample:
-        """What all methods read now.  Lows and highs of the next sample are taken from here on."""
+        """The readings now.  Lows and highs of the next sample are taken from here on."""
         return Sample(self.run, self.step, self.t, tuple(self._read(track) for track in self._tracks))
 
     def _read(self, track: _Track) -> Reading:
         track.run_low, track.run_high = min(track.run_low, track.low), max(track.run_high, track.high)
+        error = self._reference.error
         theta, omega = track.phase
-        low, high = self._error(track.low), self._error(track.high)
+        low, high = error(track.low), error(track.high)
         track.low = track.high = track.energy
         return Reading(
             theta=theta,
             omega=omega,
             energy=track.energy,
-            energy_error=self._error(track.energy),
-            max_energy_error=max(self._error(track.run_high), -self._error(track.run_low)),
+            energy_error=error(track.energy),
+            max_energy_error=max(error(track.run_high), -error(track.run_low)),
             energy_error_low=low,
             energy_error_high=high,
             diverged_at=track.diverged_at,
         )
-
-    def _error(self, value: float) -> float:
-        return (value - self._start_energy) / self._scale

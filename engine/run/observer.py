@@ -1,26 +1,25 @@
 """What is known of a run up to now: the verdict on each method, and what happened when.
 
-Nothing here is recorded: it follows from the samples, so a replay tells what the lab told.
+Nothing here is recorded: it follows from the samples, so a replay shows what the lab showed.
 """
 
 import math
 from bisect import bisect_right, insort
-from collections.abc import Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from operator import attrgetter
 from typing import Literal
 
 from engine.methods import METHODS, Method
 from engine.models.exact_pendulum import ExactMotion
-from engine.models.pendulum import acceleration, energy, energy_scale
+from engine.models.pendulum import acceleration, energy, energy_reference
 from engine.models.state import Phase
-from engine.run.lockstep import Reading, Sample, parts
-from engine.run.verdict import Judgement, Trend, Verdict
+from engine.run.judging import MOST_STEPS, Judging
+from engine.run.lockstep import Sample
+from engine.run.loops import Loops, plain
+from engine.run.stepping import Stepping, SteppingChange
+from engine.run.verdict import Judgement, Verdict
 from engine.scenes import Scene
-
-PARTS = parts()
-MOST_STEPS = 20_000
-"""Steps between two samples that are gone through again to find when a method went over the top, 20 ms at worst."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +35,6 @@ class Milestone:
 
     @property
     def method(self) -> Method:
-        """Who it was."""
         return METHODS[self.index]
 
 
@@ -44,98 +42,139 @@ _step = attrgetter("step")
 
 
 class RunObserver:
-    """Watches one run, sample by sample."""
+    """Watches one run, live, replayed or without a screen, sample by sample."""
 
-    def __init__(self, scene: Scene, exact: ExactMotion) -> None:
-        self._scene = scene
-        self._period = exact.period or math.tau / scene.w0
-        self._turn = self._period if exact.regime == "rotation" else math.inf  # s
-        self._bottom = math.tau * round(scene.theta / math.tau) if exact.regime == "libration" else None
-        self._milestones: list[Milestone] = []
-        self._before: Sample | None = None
-        self._x = 0.0  # s, the simulated time run through
+    def __init__(self, scene: Scene, loops: Callable[[Method], Loops] = plain) -> None:
+        """`loops` take the steps between samples again."""
+        self.scene = scene
+        self._loops = loops
+        self.exact = exact = ExactMotion(scene)
+        self.reference = energy_reference(scene.w0_squared, scene.theta, scene.omega)
         self.seen = -1
         """The last step that was looked at."""
+        self._period = exact.period or math.tau / scene.w0
+        self._bottom = math.tau * round(scene.theta / math.tau) if exact.regime == "libration" else None
+        self._start = SteppingChange(0, 0.0, Stepping(scene.h))
+        self._milestones: list[Milestone] = []
+        self._before: Sample | None = None
+        self._modified_starts: dict[int, list[float]] = {}  # by the step of the change that they begin at
         self.judge_anew(0)
 
     @property
     def judgements(self) -> list[Judgement]:
-        """The verdicts on the run since the last change of the step size."""
-        return [trend.judgement for trend in self._trends]
+        """The verdicts on the run since the last change of the stepping."""
+        return [judging.judgement for judging in self._judgings] or [Judgement()] * len(METHODS)
 
     def milestones(self, step: int) -> list[Milestone]:
         """What happened up to a step, in its order."""
         return self._milestones[: bisect_right(self._milestones, step, key=_step)]
 
     def judge_anew(self, step: int) -> None:
-        """The step size changes here: verdicts begin anew, and what came later has never been."""
+        """The stepping changes here: verdicts begin anew, and what came later has never been."""
         self._milestones = self.milestones(step)
         self._known = {(each.kind, each.index) for each in self._milestones}
-        self._trends = [Trend(self._period) for _ in METHODS]
+        self._modified_starts = {at: starts for at, starts in self._modified_starts.items() if at < step}
+        self._judgings: list[Judging] = []
         if self._before is not None and self._before.step == step:
-            for trend, reading in zip(self._trends, self._before.readings, strict=True):
-                trend.read(self._x, reading)
+            self._begin = self._before
         else:
             self._before, self.seen = None, step - 1
 
-    def add(self, sample: Sample) -> None:
-        """Take in a sample; one that lies before the last is known already."""
+    def add(self, sample: Sample, change: SteppingChange | None = None) -> None:
+        """Take in a sample and the last change of the stepping before it; what lies before the last is known already.
+
+        Without a change, the run has stepped alike since its start.
+        """
         if sample.step <= self.seen:
             return
+        change = change or self._start
+        if self.seen <= change.step:
+            self.judge_anew(change.step)
         before, self._before, self.seen = self._before, sample, sample.step
-        per_turn = math.inf
-        if before is not None and (passed := abs(sample.t - before.t)):  # none, between steps in a file that lies
-            self._x += passed
-            per_turn = self._turn * (sample.step - before.step) / passed
-        for index, (trend, reading) in enumerate(zip(self._trends, sample.readings, strict=True)):
-            known = trend.judgement.verdict
-            trend.read(self._x, reading, per_turn)
-            verdict = trend.judgement.verdict
-            if reading.diverged_at is not None:
-                self._note(Milestone("failed", index, sample.step, reading.diverged_at, reading.energy_error))
-            elif verdict != known:
-                milestone = Milestone("verdict", index, sample.step, sample.t, reading.energy_error, verdict)
-                insort(self._milestones, milestone, key=_step)
-            if before is None or ("over the top", index) in self._known:
-                continue
-            if self.is_over(reading.theta) and not self.is_over(before.readings[index].theta):
-                self._note(self._crossing(index, before, sample))
+        if before is None:
+            self._begin = sample
+        if not self._judgings:
+            self._judgings = self._begun(change.stepping)
+        for index, (judging, reading) in enumerate(zip(self._judgings, sample.readings, strict=True)):
+            for since, error, verdict in judging.follow(sample.step - self._begin.step, reading):
+                if reading.diverged_at is None:
+                    t = self._begin.t + since * change.stepping.h
+                    self._note(Milestone("verdict", index, self._begin.step + since, t, error, verdict))
+            if reading.diverged_at is not None and self._is_new("failed", index):
+                error = reading.energy_error
+                self._note(Milestone("failed", index, sample.step, reading.diverged_at, error))
+            if (
+                before is not None
+                and self._is_new("over the top", index)
+                and self._is_over(reading.theta)
+                and not self._is_over(before.readings[index].theta)
+            ):
+                self._note(self._crossing(index, before, sample, change.stepping))
 
-    def is_over(self, theta: float) -> bool:
-        """Whether theta [rad] is where the exact swing never comes: beyond the top."""
+    def _begun(self, stepping: Stepping) -> list[Judging]:
+        """A judging of each method from the sample on at which this stepping begins."""
+        scene, reference = self.scene, self.reference
+        judgings = [
+            Judging(method, reference, scene.w0_squared, stepping.h, part, self._period, self._loops(method).advance)
+            for method, part in zip(METHODS, stepping.parts(), strict=True)
+        ]
+        for judging, reading in zip(judgings, self._begin.readings, strict=True):
+            judging.follow(0, reading)
+        return judgings
+
+    def modified_energy_errors(self, before: Sample | None, sample: Sample, change: SteppingChange) -> list[float]:
+        """How far each method's modified energy is from where it was when the stepping last changed, relative.
+
+        Another step size has another modified energy.  nan for a method without one, and where no sample
+        `before` this one has been seen since the change.
+        """
+        starts = self._modified_starts.get(change.step)
+        if starts is None:
+            if before is None or not change.step <= before.step < sample.step:
+                return [math.nan] * len(METHODS)
+            starts = self._modified_starts[change.step] = self._modified_energies(before, change.stepping)
+        energies = self._modified_energies(sample, change.stepping)
+        return [(now - start) / self.reference.scale for now, start in zip(energies, starts, strict=True)]
+
+    def _modified_energies(self, sample: Sample, stepping: Stepping) -> list[float]:
+        energies = [
+            method.modified_energy(self.scene.w0_squared, reading.theta, reading.omega, h)
+            if method.modified_energy
+            else math.nan
+            for method, reading, h in zip(METHODS, sample.readings, stepping.own(), strict=True)
+        ]
+        return [energy if math.isfinite(energy) else math.nan for energy in energies]  # it overflows where H does not
+
+    def _is_over(self, theta: float) -> bool:
+        """Whether theta [rad] is where the exact motion never comes: beyond the top."""
         return self._bottom is not None and abs(theta - self._bottom) > math.pi
 
-    def _note(self, milestone: Milestone) -> None:
-        """Keep what happens to a method but once."""
-        if (milestone.kind, milestone.index) not in self._known:
-            self._known.add((milestone.kind, milestone.index))
-            insort(self._milestones, milestone, key=_step)
+    def _is_new(self, kind: str, index: int) -> bool:
+        """Whether this has not happened to a method before."""
+        return (kind, index) not in self._known
 
-    def _crossing(self, index: int, before: Sample, sample: Sample) -> Milestone:
+    def _note(self, milestone: Milestone) -> None:
+        self._known.add((milestone.kind, milestone.index))
+        insort(self._milestones, milestone, key=_step)
+
+    def _crossing(self, index: int, before: Sample, sample: Sample, stepping: Stepping) -> Milestone:
         """Where between two samples a method goes over the top.
 
-        The steps between them are taken again, whole or in the parts of equal cost, whichever leads to
-        the sample.  Where neither does, as when the step size changed in a gap, or there are too many,
-        it is where it was first seen there.
+        The steps between them are taken again.  Where they do not lead to the sample, as when the step size
+        changed in a gap, or where there are too many, it is where it was first seen there.
         """
-        steps = sample.step - before.step
-        if steps <= MOST_STEPS:
-            for part in {1, PARTS[index]}:
-                h, end = (sample.t - before.t) / (steps * part), sample.readings[index].theta
-                path = list(self._path(METHODS[index], before.readings[index], h, steps * part))
-                if math.isclose(path[-1][0], end, rel_tol=1e-6):
-                    n = next((n for n, (theta, _) in enumerate(path, 1) if self.is_over(theta)), len(path))
-                    step = before.step + math.ceil(n / part)
-                    return Milestone("over the top", index, step, before.t + n * h, self._error(path[n - 1]))
-        return Milestone("over the top", index, sample.step, sample.t, sample.readings[index].energy_error)
-
-    def _path(self, method: Method, begin: Reading, h: float, steps: int) -> Iterator[Phase]:
-        force, phase = acceleration(self._scene.w0_squared), (begin.theta, begin.omega)
-        for _ in range(steps):
-            yield (phase := method.step(force, phase, h))
-
-    def _error(self, phase: Phase) -> float:
-        scene = self._scene
-        start = energy(scene.w0_squared, scene.theta, scene.omega)
-        error: float = (energy(scene.w0_squared, *phase) - start) / energy_scale(scene.w0_squared, start)
-        return error
+        method, part, found = METHODS[index], stepping.parts()[index], sample.readings[index]
+        steps, h, force = (sample.step - before.step) * part, stepping.h / part, acceleration(self.scene.w0_squared)
+        phase: Phase = (before.readings[index].theta, before.readings[index].omega)
+        crossing = None
+        try:
+            for n in range(1, steps + 1 if steps <= MOST_STEPS * part else 1):
+                phase = method.step(force, phase, h)
+                if crossing is None and self._is_over(phase[0]):
+                    crossing = n, self.reference.error(energy(self.scene.w0_squared, *phase))
+        except ValueError:  # the sine of something infinite
+            crossing = None
+        if crossing is None or not math.isclose(phase[0], found.theta, rel_tol=1e-6):
+            return Milestone("over the top", index, sample.step, sample.t, found.energy_error)
+        n, error = crossing
+        return Milestone("over the top", index, before.step + math.ceil(n / part), before.t + n * h, error)

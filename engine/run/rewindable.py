@@ -1,43 +1,29 @@
-"""Course: a run that can also go back, to the bit.
+"""A run that can also go back, to the bit.
 
-Going back is simulating again from a copy of the lockstep taken earlier.  Copies are the further
-apart the older they are, so their number grows with the logarithm of the run's length only.
+Going back is simulating again from a copy of the lockstep taken earlier.  The older copies
+are, the further they lie apart, so their number grows with the logarithm of the run's length only.
 """
 
 import copy
 import math
 from bisect import bisect_right
-from collections.abc import Iterable
-from typing import NamedTuple, Self
+from collections.abc import Callable, Iterable
+from typing import NamedTuple
 
-from engine.run.background import unhurried
+from engine.methods import Method
+from engine.run.compiled import tiered
 from engine.run.lockstep import Lockstep, Sample
+from engine.run.loops import Loops
+from engine.run.stepping import Stepping, SteppingChange
 from engine.scenes import Scene
 
 COPY_EVERY = 1000  # steps; 4 ms of simulation, so a step back is not felt
 AGE_PER_GAP = 8  # copies n steps old are about n/8 steps apart
 
 
-class Pitch(NamedTuple):
-    """How a run steps."""
-
-    h: float  # s
-    equal_cost: bool = False
-
-
-class SteppingChange(NamedTuple):
-    """A change of how a run steps."""
-
-    step: int  # before which it applies
-    x: float  # s, the simulated time run up to there; it goes up even while t goes down
-    t: float  # s, simulated time
-    h: float  # s
-    equal_cost: bool = False
-
-
 class _Checkpoint(NamedTuple):
     lockstep: Lockstep
-    applied: int  # changes
+    applied: int  # changes that are in force or past
 
 
 class RewindableRun:
@@ -46,39 +32,30 @@ class RewindableRun:
     Between a step back and the step reached before, forward repeats what was, changes included.
     """
 
-    def __init__(self, scene: Scene, run: int) -> None:
+    def __init__(self, scene: Scene, run: int = 1, loops: Callable[[Method], Loops] = tiered) -> None:
         self.scene = scene
         self.run = run
-        self.changes = [SteppingChange(0, 0.0, 0.0, scene.h)]  # the first is the start's
+        self.changes = [SteppingChange(0, 0.0, Stepping(scene.h))]
         self.furthest = 0  # the last step sampled
+        self._x = [0.0]  # s, the simulated time run up to each change; it goes up even while t goes down
         self._applied = 1
-        self._lockstep = Lockstep(scene, run, loops=unhurried)
+        self._lockstep = Lockstep(scene, run, loops=loops)
         self._copies = [self._copy()]
 
-    @classmethod
-    def at(cls, scene: Scene, changes: Iterable[tuple[int, Pitch]], step: int) -> Self:
-        """The run of a scene at a step, with the changes of how it steps, as (step, pitch), on the way there."""
-        course = cls(scene, 1)
-        for at, pitch in changes:
-            course.forward(at - course.step)
-            course.set_h(*pitch)
-        course.forward(step - course.step)
-        return course
+    def repeat(self, changes: Iterable[SteppingChange], step: int) -> None:
+        """Go to a step as another run of this scene did."""
+        for change in changes:
+            self.forward(change.step - self.step)
+            self.set_stepping(change.stepping)
+        self.forward(step - self.step)
 
     @property
     def step(self) -> int:
-        """Where the run stands."""
         return self._lockstep.step
 
     @property
-    def h(self) -> float:
-        """The step size in force [s]."""
-        return self._lockstep.h
-
-    @property
-    def equal_cost(self) -> bool:
-        """Whether all methods spend the same number of force evaluations."""
-        return self._lockstep.equal_cost
+    def stepping(self) -> Stepping:
+        return self._lockstep.stepping
 
     @property
     def t(self) -> float:
@@ -87,9 +64,9 @@ class RewindableRun:
 
     @property
     def x(self) -> float:
-        """The simulated time run so far [s]."""
-        last = self.changes[self._applied - 1]
-        return last.x + (self.step - last.step) * abs(last.h)
+        """The simulated time run so far [s]; it goes up even while t goes down."""
+        last = self._applied - 1
+        return self._x[last] + (self.step - self.changes[last].step) * abs(self.changes[last].stepping.h)
 
     @property
     def in_past(self) -> bool:
@@ -98,28 +75,27 @@ class RewindableRun:
 
     def step_at(self, x: float) -> int:
         """The last step that is not after x."""
-        at = max(bisect_right(self.changes, x, key=lambda change: change.x), 1)
-        last = self.changes[at - 1]
-        step = last.step + int((x - last.x) / abs(last.h) + 1e-6)  # x is a sum of floats, the step must not lag for it
+        at = max(bisect_right(self._x, x), 1)
+        last, begin = self.changes[at - 1], self._x[at - 1]
+        # x is a sum of floats, and the step must not lag because of that
+        step = last.step + int((x - begin) / abs(last.stepping.h) + 1e-6)
         return min(step, self.changes[at].step) if at < len(self.changes) else step
 
     @property
     def home(self) -> float:
         """The step ahead at which simulated time is back at 0; inf where it runs away from 0, or past it."""
-        ahead = -self.t / self.h
+        ahead = -self.t / self.stepping.h
         return self.step + round(ahead) if ahead > 0.5 and abs(ahead - round(ahead)) < 1e-6 else math.inf
 
     def sample(self) -> Sample:
-        """What all methods read now."""
         self.furthest = max(self.furthest, self.step)
         return self._lockstep.sample()
 
     def forward(self, n: int) -> None:
-        """Go n steps on."""
         target = self.step + n
         while self.step < target:
             while self._applied < len(self.changes) and self.changes[self._applied].step == self.step:
-                self._lockstep.set_h(self.changes[self._applied].h, self.changes[self._applied].equal_cost)
+                self._lockstep.set_stepping(self.changes[self._applied].stepping)
                 self._applied += 1
             stops = [target]
             if self._applied < len(self.changes):
@@ -141,19 +117,17 @@ class RewindableRun:
         self._lockstep.run = self.run
         self.forward(step - self.step)
 
-    def set_h(self, h: float, equal_cost: bool = False) -> None:
-        """Use step size h [s] from here on, at equal cost or not; in the past, branch first.
-
-        Raises SceneError for a step size that is zero, not finite or absurd.
-        """
+    def set_stepping(self, stepping: Stepping) -> None:
+        """Step like this from here on; in the past, branch first.  Raises SceneError for an absurd h."""
         x = self.x
-        self._lockstep.set_h(h, equal_cost)
-        self.changes.append(SteppingChange(self.step, x, self.t, h, equal_cost))
+        self._lockstep.set_stepping(stepping)
+        self.changes.append(SteppingChange(self.step, self.t, stepping))
+        self._x.append(x)
         self._applied += 1
 
     def branch(self, run: int) -> None:
         """Go on from here as another run, which shares this one's past and not what came next."""
-        del self.changes[self._applied :]
+        del self.changes[self._applied :], self._x[self._applied :]
         while self._copies[-1].lockstep.step > self.step:
             self._copies.pop()
         self.run = self._lockstep.run = run

@@ -1,45 +1,56 @@
-"""Verdict: does a method's energy error stay in a band, or does it leave?  From a stream, in constant memory.
+"""Verdict: what a method's energy error does, judged while the run goes on.  In constant memory.
 
-Within a swing the energy error of every method wobbles by more than it moves from swing to swing.  So
-the stream is cut into bins of a swing or more, and of a bin only its band is kept: lowest, highest.  The
-middle of a band hardly wobbles, whatever the phase at which the bin was cut.  When there are 64 bins
-they merge pairwise.
+A Judge looks at a method at fixed steps of a run, so its verdict depends on the scene, on h and on the step, and
+not on how often somebody looks.
 
-- `grows` and `drifts`: the energy error no longer comes back to its value at the start.  The band of the
-  last quarter of the bins misses it by half its own width; or by a sixteenth, if that is more than the
-  whole energy of the start.  A bounded motion comes back to where it began, so this is final for as long
-  as the Trend lives.  Where rounding alone could have carried the error there, it must also have gone
-  steadily.
-- `bounded`: it does come back, and a line through the middles of the bands, with three times its
-  uncertainty, would take more than 500 periods to move by half the band's width.  RK4, the one method
-  that drifts slowly, takes 1 to 50 in libration and moderate rotation, and 360 at 100 rad/s and h·w0 = 0.003.
-- `too early`: neither, yet.
+A symplectic method can neither gain nor lose for good: its orbit is regular, and then its energy error stays
+within a band, or chaotic.
+- `bounded`: the orbit is known to be regular or fenced in.  Up to h·w0 = 0.25 chaos is thinner than rounding; up to
+  0.9, and beyond where the modified energy hardly moves or small swings stay on their ellipse, it lies only beside
+  upright: then 8 periods are enough.  Elsewhere, near resonances and upright, it takes 4096 steps in which
+  neighbouring starts have parted no faster than in proportion to time.
+- `chaotic`: neighbouring starts part exponentially; the Lyapunov number says how fast.
+- `wanders`: and h·omega has moved by more than 2 pi, so there is no fence: the energy diffuses.
 
-A rotation of fewer than three steps a turn beats with its steps, and a bounded energy error may stay away from
-its start for hundreds of turns.  There only an error beyond the whole energy of the start is final.
+Any other method is judged by the bands of its energy error.
+- `grows` and `loses`: the error no longer comes back to its value at the start.  Taken back when it does.
+- `caught`: it stays away from the start and has stopped: the second half of the run lies in one band.
+- `wanders`: it goes far up and down, and neither steadily nor within a band.
+- `bounded`: it touches its start, and its slope, which is not significant, and three times its uncertainty would
+  take more than 500 periods to move it by half the band's width.
+The last three take 4096 steps or more, and 64 periods.
 
-Diffusion in a chaotic sea, far above the limits of the symplectic methods, reads `grows`.
-tests/bench/verdict.py compares with long runs.
+`too early`: none of these, yet; for long in a rotation of fewer than three steps a turn, which beats with them.
 """
 
 import math
 from dataclasses import dataclass
-from itertools import pairwise
-from statistics import fmean, median, stdev
+from statistics import median
 from typing import Literal, NamedTuple
 
-from engine.run.lockstep import Reading
+from engine.methods import Method
+from engine.models.state import Phase
+from engine.run.bands import FLOOR, MOST_BINS, Bands, hull, rising, steady
+from engine.run.stretching import Stretching, conserved_ellipse
 
-Verdict = Literal["too early", "bounded", "drifts", "grows"]
+Verdict = Literal["too early", "bounded", "loses", "grows", "chaotic", "caught", "wanders"]
 
-_BINS = 64
-_LEAST_BINS = 4
-_LEAST_SAMPLES = 16  # in a bin: beyond h·w0 = 0.4 a swing has fewer steps, and they show its band badly
-_LEAST_PERIODS = 8  # for `bounded`
-_LEAST_STEPS = 3  # in a turn, for a final verdict on less than the whole energy
-_HORIZON = 500  # periods
-_ROUNDING = 1e-12  # relative energy error: a narrower band is made of rounding
-_WANDER = 1e-9  # as far as rounding was seen to carry an energy error, in rotation where theta grows
+LOOKS = 8  # a period
+LEAST_PERIODS = 8  # for `bounded`
+LEAST_BINS = 4
+LEAST_STEPS = 16  # in a bin: beyond h·w0 = 0.4 a swing has fewer steps, and they show its band badly
+QUIET = 0.25  # h·w0 of a symplectic method: below, chaos is thinner than exp(-pi²/0.25), which is rounding
+LONG = 4096  # steps that show an orbit to be regular where nothing else does
+LYAPUNOV_STEPS = 100_000  # neighbours are followed for so long, some tenths of a second in plain Python
+FENCED = 0.9  # h·w0 of a symplectic method: below Greene's 0.9857 invariant curves fence every orbit in
+NEAR_TOP = 11.0  # w0 times the period: beyond, the exact motion comes within 30° of upright, where chaos begins
+CONSERVED = 0.045  # times z² and the energy: a modified energy that moves less belongs to a regular orbit
+ELLIPSE = 0.15  # relative: a conserved ellipse that changes less belongs to a regular orbit
+HORIZON = 500  # periods
+WANDER = 1e-9  # as far as rounding was seen to carry an energy error, in rotation where theta grows
+AT_REST = -1 + 1e-9  # relative energy error: nothing is left
+THROWN = 1.5  # h·w0: beyond, a method that is not symplectic may be thrown far, and back
+SMALL = 0.7  # rad: swings to which the ellipse is applied
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,114 +61,189 @@ class Judgement:
     slope: float | None = None  # mean change of the relative energy error [1/s]
     uncertainty: float | None = None  # standard deviation of the slope [1/s]
     periods: float = 0.0  # how many periods this rests on
+    lyapunov: float | None = None  # 1/s; given where the verdict rests on it
 
 
-class _Bin(NamedTuple):
-    time: float  # s since the start, its middle
-    low: float
+class Look(NamedTuple):
+    """What a Judge is shown of a method."""
+
+    theta: float  # rad
+    omega: float  # rad/s
+    error: float  # relative, of the energy
+    low: float  # the smallest and the largest since the look before
     high: float
 
 
-class Trend:
-    """One method's energy error over time.  Another h or another start needs another Trend."""
+def stride(period: float, h: float) -> int:
+    """Every how many steps of h [s] a Judge looks; `period` [s] is the exact motion's, or 2 pi/w0 if it has none."""
+    return max(1, round(period / LOOKS / abs(h)))
 
-    def __init__(self, period: float) -> None:
-        """`period` [s] is that of the exact swing, or 2 pi/w0 where that has none."""
-        self._period = self._width = period
-        self._bins: list[_Bin] = []
-        self.judgement = Judgement()  # what is known by now
-        self._start = self._first = math.nan  # s, and the energy error there
-        self._cut = 0.0  # s since the start; where the open bin begins
-        self._low, self._high = math.inf, -math.inf
-        self._samples = -1  # in the open bin; the first one of all only begins it
-        self._beats = False
 
-    def add(self, t: float, energy_error: float, low: float | None = None, high: float | None = None) -> None:
-        """Take in the relative energy error at time t [s], and its extremes since the previous call.
+class Judge:
+    """Judges one method from a start on; another h needs another Judge."""
 
-        Without the extremes the calls must be closer than a quarter of a period, or the wobble seen
-        through the gaps can look like a trend.
+    def __init__(self, method: Method, w0_squared: float, scale: float, h: float, period: float) -> None:
+        """`h` [s] is the method's own step; `period` [s] is that of the exact motion, or 2 pi/w0 if it has none.
+
+        Energy errors are relative to `scale` [s⁻²].
         """
-        if self._samples < 0:  # the extremes before the start are none of this trend's
-            self._start, self._first = t, energy_error
-            low = high = energy_error
-        lowest, highest = energy_error if low is None else low, energy_error if high is None else high
-        if lowest < self._low:
-            self._low = lowest
-        if highest > self._high:
-            self._high = highest
-        self._samples += 1
-        if self._samples >= _LEAST_SAMPLES and abs(t - self._start) - self._cut >= self._width:
-            self._close(abs(t - self._start))
-            self._low = self._high = energy_error
+        self._method, self._w0_squared, self._h, self._period = method, w0_squared, h, period
+        self._scale = scale
+        self._z, self._w0 = abs(h) * math.sqrt(w0_squared), math.sqrt(w0_squared)
+        self._width = max(LEAST_STEPS, round(period / abs(h)))  # steps of a bin, at first
+        self._energy, self._modified = Bands(self._width), Bands(self._width)
+        self._neighbours = Stretching(method.step, w0_squared, h)
+        self._form = conserved_ellipse(method, w0_squared, h)
+        self._ellipse = (math.inf, 0.0)  # lowest and highest size seen
+        self._omegas = (math.inf, -math.inf)  # rad/s
+        self._first: Look | None = None
+        self._before: Phase = (0.0, 0.0)
+        self._steps = 0
+        self.judgement = Judgement()
 
-    def read(self, t: float, reading: Reading, steps_per_turn: float = math.inf) -> None:
-        """Take in a method's reading at time t [s]; a method that has diverged grows.
-
-        `steps_per_turn` is for rotation.
-        """
-        self._beats = steps_per_turn < _LEAST_STEPS
-        self.add(t, reading.energy_error, reading.energy_error_low, reading.energy_error_high)
-        if reading.diverged_at is not None:
-            self.judgement = Judgement("grows", None, None, abs(t - self._start) / self._period)
-
-    def _close(self, now: float) -> None:
-        self._bins.append(_Bin((self._cut + now) / 2, self._low, self._high))
-        self._cut, self._samples = now, 0
-        if len(self._bins) == _BINS:
-            pairs = zip(self._bins[::2], self._bins[1::2], strict=True)
-            self._bins = [_Bin((a.time + b.time) / 2, min(a.low, b.low), max(a.high, b.high)) for a, b in pairs]
-            self._width = 2 * now / _BINS
-        if len(self._bins) >= _LEAST_BINS:
+    def look(self, steps: int, look: Look) -> None:
+        """Look at the method so many of its own steps after the first look; `stride` apart, or there is a gap."""
+        phase = look.theta, look.omega
+        if self._first is None:
+            self._first, self._before = look, phase
+            return
+        if self._method.symplectic:
+            self._follow(phase, steps - self._steps)
+        self._before, self._steps = phase, steps
+        full = self._energy.add(steps, look.low, look.high, look.error)
+        if self._method.modified_energy is not None:
+            value = self._modified_error(phase)
+            self._modified.add(steps, value, value, value)
+        if full and len(self._energy.bins) >= LEAST_BINS:
             self._judge()
 
+    def fail(self, steps: int) -> None:
+        """The method's numbers have ended, so many steps after the first look."""
+        self.judgement = Judgement("grows", periods=steps * abs(self._h) / self._period)
+
+    def _follow(self, phase: Phase, steps: int) -> None:
+        """What only symplectic methods are asked: of neighbours, and of the ellipse of small swings."""
+        self._omegas = min(self._omegas[0], phase[1]), max(self._omegas[1], phase[1])
+        if self._form is not None:
+            a, b, c = self._form
+            theta, omega = math.remainder(phase[0], math.tau), phase[1] / self._w0
+            size = a * theta * theta + b * theta * omega + c * omega * omega
+            self._ellipse = min(self._ellipse[0], size), max(self._ellipse[1], size)
+        if self._z > QUIET and self._neighbours.steps < LYAPUNOV_STEPS and steps <= 2 * stride(self._period, self._h):
+            self._neighbours.carry(self._before, steps)
+
+    def _modified_error(self, phase: Phase) -> float:
+        """How far the modified energy is from the start's, relative to the energy like energy errors."""
+        function, first = self._method.modified_energy, self._first
+        assert function is not None
+        assert first is not None
+        start = function(self._w0_squared, first.theta, first.omega, self._h)
+        value = (function(self._w0_squared, *phase, self._h) - start) / self._scale
+        return value if math.isfinite(value) else math.inf
+
     def _judge(self) -> None:
-        slope, uncertainty = _line(
-            [bin_.time for bin_ in self._bins], [(low + high) / 2 for _, low, high in self._bins]
-        )
-        periods = self._cut / self._period
-        verdict = self.judgement.verdict
-        if verdict in ("too early", "bounded"):
-            width = max(median(high - low for _, low, high in self._bins), _ROUNDING)
-            reach = (abs(slope) + 3 * uncertainty) * self._cut
-            if left := self._left():
-                verdict = left
-            elif periods >= _LEAST_PERIODS and reach < width / 2 * min(1, periods / _HORIZON):
-                verdict = "bounded"
+        flat = self._method.symplectic and self._is_conserved()
+        bands = self._modified if flat and len(self._modified.bins) >= LEAST_BINS else self._energy
+        slope, uncertainty = (abs(1 / self._h) * value for value in bands.line())
+        periods = self._steps * abs(self._h) / self._period
+        if self._method.symplectic:
+            verdict = self._symplectic(flat, periods)
+        else:
+            verdict = self._other(slope, uncertainty, periods)
         finite = math.isfinite(slope) and math.isfinite(uncertainty)
-        self.judgement = Judgement(verdict, slope if finite else None, uncertainty if finite else None, periods)
+        lyapunov = None
+        if verdict in ("chaotic", "wanders") and self._neighbours.steps:
+            lyapunov = self._neighbours.log / self._neighbours.steps / abs(self._h)
+        self.judgement = Judgement(
+            verdict, slope if finite else None, uncertainty if finite else None, periods, lyapunov
+        )
 
-    def _left(self) -> Verdict | None:
-        """Where to the last quarter has left the start for good, if it has."""
-        recent = self._bins[-(len(self._bins) // 4) :]
-        low, high = min(bin_.low for bin_ in recent), max(bin_.high for bin_ in recent)
-        gap, width = max(low - self._first, self._first - high), max(high - low, _ROUNDING)
-        if gap < (width / 16 if gap > 1 else width / 2) or (gap < _WANDER and not self._steady()):
+    def _is_conserved(self) -> bool:
+        """Whether the modified energy hardly moves; the energy of velocity Verlet wobbles by z²/4 in small swings."""
+        moved = (self._modified.high - self._modified.low) * self._scale
+        energy = min(self._scale, 2 * self._w0_squared)
+        return bool(self._modified.bins) and moved <= max(CONSERVED * self._z**2 * energy, FLOOR * self._scale)
+
+    def _symplectic(self, conserved: bool, periods: float) -> Verdict:
+        neighbours, far = self._neighbours, self._w0 * self._period
+        # neighbours part in proportion to time, and by 1/k'² or so in the first swing past upright
+        if neighbours.steps and neighbours.log > 15 + math.log(neighbours.steps) + far / 2:
+            free = (self._omegas[1] - self._omegas[0]) * abs(self._h) > math.tau
+            return "wanders" if free else "chaotic"
+        if self.judgement.verdict in ("bounded", "chaotic", "wanders"):
+            return self.judgement.verdict
+        low, high = self._ellipse
+        small = self._form is not None and high < self._form[0] * SMALL**2 and high - low < ELLIPSE * (high + low)
+        regular = self._z <= QUIET or (far < NEAR_TOP and (self._z <= FENCED or conserved or small))
+        if regular and periods >= LEAST_PERIODS and self._steps >= LEAST_BINS * LEAST_STEPS:
+            return "bounded"
+        if neighbours.steps >= LONG and neighbours.log < 5 + math.log(neighbours.steps):
+            return "grows" if self._has_left() and self._energy.low > 1 else "bounded"
+        return "too early"
+
+    def _other(self, slope: float, uncertainty: float, periods: float) -> Verdict:
+        assert self._first is not None
+        bands, verdict, left = self._energy, self.judgement.verdict, self._has_left()
+        if hull(bands.recent(0.25))[1] < AT_REST:
+            return "loses"
+        low, high = hull(bands.recent(0.25))
+        many = self._steps >= max(MOST_BINS * self._width, LONG)
+        longer = self._steps >= max(MOST_BINS * self._width, 4 * LONG)
+        if many and (spread := self._spread()):
+            known = verdict not in ("too early", "bounded")
+            one_band = spread < (2.0 if verdict == "wanders" or not longer else 3.0)
+            away = self._gap(low, high)
+            if one_band and abs((low + high) / 2 - self._first.error) > WANDER and (known or away > (high - low) / 8):
+                return "caught"
+            if longer and spread > 4.5 and 0.25 < rising(bands.recent(0.5)) < 0.75:
+                return "wanders"
+        if verdict in ("caught", "wanders") or (verdict in ("grows", "loses") and self._is_away(low, high)):
+            return verdict
+        if left:
+            return left
+        reach = (abs(slope) + 3 * uncertainty) * self._steps * abs(self._h)
+        significant = abs(slope) > 3 * uncertainty and reach > 10 * FLOOR
+        near = reach < bands.width / 2 * min(1, periods / HORIZON)
+        if many and ((not significant and near and self._gap(low, high) < WANDER) or verdict == "bounded"):
+            return "bounded"
+        return "too early"
+
+    def _has_left(self) -> Verdict | None:
+        """Where to the last quarter has left the start, if it has."""
+        assert self._first is not None
+        bands = self._energy
+        low, high = hull(bands.recent(0.25))
+        gap, width = self._gap(low, high), max(high - low, FLOOR)
+        if gap < (width / 16 if gap > 1 else width / 2) or (gap < WANDER and not steady(bands.bins)):
             return None
-        if self._beats and gap <= 1:
+        if self._period < 3 * abs(self._h) and gap <= 1:  # fewer than three steps a turn beat with it, for long
             return None
-        return "grows" if low > self._first else "drifts"
+        if self._z > THROWN:
+            share = rising(bands.bins)
+            if len(bands.bins) < 24 or 0.1 < share < 0.9:
+                return None
+        return "grows" if low > self._first.error else "loses"
 
-    def _steady(self) -> bool:
-        """Whether the steps from bin to bin agree, five times better than those of a random walk."""
-        steps = [(b.low + b.high - a.low - a.high) / 2 for a, b in pairwise(self._bins)]
-        return abs(fmean(steps)) * math.sqrt(len(steps)) > 5 * stdev(steps)
+    def _gap(self, low: float, high: float) -> float:
+        """How far a band is from the start's error; below 0 inside."""
+        assert self._first is not None
+        return max(low - self._first.error, self._first.error - high)
 
+    def _is_away(self, low: float, high: float) -> bool:
+        """Whether a band is centred elsewhere than on the start's error."""
+        return self._gap(low, high) > -(high - low) / 4
 
-def _line(times: list[float], values: list[float]) -> tuple[float, float]:
-    """Slope of the least-squares line and its standard deviation.
-
-    A residual is taken to be correlated with the next one, which leaves n (1 - r)/(1 + r) of n values that
-    count: Santer et al., J. Geophys. Res. 105 (2000) 7337.
-    """
-    n = len(times)
-    mean_time, mean_value = sum(times) / n, sum(values) / n
-    spread = sum((time - mean_time) ** 2 for time in times)
-    slope = sum((time - mean_time) * (value - mean_value) for time, value in zip(times, values, strict=True)) / spread
-    residuals = [value - mean_value - slope * (time - mean_time) for time, value in zip(times, values, strict=True)]
-    total = sum(residual * residual for residual in residuals)
-    if total == 0:
-        return slope, 0.0
-    correlation = sum(a * b for a, b in pairwise(residuals)) / total
-    correlation = min(max(correlation, 0.0), 0.9)  # the estimate is poor: neither shrink the result nor blow it up
-    return slope, math.sqrt(total / (n - 2) / spread * (1 + correlation) / (1 - correlation))
+    def _spread(self) -> float | None:
+        """How many typical bins the band of the second half is wide: about 1 where it is one band; None if it moves."""
+        half = self._energy.recent(0.5)
+        middle = len(half) // 2
+        (low, high), (late_low, late_high) = hull(half[:middle]), hull(half[middle:])
+        width = max(high, late_high) - min(low, late_low)
+        typical = median(bin_.high - bin_.low for bin_ in half)
+        if steady(half):
+            return None
+        if width < 0.1 * (1 + min(low, late_low)) and self._gap(late_low, late_high) > 10 * width:
+            return 1.0  # narrow beside the way that it went
+        spread = width / max(typical, FLOOR)
+        moved = max(abs(late_low - low), abs(late_high - high))
+        return max(spread, 4.0) if moved > width / 4 else spread

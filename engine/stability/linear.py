@@ -69,3 +69,13 @@ def energy_range(step: Step, z: float) -> tuple[float, float]:
         return 0.0, 1.0
     mean, spread = (b - c) / 2, math.hypot((b + c) / 2, (a - d) / 2)
     return -c / (mean + spread), -c / (mean - spread)
+
+
+def widest(step: Step, z: float) -> float:
+    """How wide, over its start, a linear swing from rest may go with this step: the reach of its ellipse.
+
+    1 for velocity Verlet, 1/sqrt(1 - z²/4) for symplectic Euler, and 1 where there is no ellipse.
+    """
+    a, b, c, d = jacobian(step, 1.0, 0.0, 0.0, z)
+    skew = (a - d) ** 2 / 4 + b * c
+    return math.sqrt(b * c / skew) if skew < 0 else 1.0

@@ -1,7 +1,8 @@
 """The pendulum's own stability: which swings a method holds, for how long, and how it loses them.
 
-A swing starts at rest at an amplitude theta and depends on z = h·w0 only, so everything here is
-computed with w0 = 1 and h = z.  It is lost when it goes over the top or its energy leaves the band.
+A swing starts at rest at an amplitude theta and depends on z = h·w0 only, so everything here is computed with
+w0 = 1 and h = z.  A symplectic method neither gains nor loses for good: it loses a swing that goes over the top, or
+whose orbit is chaotic.  Any other method also loses it when its energy leaves the band.
 """
 
 import math
@@ -15,16 +16,22 @@ from engine.methods import Method
 from engine.models.pendulum import acceleration, energy
 from engine.models.state import Number
 from engine.stability.chaos import is_chaotic
-from engine.stability.linear import energy_range
+from engine.stability.linear import energy_range, widest
 
 BAND = 0.5
 """How far, as a fraction, energy may go above the highest and below the lowest that the method's own
 bounded wobble on the linear oscillator takes it to (engine.stability.linear.wobble)."""
 
-FATES = ("holds", "over the top", "grows", "drifts")
-"""What becomes of a swing: it stays, |theta| passes pi, its energy leaves the band upwards or downwards."""
+WOBBLE = 1.1  # times as wide as the linear oscillator: what swings wider is held with a larger wobble
+CHAOS_STEPS = 2000  # for which the neighbours of a swing that wobbles are followed
 
-HOLDS, OVER_THE_TOP, GROWS, DRIFTS = range(len(FATES))
+FATES = ("holds", "over the top", "grows", "loses", "holds, wobbling", "caught", "chaotic")
+"""What becomes of a swing: it swings as wide as it should; |theta| passes pi; its energy leaves the band upwards or
+downwards; it stays, with a larger wobble; an orbit of period two holds it, beyond a symplectic method's linear
+limit; neighbouring swings part exponentially."""
+
+HOLDS, OVER_THE_TOP, GROWS, LOSES, WOBBLES, CAUGHT, CHAOTIC = range(len(FATES))
+HELD = (HOLDS, WOBBLES, CAUGHT)
 UNKNOWN = 255  # the fate of a cell that was not computed
 
 CELL = np.dtype([("steps", "<i4"), ("error", "<f8"), ("fate", "u1")])
@@ -32,6 +39,11 @@ CELL = np.dtype([("steps", "<i4"), ("error", "<f8"), ("fate", "u1")])
 
 Floats = NDArray[np.float64]
 Cells = NDArray[Any]  # of CELL
+
+
+def is_lost(cells: Cells) -> NDArray[np.bool_]:
+    """Which swings a method loses; not those of which nothing is known."""
+    return ~np.isin(cells["fate"], (*HELD, UNKNOWN))
 
 
 def outcomes(method: Method, theta: Floats, z: Floats, steps: int) -> Cells:
@@ -48,27 +60,35 @@ def outcomes(method: Method, theta: Floats, z: Floats, steps: int) -> Cells:
     start: Floats = energy(1.0, *phase, np.sin)
     floor = (1 - BAND) * lowest[where] * start
     ceiling = (1 + BAND) * highest[where] * start
-    worst = np.zeros(len(theta))
-    index = np.arange(len(theta))
+    reach = np.array([widest(method.step, value) for value in distinct.tolist()])[where] * theta
+    worst, amplitude = np.zeros(len(theta)), theta.copy()
+    index: NDArray[Any] = np.arange(len(theta))
     cells = np.zeros(len(theta), CELL)
     cells["steps"] = steps
     for step in range(steps):
         phase = method.step(force, phase, h)
-        value = energy(1.0, *phase, np.sin)
+        value, width = energy(1.0, *phase, np.sin), np.abs(phase[0])
         np.maximum(worst, np.abs(value - start), out=worst)
-        over, above = np.abs(phase[0]) > math.pi, value > ceiling
-        lost = over | above | (value < floor)
+        np.maximum(amplitude, width, out=amplitude)
+        over, above = width > math.pi, value > ceiling
+        lost = over if method.symplectic else over | above | (value < floor)
         if lost.any():
             gone = index[lost]
             cells["steps"][gone] = step
             cells["error"][gone] = worst[lost] / start[lost]
-            cells["fate"][gone] = np.where(over, OVER_THE_TOP, np.where(above, GROWS, DRIFTS))[lost]
+            cells["fate"][gone] = np.where(over, OVER_THE_TOP, np.where(above, GROWS, LOSES))[lost]
             kept = ~lost
             phase = (phase[0][kept], phase[1][kept])
-            index, h, start, floor, ceiling, worst = (a[kept] for a in (index, h, start, floor, ceiling, worst))
+            index, h, start, floor, ceiling = (a[kept] for a in (index, h, start, floor, ceiling))
+            worst, amplitude = worst[kept], amplitude[kept]
             if not len(index):
                 break
     cells["error"][index] = worst / start
+    if method.symplectic and len(index):
+        wobbling = index[(amplitude > WOBBLE * reach[index]) | (z[index] > method.linear_limit)]
+        beyond = z[wobbling] > method.linear_limit
+        chaotic = is_chaotic(method.step, theta[wobbling], z[wobbling], min(steps, CHAOS_STEPS))
+        cells["fate"][wobbling] = np.where(chaotic, CHAOTIC, np.where(beyond, CAUGHT, WOBBLES))
     return cells
 
 
@@ -78,28 +98,19 @@ class Failure:
 
     z: float
     steps: int  # survived
-    reason: str  # over the top | grows | drifts | resonance | chaotic
+    reason: str  # over the top | grows | loses | chaotic
 
 
-def first_failure(method: Method, theta: float, z: Floats, cells: Cells) -> Failure | None:
-    """The first failure of the swing from theta [rad] on an ascending ladder of z; None if it holds on all of it.
+def first_failure(z: Floats, cells: Cells, within: int | None = None) -> Failure | None:
+    """The first failure of a swing on an ascending ladder of z; None if it is held on all of it.
 
-    `cells` are the outcomes on the ladder.  There is no bisection: above the first failure there
-    are windows of z where the swing is bounded again.
+    `cells` are the outcomes on the ladder.  `within`: in so many steps, which shows how the limit moves with them.
+    There is no bisection: above the first failure there are windows of z where the swing is held again.
     """
-    lost = np.flatnonzero(cells["fate"] != HOLDS)
-    if not len(lost):
+    lost = is_lost(cells)
+    if within is not None:
+        lost &= cells["steps"] < within
+    if not lost.any():
         return None
-    cell, first = cells[lost[0]], float(z[lost[0]])
-    return Failure(first, int(cell["steps"]), reason(method, theta, first, int(cell["fate"])))
-
-
-def reason(method: Method, theta: float, z: float, fate: int, steps: int = 10_000) -> str:
-    """Why the swing from theta [rad] is lost at z; its fate, but for a symplectic method below its linear limit.
-
-    There energy neither grows nor drifts for good: the orbit is chaotic, or it is regular and a
-    resonance of step and swing carries it out of the band.  Which of the two, `steps` steps tell.
-    """
-    if fate in (GROWS, DRIFTS) and method.symplectic and z < method.linear_limit:
-        return "chaotic" if is_chaotic(method.step, theta, z, steps) else "resonance"
-    return FATES[fate]
+    first = int(np.argmax(lost))
+    return Failure(float(z[first]), int(cells["steps"][first]), FATES[cells["fate"][first]])

@@ -13,7 +13,7 @@ from engine.methods import Method
 from engine.models.pendulum import energy
 from engine.scenes import Scene
 from engine.stability.grid import Grid, default_grid
-from engine.stability.outcomes import HOLDS, Cells, Failure, first_failure
+from engine.stability.outcomes import Cells, Failure, first_failure, is_lost
 
 Show = Callable[[float, float], None]
 """Takes how much is done, and how much there is in all."""
@@ -67,9 +67,9 @@ class StabilityStudy:
         done = 0
         try:
             for strip in self.computed(grid):
-                for m, t in np.argwhere((strip["fate"] != HOLDS).any(axis=0)).tolist():
+                for m, t in np.argwhere(is_lost(strip).any(axis=0)).tolist():
                     if (m, t) not in failures:
-                        failures[m, t] = first_failure(grid.methods[m], thetas[t], grid.z[done:], strip[:, m, t])
+                        failures[m, t] = first_failure(grid.z[done:], strip[:, m, t])
                 if done <= at < done + len(strip):
                     here = strip[at - done]
                 done += len(strip)

@@ -12,7 +12,7 @@ from statistics import median
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from tests.bench.lab import LAB, key_times
+from tests.bench.yardstick import LAB, key_times
 from tests.tui.pty_lab import PtyLab
 
 RATE = 64 * 1024  # bytes/s

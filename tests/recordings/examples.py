@@ -5,6 +5,7 @@ from pathlib import Path
 
 from engine.methods import METHODS
 from engine.run.lockstep import Lockstep, Sample
+from engine.run.stepping import Stepping
 from engine.scenes import Scene
 from recordings.events import Entry, Event
 from recordings.recorder import FLUSH_EVERY, Recorder
@@ -31,7 +32,7 @@ def two_runs() -> list[Entry]:
         first.advance(3)
         note(clock, first.sample())
     note(1.5, Event("set_h", 1, 9, first.t, h=0.05))
-    first.set_h(0.05)
+    first.set_stepping(Stepping(0.05))
     note(1.5, Event("speed", 1, 9, first.t, speed=2.0))
     for clock in (2.0, 2.5):
         first.advance(3)
@@ -43,12 +44,12 @@ def two_runs() -> list[Entry]:
     note(2.5, Event("resume", 1, 16, first.t))
     second = Lockstep(SCENE, run=2)
     second.advance(9)
-    second.set_h(0.05)
+    second.set_stepping(Stepping(0.05))
     second.advance(3)
     note(2.75, start(2))
     note(2.75, Event("set_h", 2, 9, 0.9, h=0.05))
     note(2.75, Event("set_h", 2, 12, second.t, h=-0.1, equal_cost=True))
-    second.set_h(-0.1, equal_cost=True)
+    second.set_stepping(Stepping(-0.1, equal_cost=True))
     note(2.75, second.sample())
     for clock in (3.5, 4.0):
         second.advance(2)

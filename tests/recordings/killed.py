@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 
 from engine.run.lockstep import Sample
+from engine.run.stepping import Stepping
 from recordings.live_recorder import LiveRecorder
 from tests.recordings.examples import SCENE
 from tui.playback.live import Live
@@ -20,8 +21,8 @@ KEYS = (
     *8 * [lambda live: live.step(1)],
     lambda live: live.step(10),
     lambda live: live.step(-3),
-    lambda live: live.set_h(0.02),
-    lambda live: live.set_h(-0.05),
+    lambda live: live.set_stepping(Stepping(0.02)),
+    lambda live: live.set_stepping(Stepping(-0.05)),
     lambda live: live.mark("here"),
     lambda live: live.restart(),
 )

@@ -8,6 +8,7 @@ import sys
 import pytest
 
 from engine.run.lockstep import Lockstep
+from engine.run.stepping import Stepping
 from recordings.errors import DiskError
 from recordings.events import Event
 from recordings.library import free_path
@@ -34,7 +35,7 @@ class Lab:
             self.recorder.sample(self.lockstep.sample(), self.clock)
 
     def set_h(self, h):
-        self.lockstep.set_h(h)
+        self.lockstep.set_stepping(Stepping(h))
         self.recorder.event(Event("set_h", 1, self.lockstep.step, self.lockstep.t, h=h), self.clock)
 
 

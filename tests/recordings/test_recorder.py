@@ -12,6 +12,7 @@ from mcap.records import Chunk, DataEnd, Footer, Message, Metadata, Statistics
 from mcap.stream_reader import StreamReader
 
 from engine.run.lockstep import Lockstep
+from engine.run.stepping import Stepping
 from recordings.errors import DiskError
 from recordings.events import Event
 from recordings.format import decode_event
@@ -209,7 +210,7 @@ def test_a_change_is_on_disk_within_a_quarter_of_a_second_and_a_pause_at_once(re
     recorder.event(Event("set_h", 1, 30, 3.0, h=0.05), 1.0)
     lockstep = Lockstep(SCENE)
     lockstep.advance(30)
-    lockstep.set_h(0.05)
+    lockstep.set_stepping(Stepping(0.05))
     for frame in range(31, 40):
         lockstep.advance(1)
         recorder.sample(lockstep.sample(), frame * FRAME)

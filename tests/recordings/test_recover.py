@@ -7,6 +7,7 @@ from mcap.records import Message
 from mcap.stream_reader import StreamReader
 
 from engine.run.lockstep import Lockstep, Sample
+from engine.run.stepping import Stepping
 from recordings.errors import DiskError, RecordingError
 from recordings.events import Entry, Event
 from recordings.library import leftovers
@@ -52,7 +53,7 @@ def ten_seconds(path, changes=(), runs=1):
                 lockstep.advance(step - lockstep.step)
                 if step in dict(changes):
                     recorder.event(Event("set_h", run, step, lockstep.t, h=dict(changes)[step]), zero + step / 10)
-                    lockstep.set_h(dict(changes)[step])
+                    lockstep.set_stepping(Stepping(dict(changes)[step]))
                 recorder.sample(lockstep.sample(), zero + step / 10)
     return path
 

@@ -1,31 +1,74 @@
 import difflib
+import html
 import re
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from rich.cells import cell_len
+
+from tui.terminal.screenshot import text_of
 
 SNAPSHOTS = Path(__file__).parent / "snapshots"
+CELL = 12.2  # units of a picture, across
+
+Hold = Callable[[str, str], None]
 
 
 @pytest.fixture
-def snapshot(request: pytest.FixtureRequest) -> Callable[[str, str], None]:
-    """Hold an SVG picture against the stored one of that name; --snapshot-update stores it."""
+def snapshot(request: pytest.FixtureRequest) -> Hold:
+    """Compare an SVG picture with the stored one of that name; --snapshot-update stores it."""
 
     def hold(name: str, svg: str) -> None:
-        path = SNAPSHOTS / f"{name}.svg"
-        if request.config.getoption("--snapshot-update"):
-            path.parent.mkdir(exist_ok=True)
-            path.write_text(svg, encoding="utf-8")
-        if not path.exists():
-            pytest.fail(f"there is no picture {path}: look at what --snapshot-update stores")
-        stored = path.read_text(encoding="utf-8")
-        if stored != svg:
-            (seen := path.with_suffix(".seen.svg")).write_text(svg, encoding="utf-8")
-            lines = difflib.unified_diff(lines_of(stored), lines_of(svg), "stored", "seen", lineterm="", n=0)
-            pytest.fail("\n".join([f"{name} looks different, see {seen}:", *lines]), pytrace=False)
+        compare(SNAPSHOTS / f"{name}.svg", svg, cells_of, lines_of, request.config.getoption("--snapshot-update"))
 
     return hold
+
+
+@pytest.fixture
+def text_snapshot(request: pytest.FixtureRequest) -> Hold:
+    """The same for the text of an SVG picture and its colours: small, and a changed word is one changed line."""
+
+    def hold(name: str, svg: str) -> None:
+        looks = {look for _, look in cells_of(svg).values()}
+        colours = sorted(set(re.findall(r"#[0-9a-fA-F]{6}", " ".join(looks))))
+        text = f"{text_of(svg)}\ncolours: {' '.join(colours)}\n"
+        compare(SNAPSHOTS / f"{name}.txt", text, str, str.splitlines, request.config.getoption("--snapshot-update"))
+
+    return hold
+
+
+def compare(
+    path: Path, picture: str, essence: Callable[[str], object], lines: Callable[[str], list[str]], update: bool
+) -> None:
+    if update:
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(picture, encoding="utf-8")
+    if not path.exists():
+        pytest.fail(f"{path} is missing: look at what --snapshot-update stores")
+    stored = path.read_text(encoding="utf-8")
+    if essence(stored) != essence(picture):
+        (seen := path.with_suffix(f".seen{path.suffix}")).write_text(picture, encoding="utf-8")
+        diff = difflib.unified_diff(lines(stored), lines(picture), "stored", "seen", lineterm="", n=0)
+        pytest.fail("\n".join([f"{path.name} looks different, see {seen}:", *diff]), pytrace=False)
+
+
+def cells_of(svg: str) -> dict[tuple[str, int], tuple[str, str]]:
+    """Each cell's character and look, and each background, however they were strung together."""
+    looks = dict(re.findall(r"\.terminal-(r\d+) { (.*) }", svg))
+    cells: dict[tuple[str, int], tuple[str, str]] = {}
+    for fill, x, y, width in re.findall(r'<rect fill="([^"]+)" x="([\d.]+)" y="([\d.]+)" width="([\d.]+)"', svg):
+        first, count = round(float(x) / CELL), round(float(width) / CELL)
+        cells |= {(f"behind {y}", column): ("", fill) for column in range(first, first + count)}
+    for look, x, y, text in re.findall(
+        r'<text class="terminal-(r\d+)" x="([\d.]+)" y="([\d.]+)"[^>]*>([^<]*)</text>', svg
+    ):
+        column = round(float(x) / CELL)
+        for character in html.unescape(text):
+            if not character.isspace():
+                cells[y, column] = character, looks[look]
+            column += cell_len(character)
+    return cells
 
 
 def lines_of(svg: str) -> list[str]:

@@ -7,8 +7,8 @@ from contextlib import suppress
 from textual._xterm_parser import XTermParser
 from textual.events import Key
 
+from tests.tui.harness import Theatre
 from tests.tui.pty_lab import PtyLab
-from tests.tui.stage import Theatre
 from tui.screens.keys import COMMON, LIVE, REPLAY
 from tui.views.accuracy import pane as accuracy
 from tui.views.phase import pane as phase

@@ -3,6 +3,7 @@
 import fcntl
 import os
 import pty
+import re
 import resource
 import select
 import signal
@@ -10,6 +11,7 @@ import struct
 import sys
 import termios
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -23,7 +25,12 @@ class PtyLab:
     """A running `pendu-tui` with its terminal, which is behind a line of `rate` bytes a second if that is given."""
 
     def __init__(
-        self, *arguments: str, size: tuple[int, int] = (120, 40), rate: float | None = None, **environment: str
+        self,
+        *arguments: str,
+        size: tuple[int, int] = (120, 40),
+        rate: float | None = None,
+        program: Sequence[str] = PENDU,
+        **environment: str,
     ) -> None:
         self.rate = rate
         columns, rows = size
@@ -34,7 +41,7 @@ class PtyLab:
             os.chdir(ROOT)
             terminal = {"TERM": "xterm-256color", "COLORTERM": "truecolor", "PYTHONUTF8": "1"}
             ours = {name: value for name, value in os.environ.items() if name not in ("COLUMNS", "LINES")}
-            os.execvpe(PENDU[0], [*PENDU, *arguments], {**ours, **terminal, **environment})
+            os.execvpe(program[0], [*program, *arguments], {**ours, **terminal, **environment})
         self._arrival = 0.0  # of the last packet, s since the start
         self.output = bytearray()
         self.reads: list[tuple[float, int]] = []
@@ -89,6 +96,15 @@ class PtyLab:
             self.read(end - self.now)
         return self.now
 
+    def wait_for_match(self, pattern: re.Pattern[bytes], seconds: float = 20.0) -> float:
+        """Read until a pattern is somewhere in all that has come; returns when that was known, in s since the start."""
+        end = self.now + seconds
+        while not pattern.search(self.output):
+            if self.now > end:
+                raise TimeoutError(f"{pattern!r} did not come within {seconds} s: {bytes(self.output[-2000:])!r}")
+            self.read(end - self.now)
+        return self.now
+
     def type(self, keys: str) -> None:
         """Press keys."""
         os.write(self.terminal, keys.encode())
@@ -128,5 +144,10 @@ class PtyLab:
         """Processor time used so far."""
         fields = Path(f"/proc/{self.pid}/stat").read_text().rpartition(")")[2].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def wakes(self) -> int:
+        """How often its main thread has gone to sleep so far, to be woken again."""
+        status = Path(f"/proc/{self.pid}/status").read_text()
+        return int(re.findall(r"^voluntary_ctxt_switches:\s*(\d+)", status, re.M)[0])
 
     usage: resource.struct_rusage

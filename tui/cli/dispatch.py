@@ -1,4 +1,4 @@
-"""pendu-tui: finds the command and hands over to it.  Imports nothing that the command does not need."""
+"""pendu-tui: find the command, run it, return the exit code.  Imports nothing that the command does not need."""
 
 import io
 import os
@@ -15,34 +15,36 @@ if TYPE_CHECKING:
 
 COMMANDS = {
     "live": "the lab: four pendulums, their errors, a recording",
-    "replay": "a recording on the same screen",
-    "snapshot": "a still of the lab as an SVG picture",
+    "replay": "play a recording on the same screen",
+    "snapshot": "save the lab as an SVG image",
     "accuracy": "speed against accuracy: which method, which h, at what cost",
-    "stability": "where each method stops holding a swing, theory beside measurement",
-    "run": "a scene without a screen, each method judged; a check for CI",
-    "verify": "simulate recordings again and compare every bit",
-    "info": "what is in a recording, whole or damaged",
-    "recover": "save what is intact of a damaged recording",
-    "export": "a recording as CSV",
+    "stability": "where each method becomes unstable: theory and measurement",
+    "run": "run a scene without the screen and judge each method; for CI",
+    "verify": "re-simulate recordings and compare every bit",
+    "info": "show what is in a recording, whole or damaged",
+    "recover": "salvage a damaged recording",
+    "export": "convert a recording to CSV",
     "recordings": "list the recordings, or prune them",
-    "scenes": "the scenes, with what to watch",
-    "methods": "the methods, with what is claimed and what is measured",
-    "doctor": "what the lab finds here, and what to do about it",
-    "completion": "what makes the tab key of bash, zsh or fish know all this",
+    "keys": "list all keys and mouse actions",
+    "scenes": "list the scenes, with what to watch",
+    "methods": "list the methods with claimed and measured properties",
+    "doctor": "check the environment and suggest fixes",
+    "completion": "print a shell completion script",
 }
 """Name of the command -> what it does.  Its module is tui.commands.NAME."""
 
 USAGE = """\
 usage: pendu-tui [COMMAND] [OPTIONS]
 
-Four integrators swing the same pendulum in your terminal: see who gains energy, who keeps it, who loses it slowly.
+Four integrators simulate the same pendulum in your terminal: see which gains, conserves or slowly loses energy.
 
-commands (pendu-tui COMMAND --help tells more):
+commands (pendu-tui COMMAND --help shows details):
 {commands}
 
-pendu-tui alone is pendu-tui live.  pendu-tui --version prints the version.
+Without a command: live.  pendu-tui --version prints the version.
 
-exit codes: 0 fine, 1 a check failed, 2 usage, 3 input unreadable, 4 terminal unsuitable, 5 disk, 130 interrupted.
+exit codes: 0 fine, 1 a check failed, 2 usage error, 3 unreadable input, 4 unsuitable terminal, 5 disk error, \
+130 interrupted.
 
 examples:
   pendu-tui
@@ -78,7 +80,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _drop_output() -> None:
-    """Send what stdout did not take nowhere, or the interpreter tries again as it ends, and complains."""
+    """Discard what stdout did not take: at its end the interpreter would try again, and complain."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
@@ -108,7 +110,7 @@ def _run(name: str, arguments: list[str]) -> int:
     except UserError as error:
         late = parser.stray(arguments, COMMANDS) if name == "live" else None
         if late:  # a command after its options, which made it live
-            raise UserError(f"the command comes first: pendu-tui {late}.") from None
+            raise UserError(f"put the command first: pendu-tui {late}.") from None
         raise parser.unknown_option(arguments) or error from None
     code: int = command.run(options)
     return code
@@ -124,7 +126,7 @@ def command_of(name: str) -> tuple["Parser", ModuleType]:
     if name not in COMMANDS:
         hint = did_you_mean(name, COMMANDS) or "; pendu-tui --help lists them."
         if name in SCENES:
-            hint = f", but a scene: pendu-tui --scene {name}"
+            hint = f"; for the scene use: pendu-tui --scene {name}"
         raise UserError(f"there is no command {name!r}{hint}")
     command = import_module(f"tui.commands.{name}")
     parser = Parser(

@@ -1,4 +1,4 @@
-"""Whatever goes wrong becomes one sentence and an exit code, here."""
+"""Errors: one sentence for the user, and an exit code."""
 
 import errno
 from enum import IntEnum
@@ -14,11 +14,11 @@ class Exit(IntEnum):
     TERMINAL_UNSUITABLE = 4
     DISK = 5
     INTERRUPTED = 130
-    PIPE_CLOSED = 141  # what every program returns that writes into a closed pipe
+    PIPE_CLOSED = 141  # as of every program that writes into a closed pipe
 
 
 class UserError(Exception):
-    """Something the user can mend.  Its text says in one sentence what, why and what to do."""
+    """An error that the user can fix.  Its text is one sentence: what is wrong, why, and what to do."""
 
     def __init__(self, message: str, code: Exit = Exit.USAGE) -> None:
         super().__init__(message)
@@ -26,11 +26,11 @@ class UserError(Exception):
 
 
 def explained(error: BaseException) -> UserError:
-    """The error as a sentence for the user; an error that is ours, not the user's, is raised again."""
+    """The error as a sentence for the user.  Raises it again if it is a bug."""
     if isinstance(error, UserError):
         return error
     if isinstance(error, KeyboardInterrupt) or isinstance(error.__context__, KeyboardInterrupt):
-        return UserError("interrupted.", Exit.INTERRUPTED)  # the latter within an import, made an error of by a library
+        return UserError("interrupted.", Exit.INTERRUPTED)  # the second: a library's error about it
     from engine.scenes import SceneError  # here, because --help and --version need neither
     from recordings.errors import RecordingError
 
@@ -47,8 +47,8 @@ def explained(error: BaseException) -> UserError:
 def _why(error: OSError) -> str:
     advice = {
         errno.ENOSPC: "; free some space or write elsewhere",
-        errno.EACCES: "; choose a place where you may write",
-        errno.EROFS: "; choose a place where you may write",
+        errno.EACCES: "; choose a writable location",
+        errno.EROFS: "; choose a writable location",
         errno.ENOENT: "; create the folder first",
     }
     return (error.strerror or str(error)) + advice.get(error.errno or 0, "")

@@ -4,7 +4,7 @@ A gate is comparisons joined by `and`, `or` and parentheses.  Python's parser re
 nodes named here.  It fails safe.  A comparison holds, whatever its sign, where its method has diverged or its value
 is not known (None, missing, not finite): what cannot be checked has not passed.  Hence there is no `not`.  Only
 `diverged_at` is compared as it is, None meaning that the method never diverged.  `verdict` is compared by == or !=
-with bounded, drifts, grows or too_early (or 'too early'); too_early is a word like the others, so `!= bounded` is
+with bounded, loses, grows or too_early (or 'too early'); too_early is a word like the others, so `!= bounded` is
 the careful gate.
 """
 
@@ -84,6 +84,8 @@ def _value(field: str, sign: ast.cmpop, node: ast.expr, source: str) -> float | 
     if field == "verdict":
         if not isinstance(sign, ast.Eq | ast.NotEq):
             raise _refusal("Verdicts have no order: compare them with == or !=.")
+        if text == "drifts":
+            raise _refusal("The verdict 'drifts' is now called loses.")
         return _known("verdict", text.replace("_", " "), get_args(Verdict))
     if quoted or not _NUMBER.fullmatch(text) or not math.isfinite(number := float(text)):
         raise _refusal(f"{_quoted(text)} is not a finite number; use for example 0.05 or 1e-2.")

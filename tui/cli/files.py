@@ -26,7 +26,7 @@ def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
         return
     check_free(path, force)
     if not path.parent.is_dir():
-        raise UserError(f"{path}: there is no folder {path.parent}; create the folder first.", Exit.DISK)
+        raise UserError(f"{path}: no folder {path.parent}; create the folder first.", Exit.DISK)
     part = path.with_name(path.name + ".part")
     with interruptible():
         try:
@@ -51,7 +51,7 @@ def check_free(path: Path, force: bool) -> None:
     """Raise UserError if something has this name and must not be overwritten, or cannot."""
     if path.exists() and (not force or path.is_dir()):
         advice = "choose another name" if path.is_dir() else "choose another name, or --force to overwrite it"
-        raise UserError(f"{path} exists already: {advice}.", Exit.DISK)
+        raise UserError(f"{path} already exists; {advice}.", Exit.DISK)
 
 
 def interruptible() -> AbstractContextManager[None]:

@@ -15,7 +15,7 @@ from tui.cli.output import warn
 
 
 class Parser(argparse.ArgumentParser):
-    """An argument parser whose errors are one sentence, and to which -1e-3 is a number."""
+    """An argument parser whose errors are one sentence, and which takes -1e-3 for a number, not for an option."""
 
     def __init__(self, **settings: Any) -> None:
         super().__init__(**settings)
@@ -32,7 +32,7 @@ class Parser(argparse.ArgumentParser):
         )
 
     def unknown_option(self, arguments: Sequence[str]) -> UserError | None:
-        """What to say of the first option that there is none of: argparse would name what is missing for it."""
+        """The error for the first option that does not exist; argparse would complain about a missing one first."""
         for argument in arguments:
             name = argument.partition("=")[0] if argument.startswith("--") else argument[:2]
             if argument == "--" or " " in name or name in self._option_string_actions:
@@ -83,9 +83,7 @@ def angle(text: str) -> float:
     try:
         value = float(re.sub(r"(deg|°|rad)$", "", text))
     except ValueError:
-        raise argparse.ArgumentTypeError(
-            f"{text!r} is no angle: give radians such as 2, or degrees such as 115deg"
-        ) from None
+        raise argparse.ArgumentTypeError(f"{text!r} is not an angle; use for example 2 (radians) or 115deg") from None
     return math.radians(value) if text.endswith(("deg", "°")) else value
 
 
@@ -98,25 +96,25 @@ def start_angle(text: str) -> float:
 
 
 def number(text: str) -> float:
-    """A number; whether it makes sense is for the one who takes it to say."""
+    """Any number; the caller checks its range."""
     try:
         return float(text)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is no number: give one such as 0.05 or 1e-3") from None
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number; use for example 0.05 or 1e-3") from None
 
 
 def positive(text: str) -> float:
     """A number above zero, and finite."""
     value = number(text)
     if not 0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"{text!r} is out of range: give a number above zero")
+        raise argparse.ArgumentTypeError(f"{text!r} is out of range; use a number above zero")
     return value
 
 
 def count(text: str) -> int:
     """A whole number, 1 or more."""
     if not re.fullmatch(r"\d{1,18}", text) or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text!r} is no count: give a whole number, 1 or more")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a count; use a whole number, 1 or more")
     return int(text)
 
 
@@ -128,7 +126,7 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
 
 def add_scene_options(parser: argparse.ArgumentParser) -> None:
     """Add the options that determine a scene; `scene_of` reads them."""
-    group = parser.add_argument_group("scene", "numbers win over those of the scene, which hold where none are given")
+    group = parser.add_argument_group("scene", "options override the values of the scene")
     group.add_argument(
         "--scene",
         metavar="NAME",
@@ -137,8 +135,8 @@ def add_scene_options(parser: argparse.ArgumentParser) -> None:
         help="see pendu-tui scenes (%(default)s)",
     )
     for name, metavar, read, meaning in (
-        ("theta", "RAD|DEGdeg", start_angle, "start angle from straight down, in rad, or such as 115deg"),
-        ("omega", "RAD_S", angle, "start angular velocity in rad/s, or such as 30deg"),
+        ("theta", "RAD|DEGdeg", start_angle, "start angle from straight down, in rad, or in degrees (115deg)"),
+        ("omega", "RAD_S", angle, "start angular velocity in rad/s, or in degrees per second (30deg)"),
         ("length", "M", number, "length in m"),
         ("gravity", "M_S2", number, "gravity in m/s²"),
         ("h", "S", number, "step size in s"),

@@ -93,7 +93,7 @@ def _print(on: "Console", renderables: "Iterable[RenderableType]", **how: Any) -
 def progress(what: str) -> Iterator[Callable[[float, float], None]]:
     """Yield a function to call with how much is done and how much there is in all.
 
-    It shows a bar on stderr if that is a terminal and the work takes longer than a second.
+    It shows a bar and an estimate of the time left on stderr if that is a terminal and the work takes over a second.
     """
     began = monotonic()
     bar: Any = None
@@ -106,7 +106,7 @@ def progress(what: str) -> Iterator[Callable[[float, float], None]]:
             from rich.console import Console
             from rich.progress import Progress
 
-            bar = Progress(console=Console(stderr=True), transient=True)
+            bar = Progress(*Progress.get_default_columns(), "left", console=Console(stderr=True), transient=True)
             bar.add_task(what)
             bar.start()
         bar.update(0, completed=done, total=total)

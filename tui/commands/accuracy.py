@@ -38,33 +38,37 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--time",
         metavar="S[,S...]",
         type=times,
-        help="simulated time in s, or several, of which the last is charted (ten small swings)",
+        help="simulated time in s; if several, the last is charted (ten small swings)",
     )
     parser.add_argument(
         "--h-values",
         metavar="A:B:N",
         type=h_values,
-        help="N step sizes from A to B in s, in equal ratios (12 with z = h·w0 from 0.6 to 0.0015)",
+        help="N step sizes from A to B in s, logarithmically spaced (12 with z = h·w0 from 0.6 to 0.0015)",
     )
     parser.add_argument(
         "--error",
         choices=("theta", "energy", "final"),
         default="theta",
-        help="largest in theta in rad, largest in energy, relative, or final in theta (%(default)s)",
+        help="theta: largest angle error [rad]; energy: largest relative energy error; final: angle error at the end"
+        " (%(default)s)",
     )
     parser.add_argument(
         "--cost",
         choices=("evaluations", "seconds"),
         default="evaluations",
-        help="force evaluations, or seconds, which are measured then (%(default)s)",
+        help="force evaluations, or measured seconds (%(default)s)",
     )
     parser.add_argument(
-        "--target", metavar="ERROR", type=positive, help="find the cheapest method and h for this --error"
+        "--target", metavar="ERROR", type=positive, help="find the cheapest method and h for this error"
     )
     parser.add_argument(
-        "--budget", metavar="N", type=positive, help="force evaluations: find the smallest error, or stay within it"
+        "--budget",
+        metavar="N",
+        type=positive,
+        help="limit of force evaluations; alone: find the least error within it",
     )
-    parser.add_argument("--no-compiled", action="store_true", help="do without Numba; the errors are the same")
+    parser.add_argument("--no-compiled", action="store_true", help="do not use Numba (results are identical)")
     form = parser.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help="one JSON object, SI units")
     add_file(form, "--csv", metavar="FILE", nargs="?", const="-", help="the points as CSV, to stdout or a file")
@@ -75,7 +79,7 @@ def times(text: str) -> list[float]:
     """One time or several [s], ascending."""
     values = sorted({positive(part) for part in text.split(",")})
     if values[-1] > LONGEST:
-        raise argparse.ArgumentTypeError(f"{text!r} is out of range: give {LONGEST:g} s or less")
+        raise argparse.ArgumentTypeError(f"{text!r} is out of range; use at most {LONGEST:g} s")
     return values
 
 
@@ -84,7 +88,7 @@ def h_values(text: str) -> tuple[float, float, int]:
     match text.split(":"):
         case [first, last, many] if count(many) <= MOST_RUNGS:
             return max(positive(first), positive(last)), min(positive(first), positive(last)), count(many)
-    raise argparse.ArgumentTypeError(f"{text!r} is no ladder of step sizes: give A:B:N, such as 0.2:0.001:10")
+    raise argparse.ArgumentTypeError(f"{text!r} is not a list of step sizes; use A:B:N, for example 0.2:0.001:10")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -93,14 +97,14 @@ def run(options: argparse.Namespace) -> int:
 
     scene = scene_of(options)
     if scene.theta == scene.omega == 0:
-        raise UserError("the pendulum hangs at rest, so there is no error to measure: give another --theta or --omega.")
+        raise UserError("the pendulum hangs at rest, so there is no error to measure; use another --theta or --omega.")
     times = options.time or [usual(scene)[0]]
     rungs = _ladder(scene, times[-1], options.h_values)
     budget = None if options.budget is None else int(options.budget)
     if budget is not None and budget > MOST_BUDGET:
-        raise UserError(f"--budget {options.budget:g} would take hours: give {MOST_BUDGET:g} evaluations or less.")
+        raise UserError(f"--budget {options.budget:g} would take hours; use at most {MOST_BUDGET:g} evaluations.")
     if budget == 0:
-        raise UserError(f"--budget {options.budget:g} buys nothing: give 1 force evaluation or more.")
+        raise UserError(f"--budget {options.budget:g} is too small; use at least 1 force evaluation.")
     from engine.run.compiled import available
     from tui.commands.reports.accuracy import Findings, print_csv, print_json, print_text
 
@@ -122,7 +126,7 @@ def run(options: argparse.Namespace) -> int:
     if file:
         print(f"{file}: {len(found.points)} points.")
     if found.interrupted:
-        warn("interrupted; what was done is kept.")
+        warn("interrupted; partial results are kept.")
         return Exit.INTERRUPTED
     return Exit.FINE
 
@@ -168,7 +172,7 @@ def _ladder(scene: Scene, time: float, given: tuple[float, float, int] | None) -
     for h in (largest, smallest):
         check_h(h, scene.w0)
     if given and largest > time:
-        raise UserError(f"h = {largest:g} s is longer than the time of {time:g} s: give a longer --time.")
+        raise UserError(f"h = {largest:g} s is longer than the time of {time:g} s; use a longer --time.")
     if time / smallest > MOST_STEPS:
-        raise UserError(f"{time:g} s in steps of {smallest:.2g} s take hours: give --h-values, such as 0.2:0.01:8.")
+        raise UserError(f"{time:g} s in steps of {smallest:.2g} s take hours; use --h-values, for example 0.2:0.01:8.")
     return ladder(time, largest, smallest, rungs)

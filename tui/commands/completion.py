@@ -1,4 +1,4 @@
-"""Print what makes the tab key complete commands, options, scenes, choices and files, in bash, zsh or fish."""
+"""Print a completion script for bash, zsh or fish: commands, options, scenes, choices and files."""
 
 import argparse
 from importlib import import_module
@@ -20,7 +20,7 @@ SHELLS = ("bash", "zsh", "fish")
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("shell", metavar="|".join(SHELLS), choices=SHELLS, help="the shell that is to read it")
+    parser.add_argument("shell", metavar="|".join(SHELLS), choices=SHELLS, help="your shell")
 
 
 def run(options: argparse.Namespace) -> int:

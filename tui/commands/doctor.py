@@ -1,4 +1,4 @@
-"""Say what the lab finds here: terminal, encoding, colours, recordings, versions; and what to do about it."""
+"""Check the environment (terminal, encoding, colours, recordings, versions) and suggest fixes."""
 
 import argparse
 import os
@@ -24,12 +24,12 @@ examples:
 """
 
 PACKAGES = ("pendu-tui", "textual", "rich", "plotext", "numpy", "mcap")
-ROOMY = 1_000_000_000  # bytes free: a day of sittings
+ROOMY = 1_000_000_000  # bytes free: a day of recordings
 
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """One thing looked at.  No advice means that it is fine."""
+    """One property of the environment.  No advice: it is fine."""
 
     what: str
     found: str
@@ -59,7 +59,7 @@ def _checks() -> Iterator[Check]:
     yield colour(os.environ)
     yield mouse(os.environ)
     yield folder(library.folder())
-    with suppress(OSError):  # which the check before tells of
+    with suppress(OSError):  # which the check of the folder shows
         yield unfinished(len(library.leftovers()))
     yield sine(library.resolve("drift"))
     yield Check("python", f"{platform.python_version()}, {platform.system()} {platform.machine()}")
@@ -73,15 +73,15 @@ def lab() -> Check:
     try:
         check_terminal()
     except UserError as error:
-        return Check("lab", "does not start here", str(error))
+        return Check("lab", "cannot start here", str(error))
     return Check("lab", "starts here")
 
 
 def size(columns: int, rows: int) -> Check:
-    advice = "" if columns >= 120 and rows >= 40 else "120x40 shows more at once"
+    advice = "" if columns >= 120 and rows >= 40 else "120x40 or larger shows all panes"
     if columns < SMALLEST[0] or rows < SMALLEST[1]:
         limit = f"{SMALLEST[0]}x{SMALLEST[1]}"
-        advice = f"too small for the lab: enlarge it to 80x24 at least, {limit} is the limit"
+        advice = f"too small: the lab needs {limit}, better 80x24"
     return Check("size", f"{columns}x{rows}", advice)
 
 
@@ -91,49 +91,49 @@ def encoding(name: str) -> Check:
 
 def colour(environment: Mapping[str, str]) -> Check:
     term, many = environment.get("TERM", ""), colours(environment)
-    found, advice = str(many), "if your terminal can do more, COLORTERM=truecolor says so"
+    found, advice = str(many), "if your terminal supports true colour, set COLORTERM=truecolor"
     if environment.get("NO_COLOR"):
-        found, advice = "NO_COLOR", "none, as you asked; methods keep their digits and letters"
+        found, advice = "NO_COLOR", "off, as requested; methods keep their digits and letters"
     elif not many:
-        found, advice = "none", "set TERM to what the terminal is, such as xterm-256color"
+        found, advice = "none", "set TERM correctly, e.g. xterm-256color"
     elif many > 256:
         found, advice = "16 million", ""
     return Check("colours", f"TERM={term}, {found}", advice)
 
 
 def mouse(environment: Mapping[str, str]) -> Check:
-    """Whether clicks can be expected: nothing tells it but the terminal's name."""
+    """Whether a mouse can be expected: only the terminal's name gives a hint."""
     if environment.get("TERM", "") in ("", "dumb", "linux", "vt100", "vt220"):
-        return Check("mouse", "none is known of this terminal", "every click has a key")
-    return Check("mouse", "used where the terminal reports it; --no-mouse leaves it to the terminal")
+        return Check("mouse", "probably not supported", "every mouse action has a key")
+    return Check("mouse", "enabled if the terminal supports it; --no-mouse disables it")
 
 
 def folder(path: Path) -> Check:
-    """Whether recordings can be kept: tried out in what there is of the folder, since rights alone do not tell."""
+    """Whether recordings can be kept: tried in the folder or its nearest parent, since permissions are not enough."""
     try:
         there = next(each for each in (path, *path.parents) if each.exists() or each.is_symlink())
         with TemporaryFile(dir=there):
             free = shutil.disk_usage(there).free
     except OSError as error:
-        advice = f"cannot be written ({error.strerror}): set PENDU_RECORDINGS to a folder that can"
+        advice = f"cannot be written ({error.strerror}): set PENDU_RECORDINGS to a writable folder"
         return Check("recordings", str(path), advice)
-    advice = "there is little room: pendu-tui recordings prune --keep 20 makes some" if free < ROOMY else ""
+    advice = "disk space is low: pendu-tui recordings prune --keep 20 frees some" if free < ROOMY else ""
     return Check("recordings", f"{path}, {file_size(free)} free", advice)
 
 
 def unfinished(count: int) -> Check:
-    advice = "the lab recovers them when it starts next; pendu-tui recordings names them" if count else ""
+    advice = "recovered at the next start of the lab; listed by pendu-tui recordings" if count else ""
     return Check("unfinished", str(count or "none"), advice)
 
 
 def sine(golden: Path) -> Check:
-    """Whether this machine's sin is that of the recordings that come with the program."""
+    """Whether this machine's sin() gives the same bits as the one of the bundled recordings."""
     from recordings.format import sin_fingerprint
     from recordings.recording import Recording
 
     with Recording.open(golden) as recording:
         same = recording.sin == sin_fingerprint()
-    advice = "" if same else "another libm: recordings from elsewhere verify within a tolerance, not to the bit"
+    advice = "" if same else "different libm: recordings made elsewhere verify within a tolerance only"
     return Check("sin", sin_fingerprint(), advice)
 
 
@@ -141,4 +141,4 @@ def numba() -> Check:
     try:
         return Check("numba", version("numba"))
     except PackageNotFoundError:
-        return Check("numba", "not installed", "the extra fast compiles long runs: pip install '.[fast]'")
+        return Check("numba", "not installed", "speeds up long runs: pip install 'pendu-tui[fast]'")

@@ -1,4 +1,4 @@
-"""Write a recording as CSV: one row for each sample and method, units in the header."""
+"""Write a recording as CSV: one row per sample and method, units in the header."""
 
 import argparse
 from pathlib import Path
@@ -11,15 +11,15 @@ from tui.cli.output import progress, warn
 
 EXAMPLES = """\
 examples:
-  pendu-tui export latest --format csv -o sitting.csv
+  pendu-tui export latest --format csv -o latest.csv
   pendu-tui export drift --format csv | head -3
 """
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_recording(parser)
-    parser.add_argument("--format", choices=("csv",), default="csv", help="the only one there is (%(default)s)")
-    add_file(parser, "-o", "--output", metavar="OUT", type=Path, help="write here, not to stdout")
+    parser.add_argument("--format", choices=("csv",), default="csv", help="output format (only %(default)s)")
+    add_file(parser, "-o", "--output", metavar="OUT", type=Path, help="write to OUT instead of stdout")
     parser.add_argument("--force", action="store_true", help="overwrite OUT")
 
 

@@ -1,4 +1,4 @@
-"""Say what is in a recording: when, how long, which runs, and whether it is whole."""
+"""Show what a recording contains and whether it is complete."""
 
 import argparse
 from dataclasses import asdict
@@ -70,7 +70,7 @@ def _print(recording: "Recording", size: int) -> None:
     }
     print_table("ll", ("", ""), facts.items())
     print()
-    headers = ("run", "scene", "theta [rad]", "omega [rad/s]", "h [s]", "steps", "t [s]", "seconds", "events")
+    headers = ("run", "scene", "theta [rad]", "omega [rad/s]", "h [s]", "steps", "simulated s", "recorded s", "events")
     rows = []
     for run in islice(recording.runs, RUNS_SHOWN):
         start = (f"{value:g}" for value in (run.scene.theta, run.scene.omega, run.scene.h))

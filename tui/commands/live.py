@@ -1,4 +1,4 @@
-"""The lab: four pendulums, their errors over time, and a recording of the sitting."""
+"""The lab: four pendulums, their errors over time, and a recording."""
 
 import argparse
 import gc
@@ -19,10 +19,10 @@ examples:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_scene_options(parser)
-    parser.add_argument("--speed", metavar="X", type=positive, default=1.0, help="times real time (%(default)g)")
+    parser.add_argument("--speed", metavar="X", type=positive, default=1.0, help="multiple of real time (%(default)g)")
     recording = parser.add_mutually_exclusive_group()
-    add_file(recording, "--record", metavar="FILE", type=Path, help="record here, not in the data folder")
-    recording.add_argument("--no-record", action="store_true", help="record nothing")
+    add_file(recording, "--record", metavar="FILE", type=Path, help="record to FILE instead of the data folder")
+    recording.add_argument("--no-record", action="store_true", help="do not record")
     add_terminal_options(parser)
 
 

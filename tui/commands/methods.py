@@ -1,4 +1,4 @@
-"""List the methods: what is claimed of them, and order and limit as measured here and now."""
+"""List the methods with their claimed properties, and with order and limit as measured now."""
 
 import argparse
 import math
@@ -26,8 +26,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from engine.run.compiled import available
-    from tui.commands.run import COMPILED_FROM
+    from engine.run.compiled import COMPILED_FROM, available
 
     methods = _measured()
     if options.json:
@@ -39,10 +38,10 @@ def run(options: argparse.Namespace) -> int:
         map(_row, methods),
     )
     print(
-        "\nOrders are of theta over one swing of the scene drift; forces are evaluated per step; z = h·w0,"
-        "\nand its limit is the linear oscillator's: pendu-tui stability tells the pendulum's."
+        "\nOrder: measured on theta over one swing of scene drift.  Forces: evaluations per step."
+        "\nz limit: linear oscillator, z = h·w0; for the pendulum see pendu-tui stability."
         "\n"
-        + (f"Numba: used in runs of {COMPILED_FROM:,} steps and more." if available() else "Numba is not installed.")
+        + (f"Numba: used in runs of at least {COMPILED_FROM:,} steps." if available() else "Numba is not installed.")
     )
     return Exit.FINE
 

@@ -31,7 +31,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="one JSON object")
     group = parser.add_argument_group("prune")
     group.add_argument("--keep", metavar="N", type=count, help="keep the N newest")
-    group.add_argument("--size", metavar="SIZE", type=size, help="keep the newest, SIZE at most, such as 500MB")
+    group.add_argument("--size", metavar="SIZE", type=size, help="keep the newest up to SIZE in total, e.g. 500MB")
     group.add_argument("--yes", action="store_true", help="delete without asking")
 
 
@@ -39,7 +39,7 @@ def size(text: str) -> int:
     """A size in bytes from `500MB`, `1.5 GB` or `2000000`."""
     match = re.fullmatch(r"(\d{1,9}(?:\.\d{1,9})?) ?([kMGT]?)B?", text)
     if not match:
-        raise argparse.ArgumentTypeError(f"{text!r} is no size: give one such as 500MB or 2GB")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a size; use for example 500MB or 2GB")
     return int(float(match[1]) * 1000 ** ("kMGT".index(match[2]) + 1 if match[2] else 0))
 
 
@@ -55,7 +55,7 @@ def run(options: argparse.Namespace) -> int:
         write_json("recordings", {"folder": str(library.folder()), "recordings": all_facts})
         return Exit.FINE
     if not all_facts:
-        print(f"There is no recording in {printable(str(library.folder()))} yet; pendu-tui makes one.")
+        print(f"No recordings in {printable(str(library.folder()))} yet; start pendu-tui to make one.")
     else:
         rows = []
         for facts in all_facts:
@@ -65,12 +65,12 @@ def run(options: argparse.Namespace) -> int:
             rows.append((facts["file"], finished, scenes, length, file_size(facts["bytes"])))
         print_table("lllrr", ("recording, newest first", "finished", "scenes", "length", "size"), rows)
     for path in leftovers:
-        print(f"unfinished: {printable(str(path))}; the lab recovers it when it starts next")
+        print(f"unfinished: {printable(str(path))}; will be recovered the next time the lab starts")
     return Exit.FINE
 
 
 def _facts(item: "Item") -> dict[str, Any]:
-    """What the list says of a recording."""
+    """What --json shows of a recording."""
     from recordings.recording import Recording
 
     known: dict[str, Any] = {"seconds": None, "scenes": [], "reason": None}
@@ -87,7 +87,7 @@ def _prune(options: argparse.Namespace) -> int:
     from recordings import library
 
     if options.keep is None and options.size is None:
-        raise UserError("say what to keep: --keep 20 for the newest 20, or --size 500MB for what fits.")
+        raise UserError("specify what to keep: --keep 20 for the newest 20, or --size 500MB for what fits.")
     doomed = library.to_prune(library.listing(), options.keep, options.size)
     if doomed and not options.yes and not _confirmed(doomed):
         doomed = []
@@ -97,13 +97,13 @@ def _prune(options: argparse.Namespace) -> int:
         return Exit.FINE
     print(f"deleted {len(deleted)} recordings, {file_size(sum(item.bytes for item in deleted))}")
     if len(deleted) < len(doomed):
-        print(f"{len(doomed) - len(deleted)} more are in use, or cannot be deleted, and stay")
+        print(f"{len(doomed) - len(deleted)} more could not be deleted (in use?)")
     return Exit.FINE
 
 
 def _confirmed(doomed: "list[Item]") -> bool:
     if not sys.stdin.isatty():
-        raise UserError("deleting needs a yes: there is nobody here to ask, so add --yes.")
+        raise UserError("not a terminal, cannot ask: add --yes to delete.")
     for item in doomed:
         print(printable(str(item.path)), file=sys.stderr)
     print(f"Delete these {len(doomed)} recordings? [y/N] ", end="", file=sys.stderr, flush=True)

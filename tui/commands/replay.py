@@ -1,4 +1,4 @@
-"""A recording on the lab's screen: pause, step, seek, loop, play backwards, go on live from any moment."""
+"""A recording on the lab's screen: pause, step, seek, loop, play backwards, continue live from any moment."""
 
 import argparse
 
@@ -10,19 +10,19 @@ EXAMPLES = """\
 examples:
   pendu-tui replay latest
   pendu-tui replay drift
-  pendu-tui replay sitting.mcap --start-at 12 --speed 0.5 --loop
+  pendu-tui replay swing.mcap --start-at 12 --speed 0.5 --loop
 """
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    add_recording(parser, metavar="FILE|latest|NAME", help="a file, the latest sitting, or one that came along")
+    add_recording(parser, metavar="FILE|latest|NAME", help="a file, latest, or a bundled recording")
     parser.add_argument(
-        "--start-at", metavar="S", type=number, default=0.0, help="begin at this many s of the recording (%(default)g)"
+        "--start-at", metavar="S", type=number, default=0.0, help="start S seconds into the recording (%(default)g)"
     )
-    parser.add_argument("--speed", metavar="X", type=positive, default=1.0, help="times the recorded one (%(default)g)")
-    parser.add_argument("--loop", action="store_true", help="begin again at the end")
-    parser.add_argument("--paused", action="store_true", help="wait for the space key")
-    parser.add_argument("--no-record", action="store_true", help="record nothing when going on live")
+    parser.add_argument("--speed", metavar="X", type=positive, default=1.0, help="playback speed (%(default)g)")
+    parser.add_argument("--loop", action="store_true", help="loop")
+    parser.add_argument("--paused", action="store_true", help="start paused")
+    parser.add_argument("--no-record", action="store_true", help="do not record when continuing live")
     add_terminal_options(parser)
 
 
@@ -36,7 +36,7 @@ def run(options: argparse.Namespace) -> int:
         check_terminal()
     replay = launch.open_replay(path)
     if not 0 <= options.start_at <= replay.length:
-        raise UserError(f"--start-at {options.start_at:g} is outside: give a time from 0 to {replay.length:.2f} s.")
+        raise UserError(f"--start-at {options.start_at:g} is outside the recording; use 0 to {replay.length:.2f} s.")
     replay.set_speed(options.speed)
     replay.looping = options.loop
     replay.seek(options.start_at)

@@ -1,10 +1,11 @@
-"""Run a scene without a screen, as fast as it goes, and judge each method."""
+"""Run a scene without the TUI, as fast as possible, and judge each method."""
 
 import argparse
 import math
 import time
 from contextlib import nullcontext
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +20,7 @@ from tui.words.numbers import file_size
 
 if TYPE_CHECKING:
     from engine.run.lockstep import Sample
-    from engine.run.verdict import Trend
+    from engine.run.observer import RunObserver
 
 EXAMPLES = """\
 examples:
@@ -31,11 +32,10 @@ examples:
 """
 
 LONGEST = 1e9  # s, 30 years; a recording's clock ends there, too
-LARGE = 200e6  # bytes of a recording that nobody expects; half a minute to write
+LARGE = 200e6  # bytes of a recording that deserve a warning; half a minute to write
 SAMPLE_BYTES = 320  # of a recording, measured with h from 0.01 to 0.05 s
-MOST_SAMPLES = 20_000  # of a run that is not recorded: enough for every verdict, and constant work beside the steps
-AT_ONCE = 1_000_000  # steps, about a second: nobody is heard in between
-COMPILED_FROM = 1_000_000  # steps: below, compiling takes longer than it saves
+MOST_SAMPLES = 20_000  # of a run that is not recorded: enough for every verdict, and little work next to the steps
+AT_ONCE = 1_000_000  # steps in a batch, about a second; Ctrl+C is only seen between batches
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -43,18 +43,16 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--time", metavar="S", type=positive, required=True, help="simulated time in s, rounded to whole steps"
     )
-    add_file(parser, "--record", metavar="FILE", type=Path, help="record it: the same run gives the same bytes")
+    add_file(parser, "--record", metavar="FILE", type=Path, help="record to FILE (identical runs give identical files)")
     parser.add_argument("--force", action="store_true", help="overwrite FILE")
-    parser.add_argument(
-        "--sample-every", metavar="STEPS", type=count, help="steps from sample to sample (those of 1/30 s)"
-    )
+    parser.add_argument("--sample-every", metavar="N", type=count, help="record every N steps (default: every 1/30 s)")
     parser.add_argument(
         "--fail-if",
         metavar="EXPR",
         choices=Suggestions(f"{method.key}.{field}" for method in METHODS for field in (*FIELDS, "verdict")),
-        help="exit 1 if METHOD.FIELD > NUMBER or METHOD.verdict == WORD, fields as in --json",
+        help="exit 1 if the expression is true, e.g. rk4.max_energy_error > 1e-3 (fields: see --json)",
     )
-    parser.add_argument("--no-compiled", action="store_true", help="do without Numba; the numbers are the same")
+    parser.add_argument("--no-compiled", action="store_true", help="do not use Numba (results are identical)")
     parser.add_argument("--json", action="store_true", help="one JSON object, SI units")
 
 
@@ -64,26 +62,26 @@ def run(options: argparse.Namespace) -> int:
     from recordings.headless import SAMPLE_EVERY, steps_for
 
     if options.time > LONGEST:
-        raise UserError(f"--time {options.time:g} is out of range: give {LONGEST:g} s or less.")
+        raise UserError(f"--time {options.time:g} is out of range; use at most {LONGEST:g} s.")
     steps = steps_for(scene, options.time)
     if steps == 0:
-        raise UserError(f"--time {options.time:g} s is not even one step of {scene.h:g} s: give a longer time.")
+        raise UserError(f"--time {options.time:g} s is shorter than one step of {scene.h:g} s; use a longer time.")
     every = max(1, round(SAMPLE_EVERY / scene.h), 0 if options.record else steps // MOST_SAMPLES)
     every = options.sample_every or min(every, AT_ONCE)
     if options.record:
         check_free(options.record, options.force)
         _announce(steps, every)
     began = time.perf_counter()
-    sample, trends, stopped = _simulate(scene, options, steps, every)
+    sample, observer, stopped = _simulate(scene, options, steps, every)
     wall_seconds = time.perf_counter() - began
-    rows = _rows(scene, sample, trends)
+    rows = _rows(sample, observer)
     if options.json:
         fields = {"scene": asdict(scene), "time": sample.t, "steps": sample.step, "wall_seconds": wall_seconds}
         write_json("run", {**fields, "methods": rows})
     else:
-        _print(scene, sample, wall_seconds, rows)
+        _print(scene, sample, wall_seconds, rows, observer)
     if stopped:
-        warn(f"interrupted at t = {sample.t:g} s; the result is that of the time until then.")
+        warn(f"interrupted at t = {sample.t:g} s, showing the results up to then.")
         return Exit.INTERRUPTED
     if gate and gate({row["method"]: row for row in rows}):
         warn(f"the check failed: {options.fail_if}")
@@ -92,17 +90,18 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _announce(steps: int, every: int) -> None:
-    """Say so before a recording gets large."""
+    """Warn before a recording gets large."""
     if (size := steps / every * SAMPLE_BYTES) > LARGE:
         enough, large = math.ceil(steps * SAMPLE_BYTES / LARGE), file_size(round(LARGE))
-        warn(f"the recording will have about {file_size(round(size))}; with --sample-every {enough} it has {large}.")
+        warn(
+            f"the recording will be about {file_size(round(size))}; --sample-every {enough} would reduce it to {large}."
+        )
 
 
-def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int) -> "tuple[Sample, list[Trend], bool]":
-    """The last sample, each method's trend, and whether somebody stopped it before its end."""
-    from engine.models.exact_pendulum import ExactMotion
+def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int) -> "tuple[Sample, RunObserver, bool]":
+    """The last sample, what was observed, and whether a signal stopped the run before its end."""
     from engine.run import compiled, loops
-    from engine.run.verdict import Trend
+    from engine.run.observer import RunObserver
     from recordings.headless import simulate
 
     recorder: Any = nullcontext()
@@ -110,48 +109,48 @@ def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int)
         from recordings.recorder import Recorder
 
         recorder = Recorder(options.record, wall=None, overwrite=options.force)
-    exact = ExactMotion(scene)
-    trends = [Trend(period := exact.period or math.tau / scene.w0) for _ in METHODS]
-    per_turn = period / scene.h if exact.regime == "rotation" else math.inf
-    fast = not options.no_compiled and steps >= COMPILED_FROM and compiled.available()
-    with stop_requests() as stopped, progress(f"{steps} steps") as show, recorder as recording:
-        for sample in simulate(scene, options.time, recording, every, loops=compiled.compiled if fast else loops.plain):
-            for trend, reading in zip(trends, sample.readings, strict=True):
-                trend.read(sample.t, reading, per_turn)
+    fitting = loops.plain if options.no_compiled else partial(compiled.tiered, ahead=steps)
+    observer = RunObserver(scene, fitting)
+    with stop_requests() as stopped, progress(f"{steps:,} steps") as show, recorder as recording:
+        for sample in simulate(scene, options.time, recording, every, loops=fitting):
+            observer.add(sample)
             show(sample.step, steps)
             if stopped() and sample.step < steps:
-                return sample, trends, True
-    return sample, trends, False
+                return sample, observer, True
+    return sample, observer, False
 
 
-def _rows(scene: Scene, sample: "Sample", trends: "list[Trend]") -> list[dict[str, Any]]:
-    """What became of each method.  A method that diverged has no theta to compare."""
+def _rows(sample: "Sample", observer: "RunObserver") -> list[dict[str, Any]]:
+    """The results by method, as in --json.  A method that diverged has no theta to compare."""
     from engine.accuracy.study import evaluations
-    from engine.models.exact_pendulum import ExactMotion
     from recordings.fields import NUMBERS
 
-    exact = ExactMotion(scene).at(sample.t).theta
+    exact = observer.exact.at(sample.t).theta
     rows = []
-    for method, reading, trend in zip(METHODS, sample.readings, trends, strict=True):
+    for method, reading, judgement in zip(METHODS, sample.readings, observer.judgements, strict=True):
         end = reading.diverged_at
         rows.append(
             {
                 "method": method.key,
                 **fields_of(reading, *NUMBERS),
                 "theta_error": abs(reading.theta - exact) if end is None else None,
-                "drift_per_second": trend.judgement.slope,
-                "verdict": trend.judgement.verdict,
-                "force_evaluations": evaluations(method, sample.step if end is None else round(end / scene.h)),
+                "drift_per_second": judgement.slope,
+                "verdict": judgement.verdict,
+                "force_evaluations": evaluations(method, sample.step if end is None else round(end / observer.scene.h)),
                 "diverged_at": end,
             }
         )
     return rows
 
 
-def _print(scene: Scene, sample: "Sample", wall_seconds: float, rows: list[dict[str, Any]]) -> None:
+def _print(
+    scene: Scene, sample: "Sample", wall_seconds: float, rows: list[dict[str, Any]], observer: "RunObserver"
+) -> None:
     print(f"{scene_line(scene, 'h')}, z = h·w0 = {scene.z:.4g}")
     pace = f", {sample.step / wall_seconds / 1e6:.3g} million a second" if wall_seconds > 1 else ""
     print(f"{sample.step} steps to t = {sample.t:g} s in {wall_seconds:.2f} s{pace}\n")
+    from tui.words.findings import ending
+
     forms = {"energy_error": "+.2e", "max_energy_error": ".2e", "drift_per_second": "+.1e", "theta_error": ".2e"}
     table = []
     for method, row in zip(METHODS, rows, strict=True):
@@ -161,3 +160,6 @@ def _print(scene: Scene, sample: "Sample", wall_seconds: float, rows: list[dict[
         table.append((method.label, verdict, *numbers, str(row["force_evaluations"])))
     headers = ("energy error", "largest", "per second", "theta error [rad]", "force evaluations")
     print_table("llrrrrr", ("method", "verdict", *headers), table)
+    for top in observer.milestones(sample.step):
+        if top.kind == "over the top":
+            print(ending(top))

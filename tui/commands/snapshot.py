@@ -1,4 +1,4 @@
-"""A still of the lab as an SVG picture, the same to the letter whenever it is made."""
+"""Save the lab as an SVG image, byte-identical every time."""
 
 import argparse
 import os
@@ -21,10 +21,10 @@ LONGEST = 3600.0  # s
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_scene_options(parser)
-    parser.add_argument("--time", metavar="S", type=moment, default=12.0, help="s since the start (%(default)g)")
+    parser.add_argument("--time", metavar="S", type=moment, default=12.0, help="simulated seconds (%(default)g)")
     parser.add_argument("--size", metavar="CxR", type=size, default=(120, 40), help="columns x rows (120x40)")
     add_picture_options(parser, "dark", "braille")
-    add_file(parser, "-o", "--output", metavar="FILE.svg", type=picture, required=True, help="the picture to write")
+    add_file(parser, "-o", "--output", metavar="FILE.svg", type=picture, required=True, help="the image to write")
     parser.add_argument("--force", action="store_true", help="overwrite FILE.svg")
 
 
@@ -46,20 +46,20 @@ def size(text: str) -> tuple[int, int]:
     columns, rows = (int(match[1]), int(match[2])) if match else (0, 0)
     if not (SMALLEST[0] <= columns <= LARGEST[0] and SMALLEST[1] <= rows <= LARGEST[1]):
         limits = " to ".join(f"{columns}x{rows}" for columns, rows in (SMALLEST, LARGEST))
-        raise argparse.ArgumentTypeError(f"{text!r} is no size: give columns x rows such as 120x40, from {limits}")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a size; use for example 120x40, from {limits}")
     return columns, rows
 
 
 def picture(text: str) -> Path:
-    """A file that may be named as what it will be, or a device."""
+    """An .svg file, or a device."""
     path = Path(text)
     if path.suffix.lower() != ".svg" and (path.is_file() or not path.exists()):
-        raise argparse.ArgumentTypeError(f"a still is an SVG picture: write it to {path.stem}.svg instead of {text!r}")
+        raise argparse.ArgumentTypeError(f"the image is an SVG; write it to {path.stem}.svg instead of {text!r}")
     return path
 
 
 def moment(text: str) -> float:
     """A time since the start [s]."""
     if not 0 <= (value := number(text)) <= LONGEST:
-        raise argparse.ArgumentTypeError(f"{text!r} is no time for a still: give 0 to {LONGEST:g} s")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a valid time; use 0 to {LONGEST:g} s")
     return value

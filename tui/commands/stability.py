@@ -1,4 +1,4 @@
-"""Find where each method stops holding a swing: theory beside measurement, oscillator and pendulum."""
+"""Find where each method becomes unstable: theory next to measurement, for the linear oscillator and the pendulum."""
 
 import argparse
 import math
@@ -38,23 +38,21 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--theta-values",
         metavar="LIST",
         type=values(angle),
-        help="amplitudes in rad or deg: 0.5,1,2 or 10deg:170deg:17, which is FIRST:LAST:HOW_MANY"
-        " (0.1, 0.5, 1, 2, 3 and the scene's; on the map 100)",
+        help="amplitudes in rad or deg: 0.5,1,2 or FIRST:LAST:HOW_MANY, for example 10deg:170deg:17"
+        " (default: 0.1, 0.5, 1, 2, 3 and the scene's; with --map: 100)",
     )
     parser.add_argument(
         "--z-values",
         metavar="LIST",
         type=values(number),
-        help="z = h·w0, such as 0.01:3:300 (one every 1 %% up to 3.2; on the map 200 up to 3)",
+        help="z = h·w0, for example 0.01:3:300 (default: one every 1 %% up to 3.2; with --map: 200 up to 3)",
     )
     parser.add_argument("--steps", metavar="N", type=count, default=10_000, help="steps of each swing (%(default)s)")
-    parser.add_argument("--map", action="store_true", help="draw the map: z across, amplitude up")
+    parser.add_argument("--map", action="store_true", help="draw the map: z on x, amplitude on y")
     form = parser.add_mutually_exclusive_group()
     form.add_argument("--json", action="store_true", help="one JSON object; with --map every swing of it")
     form.add_argument("--csv", action="store_true", help="a row for each amplitude; with --map for each swing")
-    add_file(
-        form, "-o", metavar="FILE.npz", dest="file", type=Path, help="write only the map, however large, to a file"
-    )
+    add_file(form, "-o", metavar="FILE.npz", dest="file", type=Path, help="write the map to a file (any size)")
     parser.add_argument("--force", action="store_true", help="overwrite FILE.npz")
     where = parser.add_mutually_exclusive_group()
     where.add_argument("--workers", metavar="N", type=count, default=1, help="processes on this machine (%(default)s)")
@@ -72,7 +70,7 @@ def values(element: Callable[[str], float]) -> Callable[[str], list[float]]:
                 low, high, gaps = element(first), element(last), count(many) - 1
                 return [low + (high - low) * i / gaps for i in range(gaps)] + [high]
         raise argparse.ArgumentTypeError(
-            f"{text!r} is no list of values: give 0.5,1,2 or FIRST:LAST:HOW_MANY, such as 0.1:3:30"
+            f"{text!r} is not a list of values; use for example 0.5,1,2 or 0.1:3:30 (FIRST:LAST:HOW_MANY)"
         )
 
     return read
@@ -83,7 +81,7 @@ def run(options: argparse.Namespace) -> int:
     _check("amplitude", options.theta_values, 0, math.pi)
     if len(options.theta_values or ()) > MOST_ROWS and not options.file:
         raise UserError(
-            f"{len(options.theta_values)} amplitudes are too many to show: give up to {MOST_ROWS}, or -o FILE.npz."
+            f"{len(options.theta_values)} amplitudes are too many to show; use at most {MOST_ROWS}, or -o FILE.npz."
         )
     _check("z", options.z_values, *Z_LIMITS)
     _check("number of steps", [options.steps], 0, 2**31)
@@ -96,24 +94,24 @@ def run(options: argparse.Namespace) -> int:
     with _workers(options) as executor:
         study = StabilityStudy(scene, options.theta_values, options.z_values, options.steps, executor, bar)
         if options.map and not options.file and (swings := math.prod(study.grid().shape)) > LARGEST:
-            raise UserError(f"a map of {swings} swings is too large to show: write it with -o FILE.npz.")
+            raise UserError(f"a map of {swings} swings is too large to show; write it with -o FILE.npz.")
         try:
             if options.file:
                 return write_file(study, options.file, options.force)
             return (print_json if options.json else print_csv if options.csv else print_text)(study, options.map)
         except BrokenExecutor as error:
-            raise UserError(f"a worker is gone ({error}): try fewer, or none.", Exit.CHECK_FAILED) from None
+            raise UserError(f"a worker process died ({error}); use fewer --workers.", Exit.CHECK_FAILED) from None
 
 
 def _check(what: str, given: list[float] | None, low: float, high: float) -> None:
     for value in given or ():
         if not low < value < high:  # also refuses nan
-            raise UserError(f"{what} {value:g} is out of range: it must lie between {low:g} and {high:g}.")
+            raise UserError(f"{what} {value:g} is out of range; it must lie between {low:g} and {high:g}.")
 
 
 @contextmanager
 def _workers(options: argparse.Namespace) -> "Iterator[Executor | None]":
-    """What runs the strips; None for this process.  Ctrl+C is this process's business, not the workers'."""
+    """What computes the strips; None: this process.  Only this process sees Ctrl+C, the workers do not."""
     if options.dask:
         with _dask(options.dask) as client:
             yield client.get_executor()
@@ -135,6 +133,6 @@ def _dask(address: str) -> Any:
 
         return distributed.Client(address, timeout="10s")
     except ImportError:
-        raise UserError("--dask needs the extra `cluster`: pip install 'pendu-tui[cluster]'.") from None
+        raise UserError("--dask needs the extra cluster: pip install 'pendu-tui[cluster]'.") from None
     except (OSError, ValueError) as error:
         raise UserError(f"no Dask scheduler answers at {address!r}: {type(error).__name__}; is it running?") from None

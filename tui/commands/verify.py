@@ -1,4 +1,4 @@
-"""Simulate recordings again from what was done in them, and compare every number to the last bit."""
+"""Re-simulate recordings from their recorded inputs, and compare every number bit for bit."""
 
 import argparse
 import math
@@ -21,8 +21,8 @@ examples:
   pendu-tui verify tests/recordings/ crossover.mcap
   pendu-tui verify golden
 
-A folder stands for the recordings in it and below it, golden for those that come with the program.
-Exit 0: all are the same; 1: one is not, or lacks its end and is no .part; 3: one cannot be read.
+A folder means all recordings below it; golden means the bundled ones.
+Exit 0: all are identical; 1: at least one differs or is incomplete (a .part may be); 3: one cannot be read.
 """
 
 
@@ -61,7 +61,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _passes(result: "Verification | RecordingError") -> bool:
-    """Whether nothing differs, and nothing is missing but from what is known to be unfinished by its name."""
+    """Whether nothing differs and, except in a .part, nothing is missing."""
     if isinstance(result, RecordingError):
         return False
     return result.identical and (result.complete or result.file.suffix == PART)
@@ -76,7 +76,7 @@ def _verified(name: str, max_steps: int) -> "Iterator[tuple[Path, Verification |
     try:
         files = sorted(path.rglob("*.mcap")) if path.is_dir() else [library.resolve(name)]
         if not files:
-            raise RecordingError(f"{printable(name)}: there is no recording in this folder.")
+            raise RecordingError(f"{printable(name)}: no recordings in this folder.")
     except RecordingError as error:
         yield path, error
         return
@@ -94,9 +94,9 @@ def _sentence(result: "Verification") -> str:
     name = printable(str(result.file))
     size = f"{result.samples} samples in {result.runs} run{'s' * (result.runs != 1)}"
     end = "" if result.complete else f"; {result.reason}"
-    sin = "" if result.same_sin else "; within tolerance only, this machine's sin is not the recording's"
+    sin = "" if result.same_sin else "; within tolerance only: this machine's sin() differs"
     if result.identical and not _passes(result):
-        return f"unfinished  {name}: {size}{end}; as far as it goes, it is identical{sin}"
+        return f"unfinished  {name}: {size}{end}; identical as far as it goes{sin}"
     if result.identical:
         return f"identical   {name}: {size}{end}{sin}"
     if result.first_difference is None:

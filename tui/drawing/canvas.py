@@ -13,12 +13,23 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tui.drawing.palette import NOBODY
+from tui.drawing.sketch import Sketch, disc
 
 Span = tuple[str, int]
 """Adjacent characters with the same owner."""
 
 _BITS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]], np.uint8)  # Unicode's order of braille dots
 _GLYPHS = np.array([ord(" "), *range(0x2801, 0x2900)], np.uint32)
+
+
+def _grown(bits: int) -> int:
+    """The dots of a braille cell, each as wide as the cell and two rows high."""
+    rows = (0x09, 0x12, 0x24, 0xC0)  # two dots each, from the top
+    neighbours = (*rows[1:], rows[2])
+    return sum({dots for row, other in zip(rows, neighbours, strict=True) if bits & row for dots in (row, other)})
+
+
+_THICK = np.array([0x2800 + _grown(bits) for bits in range(256)], np.uint32)
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +65,27 @@ class Picture:
             np.concatenate([picture.owners for picture in pictures]),
         )
 
+    def thick(self) -> "Picture":
+        """The picture with thick lines; words stay as they are."""
+        codes = self.characters
+        return Picture(np.where(codes & ~np.uint32(0xFF) == 0x2800, _THICK[codes & 0xFF], codes), self.owners)
+
+    @classmethod
+    def of_sketch(cls, sketch: Sketch) -> "Picture":
+        """The same as a picture."""
+        picture = Canvas(sketch.columns, sketch.rows).picture()
+        for cell, code, owner in sketch.letters:
+            at = divmod(cell, sketch.columns)
+            picture.characters[at], picture.owners[at] = code, owner
+        return picture
+
+    def changed_rows(self, before: "Picture | None") -> list[int]:
+        """The rows that differ from those of a picture before; all of them where there is nothing to compare with."""
+        if before is None or before.characters.shape != self.characters.shape:
+            return list(range(len(self.characters)))
+        changed = (before.characters != self.characters) | (before.owners != self.owners)
+        return np.flatnonzero(changed.any(axis=1)).tolist()
+
     @classmethod
     def of_text(cls, text: str, columns: int, rows: int, owner: int) -> "Picture":
         """A text wrapped and centred; lines that do not fit are cut off."""
@@ -74,33 +106,36 @@ class Canvas:
         self._owners = np.full((rows, columns), NOBODY, np.int8)
         self._labels: dict[tuple[int, int], tuple[str, int]] = {}  # (row, column) -> character, owner
 
-    def points(self, x: ArrayLike, y: ArrayLike, owner: int) -> None:
-        """Set the dots at x, y (numbers or arrays of one shape)."""
+    def copy(self) -> "Canvas":
+        """The same dots, to draw more on; labels are not copied."""
+        copied = Canvas(self.columns, self.rows)
+        copied._dots, copied._owners = self._dots.copy(), self._owners.copy()
+        return copied
+
+    def points(self, x: ArrayLike, y: ArrayLike, owner: ArrayLike) -> None:
+        """Set the dots at x, y (numbers or arrays of one shape); `owner` is one, or one for each."""
         with np.errstate(invalid="ignore"):
             i = np.floor(np.atleast_1d(np.asarray(x, np.float64)))
             j = np.floor(np.atleast_1d(np.asarray(y, np.float64)))
             inside = (i >= 0) & (i < self.width) & (j >= 0) & (j < self.height)
         i, j = i[inside].astype(np.intp), j[inside].astype(np.intp)
         self._dots[j, i] = 1
-        self._owners[j >> 2, i >> 1] = owner
+        self._owners[j >> 2, i >> 1] = owner[inside] if isinstance(owner, np.ndarray) else owner
 
-    def line(self, x: ArrayLike, y: ArrayLike, owner: int, dotted: bool = False) -> None:
-        """Join the points x, y (arrays of n) with straight lines, broken where a point is not finite."""
-        i, j = _along(np.asarray(x, np.float64), np.asarray(y, np.float64), self.width, self.height)
+    def line(self, x: ArrayLike, y: ArrayLike, owner: ArrayLike, dotted: bool = False) -> None:
+        """Join the points x, y (arrays of n) with straight lines, broken where a point is not finite.
+
+        `owner` is one, or an array of n with that of the line from each point on.
+        """
+        i, j, segment = _along(np.asarray(x, np.float64), np.asarray(y, np.float64), self.width, self.height)
         every = 3 if dotted else 1
-        self.points(i[::every], j[::every], owner)
+        self.points(i[::every], j[::every], owner[segment][::every] if isinstance(owner, np.ndarray) else owner)
 
     def disc(self, x: float, y: float, radius: float, owner: int, hollow: bool = False) -> None:
         """Set the dots whose centres are within `radius` of (x, y); hollow: only the rim, one dot wide."""
-        if not (abs(x) < 1e6 and abs(y) < 1e6):  # far outside, or not finite
-            return
-        i, j = np.meshgrid(
-            np.arange(np.floor(x - radius), np.ceil(x + radius) + 1),
-            np.arange(np.floor(y - radius), np.ceil(y + radius) + 1),
-        )
-        distance = np.hypot(i + 0.5 - x, j + 0.5 - y)
-        inside = (distance <= radius) & (distance > radius - 1 if hollow else True)
-        self.points(i[inside], j[inside], owner)
+        if abs(x) < 1e6 and abs(y) < 1e6:  # not elsewhere, and finite
+            i, j = np.reshape(disc(x, y, radius, hollow), (-1, 2)).T
+            self.points(i, j, owner)
 
     def label(self, column: int, row: int, text: str, owner: int) -> None:
         """Write text over any dots, beginning at a cell; text beyond the edges is cut off."""
@@ -127,7 +162,7 @@ class Canvas:
 
 def _along(
     x: NDArray[np.float64], y: NDArray[np.float64], width: int, height: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.intp]]:
     """Points along the visible part of a polyline: one per column of dots, or per row where it is steep."""
     with np.errstate(all="ignore"):
         x0, y0, dx, dy = x[:-1], y[:-1], np.diff(x), np.diff(y)
@@ -149,4 +184,5 @@ def _along(
         nth = np.arange(len(segment)) - np.repeat(np.cumsum(counts) - counts, counts)
         centre = begin[segment] + np.sign(step)[segment] * nth + 0.5
         share = np.where(step[segment] == 0, 0.0, np.clip((centre - start[segment]) / step[segment], 0.0, 1.0))
-        return x0[segment] + share * dx[segment], y0[segment] + share * dy[segment]
+        x, y = x0[segment] + share * dx[segment], y0[segment] + share * dy[segment]
+        return x, y, np.flatnonzero(drawn)[segment]

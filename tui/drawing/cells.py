@@ -1,18 +1,24 @@
 """CellWidget: a widget made of rows of characters with owners.  Only rows that changed are sent to the terminal."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from itertools import zip_longest
+from typing import TYPE_CHECKING, Self
 
-import numpy as np
+from rich.cells import cell_len
 from rich.segment import Segment
 from rich.style import Style
-from textual.geometry import Region, Size
+from textual.color import Color
+from textual.filter import LineFilter
+from textual.geometry import Region, Size, Spacing
 from textual.strip import Strip
 from textual.widget import Widget
 
-from tui.drawing.canvas import Picture
-from tui.drawing.large import thick
 from tui.drawing.palette import NOBODY, palette
+from tui.drawing.sketch import Sketch
+
+if TYPE_CHECKING:
+    from tui.drawing.canvas import Picture  # brings NumPy, which can wait for the first paint
 
 Row = Sequence[tuple[str, int | Style]]
 """Words next to each other, and whose they are; or how they look, where that is not an owner's colour."""
@@ -21,16 +27,37 @@ PRESENT = "-present"
 """The app's class where pictures have thick lines."""
 
 
-def changed_rows(before: Picture | None, after: Picture) -> list[int]:
-    """The rows that differ; all of them where there is nothing to compare with."""
-    if before is None or before.characters.shape != after.characters.shape:
-        return list(range(len(after.characters)))
-    changed = (before.characters != after.characters) | (before.owners != after.owners)
-    return np.flatnonzero(changed.any(axis=1)).tolist()
+_NO_GUTTER, _BLACK = Spacing(), Color(0, 0, 0)
+
+
+@dataclass(slots=True)
+class _Painted:
+    """What Textual has been given: lines from border to border, as they leave its filters."""
+
+    lines: list[Strip] = field(default_factory=list)
+    crop: Region | None = None
+    gutter: Spacing = _NO_GUTTER
+    background: Color = _BLACK
+    filters: Sequence[LineFilter] = ()
+    stale: set[int] = field(default_factory=set)  # rows that have changed since
+    left: list[Segment] = field(default_factory=list)  # the border, the same on every row
+    right: list[Segment] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        if self.crop is not None:
+            line, width = self.lines[self.gutter.top], self.crop.width
+            self.left, self.right = [*line.crop(0, self.gutter.left)], [*line.crop(width - self.gutter.right, width)]
+
+    def replace(self, y: int, row: list[Segment]) -> None:
+        """Put a row between its borders."""
+        assert self.crop is not None
+        for one in self.filters:
+            row = one.apply(row, self.background)
+        self.lines[self.gutter.top + y] = Strip([*self.left, *row, *self.right], self.crop.width)
 
 
 class CellWidget(Widget):
-    """Shows rows or a picture; what is missing is blank, what is too long is cut off."""
+    """Shows rows, a picture or a sketch; what is missing is blank, what is too long is cut off."""
 
     ALLOW_SELECT = False
 
@@ -38,8 +65,12 @@ class CellWidget(Widget):
         super().__init__(id=id, classes=classes)
         self._rows: list[Row] = []
         self._picture: Picture | None = None
+        self._sketch: Sketch | None = None
+        self._picture_width: int | None = None  # that every row has; None: they differ
         self._styles: dict[int | Style, Style] = {}
+        self._plain: set[Style] = set()  # in which a blank is nothing but a blank
         self._visible = False
+        self._painted = _Painted()
         self.room = Size()  # asking Textual how large a widget is walks through the screen; and may change any time
 
     @property
@@ -51,11 +82,9 @@ class CellWidget(Widget):
         """Bring what is shown up to date."""
 
     def on_resize(self) -> None:
-        """Draw for the new size."""
         self._fit()
 
     def on_show(self) -> None:
-        """Draw what has changed meanwhile."""
         self._visible = True
         self._fit()
 
@@ -66,7 +95,6 @@ class CellWidget(Widget):
         self.draw()
 
     def on_hide(self) -> None:
-        """Draw no more."""
         self._visible = False
 
     def show(self, rows: Sequence[Row], at_once: int | None = None) -> bool:
@@ -75,33 +103,98 @@ class CellWidget(Widget):
         wait = [] if at_once is None else [y for y in changed if y < len(rows)][at_once:]
         before = [*self._rows, *[()] * len(rows)]
         self._rows, self._picture = [before[y] if y in wait else row for y, row in enumerate(rows)], None
+        self._sketch = self._picture_width = None
         self._refresh_rows([y for y in changed if y not in wait])
         return not wait
 
-    def show_picture(self, picture: Picture) -> None:
-        """Show a picture."""
+    def show_picture(self, picture: "Picture") -> None:
         if self.app.has_class(PRESENT):
-            picture = thick(picture)
-        changed, self._picture = changed_rows(self._picture, picture), picture
-        self._rows[len(picture.characters) :] = [()] * (len(picture.characters) - len(self._rows))
+            picture = picture.thick()
+        changed, self._picture, self._sketch = picture.changed_rows(self._picture), picture, None
+        self._picture_width = picture.characters.shape[1]
+        self._replace_rows(changed, picture.row, len(picture.characters))
+
+    def show_sketch(self, sketch: Sketch) -> None:
+        if self.app.has_class(PRESENT):
+            from tui.drawing.canvas import Picture
+
+            self.show_picture(Picture.of_sketch(sketch))
+            return
+        changed, self._picture, self._sketch = sketch.changed_rows(self._sketch), None, sketch
+        self._picture_width = sketch.columns
+        self._replace_rows(changed, sketch.row, sketch.rows)
+
+    def _replace_rows(self, changed: Sequence[int], row: Callable[[int], Row], count: int) -> None:
+        self._rows[count:] = [()] * (count - len(self._rows))
         for y in changed:
-            self._rows[y] = picture.row(y)
+            self._rows[y] = row(y)
         self._refresh_rows(changed)
 
     def _refresh_rows(self, changed: Sequence[int]) -> None:
+        """Paint these anew, from border to border: Textual would have to cut the border's own cells off."""
         if changed:
-            self.refresh(*(Region(0, y, self.room.width, 1) for y in changed))
+            self._painted.stale.update(changed)
+            gutter = self._painted.gutter
+            width = self.room.width + gutter.width
+            self.refresh(*(Region(-gutter.left, y, width, 1) for y in changed))
 
     @property
     def text(self) -> str:
         """What is shown, without colours."""
         return "\n".join("".join(text for text, _ in row).rstrip() for row in self._rows)
 
+    def refresh(self, *regions: Region, repaint: bool = True, layout: bool = False, recompose: bool = False) -> Self:
+        """Paint all of it anew, or what regions there are."""
+        if not regions:
+            self._painted = _Painted()
+        return super().refresh(*regions, repaint=repaint, layout=layout, recompose=recompose)
+
+    def render_lines(self, crop: Region) -> list[Strip]:
+        """Textual's lines, border included.
+
+        They are kept, and only rows that changed are made anew: Textual would go through the sheet for each paint.
+        """
+        painted = self._painted
+        if crop != painted.crop:
+            lines, gutter = super().render_lines(crop), self.gutter
+            if self.room and self.room == self.size and crop == Region(0, 0, *(self.room + gutter.totals)):
+                self._painted = _Painted(lines, crop, gutter, self.background_colors[1], self.get_line_filters())
+            return lines
+        for y in painted.stale:
+            if y < self.room.height:
+                painted.replace(y, self._segments(y))
+        painted.stale.clear()
+        return painted.lines
+
     def render_line(self, y: int) -> Strip:
-        """One row."""
+        return Strip(self._segments(y), self.room.width)
+
+    def _segments(self, y: int) -> list[Segment]:
+        """One row, as wide as the room."""
         row = self._rows[y] if y < len(self._rows) else ()
-        strip = Strip([Segment(text, self._style(owner)) for text, owner in row])
-        return strip.adjust_cell_length(self.room.width, self._style(NOBODY))
+        if self._picture_width != self.room.width:
+            missing = self.room.width - sum([cell_len(text) for text, _ in row])
+            if missing < 0:
+                strip = Strip([Segment(text, self._style(owner)) for text, owner in row])
+                return [*strip.adjust_cell_length(self.room.width)]
+            row = (*row, (" " * missing, NOBODY))
+        return [Segment(text, style) for text, style in self._joined(row)]
+
+    def _joined(self, row: Row) -> list[tuple[str, Style]]:
+        """A row in few pieces: a blank looks the same in any colour, so it takes that of what is next to it."""
+        pieces: list[tuple[str, Style]] = []
+        before, look = "", self._style(NOBODY)
+        for text, owner in row:
+            style = self._style(owner)
+            if style is not look and before:
+                both_plain = style in self._plain and look in self._plain
+                if both_plain and text.isspace():
+                    style = look
+                elif not (both_plain and before.isspace()):
+                    pieces.append((before, look))
+                    before = ""
+            before, look = before + text, style
+        return [*pieces, (before, look)] if before else pieces
 
     def style_of(self, owner: int, base: Style) -> Style:
         """How an owner's characters look; `base` is the widget's own style."""
@@ -110,7 +203,8 @@ class CellWidget(Widget):
     def notify_style_update(self) -> None:
         """Forget styles that the theme or the sheet has changed."""
         super().notify_style_update()
-        self._styles = {}
+        self._styles, self._plain = {}, set()
+        self._painted = _Painted()
 
     def _style(self, owner: int | Style) -> Style:
         style = self._styles.get(owner)
@@ -118,4 +212,6 @@ class CellWidget(Widget):
             base = self.rich_style
             style = base + owner if isinstance(owner, Style) else self.style_of(owner, base)
             self._styles[owner] = style
+            if (style.bgcolor, style.reverse, style.underline) == (base.bgcolor, base.reverse, base.underline):
+                self._plain.add(style)
         return style

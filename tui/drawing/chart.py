@@ -15,7 +15,8 @@ from engine.methods import METHODS
 from tui.drawing.axes import Axis, Floats, held, linear_axis, log_axis, log_x_axis, per_column, time_axis, time_span
 from tui.drawing.canvas import Canvas, Picture
 from tui.drawing.palette import FRAME, NOBODY, TEXT
-from tui.playback.history import Quantity, Window
+from tui.playback.levels import Window
+from tui.playback.shown import Quantity
 
 FLOOR = 1e-17  # below the resolution of doubles; zeros are drawn here
 TOP = 1e6  # larger magnitudes are drawn here, so that a failing method leaves room for the others

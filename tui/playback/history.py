@@ -1,203 +1,108 @@
-"""The past of a run: every recent sample, and extremes of ever more samples the older they are.
+"""The past of a run: what came last as plain numbers, and all of it in `levels` when a chart or a portrait asks."""
 
-Level 0 holds the last samples as they were, each further level the lows and highs of pairs of rows
-of the level below, all in rings of the same capacity.  Memory so grows with the logarithm of the
-run's length only: an hour at 60 samples a second takes eight levels.
-"""
-
-import itertools
 import math
-from dataclasses import dataclass
-from typing import Literal
-
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from collections import deque
+from collections.abc import Sequence
+from itertools import islice
+from typing import TYPE_CHECKING, NamedTuple
 
 from engine.methods import METHODS
-from engine.models.exact_pendulum import ExactMotion
-from engine.models.pendulum import energy, energy_scale
 from engine.models.state import State
 from engine.run.lockstep import Sample
-from engine.run.modified_energy_errors import ModifiedEnergyErrors
-from engine.scenes import Scene
+from engine.run.observer import RunObserver
 
-Quantity = Literal["energy_error", "theta_error", "shadow_error", "energy"]
-QUANTITIES: tuple[Quantity, ...] = ("energy_error", "theta_error", "shadow_error", "energy")
+if TYPE_CHECKING:
+    from tui.playback.levels import Floats, Levels, Window  # NumPy can wait for the first paint
 
-Floats = NDArray[np.float64]
+RECENT = 16  # samples whose angles are at hand
+MOST_WAITING = 64  # rows
 _UNKNOWN = State(math.nan, math.nan)
 
 
-@dataclass(frozen=True, slots=True)
-class Window:
-    """A stretch of the past; rows in the order in which they were run."""
-
-    x: Floats  # s, (n,): simulated time run through, which goes up even while t goes down
-    t: Floats  # s, (n,): simulated time
-    low: dict[Quantity, Floats]  # (n, methods): extremes since the row before; nan where not known
-    high: dict[Quantity, Floats]
-    repeats: float  # s, after which errors repeat: half a swing, a whole turn, or 0
-    turned: bool  # whether time has run backwards, so that x is not t
-
-
-class _Level:
-    """A ring of rows, numbered from the run's start on; it holds [first, count)."""
-
-    def __init__(self, capacity: int) -> None:
-        shape = (capacity, len(QUANTITIES), len(METHODS))
-        self.capacity = capacity
-        self.first = self.count = 0
-        self.steps = np.zeros(capacity, np.int64)  # at the end of the row
-        self.times = np.zeros((capacity, 2))  # x, t at the end of the row
-        self.low, self.high = np.zeros(shape), np.zeros(shape)
-
-    def slots(self, first: int, end: int) -> NDArray[np.intp]:
-        """Where in the ring the rows [first, end) are, as far as it holds them."""
-        return np.arange(max(first, self.first), max(end, self.first)) % self.capacity
-
-    def append(self, step: int, times: tuple[float, float], low: ArrayLike, high: ArrayLike) -> None:
-        """Add a row."""
-        at = self.count % self.capacity
-        self.steps[at], self.times[at], self.low[at], self.high[at] = step, times, low, high
-        self._grow(1)
-
-    def append_pairs(self, finer: "_Level", first: int) -> None:
-        """Add the merged pairs of the finer level's rows from `first` on."""
-        a, b = finer.slots(first, finer.count).reshape(-1, 2).T
-        at = (self.count + np.arange(len(a))) % self.capacity
-        self.steps[at], self.times[at] = finer.steps[b], finer.times[b]
-        self.low[at] = np.fmin(finer.low[a], finer.low[b])
-        self.high[at] = np.fmax(finer.high[a], finer.high[b])
-        self._grow(len(a))
-
-    def _grow(self, rows: int) -> None:
-        self.count += rows
-        self.first = max(self.first, self.count - self.capacity)
-
-    def cut(self, step: int, otherwise: int) -> None:
-        """Forget the rows after `step`; where the ring begins later than that, be empty at row `otherwise`."""
-        kept = int(np.searchsorted(self.steps[self.slots(0, self.count)], step, "right"))
-        if kept or self.first == 0:
-            self.count = self.first + kept
-        else:
-            self.first = self.count = otherwise
+class _Row(NamedTuple):
+    sample: Sample
+    x: float  # s, simulated time run through
+    exact: State
+    modified: Sequence[float] | None
 
 
 class ErrorHistory:
-    """The past of one run, up to the last sample added.  Another start is another History."""
+    """The past of one run, up to the last sample added."""
 
-    def __init__(self, scene: Scene, capacity: int = 2048) -> None:
-        self._start_energy: float = energy(scene.w0_squared, scene.theta, scene.omega)
-        self._scale = energy_scale(scene.w0_squared, self._start_energy)
-        exact = ExactMotion(scene)
+    def __init__(self, observer: RunObserver, capacity: int = 2048) -> None:
+        exact, self._reference = observer.exact, observer.reference
         self._repeats = (exact.period or 0.0) / (2 if exact.regime == "libration" else 1)
+        self._capacity = capacity
         self._run = 0
-        self._levels = [_Level(capacity)]
-        self._states = np.zeros((capacity, len(METHODS) + 1, 2))  # beside level 0; the exact swing comes last
-        self._shadows = ModifiedEnergyErrors(scene.w0_squared, self._scale)
+        self._latest: tuple[int, float, float] | None = None  # step, x and t of the last row
+        self._recent: deque[list[float]] = deque(maxlen=RECENT)
+        self._waiting: list[_Row] = []
+        self._levels: Levels | None = None
         self.returned: Sample | None = None  # where simulated time last was back at 0
 
-    def add(self, sample: Sample, exact: State | None = None, equal_cost: bool = False) -> None:
-        """Add the sample of a frame, and the exact swing at its time; the steps to it were at equal cost or not.
+    def add(self, sample: Sample, exact: State | None = None, modified: Sequence[float] | None = None) -> None:
+        """Add the sample of a frame, the exact motion at its time, and the errors of the modified energies.
 
         The same sample again changes nothing.  An earlier one, and one of a run that goes on from
         this one's past, first takes back everything from its step on.
         """
-        latest = self._latest()
+        latest = self._latest
         if latest and (sample.run, sample.step) == (self._run, latest[0]):
             return
         self._run = sample.run
         if latest and sample.step <= latest[0]:
             self.rewind(sample.step - 1)
-            latest = self._latest()
-        x = latest[1] + abs(sample.t - latest[2]) if latest else abs(sample.t)
-
-        finest, reference = self._levels[0], exact or _UNKNOWN
-        states = [State(reading.theta, reading.omega) for reading in sample.readings]
-        shadow_errors = [math.nan] * len(METHODS)
-        if latest and finest.count > finest.first:
-            h = (sample.t - latest[2]) / (sample.step - latest[0])
-            before = [State(*row) for row in self._states[(finest.count - 1) % finest.capacity, :-1].tolist()]
-            shadow_errors = self._shadows.between(before, states, h, equal_cost)
-            if abs(sample.t) < 1e-6 * abs(h):  # t is rounded
+            latest = self._latest
+        x = abs(sample.t)
+        if latest:
+            step, before, t = latest
+            x = before + abs(sample.t - t)
+            if abs(sample.t) < 1e-6 * abs((sample.t - t) / (sample.step - step)):  # t is rounded
                 self.returned = sample
-        self._states[finest.count % finest.capacity] = [*states, reference]
-        theta_errors = [theta - reference.theta for theta, _ in states]
-        low, high = (
-            (errors, theta_errors, shadow_errors, [self._start_energy + self._scale * error for error in errors])
-            for errors in zip(
-                *((reading.energy_error_low, reading.energy_error_high) for reading in sample.readings), strict=True
-            )
-        )
-        finest.append(sample.step, (x, sample.t), low, high)
-        self._merge()
+        self._latest = sample.step, x, sample.t
+        self._recent.append([reading.theta for reading in sample.readings])
+        self._waiting.append(_Row(sample, x, exact or _UNKNOWN, modified))
+        if len(self._waiting) >= MOST_WAITING:
+            _ = self.levels
 
-    def _merge(self) -> None:
-        """Carry complete pairs of rows to the next level, and open one when the last ring is full."""
-        for level, coarser in itertools.pairwise(self._levels):
-            if level.count % 2:
-                return
-            coarser.append_pairs(level, level.count - 2)
-        last = self._levels[-1]
-        if last.count == last.capacity:
-            self._levels.append(_Level(last.capacity))
-            self._levels[-1].append_pairs(last, 0)
+    @property
+    def levels(self) -> "Levels":
+        """All rows."""
+        if self._levels is None:
+            from tui.playback.levels import Levels
+
+            self._levels = Levels(self._repeats, self._reference, self._capacity)
+        for sample, x, exact, modified in self._waiting:
+            states = [State(reading.theta, reading.omega) for reading in sample.readings]
+            theta_errors = [theta - exact.theta for theta, _ in states]
+            low, high = (
+                (errors, theta_errors, modified or [math.nan] * len(METHODS))
+                for errors in zip(
+                    *((reading.energy_error_low, reading.energy_error_high) for reading in sample.readings), strict=True
+                )
+            )
+            self._levels.append(sample.step, (x, sample.t), [*states, exact], low, high)
+        self._waiting.clear()
+        return self._levels
 
     def rewind(self, step: int) -> None:
-        """Forget what came after `step`.
-
-        Where the finer levels do not reach back so far, up to one row of the finest that does is
-        forgotten as well.
-        """
+        """Forget what came after `step`, or a little more where it is long ago."""
         if self.returned is not None and self.returned.step > step:
             self.returned = None
-        count = 0
-        for level in reversed(self._levels):
-            level.cut(step, otherwise=2 * count)
-            count = level.count
+        levels = self.levels
+        levels.rewind(step)
+        self._latest = levels.latest()
+        thetas = [levels.trail(index, RECENT)[0].tolist() for index in range(len(METHODS))]
+        self._recent = deque(map(list, zip(*thetas, strict=True)), RECENT)
 
-    def _latest(self) -> tuple[int, float, float] | None:
-        """Step, x and t of the last row."""
-        for level in self._levels:
-            if level.count > level.first:
-                at = (level.count - 1) % level.capacity
-                return int(level.steps[at]), *level.times[at].tolist()
-        return None
+    def window(self, seconds: float | None = None) -> "Window":
+        """The last `seconds` of simulated time and half a swing before, or the whole run, in `capacity` rows or so."""
+        return self.levels.window(seconds)
 
-    def window(self, seconds: float | None = None) -> Window:
-        """The last `seconds` of simulated time and half a swing before, or the whole run, in `capacity` rows or so.
-
-        The finest level that reaches back so far, and after its last row those of the finer ones:
-        every sample is in exactly one row.
-        """
-        latest = self._latest()
-        start = -math.inf if seconds is None or latest is None else latest[1] - seconds - self._repeats
-        depth = next(depth for depth, level in enumerate(self._levels) if self._reaches(level, start))
-        parts, first = [], 0
-        for level in reversed(self._levels[: depth + 1]):
-            parts.append((level, level.slots(first, level.count)))
-            first = 2 * level.count
-        times, low, high = (
-            np.concatenate([getattr(level, name)[slots] for level, slots in parts]) for name in ("times", "low", "high")
-        )
-        inside = times[:, 0] >= start
-        times, low, high = times[inside], low[inside], high[inside]
-        return Window(
-            x=times[:, 0],
-            t=times[:, 1],
-            low={quantity: low[:, i] for i, quantity in enumerate(QUANTITIES)},
-            high={quantity: high[:, i] for i, quantity in enumerate(QUANTITIES)},
-            repeats=self._repeats,
-            turned=bool(len(times)) and not math.isclose(times[-1, 0], times[-1, 1], rel_tol=1e-9),
-        )
-
-    @staticmethod
-    def _reaches(level: _Level, start: float) -> bool:
-        """Whether the level's rows reach back to x = start, or to the run's start."""
-        return level.first == 0 or (level.count > level.first and level.times[level.first % level.capacity, 0] <= start)
-
-    def trail(self, index: int, length: int) -> tuple[Floats, Floats]:
+    def trail(self, index: int, length: int) -> "tuple[Floats, Floats]":
         """theta [rad] and omega [rad/s] of a method, or EXACT, at the last `length` samples, oldest first."""
-        level = self._levels[0]
-        states = self._states[level.slots(level.count - length, level.count), index]
-        return states[:, 0], states[:, 1]
+        return self.levels.trail(index, length)
+
+    def thetas(self, index: int, length: int) -> list[float]:
+        """theta [rad] of a method at the last `length` samples, RECENT at most, oldest first."""
+        return [thetas[index] for thetas in islice(self._recent, max(len(self._recent) - length, 0), None)]

@@ -1,20 +1,21 @@
-"""Live: a course that follows the clock, and is recorded."""
+"""Live: a run that follows the clock, and is recorded."""
 
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
+from copy import copy
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from engine.methods import METHODS
 from engine.run.lockstep import Sample
-from engine.run.observer import Milestone
-from engine.run.rewindable import Pitch, RewindableRun
-from engine.run.verdict import Judgement
-from engine.scenes import Scene, check_h
+from engine.run.rewindable import RewindableRun
+from engine.run.stepping import Stepping, SteppingChange
+from engine.scenes import Scene
 from recordings.events import Event, EventKind
-from tui.playback.past import RunSoFar
+from tui.playback.compiler import patient
 from tui.playback.playhead import Pace, Playhead
-from tui.playback.source import EQUAL_PARTS, RecordingStatus, is_marked, least_h
+from tui.playback.so_far import RunSoFar
+from tui.playback.source import RecordingStatus, Source
 
 if TYPE_CHECKING:
     from recordings.live_recorder import LiveRecorder
@@ -23,103 +24,85 @@ FRAME_BUDGET = 0.020  # s of each frame for the simulation; the rest of 33 ms is
 CHUNK = 256  # steps between looks at the clock, about a millisecond
 
 
-class Live:
+class Live(Source):
     """The lab: it runs, it is changed, it is recorded once a recorder is there."""
 
-    kind: Literal["LIVE"] = "LIVE"
+    kind = "LIVE"
 
     def __init__(
         self,
         scene: Scene,
         speed: float = 1.0,
         clock: Callable[[], float] = time.perf_counter,
-        changes: Iterable[tuple[int, Pitch]] = (),
-        step: int = 0,
-        past: RunSoFar | None = None,
+        changes: Sequence[SteppingChange] = (),
+        so_far: RunSoFar | None = None,
     ) -> None:
-        """With `changes` of how it steps, as (step, pitch), and a `step`, go on from there, not from the start.
-
-        `past`: what is known of the way there.
-        """
+        """With what is known of a run `so_far`, and the `changes` on the way there, go on from there."""
         self.playhead = Playhead(speed=speed)
         self.pace = Pace()
-        self.events: list[Event] = []
         self.recorder: LiveRecorder | None = None
+        self._events: list[Event] = []
         self._recorded = Playhead()  # the recording clock: it stands while the lab is paused, whatever the speed
         self._clock = clock
+        self._observing = 0.0  # s a step, lately: verdicts take longer than the steps themselves
         self._runs = 1
-        self._enter(RewindableRun.at(scene, changes, step), past)
+        run = RewindableRun(scene, 1, patient)
+        if so_far is not None:
+            run.repeat(changes, so_far.sample.step)
+        self._enter(run, so_far)
 
     @property
-    def scene(self) -> Scene:
-        """The scene of the run."""
-        return self._run.scene
+    def so_far(self) -> RunSoFar:
+        return self._so_far
 
     @property
-    def h(self) -> float:
-        """The step size in force [s]."""
-        return self._run.h
+    def stepping(self) -> Stepping:
+        return self._run.stepping
 
     @property
-    def equal_cost(self) -> bool:
-        """Whether all methods spend the same number of force evaluations."""
-        return self._run.equal_cost
-
-    @property
-    def in_past(self) -> bool:
-        """Whether the lab has stepped back and what comes next is known."""
-        return self._run.in_past
-
-    @property
-    def judgements(self) -> Sequence[Judgement]:
-        """The verdicts on the run since the last change of the step size."""
-        return self._observer.judgements
-
-    @property
-    def milestones(self) -> Sequence[Milestone]:
-        """What the methods did up to the sample."""
-        return self._observer.milestones(self.sample.step)
-
-    @property
-    def later_marks(self) -> Sequence[Event]:
-        """None: marks are events of the sitting itself."""
-        return ()
+    def events(self) -> Sequence[Event]:
+        if not self._run.in_past:
+            return self._events
+        run, step = self._run.run, self._run.step
+        return [event for event in self._events if event.run != run or event.step <= step]
 
     @property
     def recording_status(self) -> RecordingStatus | None:
-        """What becomes of the recording."""
         recorder = self.recorder
-        return (
-            None
-            if recorder is None
-            else RecordingStatus(recorder.path.name, recorder.seconds, recorder.bytes, recorder.failed)
-        )
+        if recorder is None:
+            return None
+        return RecordingStatus(recorder.path.name, recorder.seconds, recorder.bytes, recorder.failed)
 
     def record(self, recorder: "LiveRecorder") -> None:
         """Record from here on."""
         self.recorder = recorder
-        for event in self.events:
+        for event in self._events:
             recorder.event(event, self._recorded.position)
         recorder.sample(self.sample, self._recorded.position)
 
     def tick(self, now: float) -> Sample:
-        """Follow the clock as far as the frame's budget goes; what is beyond it is dropped."""
+        """Follow the clock as far as the frame's budget allows; the rest of the time is dropped."""
         before = self.playhead
         self.playhead, self._recorded = before.at(now), self._recorded.at(now)
         if self.playhead.paused or before.seen is None:
             return self.sample
-        began, target = self._clock(), self._run.step_at(self.playhead.position)
+        began, first, target = self._clock(), self._run.step, self._run.step_at(self.playhead.position)
         target = int(min(target, self._run.home))  # so that a sample shows what each method misses its start by
-        while (left := target - self._run.step) > 0 and self._clock() - began < FRAME_BUDGET:
+        while (left := target - self._run.step) > 0:
+            if self._clock() - began + (self._run.step - first) * self._observing >= FRAME_BUDGET:
+                break
             self._run.forward(min(left, CHUNK))
         due = self.playhead.position - before.position
         if left > 0:
             self.playhead = self.playhead.moved_to(self._run.x)
         self.pace = self.pace.after(max(0.0, now - before.seen), due, self.playhead.position - before.position)
-        return self._take_sample()
+        simulated = self._clock()
+        sample = self._take_sample()
+        if steps := self._run.step - first:
+            self._observing = (self._clock() - simulated) / steps
+        return sample
 
     def step(self, n: int) -> Sample:
-        """Pause and go n steps on, or back where n is negative."""
         self.pause(True)
         if n >= 0:
             self._run.forward(n)
@@ -130,86 +113,74 @@ class Live:
 
     def start(self, scene: Scene) -> None:
         """Begin a new run.  Raises SceneError, before anything has changed, for a step too large at equal cost."""
-        equal_cost, whole = self.equal_cost, scene.h * max(EQUAL_PARTS)
-        if equal_cost:
-            check_h(whole, scene.w0)
+        stepping = Stepping.of_smallest(scene.h, self.stepping.equal_cost)
+        stepping.check(scene.w0)
         self._runs += 1
-        self._enter(RewindableRun(scene, self._runs))
-        if equal_cost:
-            self.set_h(whole, equal_cost)
+        self._enter(RewindableRun(scene, self._runs, patient))
+        if stepping.equal_cost:
+            self.set_stepping(stepping)
 
-    def _enter(self, course: RewindableRun, past: RunSoFar | None = None) -> None:
-        past = past or RunSoFar(course.scene)
-        self._run = course
-        self.exact, self.history, self._observer = past.exact, past.history, past.observer
-        self.playhead = self.playhead.moved_to(course.x)
+    def _enter(self, run: RewindableRun, so_far: RunSoFar | None = None) -> None:
+        self._run, self._so_far = run, copy(so_far) if so_far else RunSoFar(run.scene, run.changes)
+        self._so_far.changes = run.changes
+        self.playhead = self.playhead.moved_to(run.x)
         self._note_start()
         self._take_sample()
 
     def restart(self) -> None:
         """Begin again, with the step size in force."""
-        self.start(self.scene.altered(h=least_h(self)))
+        self.start(self.scene.altered(h=self.stepping.smallest))
 
-    def set_h(self, h: float, equal_cost: bool = False) -> None:
-        """Use step size h [s] from here on, at equal cost or not; a negative h runs time backwards.
-
-        Raises SceneError for a step size that is zero, not finite or absurd.
-        """
-        for own in (h, h / max(EQUAL_PARTS)) if equal_cost else (h,):
-            check_h(own, self.scene.w0)
-        if self.in_past:
+    def set_stepping(self, stepping: Stepping) -> None:
+        """Step like this from here on.  Raises SceneError, before anything has changed, for an absurd step size."""
+        stepping.check(self.scene.w0)
+        if self._run.in_past:
             self._runs += 1
             self._run.branch(self._runs)
             self._note_start()
-        self._run.set_h(h, equal_cost)
-        self._note_here("set_h", h=h, equal_cost=equal_cost)
-        self._observer.judge_anew(self._run.step)
+        self._run.set_stepping(stepping)
+        self._note_here("set_h", h=stepping.h, equal_cost=stepping.equal_cost)
+        self._so_far.observer.judge_anew(self._run.step)
         self._take_sample()
 
     def pause(self, paused: bool) -> None:
-        """Stop or go on."""
         if paused != self.playhead.paused:
             self.playhead = replace(self.playhead, paused=paused)
             self._recorded = replace(self._recorded, paused=paused)
             self._note_here("pause" if paused else "resume")
 
     def set_speed(self, speed: float) -> None:
-        """Simulate `speed` seconds for each second of the clock."""
         if speed != self.playhead.speed:
             self.playhead = replace(self.playhead, speed=speed)
             self.pace = Pace()
             self._note_here("speed", speed=speed)
 
     def mark(self, text: str | None = None) -> None:
-        """Leave a mark among the events, unless the sample has one."""
-        if not is_marked(self):
+        if not self.is_marked:
             self._note_here("mark", text=text)
 
     def close(self) -> None:
-        """Finish the recording."""
         if self.recorder is not None:
             self.recorder.close()
 
     def _take_sample(self) -> Sample:
-        self.sample = self._run.sample()
-        self.history.add(self.sample, self.exact.at(self.sample.t), self._run.equal_cost)
-        self._observer.add(self.sample)
-        if self.recorder is not None and self.sample.step >= self._run.furthest:
-            self.recorder.sample(self.sample, self._recorded.position)
-        return self.sample
+        sample = self._run.sample()
+        self._so_far.add(sample)
+        if self.recorder is not None and sample.step >= self._run.furthest:
+            self.recorder.sample(sample, self._recorded.position)
+        return sample
 
     def _note_start(self) -> None:
         """The start of the run, and the changes of its step size where it goes on from another's past."""
-        course = self._run
         keys = tuple(method.key for method in METHODS)
-        self._note(Event("start", course.run, 0, 0.0, scene=self.scene, methods=keys))
-        for change in course.changes[1:]:
-            self._note(Event("set_h", course.run, change.step, change.t, h=change.h, equal_cost=change.equal_cost))
+        self._note(Event("start", self._run.run, 0, 0.0, scene=self.scene, methods=keys))
+        for step, t, stepping in self._run.changes[1:]:
+            self._note(Event("set_h", self._run.run, step, t, h=stepping.h, equal_cost=stepping.equal_cost))
 
     def _note_here(self, kind: EventKind, **what: Any) -> None:
         self._note(Event(kind, self._run.run, self._run.step, self._run.t, **what))
 
     def _note(self, event: Event) -> None:
-        self.events.append(event)
+        self._events.append(event)
         if self.recorder is not None:
             self.recorder.event(event, self._recorded.position)

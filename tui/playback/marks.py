@@ -1,6 +1,6 @@
-"""Marks that are made while a recording is replayed.  They are kept beside it; the recording itself is not touched.
+"""Marks made during a replay.  They are kept next to the recording, which is not touched.
 
-Those of a recording that came with the program are kept in the library: its own folder is the program's.
+Those of a bundled recording are kept in the library, because its own folder is the program's.
 """
 
 import json

@@ -16,7 +16,7 @@ class Playhead:
     def at(self, now: float) -> "Playhead":
         """The playhead when the clock reads `now` [s]; a clock that stands or jumps back moves nothing."""
         elapsed = 0.0 if self.seen is None or self.paused else max(0.0, now - self.seen)
-        return replace(self, position=self.position + elapsed * self.speed, seen=now)
+        return Playhead(self.position + elapsed * self.speed, self.speed, self.paused, now)
 
     def moved_to(self, position: float) -> "Playhead":
         """The same playhead elsewhere."""
@@ -48,15 +48,3 @@ def doubled(speed: float, times: int) -> float:
     """The speed doubled so many times, halved if negative, within SPEED_LIMITS; its sign stays."""
     low, high = SPEED_LIMITS
     return math.copysign(min(max(abs(speed) * 2.0**times, low), high), speed)
-
-
-def next_h(h: float, up: bool) -> float:
-    """The next step size [s] along 1, 2, 5, 10, …; its sign stays."""
-    size = abs(h)
-    decade = math.floor(math.log10(size))
-    ladder = [digit * 10.0**power for power in (decade - 1, decade, decade + 1) for digit in (1, 2, 5)]
-    if up:
-        size = min(rung for rung in ladder if rung > size * (1 + 1e-9))
-    else:
-        size = max(rung for rung in ladder if rung < size * (1 - 1e-9))
-    return math.copysign(float(f"{size:.1g}"), h)

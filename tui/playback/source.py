@@ -1,19 +1,20 @@
-"""What a screen shows: a lab running live, or a recording.  One protocol, so that one screen serves both."""
+"""Source: what a screen shows, a lab or a recording."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, Protocol
+from typing import ClassVar, Literal
 
-from engine.run.lockstep import Sample, parts
+from engine.models.exact_pendulum import ExactMotion
+from engine.run.lockstep import Sample
+from engine.run.observer import Milestone
+from engine.run.stepping import Stepping, SteppingChange
+from engine.run.verdict import Judgement
 from engine.scenes import Scene
 from recordings.events import Event
+from tui.playback.history import ErrorHistory
 from tui.playback.playhead import Pace, Playhead
-
-if TYPE_CHECKING:
-    from engine.models.exact_pendulum import ExactMotion
-    from engine.run.observer import Milestone
-    from engine.run.verdict import Judgement
-    from tui.playback.history import ErrorHistory
+from tui.playback.so_far import RunSoFar
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,100 +27,105 @@ class RecordingStatus:
     failed: str | None = None  # why nothing is recorded right now, in a sentence
 
 
-class Source(Protocol):
+class Source(ABC):
     """One Sample a frame, and what is known around it.  Times of the clock are passed in, in s."""
 
+    kind: ClassVar[Literal["LIVE", "REPLAY"]]
+    playhead: Playhead
+    pace: Pace
+    """Whether it can follow the clock."""
+
     @property
-    def kind(self) -> Literal["LIVE", "REPLAY"]:
-        """What the status line calls it."""
+    @abstractmethod
+    def so_far(self) -> RunSoFar:
+        """What is known of the run on screen, up to the sample."""
 
     @property
     def sample(self) -> Sample:
         """All methods at the playhead."""
+        return self.so_far.sample
 
     @property
     def scene(self) -> Scene:
-        """The scene of the run on screen."""
+        return self.so_far.observer.scene
 
     @property
-    def h(self) -> float:
-        """The step size in force at the sample [s]; negative while time runs backwards."""
-
-    @property
-    def equal_cost(self) -> bool:
-        """Whether all methods spend the same number of force evaluations: RK4 a step of h, the others four of h/4."""
-
-    @property
-    def exact(self) -> "ExactMotion":
+    def exact(self) -> ExactMotion:
         """The exact motion of the scene: at(t), period, regime."""
+        return self.so_far.observer.exact
 
     @property
-    def history(self) -> "ErrorHistory":
-        """The past of the run on screen, up to the sample."""
+    def changes(self) -> Sequence[SteppingChange]:
+        """How the run steps, its start's stepping first; in a recording also what is still to come."""
+        return self.so_far.changes
 
     @property
-    def judgements(self) -> "Sequence[Judgement]":
-        """What is known of each method's energy error so far: verdict and drift per second."""
+    def history(self) -> ErrorHistory:
+        """The past of the run up to the sample; in a replay it grows for some frames after a jump."""
+        return self.so_far.history
 
     @property
-    def milestones(self) -> "Sequence[Milestone]":
+    def judgements(self) -> Sequence[Judgement]:
+        """The verdicts on the run, and the trends per second, since the last change of the stepping."""
+        return self.so_far.observer.judgements
+
+    @property
+    def milestones(self) -> Sequence[Milestone]:
         """What the methods did in this run up to the sample, in its order."""
+        return self.so_far.observer.milestones(self.sample.step)
 
     @property
+    @abstractmethod
+    def stepping(self) -> Stepping:
+        """How the run steps from the sample on."""
+
+    @property
+    @abstractmethod
     def events(self) -> Sequence[Event]:
         """What was done up to the playhead."""
 
     @property
     def later_marks(self) -> Sequence[Event]:
         """Marks up to the playhead that were made while replaying, and are no part of the recording."""
+        return ()
 
     @property
-    def playhead(self) -> Playhead:
-        """Position, speed, paused or not."""
-
-    @property
-    def pace(self) -> Pace:
-        """Whether it can follow the clock."""
-
-    @property
+    @abstractmethod
     def recording_status(self) -> RecordingStatus | None:
         """The recording; None where nothing is recorded."""
 
+    @property
+    def is_at_rest(self) -> bool:
+        """Whether the clock alone changes nothing."""
+        return self.playhead.paused
+
+    @property
+    def is_marked(self) -> bool:
+        """Whether the sample on screen has a mark."""
+        here = self.sample.run, self.sample.step
+        events = (*self.events, *self.later_marks)
+        return any(event.kind == "mark" and (event.run, event.step) == here for event in events)
+
+    @abstractmethod
     def tick(self, now: float) -> Sample:
         """Follow the clock to `now`; called once a frame."""
 
+    @abstractmethod
     def pause(self, paused: bool) -> None:
-        """Stop or go on."""
+        """Pause or go on."""
 
+    @abstractmethod
     def set_speed(self, speed: float) -> None:
         """Play `speed` seconds for each second of the clock."""
 
+    @abstractmethod
     def step(self, n: int) -> Sample:
-        """Pause and go n steps (live) or samples (replay) on, or back where n is negative."""
+        """Pause and go n steps (live) or samples (replay) forward, or back where n is negative."""
 
+    @abstractmethod
     def mark(self, text: str | None = None) -> None:
-        """Leave a mark at the sample."""
+        """Leave a mark at the sample, unless it has one."""
 
+    @abstractmethod
     def close(self) -> None:
-        """Finish what is open; a live source finishes its recording."""
-
-
-EQUAL_PARTS = parts()
-"""At equal cost, how many steps of its own each method takes in one of the dearest."""
-
-
-def own_h(source: Source) -> tuple[float, ...]:
-    """Each method's own step size [s], in the order of METHODS: `h`, or at equal cost a part of it."""
-    return tuple(source.h / part if source.equal_cost else source.h for part in EQUAL_PARTS)
-
-
-def least_h(source: Source) -> float:
-    """The smallest of them, without its sign [s]: what a scene's `h` is at equal cost."""
-    return min(abs(h) for h in own_h(source))
-
-
-def is_marked(source: Source) -> bool:
-    """Whether the sample on screen has a mark."""
-    here = source.sample.run, source.sample.step
-    events = (*source.events, *source.later_marks)
-    return any(event.kind == "mark" and (event.run, event.step) == here for event in events)
+        """Finish what is open; a lab finishes its recording."""

@@ -5,6 +5,7 @@ import os
 import signal
 import time
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import ClassVar
@@ -41,7 +42,7 @@ class PenduApp(App[Exit | OSError]):
     TITLE = "pendu"
     ALLOW_SELECT = False  # Textual stumbles over a click on a notice where text can be selected
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("ctrl+c", "interrupt", show=False, priority=True),
+        Binding("ctrl+c", "interrupt", show=False, priority=True),  # the terminal sends it as a key
         Binding("ctrl+z", "suspend_process", show=False, priority=True),
     ]
 
@@ -97,22 +98,18 @@ class PenduApp(App[Exit | OSError]):
             self.source_screens.append(message.screen)
 
     def on_mount(self) -> None:
-        """Leave in order when asked to by a signal, and paint everything again after Ctrl+Z."""
+        """Exit cleanly on a signal, and paint everything again after Ctrl+Z."""
         self.app_resume_signal.subscribe(self, lambda _: self.refresh())
         loop = asyncio.get_running_loop()
-        for name in ("SIGINT", "SIGTERM", "SIGHUP"):
-            if number := getattr(signal, name, None):
-                try:
-                    loop.add_signal_handler(number, self.interrupt)
-                except (NotImplementedError, RuntimeError):  # Windows, or not in the main thread
-                    return
+        with suppress(NotImplementedError, RuntimeError):  # Windows, or not in the main thread
+            for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+                loop.add_signal_handler(number, self.interrupt)
 
     def action_interrupt(self) -> None:
-        """Ctrl+C: the terminal sends it as a key."""
         self.interrupt()
 
     def interrupt(self) -> None:
-        """Finish the recording and leave, even if there is no terminal any more to take leave of."""
+        """Finish the recording and exit, even if the terminal is gone."""
         self.source_screen.source.close()
         if is_gone():
             os._exit(Exit.INTERRUPTED)
@@ -140,7 +137,7 @@ class PenduApp(App[Exit | OSError]):
         self.theme = name
 
     def action_present(self) -> None:
-        """Use large numbers and thick lines, or the usual ones again."""
+        """Toggle large numbers and thick lines."""
         self.toggle_class(PRESENT)
         self.source_screen.show_now()
 

@@ -9,13 +9,13 @@ from typing import Any, ClassVar, Protocol, cast
 
 from textual.app import ComposeResult
 from textual.binding import BindingType
-from textual.containers import Container
 from textual.message import Message
 from textual.reactive import Initialize, var
 from textual.screen import Screen
 from textual.widget import Widget
 
 from engine.run.lockstep import Sample
+from tui.playback.frame_rate import FrameTimer
 from tui.playback.playhead import doubled
 from tui.playback.shown import Shown
 from tui.playback.source import Source
@@ -26,13 +26,13 @@ from tui.screens.status_line import StatusLine
 from tui.screens.too_small import TooSmall
 from tui.views import create, following
 from tui.views.keys import Key, bindings
-from tui.views.view import View
+from tui.views.view import Box, View
 
 READ, BUILT = 10, 5
-"""How often a second what is read is brought up to date, and what has to be built."""
+"""How often a second numbers that people read are updated, and charts, which take time to build."""
 
-STALL = 1.0  # s; a longer gap between frames was not lived: Ctrl+Z, a computer asleep, a line that was dead
-ALREADY = "There is a mark here already"
+STALL = 1.0  # s; a longer gap between frames does not count as time: Ctrl+Z, a computer asleep, a dead line
+ALREADY = "Already marked"
 
 
 class Host(Protocol):
@@ -52,7 +52,9 @@ def _first_source(screen: Any) -> Source:
 
 
 class SourceScreen(Screen[None]):
-    """Shows a source.  Its clock is passed in."""
+    """Shows a source, following a clock that is passed in."""
+
+    BLANK = True  # everything on it is covered
 
     @dataclass
     class Began(Message):
@@ -78,15 +80,16 @@ class SourceScreen(Screen[None]):
         prepare: Callable[[], None] = lambda: None,
         notices: Sequence[str] = (),
     ) -> None:
-        """`prepare` is called after the first paint, for what takes time; it may raise OSError."""
+        """`prepare` is called after the first paint, since it may take time; it may raise OSError."""
         super().__init__()
         self._prepare = prepare
         self._notices = notices
         self.first_source = source
         self.clock = clock
         self._frames = 0
+        self._timer = FrameTimer(lambda seconds: self.set_interval(seconds, self.frame))
         self._missed = 0.0  # s of the clock while the program was stopped
-        self._late = False  # everything is to be shown with the next frame
+        self._late = False  # the next frame shows everything
         self._undo: list[Callable[[], object]] = []
         for reactive in (SourceScreen.sample, SourceScreen.sample_10hz, SourceScreen.sample_5hz):
             self.set_reactive(reactive, source.sample)
@@ -97,7 +100,7 @@ class SourceScreen(Screen[None]):
 
     def compose(self) -> ComposeResult:
         yield StatusLine().data_bind(SourceScreen.source, sample=SourceScreen.sample_10hz)
-        with Container(id="views"):
+        with Box(id="views"):
             yield self._create(self.view)
         yield TooSmall()
         yield from self.more()
@@ -105,7 +108,7 @@ class SourceScreen(Screen[None]):
         yield KeyLine(hinted(self.KEYS))
 
     def more(self) -> Iterable[Widget]:
-        """What this screen has above the insight line."""
+        """The widgets above the insight line."""
         return ()
 
     def on_mount(self) -> None:
@@ -118,15 +121,15 @@ class SourceScreen(Screen[None]):
             self.app.exit(error)
             return
         gc.collect()
-        gc.freeze()  # what is there now stays: collecting it again and again would cost frames
+        gc.freeze()  # what exists now stays: collecting it again and again would cost frames
         gc.enable()
         self.post_message(self.Began(self))
-        self._timer = self.set_interval(1 / self.host.fps, self.frame)
+        self._timer.begin(self.host.fps)
         for notice in self._notices:
             self.notify(notice, timeout=15, markup=False)
 
     def end(self) -> None:
-        """Follow the clock no longer: another screen takes over."""
+        """Stop following the clock: another screen takes over."""
         self._timer.stop()
         self.source.close()
 
@@ -137,24 +140,28 @@ class SourceScreen(Screen[None]):
             self._missed += now - seen
             now = seen
         sample = self.source.tick(now)
+        if self._timer.frame(self.clock(), time.process_time()):
+            self.query_one(StatusLine).frames = self._timer.lowered
+        self._timer.rest(self.source.is_at_rest)
         if self.host.is_behind(urgent=self._late):
             return
         self._frames += 1
         self.sample = sample
-        if self._late or self._frames % max(self.host.fps // READ, 1) == 0:
+        if self._late or self._timer.is_turn(self._frames, READ):
             self.sample_10hz = sample
-        if self._late or self._frames % max(self.host.fps // BUILT, 1) == 0:
+        if self._late or self._timer.is_turn(self._frames, BUILT):
             self.sample_5hz = sample
         self._late = False
 
     def show_now(self) -> None:
-        """Show everything as it is, without waiting for its turn; on a line that is busy, as soon as it is not."""
+        """Show everything at once; on a busy line, with the next frame that it can carry."""
         self._late = self.host.is_behind(urgent=True)
         if not self._late:
             self.sample = self.sample_10hz = self.sample_5hz = self.source.sample
+        self._timer.rest(self.source.is_at_rest)
 
     def remember(self, undo: Callable[[], object]) -> None:
-        """Keep what undoes a setting."""
+        """Keep the function that undoes a change."""
         self._undo.append(undo)
 
     def change_shown(self, shown: Shown) -> None:
@@ -166,6 +173,7 @@ class SourceScreen(Screen[None]):
         self.call_next(self.run_action, message.action)
 
     def action_pause(self) -> None:
+        self.frame()  # so that the clock goes on from here, and not from the last of the few frames of a lab at rest
         self.source.pause(not self.source.playhead.paused)
         self.show_now()
 
@@ -181,7 +189,7 @@ class SourceScreen(Screen[None]):
         self.set_speed(1.0)
 
     def set_speed(self, speed: float) -> None:
-        """Set the speed, so that it can be undone."""
+        """Set the speed; `u` undoes it."""
         before = self.source.playhead.speed
         if speed != before:
             self.remember(lambda: self.source.set_speed(before))
@@ -222,7 +230,7 @@ class SourceScreen(Screen[None]):
         self.show_now()
 
     def action_help(self) -> None:
-        """Show the keys, those of what has the focus first."""
+        """Show the help, with the keys of a focused pane first."""
         from tui.screens.text import TextScreen, help_text
 
         panes = self.query_one(f"#{self.view}", View).KEYS

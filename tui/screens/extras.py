@@ -44,7 +44,7 @@ def take_screenshot(screen: SourceScreen) -> None:
     try:
         picture, text = save_screenshot(screen.app.export_screenshot(), library.folder())
     except OSError as error:
-        screen.notify(f"The screen cannot be saved: {explained(error)}", severity="warning", markup=False)
+        screen.notify(f"Screenshot failed: {explained(error)}", severity="warning", markup=False)
     else:
         screen.notify(f"Saved {picture} and {text.name}", markup=False)
 
@@ -95,11 +95,11 @@ def palette_entries(keys: Iterable[Key], live: bool, recordings: Iterable[Path])
     return [
         *(entry(f"{key.does} ({key.shown})", key.group, key.action) for key in keys if _is_offered(key)),
         *(entry(f"scene {name}", scene.watch, f"start_scene({name!r})") for name, scene in SCENES.items() if live),
-        *(entry(f"method {method.label}", "its card", f"app.extra('card', {method.key!r})") for method in METHODS),
+        *(entry(f"method {method.label}", "details", f"app.extra('card', {method.key!r})") for method in METHODS),
         *(entry(f"theme {name}", "", f"app.use_theme({name!r})") for name in PALETTES),
-        entry("large numbers and thick lines, or not", "for a projector", "app.present"),
+        entry("toggle projector mode", "large numbers, thick lines", "app.present"),
         *(entry(f"replay {path.stem}", str(path), f"app.extra('replay', {str(path)!r})") for path in recordings),
-        entry("copy the command that reproduces this", "to the clipboard", "app.extra('copy_command')"),
+        entry("copy the command for this moment", "to the clipboard", "app.extra('copy_command')"),
     ]
 
 

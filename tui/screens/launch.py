@@ -26,14 +26,14 @@ def recording_path(file: Path | None) -> Path:
     from recordings import library
 
     if file is not None and file.exists():
-        raise UserError(f"{file} exists already: choose another name, or remove it.", Exit.DISK)
+        raise UserError(f"{file} exists already: choose another name or delete it.", Exit.DISK)
     path = file or library.new_path()
     if file is None:
         path.parent.mkdir(parents=True, exist_ok=True)
     if not path.parent.is_dir() or not os.access(path.parent, os.W_OK | os.X_OK):
         raise UserError(
-            f"{path.parent} is no folder that can be written: choose another one with --record or PENDU_RECORDINGS,"
-            " or record nothing with --no-record.",
+            f"{path.parent} is not writable: choose another folder with --record or PENDU_RECORDINGS,"
+            " or turn recording off with --no-record.",
             Exit.DISK,
         )
     return path
@@ -70,10 +70,10 @@ def open_replay(path: Path) -> "Replay":
     from tui.playback.marks import Marks
     from tui.playback.replay import Replay
 
-    with progress(f"looking through {path.name}") as show_progress:
+    with progress(f"reading {path.name}") as show_progress:
         recording = Recording.open(path, progress=show_progress)
     if recording.at(0.0) is None:
-        raise UserError(f"{path}: no samples are left in it, so there is nothing to see.", Exit.INPUT_UNREADABLE)
+        raise UserError(f"{path} contains no samples.", Exit.INPUT_UNREADABLE)
     return Replay(recording, Marks(path))
 
 
@@ -85,7 +85,7 @@ def replay_screen(replay: "Replay", no_record: bool) -> "ReplayScreen":
         return live_screen(live, None if no_record else recording_path(None))
 
     reason = replay.recording.reason
-    notices = [f"This recording is not whole: {reason}. What is intact is shown."] if reason else []
+    notices = [f"This recording is incomplete ({reason}); showing what is intact."] if reason else []
     return ReplayScreen(replay, go_live, notices=notices)
 
 
@@ -127,6 +127,6 @@ def say_goodbye(source: "Source") -> None:
     if not isinstance(source, Live) or source.recorder is None:
         return
     for file in source.recorder.files:
-        print(f"recorded: {file}\nsee it again: pendu-tui replay {shlex.quote(str(file))}")
+        print(f"saved {file}\nreplay it with: pendu-tui replay {shlex.quote(str(file))}")
     if source.recorder.failed:
         warn(f"the recording stopped: {source.recorder.failed}")

@@ -1,15 +1,13 @@
 """LiveScreen: the lab, where the run can be changed."""
 
-import math
 from collections.abc import Callable
 from typing import ClassVar
 
 from textual.binding import BindingType
 
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene, SceneError
 from tui.playback.live import Live
-from tui.playback.playhead import next_h
-from tui.playback.source import EQUAL_PARTS, is_marked, least_h
 from tui.screens.base import ALREADY, SourceScreen
 from tui.screens.keys import COMMON, LIVE
 from tui.views.keys import Key, bindings
@@ -28,19 +26,19 @@ class LiveScreen(SourceScreen):
         return self.source
 
     def start(self, scene: Scene) -> None:
-        """Begin a new run, which can be undone by another one."""
+        """Start a new run; `u` starts one of the scene before."""
         before = self.live.scene
         if self._do(lambda: self.live.start(scene)):
             self.remember(lambda: self._do(lambda: self.live.start(before)))
 
-    def set_h(self, h: float, equal_cost: bool) -> None:
-        """Use another step size from here on, at equal cost or not."""
-        before = self.live.h, self.live.equal_cost
-        if self._do(lambda: self.live.set_h(h, equal_cost)):
-            self.remember(lambda: self._do(lambda: self.live.set_h(*before)))
+    def set_stepping(self, stepping: Stepping) -> None:
+        """Change the step size from here on."""
+        before = self.live.stepping
+        if self._do(lambda: self.live.set_stepping(stepping)):
+            self.remember(lambda: self._do(lambda: self.live.set_stepping(before)))
 
     def _do(self, change: Callable[[], None]) -> bool:
-        """Change the run, or say why that cannot be."""
+        """Change the run, or notify why not."""
         try:
             change()
         except SceneError as error:
@@ -53,7 +51,7 @@ class LiveScreen(SourceScreen):
         self.start(choice.scene)
 
     def on_step_size_chosen(self, choice: StepSizeChosen) -> None:
-        self.set_h(math.copysign(choice.h, self.live.h), self.live.equal_cost)
+        self.set_stepping(choice.stepping)
 
     def action_restart(self) -> None:
         self.live.restart()
@@ -61,18 +59,14 @@ class LiveScreen(SourceScreen):
 
     def action_larger_h(self, direction: int) -> None:
         """Take the next larger or smaller h of 1, 2, 5, 10, ..."""
-        live = self.live
-        h = next_h(math.copysign(least_h(live), live.h), direction > 0)
-        self.set_h(h * max(EQUAL_PARTS) if live.equal_cost else h, live.equal_cost)
+        self.set_stepping(self.live.stepping.next(up=direction > 0))
 
     def action_reverse(self) -> None:
-        self.set_h(-self.live.h, self.live.equal_cost)
+        self.set_stepping(self.live.stepping.reversed())
 
     def action_equal_cost(self) -> None:
-        """Give every method the same number of force evaluations, or the same step again."""
-        live = self.live
-        h = math.copysign(least_h(live), live.h)
-        self.set_h(h if live.equal_cost else h * max(EQUAL_PARTS), not live.equal_cost)
+        """Toggle between equal force evaluations and equal steps for all methods."""
+        self.set_stepping(self.live.stepping.toggled())
 
     def action_scene(self, direction: int) -> None:
         """Start the next scene, or the previous one if direction is -1."""
@@ -90,9 +84,9 @@ class LiveScreen(SourceScreen):
             if scene is not None:
                 self.start(scene)
 
-        self.app.push_screen(StartForm(self.live.scene.altered(h=least_h(self.live))), chosen)
+        self.app.push_screen(StartForm(self.live.scene.altered(h=self.live.stepping.smallest)), chosen)
 
     def action_mark(self) -> None:
-        text = ALREADY if is_marked(self.live) else f"Mark at {self.live.sample.t:.2f} s"
+        text = ALREADY if self.live.is_marked else f"Mark at {self.live.sample.t:.2f} s"
         self.live.mark()
         self.notify(text, timeout=2)

@@ -1,4 +1,4 @@
-"""What lies over the lab until it is closed, and is closed once, however fast one clicks and types."""
+"""Screens over the lab, each of which closes once, however fast the clicks and keys come."""
 
 from contextlib import suppress
 
@@ -13,12 +13,12 @@ class _Once(Screen[ScreenResultType]):
     _dismissed = False
 
     def on_mount(self) -> None:
-        """Let no cursor blink where reduced motion is asked for: Textual would."""
+        """With reduced motion no cursor blinks; Textual lets it."""
         for field in self.query(Input):
             field.cursor_blink = self.app.animation_level != "none"
 
     def dismiss(self, result: ScreenResultType | None = None) -> AwaitComplete:
-        """Close, with a result.  Asked again, or while something lies over it, Textual would close another screen."""
+        """Close with a result; a second call, or one from below another screen, would close that one."""
         if self._dismissed or self.app.screen is not self:
             return AwaitComplete()
         self._dismissed = True
@@ -33,13 +33,13 @@ _gather = CommandPalette._gather_commands.__wrapped__  # type: ignore[attr-defin
 
 
 class Commands(CommandPalette, _Once[None]):
-    """The command palette, without what Textual 8.2 does when keys come faster than it can open and close it."""
+    """The command palette; Textual 8.2's raises errors if keys come faster than it opens and closes."""
 
     @work(exclusive=True, group=CommandPalette._GATHER_COMMANDS_GROUP)
     async def _gather_commands(self, search_value: str) -> None:
-        if self.query(CommandList):  # else it has been closed since
+        if self.query(CommandList):  # else it was closed meanwhile
             await _gather(self, search_value)
 
     def _action_command_list(self, action: str) -> None:
-        with suppress(KeyError):  # of a list that is not laid out yet
+        with suppress(KeyError):  # the list is not laid out yet
             super()._action_command_list(action)

@@ -11,7 +11,6 @@ from textual.widget import Widget
 from tui.cli.errors import UserError, explained
 from tui.playback.live import Live
 from tui.playback.replay import Replay
-from tui.playback.source import is_marked
 from tui.screens.base import ALREADY, SourceScreen
 from tui.screens.keys import COMMON, REPLAY
 from tui.screens.seek_bar import SeekBar
@@ -70,7 +69,7 @@ class ReplayScreen(SourceScreen):
 
     def action_mark(self) -> None:
         """Leave a mark next to the recording, which itself stays as it is."""
-        text = ALREADY if is_marked(self.replay) else f"Mark at {self.replay.sample.t:.2f} s simulated"
+        text = ALREADY if self.replay.is_marked else f"Mark at {self.replay.sample.t:.2f} s"
         try:
             self.replay.mark()
         except OSError as error:
@@ -101,7 +100,7 @@ class ReplayScreen(SourceScreen):
         """Continue live from here, once the run so far is known and simulated again up to here."""
         self.replay.pause(True)
         if not self.replay.fill():
-            self.notify("Reading what came before ...", timeout=2)
+            self.notify("Loading earlier samples ...", timeout=2)
         while not self.replay.fill():
             await asyncio.sleep(0)
         if self.replay.sample.step > LONG:
@@ -110,7 +109,7 @@ class ReplayScreen(SourceScreen):
         try:
             lab = self._go_live(live)
         except (OSError, UserError) as error:
-            self.notify(f"The lab cannot record: {explained(error)}", severity="warning", markup=False)
+            self.notify(f"Cannot start recording: {explained(error)}", severity="warning", markup=False)
             return
         self.end()
         self.app.push_screen(lab)

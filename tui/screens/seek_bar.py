@@ -20,7 +20,7 @@ LEAST = 24  # columns for the bar
 
 
 def bar(position: float, length: float, ticks: Sequence[float], ends: Sequence[tuple[float, str]], width: int) -> Row:
-    """The bar: what was played is heavy, events are ticks, the ends of the loop are letters."""
+    """The bar: heavy up to the position, a tick for each event, letters at the ends of the loop."""
 
     def column(clock: float) -> int:
         return min(int(clock / length * width), width - 1) if length > 0 else 0
@@ -41,7 +41,7 @@ def bar(position: float, length: float, ticks: Sequence[float], ends: Sequence[t
 
 
 def facts(replay: Replay, room: int) -> str:
-    """Position and length, of the recording clock; loop, run, step and event as far as there is room."""
+    """Position and length of the recording; loop, run, step and event as far as there is room."""
     runs, ticks = replay.recording.runs, replay.ticks
     text = f"recording {seconds(replay.playhead.position)} of {seconds(replay.length)}"
     for part in (
@@ -56,13 +56,13 @@ def facts(replay: Replay, room: int) -> str:
 
 
 class SeekBar(Pane):
-    """The bar.  Click or drag on it to go elsewhere."""
+    """The bar; a click or a drag on it goes there."""
 
     @dataclass
     class Sought(Message):
-        """The user wants to be at this moment of the recording clock."""
+        """The user wants to see this moment."""
 
-        position: float  # s
+        position: float  # s of the recording
 
     def __init__(self) -> None:
         super().__init__()

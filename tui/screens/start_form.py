@@ -1,4 +1,4 @@
-"""StartForm: the start values, checked as they are typed."""
+"""StartForm: the start values, checked while they are typed."""
 
 import argparse
 from collections.abc import Callable
@@ -24,7 +24,7 @@ FIELDS: dict[str, tuple[str, Callable[[str], float]]] = {
 
 
 def scene_from(texts: dict[str, str], before: Scene) -> Scene:
-    """The scene that the form describes.  Raises ValueError with a sentence if there is none."""
+    """The scene of these values.  Raises ValueError with a sentence if they are not valid."""
     values = {}
     for name, text in texts.items():
         try:
@@ -49,7 +49,6 @@ class StartForm(Modal[Scene | None]):
         self._scene: Scene | None = scene
 
     def compose(self) -> ComposeResult:
-        """A line for each value."""
         with Container(id="form") as form:
             form.border_title = "Start values"
             form.border_subtitle = "Enter starts, Esc cancels"
@@ -62,7 +61,7 @@ class StartForm(Modal[Scene | None]):
 
     @on(Input.Changed)
     def check(self) -> None:
-        """Say whether that can be started."""
+        """Show what is wrong with the values, or w0 and z."""
         texts = {name: self.query_one(f"#{name}", Input).value for name in FIELDS}
         verdict = self.query_one("#verdict", Label)
         try:
@@ -76,13 +75,11 @@ class StartForm(Modal[Scene | None]):
 
     @on(Input.Submitted)
     def submit(self) -> None:
-        """Start, if that is possible."""
         if self._scene is not None:
             self.dismiss(self._scene)
 
     def on_click(self, event: events.Click) -> None:
-        """A click beside the form cancels."""
-        if event.widget is self:
+        if event.widget is self:  # outside the form
             self.dismiss(None)
 
     def _summary(self) -> str:

@@ -4,12 +4,13 @@ import math
 from typing import NamedTuple
 
 from rich.style import Style
+from textual.reactive import var
 
 from engine.run.lockstep import Sample
 from recordings.errors import printable
 from tui.drawing.cells import Row
 from tui.drawing.palette import FRAME, TEXT, WARN
-from tui.playback.source import Source, own_h
+from tui.playback.source import Source
 from tui.views.view import Pane
 from tui.words.findings import limit_warning
 from tui.words.numbers import file_size, percent, seconds
@@ -35,23 +36,25 @@ def coarse(value: float) -> str:
     return f"{int(value)} s" if value < 60 else f"{int(value / 60)} min" if value < 3600 else seconds(value)
 
 
-def status_row(source: Source, width: int) -> Row:
-    """The line, as far as there is room."""
+def status_row(source: Source, width: int, frames: int | None = None) -> Row:
+    """The line, as far as there is room; `frames` a second where the machine is too slow for more."""
     scene, playhead, pace, recording = source.scene, source.playhead, source.pace, source.recording_status
-    z, live, named = abs(source.h) * scene.w0, source.kind == "LIVE", bool(scene.watch)
-    warning = limit_warning([abs(h) * scene.w0 for h in own_h(source)])
+    z, live, named = abs(source.stepping.h) * scene.w0, source.kind == "LIVE", bool(scene.watch)
+    warning = limit_warning([abs(h) * scene.w0 for h in source.stepping.own()])
     parts = [
-        _Part(12, "paused " if playhead.paused else "reversed" if source.h < 0 else "running"),
+        _Part(12, "paused " if playhead.paused else "backwards" if source.stepping.h < 0 else "running"),
         _Part(7, speed_text(playhead.speed)),
-        _Part(11, f"t {seconds(source.sample.t)}{'' if live else ' simulated'}"),
-        _Part(11, f"h {source.h:.4g} s{' equal cost' if source.equal_cost else ''}"),
+        _Part(11, f"t {seconds(source.sample.t)}"),
+        _Part(11, f"h {source.stepping.h:.4g} s{' equal cost' if source.stepping.equal_cost else ''}"),
         _Part(10, f"z {z:.3g}", WARN if warning else TEXT),
         *([_Part(9, warning, WARN)] if warning else []),
-        _Part(6 if named else 3, scene.name, FRAME),
+        _Part(6 if named else 3, f"scene {scene.name}" if named else f"{scene.name} scene", FRAME),
         _Part(4 if named else 6, f"{math.degrees(scene.theta):.4g}° {scene.omega:.4g} rad/s"),
     ]
     if pace.share < 0.99:
-        parts.insert(2, _Part(10, f"real-time {percent(pace.share)}", WARN))
+        parts.insert(2, _Part(10, f"only {percent(pace.share)} of {speed_text(playhead.speed)}", WARN))
+    if frames is not None:
+        parts.append(_Part(9, f"{frames} frames/s", WARN))
     if recording is None:
         parts.append(_Part(8, "not recorded", FRAME))
     elif recording.failed:
@@ -70,8 +73,10 @@ def status_row(source: Source, width: int) -> Row:
 class StatusLine(Pane):
     """The line; LIVE and REPLAY stand out."""
 
+    frames: var[int | None] = var(None)
+
     def paint(self, source: Source, sample: Sample) -> None:
-        self.show([status_row(source, self.room.width)])
+        self.show([status_row(source, self.room.width, self.frames)])
 
     def style_of(self, owner: int, base: Style) -> Style:
         if owner == BADGE:

@@ -4,6 +4,8 @@ import asyncio
 import re
 from collections.abc import Sequence
 
+from textual.widget import Widget
+
 from engine.scenes import Scene
 from tui.playback.live import Live
 from tui.screens.app import PenduApp
@@ -33,12 +35,17 @@ async def still(
 
 
 async def settled(app: PenduApp) -> None:
-    """Wait until every pane that takes its time shows the newest data."""
+    """Wait until every pane shows the newest data."""
     async with asyncio.timeout(PATIENCE):
-        while not all(getattr(pane, "settled", True) for pane in app.source_screen.query("#views *")):
+        while not all(_is_settled(pane) for pane in app.source_screen.query("#views *").results(Widget)):
             await asyncio.sleep(0.01)
 
 
+def _is_settled(pane: Widget) -> bool:
+    shown = getattr(pane, "drawable", True) or not pane.is_on_screen  # else it is still to hear that it is shown
+    return shown and getattr(pane, "settled", True)
+
+
 def normalised(svg: str) -> str:
-    """The picture without the number that makes its names unique in a page."""
+    """The picture without the random number in Rich's names."""
     return re.sub(r"terminal-\d+-", "terminal-", svg)

@@ -20,7 +20,7 @@ from tui.words.describe import step_text
 def help_text(keys: Sequence[Key], source: Source) -> str:
     """What to watch in the scene, the keys by group, and the methods."""
     scene = source.scene
-    now = "" if source.h == scene.h else f"h = {step_text(source)}"
+    now = "" if source.stepping.h == scene.h else f"h = {step_text(source)}"
     return "\n\n".join([scene_card(scene, now), key_list(keys), *map(method_card, range(len(METHODS)))])
 
 

@@ -1,6 +1,5 @@
 """TooSmall: the message on a terminal that is too small for everything else."""
 
-from tui.drawing.canvas import Picture
 from tui.drawing.cells import CellWidget
 from tui.drawing.palette import TEXT
 from tui.terminal.options import SMALLEST
@@ -10,7 +9,9 @@ class TooSmall(CellWidget):
     """Says the size there is and the size it takes; the keys still work."""
 
     def draw(self) -> None:
+        from tui.drawing.canvas import Picture  # brings NumPy, which a lab on screen does not wait for
+
         columns, rows = self.room
         needed = "x".join(map(str, SMALLEST))
-        text = f"This terminal has {columns}x{rows}, pendu needs {needed}. Enlarge it, or q quits."
+        text = f"Terminal too small: {columns}x{rows}, need {needed}. Enlarge it, or press q to quit."
         self.show_picture(Picture.of_text(text, columns, rows, TEXT))

@@ -10,14 +10,13 @@ def check_terminal() -> None:
     """Raise UserError unless the lab can be shown: Textual itself would print garbage."""
     if not all(stream is not None and stream.isatty() for stream in (sys.__stdin__, sys.__stdout__, sys.__stderr__)):
         raise UserError(
-            "this is no terminal: the lab needs one for its input and its output; pendu-tui run needs none,"
-            " nor does --plain.",
+            "not a terminal: the lab is interactive. Use pendu-tui run, or --plain.",
             Exit.TERMINAL_UNSUITABLE,
         )
     term = os.environ.get("TERM", "")
     if term in ("", "dumb", "unknown"):
         raise UserError(
-            f"the terminal (TERM={term}) cannot move its cursor: set TERM to what it is, such as xterm-256color.",
+            f"the terminal (TERM={term}) cannot move its cursor: set TERM correctly, e.g. xterm-256color.",
             Exit.TERMINAL_UNSUITABLE,
         )
 

@@ -13,7 +13,7 @@ CharacterSet = Literal["braille", "half", "ascii"]
 
 CHARACTER_SETS: tuple[CharacterSet, ...] = get_args(CharacterSet)
 FPS, CALM_FPS, MOST_FPS = 30, 10, 60
-SMALLEST = (60, 16)  # columns, rows of a terminal that the lab fits on
+SMALLEST = (60, 16)  # columns and rows of the smallest terminal on which the lab fits
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,22 +33,23 @@ USUAL = TerminalOptions()
 def add_terminal_options(parser: argparse.ArgumentParser) -> None:
     """Add the options for showing the lab; `terminal_options_of` reads them."""
     group = add_picture_options(parser, "auto", "auto")
-    group.add_argument("--plain", action="store_true", help="no screen but a sentence a second; Ctrl+C ends it")
-    group.add_argument("--no-mouse", action="store_true", help="leave the mouse to the terminal; every click has a key")
+    group.add_argument("--plain", action="store_true", help="no TUI: print a sentence per second; Ctrl+C to stop")
+    group.add_argument("--no-mouse", action="store_true", help="disable the mouse; every mouse action also has a key")
     group.add_argument(
-        "--fps", metavar="N", type=_fps, help=f"frames a second ({FPS}; {CALM_FPS} with TEXTUAL_ANIMATIONS=none)"
+        "--fps", metavar="N", type=_fps, help=f"frames per second ({FPS}; {CALM_FPS} with TEXTUAL_ANIMATIONS=none)"
     )
 
 
 def add_picture_options(parser: argparse.ArgumentParser, theme: str, character_set: str) -> argparse._ArgumentGroup:
     """Add only those that also apply to a picture of the lab, with these defaults."""
     parser.set_defaults(no_mouse=False, fps=None)
-    group = parser.add_argument_group(
-        "display", "auto: as the terminal says it can; pendu-tui doctor tells what that is"
-    )
+    group = parser.add_argument_group("display", "auto: detected from the terminal (see pendu-tui doctor)")
     group.add_argument("--theme", choices=("auto", *PALETTES), default=theme, help="colours (%(default)s)")
     group.add_argument(
-        "--pixels", choices=("auto", *CHARACTER_SETS), default=character_set, help="what is drawn with (%(default)s)"
+        "--pixels",
+        choices=("auto", *CHARACTER_SETS),
+        default=character_set,
+        help="what to draw with (%(default)s)",
     )
     group.add_argument("--present", action="store_true", help="large numbers and thick lines, for a projector")
     return group
@@ -56,7 +57,7 @@ def add_picture_options(parser: argparse.ArgumentParser, theme: str, character_s
 
 def _fps(text: str) -> int:
     if count(text) > MOST_FPS:
-        raise argparse.ArgumentTypeError(f"{text!r} is out of range: give 1 to {MOST_FPS} frames a second")
+        raise argparse.ArgumentTypeError(f"{text!r} is out of range; use 1 to {MOST_FPS} frames per second")
     return count(text)
 
 

@@ -1,4 +1,9 @@
-"""The views.  A view is a module here with a widget, and its entry in VIEWS."""
+"""The views between status line and key line, each in a folder with its panes: `lab`, `phase`, `accuracy`, `stability`.
+
+A screen binds its Source and Samples to a View, and the View to its Panes, both of which `view` defines.  Panes draw,
+and post `messages` that ask the lab for another start or step size.  `keys` describes a key for bindings and help,
+`background` computes in another process for F4 and F5.
+"""
 
 from importlib import import_module
 from typing import TYPE_CHECKING, NamedTuple
@@ -8,7 +13,7 @@ if TYPE_CHECKING:  # the process that computes for a view starts sooner without 
 
 
 class ViewEntry(NamedTuple):
-    """Where a view is, and how one gets there."""
+    """A view: its title, and where its widget is."""
 
     title: str
     module: str  # imported when the view is first shown
@@ -21,7 +26,7 @@ VIEWS: dict[str, ViewEntry] = {
     "accuracy": ViewEntry("Accuracy", "tui.views.accuracy.view", "AccuracyView"),
     "stability": ViewEntry("Stability", "tui.views.stability.view", "StabilityView"),
 }
-"""In the order in which v goes through them."""
+"""In the order of the key v."""
 
 
 def create(name: str) -> "View":

@@ -21,17 +21,17 @@ def bindings(*keys: Key) -> list[BindingType]:
     return [Binding(key.names, key.action, key.does, show=False) for key in keys if key.names]
 
 
-def arrows(group: str, does: str, big_step: int) -> tuple[Key, ...]:
+def arrows(group: str, cursor: str, purpose: str, big_step: int) -> tuple[Key, ...]:
     """The keys for `move(right, up)`, with shift in big steps; of four arrows, the help shows the first."""
     directions = {"left": (-1, 0), "right": (1, 0), "up": (0, 1), "down": (0, -1)}
     return tuple(
         Key(
             f"{shift}{name}",
             f"{shift}arrows" if name == "left" else "",
-            f"{does}{how}",
+            does,
             f"move({step * right}, {step * up})",
             group,
         )
-        for shift, step, how in (("", 1, ""), ("shift+", big_step, " in big steps"))
+        for shift, step, does in (("", 1, f"{cursor}, to {purpose}"), ("shift+", big_step, f"{cursor} in big steps"))
         for name, (right, up) in directions.items()
     )

@@ -1,9 +1,10 @@
-"""What views ask of the lab."""
+"""Messages from a view to the lab."""
 
 from dataclasses import dataclass
 
 from textual.message import Message
 
+from engine.run.stepping import Stepping
 from engine.scenes import Scene
 
 
@@ -16,6 +17,6 @@ class SceneChosen(Message):
 
 @dataclass
 class StepSizeChosen(Message):
-    """The user wants to go on with this step size."""
+    """The user wants to continue with this step size."""
 
-    h: float  # s, without the sign of time's direction
+    stepping: Stepping

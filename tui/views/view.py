@@ -17,7 +17,13 @@ Place = TypeVar("Place")
 DESCRIBED_FIRST = [method.key for method in METHODS].index("velocity_verlet")
 
 
-class View(Container):
+class Box(Container):
+    """A container that its children cover, so that Textual need not ask the sheet how it looks with every paint."""
+
+    BLANK = True
+
+
+class View(Box):
     """A view gets these from the screen, and passes them on to its panes with data_bind."""
 
     KEYS: ClassVar[tuple[Key, ...]] = ()
@@ -31,6 +37,32 @@ class View(Container):
     sample_5hz: var[Sample | None] = var(None)
     """The sample as often as a chart is worth building, 5 times a second."""
     shown: var[Shown] = var(Shown())
+
+    def __init__(self, id: str | None = None) -> None:
+        super().__init__(id=id)
+        self._moving: list[Pane] = []
+        self._late: list[Pane] = []
+
+    def moving(self, pane: "Pane", late: bool = False) -> "Pane":
+        """A pane that follows every frame: it gets the sample directly, for data_bind takes longer than drawing.
+
+        A late one draws after the first paint only, since NumPy takes long to import.
+        """
+        (self._late if late else self._moving).append(pane)
+        return pane.data_bind(View.source, View.shown)
+
+    def on_mount(self) -> None:
+        self.watch_sample()
+        self.call_after_refresh(self._begin)
+
+    def _begin(self) -> None:
+        self._moving += self._late
+        self.watch_sample()
+
+    def watch_sample(self) -> None:
+        for pane in self._moving:
+            pane.set_reactive(Pane.sample, self.sample)
+            pane.draw()
 
 
 class Pane(CellWidget):

@@ -30,9 +30,9 @@ def _run(source: Source) -> list[str]:
 
 def step_text(source: Source) -> str:
     """The current step: "0.2 s, z = 0.626; at equal cost, the cheaper methods split it; time runs backwards"."""
-    parts = "; at equal cost, the cheaper methods split it" if source.equal_cost else ""
-    backwards = "; time runs backwards" if source.h < 0 else ""
-    return f"{abs(source.h):.4g} s, z = {abs(source.h) * source.scene.w0:.3g}{parts}{backwards}"
+    parts = "; at equal cost, the cheaper methods split it" if source.stepping.equal_cost else ""
+    backwards = "; time runs backwards" if source.stepping.h < 0 else ""
+    return f"{abs(source.stepping.h):.4g} s, z = {abs(source.stepping.h) * source.scene.w0:.3g}{parts}{backwards}"
 
 
 def method_sentence(source: Source, index: int) -> str:

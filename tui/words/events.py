@@ -11,7 +11,7 @@ from tui.playback.source import Source
 from tui.words.findings import short_name
 from tui.words.numbers import two_digits
 
-VERDICTS: dict[Verdict, str] = {"bounded": "stays bounded", "drifts": "loses energy", "grows": "gains energy"}
+VERDICTS: dict[Verdict, str] = {"bounded": "stays bounded", "loses": "loses energy", "grows": "gains energy"}
 
 
 class EventLine(NamedTuple):

@@ -35,7 +35,7 @@ def forecast(source: Source, index: int) -> Forecast | None:
     """
     judgement, error = source.judgements[index], source.sample.readings[index].energy_error
     slope, uncertainty = judgement.slope, judgement.uncertainty
-    if judgement.verdict != "drifts" or not slope or uncertainty is None or 10 * uncertainty > abs(slope):
+    if judgement.verdict != "loses" or not slope or uncertainty is None or 10 * uncertainty > abs(slope):
         return None
     if any(event.kind == "set_h" and event.run == source.sample.run for event in source.events):
         return None
@@ -62,7 +62,7 @@ def ending(milestone: Milestone) -> str:
     """The sentence on a method that failed, or that went over the top, where the exact pendulum never gets."""
     name = milestone.method.label
     if milestone.kind == "failed":
-        return f"{name} failed at {milestone.t:.4g} s: its numbers are no longer finite."
+        return f"{name} failed at {milestone.t:.4g} s: its energy error is no longer finite."
     ratio = two_digits(1 + milestone.energy_error)
     return f"{name} went over the top at {milestone.t:.3g} s with {ratio} times its initial energy."
 
@@ -82,7 +82,7 @@ def staying(source: Source) -> str:
 def leaving(source: Source, index: int) -> str:
     """The sentence on a method that gains or loses energy; "" if that is not known."""
     judgement = source.judgements[index]
-    slope = {"grows": 1, "drifts": -1}.get(judgement.verdict, 0) * (judgement.slope or 0)
+    slope = {"grows": 1, "loses": -1}.get(judgement.verdict, 0) * (judgement.slope or 0)
     if slope <= 0:
         return ""
     verb = "gains" if judgement.verdict == "grows" else "loses"

@@ -47,13 +47,13 @@ def insight(source: Source) -> str:
     if abs(sample.t) < WATCH * pace and (text := _watch(source)):
         return text
     sentences = lasting(source)
-    return sentences[int(sample.step * abs(source.h) / (TURN * pace)) % len(sentences)]
+    return sentences[int(sample.step * abs(source.stepping.h) / (TURN * pace)) % len(sentences)]
 
 
 def _news(source: Source, seconds: float) -> str:
     """The newest milestone of the last simulated seconds; failures first, then over the top, then verdicts."""
     kinds = ("verdict", "over the top", "failed")
-    recent = [each for each in source.milestones if (source.sample.step - each.step) * abs(source.h) < seconds]
+    recent = [each for each in source.milestones if (source.sample.step - each.step) * abs(source.stepping.h) < seconds]
     newest = sorted(recent, key=lambda each: (kinds.index(each.kind), each.step))
     return next(filter(None, (_sentence(source, each) for each in reversed(newest))), "")
 
@@ -75,7 +75,7 @@ def lasting(source: Source) -> list[str]:
 
 def _watch(source: Source) -> str:
     """The scene's own sentence, which holds for its own step size only."""
-    return source.scene.watch if source.h == source.scene.h else ""
+    return source.scene.watch if source.stepping.h == source.scene.h else ""
 
 
 def return_text(scene: Scene, sample: Sample) -> str:

@@ -64,8 +64,24 @@ def test_explicit_euler_never_reaches_1e_3_over_100_s():
     assert "still" in euler.why_not
 
 
+@pytest.mark.parametrize(("target", "time"), [(2e-13, 20.0), (1e-12, 100.0)])
+def test_a_target_near_the_rounding_floor_is_reached_where_refining_still_helps(target, time):
+    point = recommended(DRIFT, time, "theta", target)
+    assert point.method is R
+    assert point.theta_error <= target
+
+
+def test_only_what_half_the_steps_show_to_be_rounding_is_called_so():
+    study = Study(SCENES["gentle"], 20.0, LOOPS)
+    falls, stays = study.run(R, 2**17), study.run(R, 2**19)
+    assert falls.theta_error < study.run(R, 2**16).theta_error / 8  # it is below what rounding may be, and order 4
+    assert study.may_be_rounding(falls)
+    assert falls.flaws.theta is None
+    assert stays.flaws.theta == "rounding"
+
+
 def test_where_no_method_gets_there_every_method_says_why():
-    attempts = list(reach(Study(DRIFT, 20.0, LOOPS), "theta", 1e-16, most=400_000))
+    attempts = list(reach(Study(DRIFT, 2.0, LOOPS), "theta", 1e-17, most=400_000))
     assert cheapest(attempts) is None
     reasons = {attempt.method: attempt.why_not for attempt in attempts}
     assert reasons[R].startswith("rounding stops it at ")

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.models.exact_pendulum import ExactMotion
-from engine.models.pendulum import acceleration, energy, energy_scale, separatrix_energy, separatrix_margin
+from engine.models.pendulum import acceleration, energy, energy_reference, separatrix_energy, separatrix_margin
 from engine.scenes import Scene
 
 
@@ -55,5 +55,5 @@ def test_the_margin_keeps_its_digits_where_the_energy_has_lost_them() -> None:
 
 
 def test_errors_are_relative_to_the_start_or_where_that_has_no_energy_to_the_separatrix() -> None:
-    assert energy_scale(9.81, 3.0) == 3.0
-    assert energy_scale(9.81, 0.0) == separatrix_energy(9.81)
+    assert energy_reference(9.81, 0.0, 2.0) == (2.0, 2.0)
+    assert energy_reference(9.81, 0.0, 0.0) == (0.0, separatrix_energy(9.81))

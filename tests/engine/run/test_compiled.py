@@ -12,6 +12,7 @@ from engine.methods import METHODS
 from engine.run import compiled
 from engine.run.lockstep import Lockstep
 from engine.run.loops import plain
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES
 from tests.engine.run.test_loops import OVERFLOWING
 
@@ -59,19 +60,35 @@ def test_a_lockstep_can_be_copied_and_given_either_loops():
     copied, slow = copy.deepcopy(start), Lockstep(SCENES["spin"])
     slow.advance(1000)
     for lockstep in (start, copied, slow):
-        lockstep.set_h(-0.01)
+        lockstep.set_stepping(Stepping(-0.01))
         lockstep.advance(500)
     assert start.sample() == copied.sample() == slow.sample()
 
 
 @each_method
-def test_loops_that_are_compiled_when_it_pays_give_the_same_bits_before_and_after(method, monkeypatch):
+@pytest.mark.parametrize("ahead", [0, 10_000])
+def test_loops_that_are_compiled_when_it_pays_give_the_same_bits_before_and_after(method, ahead, monkeypatch):
     monkeypatch.setattr(compiled, "COMPILED_FROM", 3_000)
-    loops = compiled.tiered.__wrapped__(method)
+    loops = compiled.tiered.__wrapped__(method, ahead=ahead)
     for n in (1_000, 1_000, 2_000, 500):
         start = (9.81, (2.0, 0.0), 0.05, n)
         assert loops.travel(*start) == plain(method).travel(*start)
         assert loops.advance(*start, math.inf) == plain(method).advance(*start, math.inf)
+
+
+@needs_numba
+@pytest.mark.parametrize(("ahead", "compiled_steps"), [(0, [2, 4]), (3, [1, 2, 4])])
+def test_it_pays_from_a_number_of_steps_done_or_known_to_lie_ahead(ahead, compiled_steps, monkeypatch):
+    monkeypatch.setattr(compiled, "COMPILED_FROM", 3)
+    used = []
+
+    def fast(method):
+        return plain(method)._replace(travel=lambda *start: used.append(start[-1]))
+
+    loops = compiled.tiered.__wrapped__(METHODS[0], fast, ahead)
+    for n in (1, 2, 4):
+        loops.travel(9.81, (1.0, 0.0), 0.05, n)
+    assert used == compiled_steps
 
 
 def test_a_few_steps_do_not_import_numba():

@@ -12,6 +12,7 @@ from engine.methods import METHODS, Step
 from engine.models.pendulum import acceleration, energy
 from engine.models.state import Acceleration, Phase
 from engine.run.lockstep import Lockstep, Reading, Sample
+from engine.run.stepping import Stepping
 from engine.scenes import LIMITS, SCENES, Scene, SceneError
 
 scenes = st.builds(
@@ -66,7 +67,7 @@ def test_two_runs_with_the_same_changes_of_h_give_the_same_bits(scene: Scene, ch
     for lockstep in runs:
         for n, h in changes:
             lockstep.advance(n)
-            lockstep.set_h(h)
+            lockstep.set_stepping(Stepping(h))
         lockstep.advance(40)
     assert runs[0].sample() == runs[1].sample()
 
@@ -94,7 +95,7 @@ def test_time_is_counted_from_the_last_change_of_h_and_never_summed(
             lockstep.advance(1)
             assert lockstep.t == base + done * h
         base, h = base + n * h, following
-        lockstep.set_h(h)
+        lockstep.set_stepping(Stepping(h))
         assert lockstep.t == base
     assert lockstep.step == sum(n for n, _ in changes)
 
@@ -136,7 +137,7 @@ def test_time_reversed_verlet_comes_back_and_its_run_counts_on() -> None:
     scene = SCENES["drift"]
     lockstep = Lockstep(scene)
     lockstep.advance(200)
-    lockstep.set_h(-scene.h)
+    lockstep.set_stepping(Stepping(-scene.h))
     lockstep.advance(200)
     sample = lockstep.sample()
     explicit, symplectic, verlet, rk4 = (abs(reading.theta - scene.theta) for reading in sample.readings)
@@ -149,9 +150,9 @@ def test_time_reversed_verlet_comes_back_and_its_run_counts_on() -> None:
 def test_a_useless_step_size_is_refused_and_the_old_one_stays(h: float) -> None:
     lockstep = Lockstep(SCENES["drift"])
     lockstep.advance(3)
-    with pytest.raises(SceneError, match="no usable step"):
-        lockstep.set_h(h)
-    assert (lockstep.h, lockstep.t) == (0.05, 3 * 0.05)
+    with pytest.raises(SceneError, match="not a usable step"):
+        lockstep.set_stepping(Stepping(h))
+    assert (lockstep.stepping.h, lockstep.t) == (0.05, 3 * 0.05)
 
 
 def exploding(acceleration: Acceleration, phase: Phase, h: float) -> Phase:
@@ -201,7 +202,7 @@ def test_no_legal_start_gives_anything_but_finite_numbers(
     h = z / math.sqrt(gravity / length)
     lockstep = Lockstep(Scene(theta=theta, omega=omega, length=length, gravity=gravity, h=h))
     for step_size in (h, -h / 2):
-        lockstep.set_h(step_size)
+        lockstep.set_stepping(Stepping(step_size))
         lockstep.advance(n)
         sample = lockstep.sample()
         assert all(math.isfinite(number) for reading in sample.readings for number in (sample.t, *numbers(reading)))

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from engine.run.lockstep import Lockstep, Sample
 from engine.run.rewindable import COPY_EVERY, RewindableRun
+from engine.run.stepping import Stepping
 from engine.scenes import DEFAULT_SCENE, SCENES
 
 MOVES = st.lists(st.integers(-1500, 2500), min_size=1, max_size=8)
@@ -18,7 +19,7 @@ def straight(step: int, changes: dict[int, float]) -> Sample:
     lockstep = Lockstep(DEFAULT_SCENE)
     for at in sorted(at for at in changes if at < step):
         lockstep.advance(at - lockstep.step)
-        lockstep.set_h(changes[at])
+        lockstep.set_stepping(Stepping(changes[at]))
     lockstep.advance(step - lockstep.step)
     return lockstep.sample()
 
@@ -50,7 +51,7 @@ def test_back_and_forth_ends_where_the_straight_way_does_with_the_same_bits(move
 def test_changes_of_h_are_repeated_on_the_way_there(moves, h):
     course = RewindableRun(DEFAULT_SCENE, 1)
     course.forward(700)
-    course.set_h(h)
+    course.set_stepping(Stepping(h))
     course.forward(1900)
     course.sample()
     for n in moves:
@@ -74,24 +75,24 @@ def test_in_the_past_one_knows_what_comes_next_and_at_the_end_one_does_not():
 def test_a_change_made_where_one_steps_back_to_is_still_to_come():
     course = RewindableRun(DEFAULT_SCENE, 1)
     course.forward(10)
-    course.set_h(0.1)
+    course.set_stepping(Stepping(0.1))
     course.forward(5)
     course.sample()
     course.back_to(10)
-    assert course.h == DEFAULT_SCENE.h
+    assert course.stepping.h == DEFAULT_SCENE.h
     course.forward(1)
-    assert course.h == 0.1
+    assert course.stepping.h == 0.1
 
 
 def test_a_branch_shares_the_past_and_forgets_what_came_next():
     course = RewindableRun(DEFAULT_SCENE, 1)
     course.forward(100)
-    course.set_h(0.1)
+    course.set_stepping(Stepping(0.1))
     course.forward(5000)
     course.sample()
     course.back_to(2000)
     course.branch(2)
-    course.set_h(0.02)
+    course.set_stepping(Stepping(0.02))
     course.forward(3000)
     sample = course.sample()
     assert sample.run == 2
@@ -126,7 +127,7 @@ def test_the_way_back_is_kept_in_few_copies_the_closer_the_more_recent():
 def test_time_run_through_goes_up_even_while_time_runs_backwards():
     course = RewindableRun(DEFAULT_SCENE, 1)
     course.forward(100)
-    course.set_h(-0.05)
+    course.set_stepping(Stepping(-0.05))
     course.forward(40)
     assert course.t == 3.0
     assert course.x == 7.0

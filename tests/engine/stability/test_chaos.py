@@ -84,4 +84,4 @@ def test_regular_swings_are_not_called_chaotic(theta: float, z: float) -> None:
 @pytest.mark.parametrize(("theta", "z"), [(1.0, 1.535), (2.0, 1.38), (3.0, 0.67)])
 def test_swings_in_the_chaotic_sea_are_called_chaotic(theta: float, z: float) -> None:
     assert is_chaotic(velocity_verlet, theta, z)
-    assert lyapunov(velocity_verlet, theta, 0.0, z, 10_000) > 0.018  # twice the threshold
+    assert lyapunov(velocity_verlet, theta, 0.0, z, 10_000) > 0.018

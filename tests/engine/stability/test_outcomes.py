@@ -10,7 +10,18 @@ from engine.methods import METHODS, Method, Step, explicit_euler, rk4, velocity_
 from engine.models.pendulum import acceleration, energy
 from engine.models.state import Phase
 from engine.stability.linear import energy_range
-from engine.stability.outcomes import BAND, FATES, GROWS, first_failure, outcomes
+from engine.stability.outcomes import (
+    BAND,
+    CAUGHT,
+    CHAOTIC,
+    FATES,
+    GROWS,
+    HOLDS,
+    WOBBLES,
+    first_failure,
+    is_lost,
+    outcomes,
+)
 
 BY_KEY = {method.key: method for method in METHODS}
 FORCE = acceleration(1.0)
@@ -27,9 +38,11 @@ def fate(key: str, theta: float, z: float, steps: int = 2000) -> str:
     return FATES[outcomes(BY_KEY[key], np.array([theta]), np.array([z]), steps)["fate"][0]]
 
 
-def failure_of(key: str, theta: float, ladder: np.ndarray, steps: int) -> tuple[float, str] | None:
+def failure_of(
+    key: str, theta: float, ladder: np.ndarray, steps: int, within: int | None = None
+) -> tuple[float, str] | None:
     cells = outcomes(BY_KEY[key], np.full(len(ladder), theta), ladder, steps)
-    failure = first_failure(BY_KEY[key], theta, ladder, cells)
+    failure = first_failure(ladder, cells, within)
     return failure and (failure.z, failure.reason)
 
 
@@ -54,13 +67,19 @@ def test_each_swing_of_an_ensemble_is_what_a_plain_loop_says(
             worst = max(worst, abs(now - start) / start)
             if abs(phase[0]) > math.pi:
                 expected = "over the top"
+            elif method.symplectic:
+                survived += 1
             elif now > (1 + BAND) * highest * start:
                 expected = "grows"
             elif now < (1 - BAND) * lowest * start:
-                expected = "drifts"
+                expected = "loses"
             else:
                 survived += 1
-        assert (cell["steps"], FATES[cell["fate"]], cell["error"]) == (survived, expected, worst)
+        if method.symplectic and expected == "holds":
+            assert cell["fate"] in (HOLDS, WOBBLES, CAUGHT, CHAOTIC)
+        else:
+            assert FATES[cell["fate"]] == expected
+        assert (cell["steps"], cell["error"]) == (survived, worst)
 
 
 def test_a_swing_knows_nothing_of_the_others() -> None:
@@ -75,7 +94,7 @@ def test_a_swing_knows_nothing_of_the_others() -> None:
 @pytest.mark.parametrize("theta", [0.01, 1.0, 2.0, 2.8])
 def test_symplectic_methods_hold_every_swing_at_small_steps(key: str, theta: float) -> None:
     ladder = np.linspace(0.05, 0.6, 12)
-    assert not outcomes(BY_KEY[key], np.full(12, theta), ladder, 2000)["fate"].any()
+    assert not is_lost(outcomes(BY_KEY[key], np.full(12, theta), ladder, 2000)).any()
 
 
 @pytest.mark.parametrize("theta", [0.1, 1.0, 2.0, 3.0])
@@ -106,13 +125,13 @@ def test_rk4_loses_energy_as_h_to_the_fifth(theta: float) -> None:
 
 
 @pytest.mark.parametrize("theta", [0.01, 0.05])
-def test_small_swings_fail_at_the_linear_limit(theta: float) -> None:
+def test_small_swings_are_held_no_longer_at_the_linear_limit(theta: float) -> None:
     # RK4's growth sets in slowly above its limit, and its decay below is no failure in 60 steps.
     ladder, steps = np.linspace(1.9, 3, 111), {"rk4": 60}
     for method in METHODS:
         if method.linear_limit:
             cells = outcomes(method, np.full(111, theta), ladder, steps.get(method.key, 500))
-            first = ladder[np.flatnonzero(cells["fate"] == GROWS)[0]]
+            first = ladder[np.flatnonzero(cells["fate"] == (CAUGHT if method.symplectic else GROWS))[0]]
             assert method.linear_limit <= first < method.linear_limit + 0.05
 
 
@@ -138,14 +157,37 @@ def test_a_tiny_swing_just_beyond_two_grows_to_the_catching_orbit_and_stays(z: f
     assert largest == pytest.approx(math.sqrt(2) * q, rel=0.02)
 
 
-def test_the_one_to_four_resonance_has_a_bounded_window_above_it() -> None:
-    ladder = np.arange(1.3, 1.8, 0.01)
-    found = failure_of("velocity_verlet", 0.5, ladder, 2000)
+def test_a_resonance_that_the_swing_comes_back_from_loses_nothing() -> None:
+    """Beside z = 2 sin(pi/4) velocity Verlet swings 10 % wider than it should, and back; on both sides it does not."""
+    fates = [fate("velocity_verlet", 0.5, z) for z in (1.3, 1.43, 1.6)]
+    assert fates == ["holds", "holds, wobbling", "holds"]
+
+
+@pytest.mark.parametrize(
+    ("key", "degrees", "z"),
+    [
+        ("symplectic_euler", 57.3, 1.64),
+        ("symplectic_euler", 5.73, 2.13),
+        ("velocity_verlet", 28.65, 2.17),
+        ("velocity_verlet", 40.1, 2.19),
+        ("velocity_verlet", 57.3, 1.53),
+    ],
+)
+def test_the_first_real_losses(key: str, degrees: float, z: float) -> None:
+    found = failure_of(key, math.radians(degrees), np.arange(1.0, 2.3, 0.01), 10_000)
     assert found is not None
-    z, reason = found
-    assert reason == "resonance"
-    assert z == pytest.approx(2 * math.sin(math.pi / 4), abs=0.04)  # the larger the swing, the slower: z is above
-    assert fate("velocity_verlet", 0.5, 1.3) == fate("velocity_verlet", 0.5, 1.6) == "holds"
+    assert found[0] == pytest.approx(z, abs=0.015)
+
+
+def test_beyond_its_linear_limit_velocity_verlet_is_caught_as_in_the_scene() -> None:
+    assert fate("velocity_verlet", 0.518, 2.092, 10_000) == "caught"
+    assert fate("velocity_verlet", 0.1, 2.02, 10_000) == "caught"
+
+
+def test_the_limit_moves_with_the_steps_that_it_rests_on() -> None:
+    ladder = np.arange(1.0, 1.5, 0.01)
+    limits = [failure_of("velocity_verlet", 2.0, ladder, 10_000, within) for within in (100, 10_000)]
+    assert [limit and round(limit[0], 2) for limit in limits] == [1.38, 1.23]
 
 
 @pytest.mark.parametrize(
@@ -153,12 +195,12 @@ def test_the_one_to_four_resonance_has_a_bounded_window_above_it() -> None:
     [
         ("explicit_euler", 1.0, 0.005, 0.02, "grows"),
         ("explicit_euler", 2.0, 0.008, 0.02, "over the top"),
-        ("symplectic_euler", 0.1, 1.5, 2.1, "grows"),
+        ("symplectic_euler", 0.1, 1.9, 2.3, "over the top"),
         ("symplectic_euler", 2.0, 0.9, 1.3, "over the top"),
-        ("velocity_verlet", 0.1, 1.5, 2.1, "grows"),
+        ("velocity_verlet", 0.1, 1.9, 2.4, "chaotic"),
         ("velocity_verlet", 3.0, 0.5, 0.8, "over the top"),
-        ("rk4", 1.0, 0.3, 0.6, "drifts"),
-        ("rk4", 3.0, 0.3, 0.6, "drifts"),
+        ("rk4", 1.0, 0.3, 0.6, "loses"),
+        ("rk4", 3.0, 0.3, 0.6, "loses"),
     ],
 )
 def test_methods_fail_each_in_its_way(key: str, theta: float, start: float, end: float, reason: str) -> None:
@@ -169,9 +211,8 @@ def test_methods_fail_each_in_its_way(key: str, theta: float, start: float, end:
     assert ladder[0] < found[0] < ladder[-1]
 
 
-def test_a_symplectic_swing_that_leaves_the_band_in_the_chaotic_sea_is_called_chaotic() -> None:
-    # At theta = 1 the band ends at a third of the energy of the top, so the swing leaves it before it can go over.
-    assert failure_of("velocity_verlet", 1.0, np.array([1.0, 1.535]), 2000) == (1.535, "chaotic")
+def test_a_symplectic_swing_in_the_chaotic_sea_is_called_chaotic_before_it_goes_over() -> None:
+    assert failure_of("velocity_verlet", 1.0, np.array([1.0, 1.52]), 2000) == (1.52, "chaotic")
 
 
 def test_a_swing_that_holds_on_the_whole_ladder_has_no_failure() -> None:

@@ -11,7 +11,7 @@ PENDU = [sys.executable, "-c", "import sys; from tui.cli.dispatch import main; s
 
 
 @pytest.mark.parametrize("arguments", [("scnes",), ("scenes", "--jsn"), ("scenes", "extra"), ("--nonsense",)])
-def test_a_slip_on_the_command_line_is_one_sentence_and_exit_2(arguments):
+def test_a_mistake_on_the_command_line_is_one_sentence_and_exit_2(arguments):
     assert pendu(*arguments).refused(2)
 
 
@@ -20,7 +20,7 @@ def test_a_mistyped_command_is_answered_with_the_nearest_one():
 
 
 def test_a_scene_given_as_a_command_is_answered_with_how_to_see_it():
-    assert pendu("crossover").refused(2, "but a scene: pendu-tui --scene crossover")
+    assert pendu("crossover").refused(2, "for the scene use: pendu-tui --scene crossover")
 
 
 @pytest.mark.parametrize(
@@ -45,12 +45,12 @@ def test_an_unknown_option_is_named_before_one_that_is_missing(arguments, words)
         (("run", "--time", "1", "more"), "unrecognized arguments: more"),
     ],
 )
-def test_a_slip_with_options_that_exist_is_said_as_it_is(arguments, words):
+def test_a_mistake_with_known_options_is_reported_by_argparse(arguments, words):
     assert pendu(*arguments).refused(2, words)
 
 
-def test_a_command_behind_its_options_is_asked_to_come_first():
-    assert pendu("--scene", "drift", "run", "--time", "10").refused(2, "the command comes first: pendu-tui run.")
+def test_a_command_after_its_options_is_refused_with_the_right_order():
+    assert pendu("--scene", "drift", "run", "--time", "10").refused(2, "put the command first: pendu-tui run.")
     assert pendu("--record", "run", "--nope").refused(2, "live has no option --nope")
 
 
@@ -60,7 +60,7 @@ def test_a_bug_is_not_hidden_behind_a_sentence(monkeypatch):
         pendu("scenes")
 
 
-def test_an_interrupt_is_exit_130_and_said(monkeypatch):
+def test_an_interrupt_is_one_sentence_and_exit_130(monkeypatch):
     def interrupted(_: object) -> int:
         raise KeyboardInterrupt
 
@@ -69,7 +69,7 @@ def test_an_interrupt_is_exit_130_and_said(monkeypatch):
     assert (outcome.code, outcome.err) == (130, "pendu-tui: interrupted.\n")
 
 
-def test_an_interrupt_of_which_a_library_makes_an_error_is_still_one(monkeypatch):
+def test_an_interrupt_that_a_library_turns_into_an_error_is_still_an_interrupt(monkeypatch):
     def interrupted(_: object) -> int:
         try:
             raise KeyboardInterrupt
@@ -81,7 +81,7 @@ def test_an_interrupt_of_which_a_library_makes_an_error_is_still_one(monkeypatch
     assert (outcome.code, outcome.err) == (130, "pendu-tui: interrupted.\n")
 
 
-def test_a_reader_that_stops_early_is_no_reason_to_complain():
+def test_a_closed_pipe_prints_nothing_and_exits_with_141():
     reading, writing = os.pipe()
     os.close(reading)
     done = subprocess.run([*PENDU, "scenes"], stdout=writing, stderr=subprocess.PIPE, text=True, check=False)
@@ -98,7 +98,7 @@ def test_a_full_disk_under_stdout_is_one_sentence_and_exit_5(command):
     assert done.stderr == "pendu-tui: output: No space left on device; free some space or write elsewhere.\n"
 
 
-def test_a_terminal_that_knows_only_ascii_gets_question_marks_not_a_traceback():
+def test_an_ascii_terminal_gets_question_marks_not_a_traceback():
     ascii_only = {**os.environ, "PYTHONIOENCODING": "ascii"}
     done = subprocess.run([*PENDU, "methods"], env=ascii_only, capture_output=True, text=True, check=False)
     assert done.returncode == 0

@@ -36,7 +36,7 @@ def test_a_file_appears_when_it_is_whole(tmp_path):
 
 
 @pytest.mark.parametrize("error", [OSError, KeyboardInterrupt])
-def test_whatever_goes_wrong_the_older_file_stays_as_it_was(tmp_path, error):
+def test_after_an_error_the_older_file_is_unchanged(tmp_path, error):
     file = tmp_path / "data"
     file.write_text("older")
 
@@ -67,8 +67,8 @@ def test_a_signal_to_end_leaves_nothing_half_written(tmp_path, number):
     assert signal.getsignal(number) is before
 
 
-def test_a_folder_is_not_replaced_by_force_either(tmp_path):
-    with pytest.raises(UserError, match="exists already"), whole_file(tmp_path, force=True):
+def test_force_does_not_replace_a_folder(tmp_path):
+    with pytest.raises(UserError, match="already exists"), whole_file(tmp_path, force=True):
         raise AssertionError
 
 
@@ -78,10 +78,10 @@ def test_a_device_is_written_to_and_not_replaced():
 
 
 @each_writer
-def test_no_command_overwrites_but_by_force(tmp_path, command):
+def test_every_command_overwrites_only_with_force(tmp_path, command):
     file = tmp_path / "file.svg"
     file.write_text("older")
-    assert pendu(*command, file).refused(5, str(file), "exists already", "--force")
+    assert pendu(*command, file).refused(5, str(file), "already exists", "--force")
     assert file.read_text() == "older"
     assert pendu(*command, file, "--force").code == 0
     assert file.read_bytes() != b"older"
@@ -89,7 +89,7 @@ def test_no_command_overwrites_but_by_force(tmp_path, command):
 
 
 @each_writer
-def test_a_missing_folder_is_known_before_anything_is_computed(tmp_path, command, monkeypatch):
+def test_a_missing_folder_is_refused_before_anything_is_computed(tmp_path, command, monkeypatch):
     monkeypatch.setattr("engine.accuracy.study.Study.points", None)
     monkeypatch.setattr("engine.stability.grid.Grid.compute", None)
     monkeypatch.setattr("recordings.export.write_csv", None)
@@ -98,7 +98,7 @@ def test_a_missing_folder_is_known_before_anything_is_computed(tmp_path, command
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize("command", LONG.values(), ids=LONG)
-def test_who_stops_a_command_at_once_finds_the_older_file_or_a_part_that_can_be_read(tmp_path, command, number):
+def test_a_command_stopped_by_a_signal_leaves_no_part_behind(tmp_path, command, number):
     file = tmp_path / "file"
     file.write_text("older")
     run = [sys.executable, "-c", "import sys; from tui.cli.dispatch import main; sys.exit(main())", *command, str(file)]

@@ -15,7 +15,7 @@ def test_help_names_every_command():
         assert does in out
 
 
-def test_help_tells_every_exit_code():
+def test_help_shows_every_exit_code():
     (line,) = (line for line in pendu("--help").out.splitlines() if line.startswith("exit codes:"))
     assert [int(code) for code in re.findall(r"\d+", line)] == [code for code in Exit if code != Exit.PIPE_CLOSED]
 

@@ -24,12 +24,12 @@ def test_every_scene_is_found_by_its_name(name):
     assert scene_from("--scene", name) == SCENES[name]
 
 
-def test_numbers_win_over_the_scene_and_the_scene_is_then_custom():
+def test_options_override_the_scene_and_its_name_becomes_custom():
     scene = scene_from("--scene", "spin", "--omega", "7", "--h", "0.01")
     assert (scene.name, scene.theta, scene.omega, scene.h) == ("custom", 0.0, 7.0, 0.01)
 
 
-def test_numbers_that_change_nothing_leave_the_scene_its_name():
+def test_an_option_equal_to_the_scenes_value_keeps_the_scenes_name():
     assert scene_from("--scene", "crossover", "--h", "0.2") == SCENES["crossover"]
 
 
@@ -40,19 +40,19 @@ def test_degrees_become_radians():
 
 
 @pytest.mark.parametrize("theta", ["170", "-170"])
-def test_who_gives_many_radians_is_told_how_degrees_are_given(theta, capsys):
+def test_a_large_angle_without_unit_gets_a_hint_about_degrees(theta, capsys):
     assert scene_from("--theta", theta).theta == float(theta)
     assert f"for degrees write {theta}deg." in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("theta", ["170deg", "1000deg", "170rad", "6.28", "-6.28"])
-def test_who_gives_a_unit_or_up_to_a_turn_is_told_nothing(theta, capsys):
+def test_an_angle_with_a_unit_or_below_one_turn_gets_no_hint(theta, capsys):
     scene_from("--theta", theta)
     assert capsys.readouterr().err == ""
 
 
 @given(st.floats(-1e9, 1e9))
-def test_every_finite_theta_and_omega_can_be_given_negative_ones_too(value):
+def test_every_finite_theta_and_omega_can_be_given(value):
     scene = scene_from("--theta", repr(value), "--omega", repr(value))
     assert (scene.theta, scene.omega) == (value, value)
 
@@ -77,14 +77,14 @@ def test_a_negative_number_after_an_option_is_its_value(text):
         ("--omega", "nan"),
     ],
 )
-def test_a_number_that_cannot_be_run_is_refused_with_its_name_and_range(arguments):
+def test_a_number_out_of_range_is_refused_with_its_name_and_range(arguments):
     with pytest.raises(SceneError, match=arguments[0].removeprefix("--")):
         scene_from(*arguments)
 
 
 @pytest.mark.parametrize("arguments", [("--theta", "abc"), ("--theta", "5grad"), ("--h", "small"), ("--omega", "")])
-def test_what_is_no_number_is_refused_with_an_example(arguments):
-    with pytest.raises(UserError, match=r"is no (angle|number): give .* such as"):
+def test_text_that_is_not_a_number_is_refused_with_an_example(arguments):
+    with pytest.raises(UserError, match=r"is not an? (angle|number); use for example"):
         scene_from(*arguments)
 
 
@@ -93,7 +93,7 @@ def test_an_unknown_scene_is_answered_with_the_nearest_one():
         scene_from("--scene", "near-seperatrix")
 
 
-def test_a_scene_like_no_other_is_answered_with_where_they_are_listed():
+def test_an_unknown_scene_with_no_similar_name_names_the_list():
     with pytest.raises(UserError, match="pendu-tui scenes lists them"):
         scene_from("--scene", "q")
 

@@ -13,7 +13,7 @@ class Terminal(io.StringIO):
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
-def test_json_with_a_number_that_is_not_finite_is_refused_not_written(value, capsys):
+def test_json_refuses_numbers_that_are_not_finite(value, capsys):
     with pytest.raises(ValueError, match="not JSON compliant"):
         write_json("test", {"value": value})
     assert capsys.readouterr().out == ""
@@ -36,11 +36,13 @@ def shown(stream: io.StringIO, seconds_per_call: float, monkeypatch) -> str:
     return stream.getvalue()
 
 
-def test_what_takes_longer_than_a_second_on_a_terminal_shows_a_bar(monkeypatch):
-    assert "working" in shown(Terminal(), 0.5, monkeypatch)
+def test_work_of_more_than_a_second_shows_a_bar_and_the_time_left_on_a_terminal(monkeypatch):
+    bar = shown(Terminal(), 0.5, monkeypatch)
+    assert "working" in bar
+    assert "left" in bar
 
 
-def test_what_is_done_within_a_second_shows_none(monkeypatch):
+def test_work_of_less_than_a_second_shows_no_bar(monkeypatch):
     assert shown(Terminal(), 0.1, monkeypatch) == ""
 
 

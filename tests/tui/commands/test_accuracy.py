@@ -7,7 +7,7 @@ from itertools import islice
 import jsonschema
 import pytest
 
-from engine.accuracy.study import Study, ladder
+from engine.accuracy.study import REASONS, Study, ladder
 from engine.methods import METHODS
 from engine.scenes import SCENES
 from tests.tui.command_line import pendu
@@ -73,8 +73,8 @@ TABLE = """\
    0.01    0.0313       500                  3.4e-01                    1.5e-02                   5.2e-04       7.8e-08
   order            measured                     1.01                       1.00                      2.00          4.00
                     claimed                        1                          1                         2             4
-x as far off as the swing is wide, or as the energy is large
-order: of the theta error over one period or less; n/step: force evaluations
+x {lost}
+order measured on the theta error over at most one period; n/step: force evaluations
 """
 
 CHART = """\
@@ -105,7 +105,7 @@ def test_the_table_and_the_chart_are_the_same_each_time():
     told = pendu(*QUICK)
     assert told.code == 0
     assert told.err == ""
-    assert strip(TABLE) in strip(told.out)
+    assert strip(TABLE.format(lost=REASONS["lost"])) in strip(told.out)
     assert "drift: theta 1, omega 0, length 1, gravity 9.81 (SI units), over 5 s\n" in told.out
     assert told.out == pendu(*QUICK).out
 
@@ -116,7 +116,7 @@ def test_the_chart_has_letters_for_points_and_dotted_lines_for_orders():
 
 
 def test_every_point_on_the_chart_is_where_its_cost_and_its_error_are():
-    points = list(Study(SCENES["drift"], 20.0).points(ladder(20.0, 0.1, 0.0002, 4)))
+    points = list(Study(SCENES["drift"], 20.0).points(ladder(20.0, 0.1, 0.00005, 4)))
     lines = accuracy_chart([p for p in points if p.method.key == "rk4"], "theta", "evaluations", 80, 24).text.split(
         "\n"
     )
@@ -143,11 +143,11 @@ def test_the_numbers_are_the_same_without_numba():
     assert pendu(*QUICK, "--json").json == pendu(*QUICK, "--json", "--no-compiled").json
 
 
-def test_points_that_say_nothing_are_kept_with_their_reason():
-    points = pendu("accuracy", "--time", "20", "--h-values", "0.2:0.0002:4", "--json").json["points"]
+def test_useless_points_are_kept_with_their_reason():
+    points = pendu("accuracy", "--time", "20", "--h-values", "0.2:0.00005:4", "--json").json["points"]
     assert {(p["method"], p["reason"]) for p in points if not p["valid"]} == {
-        ("explicit_euler", "as far off as the swing is wide, or as the energy is large"),
-        ("rk4", "no larger than what rounding adds up to"),
+        ("explicit_euler", REASONS["lost"]),
+        ("rk4", REASONS["rounding"]),
     }
 
 
@@ -165,10 +165,10 @@ def test_a_budget_is_answered_with_the_smallest_error_for_it():
     assert answer["force_evaluations"] <= 1000
 
 
-def test_it_says_plainly_that_no_method_gets_there():
+def test_a_target_that_no_method_reaches_is_reported():
     told = pendu(*QUICK, "--target", "1e-9", "--budget", "500")
     assert told.code == 0
-    assert "No method gets there over 5 s: theta error up to 1e-09 within 500 force evaluations\n" in told.out
+    assert "No method reaches the target over 5 s: theta error up to 1e-09 within 500 force evaluations\n" in told.out
     assert told.out.count("after 500 evaluations") == 4  # Verlet's 499 steps cost one more
     answer = pendu(*QUICK, "--target", "1e-9", "--budget", "500", "--json").json["recommendation"]
     assert (answer["method"], answer["h"], answer["reason"]) == (None, None, "no method gets there")
@@ -198,16 +198,16 @@ def test_csv_has_a_line_for_each_point_with_all_digits(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--h-values", "0.1"], ["no ladder", "0.2:0.001:10"]),
+        (["--h-values", "0.1"], ["not a list of step sizes", "0.2:0.001:10"]),
         (["--h-values", "0.1:0:5"], ["above zero"]),
-        (["--h-values", "0.1:0.01:9999"], ["no ladder"]),
+        (["--h-values", "0.1:0.01:9999"], ["not a list of step sizes"]),
         (["--h-values", "30:0.1:3", "--time", "20"], ["longer than the time"]),
-        (["--h-values", "1e9:0.1:3"], ["no usable step"]),
+        (["--h-values", "1e9:0.1:3"], ["not a usable step"]),
         (["--time", "nan"], ["above zero"]),
         (["--time", "1e300"], ["out of range"]),
         (["--time", "1e9"], ["take hours", "--h-values"]),
         (["--target", "-1"], ["above zero"]),
-        (["--budget", "0.5"], ["buys nothing"]),
+        (["--budget", "0.5"], ["too small"]),
         (["--budget", "1.1e9"], ["would take hours", "1e+09"]),
         (["--error", "omega"], ["invalid choice"]),
         (["--json", "--csv"], ["not allowed"]),
@@ -215,7 +215,7 @@ def test_csv_has_a_line_for_each_point_with_all_digits(tmp_path):
         (["--theta", "0"], ["at rest", "no error to measure"]),
     ],
 )
-def test_a_slip_is_one_sentence_and_exit_2(arguments, words):
+def test_a_mistake_is_one_sentence_and_exit_2(arguments, words):
     assert pendu("accuracy", *arguments).refused(2, *words)
 
 
@@ -245,7 +245,7 @@ def test_ctrl_c_keeps_what_is_done(monkeypatch):
 
     monkeypatch.setattr(Study, "points", interrupted)
     told = pendu(*QUICK, "--target", "1e-4", "--json")
-    assert (told.code, told.err) == (130, "pendu-tui: interrupted; what was done is kept.\n")
+    assert (told.code, told.err) == (130, "pendu-tui: interrupted; partial results are kept.\n")
     jsonschema.validate(told.json, SCHEMA)
     assert told.json["interrupted"]
     assert (len(told.json["points"]), told.json["recommendation"]) == (5, None)

@@ -125,14 +125,14 @@ def read_until(terminal, words):
         read += os.read(terminal, 1 << 16).decode(errors="replace")
 
 
-def test_whatever_takes_a_choice_or_a_file_says_what_completes_it():
+def test_every_option_with_a_choice_or_a_file_can_be_completed():
     for command in whole_parser()._subparsers._group_actions[0].choices.values():
         for action in command._actions:
             if action.metavar in ("NAME", "FILE", "OUT", "EXPR", "FILE.svg", "FILE.npz"):
                 assert action.choices or action.complete, (command.prog, action.dest)
 
 
-def test_the_readme_and_the_help_tell_the_same_of_every_shell():
+def test_the_readme_and_the_help_agree_on_every_shell():
     lines = EXAMPLES.partition("To have it in every new shell:\n")[2].splitlines()
     assert tuple(line.split()[0] for line in lines) == SHELLS
     readme = (Path(__file__).parents[3] / "README.md").read_text(encoding="utf-8")

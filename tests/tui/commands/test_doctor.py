@@ -26,7 +26,7 @@ def test_doctor_names_the_folder_of_the_recordings(monkeypatch, tmp_path):
 
 
 @pytest.mark.parametrize(("columns", "rows", "word"), [(59, 16, "too small"), (80, 24, "120x40"), (120, 40, "")])
-def test_the_advice_on_size_is_the_layouts(columns, rows, word):
+def test_the_advice_on_size_follows_the_layouts(columns, rows, word):
     advice = size(columns, rows).advice
     assert word in advice
     assert bool(advice) == bool(word)
@@ -49,7 +49,7 @@ def test_an_encoding_without_braille_is_answered_with_how_to_change_it():
         ({"TERM": "xterm"}, "16", "COLORTERM"),
         ({"TERM": "dumb"}, "none", "set TERM"),
         ({}, "none", "set TERM"),
-        ({"TERM": "xterm", "NO_COLOR": "1"}, "NO_COLOR", "as you asked"),
+        ({"TERM": "xterm", "NO_COLOR": "1"}, "NO_COLOR", "as requested"),
     ],
 )
 def test_colours_are_read_from_the_environment(environment, found, advice):
@@ -59,20 +59,20 @@ def test_colours_are_read_from_the_environment(environment, found, advice):
     assert bool(finding.advice) == bool(advice)
 
 
-def test_a_folder_that_is_not_there_yet_is_fine_and_one_below_a_file_is_not(tmp_path):
+def test_a_missing_folder_is_fine_unless_it_is_below_a_file(tmp_path):
     assert not folder(tmp_path / "a" / "b").advice
     assert not list(tmp_path.iterdir())
     (tmp_path / "file").touch()
     assert "PENDU_RECORDINGS" in folder(tmp_path / "file" / "a").advice
 
 
-def test_a_link_to_nowhere_and_a_name_too_long_are_no_folders_either(tmp_path):
+def test_a_dangling_link_and_a_name_too_long_are_not_folders(tmp_path):
     (tmp_path / "link").symlink_to(tmp_path / "no" / "where")
     assert "cannot be written" in folder(tmp_path / "link").advice
     assert "cannot be written" in folder(tmp_path / ("x" * 300)).advice
 
 
-def test_a_folder_is_said_to_be_nearly_full(tmp_path, monkeypatch):
+def test_low_disk_space_is_reported(tmp_path, monkeypatch):
     assert "GB free" in folder(tmp_path).found
     monkeypatch.setattr("tui.commands.doctor.shutil.disk_usage", lambda _: SimpleNamespace(free=5_000_000))
     finding = folder(tmp_path)
@@ -80,7 +80,7 @@ def test_a_folder_is_said_to_be_nearly_full(tmp_path, monkeypatch):
     assert "prune" in finding.advice
 
 
-def test_where_no_folder_can_be_read_doctor_says_the_rest(monkeypatch, tmp_path):
+def test_doctor_reports_the_rest_if_the_folder_cannot_be_read(monkeypatch, tmp_path):
     (tmp_path / "file").touch()
     monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path / "file"))
     outcome = pendu("doctor")
@@ -101,5 +101,5 @@ def test_leftovers_are_counted_and_answered_with_what_saves_them():
 
 def test_without_a_terminal_the_lab_does_not_start_and_doctor_says_so():
     (finding,) = [f for f in pendu("doctor", "--json").json["findings"] if f["what"] == "lab"]
-    assert finding["found"] == "does not start here"
-    assert "pendu-tui run needs none" in finding["advice"]
+    assert finding["found"] == "cannot start here"
+    assert "Use pendu-tui run" in finding["advice"]

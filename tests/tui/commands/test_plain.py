@@ -48,7 +48,7 @@ def test_ended_by_a_signal_the_recording_is_whole_and_that_is_fine(tmp_path, num
     assert (process.returncode, err) == (0, "")
     assert lines[0].startswith("The lab runs at 8 times real time")
     (item,) = listing(tmp_path)
-    assert f"recorded: {item.path}" in out
+    assert f"saved {item.path}" in out
     report = verify(item.path)
     assert (report.identical, report.complete) == (True, True)
 

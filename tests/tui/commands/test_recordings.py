@@ -26,7 +26,7 @@ def names(folder):
     return sorted(path.name for path in folder.iterdir())
 
 
-def test_info_tells_what_is_in_a_recording(tmp_path):
+def test_info_shows_what_a_recording_contains(tmp_path):
     path = record(tmp_path / "sitting.mcap", two_runs())
     answer = pendu("info", path, "--json").json
     assert answer["schema"] == "pendu.info/1"
@@ -41,7 +41,7 @@ def test_info_tells_what_is_in_a_recording(tmp_path):
     assert "explicit_euler, symplectic_euler, velocity_verlet, rk4" in out
 
 
-def test_info_tells_what_is_wrong_with_a_recording(tmp_path):
+def test_info_shows_what_is_wrong_with_a_recording(tmp_path):
     path = record(tmp_path / "sitting.mcap", two_runs())
     path.write_bytes(path.read_bytes()[:-40])
     answer = pendu("info", path, "--json").json
@@ -61,11 +61,11 @@ def test_recover_makes_a_whole_recording_of_a_cut_one_and_says_what_is_lost(tmp_
     assert f"{answer['samples_kept']} samples saved" in told
 
 
-def test_who_recovers_a_recording_that_was_cut_is_not_told_that_nothing_is_lost(tmp_path):
+def test_recovering_a_cut_recording_does_not_claim_that_nothing_was_lost(tmp_path):
     whole, cut = GOLDEN / "drift.mcap", tmp_path / "cut.mcap"
     cut.write_bytes(whole.read_bytes()[: whole.stat().st_size // 2])
     told = pendu("recover", cut, "-o", tmp_path / "saved.mcap").out
-    assert "Lost: 1 chunk; how many samples were there, or came after, the file does not tell." in told
+    assert "Lost: 1 chunk; the number of lost samples is unknown." in told
 
 
 def test_recover_overwrites_nothing_unless_by_force(tmp_path):
@@ -75,7 +75,7 @@ def test_recover_overwrites_nothing_unless_by_force(tmp_path):
     assert out.read_bytes() == b"precious"
 
 
-def test_recover_knows_recordings_by_the_names_that_replay_knows(tmp_path):
+def test_recover_accepts_the_same_names_as_replay(tmp_path):
     told = pendu("recover", "drift", "-o", tmp_path / "saved.mcap").out
     assert "samples saved" in told
     assert told.endswith("\nNothing was lost.\n")
@@ -135,7 +135,7 @@ def test_a_damaged_recording_in_the_library_is_listed_with_what_is_wrong(library
 
 def test_an_empty_library_is_no_error(tmp_path, monkeypatch):
     monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path / "nothing"))
-    assert "no recording" in pendu("recordings").out
+    assert "No recordings in" in pendu("recordings").out
     assert pendu("recordings", "prune", "--keep", 1, "--yes").code == 0
     assert not (tmp_path / "nothing").exists()
 
@@ -158,7 +158,7 @@ def test_prune_deletes_nothing_without_a_yes(library):
 
 
 @pytest.mark.parametrize(("answer", "left"), [("y\n", 1), ("\n", 3), ("no\n", 3), ("", 3)])
-def test_prune_asks_who_can_be_asked(library, monkeypatch, answer, left):
+def test_prune_asks_on_a_terminal(library, monkeypatch, answer, left):
     class Keyboard(io.StringIO):
         def isatty(self) -> bool:
             return True
@@ -174,7 +174,7 @@ def test_prune_touches_no_file_in_use(library):
     with Recording.open(library / "a.mcap"):
         outcome = pendu("recordings", "prune", "--keep", 1, "--yes")
     assert names(library) == ["a.mcap", "c.mcap"]
-    assert "1 more are in use" in outcome.out
+    assert "1 more could not be deleted" in outcome.out
 
 
 def test_prune_as_json_names_what_is_gone(library):

@@ -30,15 +30,15 @@ def test_json_has_the_fields_of_the_design_and_the_numbers_of_the_engine():
         assert (told["theta"], told["max_energy_error"]) == (reading.theta, reading.max_energy_error)
 
 
-def test_the_table_tells_who_gains_who_keeps_and_who_loses_energy():
+def test_the_table_shows_which_method_gains_conserves_and_loses_energy():
     lines = pendu("run", "--time", 60).out.splitlines()
     for label, verdict in [
         ("Explicit Euler", "grows"),
         ("Symplectic Euler", "bounded"),
         ("Velocity Verlet", "bounded"),
-        ("RK4", "drifts"),
+        ("RK4", "loses"),
     ]:
-        (line,) = (line for line in lines if line.startswith(label))
+        line = next(line for line in lines if line.startswith(label))
         assert verdict in line
 
 
@@ -57,7 +57,7 @@ def test_extreme_but_legal_starts_neither_crash_nor_print_nan(start):
     assert "inf" not in out
 
 
-def test_a_method_that_diverges_is_said_to_have_diverged():
+def test_a_diverged_method_is_reported_with_its_time():
     arguments = ("run", "--theta", "1e-150", "--time", "2000")  # so small that its growth overflows any relative error
     euler = pendu(*arguments, "--json").json["methods"][0]
     assert euler["theta_error"] is None
@@ -129,7 +129,7 @@ def test_bad_input_is_one_sentence_and_exit_2_and_nothing_is_written(tmp_path, a
     assert not list(tmp_path.iterdir())
 
 
-def test_a_gate_that_trips_is_exit_1_with_the_numbers_still_printed():
+def test_a_gate_that_holds_is_exit_1_and_the_numbers_are_printed():
     outcome = pendu("run", "--time", 10, "--fail-if", "explicit_euler.max_energy_error > 1", "--json")
     assert outcome.code == 1
     assert outcome.err == "pendu-tui: the check failed: explicit_euler.max_energy_error > 1\n"
@@ -137,18 +137,18 @@ def test_a_gate_that_trips_is_exit_1_with_the_numbers_still_printed():
 
 
 def test_a_gate_may_ask_for_the_verdict():
-    assert pendu("run", "--time", 100, "--fail-if", "rk4.verdict == drifts").code == 1
+    assert pendu("run", "--time", 100, "--fail-if", "rk4.verdict == loses").code == 1
     assert pendu("run", "--time", 100, "--fail-if", "velocity_verlet.verdict != bounded").code == 0
     assert pendu("run", "--time", 1, "--fail-if", "rk4.verdict == 'too early'").code == 1
 
 
-def test_a_gate_that_holds_back_is_exit_0():
+def test_a_gate_that_does_not_hold_is_exit_0():
     assert pendu("run", "--time", 10, "--fail-if", "velocity_verlet.max_energy_error > 1e-2").code == 0
 
 
 @pytest.mark.skipif(not available(), reason="Numba is not installed")
 def test_compiled_and_plain_runs_print_the_same_numbers(monkeypatch):
-    monkeypatch.setattr("tui.commands.run.COMPILED_FROM", 1)
+    monkeypatch.setattr("engine.run.compiled.COMPILED_FROM", 1)
     arguments = ("run", "--scene", "near-separatrix", "--time", 20, "--json")
     compiled, plain = pendu(*arguments).json, pendu(*arguments, "--no-compiled").json
     assert compiled["methods"] == plain["methods"]
@@ -167,10 +167,16 @@ def test_a_run_that_is_stopped_finishes_its_recording(tmp_path, number):
     os.kill(process.pid, number)
     out, err = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert "with --sample-every 320 it has 200 MB." in err
+    assert "--sample-every 320 would reduce it to 200 MB." in err
     assert "pendu-tui: interrupted at t = " in err
     assert "RK4" in out  # what was done is told
     result = verify(path)
     assert result.complete
     assert result.identical
     assert not part.exists()
+
+
+def test_a_method_that_went_over_the_top_is_named_with_its_time():
+    text = pendu("run", "--time", 10).out
+    assert "Explicit Euler went over the top at 7.15 s" in text
+    assert text.count("over the top") == 1

@@ -34,14 +34,14 @@ def foreign() -> bytes:
     return stream.getvalue()
 
 
-def test_the_recordings_that_come_with_the_program_verify():
+def test_the_bundled_recordings_verify():
     outcome = pendu("verify", "golden")
     assert (outcome.code, outcome.err) == (0, "")
     for name in golden_names():
         assert f"{name}.mcap" in outcome.out
 
 
-def test_a_recording_of_ones_own_verifies(tmp_path):
+def test_a_new_recording_verifies(tmp_path):
     path = record(tmp_path / "ours.mcap", two_runs())
     outcome = pendu("verify", path)
     assert outcome.code == 0
@@ -58,7 +58,7 @@ def test_json_has_the_fields_of_the_design(tmp_path):
     assert (told["same_sin"], told["max_difference"], told["first_difference"]) == (True, 0.0, None)
 
 
-def test_a_difference_of_one_bit_is_exit_1_and_told_so_that_one_can_act(tmp_path):
+def test_a_difference_of_one_bit_is_exit_1_and_located(tmp_path):
     path = record(tmp_path / "altered.mcap", altered())
     outcome = pendu("verify", path)
     assert outcome.code == 1
@@ -73,7 +73,7 @@ def test_a_difference_of_one_bit_is_exit_1_and_told_so_that_one_can_act(tmp_path
     assert told["max_difference"] == abs(difference["recorded"] - difference["computed"])
 
 
-def test_a_folder_stands_for_the_recordings_in_it_and_below(tmp_path):
+def test_a_folder_means_all_recordings_below_it(tmp_path):
     (tmp_path / "a").mkdir()
     record(tmp_path / "one.mcap", two_runs())
     record(tmp_path / "a" / "two.mcap", two_runs())
@@ -83,7 +83,7 @@ def test_a_folder_stands_for_the_recordings_in_it_and_below(tmp_path):
 
 
 def test_a_folder_without_recordings_has_not_been_verified(tmp_path):
-    assert pendu("verify", tmp_path).refused(3, "no recording in this folder")
+    assert pendu("verify", tmp_path).refused(3, "no recordings in this folder")
 
 
 def test_a_recording_with_a_byte_changed_is_not_called_identical(tmp_path):
@@ -95,7 +95,7 @@ def test_a_recording_with_a_byte_changed_is_not_called_identical(tmp_path):
     assert "identical   " not in pendu("verify", path).out
 
 
-def test_a_recording_that_lacks_its_end_fails_the_check_and_is_said_to_be_cut(tmp_path):
+def test_an_incomplete_recording_fails_the_check_with_its_reason(tmp_path):
     path = record(tmp_path / "cut.mcap", two_runs())
     path.write_bytes(path.read_bytes()[:-40])
     outcome = pendu("verify", path)
@@ -109,7 +109,7 @@ def test_a_recording_that_lacks_its_end_fails_the_check_and_is_said_to_be_cut(tm
     )
 
 
-def test_what_a_killed_lab_has_left_is_verified_as_far_as_it_goes(tmp_path):
+def test_the_leftover_of_a_killed_lab_verifies_as_far_as_it_goes(tmp_path):
     path = record(tmp_path / "a.mcap", two_runs()).rename(tmp_path / "a.mcap.part")
     path.write_bytes(path.read_bytes()[:-40])
     outcome = pendu("verify", path)
@@ -120,7 +120,7 @@ def test_what_a_killed_lab_has_left_is_verified_as_far_as_it_goes(tmp_path):
 @pytest.mark.parametrize(
     "content", [b"", b"hello", b"\x89MCAP0\r\n", foreign()], ids=["empty", "text", "cut", "foreign"]
 )
-def test_what_is_no_recording_is_one_sentence_and_exit_3(tmp_path, content):
+def test_a_file_that_is_not_a_recording_is_one_sentence_and_exit_3(tmp_path, content):
     path = tmp_path / "file.mcap"
     path.write_bytes(content)
     assert pendu("verify", path).refused(3, str(path))
@@ -143,7 +143,7 @@ def test_an_unknown_name_is_answered_with_the_nearest_one():
     assert pendu("verify", "drfit").refused(3, "did you mean drift?")
 
 
-def test_a_name_that_means_nothing_does_not_keep_the_others_from_being_verified(tmp_path):
+def test_an_unknown_name_does_not_keep_the_others_from_being_verified(tmp_path):
     path = record(tmp_path / "a.mcap", two_runs())
     outcome = pendu("verify", "no/such.mcap", path)
     assert (outcome.code, outcome.err.count("\n")) == (3, 1)

@@ -1,8 +1,12 @@
-"""Rows of characters on a screen: which of them are sent."""
+"""Rows of characters on a screen: which of them are sent, and how thick lines are."""
 
+from hypothesis import given
+from hypothesis import strategies as st
 from rich.style import Style
 from textual.app import App, ComposeResult
 
+from tests.tui.drawing.test_canvas import dots
+from tui.drawing.canvas import Canvas
 from tui.drawing.cells import CellWidget
 from tui.drawing.palette import NOBODY, TEXT
 
@@ -41,3 +45,24 @@ async def test_a_row_may_bring_its_own_style():
         x, y = list(app.cells.render_line(0))[:2]
         assert (x.text, x.style.color.name, x.style.reverse) == ("x", "#010203", True)
         assert x.style.bgcolor == y.style.bgcolor
+
+
+@given(st.sets(st.tuples(st.integers(0, 7), st.integers(0, 7))))
+def test_thick_lines_cover_the_thin_ones_and_are_two_dots_thick(points):
+    canvas = Canvas(4, 2)
+    for x, y in points:
+        canvas.points(x, y, 1)
+    thin = canvas.picture()
+    grown = dots(thin.thick())
+    assert points <= grown
+    for x, y in grown:
+        assert (x ^ 1, y) in grown
+        assert {(x, y - 1), (x, y + 1)} & grown
+    assert {(x // 2, y // 4) for x, y in grown} == {(x // 2, y // 4) for x, y in points}
+    assert thin.thick().owners is thin.owners
+
+
+def test_thick_lines_leave_words_alone():
+    canvas = Canvas(6, 1)
+    canvas.label(0, 0, "wörd\u2802", TEXT)
+    assert canvas.picture().thick().text[:4] == "wörd"

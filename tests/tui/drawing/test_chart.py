@@ -13,7 +13,7 @@ from tests.tui.drawing.test_canvas import dots
 from tui.drawing.axes import held, per_column, time_span
 from tui.drawing.chart import SMALLEST, Series, loglog_chart, time_chart
 from tui.drawing.palette import EXACT, FRAME, NOBODY, TEXT
-from tui.playback.history import Window
+from tui.playback.levels import Window
 
 ANY = st.floats(allow_nan=True, allow_infinity=True)
 COUNT = len(METHODS)

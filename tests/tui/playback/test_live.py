@@ -5,11 +5,11 @@ from pathlib import Path
 import pytest
 
 from engine.run.lockstep import Lockstep, Sample
+from engine.run.stepping import Stepping
 from engine.scenes import DEFAULT_SCENE, SCENES, SceneError
 from recordings.events import Event
+from tests.tui.harness import FPS, Lab
 from tui.playback.live import FRAME_BUDGET, Live
-
-FPS = 30
 
 
 class Keeper:
@@ -41,26 +41,16 @@ class Keeper:
         self.closed = True
 
 
-class Bench:
-    """A live source with its clock."""
+class Bench(Lab):
+    """A lab recorded in memory, with a clock of its own work."""
 
     def __init__(self, scene=DEFAULT_SCENE, speed=1.0, second_per_look=0.0):
-        self.now = self.work = 0.0
-        self.second_per_look = second_per_look
-        self.live = Live(scene, speed, clock=self.shown)
-        self.keeper = Keeper()
-        self.live.record(self.keeper)
-        self.live.tick(0.0)
+        self.work, self.second_per_look, self.keeper = 0.0, second_per_look, Keeper()
+        super().__init__(scene, speed, self.keeper, self.shown)
 
     def shown(self) -> float:
         self.work += self.second_per_look
         return self.work
-
-    def run(self, seconds: float) -> Sample:
-        for _ in range(round(seconds * FPS)):
-            self.now += 1 / FPS
-            sample = self.live.tick(self.now)
-        return sample
 
     @property
     def kinds(self) -> list[str]:
@@ -82,7 +72,7 @@ def test_time_follows_the_clock_through_pauses_speeds_and_changes_of_h():
     bench.live.pause(False)
     bench.live.set_speed(4)
     bench.run(1)
-    bench.live.set_h(0.01)
+    bench.live.set_stepping(Stepping(0.01))
     assert bench.run(1).t == pytest.approx(2 + 4 + 4, abs=0.05)  # one step of 0.05
 
 
@@ -90,7 +80,7 @@ def test_time_follows_the_clock_through_pauses_speeds_and_changes_of_h():
 def test_time_that_runs_back_to_its_start_is_sampled_there_and_goes_on(speed):
     bench = Bench(DEFAULT_SCENE.altered(h=0.011), speed=speed)
     turn = bench.run(3).t
-    bench.live.set_h(-0.011)
+    bench.live.set_stepping(Stepping(-0.011))
     end = bench.run(4)
     returned = bench.live.history.returned
     assert returned is not None
@@ -144,11 +134,11 @@ def test_nothing_is_recorded_twice():
 def test_a_change_in_the_past_is_a_new_run_that_repeats_what_it_inherits():
     bench = Bench()
     bench.run(1)
-    bench.live.set_h(0.1)
+    bench.live.set_stepping(Stepping(0.1))
     bench.run(2)
     bench.live.step(-5)
     at = bench.live.sample.step
-    bench.live.set_h(0.02)
+    bench.live.set_stepping(Stepping(0.02))
     bench.live.pause(False)
     bench.run(1)
     second = [event for event in bench.keeper.events if event.run == 2 and event.kind in ("start", "set_h")]
@@ -163,7 +153,7 @@ def test_a_change_in_the_past_is_a_new_run_that_repeats_what_it_inherits():
     lockstep = Lockstep(DEFAULT_SCENE, run=2)
     for event in second[1:]:
         lockstep.advance(event.step - lockstep.step)
-        lockstep.set_h(event.h)
+        lockstep.set_stepping(Stepping(event.h))
     lockstep.advance(samples[-1].step - lockstep.step)
     assert lockstep.sample().readings[3].theta == samples[-1].readings[3].theta
 
@@ -171,7 +161,7 @@ def test_a_change_in_the_past_is_a_new_run_that_repeats_what_it_inherits():
 def test_every_change_is_an_event_at_its_step_with_a_sample_there():
     bench = Bench()
     bench.run(1)
-    bench.live.set_h(-0.05)
+    bench.live.set_stepping(Stepping(-0.05))
     bench.live.mark("turned")
     bench.live.pause(True)
     bench.live.pause(False)
@@ -196,9 +186,9 @@ def test_the_recording_clock_stands_while_paused_and_does_not_care_for_speed():
 def test_a_restart_keeps_the_step_size_but_not_its_sign():
     bench = Bench()
     bench.run(1)
-    bench.live.set_h(-0.1)
+    bench.live.set_stepping(Stepping(-0.1))
     bench.live.restart()
-    assert (bench.live.h, bench.live.sample.run, bench.live.sample.step) == (0.1, 2, 0)
+    assert (bench.live.stepping.h, bench.live.sample.run, bench.live.sample.step) == (0.1, 2, 0)
 
 
 def test_an_absurd_step_size_is_refused_and_changes_nothing():
@@ -208,8 +198,19 @@ def test_an_absurd_step_size_is_refused_and_changes_nothing():
     events = len(bench.keeper.events)
     for h in (0.0, float("nan"), 1e9):
         with pytest.raises(SceneError):
-            bench.live.set_h(h)
-    assert (bench.live.h, len(bench.keeper.events), bench.live.sample.run) == (0.05, events, 1)
+            bench.live.set_stepping(Stepping(h))
+    assert (bench.live.stepping.h, len(bench.keeper.events), bench.live.sample.run) == (0.05, events, 1)
+
+
+def test_the_events_are_those_up_to_the_sample_in_the_past_too():
+    bench = Bench()
+    bench.run(1)
+    bench.live.set_stepping(Stepping(0.1))
+    bench.run(1)
+    bench.live.step(-20)
+    assert [event.kind for event in bench.live.events] == ["start"]
+    bench.live.step(20)
+    assert [event.kind for event in bench.live.events] == ["start", "set_h", "pause"]
 
 
 def test_a_recorder_that_comes_later_learns_how_the_run_began():

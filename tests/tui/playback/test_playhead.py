@@ -4,10 +4,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tui.playback.playhead import SPEED_LIMITS, Pace, Playhead, doubled, next_h
+from tui.playback.playhead import SPEED_LIMITS, Pace, Playhead, doubled
 
 FRAMES = st.lists(st.floats(0, 5), min_size=1, max_size=50)  # s between looks at the clock
-STEPS = st.floats(1e-9, 1e3).flatmap(lambda size: st.sampled_from([size, -size]))
 
 
 @given(FRAMES, st.floats(0.01, 100))
@@ -58,21 +57,3 @@ def test_a_pace_forgets_within_seconds():
 def test_speeds_stay_within_their_limits_and_double_exactly_within_them(times):
     low, high = SPEED_LIMITS
     assert doubled(1.0, times) == -doubled(-1.0, times) == min(max(2.0**times, low), high)
-
-
-def test_h_goes_along_1_2_5():
-    h, rungs = 0.05, []
-    for _ in range(6):
-        rungs.append(h := next_h(h, up=True))
-    assert rungs == [0.1, 0.2, 0.5, 1.0, 2.0, 5.0]
-    for _ in range(7):
-        h = next_h(h, up=False)
-    assert h == 0.02
-
-
-@given(STEPS)
-def test_every_h_has_a_larger_and_a_smaller_neighbour_of_its_sign_and_up_and_down_return(h):
-    larger, smaller = next_h(h, up=True), next_h(h, up=False)
-    assert abs(smaller) < abs(h) < abs(larger) <= 2.6 * abs(h)  # 2.5 from 2 to 5, and rounding
-    assert math.copysign(1, larger) == math.copysign(1, smaller) == math.copysign(1, h)
-    assert next_h(next_h(larger, up=True), up=False) == larger

@@ -6,7 +6,7 @@ import pytest
 from rich.color import Color
 
 from tests.tui.conftest import lines_of
-from tests.tui.stage import key_of, lab
+from tests.tui.harness import key_of, lab
 from tui.drawing.palette import PALETTES, TEXT
 from tui.screens.keys import COMMON
 from tui.terminal.options import CHARACTER_SETS

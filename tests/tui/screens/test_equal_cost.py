@@ -7,9 +7,8 @@ import pytest
 from engine.scenes import Scene
 from recordings.recording import Recording
 from recordings.verify import verify
-from tests.tui.sitting import recorded
+from tests.tui.harness import recorded
 from tui.playback.live import Live
-from tui.playback.source import EQUAL_PARTS, least_h, own_h
 from tui.screens.live import LiveScreen
 
 
@@ -26,19 +25,25 @@ def toggle(live: Live) -> None:
 
 def test_each_method_has_its_own_step_and_all_meet(tmp_path: Path):
     steps = []
-    recorded(tmp_path / "a.mcap", toggle, lambda live: steps.append((live.h, own_h(live), least_h(live))))
+    recorded(
+        tmp_path / "a.mcap",
+        toggle,
+        lambda live: steps.append((live.stepping.h, live.stepping.own(), live.stepping.smallest)),
+    )
     assert steps == [(0.2, (0.05, 0.05, 0.05, 0.2), 0.05)]
 
 
 def test_the_same_key_goes_back_to_the_same_step_for_all(tmp_path: Path):
     steps = []
-    recorded(tmp_path / "a.mcap", toggle, 0.5, toggle, lambda live: steps.append(own_h(live)))
-    assert steps == [(0.05,) * len(EQUAL_PARTS)]
+    recorded(tmp_path / "a.mcap", toggle, 0.5, toggle, lambda live: steps.append(live.stepping.own()))
+    assert steps == [(0.05,) * 4]
 
 
 def test_a_restart_stays_at_equal_cost(tmp_path: Path):
     steps = []
-    recorded(tmp_path / "a.mcap", toggle, 0.5, Live.restart, lambda live: steps.append((live.scene.h, own_h(live))))
+    recorded(
+        tmp_path / "a.mcap", toggle, 0.5, Live.restart, lambda live: steps.append((live.scene.h, live.stepping.own()))
+    )
     assert steps == [(0.05, (0.05, 0.05, 0.05, 0.2))]
 
 
@@ -71,5 +76,5 @@ def test_a_step_that_is_absurd_for_one_of_the_methods_is_refused_before_anything
         actions[act]()
     runs = lab.live.sample.run
     lab.start(Scene(h=100.0))
-    assert lab.live.sample.run == runs + (not lab.live.equal_cost)
-    assert bool(refusals) == (lab.live.equal_cost or h == 100.0)
+    assert lab.live.sample.run == runs + (not lab.live.stepping.equal_cost)
+    assert bool(refusals) == (lab.live.stepping.equal_cost or h == 100.0)

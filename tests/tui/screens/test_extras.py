@@ -11,7 +11,7 @@ from engine.methods import METHODS
 from engine.scenes import SCENES
 from recordings.library import GOLDEN, listing
 from recordings.live_recorder import LiveRecorder
-from tests.tui.stage import Theatre, lab, on_stage
+from tests.tui.harness import Theatre, lab, on_stage
 from tui.drawing.palette import PALETTES
 from tui.playback.live import Live
 from tui.screens.app import PenduApp
@@ -57,13 +57,13 @@ def test_it_has_every_key_scene_view_method_theme_and_recording():
     for name in SCENES:
         assert f"scene {name}" in all_titles
     for view in VIEWS.values():
-        assert any(title.startswith(f"view: {view.title.lower()} (F") for title in all_titles)
+        assert any(title.startswith(f"{view.title.lower()} view (F") for title in all_titles)
     for method in METHODS:
         assert f"method {method.label}" in all_titles
     for name in PALETTES:
         assert f"theme {name}" in all_titles
-    assert {"replay drift", "copy the command that reproduces this", "quit (q)"} < set(all_titles)
-    assert any("as SVG" in title for title in all_titles)
+    assert {"replay drift", "copy the command for this moment", "quit (q)"} < set(all_titles)
+    assert any("SVG" in title for title in all_titles)
 
 
 def test_a_replay_cannot_be_given_a_scene():
@@ -90,7 +90,7 @@ async def test_a_scene_a_theme_and_a_card_can_be_chosen():
 
 async def test_the_command_is_copied_and_shown():
     async with lab(SCENES["spin"], size=(100, 30)) as theatre:
-        await chosen(theatre, "copy the command that reproduces this")
+        await chosen(theatre, "copy the command for this moment")
         assert theatre.app.clipboard == command(theatre.source) == "pendu-tui live --scene spin"
         assert theatre.app.clipboard in [note.message for note in theatre.app._notifications][-1]
 

@@ -5,10 +5,9 @@ import math
 import pytest
 
 from engine.scenes import DEFAULT_SCENE, SCENES
-from tests.tui.stage import lab
-from tui.playback.history import QUANTITIES
+from tests.tui.harness import lab
 from tui.playback.live import Live
-from tui.playback.shown import WINDOWS
+from tui.playback.shown import QUANTITIES, WINDOWS
 from tui.screens.keys import COMMON, LIVE
 from tui.screens.start_form import StartForm
 from tui.screens.status_line import StatusLine
@@ -53,15 +52,15 @@ async def test_the_run_r_restarts_plus_and_minus_change_h_b_reverses_p_and_capit
     async with lab() as theatre:
         await theatre.run(2)
         await theatre.press("plus")
-        assert theatre.source.h == 0.1
+        assert theatre.source.stepping.h == 0.1
         await theatre.press("minus", "minus")
-        assert theatre.source.h == 0.02
+        assert theatre.source.stepping.h == 0.02
         await theatre.press("b")
-        assert theatre.source.h == -0.02
+        assert theatre.source.stepping.h == -0.02
         await theatre.run(1)
         assert theatre.source.sample.t == pytest.approx(1, abs=0.05)
         await theatre.press("r")
-        assert (theatre.source.h, theatre.source.sample.step, theatre.source.scene.theta) == (0.02, 0, 1.0)
+        assert (theatre.source.stepping.h, theatre.source.sample.step, theatre.source.scene.theta) == (0.02, 0, 1.0)
         names = list(SCENES)
         await theatre.press("p")
         assert theatre.source.scene == SCENES[names[0]]  # 0.02 made it a scene of its own
@@ -75,10 +74,10 @@ async def test_the_run_r_restarts_plus_and_minus_change_h_b_reverses_p_and_capit
 async def test_settings_are_undone_one_after_the_other():
     async with lab() as theatre:
         await theatre.run(1)
-        before = (theatre.source.h, theatre.source.playhead.speed, theatre.source.scene, theatre.stage.shown)
+        before = (theatre.source.stepping.h, theatre.source.playhead.speed, theatre.source.scene, theatre.stage.shown)
         await theatre.press("plus", "greater_than_sign", "p", "t", "y")
         await theatre.press("u", "u", "u", "u", "u")
-        after = (theatre.source.h, theatre.source.playhead.speed, theatre.source.scene, theatre.stage.shown)
+        after = (theatre.source.stepping.h, theatre.source.playhead.speed, theatre.source.scene, theatre.stage.shown)
         assert after == before
         await theatre.press("u")  # there is nothing left to undo
 
@@ -137,7 +136,7 @@ async def test_the_form_says_what_is_wrong_as_it_is_typed_and_does_not_start_tha
         await theatre.press("i")
         form = theatre.app.screen
         verdict = form.query_one("#verdict")
-        for keys, words in (("abc", "no angle"), ("1e99", "out of range"), ("", "no angle")):
+        for keys, words in (("abc", "not an angle"), ("1e99", "out of range"), ("", "not an angle")):
             await theatre.press("home", "shift+end", "delete", *keys)
             await theatre.pilot.pause()
             assert words in str(verdict.render())

@@ -4,14 +4,15 @@ from dataclasses import replace
 
 import pytest
 
+from engine.run.stepping import Stepping
 from engine.scenes import DEFAULT_SCENE
-from tests.tui.sitting import FPS, eventful
+from tests.tui.harness import after, eventful
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.playhead import Pace
 from tui.playback.replay import Replay
 from tui.playback.shown import Shown
-from tui.playback.source import RecordingStatus, own_h
+from tui.playback.source import RecordingStatus
 from tui.screens.insight_line import fitted
 from tui.screens.key_line import key_row
 from tui.screens.keys import COMMON, LIVE, hinted
@@ -24,11 +25,8 @@ def text(row) -> str:
     return "".join(words for words, _ in row).rstrip()
 
 
-def lab(seconds: float = 12.0, scene=DEFAULT_SCENE) -> Live:
-    live = Live(scene, clock=lambda: 0.0)
-    for frame in range(round(seconds * FPS) + 1):
-        live.tick(frame / FPS)
-    return live
+def lab(seconds: float = 12.0) -> Live:
+    return after(DEFAULT_SCENE, seconds)
 
 
 class Taped(Live):
@@ -47,7 +45,7 @@ def taped(**changes) -> Taped:
 def test_the_status_line_says_all_where_there_is_room():
     line = text(status_row(taped(), 120))
     assert line == (
-        " LIVE   running  1×  t 0.00 s  h 0.05 s  z 0.157  drift  57.3° 0 rad/s  REC 1 min  96 kB"
+        " LIVE   running  1×  t 0.00 s  h 0.05 s  z 0.157  scene drift  57.3° 0 rad/s  REC 1 min  96 kB"
         "  2026-11-20T10-14-03.mcap"
     )
 
@@ -64,13 +62,13 @@ def test_the_status_line_leaves_out_what_matters_least_and_never_runs_over(width
 
 def test_at_80_columns_it_says_which_run_it_is_at_which_step_and_whether_that_is_recorded():
     live = taped()
-    assert "  z 0.157  drift  REC 1 min" in text(status_row(live, 80))
-    live.set_h(-0.2, equal_cost=True)
+    assert "  z 0.157  scene drift  REC 1 min" in text(status_row(live, 80))
+    live.set_stepping(Stepping(-0.2, equal_cost=True))
     live.set_speed(0.25)
     live.playhead = live.playhead.moved_to(0.0)
-    live.sample = replace(live.sample, t=725.0)
+    live.so_far.sample = replace(live.sample, t=725.0)
     assert text(status_row(live, 80)) == (
-        " LIVE   reversed  1/4×  t 12 min 05 s  h -0.2 s equal cost  z 0.626  REC 1 min"
+        " LIVE   backwards  1/4×  t 12 min 05 s  h -0.2 s equal cost  z 0.626  REC 1 min"
     )
 
 
@@ -83,8 +81,8 @@ def test_a_start_that_has_no_name_is_told_in_numbers():
 
 def test_what_is_dropped_is_told_and_so_is_trouble():
     slow = taped(pace=Pace(due=1.0, done=0.62))
-    assert "real-time 62 %" in text(status_row(slow, 80))
-    assert "real-time" not in text(status_row(taped(pace=Pace(due=1.0, done=0.995)), 80))
+    assert "only 62 % of 1×" in text(status_row(slow, 80))
+    assert "only" not in text(status_row(taped(pace=Pace(due=1.0, done=0.995)), 80))
     broken = taped(recording_status=replace(Taped.recording_status, failed="the disk is full."))
     assert "NOT RECORDED" in text(status_row(broken, 80))
     assert "not recorded" in text(status_row(taped(recording_status=None), 80))
@@ -99,25 +97,25 @@ def test_speeds_are_read_as_people_say_them():
 def rows(live: Live, width: int, shown: Shown | None = None) -> str:
     exact = live.exact.at(live.sample.t)
     return "\n".join(
-        text(row) for row in table(live.sample, live.judgements, exact, own_h(live), shown or Shown(), width)
+        text(row) for row in table(live.sample, live.judgements, exact, live.stepping.own(), shown or Shown(), width)
     )
 
 
 def test_the_table_at_80_columns_has_every_column():
     assert rows(lab(), 80) == (
         "method                theta  omega    dE/E0 largest    per s   verdict  th.err f\n"
-        "1 e Explicit Euler   -30.53 -7.643 +6.3e+00 6.6e+00 +5.5e-01     grows 3.0e+01 1\n"
-        "2 s Symplectic Euler -0.719 +1.885 -6.8e-02 7.9e-02 -8.9e-07 too early 5.9e-02 1\n"
-        "3 v Velocity Verlet  -0.758 +1.904 -1.7e-03 5.7e-03 -3.7e-07 too early 2.0e-02 1\n"
-        "4 r RK4              -0.778 +1.835 -3.6e-05 3.6e-05 -2.9e-06    drifts 3.1e-05 4"
+        "1 e Explicit Euler   -30.53 -7.643 +6.3e+00 6.6e+00 +5.4e-01     grows 3.0e+01 1\n"
+        "2 s Symplectic Euler -0.719 +1.885 -6.8e-02 7.9e-02 +4.8e-08 too early 5.9e-02 1\n"
+        "3 v Velocity Verlet  -0.758 +1.904 -1.7e-03 5.7e-03 -5.9e-09 too early 2.0e-02 1\n"
+        "4 r RK4              -0.778 +1.835 -3.6e-05 3.6e-05 -2.9e-06     loses 3.1e-05 4"
     )
 
 
 def test_a_wide_table_has_units_and_more_digits():
     head, *_, last = rows(lab(), 120).splitlines()
     assert head.split("  ") == [
-        *("method", *[""] * 7, "theta [rad]", "omega [rad/s]", "dE/E0 now", " largest", "drift per s"),
-        *("", "verdict", "theta error", "force/step"),
+        *("method", *[""] * 7, "theta [rad]", "omega [rad/s]", "dE/E0 now", " largest", "trend per s"),
+        *("", "verdict", "theta error", "evals/step"),
     ]
     assert last.split() == [
         "4",
@@ -125,7 +123,7 @@ def test_a_wide_table_has_units_and_more_digits():
         "RK4",
         "-0.77844",
         "+1.83535",
-        *["-3.6e-05", "3.6e-05", "-2.9e-06", "drifts", "3.1e-05", "4"],
+        *["-3.6e-05", "3.6e-05", "-2.9e-06", "loses", "3.1e-05", "4"],
     ]
 
 
@@ -139,7 +137,7 @@ def test_every_table_is_rectangular_and_fits(width):
 def test_hidden_methods_are_not_in_the_table_and_failed_ones_are_called_so():
     live = lab(1.0)
     readings = live.sample.readings
-    live.sample = replace(live.sample, readings=(*readings[:3], replace(readings[3], diverged_at=0.8)))
+    live.so_far.sample = replace(live.sample, readings=(*readings[:3], replace(readings[3], diverged_at=0.8)))
     lines = rows(live, 80, Shown(shown=(False, True, False, True))).splitlines()
     assert [line[0] for line in lines] == ["m", "2", "4"]
     assert "failed" in lines[2]
@@ -163,7 +161,7 @@ def test_the_bar_tells_position_length_run_step_and_event(tmp_path):
     assert facts(replay, 80) == f"{here}  loop  run 2/3  step 50/200  event 4/5"
     assert facts(replay, 50) == f"{here}  loop  run 2/3"
     assert facts(replay, 0) == here
-    assert " t 1.00 s simulated  " in text(status_row(replay, 80))
+    assert " t 1.00 s  " in text(status_row(replay, 80))
 
 
 def test_a_sentence_that_does_not_fit_ends_in_an_ellipsis():
@@ -176,6 +174,6 @@ def test_a_sentence_that_does_not_fit_ends_in_an_ellipsis():
 def test_the_key_line_shows_whole_hints_each_a_button():
     keys = hinted((*LIVE, *COMMON))
     row, places = key_row(keys, 60)
-    assert text(row) == " space Pause  + Larger h  i Start  p Scene  ? Help  q Quit"
+    assert text(row) == " space Pause  + Larger h  i Edit  p Scene  ? Help  q Quit"
     for first, end, action in places:
         assert action in [key.action for key in keys if f" {key.shown} {key.hint} " == (text(row) + " ")[first:end]]

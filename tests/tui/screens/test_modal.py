@@ -2,7 +2,7 @@
 
 from textual.containers import VerticalScroll
 
-from tests.tui.stage import lab
+from tests.tui.harness import lab
 from tui.screens.text import TextScreen
 
 

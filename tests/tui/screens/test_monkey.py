@@ -1,10 +1,10 @@
 """Five thousand random keys and clicks over all views, live and replay."""
 
+import asyncio
 import itertools
 import os
 import shutil
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import AsyncIterator, Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -15,9 +15,9 @@ from recordings.library import resolve
 from recordings.live_recorder import LiveRecorder
 from recordings.recording import Recording
 from recordings.verify import verify
+from tests.tui.harness import on_stage
 from tests.tui.monkey import ESCDELAY, SIZE, play, play_on_stage
 from tests.tui.pty_lab import PtyLab
-from tests.tui.stage import on_stage
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
@@ -39,10 +39,11 @@ def all_verify(library: Path) -> int:
     return len(recordings)
 
 
-@contextmanager
-def here(function: Callable[..., Iterator[object]], *arguments: object) -> Iterator[Iterator[object]]:
-    """What `elsewhere` yields, without another process: when it comes does not depend on the machine."""
-    yield function(*arguments)
+async def computed_here(function: Callable[..., Iterator[object]], *arguments: object) -> AsyncIterator[object]:
+    """What `computed` yields, without another process: when it comes does not depend on the machine."""
+    for item in function(*arguments):
+        yield item
+        await asyncio.sleep(0)
 
 
 @pytest.fixture
@@ -50,15 +51,15 @@ def library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     folder = tmp_path / "library"
     folder.mkdir()
     monkeypatch.setenv("PENDU_RECORDINGS", str(folder))
-    monkeypatch.setattr("tui.views.accuracy.view.elsewhere", here)
-    monkeypatch.setattr("tui.views.stability.view.elsewhere", here)
+    monkeypatch.setattr("tui.views.accuracy.view.computed", computed_here)
+    monkeypatch.setattr("tui.views.stability.view.computed", computed_here)
     monkeypatch.setattr("tui.views.accuracy.view.usual", lambda scene: (5.0, FEW))
     monkeypatch.setattr("tui.views.stability.view.PASSES", (2, 6))
     return folder
 
 
 @pytest.mark.parametrize("command", ["live", "replay"])
-async def test_a_monkey_does_no_harm_and_all_it_recorded_verifies(tmp_path, library, command):
+async def test_random_keys_and_clicks_do_no_harm_and_the_recordings_verify(tmp_path, library, command):
     def recorded(live: Live) -> Live:
         live.record(LiveRecorder(library / f"{live.sample.step}.mcap"))
         return live
@@ -80,7 +81,7 @@ async def test_a_monkey_does_no_harm_and_all_it_recorded_verifies(tmp_path, libr
 
 @pytest.mark.skipif("PENDU_MONKEY" not in os.environ, reason="its keys meet the program at other moments each time")
 @pytest.mark.parametrize("command", ["live", "replay"])
-def test_nor_does_it_to_the_real_program(tmp_path, command):
+def test_random_keys_and_clicks_do_no_harm_to_the_real_program(tmp_path, command):
     library = tmp_path / "library"
     arguments = [command]
     if command == "replay":

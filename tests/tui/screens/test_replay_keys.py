@@ -9,8 +9,7 @@ import pytest
 
 from engine.scenes import DEFAULT_SCENE
 from recordings.recording import Recording
-from tests.tui.sitting import eventful, recorded
-from tests.tui.stage import on_stage, player
+from tests.tui.harness import eventful, on_stage, player, recorded
 from tui.cli.errors import UserError
 from tui.playback.live import Live
 from tui.playback.marks import Marks
@@ -142,13 +141,13 @@ async def test_the_lab_that_goes_on_knows_what_the_replay_knew_even_right_after_
             while not isinstance(theatre.stage, LiveScreen):
                 await theatre.pilot.pause(0.01)
         verdicts = [judgement.verdict for judgement in theatre.source.judgements]
-        assert verdicts == ["grows", "bounded", "bounded", "drifts"]
+        assert verdicts == ["grows", "bounded", "bounded", "loses"]
         assert "over the top" in theatre.text(EventList)
 
 
 async def test_f_stays_in_the_replay_where_the_lab_could_not_record(path):
     def go_live(live: Live) -> LiveScreen:
-        raise UserError("/nowhere is no folder that can be written: choose another one.")
+        raise UserError("/nowhere is not writable: choose another folder.")
 
     def make(clock: Callable[[], float]) -> ReplayScreen:
         return ReplayScreen(Replay(Recording.open(path), Marks(path), clock=lambda: 0.0), go_live, clock)

@@ -4,8 +4,7 @@ import random
 
 import pytest
 
-from tests.tui.sitting import eventful
-from tests.tui.stage import lab, player
+from tests.tui.harness import eventful, lab, player
 from tui.screens.seek_bar import SeekBar
 from tui.screens.status_line import StatusLine
 from tui.screens.too_small import TooSmall
@@ -48,7 +47,7 @@ async def test_the_name_of_a_method_fits_over_its_pendulum(size):
 
 async def test_below_60x16_there_is_have_and_need_and_the_keys_are_alive():
     async with lab(size=(50, 12)) as theatre:
-        assert "This terminal has 50x12, pendu needs 60x16" in theatre.text(TooSmall)
+        assert "Terminal too small: 50x12, need 60x16" in theatre.text(TooSmall)
         assert not on_screen(theatre, StatusLine)
         await theatre.press("greater_than_sign")
         assert theatre.source.playhead.speed == 2

@@ -1,4 +1,4 @@
-"""The lab as it looks: the README's pictures are these."""
+"""The lab as it looks: SVG pictures of each view at 120x40, some of them the README's, and text for other sizes."""
 
 import math
 from zlib import crc32
@@ -9,8 +9,7 @@ import pytest
 from engine.scenes import DEFAULT_SCENE, SCENES
 from recordings.library import resolve
 from tests.tui.command_line import pendu
-from tests.tui.conftest import SNAPSHOTS
-from tests.tui.stage import player
+from tests.tui.harness import player
 from tui.screens.still import normalised, still
 from tui.terminal.options import TerminalOptions
 
@@ -41,20 +40,21 @@ def sines() -> int:
 
 @pytest.mark.parametrize("size", SIZES)
 @pytest.mark.parametrize("view", VIEWS)
-async def test_every_view_at_every_size(snapshot, view, size):
+async def test_every_view_at_every_size(snapshot, text_snapshot, view, size):
     if view in ("accuracy", "stability") and sines() != SINES:
-        pytest.skip("sines are rounded otherwise here")
-    snapshot(f"{view}-{size}-dark", await still(DEFAULT_SCENE, SECONDS, SIZES[size], keys=VIEWS[view]))
+        pytest.skip("this machine rounds sines differently, which chaos shows")
+    hold = snapshot if size == "120x40" else text_snapshot
+    hold(f"{view}-{size}-dark", await still(DEFAULT_SCENE, SECONDS, SIZES[size], keys=VIEWS[view]))
 
 
 @pytest.mark.parametrize("size", SIZES)
-async def test_the_lab_in_light_at_every_size(snapshot, size):
-    snapshot(f"lab-{size}-light", await still(DEFAULT_SCENE, SECONDS, SIZES[size], TerminalOptions("light")))
+async def test_the_lab_in_light_at_every_size(text_snapshot, size):
+    text_snapshot(f"lab-{size}-light", await still(DEFAULT_SCENE, SECONDS, SIZES[size], TerminalOptions("light")))
 
 
 @pytest.mark.parametrize("display", DISPLAYS)
-async def test_the_lab_in_other_colours_and_characters(snapshot, display):
-    snapshot(f"lab-120x40-{display}", await still(DEFAULT_SCENE, SECONDS, (120, 40), DISPLAYS[display]))
+async def test_the_lab_in_other_colours_and_characters(text_snapshot, display):
+    text_snapshot(f"lab-120x40-{display}", await still(DEFAULT_SCENE, SECONDS, (120, 40), DISPLAYS[display]))
 
 
 async def test_a_replay(snapshot):
@@ -64,28 +64,28 @@ async def test_a_replay(snapshot):
         snapshot("replay-120x40-dark", normalised(theatre.app.export_screenshot()))
 
 
-async def test_on_a_narrow_terminal_there_is_one_pane_and_the_table(snapshot):
-    snapshot("lab-60x16", await still(DEFAULT_SCENE, SECONDS, (60, 16)))
+async def test_on_a_narrow_terminal_there_is_one_pane_and_the_table(text_snapshot):
+    text_snapshot("lab-60x16", await still(DEFAULT_SCENE, SECONDS, (60, 16)))
 
 
-async def test_on_a_terminal_too_small_there_is_a_message_with_have_and_need(snapshot):
-    snapshot("lab-50x12", await still(DEFAULT_SCENE, SECONDS, (50, 12)))
+async def test_on_a_terminal_too_small_there_is_a_message_with_have_and_need(text_snapshot):
+    text_snapshot("lab-50x12", await still(DEFAULT_SCENE, SECONDS, (50, 12)))
 
 
-async def test_the_exact_swing_is_a_ghost_and_hidden_methods_leave_their_room(snapshot):
-    snapshot("lab-ghost", await still(SCENES["crossover"], SECONDS, (120, 40), keys=["5", "1", "2"]))
+async def test_the_exact_swing_is_a_ghost_and_hidden_methods_leave_their_room(text_snapshot):
+    text_snapshot("lab-ghost", await still(SCENES["crossover"], SECONDS, (120, 40), keys=["5", "1", "2"]))
 
 
-async def test_the_form_and_the_help_lie_over_the_lab(snapshot):
-    snapshot("lab-form", await still(DEFAULT_SCENE, SECONDS, (80, 24), keys=["i", *"abc"]))
-    snapshot("lab-help", await still(DEFAULT_SCENE, SECONDS, (120, 40), keys=["question_mark"]))
+async def test_the_form_and_the_help_lie_over_the_lab(text_snapshot):
+    text_snapshot("lab-form", await still(DEFAULT_SCENE, SECONDS, (80, 24), keys=["i", *"abc"]))
+    text_snapshot("lab-help", await still(DEFAULT_SCENE, SECONDS, (120, 40), keys=["question_mark"]))
 
 
-def test_the_command_writes_the_same_picture(tmp_path):
+def test_the_command_writes_the_same_picture(tmp_path, snapshot):
     out = tmp_path / "lab.svg"
-    outcome = pendu("snapshot", "--time", SECONDS, "--size", "80x24", "-o", out)
+    outcome = pendu("snapshot", "--time", SECONDS, "-o", out)
     assert (outcome.code, outcome.out, outcome.err) == (0, "", "")
-    assert out.read_text(encoding="utf-8") == (SNAPSHOTS / "lab-80x24-dark.svg").read_text(encoding="utf-8")
+    snapshot("lab-120x40-dark", out.read_text(encoding="utf-8"))
 
 
 @pytest.mark.parametrize(
@@ -93,8 +93,8 @@ def test_the_command_writes_the_same_picture(tmp_path):
     [
         (["--size", "10x10"], "60x16"),
         (["--size", "big"], "120x40"),
-        (["--time", "nan"], "no time"),
-        (["--time", "-1"], "no time"),
+        (["--time", "nan"], "not a valid time"),
+        (["--time", "-1"], "not a valid time"),
         (["--theme", "pink"], "dark"),
         (["--scene", "drfit"], "did you mean drift"),
     ],
@@ -111,7 +111,7 @@ def test_a_still_is_not_written_under_a_name_that_says_it_were_something_else(tm
 
 
 def test_a_folder_that_is_not_there_is_refused_before_anything_is_drawn(tmp_path):
-    assert pendu("snapshot", "-o", tmp_path / "no" / "x.svg").refused(5, "there is no folder")
+    assert pendu("snapshot", "-o", tmp_path / "no" / "x.svg").refused(5, "no folder")
 
 
 async def test_a_still_is_the_same_to_the_letter_whenever_it_is_made():

@@ -52,7 +52,7 @@ def test_the_program_starts_follows_the_keys_quits_and_leaves_a_recording_that_v
         session.type("q")
         assert session.end() == 0
         (path,) = library.iterdir()
-        assert f"recorded: {path}" in session.output.decode()
+        assert f"saved {path}" in session.output.decode()
         assert f"pendu-tui replay {path}" in session.output.decode()
     kinds = [event.kind for _, event in whole(library).events]
     assert kinds == ["start", "set_h", "pause", "start", "stop"]
@@ -105,7 +105,7 @@ def test_without_recording_nothing_is_written(library):
         session.wait_for("not recorded")
         session.type("q")
         assert session.end() == 0
-        assert "recorded:" not in session.output.decode()
+        assert "saved " not in session.output.decode()
     assert not library.exists()
 
 
@@ -145,7 +145,7 @@ def test_a_terminal_that_cannot_move_its_cursor_is_told_so(library):
 def test_without_a_terminal_there_is_a_sentence_and_exit_4(command):
     done = subprocess.run([*PENDU, *command], capture_output=True, text=True, stdin=subprocess.DEVNULL, check=False)
     assert (done.returncode, done.stdout) == (4, "")
-    assert "no terminal" in done.stderr
+    assert "not a terminal" in done.stderr
     assert done.stderr.count("\n") == 1
 
 
@@ -168,7 +168,7 @@ def test_a_file_that_is_no_recording_is_a_sentence_and_exit_3(tmp_path, content)
         (("live", "--scene", "drfit"), 2, "did you mean drift"),
         (("live", "--record", "x.mcap", "--no-record"), 2, "not allowed"),
         (("replay", "no-such"), 3, "no recording"),
-        (("replay", "drift", "--speed", "fast"), 2, "no number"),
+        (("replay", "drift", "--speed", "fast"), 2, "not a number"),
     ],
 )
 def test_bad_input_is_refused_before_the_terminal_is_looked_at(arguments, code, words):

@@ -5,7 +5,7 @@ import time
 import pytest
 
 from recordings import library
-from tests.tui.stage import lab
+from tests.tui.harness import lab
 from tui.screens.key_line import KeyLine
 from tui.screens.status_line import StatusLine
 from tui.terminal.screenshot import save_screenshot, text_of
@@ -63,4 +63,4 @@ async def test_where_nothing_can_be_saved_that_is_said(tmp_path, monkeypatch):
     async with lab(size=(80, 24)) as theatre:
         await theatre.press("s")
         (told,) = theatre.app._notifications
-        assert "cannot be saved" in told.message
+        assert "Screenshot failed" in told.message

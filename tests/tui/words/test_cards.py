@@ -3,8 +3,9 @@
 import pytest
 
 from engine.methods import METHODS
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES
-from tests.tui.stage import lab
+from tests.tui.harness import lab
 from tui.playback.live import Live
 from tui.screens.keys import COMMON, LIVE, REPLAY
 from tui.screens.text import help_text
@@ -25,7 +26,7 @@ def test_a_method_card_has_every_claim(index):
     method, card = METHODS[index], words(method_card(index))
     for claim in (method.label, *method.other_names, method.formula, method.reference, method.used):
         assert words(claim) in card
-    assert f"order {method.order}: halving h divides the error by {2**method.order}" in card
+    assert f"order {method.order}: over one swing, halving h divides the error by {2**method.order}" in card
     assert f"costs {method.force_evaluations} force evaluation" in card
     assert ("symplectic yes" in card, "reversible yes" in card) == (method.symplectic, method.reversible)
     assert (f"stable up to z = h w0 = {method.linear_limit:.4g}" if method.linear_limit else "stable at no h") in card
@@ -54,13 +55,13 @@ def test_the_help_begins_with_what_to_watch_and_ends_with_the_methods():
     text = help_text((*LIVE, *COMMON), Live(SCENES["drift"]))
     assert text.startswith(scene_card(SCENES["drift"]))
     assert text.endswith(method_card(len(METHODS) - 1))
-    assert text.index("Time\n") < text.index("What is shown\n") < text.index(METHODS[0].formula)
+    assert text.index("Time\n") < text.index("Display\n") < text.index(METHODS[0].formula)
 
 
 def test_the_help_shows_the_current_step_next_to_the_scenes():
     live = Live(SCENES["drift"])
     assert "now" not in words(scene_card(live.scene))
-    live.set_h(-0.4, equal_cost=True)
+    live.set_stepping(Stepping(-0.4, equal_cost=True))
     text = words(help_text(LIVE, live))
     assert (
         "step h = 0.05 s, z = h w0 = 0.1566 now h = 0.4 s, z = 1.25; at equal cost, the cheaper methods split it"
@@ -71,7 +72,7 @@ def test_the_help_shows_the_current_step_next_to_the_scenes():
 
 async def test_the_help_begins_with_the_keys_of_the_focused_pane():
     async with lab() as theatre:
-        for view, pane, first in ((None, None, "The run"), (None, PhasePane, "Phase space"), ("f5", None, "Stability")):
+        for view, pane, first in ((None, None, "Run"), (None, PhasePane, "Phase space"), ("f5", None, "Stability")):
             if view:
                 await theatre.press(view)
                 await theatre.pilot.pause()
@@ -80,5 +81,5 @@ async def test_the_help_begins_with_the_keys_of_the_focused_pane():
             await theatre.press("question_mark")
             groups = [part.partition("\n")[0] for part in theatre.app.screen.text.split("\n\n")]
             assert groups[1] == first
-            assert {"The run", "Time", "What is shown", "The program"} < set(groups)
+            assert {"Run", "Time", "Display", "Program"} < set(groups)
             await theatre.press("escape")

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from engine.run.stepping import Stepping
 from engine.scenes import LIMITS, SCENES, Scene
 from recordings.library import GOLDEN
 from recordings.live_recorder import LiveRecorder
@@ -54,7 +55,7 @@ def test_after_a_change_of_step_size_the_command_points_into_the_recording(tmp_p
     live.record(LiveRecorder(tmp_path / "my run.mcap"))
     for frame in range(61):
         live.tick(frame / 30)
-    live.set_h(0.1)
+    live.set_stepping(Stepping(0.1))
     options = options_of(command(live))
     live.close()
     assert Path(options.file) == tmp_path / "my run.mcap"

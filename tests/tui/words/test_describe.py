@@ -5,23 +5,17 @@ import re
 import pytest
 
 from engine.methods import METHODS
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES
-from tests.tui.stage import lab
+from tests.tui.harness import after, lab
 from tui.playback.live import Live
 from tui.words.describe import description, method_sentence
 
 EXPLICIT, SYMPLECTIC, VERLET, RK4 = range(4)
 
 
-def after(name: str, seconds: float, **changes: float) -> Live:
-    live = Live(SCENES[name].altered(**changes), clock=lambda: 0.0)
-    for frame in range(round(seconds * 30) + 1):
-        live.tick(frame / 30)
-    return live
-
-
 def test_the_default_scene_after_twenty_seconds():
-    live = after("drift", 20)
+    live = after(SCENES["drift"], 20)
     assert description(live) == [
         'The lab runs in real time and is at 20.00 s of run 1 of the scene "drift".',
         "The pendulum is 1 m long and started at 57.3 degrees with 0 radians per second; one swing takes 2.1 s.",
@@ -29,7 +23,7 @@ def test_the_default_scene_after_twenty_seconds():
         "Explicit Euler went over the top at 7.15 s with 5.1 times its initial energy.",
         "Symplectic Euler stays bounded: its largest energy error is 0.079.",
         "Velocity Verlet stays bounded: its largest energy error is 0.0057.",
-        "RK4 loses 0.00029 % of E0/s; its error will pass Verlet's in about 32 min.",
+        "RK4 loses 0.00030 % of E0/s; its error will pass Verlet's in about 31 min.",
         "Not recording.",
     ]
 
@@ -46,7 +40,7 @@ def test_every_method_has_a_sentence_at_any_time_of_any_scene():
 
 
 def test_before_a_verdict_a_method_s_sentence_gives_its_error():
-    live = after("drift", 3)
+    live = after(SCENES["drift"], 3)
     error = live.sample.readings[RK4].energy_error
     assert method_sentence(live, RK4) == f"RK4 has an energy error of {error:+.2g}; it is too early for a verdict."
 
@@ -56,13 +50,13 @@ def test_before_a_verdict_a_method_s_sentence_gives_its_error():
     [
         (lambda live: live.pause(True), "is paused"),
         (lambda live: live.set_speed(0.5), "runs at 0.5 times real time"),
-        (lambda live: live.set_h(-0.05), "time runs backwards"),
-        (lambda live: live.set_h(0.2, equal_cost=True), "at equal cost"),
+        (lambda live: live.set_stepping(Stepping(-0.05)), "time runs backwards"),
+        (lambda live: live.set_stepping(Stepping(0.2, equal_cost=True)), "at equal cost"),
         (lambda live: live.start(SCENES["spin"]), "one turn takes 0.98 s"),
     ],
 )
 def test_the_description_follows_changes(change, words):
-    live = after("drift", 1)
+    live = after(SCENES["drift"], 1)
     assert words not in " ".join(description(live))
     change(live)
     assert words in " ".join(description(live))

@@ -2,9 +2,10 @@
 
 import pytest
 
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES
-from recordings.live_recorder import LiveRecorder
 from recordings.recording import Recording
+from tests.tui.harness import after, recorded
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
@@ -16,40 +17,34 @@ from tui.words.events import event_lines
 DRIFT = SCENES["drift"]
 
 
-def after(live: Live, seconds: float, begin: float = 0.0) -> Live:
-    for frame in range(round(seconds * 30) + 1):
-        live.tick(begin + frame / 30)
-    return live
-
-
 def texts(live: Live) -> list[str]:
     return [line.text for line in event_lines(live)]
 
 
 def test_the_events_of_the_first_twenty_seconds():
-    lines = event_lines(after(Live(DRIFT, clock=lambda: 0.0), 20))
+    lines = event_lines(after(DRIFT, 20))
     assert [str(line) for line in lines] == [
         "   0.00 start drift, h 0.05 s",
         "   7.15 Explicit Euler over the top, 5.1 E0",
-        "   8.60 Explicit Euler gains energy",
-        "   8.60 RK4 loses energy",
-        "  17.20 Symplectic Euler stays bounded",
-        "  17.20 Verlet stays bounded",
+        "   9.00 Explicit Euler gains energy",
+        "   9.00 RK4 loses energy",
+        "  18.00 Symplectic Euler stays bounded",
+        "  18.00 Verlet stays bounded",
     ]
     assert [line.method for line in lines] == [None, 0, 0, 3, 1, 2]
 
 
 def test_changes_and_marks_are_listed_and_pauses_are_not():
-    live = after(Live(DRIFT, clock=lambda: 0.0), 1)
+    live = after(DRIFT, 1)
     live.mark()
     live.pause(True)
     live.pause(False)
     live.set_speed(2)
-    live.set_h(0.1)
+    live.set_stepping(Stepping(0.1))
     live.step(1)
     live.mark("question 2")
-    live.set_h(-0.1)
-    live.set_h(0.4, equal_cost=True)
+    live.set_stepping(Stepping(-0.1))
+    live.set_stepping(Stepping(0.4, equal_cost=True))
     live.start(DRIFT.altered(theta=2.0))
     assert texts(live) == [
         "start drift, h 0.05 s",
@@ -65,14 +60,8 @@ def test_changes_and_marks_are_listed_and_pauses_are_not():
 
 
 def test_marks_next_to_a_recording_have_the_time_of_their_step(tmp_path):
-    live = Live(DRIFT, clock=lambda: 0.0)
-    live.record(LiveRecorder(tmp_path / "run.mcap"))
-    for change in (0.1, -0.02):
-        after(live, 2, live.playhead.seen or 0.0)
-        live.set_h(change)
-    after(live, 1, live.playhead.seen)
-    live.close()
-    path = tmp_path / "run.mcap"
+    larger, backwards = (lambda live, h=h: live.set_stepping(Stepping(h)) for h in (0.1, -0.02))
+    path = recorded(tmp_path / "run.mcap", 2.0, larger, 2.0, backwards, 1.0)
     with Recording.open(path) as recording:
         replay = Replay(recording, Marks(path), clock=lambda: 0.0)
         times = []
@@ -88,7 +77,7 @@ def test_marks_next_to_a_recording_have_the_time_of_their_step(tmp_path):
 
 
 def test_a_step_back_removes_what_comes_later():
-    live = after(Live(DRIFT, clock=lambda: 0.0), 9)
+    live = after(DRIFT, 9)
     live.step(-20)
     assert texts(live)[-1] == "Explicit Euler over the top, 5.1 E0"
     live.step(-20)
@@ -104,11 +93,11 @@ def test_a_failed_method_is_listed():
 
 def test_lines_fit_the_smallest_pane():
     for scene in SCENES.values():
-        assert all(len(str(line)) <= 46 for line in event_lines(after(Live(scene, clock=lambda: 0.0), 60)))
+        assert all(len(str(line)) <= 46 for line in event_lines(after(scene, 60)))
 
 
 async def test_the_pane_shows_the_newest_last_and_only_where_there_is_room():
-    live = after(Live(DRIFT, clock=lambda: 0.0), 20)
+    live = after(DRIFT, 20)
     app = PenduApp(LiveScreen(live, clock=lambda: 20.0))
     async with app.run_test(size=(120, 40)) as pilot:
         await pilot.pause()

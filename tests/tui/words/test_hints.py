@@ -1,7 +1,7 @@
 """Each hint is shown once, unless the user knows it already."""
 
 from recordings.events import Event
-from tests.tui.stage import lab
+from tests.tui.harness import lab
 from tui.screens.insight_line import InsightLine
 from tui.words.insight import HINT_SHOWN, HINTS, hint
 

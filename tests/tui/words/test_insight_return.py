@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES
 from tui.playback.live import Live
 from tui.words.insight import insight, return_text
@@ -16,9 +17,9 @@ def misses(text: str) -> dict[str, float]:
 
 def there_and_back(scene_name: str, steps: int) -> Live:
     live = Live(SCENES[scene_name])
-    for h in (live.h, -live.h):
-        if h != live.h:
-            live.set_h(h)
+    for h in (live.stepping.h, -live.stepping.h):
+        if h != live.stepping.h:
+            live.set_stepping(Stepping(h))
         for _ in range(steps):
             live.step(1)
     return live
@@ -40,7 +41,7 @@ def test_ten_seconds_there_and_back_show_which_methods_are_reversible(scene):
 def test_the_distances_are_shown_for_a_while_only():
     live = there_and_back("drift", 40)
     assert "Back" in insight(live)
-    live.step(round(9 / live.h * -1))
+    live.step(round(9 / live.stepping.h * -1))
     assert "Back" not in insight(live)
 
 

@@ -52,10 +52,10 @@ def test_every_second_has_a_sentence_and_every_event_one_more():
     events = [text for text in sentences if re.fullmatch(r"[\d.]+ s: (?!energy errors).*", text)]
     assert events == [
         "7.15 s: Explicit Euler over the top, 5.1 E0.",
-        "8.60 s: Explicit Euler gains energy.",
-        "8.60 s: RK4 loses energy.",
-        "17.20 s: Symplectic Euler stays bounded.",
-        "17.20 s: Verlet stays bounded.",
+        "9.00 s: Explicit Euler gains energy.",
+        "9.00 s: RK4 loses energy.",
+        "18.00 s: Symplectic Euler stays bounded.",
+        "18.00 s: Verlet stays bounded.",
     ]
     assert len(sentences) == 20 + len(events)
 

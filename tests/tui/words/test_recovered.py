@@ -3,7 +3,7 @@ from pathlib import Path
 
 from recordings.recording import Recording
 from recordings.verify import verify
-from tests.tui.sitting import Sitting
+from tests.tui.harness import Lab
 from tui.words.recovered import recover_leftovers
 
 
@@ -13,10 +13,10 @@ def recover_in(folder: Path) -> list[str]:
 
 def left_unfinished(path: Path) -> Path:
     """What a killed lab leaves."""
-    sitting = Sitting(path)
-    sitting.run(3.0)
-    assert sitting.live.recorder is not None
-    sitting.live.recorder._recorder._file.close()
+    lab = Lab(record=path)
+    lab.run(3.0)
+    assert lab.live.recorder is not None
+    lab.live.recorder._recorder._file.close()
     return path.with_name(path.name + ".part")
 
 
@@ -47,10 +47,10 @@ def test_what_cannot_be_recovered_is_kept_and_reported_once(tmp_path):
 
 
 def test_a_recording_in_progress_is_left_alone(tmp_path):
-    sitting = Sitting(tmp_path / "one.mcap")
-    sitting.run(1.0)
+    lab = Lab(record=tmp_path / "one.mcap")
+    lab.run(1.0)
     assert recover_in(tmp_path) == []
-    sitting.live.close()
+    lab.live.close()
     assert [path.name for path in tmp_path.iterdir()] == ["one.mcap"]
 
 

@@ -1,4 +1,4 @@
-"""What the accuracy command prints: tables, chart and recommendation, JSON, CSV."""
+"""What the accuracy command prints: table, chart, recommendation; JSON; CSV."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
@@ -24,7 +24,7 @@ class Advice:
 
     time: float  # s
     attempts: Sequence[Attempt]
-    point: Point | None  # None: no method gets there
+    point: Point | None  # None: no method reaches the target
 
 
 @dataclass(slots=True)
@@ -104,7 +104,7 @@ def _print_points(found: Findings) -> None:
     flaws = {flaw for point in found.points if (flaw := point.flaw(found.kind))}
     for mark in sorted({MARKS[flaw] for flaw in flaws}):
         print(f"{mark} {'; '.join(REASONS[flaw] for flaw in flaws if MARKS[flaw] == mark)}")
-    print("order: of the theta error over one period or less; n/step: force evaluations")
+    print("order measured on the theta error over at most one period; n/step: force evaluations")
 
 
 def _cell(found: Findings, rung: Sequence[Point], method: Method) -> str:
@@ -135,7 +135,7 @@ def _print_chart(found: Findings) -> None:
 def _print_advice(found: Findings, advice: Advice) -> None:
     kind, point = found.kind, advice.point
     if point is None:
-        print(f"No method gets there over {advice.time:g} s: {found.wish}")
+        print(f"No method reaches the target over {advice.time:g} s: {found.wish}")
     else:
         print(f"Over {advice.time:g} s, {found.wish}: {point.method.label} at h = {point.h:.5g} s")
         print(f"{point.force_evaluations} force evaluations, {kind} error {point.error(kind):.2e}, confirmed")

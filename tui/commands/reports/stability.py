@@ -16,7 +16,7 @@ from engine.methods import METHODS
 from engine.scenes import Scene
 from engine.stability.grid import Grid
 from engine.stability.linear import amplification, linear_limit
-from engine.stability.outcomes import BAND, CELL, FATES, HOLDS, UNKNOWN, Cells
+from engine.stability.outcomes import BAND, CELL, FATES, UNKNOWN, Cells, is_lost
 from engine.stability.study import Row, StabilityStudy
 from tui.cli.errors import Exit
 from tui.cli.files import whole_file
@@ -131,7 +131,7 @@ def _map_ended(done: int, grid: Grid) -> int:
     return _ended(done == len(grid.z), f"{done} of the map's {len(grid.z)} z were computed and are kept")
 
 
-def _ended(whole: bool, kept: str = "the swings known by then to be lost are kept") -> int:
+def _ended(whole: bool, kept: str = "swings already found lost are kept") -> int:
     if whole:
         return Exit.FINE
     warn(f"interrupted; {kept}.")
@@ -142,10 +142,10 @@ def _print_linear(z: float) -> None:
     def limit(z: float) -> str:
         return f"{z:.9f}" if z else "none"
 
-    print("Linear oscillator: largest multiplier of one step, from its Jacobian; stable up to z = h·w0")
+    print("Linear oscillator: spectral radius of one step; stable up to z = h·w0")
     print_table(
         "lrrr",
-        ("method", "stable to z, measured", "theory", f"|multiplier| at z = {z:.4g}"),
+        ("method", "stable to z, measured", "theory", f"spectral radius at z = {z:.4g}"),
         (
             (m.label, limit(linear_limit(m.step)), limit(m.linear_limit), f"{amplification(m.step, z):.9f}")
             for m in METHODS
@@ -156,18 +156,18 @@ def _print_linear(z: float) -> None:
 def _print_pendulum(rows: Sequence[Row], study: StabilityStudy) -> None:
     """Print where swings are lost, and how far from there the scene is."""
     scene = study.scene
-    print(f"\nPendulum: a swing is lost if within {study.steps} steps it goes over the top, or its energy comes to lie")
-    print(f"{100 * BAND:.0f} % outside the wobble that the method has on the linear oscillator")
+    print(f"\nPendulum: a swing counts as lost if within {study.steps} steps it goes over the top or becomes chaotic;")
+    print(f"without a symplectic method also if its energy leaves the linear oscillator's band by {100 * BAND:.0f} %")
     print_table(
         "lrrrlrlr",
-        ("method", "amplitude", "lost from z", "h, s", "how", "at step", f"at z = {scene.z:.4g}", "cliff / z"),
+        ("method", "amplitude", "first lost at z", "h [s]", "failure", "at step", f"at z = {scene.z:.4g}", "margin"),
         (_cells(row, scene) for row in rows),
     )
 
 
 def _cells(row: Row, scene: Scene) -> tuple[str, ...]:
     found, fate = row.failure, int(row.here["fate"])
-    here = {HOLDS: "holds", UNKNOWN: "-"}.get(fate, f"lost at step {row.here['steps'] + 1}")
+    here = f"lost at step {row.here['steps'] + 1}" if is_lost(row.here) else "-" if fate == UNKNOWN else FATES[fate]
     where, margin = ("-",) * 4, "-"
     if found:
         where = (f"{found.z:.4g}", f"{found.z / scene.w0:.3g}", found.reason, str(found.steps + 1))

@@ -1,1 +1,4 @@
-"""Map to come."""
+"""Cost against accuracy (F4): `view` has points computed, `pane` shows them as a `chart` to choose h from.
+
+The command `pendu-tui accuracy` draws the same chart.
+"""

@@ -1,4 +1,4 @@
-"""Points of an accuracy study -> a log-log chart: cost across, error up."""
+"""Points of an accuracy study -> a log-log chart of error over cost."""
 
 from collections.abc import Sequence
 from typing import Literal
@@ -12,7 +12,7 @@ from tui.drawing.palette import FRAME
 Cost = Literal["evaluations", "seconds"]
 
 MARKS: dict[Flaw, str] = {"lost": "x", "diverged": "x", "rounding": "~"}
-"""Of points that say nothing of how a method depends on h."""
+"""Of points that do not show how the error depends on h."""
 
 ERROR_LABELS: dict[ErrorKind, str] = {
     "theta": "theta error [rad], the largest distance from the exact swing",
@@ -37,7 +37,7 @@ def accuracy_chart(
     height: int,
     marks: Sequence[tuple[str, Point]] = (),
 ) -> Picture:
-    """Letters for points, x and ~ for those that are lost or only rounding, dotted lines for orders, and `marks`."""
+    """Letters for points, x for useless and ~ for rounding-limited ones, dotted lines for orders, and `marks`."""
 
     def series(some: Sequence[Point], mark: str) -> Series:
         costs, errors = [cost_of(point, cost) for point in some], [point.error(kind) for point in some]
@@ -58,7 +58,7 @@ def accuracy_chart(
 
 
 def _slope(ours: Sequence[Point], kind: ErrorKind, cost: Cost, points: Sequence[Point]) -> Series | None:
-    """A line of the slope that the method's order claims, beside its errors; one line for methods of one order."""
+    """A line with the slope of the method's order, below its errors; one for all methods of that order."""
     order = ours[0].method.order
     valid = [point for point in ours if not point.flaw(kind) and point.error(kind) and cost_of(point, cost)]
     if not valid or ours[0].method != next(p.method for p in points if p.method.order == order):

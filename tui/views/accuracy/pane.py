@@ -1,4 +1,4 @@
-"""AccuracyPane: the chart of speed against accuracy, to choose h from with the keyboard."""
+"""AccuracyPane: the chart of cost against accuracy, to choose h from with the keyboard."""
 
 import asyncio
 from collections.abc import Sequence
@@ -12,7 +12,7 @@ from engine.accuracy.study import REASONS, ErrorKind, Point
 from engine.methods import METHODS
 from engine.run.lockstep import Sample
 from tui.drawing.palette import TEXT
-from tui.playback.source import EQUAL_PARTS, Source
+from tui.playback.source import Source
 from tui.views.accuracy.chart import POWERS, accuracy_chart
 from tui.views.keys import Key, bindings
 from tui.views.messages import StepSizeChosen
@@ -22,7 +22,7 @@ WORDS = 2  # lines
 MOST_STEPS = 2_000_000  # of a run for the mark at the present h: some seconds
 HERE, CURSOR = "X", "O"
 POWERS_OF_H = ", ".join(POWERS[order] for order in sorted({method.order for method in METHODS}))
-LEGEND = f"{HERE} you are here; x failed; ~ only rounding; dotted: error as {POWERS_OF_H}"
+LEGEND = f"{HERE} current h  x useless  ~ rounding limit  dotted: slopes {POWERS_OF_H}"
 
 _GROUP = "accuracy"
 KEYS = (
@@ -37,7 +37,7 @@ KEYS = (
 
 
 class AccuracyPane(Chooser[int]):
-    """Draws the points that there are, "you are here" for each method, and one of them in words."""
+    """Draws the points known so far, with a mark at the present h of each method, and describes one of them."""
 
     BINDINGS: ClassVar[list[BindingType]] = bindings(*KEYS)
 
@@ -51,7 +51,7 @@ class AccuracyPane(Chooser[int]):
         self._building = False
 
     def begin(self, time: float, rungs: Sequence[int]) -> None:
-        """Wait for other points."""
+        """Start over: points of other step counts, or of another pendulum, are to come."""
         self.time, self.rungs, self.points, self.cursor = time, list(rungs), {}, None
 
     def add(self, point: Point) -> None:
@@ -78,7 +78,7 @@ class AccuracyPane(Chooser[int]):
 
     @property
     def aim(self) -> Point | None:
-        """The point that is spoken of: the cursor's, or the one here."""
+        """The point that is described: at the cursor, or at the present h."""
         if self.cursor is not None:
             return self.points.get((self.index, self.rungs[self.cursor]))
         return self.points.get((self.index, self.here[self.index])) if self.here else None
@@ -104,8 +104,8 @@ class AccuracyPane(Chooser[int]):
         chart = partial(accuracy_chart, points, kind, "evaluations", width, max(height - WORDS, 1), marks=marks)
         picture = await asyncio.to_thread(chart)
         rows = [picture.row(y) for y in range(len(picture.characters))]
-        state_text = f", computing: {self.missing} points to come" if self.missing else ""
-        self.border_title = f"Accuracy over {self.time:g} s: {kind} error up, force evaluations across{state_text}"
+        state_text = f", computing: {self.missing} points left" if self.missing else ""
+        self.border_title = f"Accuracy over {self.time:g} s: {kind} error vs. force evaluations{state_text}"
         said = wrap(self._words(), max(width - 2, 1), max_lines=WORDS, placeholder=" …")
         self.show([*rows, *([(f" {line}", TEXT)] for line in said)])
         self._drawn, self._building = state, False
@@ -113,8 +113,8 @@ class AccuracyPane(Chooser[int]):
     def _words(self) -> str:
         point = self.aim
         if point is None:
-            return "" if self.missing else "you are not on this chart: h is too large or too small"
-        place = "you are here" if self.cursor is None else "enter uses this h" if self.is_live else ""
+            return "" if self.missing else "the current h is not on this chart: it is too large or too small"
+        place = "current h" if self.cursor is None else "Enter: use this h" if self.is_live else ""
         flaw = point.flaw(self.kind)
         return (
             f"{point.method.label} at h {point.h:.4g} s: {self.kind} error {point.error(self.kind):.1e}"
@@ -122,7 +122,7 @@ class AccuracyPane(Chooser[int]):
         )
 
     def action_move(self, right: int) -> None:
-        """Move the cursor along the method's points, to the right towards the dearer ones."""
+        """Move the cursor along the method's points; those to the right cost more."""
         if self.rungs:
             if self.cursor is None:
                 steps = self.here[self.index] if self.here else self.rungs[0]
@@ -134,5 +134,5 @@ class AccuracyPane(Chooser[int]):
 
     def choose(self, rung: int) -> None:
         assert self.source is not None
-        part = EQUAL_PARTS[self.index] if self.source.equal_cost else 1
-        self.post_message(StepSizeChosen(self.time / self.rungs[rung] * part))
+        h = self.time / self.rungs[rung]
+        self.post_message(StepSizeChosen(self.source.stepping.with_own(METHODS[self.index], h)))

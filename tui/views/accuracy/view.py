@@ -1,4 +1,4 @@
-"""AccuracyView: speed against accuracy for the pendulum on screen; the chart fills in as it is computed."""
+"""AccuracyView: cost against accuracy for the pendulum on screen; the chart fills in as it is computed."""
 
 from collections.abc import Sequence
 
@@ -6,7 +6,6 @@ from textual.app import ComposeResult
 
 from engine.accuracy.study import measured, usual
 from engine.scenes import Scene
-from tui.playback.source import own_h
 from tui.views.accuracy.pane import KEYS, MOST_STEPS, AccuracyPane
 from tui.views.background import computed
 from tui.views.view import View
@@ -16,7 +15,7 @@ Start = tuple[float, float, float]
 
 
 class AccuracyView(View):
-    """Computes in a process of its own: all points for another start or pendulum, some for another h."""
+    """Computes all points anew for another start or pendulum, and some more for another h."""
 
     KEYS = KEYS
 
@@ -25,16 +24,14 @@ class AccuracyView(View):
         self._start: Start | None = None
 
     def compose(self) -> ComposeResult:
-        """Create the pane."""
         yield AccuracyPane().data_bind(View.source, View.shown, sample=View.sample_10hz)
 
     def on_mount(self) -> None:
-        """The keys are the chart's from the start."""
         self.query_one(AccuracyPane).focus()
         self.watch_sample_10hz()
 
     def watch_sample_10hz(self) -> None:
-        """Compute what is not there yet for the run on screen, if anybody looks."""
+        """Compute what is missing for the run on screen, if the view is shown."""
         if self.source is None or not self.display or not self.query(AccuracyPane):
             return
         pane, scene = self.query_one(AccuracyPane), self.source.scene
@@ -45,7 +42,7 @@ class AccuracyView(View):
             pane.begin(*usual(scene))
             self._compute(scene, pane.time, pane.rungs, "ladder")
             pane.here = ()
-        here = tuple(max(1, round(pane.time / abs(h))) for h in own_h(self.source))
+        here = tuple(max(1, round(pane.time / abs(h))) for h in self.source.stepping.own())
         if here != pane.here:
             pane.here = here
             known = {*pane.rungs, *(steps for _, steps in pane.points)}

@@ -1,4 +1,4 @@
-"""ErrorTable: what each method reads now, and what is known of its energy error."""
+"""ErrorTable: each method's state and energy error now, and the verdict on its error so far."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -11,13 +11,13 @@ from engine.run.verdict import Judgement
 from tui.drawing.cells import Row
 from tui.drawing.palette import FRAME, TEXT, WARN, mark
 from tui.playback.shown import Shown
-from tui.playback.source import Source, own_h
+from tui.playback.source import Source
 from tui.views.view import Pane
 from tui.words.numbers import decimal, scientific
 
 
-class Line(NamedTuple):
-    """All that a line of the table is made of."""
+class TableLine(NamedTuple):
+    """What the cells of a line are made from."""
 
     method: Method
     reading: Reading
@@ -33,7 +33,7 @@ class Column:
     keep: int  # columns with the smallest numbers go first where there is no room
     narrow: tuple[str, int]
     wide: tuple[str, int]
-    cell: Callable[[Line, int], str]
+    cell: Callable[[TableLine, int], str]
 
 
 COLUMNS = (
@@ -51,26 +51,26 @@ COLUMNS = (
     Column(
         6, ("largest", 7), ("largest", 8), lambda line, width: scientific(line.reading.max_energy_error, width, 1, "-")
     ),
-    Column(5, ("per s", 8), ("drift per s", 11), lambda line, width: scientific(line.judgement.slope, width)),
+    Column(5, ("per s", 8), ("trend per s", 11), lambda line, width: scientific(line.judgement.slope, width)),
     Column(8, ("verdict", 9), ("verdict", 9), lambda line, width: verdict(line).rjust(width)),
     Column(3, ("th.err", 7), ("theta error", 11), lambda line, width: scientific(theta_error(line), width, 1, "-")),
-    Column(1, ("f", 1), ("force/step", 10), lambda line, width: str(line.method.force_evaluations).rjust(width)),
+    Column(1, ("f", 1), ("evals/step", 10), lambda line, width: str(line.method.force_evaluations).rjust(width)),
 )
 NAME = max(len(mark(index) + method.label) for index, method in enumerate(METHODS)) + 1
 MOST_GAP = 3
 
 
-def theta_error(line: Line) -> float:
+def theta_error(line: TableLine) -> float:
     """|theta - exact theta| [rad]."""
     return abs(line.reading.theta - line.exact.theta)
 
 
-def verdict(line: Line) -> str:
-    """The verdict in a word; a method that has diverged has failed."""
+def verdict(line: TableLine) -> str:
+    """The verdict in a word; "failed" for a method that has diverged."""
     return "failed" if line.reading.diverged_at is not None else line.judgement.verdict
 
 
-def chosen(columns: Sequence[Column], room: int) -> list[tuple[str, int, Callable[[Line, int], str]]]:
+def chosen(columns: Sequence[Column], room: int) -> list[tuple[str, int, Callable[[TableLine, int], str]]]:
     """(head, width, cell) of the columns that fit, in their order: wide ones, or as many narrow ones as possible."""
     if sum(column.wide[1] + 1 for column in columns) <= room:
         return [(*column.wide, column.cell) for column in columns]
@@ -89,7 +89,7 @@ def table(
     gap = " " * (1 + min(spare // max(len(columns), 1), MOST_GAP))
     rows: list[Row] = [[("method".ljust(NAME), FRAME), *((gap + head.rjust(size), FRAME) for head, size, _ in columns)]]
     for index in shown.indices:
-        line = Line(METHODS[index], sample.readings[index], judgements[index], exact, h[index])
+        line = TableLine(METHODS[index], sample.readings[index], judgements[index], exact, h[index])
         failed = line.reading.diverged_at is not None
         cells = "".join(gap + cell(line, size) for _, size, cell in columns)
         rows.append([(f"{mark(index)} {METHODS[index].label}".ljust(NAME), index), (cells, WARN if failed else TEXT)])
@@ -97,7 +97,7 @@ def table(
 
 
 class ErrorTable(Pane):
-    """The table."""
+    """As many columns as fit."""
 
     def watch_shown(self) -> None:
         """Hidden methods leave no gap."""
@@ -106,4 +106,4 @@ class ErrorTable(Pane):
 
     def paint(self, source: Source, sample: Sample) -> None:
         exact = source.exact.at(sample.t)
-        self.show(table(sample, source.judgements, exact, own_h(source), self.shown, self.room.width))
+        self.show(table(sample, source.judgements, exact, source.stepping.own(), self.shown, self.room.width))

@@ -3,11 +3,13 @@
 import math
 from collections.abc import Sequence
 
+from rich.style import Style
+from textual.renderables.digits import Digits
+
 from engine.methods import METHODS
 from engine.run.lockstep import Sample
 from engine.run.verdict import Judgement
 from tui.drawing.cells import Row
-from tui.drawing.large import HEIGHT, large
 from tui.drawing.palette import mark
 from tui.playback.shown import Shown
 from tui.playback.source import Source
@@ -15,7 +17,14 @@ from tui.views.view import Pane
 from tui.words.numbers import scientific
 
 DIGITS = 8  # of an energy error
+HEIGHT = 3  # rows of large digits
 CELL = 4 * DIGITS + 2  # columns that a method needs
+
+
+def large(text: str) -> list[str]:
+    """A number as three rows, four columns a character."""
+    digits = [list(Digits(character.upper()).render(Style(bold=True)))[::2] for character in text]
+    return [" ".join(segment.text.ljust(3) for segment in row) for row in zip(*digits, strict=True)]
 
 
 def large_rows(sample: Sample, judgements: Sequence[Judgement], shown: Shown, width: int) -> list[Row]:
@@ -39,7 +48,7 @@ def _cell(index: int, sample: Sample, judgement: Judgement, width: int) -> list[
 
 
 class LargeTable(Pane):
-    """The table.  It takes the room it needs."""
+    """Takes as many rows as it needs."""
 
     def paint(self, source: Source, sample: Sample) -> None:
         rows = large_rows(sample, source.judgements, self.shown, self.room.width)

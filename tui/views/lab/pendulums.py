@@ -1,19 +1,65 @@
-"""Pendulum: one or all methods' pendulums on one pivot."""
+"""Pendulum: one method's pendulum, or all on one pivot, in braille.
+
+Dots are square in a cell twice as high as wide, so x and y have the same physical scale.  The
+pivot is exactly in the middle: explicit Euler goes over the top.
+"""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from math import cos, sin
 
 from engine.methods import METHODS
 from engine.run.lockstep import Sample
-from tui.drawing.palette import EXACT, mark
+from tui.drawing.palette import EXACT, FRAME, faint, mark
+from tui.drawing.sketch import Sketch
 from tui.playback.source import Source
-from tui.views.lab.pendulum_picture import Bob, pendulum_picture
 from tui.views.view import Pane
 
 TRAIL = 15  # samples, half a second at 30 frames a second
 
 
+@dataclass(frozen=True, slots=True)
+class Bob:
+    """One pendulum to draw."""
+
+    theta: float  # rad from the downward vertical
+    owner: int
+    trail: Sequence[float] = ()  # rad; where it was, drawn faintly
+    letter: str = ""  # written next to it, so that colour is not alone
+    ghost: bool = False  # the exact swing: dotted and hollow
+    diverged: bool = False  # its numbers ended here: crossed out
+
+
+def pendulum_sketch(columns: int, rows: int, bobs: Sequence[Bob]) -> Sketch:
+    """Pendulums on one pivot, in the middle of `columns` × `rows` cells; later ones in front."""
+    sketch = Sketch(columns, rows)
+    x0, y0 = sketch.width / 2, sketch.height / 2
+    room = min(x0, y0)
+    bob_radius = min(max(room / 9, 1.5), 3.0)
+    room_for_letters = 4 if any(bob.letter for bob in bobs) else 0
+    length = max(room - bob_radius - room_for_letters, 1.0)  # of the rod, in dots
+
+    for bob in bobs:
+        sketch.points([(x0 + length * sin(theta), y0 + length * cos(theta)) for theta in bob.trail], faint(bob.owner))
+    for bob in bobs:
+        right, down = sin(bob.theta), cos(bob.theta)
+        x, y = x0 + length * right, y0 + length * down
+        sketch.line(x0, y0, x, y, bob.owner, dotted=bob.ghost or bob.diverged)
+        if bob.diverged:
+            size = bob_radius + 1
+            sketch.line(x - size, y - size, x + size, y + size, bob.owner)
+            sketch.line(x - size, y + size, x + size, y - size, bob.owner)
+        else:
+            sketch.disc(x, y, bob_radius, bob.owner, hollow=bob.ghost)
+        column, row = int(x + (bob_radius + 2) * right) // 2, int(y + (bob_radius + 3) * down) // 4
+        beside = (*range(column, column + len(bobs)), *range(column - 1, column - len(bobs), -1))
+        sketch.label(next((at for at in beside if sketch.is_free(at, row)), column), row, bob.letter, bob.owner)
+    sketch.points([(x0 - 1, y0 - 1), (x0, y0 - 1), (x0 - 1, y0), (x0, y0)], FRAME)
+    return sketch
+
+
 class Pendulum(Pane):
-    """The pendulums of some methods; more than one are told apart by their letters."""
+    """The pendulums of some methods; if there are several, with their letters."""
 
     def __init__(self, indices: Sequence[int], id: str | None = None, classes: str | None = None) -> None:
         super().__init__(id, classes)
@@ -33,9 +79,9 @@ class Pendulum(Pane):
                     Bob(
                         reading.theta,
                         index,
-                        trail=source.history.trail(index, length)[0],
+                        trail=source.history.thetas(index, length),
                         letter=METHODS[index].letter if len(self._indices) > 1 else "",
                         diverged=reading.diverged_at is not None,
                     )
                 )
-        self.show_picture(pendulum_picture(*self.room, bobs))
+        self.show_sketch(pendulum_sketch(*self.room, bobs))

@@ -3,12 +3,12 @@
 import asyncio
 from functools import partial
 
+from textual.content import Content
+
 from engine.methods import METHODS
 from engine.models.exact_pendulum import ExactMotion
 from engine.run.lockstep import Sample
-from tui.drawing.chart import time_chart
-from tui.playback.history import Quantity
-from tui.playback.shown import Shown
+from tui.playback.shown import Quantity, Shown
 from tui.playback.source import Source
 from tui.views.view import Pane
 from tui.words.numbers import about
@@ -19,13 +19,13 @@ NAMES: dict[Quantity, tuple[str, str]] = {
     "shadow_error": ("shadow energy error", "|shadow error|"),
     "energy": ("energy per m L² [1/s²]", "energy [1/s²]"),
 }
-"""Of the quantity itself, and of its magnitude, which is charted logarithmically."""
+"""Of the quantity itself, and of its magnitude for a logarithmic chart."""
 
-NO_MODIFIED_ENERGY = f"only {' and '.join(m.letter for m in METHODS if m.modified_energy)} have a shadow energy"
+NO_MODIFIED_ENERGY = f"shadow energy is known for {' and '.join(m.letter for m in METHODS if m.modified_energy)} only"
 
 
 def title(shown: Shown, exact: ExactMotion) -> str:
-    """What the chart shows, and of how much of the past."""
+    """What the chart shows, and for how long back."""
     name, magnitude = NAMES[shown.quantity]
     span = "all" if shown.seconds is None else about(shown.seconds)
     if not shown.log:
@@ -35,12 +35,13 @@ def title(shown: Shown, exact: ExactMotion) -> str:
 
 
 class TimeChart(Pane):
-    """The chart.  It is built in a thread, always from the newest data; what comes too quickly is left out."""
+    """Builds the chart in a thread, always from the newest data; samples that come too quickly are skipped."""
 
     def __init__(self, id: str | None = None) -> None:
         super().__init__(id)
         self._wanted = asyncio.Event()
         self._building = False
+        self._title = ""
 
     @property
     def settled(self) -> bool:
@@ -55,14 +56,16 @@ class TimeChart(Pane):
         self.run_worker(self._build_on_demand(), group="chart")
 
     def paint(self, source: Source, sample: Sample) -> None:
-        """Ask for a chart."""
         self._wanted.set()
         text = title(self.shown, source.exact)
-        if text != self.border_title:  # setting it paints all of the pane
-            self.border_title = text
+        if text != self._title:  # setting it paints all of the pane
+            self._title = text
+            self.border_title = Content(text)  # as markup, units in brackets would be gone
             self.border_subtitle = NO_MODIFIED_ENERGY if self.shown.quantity == "shadow_error" else ""
 
     async def _build_on_demand(self) -> None:
+        from tui.drawing.chart import time_chart  # brings NumPy, which can wait for the first paint
+
         while True:
             await self._wanted.wait()
             self._wanted.clear()

@@ -1,9 +1,9 @@
-"""LabView: four pendulums, the chart of their errors, phase space, the diary, and the table."""
+"""LabView: four pendulums, the chart of their errors, phase space, the events, and the table."""
 
 from collections.abc import Iterator
 
 from textual.app import ComposeResult
-from textual.containers import Container, Grid, Horizontal
+from textual.containers import Grid, Horizontal
 from textual.widget import Widget
 
 from engine.methods import METHODS
@@ -13,34 +13,38 @@ from tui.views.lab.large_table import LargeTable
 from tui.views.lab.pendulums import Pendulum
 from tui.views.lab.time_chart import TimeChart
 from tui.views.phase.pane import KEYS, PhasePane
-from tui.views.view import View
+from tui.views.view import Box, View
+
+
+class _Row(Horizontal):
+    BLANK = True
+
+
+class _Square(Grid):
+    BLANK = True
 
 
 class LabView(View):
-    """Which panes there are and how large is the sheet's business: it depends on the terminal."""
+    """The style sheet decides which panes there are and how large, by the size of the terminal."""
 
     KEYS = KEYS
 
     def compose(self) -> ComposeResult:
-        """Create the panes."""
-        with Horizontal():
-            with Container(id="side"):
-                with Grid(id="pendulums"):
+        with _Row():
+            with Box(id="side"):
+                with _Square(id="pendulums"):
                     yield from self._pendulums()
                 yield EventList().data_bind(View.source, sample=View.sample_10hz)
-            yield self._following(Pendulum(range(len(METHODS)), id="overlay"))
-            with Container(id="charts"):
+            yield self.moving(Pendulum(range(len(METHODS)), id="overlay"))
+            with Box(id="charts"):
                 yield TimeChart().data_bind(View.source, View.shown, sample=View.sample_5hz)
-                yield PhasePane().data_bind(View.source, View.sample, View.shown)
+                yield self.moving(PhasePane(), late=True)
         yield ErrorTable().data_bind(View.source, View.shown, sample=View.sample_10hz)
         yield LargeTable().data_bind(View.source, View.shown, sample=View.sample_10hz)
 
     def _pendulums(self) -> Iterator[Widget]:
         for index in range(len(METHODS)):
-            yield self._following(Pendulum([index]))
-
-    def _following(self, pendulum: Pendulum) -> Widget:
-        return pendulum.data_bind(View.source, View.sample, View.shown)
+            yield self.moving(Pendulum([index]))
 
     def watch_shown(self) -> None:
         """Hidden methods leave their room to the others."""

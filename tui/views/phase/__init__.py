@@ -1,1 +1,5 @@
-"""Map to come."""
+"""Phase space (F3, and a pane of the lab): theta across, omega up.
+
+`view` holds the `pane` and a table.  For each sample, `viewport` maps (theta, omega) to dots, `portrait` has the curves
+of equal energy there, `picture` draws the methods on them, and `facts` are the words and numbers below.
+"""

@@ -5,8 +5,7 @@ import math
 from engine.methods import METHODS
 from engine.models.exact_pendulum import ExactMotion
 from engine.models.state import State
-from engine.phase_space.area import Neighbourhood
-from engine.phase_space.neighbours import Neighbours
+from engine.phase_space.area import Neighbourhood, Neighbours
 from tui.drawing.axes import in_pi
 from tui.drawing.canvas import Canvas, Picture, Span
 from tui.drawing.palette import FRAME, TEXT, mark
@@ -21,9 +20,9 @@ _NAME, _CELL = 22, 14
 def fact_rows(
     source: Source, shown: Shown, neighbours: Neighbours | None, ring: Neighbourhood | None, width: int
 ) -> list[list[Span]]:
-    """The rows; of the columns, the first ones that fit."""
+    """A line about the ring, the heads, and a row for each method; the first columns that fit."""
     exact, fit = source.exact.at(source.sample.t), max((width - _NAME) // _CELL, 0)
-    heads = ("sum log det J", "area", "theta error", "dE/E0")[:fit]
+    heads = ("ln area ratio", "area/area0", "theta error", "dE/E0")[:fit]
     rows: list[list[Span]] = [
         [(_ring_text(source, neighbours)[:width], TEXT)],
         [(" " * _NAME + "".join(head.rjust(_CELL) for head in heads), FRAME)],
@@ -42,14 +41,18 @@ def fact_rows(
 
 def _ring_text(source: Source, neighbours: Neighbours | None) -> str:
     if neighbours is None:
-        return " No ring of neighbours, no area: g draws one."
+        return " Press g to draw a ring of neighbouring starts and measure its area."
     behind = source.sample.step - neighbours.step
-    text = f" A ring of neighbours, {neighbours.radius:g} rad around the start (g)"
-    return f"{text}: {behind} steps behind" if behind else text
+    text = f" Ring of neighbouring starts, radius {neighbours.radius:g} rad"
+    return f"{text}: {behind} steps behind" if behind else f"{text} (g: larger, G: smaller)"
 
 
-def caption(exact: ExactMotion, aim: State | None, width: int) -> Picture:
-    """The line below the portrait: a state, if one is aimed at, and the exact motion as far as there is room."""
+def captioned(plot: Picture, exact: ExactMotion, aim: State | None) -> Picture:
+    """The portrait, and a line below it: a state, if one is aimed at, and the exact motion as far as there is room."""
+    return Picture.stacked(plot, _caption(exact, aim, plot.characters.shape[1]))
+
+
+def _caption(exact: ExactMotion, aim: State | None, width: int) -> Picture:
     motion = motion_text(exact)
     line = Canvas(width, 1).picture()
     if aim is None:

@@ -1,6 +1,6 @@
 """PhasePane: phase space, the methods in it, and a start to choose with the mouse or the keyboard."""
 
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from textual import events
 from textual.binding import BindingType
@@ -8,27 +8,23 @@ from textual.message import Message
 from textual.reactive import var
 
 from engine.models.state import State
-from engine.phase_space.area import Neighbourhood
-from engine.phase_space.neighbours import RADII, Neighbours
 from engine.run.lockstep import Sample
 from engine.scenes import SceneError
-from tui.drawing.canvas import Picture
-from tui.playback.source import Source, least_h
+from tui.playback.source import Source
 from tui.views.keys import Key, arrows, bindings
 from tui.views.messages import SceneChosen
-from tui.views.phase.facts import caption
-from tui.views.phase.picture import method_points, phase_picture
-from tui.views.phase.portrait import Portrait
 from tui.views.phase.viewport import Viewport
 from tui.views.view import Chooser
 
-RING_STEPS = 100  # a frame; 52 µs each, so a ring that has to catch up costs 5 ms of a frame at most
-BIG_STEP = 8  # dots
+if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
+    from engine.phase_space.area import Neighbourhood, Neighbours
+    from tui.drawing.canvas import Picture
 
-_GROUP = "phase space"
+RING_STEPS = 100  # a frame; 52 µs each, so a ring that has to catch up costs 5 ms of a frame at most
+BIG_STEP, _GROUP = 8, "phase space"  # dots
 KEYS = (
     Key("", "tab", "in the lab: to this pane, for its keys", "", _GROUP),
-    *arrows(_GROUP, "crosshair, to choose a start", BIG_STEP),
+    *arrows(_GROUP, "crosshair", "choose a start", BIG_STEP),
     Key("enter", "enter", "start at the crosshair", "choose", _GROUP),
     Key("escape", "esc", "leave the crosshair, cancel a drag", "cancel", _GROUP),
     Key("z", "z", "zoom in at the crosshair or the pointer", "zoom(0.5)", _GROUP),
@@ -56,39 +52,37 @@ class PhasePane(Chooser[State]):
     """Of the ring of neighbours [rad]; None: no ring."""
 
     class RingMoved(Message):
-        """The ring has caught up, or has come nearer, though the sample is the same."""
+        """The ring has moved on towards the sample, which is the same."""
 
     def __init__(self, id: str | None = None, radius: float | None = None) -> None:
         super().__init__(id)
         self.set_reactive(PhasePane.radius, radius)
-        self.neighbours = None if radius is None else Neighbours(radius)
+        self.neighbours: Neighbours | None = None
         self.ring: Neighbourhood | None = None
         self.pointer: tuple[int, int] | None = None  # the cell under it
         self.aiming = False  # the pointer is about to choose a start
+        self._catching_up = False
         self.zoomed: Viewport | None = None  # None: the whole portrait
         self._whole: Viewport | None = None
         self._plot: Picture | None = None
-        self._catching_up = False
         self._panning: tuple[int, int] | None = None  # the cell where the picture was last moved to
 
     @property
     def settled(self) -> bool:
-        """Whether all of it is shown as it is now."""
-        return not (self.drawable and self._catching_up)
+        """Whether the ring shown is that of the sample."""
+        return self.sample is not None and not (self.drawable and self._catching_up)
 
     def watch_source(self) -> None:
         self.border_title = f"Phase space: theta, omega ({'click: start, ' if self.is_live else ''}wheel: zoom)"
         super().watch_source()
 
     def watch_wrap(self) -> None:
-        """Begin again with the whole portrait."""
         self._whole = self.zoomed = None
         self.draw()
 
     def watch_radius(self) -> None:
         """Begin another ring at the run's start."""
-        self.neighbours = None if self.radius is None else Neighbours(self.radius)
-        self.ring = None
+        self.neighbours = self.ring = None
         self.draw()
 
     @property
@@ -98,7 +92,6 @@ class PhasePane(Chooser[State]):
 
     @property
     def viewport(self) -> Viewport:
-        """What is in view."""
         assert self.source is not None
         columns, rows = self.cells
         if self.zoomed is not None:
@@ -110,22 +103,23 @@ class PhasePane(Chooser[State]):
     @property
     def aim(self) -> State | None:
         """The state at the crosshair or, if there is none, under the pointer."""
-        if self.cursor is not None:
-            return self.cursor
-        return None if self.pointer is None else self.viewport.at_cell(*self.pointer)
+        return self.cursor or (None if self.pointer is None else self.viewport.at_cell(*self.pointer))
 
     def paint(self, source: Source, sample: Sample) -> None:
-        portrait = Portrait.of(self.viewport, source.scene.w0)
+        from tui.views.phase.picture import source_picture
+
         orbit = self.aim if self.aiming or self.cursor is not None else None
         self._follow(source, sample)
-        points = method_points(source, sample, self.shown, self.ring)
-        self._plot = phase_picture(portrait, points, self.cursor, orbit)
+        self._plot = source_picture(self.viewport, source, sample, self.shown, self.ring, self.cursor, orbit)
         self.tell()
 
     def _follow(self, source: Source, sample: Sample) -> None:
         """Let the ring keep up; where it has not, go on without waiting for the next sample."""
-        if self.neighbours is not None:
-            self.ring = self.neighbours.follow(source.scene, sample.run, sample.step, source.events, RING_STEPS)
+        if self.radius is not None:
+            from engine.phase_space.area import Neighbours
+
+            self.neighbours = self.neighbours or Neighbours(self.radius)
+            self.ring = self.neighbours.follow(source.scene, sample.run, sample.step, source.changes, RING_STEPS)
             if self.neighbours.step < sample.step and not self._catching_up:
                 self._catching_up = True
                 self.set_timer(1 / 30, self._catch_up)
@@ -138,8 +132,9 @@ class PhasePane(Chooser[State]):
     def tell(self) -> None:
         """Describe in a line below the plot what is at the crosshair or under the pointer."""
         if self.source is not None and self._plot is not None:
-            width = self._plot.characters.shape[1]
-            self.show_picture(Picture.stacked(self._plot, caption(self.source.exact, self.aim, width)))
+            from tui.views.phase.facts import captioned
+
+            self.show_picture(captioned(self._plot, self.source.exact, self.aim))
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         return (action == "cancel" and self.aiming) or super().check_action(action, parameters)
@@ -160,7 +155,7 @@ class PhasePane(Chooser[State]):
         """Ask for a run from here with the step size in force."""
         assert self.source is not None
         try:
-            scene = self.source.scene.altered(theta=state.theta, omega=state.omega, h=least_h(self.source))
+            scene = self.source.scene.altered(theta=state.theta, omega=state.omega, h=self.source.stepping.smallest)
         except SceneError as error:  # far out, omega may be beyond a scene's limits
             self.notify(str(error), severity="warning")
         else:
@@ -190,6 +185,8 @@ class PhasePane(Chooser[State]):
 
     def action_radius(self, direction: int) -> None:
         """Take the next larger ring, or the next smaller one; the ends are joined by none."""
+        from engine.phase_space.area import RADII
+
         radii = (None, *RADII)
         self.radius = radii[(radii.index(self.radius) + direction) % len(radii)]
 

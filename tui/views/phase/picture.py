@@ -1,37 +1,49 @@
-"""States of the methods -> a picture of phase space, on the theoretical portrait."""
+"""Points in phase space, with trails and rings -> a picture on the theoretical portrait."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from engine.methods import METHODS
+from engine.models.state import State
 from engine.phase_space.area import Neighbourhood
 from engine.run.lockstep import Sample
 from tui.drawing.canvas import Canvas, Picture
-from tui.drawing.palette import EXACT, FAINT, FRAME, TEXT, faint
+from tui.drawing.palette import EXACT, TEXT, faint
 from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.views.phase.portrait import Portrait
 from tui.views.phase.viewport import Viewport
 
 TRAIL = 300  # samples, ten seconds at 30 frames a second
-_MOVING = (EXACT, *range(FAINT))
 _BESIDE = ((2, 0), (-2, 0), (0, -1), (0, 1), (2, -1), (-2, 1))  # columns, rows from a point to its letter
-Track = tuple[ArrayLike, ArrayLike]  # theta [rad], omega [rad/s]
+Floats = NDArray[np.float64]
+Track = tuple[Floats, Floats]  # theta [rad], omega [rad/s]
+
+
+_NOWHERE = np.zeros(0), np.zeros(0)
 
 
 @dataclass(frozen=True, slots=True)
 class PhasePoint:
-    """Where one method is, was, and what it made of its neighbours."""
+    """Where a method is, where it was, and its ring of neighbouring starts."""
 
     theta: float  # rad
     omega: float  # rad/s
     owner: int
     letter: str
-    trail: Track = ((), ())
+    trail: Track = _NOWHERE
     ring: Track | None = None
+
+
+def source_picture(
+    viewport: Viewport, source: Source, sample: Sample, shown: Shown, ring: Neighbourhood | None, *aims: State | None
+) -> Picture:
+    """What is to be shown of a sample, with the crosshair and the state whose orbit is shown, if any."""
+    portrait = Portrait.of(viewport, source.scene.w0)
+    return phase_picture(portrait, method_points(source, sample, shown, ring), *aims)
 
 
 def method_points(source: Source, sample: Sample, shown: Shown, ring: Neighbourhood | None) -> list[PhasePoint]:
@@ -57,35 +69,47 @@ def phase_picture(
     Dots of several owners in one cell all stay.
     """
     viewport = portrait.viewport
-    canvas = Canvas(viewport.columns, viewport.rows)
-    canvas.points(*portrait.curves, FRAME)
-    canvas.points(*portrait.separatrix, TEXT)
+    canvas = portrait.ground.copy()
     if crosshair is not None:
         x, y = viewport.x(crosshair[0]), viewport.y(crosshair[1])
         canvas.line([0, canvas.width], [y, y], TEXT, dotted=True)
         canvas.line([x, x], [0, canvas.height], TEXT, dotted=True)
     if orbit is not None:
         canvas.points(*portrait.orbit(*orbit), EXACT)
-    for point in points:
-        canvas.points(viewport.x(point.trail[0]), viewport.y(point.trail[1]), faint(point.owner))
-    for point in points:
-        if point.ring is not None:
-            canvas.line(*_closed(viewport, point.ring), point.owner)
+    if trails := [(faint(point.owner), point.trail) for point in points if len(point.trail[0])]:
+        theta, omega, owners = _together(trails)
+        canvas.points(viewport.x(theta), viewport.y(omega), owners)
+    if rings := [(point.owner, _closed(point.ring)) for point in points if point.ring is not None]:
+        canvas.line(*_on_screen(viewport, *_together(rings)))
     for point in points:
         x, y = float(viewport.x(point.theta)), float(viewport.y(point.omega))
         canvas.disc(x, y, 1.6, point.owner, hollow=point.owner == EXACT)
         _letter(canvas, x, y, point)
-    return _with_words(canvas.picture(), portrait)
+    picture = canvas.picture()
+    portrait.letters.write(picture)
+    return picture
 
 
-def _closed(viewport: Viewport, ring: Track) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """A ring as a line in dots that comes back to its beginning, broken where it leaves one edge for the other."""
-    x = viewport.x(np.append(ring[0], np.atleast_1d(ring[0])[0]))
-    y = viewport.y(np.append(ring[1], np.atleast_1d(ring[1])[0]))
+def _together(tracks: Sequence[tuple[int, Track]]) -> tuple[Floats, Floats, NDArray[np.int8]]:
+    """All thetas, all omegas and whose they are: NumPy takes as long for a track as for all of them."""
+    owners = np.repeat(np.array([owner for owner, _ in tracks], np.int8), [len(track[0]) for _, track in tracks])
+    return np.concatenate([track[0] for _, track in tracks]), np.concatenate([track[1] for _, track in tracks]), owners
+
+
+def _closed(ring: Track) -> Track:
+    """A ring that comes back to its beginning, and a break."""
+    return np.append(ring[0], [ring[0][0], np.nan]), np.append(ring[1], [ring[1][0], np.nan])
+
+
+def _on_screen(
+    viewport: Viewport, theta: Floats, omega: Floats, owners: NDArray[np.int8]
+) -> tuple[Floats, Floats, NDArray[np.int8]]:
+    """Lines in dots, broken where they leave one edge for the other."""
+    x, y = viewport.x(theta), viewport.y(omega)
     if not viewport.wrap:
-        return x, y
+        return x, y, owners
     across = np.flatnonzero(np.abs(np.diff(x)) > np.pi / viewport.theta_per_dot) + 1
-    return np.insert(x, across, np.nan), np.insert(y, across, np.nan)
+    return np.insert(x, across, np.nan), np.insert(y, across, np.nan), np.insert(owners, across, 0)
 
 
 def _letter(canvas: Canvas, x: float, y: float, point: PhasePoint) -> None:
@@ -99,13 +123,3 @@ def _letter(canvas: Canvas, x: float, y: float, point: PhasePoint) -> None:
         if canvas.is_free(column + right, row + down):
             canvas.label(column + right, row + down, point.letter, point.owner)
             return
-
-
-def _with_words(picture: Picture, portrait: Portrait) -> Picture:
-    """The portrait's words, each as a whole or not at all; a point, a ring or an orbit goes before them."""
-    for column, row, text, owner in portrait.words:
-        cells = row, slice(column, column + len(text))
-        if np.isin(picture.owners[cells], _MOVING).any():
-            continue
-        picture.characters[cells], picture.owners[cells] = [ord(character) for character in text], owner
-    return picture

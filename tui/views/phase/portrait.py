@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from engine.models.pendulum import separatrix_margin
 from tui.drawing.axes import nice, omega_ticks, theta_ticks
-from tui.drawing.palette import FRAME, TEXT
+from tui.drawing.canvas import Canvas, Picture
+from tui.drawing.palette import EXACT, FAINT, FRAME, TEXT
 from tui.views.phase.viewport import Viewport
 
 Dots = tuple[NDArray[np.intp], NDArray[np.intp]]  # x, y
@@ -21,15 +22,47 @@ _CURVES = 8  # about so many energies are in view
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Letters:
+    """The portrait's words, letter by letter."""
+
+    cells: tuple[NDArray[np.intp], NDArray[np.intp]]  # row, column
+    codes: NDArray[np.uint32]
+    owners: NDArray[np.int8]
+    starts: NDArray[np.intp]  # of each word
+    lengths: NDArray[np.intp]
+
+    @classmethod
+    def of(cls, words: tuple[Word, ...]) -> "Letters":
+        """Spell them."""
+        letters = [
+            (row, column + n, ord(one), owner) for column, row, text, owner in words for n, one in enumerate(text)
+        ]
+        rows, columns, codes, owners = np.array(letters, np.intp).reshape(-1, 4).T
+        lengths = np.array([len(text) for *_, text, _ in words], np.intp)
+        starts = np.cumsum(lengths) - lengths
+        return cls((rows, columns), codes.astype(np.uint32), owners.astype(np.int8), starts, lengths)
+
+    def write(self, picture: Picture) -> None:
+        """Write all except those that would cover part of a point, a ring or an orbit."""
+        there = picture.owners[self.cells]
+        taken = (there >= EXACT) & (there < FAINT)
+        free = np.repeat(~np.logical_or.reduceat(taken, self.starts), self.lengths) if taken.any() else slice(None)
+        cells = self.cells[0][free], self.cells[1][free]
+        picture.characters[cells], picture.owners[cells] = self.codes[free], self.owners[free]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Portrait:
-    """What does not move, for one viewport: computed once, drawn with every frame."""
+    """The part that does not move, for one viewport: computed once, drawn in each frame."""
 
     viewport: Viewport
     w0: float
     margin: NDArray[np.float64]  # (dots down, dots right), at the dots' centres
     curves: Dots
     separatrix: Dots
+    ground: Canvas  # with both
     words: tuple[Word, ...]
+    letters: Letters
 
     @classmethod
     @lru_cache(maxsize=2)  # for the lab's pane and the view's
@@ -39,14 +72,12 @@ class Portrait:
         omega = viewport.omega_at(y)[:, None]
         field = separatrix_margin(w0, viewport.theta_at(x), omega, np.cos)
         curves, separatrix = _border(_level(field)), _border(field < 0, heavy=True)
-        return cls(
-            viewport,
-            w0,
-            field,
-            _dots(curves),
-            _dots(separatrix),
-            words=_words(viewport, curves, separatrix, field, omega),
-        )
+        words = _words(viewport, curves, separatrix, field, omega)
+        shown = _dots(curves), _dots(separatrix)
+        ground = Canvas(viewport.columns, viewport.rows)
+        ground.points(*shown[0], FRAME)
+        ground.points(*shown[1], TEXT)
+        return cls(viewport, w0, field, *shown, ground, words, Letters.of(words))
 
     def orbit(self, theta: float, omega: float) -> Dots:
         """The exact orbit through a state."""
@@ -59,7 +90,7 @@ class Portrait:
 
 
 def _level(field: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Which of the energies in view each dot has: evenly spaced in amplitude, or in the slowest omega of a rotation."""
+    """The band of energy of each dot: evenly spaced in amplitude, for rotations in their smallest omega."""
     spacing = np.where(field > 0, np.arcsin(np.sqrt(np.clip(field, 0, 1))), -np.sqrt(np.maximum(-field, 0)))
     step = nice(float(spacing.max() - spacing.min()) / _CURVES)
     return np.floor(spacing / step).astype(np.int64)

@@ -1,4 +1,4 @@
-"""PhaseView: phase space over the whole screen, with what the methods do to area."""
+"""PhaseView: phase space over the whole screen, with a table of what the methods do to area."""
 
 from textual.app import ComposeResult
 
@@ -18,24 +18,20 @@ class PhaseView(View):
     KEYS = KEYS
 
     def compose(self) -> ComposeResult:
-        """Create the panes."""
-        yield PhasePane(radius=RADIUS).data_bind(View.source, View.sample, View.shown)
+        yield self.moving(PhasePane(radius=RADIUS), late=True)
         yield CellWidget(id="facts")
 
     def on_show(self) -> None:
-        """The keys are the portrait's."""
         self.query_one(PhasePane).focus()
 
     def on_resize(self) -> None:
-        """Where there is little room, all of it is the portrait's."""
+        """Where there is little room, leave all of it to the portrait."""
         self.query_one("#facts").display = self.size.height >= ROOMY
 
     def watch_sample_10hz(self) -> None:
-        """Follow the sample with the numbers."""
         self._write_facts()
 
     def on_phase_pane_ring_moved(self) -> None:
-        """Follow the ring with them."""
         self._write_facts()
 
     def _write_facts(self) -> None:

@@ -8,8 +8,6 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-
 from engine.models.state import State
 from engine.scenes import Scene
 
@@ -52,15 +50,16 @@ class Viewport:
 
     def x(self, theta: Any) -> Any:
         """Where an angle is [dots]; numbers or arrays."""
-        x = self.middle[0] + np.subtract(theta, self.theta) / self.theta_per_dot
+        x = self.middle[0] + (theta - self.theta) / self.theta_per_dot
         if self.wrap:
             turn = math.tau / self.theta_per_dot
-            x = x - turn * np.round((x - self.columns) / turn)
+            turns = (x - self.columns) / turn
+            x = x - turn * _rounded(turns)
         return x
 
     def y(self, omega: Any) -> Any:
         """Where an angular velocity is [dots]; numbers or arrays."""
-        return self.middle[1] - np.subtract(omega, self.omega) / self.omega_per_dot
+        return self.middle[1] - (omega - self.omega) / self.omega_per_dot
 
     def theta_at(self, x: Any) -> Any:
         """The angle at x [dots]; numbers or arrays."""
@@ -142,6 +141,11 @@ class Viewport:
             theta_per_dot=self.theta_per_dot * self.columns / columns,
             omega_per_dot=self.omega_per_dot * self.rows / rows,
         )
+
+
+def _rounded(value: Any) -> Any:
+    """A number or an array; what is not finite stays as it is."""
+    return value.round() if hasattr(value, "round") else round(value) if math.isfinite(value) else value
 
 
 def roundest(value: float, tolerance: float) -> float:

@@ -13,7 +13,7 @@ from engine.stability.outcomes import Cells
 from engine.stability.study import amplitude
 from tui.drawing.cells import Row
 from tui.drawing.palette import NOBODY, Palette, palette
-from tui.playback.source import Source, own_h
+from tui.playback.source import Source
 from tui.views.keys import Key, arrows, bindings
 from tui.views.messages import SceneChosen
 from tui.views.stability.picture import MARGIN, Segments, legend, panel, place_at, side_by_side, title
@@ -21,13 +21,13 @@ from tui.views.stability.words import note, verdict
 from tui.views.view import Chooser
 
 WORDS = 2  # lines
-SOME = 4  # rows of what was computed that are sent with a sample: a key waits for what is on its way
+SOME = 6  # rows of what was computed that are sent with a sample: a key waits for what is on its way
 ROOMY = 28  # rows from which on there is room for all of the legend
 BIG_STEP = 5  # cells of the map
 
 _GROUP = "stability"
 KEYS = (
-    *arrows(_GROUP, "cursor, to choose h and amplitude", BIG_STEP),
+    *arrows(_GROUP, "cursor", "choose h and amplitude", BIG_STEP),
     Key("enter", "enter", "start with the cursor's h and amplitude", "choose", _GROUP),
     Key("tab", "tab", "the next method in words", "method(1)", _GROUP),
     Key("escape", "esc", "leave the cursor", "cancel", _GROUP),
@@ -68,7 +68,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
         """The (z, amplitude) of a method on screen, if it swings."""
         if self.source is None or (theta := amplitude(self.source.scene)) is None:
             return None
-        return abs(own_h(self.source)[index]) * self.source.scene.w0, theta
+        return abs(self.source.stepping.own()[index]) * self.source.scene.w0, theta
 
     def aim(self, index: int) -> tuple[int, int] | None:
         """The place that is described for a method: at the cursor, under the pointer, or nearest to here."""
@@ -83,7 +83,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
         columns, rows = self.panel_size()
         if columns <= 2 * MARGIN:
             return
-        drawn_for = source.scene, own_h(source), self.shown, self.app.theme, self.room, self.cursor, self.index
+        drawn_for = source.scene, source.stepping.own(), self.shown, self.app.theme, self.room, self.cursor, self.index
         changed = drawn_for != self._drawn_for
         if changed or (self._is_filled and self._is_shown):
             self._drawn_for, self._is_filled, self._is_shown = drawn_for, False, False
@@ -133,7 +133,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
         if (aim := self.aim(index)) is None:
             return ""
         z, theta = aim
-        return note(METHODS[index], self.grid.theta[theta], self.grid.z[z], self.cells[z, index, theta])
+        return note(self.cells[z, index, theta])
 
     def _verdict(self) -> str:
         shown = self.shown.indices
@@ -145,7 +145,6 @@ class StabilityPane(Chooser[tuple[int, int]]):
         return verdict(METHODS[index], self.grid.theta[theta], self.grid.z, cells, z, w0)
 
     def action_move(self, right: int, up: int) -> None:
-        """Move the cursor by cells of the map."""
         z, theta = self.aim(self.index) or (0, 0)
         self.cursor = min(max(z + right, 0), len(self.grid.z) - 1), min(max(theta + up, 0), len(self.grid.theta) - 1)
         self.draw()

@@ -16,12 +16,13 @@ from rich.style import Style
 from engine.methods import METHODS, Method
 from engine.stability.chaos import GREENE_Z
 from engine.stability.grid import Grid
-from engine.stability.outcomes import HOLDS, UNKNOWN, Cells
+from engine.stability.outcomes import HELD, UNKNOWN, Cells
 from tui.drawing.palette import Palette, mark, mixed
 
 EXACT_ENOUGH = 1e-12  # energy errors below it are drawn alike
 LIMIT, THRESHOLD, CATCHING, HERE = "│", "┊", "•", "X"
 _WITHOUT_COLOUR = {LIMIT: "|", THRESHOLD: ":", CATCHING: "o", HERE: "X"}
+EXAMPLE = [method.key for method in METHODS].index("velocity_verlet")  # whose colours the legend shows
 MARGIN = 4  # for the labels of the amplitudes
 SHADES = 16  # from lost at once to lost at the end, and again from there to held exactly
 
@@ -30,13 +31,13 @@ Segments = list[Segment]
 
 
 def scores(cells: Cells, steps: int) -> Scores:
-    """How well each swing fared: -1 not computed; 0 to 1 lost, early to late; 1 to 2 held, energy error large to small.
+    """A score per swing: -1 not computed; 0 to 1 lost, early to late; 1 to 2 stable, energy error large to small.
 
     Both parts are logarithmic, in steps survived and in the largest energy error.
     """
     survived = np.log1p(cells["steps"]) / math.log1p(steps)
     digits = np.log10(np.clip(cells["error"], EXACT_ENOUGH, 1)) / math.log10(EXACT_ENOUGH)
-    return np.select([cells["fate"] == UNKNOWN, cells["fate"] == HOLDS], [-1.0, 1 + digits], survived)
+    return np.select([cells["fate"] == UNKNOWN, np.isin(cells["fate"], HELD)], [-1.0, 1 + digits], survived)
 
 
 def picture(grid: Grid, cells: Cells, columns: int, palette: Palette | None) -> list[Segments]:
@@ -49,7 +50,7 @@ def picture(grid: Grid, cells: Cells, columns: int, palette: Palette | None) -> 
 
 
 def side_by_side(panels: Sequence[Sequence[Segments]], across: int) -> list[Segments]:
-    """The lines of panels of one size, some beside each other."""
+    """The lines of panels of one size, `across` of them next to each other."""
     return [
         [segment for number, line in enumerate(lines) for segment in ([Segment("  ")] if number else []) + line]
         for first in range(0, len(panels), across)
@@ -70,7 +71,7 @@ def panel(
 ) -> list[Segments]:
     """One method's panel: its title, `rows` of the map, and the axis.
 
-    `here` is a (z, theta) to mark.  With w0 [1/s] the axis says h instead of z.
+    `here` is a (z, theta) to mark.  With w0 [1/s] the axis shows h instead of z.
     """
     method, width = grid.methods[index], columns - MARGIN
     overlay: dict[tuple[int, int] | None, str] = {
@@ -138,7 +139,7 @@ def worst(values: Scores, columns: int, rows: int) -> Scores:
 
 
 def colour(score: float, index: int, palette: Palette) -> str:
-    """Held: the method's colour, brighter for a smaller energy error.  Lost: the alarm's, darker for sooner."""
+    """Stable: the method's colour, brighter for a smaller energy error.  Lost: the warning colour, darker if sooner."""
     if score < 0:
         return palette.background
     if score < 1:
@@ -147,7 +148,7 @@ def colour(score: float, index: int, palette: Palette) -> str:
 
 
 def character(score: float, steps: int) -> str:
-    """The same without colour: # + - held, by energy error; lost within 10 steps, a dot, after 10^n steps, n."""
+    """The same without colour: # + - stable, by energy error; lost within 10 steps: a dot, after 10^n steps: n."""
     if score < 0:
         return " "
     if score < 1:
@@ -159,18 +160,18 @@ def character(score: float, steps: int) -> str:
 def legend(steps: int, palette: Palette | None, columns: int = 80) -> list[Segments]:
     """What colours, characters and lines mean."""
     limit, threshold, catching = (sign if palette else _WITHOUT_COLOUR[sign] for sign in (LIMIT, THRESHOLD, CATCHING))
-    lines = [Segment(f"{limit} linear limit   {threshold} chaos loose above   ")]
-    orbit = [Segment(f"{catching} catching orbit   up: amplitude, deg")]
+    lines = [Segment(f"{limit} linear limit   {threshold} global chaos above   ")]
+    orbit = [Segment(f"{catching} stable 2-cycle   y: amplitude [deg]")]
     if palette is None:
-        held = [Segment("held: error < 1e-4 #  < 0.1 +  above -   ")]
-        lost = [Segment("lost: at step < 10 .  < 100 1  < 1000 2")]
+        held = [Segment("stable: error <1e-4 #  <0.1 +  above -   ")]
+        lost = [Segment("lost: at step <10 .  <100 1  <1000 2")]
     else:
         held, lost = (
-            [Segment("█", Style(color=colour(low + 0.999 * part / 7, 2, palette))) for part in range(8)]
+            [Segment("█", Style(color=colour(low + 0.999 * part / 7, EXAMPLE, palette))) for part in range(8)]
             for low in (1.0, 0.0)
         )
-        held = [Segment("held: energy error 1 "), *held, Segment(" 1e-12   ")]
-        lost = [Segment("lost: at once "), *lost, Segment(f" at step {steps}")]
+        held = [Segment("stable, energy error 1 "), *held, Segment(" 1e-12   ")]
+        lost = [Segment("lost at step 1 "), *lost, Segment(f" {steps}")]
     return [held + lost, lines + orbit] if columns >= 80 else [held, lost, lines, orbit]
 
 

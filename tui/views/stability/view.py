@@ -1,9 +1,10 @@
-"""StabilityView: where each method loses a swing, for the pendulum on screen; the map fills in as it is computed."""
+"""StabilityView: where each method becomes unstable; the map fills in as it is computed."""
 
 import math
 
 import numpy as np
 from textual.app import ComposeResult
+from textual.content import Content
 
 from engine.stability.grid import Grid, pieces
 from tui.views.background import computed
@@ -11,31 +12,30 @@ from tui.views.stability.pane import KEYS, StabilityPane
 from tui.views.view import View
 
 PASSES = (300, 10_000)
-"""Steps of each swing: a first picture at once, then the lasting one."""
+"""Steps of each swing: a first map at once, then the final one."""
 
 
 class StabilityView(View):
-    """The map, which depends on z and amplitude only: another scene moves "here" and the axis, not the map."""
+    """The map depends on z and amplitude only: another scene moves the mark and the axis, not the map."""
 
     KEYS = KEYS
 
     def compose(self) -> ComposeResult:
-        """Create the pane."""
         grid = Grid((np.arange(48) + 0.5) * math.pi / 48, (np.arange(80) + 0.5) * 3 / 80, PASSES[-1])
         yield StabilityPane(grid).data_bind(View.source, View.shown, sample=View.sample_10hz)
 
     def on_mount(self) -> None:
-        """The keys are the map's from the start."""
         pane = self.query_one(StabilityPane)
         pane.focus()
         self.run_worker(self._fill(pane), exit_on_error=False)
 
     async def _fill(self, pane: StabilityPane) -> None:
         """Compute the map, and show how far it is in tenths: with a new title, Textual sends all of the pane again."""
+        shown = ""
         async for piece in computed(pieces, pane.grid, PASSES):
             pane.fill(piece.z, piece.method, piece.cells)
             pane.complete = piece.done == 1 and piece.steps == PASSES[-1]
             state = "" if pane.complete else f", computing {int(10 * piece.done) / 10:.0%}"
-            title = f"Stability: h across, amplitude up; {piece.steps} steps{state}"
-            if title != pane.border_title:
-                pane.border_title = title
+            title = f"Stability after {piece.steps} steps: step size h [s] vs. amplitude [deg]{state}"
+            if title != shown:
+                shown, pane.border_title = title, Content(title)  # as markup, units in brackets would be gone

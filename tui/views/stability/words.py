@@ -1,4 +1,4 @@
-"""What a map of stability says about one swing, in words."""
+"""One swing of the stability map in words."""
 
 import math
 from typing import Any
@@ -6,38 +6,35 @@ from typing import Any
 import numpy as np
 
 from engine.methods import Method
-from engine.stability.outcomes import HOLDS, UNKNOWN, Cells, Floats, reason
-
-CHAOS_STEPS = 2000
-"""4 ms.  Of 500 swings on the map that are chaotic or resonant, 10 000 steps judge 3 otherwise."""
+from engine.stability.outcomes import FATES, HELD, UNKNOWN, Cells, Floats, is_lost
 
 
-def note(method: Method, theta: float, z: float, cell: Any) -> str:
-    """What becomes of a swing, in a few words."""
+def note(cell: Any) -> str:
+    """The outcome of a swing in a few words."""
     if cell["fate"] == UNKNOWN:
         return "…"
-    if cell["fate"] == HOLDS:
-        return f"holds, {cell['error']:.0e}"
-    return f"{_reason(method, theta, z, cell)}, step {cell['steps'] + 1}"
+    fate = _said(cell)
+    return f"{fate}, step {cell['steps'] + 1}" if is_lost(cell) else f"{fate}, {cell['error']:.0e}"
 
 
 def verdict(method: Method, theta: float, zs: Floats, cells: Cells, at: int, w0: float) -> str:
-    """What becomes of the swing from theta [rad] at zs[at], and how far the nearest cliff is; `cells` go along zs."""
+    """The outcome of the swing from theta [rad] at zs[at], and the nearest h with another; `cells` go along zs."""
     cell = cells[at]
     place = f"{method.label} at h {zs[at] / w0:.3g} s, {math.degrees(theta):.3g} deg:"
     if cell["fate"] == UNKNOWN:
         return f"{place} not computed yet"
-    holds = cell["fate"] == HOLDS
-    other = np.flatnonzero((cells["fate"] == HOLDS) != holds)
+    holds, fate = not is_lost(cell), _said(cell)
+    other = np.flatnonzero(np.isin(cells["fate"], HELD) != holds)
     if not len(other):
-        cliff = "; no h on this map loses it" if holds else "; no h on this map holds it"
+        cliff = "; stable at every h on this map" if holds else "; lost at every h on this map"
     else:
         nearest = zs[other[np.abs(other - at).argmin()]] / w0
-        cliff = f"; lost at h {nearest:.3g} s" if holds else f"; holds at h {nearest:.3g} s"
+        cliff = f"; lost at h {nearest:.3g} s" if holds else f"; stable at h {nearest:.3g} s"
     if holds:
-        return f"{place} holds, energy error {cell['error']:.1e}{cliff}"
-    return f"{place} lost at step {cell['steps'] + 1}, {_reason(method, theta, zs[at], cell)}{cliff}"
+        return f"{place} {fate}, energy error {cell['error']:.1e}{cliff}"
+    return f"{place} lost at step {cell['steps'] + 1}, {fate}{cliff}"
 
 
-def _reason(method: Method, theta: float, z: float, cell: Any) -> str:
-    return reason(method, theta, z, int(cell["fate"]), CHAOS_STEPS)
+def _said(cell: Any) -> str:
+    """The fate of a swing; "holds" is said of methods, "stable" of swings."""
+    return FATES[cell["fate"]].replace("holds", "stable")

@@ -1,6 +1,5 @@
 """F4: speed against accuracy for the pendulum on screen."""
 
-import asyncio
 import math
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -10,14 +9,14 @@ from textual.pilot import Pilot
 
 from engine.accuracy.study import Study, ladder
 from engine.methods import METHODS
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene
 from recordings.library import resolve
 from recordings.recording import Recording
+from tests.tui.harness import until, view_of
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
-from tui.screens.app import PenduApp
-from tui.screens.base import SourceScreen
 from tui.screens.live import LiveScreen
 from tui.screens.replay import ReplayScreen
 from tui.views.accuracy.chart import MARKS
@@ -25,7 +24,6 @@ from tui.views.accuracy.pane import HERE, AccuracyPane
 
 RUNGS = ladder(5.0, 0.2, 0.01, 4)
 VERLET = 2
-PATIENCE = 30  # s; a program that ended would be waited for in vain
 
 
 @pytest.fixture(autouse=True)
@@ -38,24 +36,13 @@ def said(pane: AccuracyPane) -> str:
     return " ".join(pane.text.rsplit("force evaluations\n", 1)[1].split())
 
 
+def is_complete(pane: AccuracyPane) -> bool:
+    """It has the points of the other process and those of the current step, and its chart shows them."""
+    return pane.settled and set(enumerate(pane.here)) <= set(pane.points)
+
+
 async def complete(pilot: Pilot[object], pane: AccuracyPane) -> None:
-    """Wait for the points of another process, for those here, and for the chart."""
-    async with asyncio.timeout(PATIENCE):
-        while not (pane.settled and set(enumerate(pane.here)) <= set(pane.points)):
-            await pilot.pause(0.05)
-
-
-@asynccontextmanager
-async def view_of(stage: SourceScreen, size: tuple[int, int]) -> AsyncIterator[tuple[Pilot[object], AccuracyPane]]:
-    app = PenduApp(stage)
-    async with app.run_test(size=size) as pilot:
-        await pilot.press("f4")
-        async with asyncio.timeout(PATIENCE):
-            while not app.screen.query(AccuracyPane):
-                await pilot.pause(0.01)
-        pane = app.screen.query_one(AccuracyPane)
-        await complete(pilot, pane)
-        yield pilot, pane
+    await until(pilot, lambda: is_complete(pane))
 
 
 @asynccontextmanager
@@ -65,7 +52,7 @@ async def accuracy_view(
     """The view of a paused lab, once it is complete."""
     live = Live(scene)
     live.pause(True)
-    async with view_of(LiveScreen(live), size) as (pilot, pane):
+    async with view_of(LiveScreen(live), "f4", AccuracyPane, is_complete, size) as (pilot, pane):
         yield pilot, pane, live
 
 
@@ -76,15 +63,15 @@ async def test_the_points_fill_in_and_are_the_engines():
             assert (found.theta_error, found.energy_error) == (point.theta_error, point.energy_error)
         assert "energy error, the largest of all steps" in pane.text
         assert all(pane.text.count(letter) for letter in "esvr")
-        assert pane.border_title == "Accuracy over 5 s: energy error up, force evaluations across"
-        assert pane.border_subtitle == "X you are here; x failed; ~ only rounding; dotted: error as h, h², h⁴"
+        assert pane.border_title == "Accuracy over 5 s: energy error vs. force evaluations"
+        assert pane.border_subtitle == "X current h  x useless  ~ rounding limit  dotted: slopes h, h², h⁴"
         assert set(MARKS.values()) | {HERE} == {"X", "x", "~"}
 
 
-async def test_it_says_where_you_are():
+async def test_the_current_h_is_marked_and_described():
     async with accuracy_view() as (pilot, pane, _live):
         assert pane.text.count("X") == 4
-        assert said(pane) == "Velocity Verlet at h 0.05 s: energy error 5.7e-03 for 101 force evaluations; you are here"
+        assert said(pane) == "Velocity Verlet at h 0.05 s: energy error 5.7e-03 for 101 force evaluations; current h"
         await pilot.press("tab")
         await complete(pilot, pane)
         assert said(pane).startswith("RK4 at h 0.05 s: ")
@@ -95,25 +82,25 @@ async def test_enter_uses_the_h_of_the_cursors_point_and_u_takes_it_back():
         await pilot.press("left", "right", "right")
         await complete(pilot, pane)
         assert "O" in pane.text
-        assert said(pane).endswith("enter uses this h")
+        assert said(pane).endswith("Enter: use this h")
         point = pane.aim
         assert point is not None
         run = live.sample.run
         await pilot.press("enter")
         await complete(pilot, pane)
-        assert live.h == point.h != 0.05
+        assert live.stepping.h == point.h != 0.05
         assert live.sample.run == run  # h changes, the run goes on
         assert pane.here[VERLET] == point.steps
         assert pane.cursor is None
         await pilot.press("u")
-        assert live.h == 0.05
+        assert live.stepping.h == 0.05
 
 
 async def test_while_time_runs_backwards_the_chosen_h_is_negative():
     async with accuracy_view() as (pilot, pane, live):
         await pilot.press("b", "left", "enter")
         await complete(pilot, pane)
-        assert live.h == pytest.approx(-5.0 / RUNGS[1])
+        assert live.stepping.h == pytest.approx(-5.0 / RUNGS[1])
 
 
 async def test_at_equal_cost_every_method_is_at_its_own_h():
@@ -122,7 +109,7 @@ async def test_at_equal_cost_every_method_is_at_its_own_h():
         await complete(pilot, pane)
         assert pane.here == (100, 100, 100, 25)
         await pilot.press("left", "left", "enter")
-        assert live.h == pytest.approx(4 * 5.0 / RUNGS[0])
+        assert live.stepping.h == pytest.approx(4 * 5.0 / RUNGS[0])
 
 
 async def test_another_h_moves_the_mark_and_another_start_the_points():
@@ -133,9 +120,8 @@ async def test_another_h_moves_the_mark_and_another_start_the_points():
         assert pane.here == (50,) * 4
         assert before.items() <= pane.points.items()
         live.start(SCENES["large-swing"])
-        await pilot.pause(0.3)
+        await until(pilot, lambda: not before.items() & pane.points.items())
         await complete(pilot, pane)
-        assert not before.items() & pane.points.items()
         assert (
             pane.points[VERLET, RUNGS[0]].theta_error
             == Study(SCENES["large-swing"], 5.0).run(METHODS[VERLET], RUNGS[0]).theta_error
@@ -147,7 +133,7 @@ async def test_the_charts_quantity_chooses_the_error_and_hidden_methods_are_not_
         await pilot.press("e", "1")
         await complete(pilot, pane)
         assert "theta error" in pane.text
-        assert "theta error up" in str(pane.border_title)
+        assert "theta error vs." in str(pane.border_title)
         chart = pane.text.split("\n", 1)[1].rsplit("force evaluations", 2)[0]
         assert "v" in chart
         assert not {"x", "~"} & set(chart.replace("1e", ""))  # explicit Euler alone is lost
@@ -170,11 +156,9 @@ async def test_the_cursor_stays_on_the_ladder_and_esc_leaves_it():
 async def test_an_h_that_is_too_large_or_too_small_has_no_mark():
     async with accuracy_view() as (pilot, pane, live):
         for h in (20.0, 1e-7):
-            live.set_h(h)
-            await pilot.pause(0.5)
-            assert pane.settled
-            assert "X" not in pane.text
-            assert said(pane) == "you are not on this chart: h is too large or too small"
+            live.set_stepping(Stepping(h))
+            await until(pilot, lambda: pane.settled and "X" not in pane.text)
+            assert said(pane) == "the current h is not on this chart: it is too large or too small"
 
 
 @pytest.mark.parametrize("size", [(60, 16), (80, 24), (200, 60)])
@@ -191,11 +175,12 @@ async def test_a_replay_shows_it_and_keeps_its_arrows():
     path = resolve("drift")
     replay = Replay(Recording.open(path), Marks(path))
     replay.pause(True)
-    async with view_of(ReplayScreen(replay, lambda live: LiveScreen(live)), (80, 30)) as (pilot, pane):
-        assert said(pane).endswith("you are here")
+    screen = ReplayScreen(replay, lambda live: LiveScreen(live))
+    async with view_of(screen, "f4", AccuracyPane, is_complete, (80, 30)) as (pilot, pane):
+        assert said(pane).endswith("current h")
         await pilot.press("right")
         assert replay.playhead.position == pytest.approx(1.0, abs=0.05)
         assert pane.cursor is None
-        h = replay.h
+        h = replay.stepping.h
         await pilot.press("enter")
-        assert math.copysign(replay.h, 1) == h
+        assert math.copysign(replay.stepping.h, 1) == h

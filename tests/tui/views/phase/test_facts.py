@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from engine.phase_space.neighbours import Neighbours
+from engine.phase_space.area import Neighbours
 from engine.scenes import Scene
 from tui.playback.live import Live
 from tui.playback.shown import Shown
@@ -48,7 +48,7 @@ def test_an_area_has_digits_enough_to_tell_it_from_one(ratio, log, text):
 def test_the_table_tells_who_keeps_area():
     live, neighbours = Live(Scene()), Neighbours(0.1)
     live.step(200)
-    ring = neighbours.follow(live.scene, live.sample.run, live.sample.step, live.events, 200)
+    ring = neighbours.follow(live.scene, live.sample.run, live.sample.step, live.changes, 200)
     lines = ["".join(text for text, _ in row) for row in fact_rows(live, Shown(), neighbours, ring, 80)]
     assert [line.split()[0] for line in lines[2:]] == ["1", "2", "3", "4"]
     assert "1 + " in lines[3] or "1 - " in lines[3] or " 1 " in lines[3]  # symplectic Euler, but for rounding
@@ -59,10 +59,10 @@ def test_the_table_tells_who_keeps_area():
 def test_the_table_says_when_the_ring_is_behind_or_not_there():
     live, neighbours = Live(Scene()), Neighbours(0.1)
     live.step(200)
-    ring = neighbours.follow(live.scene, live.sample.run, live.sample.step, live.events, 50)
+    ring = neighbours.follow(live.scene, live.sample.run, live.sample.step, live.changes, 50)
     assert "150 steps behind" in fact_rows(live, Shown(), neighbours, ring, 80)[0][0][0]
     without = fact_rows(live, Shown(), None, None, 80)
-    assert "g draws one" in without[0][0][0]
+    assert "Press g" in without[0][0][0]
     assert len(without) == 6
 
 

@@ -9,7 +9,7 @@ from textual import events
 from textual.app import App, ComposeResult
 from textual.pilot import Pilot
 
-from engine.phase_space.neighbours import Neighbours
+from engine.phase_space.area import Neighbours
 from engine.scenes import SCENES, Scene
 from tui.playback.live import Live
 from tui.views.messages import SceneChosen
@@ -230,7 +230,7 @@ async def test_a_ring_has_the_radius_one_chooses_or_is_not_there():
         pane.sample = live.sample
         await pilot.pause()
         assert pane.radius == 0.05
-        expected = Neighbours(0.05).follow(DRIFT, 1, 20, live.events, 20)
+        expected = Neighbours(0.05).follow(DRIFT, 1, 20, live.changes, 20)
         assert pane.ring.area_ratios == expected.area_ratios
         await pilot.press("G", "G", "G")
         assert pane.ring is None

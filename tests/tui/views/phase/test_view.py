@@ -1,19 +1,16 @@
 """Phase space in the lab, and over the whole screen."""
 
-from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
 from pathlib import Path
 
 import pytest
-from textual.pilot import Pilot
 from textual.widgets import Static
 
 from engine.phase_space.area import Neighbourhood
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene
 from recordings.recording import Recording
-from tests.tui.sitting import recorded
+from tests.tui.harness import Theatre, lab, recorded, until
 from tui.drawing.cells import CellWidget
-from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
 from tui.screens.app import PenduApp
@@ -27,94 +24,59 @@ from tui.views.phase.view import RADIUS
 DRIFT = SCENES["drift"]
 
 
-class Bench:
-    """A lab with a clock that is moved by hand."""
-
-    def __init__(self, pilot: Pilot[None], lab: LiveScreen) -> None:
-        self.pilot, self.lab = pilot, lab
-        self.now = 0.0
-
-    @property
-    def live(self) -> Live:
-        return self.lab.live
-
-    @property
-    def pane(self) -> PhasePane:
-        """The one that is shown."""
-        (pane,) = (pane for pane in self.lab.query(PhasePane) if pane.drawable)
-        return pane
-
-    async def view(self, key: str) -> None:
-        await self.pilot.press(key)
-        await self.pilot.pause()
-
-    async def run(self, seconds: float) -> None:
-        for _ in range(round(seconds * 30)):
-            self.now += 1 / 30
-            self.lab.frame()
-        self.lab.show_now()
-        await self.pilot.pause()
-
-
-@asynccontextmanager
-async def lab(scene: Scene = DRIFT, size: tuple[int, int] = (120, 40)) -> AsyncIterator[Bench]:
-    live = Live(scene, clock=lambda: 0.0)
-    screen = LiveScreen(live, clock=lambda: bench.now)
-    app = PenduApp(screen)
-    app.on_ready = lambda: None  # no clock but ours
-    async with app.run_test(size=size) as pilot:
-        bench = Bench(pilot, screen)
-        await pilot.pause()
-        screen.frame()
-        yield bench
+def shown(theatre: Theatre) -> PhasePane:
+    """The phase space on screen."""
+    (pane,) = (pane for pane in theatre.stage.query(PhasePane) if pane.drawable)
+    return pane
 
 
 @pytest.mark.parametrize("size", [(120, 40), (200, 60)])
 async def test_the_lab_has_phase_space_where_there_is_room(size):
-    async with lab(size=size) as bench:
-        await bench.run(1)
-        assert "separatrix" in bench.pane.text
-        assert "exact period 2.13914 s" in bench.pane.text
+    async with lab(size=size) as theatre:
+        await theatre.run(1)
+        assert "separatrix" in shown(theatre).text
+        assert "exact period 2.13914 s" in shown(theatre).text
 
 
 async def test_a_click_in_the_lab_starts_all_four_there_with_the_step_in_force_and_u_takes_it_back():
-    async with lab() as bench:
-        await bench.run(1)
-        await bench.pilot.press("plus")
-        pane = bench.pane
+    async with lab() as theatre:
+        await theatre.run(1)
+        await theatre.pilot.press("plus")
+        pane = shown(theatre)
         expected = pane.viewport.at_cell(40, 3)
-        await bench.pilot.click(pane, offset=(41, 4))
-        assert (bench.live.scene.theta, bench.live.scene.omega, bench.live.scene.h) == (*expected, 0.1)
-        assert all((r.theta, r.omega) == tuple(expected) for r in bench.live.sample.readings)
-        assert bench.live.sample.step == 0
-        await bench.pilot.press("u")
-        assert bench.live.scene == DRIFT.altered(h=0.05)
+        await theatre.pilot.click(pane, offset=(41, 4))
+        assert (theatre.source.scene.theta, theatre.source.scene.omega, theatre.source.scene.h) == (*expected, 0.1)
+        assert all((r.theta, r.omega) == tuple(expected) for r in theatre.source.sample.readings)
+        assert theatre.source.sample.step == 0
+        await theatre.pilot.press("u")
+        assert theatre.source.scene == DRIFT.altered(h=0.05)
 
 
 @pytest.mark.parametrize("size", [(60, 16), (80, 24), (120, 40), (200, 60)])
 async def test_f3_shows_all_of_it_and_the_arrows_are_its_keys(size):
-    async with lab(size=size) as bench:
-        await bench.run(1)
-        await bench.view("f3")
-        assert bench.pane.has_focus
-        await bench.pilot.press("shift+right", "up")
-        crosshair = bench.pane.cursor
-        await bench.pilot.press("enter")
-        assert (bench.live.scene.theta, bench.live.scene.omega) == tuple(crosshair)
-        await bench.view("f2")
-        await bench.view("f3")
-        assert bench.pane.has_focus
+    async with lab(size=size) as theatre:
+        await theatre.run(1)
+        await theatre.press("f3")
+        assert shown(theatre).has_focus
+        await theatre.pilot.press("shift+right", "up")
+        crosshair = shown(theatre).cursor
+        await theatre.pilot.press("enter")
+        assert (theatre.source.scene.theta, theatre.source.scene.omega) == tuple(crosshair)
+        await theatre.press("f2")
+        await theatre.press("f3")
+        assert shown(theatre).has_focus
 
 
 async def test_the_view_shows_who_keeps_the_area_around_the_start():
-    async with lab() as bench:
-        await bench.view("f3")
-        await bench.run(20)
+    async with lab() as theatre:
+        await theatre.press("f3")
+        await theatre.run(20)
+        await until(theatre.pilot, lambda: shown(theatre).neighbours.step == theatre.source.sample.step)
         ring = Neighbourhood(DRIFT, RADIUS)
-        ring.advance(bench.live.sample.step, DRIFT.h)
-        assert bench.pane.ring.area_ratios == ring.area_ratios
-        lines = bench.lab.query_one("#facts", CellWidget).text.splitlines()
-        assert "0.1 rad around the start" in lines[0]
+        ring.advance(theatre.source.sample.step, Stepping(DRIFT.h))
+        assert shown(theatre).ring.area_ratios == ring.area_ratios
+        lines = theatre.stage.query_one("#facts", CellWidget).text.splitlines()
+        assert "radius 0.1 rad" in lines[0]
         assert f"{ring.area_ratios[3]:.9f}" in lines[5]
 
 
@@ -134,92 +96,92 @@ async def test_the_view_shows_who_keeps_the_area_around_the_start():
     ids=lambda scene: f"{scene.name} {scene.theta:g} {scene.omega:g} {scene.h:g}",
 )
 async def test_no_start_is_too_much_for_it(scene):
-    async with lab(scene, size=(80, 24)) as bench:
-        await bench.pilot.press("f3", "5")
-        await bench.run(scene.h * 3 + 1 if scene.h < 10 else 1)
-        bench.live.step(500)
-        bench.pane.action_zoom(0.01)
-        bench.lab.show_now()
-        bench.pane.action_move(3, 2)
-        text = bench.pane.text + bench.lab.query_one("#facts", CellWidget).text
+    async with lab(scene, size=(80, 24)) as theatre:
+        await theatre.pilot.press("f3", "5")
+        await theatre.run(scene.h * 3 + 1 if scene.h < 10 else 1)
+        theatre.source.step(500)
+        shown(theatre).action_zoom(0.01)
+        theatre.stage.show_now()
+        shown(theatre).action_move(3, 2)
+        text = shown(theatre).text + theatre.stage.query_one("#facts", CellWidget).text
         assert "libration" in text or "rotation" in text
         assert "nan" not in text
         assert "inf" not in text
 
 
 async def test_one_who_looks_late_and_paused_sees_the_ring_catch_up():
-    async with lab() as bench:
-        await bench.run(20)
-        await bench.pilot.press("space")
-        await bench.view("f3")
+    async with lab() as theatre:
+        await theatre.run(20)
+        await theatre.pilot.press("space")
+        await theatre.press("f3")
         for _ in range(100):
-            await bench.pilot.pause(0.02)
-            if bench.pane.settled:
+            await theatre.pilot.pause(0.02)
+            if shown(theatre).settled:
                 break
-        assert bench.pane.neighbours.step == bench.live.sample.step
-        await bench.pilot.pause()
-        text = bench.lab.query_one("#facts", CellWidget).text
+        assert shown(theatre).neighbours.step == theatre.source.sample.step
+        await theatre.pilot.pause()
+        text = theatre.stage.query_one("#facts", CellWidget).text
         assert "behind" not in text
-        assert f"{bench.pane.ring.area_ratios[3]:.9f}" in text
+        assert f"{shown(theatre).ring.area_ratios[3]:.9f}" in text
 
 
 async def test_nothing_is_computed_for_phase_space_that_is_not_shown():
-    async with lab(size=(80, 24)) as bench:
-        await bench.view("f3")
-        await bench.run(1)
-        pane = bench.pane
-        await bench.view("f2")
+    async with lab(size=(80, 24)) as theatre:
+        await theatre.press("f3")
+        await theatre.run(1)
+        pane = shown(theatre)
+        await theatre.press("f2")
         step, text = pane.neighbours.step, pane.text
-        await bench.run(2)
+        await theatre.run(2)
         assert (pane.neighbours.step, pane.text) == (step, text)
-        assert not any(other.drawable for other in bench.lab.query(PhasePane))
-        await bench.view("f3")
-        await bench.run(0.1)
-        assert pane.neighbours.step == bench.live.sample.step
+        assert not any(other.drawable for other in theatre.stage.query(PhasePane))
+        await theatre.press("f3")
+        await theatre.run(0.1)
+        assert pane.neighbours.step == theatre.source.sample.step
 
 
 async def test_the_exact_point_comes_with_5_and_drawn_where_the_exact_swing_is():
-    async with lab() as bench:
-        await bench.view("f3")
-        await bench.run(3)
-        without = bench.pane.text
-        await bench.pilot.press("5")
-        await bench.pilot.pause()
+    async with lab() as theatre:
+        await theatre.press("f3")
+        await theatre.run(3)
+        without = shown(theatre).text
+        await theatre.pilot.press("5")
+        await theatre.pilot.pause()
         assert "x" not in without.replace("exact", "").replace("separatrix", "")
-        assert "x" in bench.pane.text.replace("exact", "").replace("separatrix", "")
+        assert "x" in shown(theatre).text.replace("exact", "").replace("separatrix", "")
 
 
 async def test_reversed_time_tells_at_its_start_how_far_each_method_misses_it():
-    async with lab() as bench:
-        await bench.run(5)
-        await bench.pilot.press("b")
-        await bench.run(6)
-        assert bench.lab.query_one(InsightLine).text.startswith(" Back at t = 0. Missed the start by e ")
+    async with lab() as theatre:
+        await theatre.run(5)
+        await theatre.pilot.press("b")
+        await theatre.run(6)
+        assert theatre.stage.query_one(InsightLine).text.startswith(" Back at t = 0. Missed the start by e ")
 
 
 async def test_e_comes_by_the_shadow_energies():
-    async with lab() as bench:
-        await bench.run(3)
-        chart = bench.lab.query_one(TimeChart)
+    async with lab() as theatre:
+        await theatre.run(3)
+        chart = theatre.stage.query_one(TimeChart)
         for _ in range(4):
-            await bench.pilot.press("e")
+            await theatre.pilot.press("e")
             if "shadow" in chart.border_title:
                 break
         assert "shadow error" in chart.border_title
-        assert chart.border_subtitle == "only s and v have a shadow energy"
+        assert chart.border_subtitle == "shadow energy is known for s and v only"
         for _ in range(200):
-            await bench.pilot.pause(0.01)
+            await theatre.pilot.pause(0.01)
             if chart.settled:
                 break
         assert all(letter in chart.text for letter in "sv")
 
 
 async def test_the_help_tells_the_panes_keys():
-    async with lab() as bench:
-        await bench.view("f3")
-        await bench.pilot.press("question_mark")
-        await bench.pilot.pause()
-        text = "\n".join(str(static.render()) for static in bench.pilot.app.screen.query(Static))
+    async with lab() as theatre:
+        await theatre.press("f3")
+        await theatre.pilot.press("question_mark")
+        await theatre.pilot.pause()
+        text = "\n".join(str(static.render()) for static in theatre.pilot.app.screen.query(Static))
         assert "crosshair, to choose a start" in text
         assert "a ring of neighbours" in text
 

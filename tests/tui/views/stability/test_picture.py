@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from engine.methods import METHODS
 from engine.stability.grid import Grid
-from engine.stability.outcomes import CELL, DRIFTS, GROWS, HOLDS, UNKNOWN
+from engine.stability.outcomes import CELL, GROWS, HOLDS, LOSES, UNKNOWN
 from tui.drawing.palette import PALETTES
 from tui.views.stability.picture import character, colour, panel, picture, scores, worst
 
@@ -107,7 +107,7 @@ def test_large_amplitudes_are_at_the_top():
 def test_scores_rise_from_lost_at_once_to_held_exactly():
     order = [
         cell(0, 0.0, UNKNOWN),
-        cell(0, 1.0, DRIFTS),
+        cell(0, 1.0, LOSES),
         cell(10, 1.0, GROWS),
         cell(999, 1.0, GROWS),
         cell(STEPS, 0.5, HOLDS),

@@ -1,4 +1,3 @@
-import asyncio
 import math
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -11,17 +10,20 @@ from engine.scenes import SCENES, Scene
 from engine.stability.outcomes import UNKNOWN
 from recordings.library import resolve
 from recordings.recording import Recording
+from tests.tui.harness import until, view_of
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
-from tui.screens.app import PenduApp
-from tui.screens.base import SourceScreen
 from tui.screens.live import LiveScreen
 from tui.screens.replay import ReplayScreen
 from tui.screens.status_line import StatusLine
 from tui.views.stability.pane import StabilityPane
 
 VERLET, RK4 = 2, 3  # in METHODS
+
+
+def is_complete(pane: StabilityPane) -> bool:
+    return pane.settled
 
 
 @asynccontextmanager
@@ -32,22 +34,8 @@ async def stability_view(
     monkeypatch.setattr("tui.views.stability.view.PASSES", (20, 60))
     live = Live(scene)
     live.pause(True)
-    async with view_of(LiveScreen(live), size) as (pilot, pane):
+    async with view_of(LiveScreen(live), "f5", StabilityPane, is_complete, size) as (pilot, pane):
         yield pilot, pane, live
-
-
-@asynccontextmanager
-async def view_of(stage: SourceScreen, size: tuple[int, int]) -> AsyncIterator[tuple[Pilot[object], StabilityPane]]:
-    app = PenduApp(stage)
-    async with app.run_test(size=size) as pilot:
-        await pilot.press("f5")
-        async with asyncio.timeout(120):  # a program that ended would be waited for in vain
-            while not app.screen.query(StabilityPane):
-                await pilot.pause(0.01)
-            pane = app.screen.query_one(StabilityPane)
-            while not pane.settled:
-                await pilot.pause(0.05)
-        yield pilot, pane
 
 
 async def test_the_map_fills_in_and_is_the_engines(monkeypatch: pytest.MonkeyPatch):
@@ -55,7 +43,7 @@ async def test_the_map_fills_in_and_is_the_engines(monkeypatch: pytest.MonkeyPat
         assert (pane.cells["fate"] != UNKNOWN).all()
         sixty = type(pane.grid)(pane.grid.theta[:5], pane.grid.z[30:35], 60)
         assert np.array_equal(pane.cells[30:35, :, :5], sixty.cells())
-        for line in ("1 e Explicit Euler  grows", "2 s Symplectic Euler  holds", "4 r RK4  holds", "h 0.479"):
+        for line in ("1 e Explicit Euler  grows", "2 s stable", "4 r RK4  stable", "h 0.479"):
             assert line in pane.text
 
 
@@ -64,7 +52,7 @@ async def test_it_says_what_becomes_of_the_swing_on_screen(monkeypatch: pytest.M
         z, theta = pane.here(VERLET)
         assert (z, theta) == (live.scene.z, 1.0)
         assert pane.text.count("X") == 4
-        assert "Velocity Verlet at h 0.0539 s, 58.1 deg: holds" in pane.text
+        assert "Velocity Verlet at h 0.0539 s, 58.1 deg: stable" in pane.text
 
 
 async def test_at_equal_cost_each_method_is_where_its_own_step_is(monkeypatch: pytest.MonkeyPatch):
@@ -121,8 +109,7 @@ async def test_tab_goes_through_the_methods_in_words(monkeypatch: pytest.MonkeyP
 async def test_the_axis_is_that_of_the_scenes_pendulum(monkeypatch: pytest.MonkeyPatch):
     async with stability_view(monkeypatch) as (pilot, pane, live):
         live.start(Scene(length=4 * 9.81))  # w0 = 1/2, so h = 2 z
-        await pilot.pause(0.3)
-        assert "h 3 " in pane.text
+        await until(pilot, lambda: "h 3 " in pane.text)
 
 
 async def test_hidden_methods_leave_their_panels_to_the_others(monkeypatch: pytest.MonkeyPatch):
@@ -171,10 +158,10 @@ async def test_a_larger_step_beyond_a_limit_is_warned_of_and_taken(monkeypatch: 
     async with stability_view(monkeypatch, scene) as (pilot, pane, live):
         status = pane.screen.query_one(StatusLine)
         await pilot.press("plus")
-        assert live.h == 2.0
+        assert live.stepping.h == 2.0
         assert "beyond" not in status.text
         await pilot.press("plus")
-        assert live.h == 5.0
+        assert live.stepping.h == 5.0
         assert "z 5  unstable: s v (z > 2), r (z > 2.83)" in status.text
         assert pane.aim(VERLET) is None  # it is beyond the map, too
 
@@ -184,8 +171,9 @@ async def test_a_replay_says_what_becomes_of_its_swing_and_keeps_its_arrows(monk
     path = resolve("drift")
     replay = Replay(Recording.open(path), Marks(path))
     replay.pause(True)
-    async with view_of(ReplayScreen(replay, lambda live: LiveScreen(live)), (80, 30)) as (pilot, pane):
-        assert "Velocity Verlet at h 0.0539 s, 58.1 deg: holds" in pane.text
+    screen = ReplayScreen(replay, lambda live: LiveScreen(live))
+    async with view_of(screen, "f5", StabilityPane, is_complete, (80, 30)) as (pilot, pane):
+        assert "Velocity Verlet at h 0.0539 s, 58.1 deg: stable" in pane.text
         await pilot.press("right")
         assert replay.playhead.position == pytest.approx(1.0, abs=0.05)
         assert pane.cursor is None

@@ -1,0 +1,91 @@
+"""A Judge at work: it is shown a method at fixed steps of a run, whichever samples the run is known by."""
+
+import math
+
+from engine.methods import Method
+from engine.models.pendulum import EnergyReference
+from engine.models.state import Phase
+from engine.run.lockstep import Reading
+from engine.run.loops import Advance
+from engine.run.verdict import Judge, Judgement, Look, Verdict, stride
+
+MOST_STEPS = 20_000
+"""Steps between two samples that are taken again, 20 ms at worst; after more, the sample itself is looked at."""
+
+
+class Judging:
+    """Judges one method from a sample on, by the states at every so many steps, which it computes between samples.
+
+    So verdicts depend on the scene, the stepping and the step only: live, replayed and without a screen.
+    """
+
+    def __init__(
+        self,
+        method: Method,
+        reference: EnergyReference,
+        w0_squared: float,
+        h: float,
+        parts: int,
+        period: float,
+        advance: Advance,
+    ) -> None:
+        """`h` [s] is the lockstep's step, of which the method takes so many `parts`."""
+        own = h / parts
+        self._judge = Judge(method, w0_squared, reference.scale, own, period)
+        self._reference, self._w0_squared, self._h, self._parts, self._advance = (
+            reference,
+            w0_squared,
+            own,
+            parts,
+            advance,
+        )
+        self._stride = stride(period, h)
+        self._step = -1  # of the lockstep, since the first sample; -1: there was none
+        self._phase: Phase = (0.0, 0.0)
+        self._low = self._high = 0.0  # relative energy errors since the last look
+
+    @property
+    def judgement(self) -> Judgement:
+        """What is known by now."""
+        return self._judge.judgement
+
+    def follow(self, step: int, reading: Reading) -> list[tuple[int, float, Verdict]]:
+        """Take in the reading so many steps after the first; the verdicts on the way: step, energy error, verdict."""
+        error, phase = reading.energy_error, (reading.theta, reading.omega)
+        changes: list[tuple[int, float, Verdict]] = []
+        if reading.diverged_at is not None:
+            self._judge.fail(step * self._parts)
+        elif self._step < 0:
+            self._judge.look(0, Look(*phase, error, error, error))
+            self._low = self._high = error
+        elif not self._is_taken_again(step, changes):
+            self._low, self._high = min(self._low, reading.energy_error_low), max(self._high, reading.energy_error_high)
+            if step // self._stride > self._step // self._stride:
+                self._look(step, phase, error, changes)
+        self._step, self._phase = step, phase
+        return changes
+
+    def _is_taken_again(self, step: int, changes: list[tuple[int, float, Verdict]]) -> bool:
+        """Whether there were looks before this step, and the steps to them, and on, could be taken again."""
+        first = (self._step // self._stride + 1) * self._stride
+        if first >= step or step - self._step > MOST_STEPS:
+            return False
+        at, phase = self._step, self._phase
+        for stop in [*range(first, step, self._stride), step]:
+            n = (stop - at) * self._parts
+            done, phase, value, low, high = self._advance(self._w0_squared, phase, self._h, n, math.inf)
+            if done < n:
+                return False
+            self._low = min(self._low, self._reference.error(low))
+            self._high = max(self._high, self._reference.error(high))
+            if stop % self._stride == 0:
+                self._look(stop, phase, self._reference.error(value), changes)
+            at = stop
+        return True
+
+    def _look(self, step: int, phase: Phase, error: float, changes: list[tuple[int, float, Verdict]]) -> None:
+        known = self.judgement.verdict
+        self._judge.look(step * self._parts, Look(*phase, error, self._low, self._high))
+        self._low = self._high = error
+        if (verdict := self.judgement.verdict) != known:
+            changes.append((step, error, verdict))

@@ -1,0 +1,92 @@
+"""Stepping: the lockstep's step size, and what of it each method takes.  The one place that converts between them.
+
+At equal cost a method that needs fewer force evaluations takes a step of the lockstep in equal parts, so that
+all methods need about as many: RK4 one step of h, the others four of h/4.
+"""
+
+import math
+from bisect import bisect_left
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from operator import attrgetter
+from typing import NamedTuple, Self
+
+from engine.methods import METHODS, Method
+from engine.scenes import check_h
+
+
+def parts(methods: Sequence[Method] = METHODS) -> tuple[int, ...]:
+    """In how many parts each method takes a step at equal cost: 4, 4, 4 and 1 for METHODS."""
+    dearest = max((method.force_evaluations for method in methods), default=1)
+    return tuple(max(1, round(dearest / method.force_evaluations)) for method in methods)
+
+
+@dataclass(frozen=True, slots=True)
+class Stepping:
+    """How a run steps: its step size, and whether at equal cost."""
+
+    h: float  # s, of the lockstep, and so of the method that is not cut; negative: time runs backwards
+    equal_cost: bool = False
+
+    @classmethod
+    def of_smallest(cls, h: float, equal_cost: bool) -> Self:
+        """The stepping whose smallest own step is h [s]."""
+        return cls(h * max(parts()) if equal_cost else h, equal_cost)
+
+    def parts(self, methods: Sequence[Method] = METHODS) -> tuple[int, ...]:
+        """In how many parts each method takes a step."""
+        return parts(methods) if self.equal_cost else (1,) * len(methods)
+
+    def own(self, methods: Sequence[Method] = METHODS) -> tuple[float, ...]:
+        """Each method's own step size [s], with its sign."""
+        return tuple(self.h / part for part in self.parts(methods))
+
+    @property
+    def smallest(self) -> float:
+        """The smallest own step size, without its sign [s]: a scene's `h` at equal cost."""
+        return min(map(abs, self.own()))
+
+    def with_own(self, method: Method, h: float) -> Self:
+        """With |h| [s] as this method's own step size, in the same direction."""
+        return replace(self, h=math.copysign(h * self.parts()[METHODS.index(method)], self.h))
+
+    def next(self, up: bool) -> Self:
+        """With the smallest own step size at the next rung of 1, 2, 5, 10, …, or at the one before."""
+        return self.of_smallest(math.copysign(_next_rung(self.smallest, up), self.h), self.equal_cost)
+
+    def reversed(self) -> Self:
+        """With time running the other way."""
+        return replace(self, h=-self.h)
+
+    def toggled(self) -> Self:
+        """With equal cost switched on, or off; the smallest own step size stays."""
+        return self.of_smallest(math.copysign(self.smallest, self.h), not self.equal_cost)
+
+    def check(self, w0: float) -> None:
+        """Raise SceneError unless a pendulum of natural frequency w0 [rad/s] can be given each method's own step."""
+        for h in dict.fromkeys((self.h, *self.own())):
+            check_h(h, w0)
+
+
+class SteppingChange(NamedTuple):
+    """A change of how a run steps; the first of a run is its start's."""
+
+    step: int  # before which it applies
+    t: float  # s, simulated time there
+    stepping: Stepping
+
+
+def change_before(changes: Sequence[SteppingChange], step: int) -> SteppingChange:
+    """The change that was in force on the way to a step."""
+    return changes[max(bisect_left(changes, step, key=attrgetter("step")), 1) - 1]
+
+
+def _next_rung(size: float, up: bool) -> float:
+    """The next of 1, 2, 5, 10, … above a size, or below it."""
+    decade = math.floor(math.log10(size))
+    ladder = [digit * 10.0**power for power in (decade - 1, decade, decade + 1) for digit in (1, 2, 5)]
+    if up:
+        rung = min(rung for rung in ladder if rung > size * (1 + 1e-9))
+    else:
+        rung = max(rung for rung in ladder if rung < size * (1 - 1e-9))
+    return float(f"{rung:.1g}")

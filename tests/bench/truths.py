@@ -1,0 +1,128 @@
+"""Compute what becomes of each method on a grid of starts and steps: tests/engine/run/truths.txt.  Needs Numba.
+
+Every cell is a run of a million steps or so, looked at with hindsight and none of the verdict's own reasoning: the
+lowest and highest energy error of each window of steps that doubles the run, and, for the symplectic methods,
+the logarithm of how far two neighbouring starts have parted, in windows that double, too.  Some minutes.
+"""
+
+import cmath
+import math
+import sys
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from pathlib import Path
+
+import numba
+import numpy as np
+
+from engine.methods import METHODS, Method
+from tests.truths import ALLOWED, FILE, STARTS, Z, scene_at
+
+WINDOWS = [1 << power for power in range(4, 20)] + [3 << 18, 1 << 20]  # steps at their ends
+
+
+@numba.njit
+def acceleration(theta):  # type: ignore[no-untyped-def]
+    return -9.81 * math.sin(theta)
+
+
+@numba.njit
+def complex_acceleration(theta):  # type: ignore[no-untyped-def]
+    return -9.81 * cmath.sin(theta)
+
+
+def runner(method: Method):  # type: ignore[no-untyped-def]
+    """A loop over the windows that fills in (low, high, log of the stretching, lowest omega, highest omega)."""
+    step, w0 = numba.njit(method.step), math.sqrt(9.81)
+
+    @numba.njit
+    def alone(theta, omega, along, across, h):  # type: ignore[no-untyped-def]
+        theta, omega = step(acceleration, (theta, omega), h)
+        return theta, omega, along, across
+
+    @numba.njit
+    def with_a_neighbour(theta, omega, along, across, h):  # type: ignore[no-untyped-def]
+        phase = complex(theta, 1e-100 * along), complex(omega, 1e-100 * across)
+        theta, omega = step(complex_acceleration, phase, h)
+        return theta.real, omega.real, theta.imag * 1e100, omega.imag * 1e100
+
+    advance = with_a_neighbour if method.symplectic else alone
+
+    @numba.njit(nogil=True)
+    def run(theta, omega, h, windows, found):  # type: ignore[no-untyped-def]
+        start = omega * omega / 2 + 2 * 9.81 * math.sin(theta / 2) ** 2
+        along, across, stretching, done = 1.0, 0.0, 0.0, 0
+        for index, end in enumerate(windows):
+            low, high, slowest, fastest = math.inf, -math.inf, math.inf, -math.inf
+            for n in range(done, end):
+                theta, omega, along, across = advance(theta, omega, along, across, h)
+                if n % 8 == 7:
+                    length = math.sqrt(along * along + (across / w0) ** 2)
+                    along, across, stretching = along / length, across / length, stretching + math.log(length)
+                error = (omega * omega / 2 + 2 * 9.81 * math.sin(theta / 2) ** 2 - start) / start
+                if not abs(error) < 1e280:
+                    return
+                low, high = min(low, error), max(high, error)
+                slowest, fastest = min(slowest, omega), max(fastest, omega)
+            found[index, 0], found[index, 1], found[index, 2] = low, high, stretching
+            found[index, 3], found[index, 4] = slowest, fastest
+            done = end
+
+    return run
+
+
+def letter(method: Method, h: float, found: np.ndarray) -> str:
+    """What a run came to; tests.truths.ALLOWED says what the letters mean."""
+    if not np.isfinite(found).all():
+        return "g"
+    low, high, stretching, slowest, fastest = found.T
+    if method.symplectic:
+        if stretching[-1] < 16:  # neighbours part in proportion to time: ln 10⁶ = 14
+            return "b"
+        if stretching[-1] < 40 or stretching[WINDOWS.index(8192)] < 20:
+            return "s"
+        return "w" if (fastest.max() - slowest.min()) * h > math.tau else "c"
+    thrown = h * math.sqrt(9.81) > 1.5  # then the orbits of explicit Euler jump by many turns
+    middle, width = (low + high) / 2, max(high[16:].max() - low[16:].min(), 1e-13)
+    if np.abs(middle).max() < 1e-10:
+        return "B"
+    if middle[17] < -1 + 1e-6:
+        return "d"
+    late = slice(14 if thrown else 16, 18)
+    ends = np.ptp(low[late]), np.ptp(high[late]), abs(middle[17] - middle[15]) / 2
+    if max(ends) < 0.1 * width + 0.01 * abs(middle[17]):
+        return "K" if low[17] <= 0 <= high[17] else "k"
+    if thrown:
+        return "w"
+    moves = np.diff(middle[8:])
+    if (moves > 0).all() and low[17] > high[13]:
+        return "g"
+    if (moves < 0).all():
+        return "d"
+    return "w" if np.ptp(middle[8:]) > np.median((high - low)[8:]) / 4 else "B"
+
+
+def main() -> None:
+    """Run the grid and write the file, a line for each method and start."""
+    lines = []
+    with ThreadPoolExecutor() as executor:
+        for method in METHODS:
+            run = runner(method)
+
+            def cell(start: str, z: float, method: Method = method, run: Callable[..., None] = run) -> str:
+                scene = scene_at(start, z)
+                found = np.full((len(WINDOWS), 5), np.nan)
+                run(scene.theta, scene.omega, scene.h, np.array(WINDOWS), found)
+                return letter(method, scene.h, found)
+
+            for start in STARTS:
+                letters = "".join(executor.map(partial(cell, start), Z))
+                assert set(letters) <= set(ALLOWED)
+                lines.append(f"{method.key} {start} {letters}")
+                print(lines[-1], file=sys.stderr)
+    Path(FILE).write_text("\n".join(lines) + "\n")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,124 @@
+"""How a run steps: h along 1, 2, 5, time both ways, and equal cost, where all meet at the same times."""
+
+import math
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from engine.methods import METHODS
+from engine.models.state import Acceleration, Phase
+from engine.run.lockstep import Lockstep
+from engine.run.stepping import Stepping, SteppingChange, change_before, parts
+from engine.scenes import DEFAULT_SCENE, Scene, SceneError
+
+STEPPINGS = st.builds(
+    Stepping, st.floats(1e-9, 1e3).flatmap(lambda size: st.sampled_from([size, -size])), st.booleans()
+)
+EQUAL = Stepping(0.2, equal_cost=True)
+
+
+def test_h_goes_along_1_2_5():
+    stepping, rungs = Stepping(0.05), []
+    for _ in range(6):
+        rungs.append((stepping := stepping.next(up=True)).h)
+    assert rungs == [0.1, 0.2, 0.5, 1.0, 2.0, 5.0]
+    for _ in range(7):
+        stepping = stepping.next(up=False)
+    assert stepping == Stepping(0.02)
+
+
+@given(STEPPINGS)
+def test_every_stepping_has_a_larger_and_a_smaller_neighbour_of_its_sign_and_up_and_down_return(stepping):
+    larger, smaller = stepping.next(up=True), stepping.next(up=False)
+    assert smaller.smallest < stepping.smallest < larger.smallest <= 2.6 * stepping.smallest  # 2 to 5, and rounding
+    assert math.copysign(1, larger.h) == math.copysign(1, smaller.h) == math.copysign(1, stepping.h)
+    assert larger.next(up=True).next(up=False) == larger
+
+
+@given(STEPPINGS)
+def test_equal_cost_on_and_off_and_time_both_ways_keep_the_smallest_step(stepping):
+    assert stepping.toggled().smallest == stepping.reversed().smallest == stepping.smallest
+    assert stepping.toggled().toggled() == stepping.reversed().reversed() == stepping
+
+
+def test_at_equal_cost_the_cheap_methods_take_a_step_in_parts():
+    assert EQUAL.own() == (0.05, 0.05, 0.05, 0.2)
+    assert Stepping.of_smallest(0.05, equal_cost=True) == EQUAL
+    assert Stepping(-0.1).with_own(METHODS[0], 0.3) == Stepping(-0.3)
+    assert EQUAL.reversed().with_own(METHODS[0], 0.5) == Stepping(-2.0, equal_cost=True)
+
+
+def test_a_method_whose_cost_divides_no_other_takes_the_nearest_number_of_parts():
+    costs = [replace(METHODS[0], force_evaluations=n) for n in (1, 3, 4, 7)]
+    assert parts(costs) == (7, 2, 2, 1)
+
+
+@pytest.mark.parametrize("h", [0.0, math.nan, 1e9, 2e-9])
+def test_a_step_that_is_absurd_for_one_of_the_methods_is_refused(h):
+    Stepping(2e-9).check(1.0)
+    with pytest.raises(SceneError):
+        Stepping(h, equal_cost=True).check(1.0)
+
+
+def test_a_step_is_made_with_the_last_change_before_it():
+    changes = [
+        SteppingChange(0, 0.0, Stepping(0.1)),
+        SteppingChange(5, 0.5, Stepping(0.2)),
+        SteppingChange(5, 0.5, EQUAL),
+    ]
+    assert [change_before(changes, step).stepping for step in (0, 5, 6)] == [Stepping(0.1), Stepping(0.1), EQUAL]
+
+
+def bits(lockstep: Lockstep) -> list[tuple[float, float, float]]:
+    return [(reading.theta, reading.omega, reading.max_energy_error) for reading in lockstep.sample().readings]
+
+
+def test_at_equal_cost_every_method_needs_the_same_number_of_evaluations():
+    assert len({method.force_evaluations * part for method, part in zip(METHODS, EQUAL.parts(), strict=True)}) == 1
+
+
+@pytest.mark.parametrize("index", range(len(METHODS)), ids=[method.key for method in METHODS])
+def test_a_method_takes_the_step_in_its_own_parts(index: int):
+    equal, alone = Lockstep(DEFAULT_SCENE), Lockstep(DEFAULT_SCENE)
+    equal.set_stepping(EQUAL)
+    alone.set_stepping(Stepping(EQUAL.own()[index]))
+    equal.advance(50)
+    alone.advance(50 * EQUAL.parts()[index])
+    assert equal.t == 50 * 0.2
+    assert bits(equal)[index] == bits(alone)[index]
+
+
+def test_any_cut_of_the_steps_gives_the_same_bits():
+    whole, cut = Lockstep(DEFAULT_SCENE), Lockstep(DEFAULT_SCENE)
+    for lockstep in (whole, cut):
+        lockstep.advance(7)
+        lockstep.set_stepping(EQUAL)
+    whole.advance(30)
+    for n in (1, 9, 20):
+        cut.advance(n)
+    assert bits(whole) == bits(cut)
+
+
+def test_a_method_that_diverges_says_when_to_its_own_part_of_a_step():
+    def doubling(acceleration: Acceleration, phase: Phase, h: float) -> Phase:
+        return phase[0], phase[1] * 2 + 1
+
+    bad = replace(METHODS[0], key="bad", step=doubling)
+    lockstep = Lockstep(DEFAULT_SCENE, methods=(bad, METHODS[3]))
+    lockstep.set_stepping(EQUAL)
+    lockstep.advance(1000)
+    at = lockstep.sample().readings[0].diverged_at
+    assert at is not None
+    parts_taken = round(at / 0.05)
+    assert at == parts_taken * 0.05
+    assert (2.0 ** (parts_taken - 1)) ** 2 / 2 < 1e300 < (2.0**parts_taken) ** 2  # where omega²/2 leaves the range
+
+
+def test_verlet_beats_rk4_in_energy_at_once_at_equal_cost():
+    lockstep = Lockstep(Scene(theta=1.0))
+    lockstep.set_stepping(Stepping(0.4, equal_cost=True))
+    lockstep.advance(25)
+    error = dict(zip((m.key for m in METHODS), lockstep.sample().readings, strict=True))
+    assert error["velocity_verlet"].max_energy_error < error["rk4"].max_energy_error / 10

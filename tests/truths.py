@@ -1,0 +1,87 @@
+"""What runs of a million steps came to, on a grid of starts and h·w0; tests/bench/truths.py computed it."""
+
+import math
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from engine.methods import METHODS, Method
+from engine.models.exact_pendulum import ExactMotion
+from engine.models.pendulum import energy_reference
+from engine.run.judging import Judging
+from engine.run.lockstep import Lockstep
+from engine.run.loops import Loops
+from engine.run.verdict import stride
+from engine.scenes import Scene
+
+FILE = Path(__file__).parent / "engine/run/truths.txt"
+
+THETAS = (1e-6, 0.01, 0.1, 0.3, 0.5, 0.7, 1, 1.25, 1.47, 1.69, 2, 2.3, 2.5, 2.7, 2.9)
+STARTS = {  # theta [rad], omega [rad/s]
+    **{f"theta={theta:g}": (theta, 0.0) for theta in THETAS},
+    "theta=pi-1e-3": (math.pi - 1e-3, 0.0),
+    "theta=pi-1e-5": (math.pi - 1e-5, 0.0),
+    **{f"omega={omega:g}": (0.0, omega) for omega in (6.3, 6.5, 8, 10, 31.4, 200)},
+}
+Z = (
+    *(0.003, 0.005, 0.01, 0.02, 0.03, 0.05, 0.07, 0.1, 0.13, 0.16, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.56, 0.63),
+    *(0.7, 0.8, 0.9, 1.0, 1.04, 1.09, 1.125, 1.16, 1.2, 1.3, 1.4142, 1.44, 1.7, 1.98, 2.02, 2.05, 2.1),
+)
+
+ALLOWED: dict[str, tuple[tuple[str, ...], ...]] = {
+    # the courses that verdicts may take; "too early" may stand before any of them, and in place of it
+    "b": (("bounded",),),
+    "s": (("bounded",), ("bounded", "chaotic"), ("chaotic",), ("chaotic", "wanders")),  # chaos shows late, or not
+    "c": (("chaotic",),),  # and fenced in
+    "w": (("chaotic",), ("chaotic", "wanders"), ("wanders",)),
+    "g": (("grows",),),
+    "d": (("loses",),),
+    "k": (("grows",), ("loses",), ("grows", "caught"), ("loses", "caught"), ("caught",)),
+    "K": (("bounded",), ("grows", "caught"), ("loses", "caught"), ("caught",)),  # in a band that holds the start
+    "B": (("bounded",), ("loses",), ("grows",), ("caught",)),  # moves by less than 1e-10, or hardly beside its wobble
+}
+
+
+def scene_at(start: str, z: float) -> Scene:
+    """The scene of a cell."""
+    theta, omega = STARTS[start]
+    return Scene(theta=theta, omega=omega, h=z / Scene().w0)
+
+
+def truths() -> Iterator[tuple[Method, str, float, str]]:
+    """Method, start, h·w0 and the letter of each cell."""
+    by_key = {method.key: method for method in METHODS}
+    for line in FILE.read_text().splitlines():
+        key, start, letters = line.split()
+        for z, letter in zip(Z, letters, strict=True):
+            yield by_key[key], start, z, letter
+
+
+Course = list[tuple[str, int, float]]
+"""Verdicts in turn, with the step and the periods of each."""
+
+
+def verdicts(method: Method, scene: Scene, loops: Callable[[Method], Loops], steps: int) -> Course:
+    """The verdicts on a method in turn, with the step and the periods of each."""
+    period = ExactMotion(scene).period or math.tau / scene.w0
+    reference = energy_reference(scene.w0_squared, scene.theta, scene.omega)
+    lockstep = Lockstep(scene, methods=(method,), loops=loops)
+    judging = Judging(method, reference, scene.w0_squared, scene.h, 1, period, loops(method).advance)
+    judging.follow(0, lockstep.sample().readings[0])
+    given: Course = []
+    every = stride(period, scene.h)
+    while lockstep.step < steps:
+        lockstep.advance(every)
+        for step, _, verdict in judging.follow(lockstep.step, lockstep.sample().readings[0]):
+            given.append((verdict, step, step * scene.h / period))
+    return given
+
+
+def watch(scene: Scene) -> int:
+    """How many steps a test watches a cell: 80 periods, and at least 6000 steps where h·w0 is not small."""
+    period = ExactMotion(scene).period or math.tau / scene.w0
+    return max(round(80 * period / scene.h), 6000 if scene.z > 0.3 else 1500)
+
+
+def is_true(letter: str, given: Course) -> bool:
+    """Whether the verdicts are such as the truth allows, or none at all."""
+    return not given or tuple(verdict for verdict, *_ in given) in ALLOWED[letter]

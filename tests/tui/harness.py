@@ -1,0 +1,183 @@
+"""A lab or a replay under test, whose clock stands until `run` moves it: without a screen, or on one."""
+
+import asyncio
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any
+
+from textual.pilot import Pilot
+
+from engine.run.lockstep import Sample
+from engine.run.stepping import Stepping
+from engine.scenes import DEFAULT_SCENE, SCENES, Scene
+from recordings.live_recorder import LiveRecorder
+from recordings.recording import Recording
+from tui.drawing.cells import CellWidget
+from tui.playback.live import Live
+from tui.playback.marks import Marks
+from tui.playback.replay import Replay
+from tui.playback.source import Source
+from tui.screens.app import PenduApp
+from tui.screens.base import SourceScreen
+from tui.screens.keys import COMMON
+from tui.screens.live import LiveScreen
+from tui.screens.replay import ReplayScreen
+from tui.screens.still import settled
+from tui.terminal.options import FPS
+
+PATIENCE = 120  # s; a process that ended would be waited for in vain
+
+
+class Clocked:
+    """A source and its clock."""
+
+    def __init__(self, source: Source) -> None:
+        self.source, self.now = source, 0.0
+        source.tick(0.0)
+
+    def run(self, seconds: float) -> Sample:
+        for _ in range(round(seconds * FPS)):
+            self.now += 1 / FPS
+            self.source.tick(self.now)
+        return self.source.sample
+
+
+class Lab(Clocked):
+    """A lab without a screen; it records into a file, or into anything with the methods of a LiveRecorder."""
+
+    def __init__(
+        self,
+        scene: Scene = DEFAULT_SCENE,
+        speed: float = 1.0,
+        record: Any = None,
+        work_clock: Callable[[], float] = lambda: 0.0,
+    ) -> None:
+        self.live = Live(scene, speed, clock=work_clock)
+        if record is not None:
+            wall = 1_700_000_000_000_000_000
+            self.live.record(LiveRecorder(record, wall=lambda: wall) if isinstance(record, Path) else record)
+        super().__init__(self.live)
+
+
+def after(scene: Scene, seconds: float) -> Live:
+    """A lab that has run for so long."""
+    lab = Lab(scene)
+    lab.run(seconds)
+    return lab.live
+
+
+def recorded(path: Path, *acts: float | Callable[[Live], object], scene: Scene = DEFAULT_SCENE) -> Path:
+    """Record a lab: numbers are seconds to run, functions are applied to it."""
+    lab = Lab(scene, record=path)
+    for act in acts:
+        if callable(act):
+            act(lab.live)
+        else:
+            lab.run(act)
+    lab.live.close()
+    return path
+
+
+def eventful(path: Path) -> Path:
+    """Record two runs with changes, a mark and steps back: 12 s of the recording clock."""
+    return recorded(
+        path,
+        2.0,
+        lambda live: live.set_stepping(Stepping(0.1)),
+        2.0,
+        lambda live: live.mark("here"),
+        lambda live: live.set_stepping(Stepping(-0.1)),
+        1.0,
+        lambda live: live.start(SCENES["spin"]),
+        4.0,
+        lambda live: live.step(-40),
+        lambda live: live.set_stepping(Stepping(0.05)),
+        lambda live: live.pause(False),
+        3.0,
+    )
+
+
+class Theatre:
+    """A running app with its screen."""
+
+    def __init__(self, make_stage: Any) -> None:
+        self.now = 0.0
+        self.first: SourceScreen = make_stage(lambda: self.now)
+        self.app = PenduApp(self.first)
+        self.pilot: Pilot[Any]
+
+    @property
+    def stage(self) -> Any:
+        return self.app.source_screen
+
+    @property
+    def source(self) -> Any:
+        return self.stage.source
+
+    async def run(self, seconds: float) -> None:
+        for _ in range(round(seconds * FPS)):
+            self.now += 1 / FPS
+            self.source.tick(self.now)
+        self.stage.show_now()
+        await self.pilot.pause()
+
+    async def press(self, *keys: str) -> None:
+        await self.pilot.press(*keys)
+
+    def text(self, widget: type[CellWidget] | str) -> str:
+        """What the first such widget on the screen shows."""
+        return self.stage.query(widget).first(CellWidget).text
+
+    async def settled(self) -> None:
+        await settled(self.app)
+
+
+def key_of(view: str) -> str:
+    """The key that shows a view, as Textual calls it."""
+    return next(key.names for key in COMMON if key.action == f"view({view!r})")
+
+
+@asynccontextmanager
+async def on_stage(make_stage: Any, size: tuple[int, int]) -> AsyncIterator[Theatre]:
+    theatre = Theatre(make_stage)
+    async with theatre.app.run_test(size=size) as theatre.pilot:
+        await theatre.pilot.pause()
+        theatre.source.tick(0.0)
+        yield theatre
+
+
+def lab(scene: Scene = DEFAULT_SCENE, size: tuple[int, int] = (120, 40)) -> Any:
+    """A lab on screen."""
+    return on_stage(lambda clock: LiveScreen(Live(scene, clock=lambda: 0.0), clock), size)
+
+
+def player(path: Path, size: tuple[int, int] = (120, 40)) -> Any:
+    """A replay on screen; going live from it is not recorded."""
+
+    def make(clock: Any) -> SourceScreen:
+        replay = Replay(Recording.open(path), Marks(path), clock=lambda: 0.0)
+        return ReplayScreen(replay, lambda live: LiveScreen(live, clock), clock)
+
+    return on_stage(make, size)
+
+
+async def until(pilot: Pilot[Any], condition: Callable[[], object]) -> None:
+    """Wait for something that is computed in the background."""
+    async with asyncio.timeout(PATIENCE):
+        while not condition():
+            await pilot.pause(0.05)
+
+
+@asynccontextmanager
+async def view_of(
+    stage: SourceScreen, key: str, kind: type[Any], complete: Callable[[Any], bool], size: tuple[int, int]
+) -> AsyncIterator[tuple[Pilot[Any], Any]]:
+    """The view of a screen that a key shows, and its pane of this kind once that is complete."""
+    app = PenduApp(stage)
+    async with app.run_test(size=size) as pilot:
+        await pilot.press(key)
+        await until(pilot, lambda: app.screen.query(kind))
+        pane = app.screen.query_one(kind)
+        await until(pilot, lambda: complete(pane))
+        yield pilot, pane

@@ -1,0 +1,83 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.tui.drawing.test_canvas import dots
+from tui.drawing.canvas import Picture
+from tui.drawing.palette import EXACT, FAINT, FRAME
+from tui.views.lab.pendulums import Bob, pendulum_sketch
+
+ANGLE = st.integers(1, 10_000).map(lambda number: number * 0.6180339887)  # never a tie between two dots
+
+
+def picture(columns, rows, *bobs):
+    return Picture.of_sketch(pendulum_sketch(columns, rows, bobs))
+
+
+def owners(picture):
+    return set(picture.owners[picture.characters != ord(" ")].tolist())
+
+
+def test_a_pendulum_at_one_radian_that_came_from_the_other_side():
+    assert picture(16, 8, Bob(1.0, 0, trail=np.linspace(-1, 1, 60))).text == (
+        "\n\n\n       ⢀⡀\n       ⠈⠉⠢⢄\n  ⡀        ⠉⠢⣤⣄\n  ⠑⢄⡀      ⢀⡠⠋⠉\n    ⠉⠓⠲⠤⠤⠖⠚⠉"
+    )
+
+
+def test_over_the_top_it_stays_in_its_pane():
+    assert picture(11, 5, Bob(math.pi, 0)).text == "     ⢿⠂\n     ⢸\n     ⠾\n\n"
+
+
+def test_four_that_coincide_show_their_letters_side_by_side():
+    assert picture(16, 8, *(Bob(-2.0, index, letter="esvr"[index]) for index in range(4))).text == (
+        "\n\n esvr\n  ⠈⠋⠑⠒⠤⣀⡀\n       ⠈⠁\n\n\n"
+    )
+
+
+def test_at_the_edge_every_letter_still_has_a_cell():
+    text = picture(16, 8, *(Bob(1.0, index, letter="esvr"[index]) for index in range(4))).text
+    assert all(letter in text for letter in "esvr")
+
+
+def test_the_exact_swing_is_dotted_and_hollow():
+    assert picture(16, 8, Bob(1.0, EXACT, ghost=True)).text == (
+        "\n\n\n       ⢀⡀\n       ⠈⠁⠠\n           ⠁⠠⡠⢄\n             ⠉⠉\n"
+    )
+
+
+def test_a_method_that_diverged_is_crossed_out():
+    assert picture(16, 8, Bob(1.0, 0, diverged=True)).text == (
+        "\n\n\n       ⢀⡀\n       ⠈⠁⠠\n           ⠁⠰⢄⡠⠂\n            ⠠⠊⠑⠄\n"
+    )
+
+
+@given(ANGLE)
+def test_left_is_the_mirror_image_of_right_and_up_of_down(theta):
+    """So the pivot is exactly in the middle, for odd and even panes."""
+    for columns, rows in ((16, 8), (17, 9)):
+        right, left, up = (dots(picture(columns, rows, Bob(angle, 0))) for angle in (theta, -theta, math.pi - theta))
+        assert left == {(2 * columns - 1 - x, y) for x, y in right}
+        assert up == {(x, 4 * rows - 1 - y) for x, y in right}
+
+
+def test_a_full_turn_is_a_circle_because_both_directions_have_one_scale():
+    found = dots(picture(30, 10, Bob(0.0, 0, trail=np.linspace(0, 2 * math.pi, 1000))))
+    x, y = ([dot[axis] for dot in found] for axis in (0, 1))
+    assert max(x) - min(x) == pytest.approx(max(y) - min(y), abs=2)  # the bob stands out at the bottom
+    assert max(x) + min(x) == 2 * 30 - 1
+    assert min(y) == pytest.approx(0, abs=2)  # the pane is used
+
+
+def test_trails_are_faint_and_bobs_lie_in_front_of_them():
+    drawn = picture(16, 8, Bob(0.5, 0, trail=[0.5, 3.0]), Bob(2.0, 1, trail=[2.0, 0.4]))
+    assert owners(drawn) == {0, 1, 0 + FAINT, FRAME}
+    assert owners(picture(16, 8, Bob(0.5, EXACT, trail=[0.5, 3.0], ghost=True))) == {EXACT, FRAME}
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False), st.integers(1, 40), st.integers(1, 20))
+def test_any_angle_fits_any_pane(theta, columns, rows):
+    drawn = picture(columns, rows, Bob(theta, 0, trail=[theta, math.nan], letter="e"), Bob(theta, 1, diverged=True))
+    assert drawn.characters.shape == (rows, columns)

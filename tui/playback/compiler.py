@@ -1,0 +1,34 @@
+"""Compiling in a thread, so that the lab does not wait for it."""
+
+import math
+from concurrent.futures import Future, ThreadPoolExecutor
+from functools import cache
+
+from engine.methods import Method
+from engine.run.compiled import compiled, tiered
+from engine.run.loops import Loops
+
+
+def patient(method: Method) -> Loops:
+    """The method's loops: plain until the thread has compiled them, with the same bits at any time."""
+    return tiered(method, _ready)
+
+
+def _ready(method: Method) -> Loops | None:
+    future = _compiling(method)
+    return future.result() if future.done() else None
+
+
+@cache
+def _compiling(method: Method) -> Future[Loops]:
+    def compile_now() -> Loops:
+        loops = compiled(method)
+        loops.advance(1.0, (0.0, 0.0), 0.1, 1, math.inf)  # Numba compiles at the first call
+        return loops
+
+    return _thread().submit(compile_now)
+
+
+@cache
+def _thread() -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(max_workers=1)
