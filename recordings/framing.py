@@ -21,13 +21,15 @@ from recordings.errors import RecordingError
 
 MAGIC = b"\x89MCAP0\r\n"
 RECORD_LIMIT = 1 << 23  # bytes of a record, and of what a chunk decompresses to; ours have 1 MB at most
+EXPANSION = 128  # times its compressed size, and
+SMALL_CHUNK = 1 << 14  # bytes more: what a chunk may decompress to; ours reach 4 times, and 69 where nothing moves
 SMALL_LIMIT = 1 << 16  # bytes of a record that is neither chunk nor index; ours have 1 kB
 CHANNEL_LIMIT = 64  # ours are the methods and the events
 RECORD = struct.Struct("<BQ")  # opcode, length of what follows
 _CHUNK = struct.Struct("<QQQI")  # start [ns], end [ns], uncompressed size, its CRC
-_MESSAGE = struct.Struct("<HIQQ")  # channel, sequence, log_time [ns], publish_time [ns]
-_ZSTD = b"\x04\x00\x00\x00zstd"
-CHUNK_HEADER = _CHUNK.size + len(_ZSTD) + 8
+MESSAGE = struct.Struct("<HIQQ")  # channel, sequence, log_time [ns], publish_time [ns]
+ZSTD = b"\x04\x00\x00\x00zstd"
+CHUNK_HEADER = _CHUNK.size + len(ZSTD) + 8
 _LAST_OPCODE = max(Opcode)
 _SEARCH_BLOCK = 1 << 16
 SEARCH_LIMIT = 1 << 30  # bytes in false chunks, a second's work; that many damaged ones in a row are hours
@@ -66,12 +68,12 @@ def read_chunk(content: bytes) -> Chunk:
     if len(content) < CHUNK_HEADER:
         raise RecordingError("a chunk is too short")
     start, end, size, crc = _CHUNK.unpack_from(content)
-    if content[_CHUNK.size : _CHUNK.size + len(_ZSTD)] != _ZSTD:
+    if content[_CHUNK.size : _CHUNK.size + len(ZSTD)] != ZSTD:
         raise RecordingError("a chunk is not compressed with zstd")
     if len(content) - CHUNK_HEADER != int.from_bytes(content[CHUNK_HEADER - 8 : CHUNK_HEADER], "little"):
         raise RecordingError("a chunk's length is wrong")
-    if size > RECORD_LIMIT:
-        raise RecordingError(f"unexpected chunk of {size} bytes")
+    if not _is_plausible(size, len(content) - CHUNK_HEADER):
+        raise RecordingError(f"{len(content)} bytes of a chunk claim to be {size} bytes")
     compressed = content[CHUNK_HEADER:]
     try:
         if zstandard.frame_content_size(compressed) not in (-1, size):  # decompress() would obey the frame
@@ -88,6 +90,11 @@ def read_chunk(content: bytes) -> Chunk:
     return Chunk(start, end, channels, messages)
 
 
+def _is_plausible(size: int, compressed: int) -> bool:
+    """Whether a chunk can have such sizes.  All work on a file so stays in proportion to its bytes."""
+    return size <= min(RECORD_LIMIT, SMALL_CHUNK + EXPANSION * compressed)
+
+
 def _records(data: bytes) -> tuple[list[Channel], list[Message]]:
     channels, messages = [], []
     at, log_time = 0, 0
@@ -95,8 +102,8 @@ def _records(data: bytes) -> tuple[list[Channel], list[Message]]:
         try:
             opcode, length = RECORD.unpack_from(data, at)
             at += RECORD.size
-            if opcode == Opcode.MESSAGE and length >= _MESSAGE.size:
-                message = Message._make((*_MESSAGE.unpack_from(data, at), data[at + _MESSAGE.size : at + length]))
+            if opcode == Opcode.MESSAGE and length >= MESSAGE.size:
+                message = Message._make((*MESSAGE.unpack_from(data, at), data[at + MESSAGE.size : at + length]))
                 if message.log_time < log_time:
                     raise RecordingError("the clock runs backwards")
                 log_time = message.log_time
@@ -168,16 +175,16 @@ class Search:
         while True:
             self._stream.seek(offset)
             block = self._stream.read(_SEARCH_BLOCK)
-            found = block.find(_ZSTD, before)
+            found = block.find(ZSTD, before)
             while found >= 0:
                 if block[found - before] == Opcode.CHUNK and self._is_chunk(offset + found - before):
                     return offset + found - before
                 if self._left < 0:
                     return None
-                found = block.find(_ZSTD, found + 1)
+                found = block.find(ZSTD, found + 1)
             if len(block) < _SEARCH_BLOCK:
                 return None
-            offset += len(block) - before - len(_ZSTD) + 1
+            offset += len(block) - before - len(ZSTD) + 1
 
     def _is_chunk(self, offset: int) -> bool:
         self._stream.seek(offset)
@@ -186,7 +193,8 @@ class Search:
             return False
         length = RECORD.unpack_from(header)[1]
         size = _CHUNK.unpack_from(header, RECORD.size)[2]
-        if length != CHUNK_HEADER + int.from_bytes(header[-8:], "little") or max(length, size) > RECORD_LIMIT:
+        compressed = int.from_bytes(header[-8:], "little")
+        if length != CHUNK_HEADER + compressed or length > RECORD_LIMIT or not _is_plausible(size, compressed):
             return False
         try:
             record = record_at(self._stream, offset)

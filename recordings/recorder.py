@@ -33,10 +33,10 @@ from recordings.format import (
     topic,
     without_extremes,
 )
-from recordings.library import part_of
-from recordings.lock import hold
+from recordings.library import hold, part_of
 
-FLUSH_EVERY = 0.9  # s of the recording clock; with a frame's delay the loss at kill -9 stays below 1 s
+FLUSH_EVERY = 0.8  # s of real time; with a slow frame's delay the loss at kill -9 stays below 1 s
+FLUSH_FIRST = 0.2  # s; from there on the time between flushes doubles until it is FLUSH_EVERY
 FLUSH_EVENTS_EVERY = 0.25  # s; a key held down gives 30 events a second
 FLUSH_BYTES = 1 << 17  # of messages in one chunk, however dense the samples; the only limit in headless runs
 
@@ -71,7 +71,8 @@ class Recorder:
         self._log_time = CLOCK_OFFSET
         self._paused = self._stopped = False
         self._event_waits = False
-        self._flushed_at, self._unflushed = 0.0, 0
+        self._now = self._began = 0.0 if wall is None else wall() / 1e9  # s, real time
+        self._flushed_at, self._really_flushed_at, self._unflushed = 0.0, self._began, 0
         with writing(self.part):
             if path.exists() and not overwrite:
                 raise NameTakenError("a file of this name exists already; choose another name", path)
@@ -120,7 +121,8 @@ class Recorder:
             if not os.path.samestat(self.part.stat(), os.fstat(self._file.fileno())):
                 raise DiskError("the file was replaced", self.part)
         self.bytes = self._file.tell()
-        self._flushed_at, self._unflushed, self._event_waits = self.seconds, 0, False
+        self._flushed_at, self._really_flushed_at = self.seconds, self._now
+        self._unflushed, self._event_waits = 0, False
 
     def close(self) -> None:
         """Finish the recording: a stop, the summary, and its final name.  Without a start, leave no file."""
@@ -184,6 +186,7 @@ class Recorder:
         self._log_time = max(self._log_time, CLOCK_OFFSET + round(clock * 1e9))
         self.seconds = max(self.seconds, clock)
         publish_time = self._log_time if self._wall is None else self._wall()
+        self._now = publish_time / 1e9
         sequence = self.samples % (1 << 32)
         with writing(self.part):
             for name, data in messages:
@@ -191,8 +194,11 @@ class Recorder:
                 self._unflushed += len(data)
 
     def _flush_if_due(self, urgent: bool = False) -> None:
-        age = self.seconds - self._flushed_at
-        every = FLUSH_EVENTS_EVERY if self._event_waits else FLUSH_EVERY
+        age = max(self.seconds - self._flushed_at, self._now - self._really_flushed_at)  # a wall clock may be set back
+        every = min(max(self._flushed_at, self._really_flushed_at - self._began, FLUSH_FIRST), FLUSH_EVERY)
+        if self._event_waits:
+            every = min(every, FLUSH_EVENTS_EVERY)
+        urgent = urgent and self._facts is None  # a copy can be made again
         if urgent or (self._flush_by_time and age >= every) or self._unflushed > FLUSH_BYTES:
             self.flush()
 

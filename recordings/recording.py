@@ -3,26 +3,27 @@
 An unfinished or damaged file opens with what is intact in it.
 """
 
+from array import array
 from bisect import bisect_left, bisect_right
-from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import lru_cache
 from io import SEEK_END
+from itertools import groupby, islice, pairwise
+from operator import attrgetter, itemgetter
 from pathlib import Path
 from typing import BinaryIO, NamedTuple, Self
 
 from mcap.opcode import Opcode
 
 from engine.run.lockstep import Sample
-from engine.scenes import Scene
 from recordings.contents import Contents, from_summary
 from recordings.errors import RecordingError, named
 from recordings.events import Entry, Event
 from recordings.format import CLOCK_LIMIT, CLOCK_OFFSET
 from recordings.framing import read_chunk, record_at
-from recordings.lock import open_file
+from recordings.library import open_file
 from recordings.scan import Scan, ShowProgress
+from recordings.timeline import Events, Runs
 
 EVENT_LIMIT = 100_000  # in memory all at once, 30 MB; a lesson has a few hundred, but each step back repeats them
 CHUNKS_KEPT = 2  # decoded; playing meets the same one thirty times, stepping to and fro about an edge two
@@ -36,17 +37,11 @@ class SamplePlace(NamedTuple):
     entry: int
 
 
-@dataclass(frozen=True, slots=True)
-class Run:
-    """One run of a recording."""
+class _Decoded(NamedTuple):
+    """A chunk's entries, their clocks and runs ascending, and where the samples among them are."""
 
-    number: int
-    scene: Scene
-    begin: float  # s of the recording clock
-    end: float  # s, at its last sample
-    steps: int  # at its last sample
-    t: float  # s simulated, at its last sample
-    events: int  # besides start and stop
+    entries: "tuple[Entry, ...]"
+    samples: "array[int]"
 
 
 class Recording:
@@ -66,18 +61,23 @@ class Recording:
         self.complete, self.damaged, self.reason = contents.complete, contents.damaged, contents.reason
         self.length = (contents.chunks.ends[-1] - CLOCK_OFFSET) / 1e9 if contents.chunks else 0.0
         self._stream, self._layout, self._chunks = stream, contents.layout, contents.chunks
-        self._entries = lru_cache(CHUNKS_KEPT)(self._known_entries)
-        events = list(self._read_events())
-        starts = {event.run: (chunk, clock, event) for chunk, clock, event in events if event.kind == "start"}
-        if list(starts) != sorted(starts):
+        self._decoded = lru_cache(CHUNKS_KEPT)(self._decode)
+        self._sampled = bytearray(b"\1" * len(self._chunks))  # 0 once a chunk turned out to hold no samples
+        self.events = Events()
+        starts: list[tuple[int, int]] = []  # chunk, run
+        for chunk, clock, event in self._read_events():
+            if event.kind == "start":
+                starts.append((chunk, event.run))
+            self.events.add(clock, event)
+        if any(run >= following for (_, run), (_, following) in pairwise(starts)):
             raise RecordingError("its runs are not in order")
         if not starts:
             raise RecordingError("the starts of all its runs are lost")
-        self.events: tuple[tuple[float, Event], ...] = tuple(
-            (clock, event) for _, clock, event in events if event.run in starts
-        )
-        self._known = frozenset(starts)
-        self.runs = tuple(self._runs(list(starts.values())))
+        self._known = frozenset(run for _, run in starts)
+        self.events.keep(self._known)
+        self.runs = self._find_runs(starts)
+        if self.events.cut:
+            self.complete, self.reason = False, self.reason or "only the first of its texts are shown"
 
     @classmethod
     def open(cls, path: Path, check: bool = False, progress: ShowProgress | None = None) -> Self:
@@ -107,44 +107,47 @@ class Recording:
         """The last sample at or before that time, or else the first; None if there are no samples."""
         clock, log_time = _as_recorded(clock)
         chunk = bisect_right(self._chunks.starts, log_time) - 1
-        entries = self._entries(chunk) if chunk >= 0 else ()
-        later = bisect_right(entries, clock, key=lambda entry: entry.clock)
+        entries = self._decoded(chunk).entries if chunk >= 0 else ()
+        later = bisect_right(entries, clock, key=_clock)
         return self.previous(SamplePlace(chunk, later)) or self.next(SamplePlace(0, -1))
 
     def sample(self, place: SamplePlace) -> Entry:
-        return self._entries(place.chunk)[place.entry]
+        return self._decoded(place.chunk).entries[place.entry]
 
     def next(self, place: SamplePlace) -> SamplePlace | None:
         """The next sample; None after the last."""
-        index = place.entry + 1
-        for chunk in range(place.chunk, len(self._chunks)):
-            entries = self._entries(chunk)
-            for at in range(index, len(entries)):
-                if isinstance(entries[at].value, Sample):
-                    return SamplePlace(chunk, at)
-            index = 0
+        chunk, index = place.chunk, place.entry + 1
+        while (chunk := self._sampled.find(1, max(chunk, 0))) >= 0:
+            samples = self._decoded(chunk).samples
+            at = bisect_left(samples, index)
+            if at < len(samples):
+                return SamplePlace(chunk, samples[at])
+            chunk, index = chunk + 1, 0
         return None
 
-    def previous(self, place: SamplePlace) -> SamplePlace | None:
-        """The sample before; None before the first."""
-        index = place.entry
-        for chunk in range(min(place.chunk, len(self._chunks) - 1), -1, -1):
-            entries = self._entries(chunk)
-            for at in range(min(index, len(entries)) - 1, -1, -1):
-                if isinstance(entries[at].value, Sample):
-                    return SamplePlace(chunk, at)
-            index = _BEYOND
+    def previous(self, place: SamplePlace, after: int = 0) -> SamplePlace | None:
+        """The sample before; None before the first, or before the chunk `after`."""
+        chunk, index = place.chunk, place.entry
+        while (chunk := self._sampled.rfind(1, after, max(chunk, -1) + 1)) >= 0:
+            samples = self._decoded(chunk).samples
+            at = bisect_left(samples, index if chunk == place.chunk else _BEYOND) - 1
+            if at >= 0:
+                return SamplePlace(chunk, samples[at])
+            chunk -= 1
         return None
 
-    def entries(self, start: float = 0.0, end: float = CLOCK_LIMIT) -> Iterator[Entry]:
-        """All samples and events from `start` to `end`, both included, in the order of recording."""
+    def entries(self, start: float = 0.0, end: float = CLOCK_LIMIT, run: int = 0) -> Iterator[Entry]:
+        """All samples and events from `start` to `end`, both included, in the order of recording; from `run` on."""
         (start, log_time), (end, _) = _as_recorded(start), _as_recorded(end)
         for chunk in range(bisect_left(self._chunks.ends, log_time), len(self._chunks)):
-            for entry in self._entries(chunk):
+            if self._chunks.starts[chunk] > _as_recorded(end)[1]:
+                return
+            entries = self._decoded(chunk).entries
+            first = max(bisect_left(entries, start, key=_clock), bisect_left(entries, run, key=_run) if run else 0)
+            for entry in islice(entries, first, None):
                 if entry.clock > end:
                     return
-                if entry.clock >= start:
-                    yield entry
+                yield entry
 
     def _read_entries(self, chunk: int, only_events: bool = False) -> tuple[Entry, ...]:
         """A chunk's entries; none if it turns out to be damaged."""
@@ -160,9 +163,16 @@ class Recording:
             self.complete, self.damaged, self.reason = False, True, self.reason or str(error)
             return ()
 
-    def _known_entries(self, chunk: int) -> tuple[Entry, ...]:
-        """A chunk's entries, except those of runs whose start is lost."""
-        return tuple(entry for entry in self._read_entries(chunk) if entry.value.run in self._known)
+    def _decode(self, chunk: int) -> _Decoded:
+        """A chunk, without entries of runs whose start is lost, and of runs that were over."""
+        entries, latest = [], 0
+        for entry in self._read_entries(chunk):
+            if entry.value.run in self._known and entry.value.run >= latest:
+                latest = entry.value.run
+                entries.append(entry)
+        samples = array("L", (at for at, (_, value) in enumerate(entries) if isinstance(value, Sample)))
+        self._sampled[chunk] = bool(samples)
+        return _Decoded(tuple(entries), samples)
 
     def _read_events(self) -> Iterator[tuple[int, float, Event]]:
         """(chunk, clock, event) of all events; of too many, the first."""
@@ -179,22 +189,39 @@ class Recording:
                 yield chunk, clock, event
                 count += 1
 
-    def _runs(self, starts: list[tuple[int, float, Event]]) -> Iterator[Run]:
-        made = Counter(event.run for _, event in self.events if event.kind not in ("start", "stop"))
-        for (_, begin, start), following in zip(starts, [*starts[1:], None], strict=True):
-            chunk, entry = len(self._chunks) - 1, _BEYOND
-            if following:
-                chunk = following[0]
-                entries = enumerate(self._entries(chunk))
-                entry = next((at for at, (_, value) in entries if value.run == following[2].run), 0)
-            last = self.previous(SamplePlace(chunk, entry))
-            end, sample = self.sample(last) if last else (begin, None)
-            if not isinstance(sample, Sample) or sample.run != start.run:
-                end, step, t = begin, start.step, start.t
-            else:
-                step, t = sample.step, sample.t
-            assert start.scene is not None
-            yield Run(start.run, start.scene, begin, end, step, t, made[start.run])
+    def _find_runs(self, starts: list[tuple[int, int]]) -> Runs:
+        """The runs, each up to the last sample before the next one's start.  Every chunk is read at most once."""
+        runs, last, searched = Runs(self.events), None, 0
+        kinds = self.events.starts()
+        begun: int | None = None
+        for chunk, group in groupby(starts, itemgetter(0)):
+            last, searched = self._last_sample(searched, chunk) or last, chunk + 1
+            entries = iter(self._decoded(chunk).entries)
+            for _, run in group:
+                for entry in entries:
+                    if entry.value.run >= run:
+                        break
+                    if isinstance(entry.value, Sample):
+                        last = entry
+                if begun is not None:
+                    runs.add(begun, last)
+                begun = next(kinds)
+            last = next((entry for entry in reversed(tuple(entries)) if isinstance(entry.value, Sample)), last)
+        assert begun is not None
+        runs.add(begun, self._last_sample(searched, len(self._chunks)) or last)
+        return runs
+
+    def _last_sample(self, first: int, end: int) -> Entry | None:
+        """The last sample in these chunks."""
+        place = self.previous(SamplePlace(end - 1, _BEYOND), first)
+        return self.sample(place) if place else None
+
+
+_clock = attrgetter("clock")
+
+
+def _run(entry: Entry) -> int:
+    return entry.value.run
 
 
 def _as_recorded(clock: float) -> tuple[float, int]:

@@ -16,8 +16,7 @@ from recordings.errors import DiskError, RecordingError, named, printable, writi
 from recordings.events import Event
 from recordings.format import CLOCK_OFFSET, encode_readings, without_extremes
 from recordings.framing import Message
-from recordings.library import PART, free_path, part_of
-from recordings.lock import alone_with, open_file
+from recordings.library import PART, alone_with, free_path, open_file, part_of
 from recordings.recorder import Recorder
 from recordings.scan import Gap, Intact, Scan, ShowProgress
 from recordings.verify import Rerun
@@ -103,10 +102,10 @@ def _recover(path: Path, out: Path, progress: ShowProgress | None, overwrite: bo
                     salvage.keep(piece)
             if salvage.kept == 0:
                 raise scan.nothing("saved")
+            return salvage.finished(path)
         except BaseException:
             salvage.give_up()
             raise
-        return salvage.finished(path)
 
 
 class _Salvage:

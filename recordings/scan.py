@@ -21,6 +21,37 @@ ShowProgress = Callable[[int, int], None]
 """Called with how much is done and how much there is: bytes, or samples."""
 
 
+MOST_STEPS = 10_000_000  # simulated again of a file, unless more are asked for: less than a minute
+STEP_SECONDS = 5e-6  # of all four methods in plain Python, about
+
+
+class StepBudget:
+    """How many steps may be simulated, and how to show how far they are."""
+
+    def __init__(self, steps: int) -> None:
+        self.steps = self._left = steps
+        self.show: Callable[[float], object] | None = None  # called with the share done of what is due
+
+    def spend(self, run: int, step: int, steps: int) -> None:
+        """Take so many steps off, or raise RecordingError."""
+        if steps > self._left:
+            needed = self.steps - self._left + steps
+            raise RecordingError(
+                f"run {run} claims to reach step {step}; to simulate {needed} steps takes about"
+                f" {_duration(needed * STEP_SECONDS)}, and the limit is {self.steps} steps; if you trust the file, use"
+                f" --max-steps {needed}"
+            )
+        self._left -= steps
+
+
+def _duration(seconds: float) -> str:
+    """About how long."""
+    for size, unit in ((31_557_600, "years"), (86_400, "days"), (3600, "hours"), (60, "minutes")):
+        if seconds >= 2 * size:
+            return f"{seconds / size:.0f} {unit}"
+    return f"{seconds:.0f} seconds"
+
+
 @dataclass(frozen=True, slots=True)
 class Gap:
     """An unreadable stretch of a file."""
@@ -33,6 +64,7 @@ class Intact:
     """A chunk as it was written."""
 
     offset: int
+    end: int
     layout: Layout
     chunk: Chunk
 
@@ -65,6 +97,13 @@ class Scan:
         self.messages: Counter[int] = Counter()  # in them, by channel
         self.layout: Layout | None = None  # once a chunk was met
         self.channels = dict(self.summary.channels) if self.summary else {}
+
+    def progress_within(self, piece: Intact) -> Callable[[float], None] | None:
+        """How to show that so large a share of the work on this chunk is done."""
+        progress = self._progress
+        if progress is None:
+            return None
+        return lambda share: progress(round(piece.offset + share * (piece.end - piece.offset)), self.size)
 
     def nothing(self, done: str) -> RecordingError:
         """Why nothing in it can be read, verified or saved."""
@@ -129,7 +168,7 @@ class Scan:
                 found = Counter(message.channel for message in chunk.messages)
                 self.messages += found
                 self.chunks.add(offset, chunk.start, chunk.end, self.layout.events in found)
-                yield Intact(offset, self.layout, chunk)
+                yield Intact(offset, offset + RECORD.size + len(content), self.layout, chunk)
             crc = zlib.crc32(content, zlib.crc32(RECORD.pack(opcode, len(content)), crc))
             offset += RECORD.size + len(content)
 

@@ -14,7 +14,7 @@ from recordings.errors import RecordingError
 from recordings.format import CLOCK_LIMIT, CLOCK_OFFSET, EVENTS
 from recordings.framing import CHANNEL_LIMIT, MAGIC, RECORD, SMALL_LIMIT, read_record, record_at
 
-CHUNK_LIMIT = 2_000_000  # a chunk every 0.9 s for three weeks; 50 MB of Chunks
+CHUNK_LIMIT = 2_300_000  # a chunk every 0.8 s for three weeks; 58 MB of Chunks
 OTHER_LIMIT = 4 * CHANNEL_LIMIT  # records in a summary besides chunk indexes; ours have 15
 _FOOTER = struct.Struct("<QQI")  # summary start, summary offsets' start, CRC
 _INDEX = struct.Struct("<QQQQI")  # start [ns], end [ns], offset, length, bytes of the map from channel to offset

@@ -23,12 +23,12 @@ from recordings.errors import RecordingError, named
 from recordings.events import Event
 from recordings.fields import EXTREMES, NUMBERS, VALUES, numbers_of
 from recordings.format import sin_fingerprint
-from recordings.lock import open_file
-from recordings.scan import Gap, Scan, ShowProgress
+from recordings.library import open_file
+from recordings.scan import MOST_STEPS, Gap, Scan, ShowProgress, StepBudget
 
 TOLERANCE = 1e-11
 LOST = 1e-3  # rad, or rad/s
-MOST_STEPS = 10**10  # of a run that is simulated again; hours of computing
+STEPS_AT_ONCE = 50_000  # between reports of progress: a fifth of a second
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,13 +71,15 @@ class Verification:
     first_difference: Difference | None
 
 
-def verify(path: Path, progress: ShowProgress | None = None) -> Verification:
+def verify(path: Path, progress: ShowProgress | None = None, max_steps: int = MOST_STEPS) -> Verification:
     """Verify a recording up to where it is first damaged.
 
-    Raises RecordingError if it is not a recording, is inconsistent, or has no samples.
+    Raises RecordingError if it is not a recording, is inconsistent, has no samples, or claims more than `max_steps`
+    steps: the number is in the file's hands, and the time that they take is not.
     """
     with named(path), open_file(path) as stream:
         scan = Scan(stream, progress)
+        budget = StepBudget(max_steps)
         runs = samples = 0
         same_sin = True
         max_difference = 0.0
@@ -87,11 +89,12 @@ def verify(path: Path, progress: ShowProgress | None = None) -> Verification:
             if isinstance(piece, Gap):
                 break
             same_sin = piece.layout.sin == sin_fingerprint()
+            budget.show = scan.progress_within(piece)
             for _, (_, value) in piece.layout.entries(piece.chunk.messages):
                 if isinstance(value, Event) and value.kind == "start":
                     if rerun is not None and value.run <= rerun.run:
                         raise RecordingError("its runs are not in order")
-                    rerun = Rerun(value, exact=same_sin)
+                    rerun = Rerun(value, exact=same_sin, budget=budget)
                     runs += 1
                 if rerun is None or value.run != rerun.run:
                     raise RecordingError(f"data of run {value.run} lies outside that run")
@@ -123,34 +126,54 @@ class Rerun:
     `max_difference`: the largest so far of any number, within tolerance or not.
     """
 
-    def __init__(self, start: Event, exact: bool = True, methods: Sequence[Method] = METHODS) -> None:
+    def __init__(
+        self,
+        start: Event,
+        exact: bool = True,
+        methods: Sequence[Method] = METHODS,
+        budget: StepBudget | None = None,  # without methods, no step costs anything
+    ) -> None:
         if start.scene is None or start.step != 0:
             raise RecordingError(f"run {start.run} does not begin at its start")
         scene, self.run = start.scene, start.run
         methods = [method for method in methods if method.key in start.methods]
         off = replace(scene, theta=scene.theta * (1 - TOLERANCE), omega=scene.omega * (1 - TOLERANCE))
         self._locksteps = [Lockstep(each, self.run, methods, tiered) for each in ([scene] if exact else [scene, off])]
-        self._exact = exact
+        self._exact, self._budget = exact, budget
+        self._changes: list[Event] = []  # that no sample has come after yet
         self._allowed: dict[tuple[str, str], float] = defaultdict(float)
         self._methods = start.methods
         self._sampled = -1
+        self._reached = 0  # the step of the last change
         self.max_difference = 0.0
 
     def follow(self, event: Event) -> None:
-        """Apply a recorded event."""
+        """Take in a recorded event.  It is applied when a sample after it needs it: that one vouches for the steps."""
         if event.kind == "set_h" and event.h is not None:
-            self._go(event.step)
-            for lockstep in self._locksteps:
-                try:
-                    lockstep.set_stepping(Stepping(event.h, event.equal_cost))
-                except SceneError as error:
-                    raise RecordingError(f"run {self.run} cannot have been recorded: {error}") from error
+            if event.step < max(self._reached, self._sampled):
+                raise RecordingError(f"the steps of run {self.run} are not in order")
+            try:
+                Stepping(event.h, event.equal_cost).check(self._locksteps[0].scene.w0)
+            except SceneError as error:
+                raise RecordingError(f"run {self.run} cannot have been recorded: {error}") from error
+            self._reached = event.step
+            self._changes.append(event)
 
     def reach(self, step: int) -> list[Sample]:
         """The run's sample at this step; if not `exact`, also that of the run with the changed start."""
         if step <= self._sampled:
             raise RecordingError(f"the steps of run {self.run} are not in order")
+        if step < self._reached:
+            raise RecordingError(f"the steps of run {self.run} are not in order")
+        if self._budget is not None:
+            self._budget.spend(self.run, step, step - self._locksteps[0].step)
         self._sampled = step
+        for change in self._changes:
+            assert change.h is not None
+            self._go(change.step)
+            for lockstep in self._locksteps:
+                lockstep.set_stepping(Stepping(change.h, change.equal_cost))
+        self._changes.clear()
         self._go(step)
         return [lockstep.sample() for lockstep in self._locksteps]
 
@@ -164,10 +187,15 @@ class Rerun:
         return list(self._differences(recorded, computed))
 
     def _go(self, step: int) -> None:
-        if step < self._locksteps[0].step:
-            raise RecordingError(f"the steps of run {self.run} are not in order")
-        if step > MOST_STEPS:
-            raise RecordingError(f"run {self.run} has {step} steps, more than can be re-simulated")
+        """Go to a step.  Many steps are taken in parts, between which progress is shown and Ctrl+C is heard."""
+        first, show = self._locksteps[0].step, self._budget and self._budget.show
+        at = step if self._budget is None else first
+        while at < step:
+            at = min(at + STEPS_AT_ONCE, step)
+            for lockstep in self._locksteps:
+                lockstep.advance(at - lockstep.step)
+            if show and step - first > STEPS_AT_ONCE:
+                show((at - first) / (step - first))
         for lockstep in self._locksteps:
             lockstep.advance(step - lockstep.step)
 

@@ -4,8 +4,10 @@ Nothing here is recorded: it follows from the samples, so a replay shows what th
 """
 
 import math
+from bisect import bisect_right, insort
 from collections.abc import Callable
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Literal
 
 from engine.methods import METHODS, Method
@@ -36,6 +38,9 @@ class Milestone:
         return METHODS[self.index]
 
 
+_step = attrgetter("step")
+
+
 class RunObserver:
     """Watches one run, live, replayed or without a screen, sample by sample."""
 
@@ -62,11 +67,12 @@ class RunObserver:
 
     def milestones(self, step: int) -> list[Milestone]:
         """What happened up to a step, in its order."""
-        return sorted((each for each in self._milestones if each.step <= step), key=lambda each: each.step)
+        return self._milestones[: bisect_right(self._milestones, step, key=_step)]
 
     def judge_anew(self, step: int) -> None:
         """The stepping changes here: verdicts begin anew, and what came later has never been."""
         self._milestones = self.milestones(step)
+        self._known = {(each.kind, each.index) for each in self._milestones}
         self._modified_starts = {at: starts for at, starts in self._modified_starts.items() if at < step}
         self._judgings: list[Judging] = []
         if self._before is not None and self._before.step == step:
@@ -93,17 +99,17 @@ class RunObserver:
             for since, error, verdict in judging.follow(sample.step - self._begin.step, reading):
                 if reading.diverged_at is None:
                     t = self._begin.t + since * change.stepping.h
-                    self._milestones.append(Milestone("verdict", index, self._begin.step + since, t, error, verdict))
+                    self._note(Milestone("verdict", index, self._begin.step + since, t, error, verdict))
             if reading.diverged_at is not None and self._is_new("failed", index):
                 error = reading.energy_error
-                self._milestones.append(Milestone("failed", index, sample.step, reading.diverged_at, error))
+                self._note(Milestone("failed", index, sample.step, reading.diverged_at, error))
             if (
                 before is not None
+                and self._is_new("over the top", index)
                 and self._is_over(reading.theta)
                 and not self._is_over(before.readings[index].theta)
-                and self._is_new("over the top", index)
             ):
-                self._milestones.append(self._crossing(index, before, sample, change.stepping))
+                self._note(self._crossing(index, before, sample, change.stepping))
 
     def _begun(self, stepping: Stepping) -> list[Judging]:
         """A judging of each method from the sample on at which this stepping begins."""
@@ -145,7 +151,11 @@ class RunObserver:
 
     def _is_new(self, kind: str, index: int) -> bool:
         """Whether this has not happened to a method before."""
-        return not any((each.kind, each.index) == (kind, index) for each in self._milestones)
+        return (kind, index) not in self._known
+
+    def _note(self, milestone: Milestone) -> None:
+        self._known.add((milestone.kind, milestone.index))
+        insort(self._milestones, milestone, key=_step)
 
     def _crossing(self, index: int, before: Sample, sample: Sample, stepping: Stepping) -> Milestone:
         """Where between two samples a method goes over the top.

@@ -17,8 +17,7 @@ from recordings.errors import DiskError
 from recordings.events import Event
 from recordings.format import decode_event
 from recordings.headless import simulate
-from recordings.library import free_path, part_of
-from recordings.lock import in_use
+from recordings.library import free_path, in_use, part_of
 from recordings.recorder import FLUSH_EVERY, Recorder
 from recordings.recording import Recording
 from recordings.verify import verify

@@ -79,7 +79,7 @@ def test_runs_have_their_scene_times_and_steps(recording):
 
 
 def test_events_come_with_their_time(recording):
-    assert recording.events == tuple((clock, value) for clock, value in expected() if isinstance(value, Event))
+    assert tuple(recording.events) == tuple((clock, value) for clock, value in expected() if isinstance(value, Event))
 
 
 def test_stepping_reaches_every_sample_in_both_directions(recording):
@@ -226,7 +226,7 @@ def test_a_long_recording_is_read_in_pieces(tmp_path):
             pass
     with Recording.open(tmp_path / "a.mcap") as recording:
         read = []
-        recording._entries.cache_clear()
+        recording._decoded.cache_clear()
         reading, recording._stream.read = recording._stream.read, lambda size: read.append(size) or reading(size)
         assert recording.sample(recording.at(30.0)).value.step == pytest.approx(900, abs=1)  # round-off of 30 · 1/30
         assert sum(read) < recording.bytes / 20

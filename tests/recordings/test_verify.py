@@ -127,7 +127,7 @@ def test_ulps_count_doubles_across_zero_too(value, n):
         ([*two_runs()[:4], Entry(1.0, replace(two_runs()[3].value, run=7, step=9))], "data of run 7 lies outside"),
         ([*two_runs()[:4], Entry(1.0, Event("set_h", 1, 2, 0.2, h=0.2)), *two_runs()[4:5]], "not in order"),
         ([*two_runs()[:4], Entry(1.0, Event("set_h", 1, 6, 0.6, h=0.0))], "cannot have been recorded: h = 0 s"),
-        ([*two_runs()[:4], Entry(1.0, Event("set_h", 1, 10**15, 0.6, h=0.1))], "more than can be re-simulated"),
+        ([*two_runs()[:4], Entry(1.0, replace(two_runs()[3].value, step=10**15))], r"158 years, .* --max-steps 10+\.$"),
         ([Entry(0.0, replace(start(), step=5)), *two_runs()[1:3]], "does not begin at its start"),
         ([*two_runs()[:4], Entry(1.0, start(1))], "runs are not in order"),
     ],
@@ -209,3 +209,21 @@ def test_progress_is_counted_in_bytes(tmp_path):
 
 def test_a_recording_of_one_method_verifies(tmp_path):
     assert verify(tiny(tmp_path / "a.mcap")).identical
+
+
+def test_no_more_steps_are_simulated_than_samples_need(tmp_path):
+    far = Entry(1.0, Event("set_h", 1, 10**15, 0.6, h=0.1))
+    assert verify(record(tmp_path / "a.mcap", [*two_runs()[:4], far]), max_steps=6).identical
+    with pytest.raises(RecordingError, match=r"claims to reach step 6; .* the limit is 5 steps; .* use --max-steps 6"):
+        verify(tmp_path / "a.mcap", max_steps=5)
+
+
+def test_many_steps_between_two_samples_show_their_progress(tmp_path, monkeypatch):
+    monkeypatch.setattr("recordings.verify.STEPS_AT_ONCE", 10)
+    path, shown = tmp_path / "a.mcap", []
+    with Recorder(path, wall=None) as recorder:
+        for _ in simulate(SCENE, 100.0, recorder, sample_every=1000):
+            pass
+    assert verify(path, lambda done, size: shown.append(done / size)).identical
+    assert len(shown) > 100
+    assert shown == sorted(shown)

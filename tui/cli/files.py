@@ -3,7 +3,7 @@
 import signal
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from types import FrameType
 from typing import TextIO
@@ -28,7 +28,7 @@ def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
     if not path.parent.is_dir():
         raise UserError(f"{path}: no folder {path.parent}; create the folder first.", Exit.DISK)
     part = path.with_name(path.name + ".part")
-    with _signals_to(signal.default_int_handler):
+    with interruptible():
         try:
             part.touch()
             yield part
@@ -52,6 +52,11 @@ def check_free(path: Path, force: bool) -> None:
     if path.exists() and (not force or path.is_dir()):
         advice = "choose another name" if path.is_dir() else "choose another name, or --force to overwrite it"
         raise UserError(f"{path} already exists; {advice}.", Exit.DISK)
+
+
+def interruptible() -> AbstractContextManager[None]:
+    """Let SIGTERM and SIGHUP interrupt the block as Ctrl+C does, so that it cleans up."""
+    return _signals_to(signal.default_int_handler)
 
 
 @contextmanager

@@ -22,8 +22,22 @@ def warn(sentence: str) -> None:
 
 
 def write_json(name: str, fields: Mapping[str, Any]) -> None:
-    """Print one object of the schema pendu.NAME/1.  Raises ValueError for a number that is not finite."""
-    print(json.dumps({"schema": f"pendu.{name}/1", **fields}, allow_nan=False, indent=2))
+    """Print one object of the schema pendu.NAME/1.  Raises ValueError for a number that is not finite.
+
+    An iterator becomes a list, written item by item: it may be long.
+    """
+    encode = json.JSONEncoder(allow_nan=False, indent=2).encode
+    lists = [key for key, value in fields.items() if isinstance(value, Iterator)]
+    rest = encode({"schema": f"pendu.{name}/1", **fields, **{key: [] for key in lists}})
+    for key in lists:
+        before, after, rest = rest.partition(f'\n  "{key}": []')
+        print(before + after.removesuffix("]"), end="")
+        comma = ""
+        for item in fields[key]:
+            print(f"{comma}\n    " + encode(item).replace("\n", "\n    "), end="")
+            comma = ","
+        print("\n  ]" if comma else "]", end="")
+    print(rest)
 
 
 def write_csv(out: TextIO, header: Sequence[str], rows: Iterable[Sequence[object]]) -> None:

@@ -2,6 +2,7 @@
 
 import argparse
 from dataclasses import asdict
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from recordings.errors import printable
@@ -12,6 +13,8 @@ from tui.words.numbers import file_size, seconds
 
 if TYPE_CHECKING:
     from recordings.recording import Recording
+
+RUNS_SHOWN = 1000
 
 EXAMPLES = """\
 examples:
@@ -43,11 +46,11 @@ def _fields(recording: "Recording", size: int) -> dict[str, Any]:
         "file": str(recording.path),
         "format": recording.version,
         **fields_of(recording, "complete", "damaged", "reason"),
-        "runs": [
+        "runs": (
             {"scene": asdict(run.scene), "steps": run.steps, "time": run.t, "seconds": run.end - run.begin}
             | {"events": run.events}
             for run in recording.runs
-        ],
+        ),
         **fields_of(recording, "methods", "samples"),
         "seconds": recording.length,
         "bytes": size,
@@ -69,8 +72,10 @@ def _print(recording: "Recording", size: int) -> None:
     print()
     headers = ("run", "scene", "theta [rad]", "omega [rad/s]", "h [s]", "steps", "simulated s", "recorded s", "events")
     rows = []
-    for run in recording.runs:
+    for run in islice(recording.runs, RUNS_SHOWN):
         start = (f"{value:g}" for value in (run.scene.theta, run.scene.omega, run.scene.h))
         lengths = (str(run.steps), f"{run.t:g}", f"{run.end - run.begin:.2f}")
         rows.append((str(run.number), run.scene.name, *start, *lengths, str(run.events)))
     print_table("rlrrrrrrr", headers, rows)
+    if len(recording.runs) > RUNS_SHOWN:
+        print(f"... and {len(recording.runs) - RUNS_SHOWN} more runs; --json lists all.")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from recordings.errors import RecordingError, printable
 from recordings.library import PART
 from tui.cli.errors import Exit
-from tui.cli.options import add_recording
+from tui.cli.options import add_recording, count
 from tui.cli.output import fields_of, progress, warn, write_json
 
 if TYPE_CHECKING:
@@ -30,12 +30,19 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_recording(
         parser, "files", nargs="+", help="a file, a folder, latest, or a name such as drift", offered=["golden"]
     )
+    parser.add_argument(
+        "--max-steps",
+        metavar="N",
+        type=count,
+        default=10_000_000,
+        help="simulate at most so many steps of each recording (%(default)s, less than a minute)",
+    )
     parser.add_argument("--json", action="store_true", help="one JSON object")
 
 
 def run(options: argparse.Namespace) -> int:
     results: list[tuple[Path, Verification | RecordingError]] = []
-    for path, result in (verified for name in options.files for verified in _verified(name)):
+    for path, result in (verified for name in options.files for verified in _verified(name, options.max_steps)):
         results.append((path, result))
         if options.json:
             continue
@@ -60,7 +67,7 @@ def _passes(result: "Verification | RecordingError") -> bool:
     return result.identical and (result.complete or result.file.suffix == PART)
 
 
-def _verified(name: str) -> "Iterator[tuple[Path, Verification | RecordingError]]":
+def _verified(name: str, max_steps: int) -> "Iterator[tuple[Path, Verification | RecordingError]]":
     """Verify the recordings that a name on the command line stands for, the unreadable ones notwithstanding."""
     from recordings import library
     from recordings.verify import verify
@@ -77,7 +84,7 @@ def _verified(name: str) -> "Iterator[tuple[Path, Verification | RecordingError]
         result: Verification | RecordingError
         try:
             with progress(printable(file.name)) as show:
-                result = verify(file, show)
+                result = verify(file, show, max_steps)
         except RecordingError as error:
             result = error
         yield file, result

@@ -12,7 +12,8 @@ from engine.run.stepping import Stepping, SteppingChange
 from tui.playback.so_far import RunSoFar
 
 if TYPE_CHECKING:
-    from recordings.recording import Recording, Run, SamplePlace
+    from recordings.recording import Recording, SamplePlace
+    from recordings.timeline import Run
 
 FOLLOWED = 100  # samples: what lies closer ahead is played through, what lies further is jumped to
 TAIL = 1.0  # s of the past that are there at once after a jump, for the trails,
@@ -86,6 +87,8 @@ class ReplayCursor:
     def milestone_times(self) -> Iterator[list[float]]:
         """When the methods did something, run by run, as times [s] of the recording clock; in many small steps."""
         for run in self.recording.runs:
+            if run.steps == 0:
+                continue
             so_far, known, before, then = self._nothing_known(run), 0, 0, run.begin
             for clock in self._read(so_far, run, pieces(run.begin, run.end), run.steps + 1):
                 step = so_far.sample.step
@@ -111,7 +114,7 @@ class ReplayCursor:
         self._place = place
         self.clock, sample = self.recording.sample(place)
         assert isinstance(sample, Sample)
-        self.run = next(run for run in self.recording.runs if run.number == sample.run)
+        self.run = self.recording.runs[self.recording.runs.place(sample.run)]
         so_far = self._nothing_known(self.run)
         tail = [(max(self.run.begin, self.clock - TAIL), self.clock)]
         for _ in self._read(so_far, self.run, tail, sample.step):
@@ -138,8 +141,10 @@ class ReplayCursor:
     def _read(self, so_far: RunSoFar, run: "Run", pieces: list[tuple[float, float]], last: int) -> Iterator[float]:
         """Add what pieces of the recording clock hold of a run before step `last`; yields each sample's clock."""
         for start, end in pieces:
-            for clock, value in self.recording.entries(start, end):
-                if value.run == run.number and isinstance(value, Sample) and so_far.observer.seen < value.step < last:
+            for clock, value in self.recording.entries(start, end, run.number):
+                if value.run > run.number:
+                    return
+                if isinstance(value, Sample) and so_far.observer.seen < value.step < last:
                     so_far.add(value)
                     yield clock
 

@@ -5,15 +5,22 @@ Those of a bundled recording are kept in the library, because its own folder is 
 
 import json
 import math
+from bisect import bisect_right
 from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass
+from itertools import groupby
+from operator import attrgetter
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from recordings import library
 from recordings.errors import printable
 from recordings.events import Event
+from recordings.format import STEP_LIMIT
 from recordings.library import MARKS
+
+if TYPE_CHECKING:
+    from recordings.timeline import Events
 
 SCHEMA = "pendu.marks/1"
 SIZE_LIMIT = 1 << 20  # bytes
@@ -50,14 +57,18 @@ class Marks:
         beside.replace(self.path)
 
 
-def mark_event(mark: Mark, events: Iterable[Event]) -> Event:
-    """The mark as an event, at the simulated time that the starts and changes among `events` give its step."""
-    t, h, since = 0.0, 0.0, 0
-    for event in events:
-        if event.run == mark.run and event.step <= mark.step and event.kind in ("start", "set_h"):
-            t, since = event.t, event.step
-            h = event.scene.h if event.scene is not None else event.h or h
-    return Event("mark", mark.run, mark.step, t + (mark.step - since) * h, text=mark.text)
+def mark_events(marks: Iterable[Mark], events: "Events") -> Iterator[Event]:
+    """Marks as events, at the simulated times that the starts and changes among `events` give their steps."""
+    for run, of_run in groupby(sorted(marks, key=attrgetter("run", "clock")), attrgetter("run")):
+        changes = [event for _, event in events.of(run) if event.kind in ("start", "set_h")]
+        for mark in of_run:
+            t, h, since = 0.0, 0.0, 0
+            at = bisect_right(changes, mark.step, key=attrgetter("step"))
+            if at:
+                event = changes[at - 1]
+                t, since = event.t, event.step
+                h = event.scene.h if event.scene is not None else event.h or 0.0
+            yield Event("mark", mark.run, mark.step, t + (mark.step - since) * h, text=mark.text)
 
 
 def _read(path: Path) -> list[Mark]:
@@ -74,6 +85,6 @@ def _read(path: Path) -> list[Mark]:
 
 def _mark(fields: dict[str, Any]) -> Mark:
     clock, run, step, text = float(fields["clock"]), int(fields["run"]), int(fields["step"]), fields["text"]
-    if not math.isfinite(clock):
-        raise ValueError("a mark needs a time")
+    if not math.isfinite(clock) or max(abs(run), abs(step)) >= STEP_LIMIT:
+        raise ValueError("a mark needs a time, a run and a step")
     return Mark(clock, run, step, None if text is None else printable(str(text)))

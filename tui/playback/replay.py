@@ -4,7 +4,7 @@ import time
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from operator import itemgetter
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
 from engine.run.lockstep import Sample
@@ -12,14 +12,16 @@ from engine.run.stepping import Stepping
 from recordings.events import Event
 from tui.playback.cursor import ReplayCursor
 from tui.playback.live import Live
-from tui.playback.marks import Mark, Marks, mark_event
+from tui.playback.marks import Mark, Marks, mark_events
 from tui.playback.playhead import Pace, Playhead
 from tui.playback.so_far import RunSoFar
 from tui.playback.source import RecordingStatus, Source
 
 if TYPE_CHECKING:
-    from recordings.recording import Recording, Run
+    from recordings.recording import Recording
+    from recordings.timeline import Run
 
+EVENTS_SHOWN = 2000  # the last ones; a hostile file may have a million
 FILL_BUDGET = 0.006  # s of each frame for reading the past
 
 
@@ -36,14 +38,17 @@ class Replay(Source):
         self.pace = Pace()
         self.ends: tuple[float | None, float | None] = (None, None)
         """Of the loop, on the recording clock [s]; None: the recording's own."""
-        self.looping = False
+        self.looping = self._closed = False
         self._clock = clock
         self._cursor = ReplayCursor(recording)
         self._filled = False  # all of the past read, and all milestones found
         self._search = self._cursor.milestone_times()
         self._milestone_times: list[float] = []  # s, on the recording clock, as far as known by now
-        self._all_events = [event for _, event in recording.events]
-        self._events = self._all_events[:0]
+        self._events: list[Event] = []  # as many as there were behind the playhead:
+        self._events_done = 0
+        self._mark_events: list[Event] = []
+        self._ticks: list[float] = []  # for so many marks and milestones:
+        self._ticks_known = -1, -1
 
     @property
     def so_far(self) -> RunSoFar:
@@ -57,20 +62,29 @@ class Replay(Source):
     @property
     def loop(self) -> tuple[float, float] | None:
         """From where to where to play again and again [s]."""
-        start, end = self.ends
+        return self.stretch(*self.ends) if self.looping else None
+
+    def stretch(self, start: float | None, end: float | None) -> tuple[float, float] | None:
+        """What a loop with these ends would play [s]; None if that has no length."""
         start, end = 0.0 if start is None else start, self.length if end is None else end
-        return (min(start, end), max(start, end)) if self.looping else None
+        return (min(start, end), max(start, end)) if start != end else None
 
     @property
     def events(self) -> Sequence[Event]:
-        done = bisect_right(self.recording.events, self.playhead.position, key=itemgetter(0))
-        if done != len(self._events):
-            self._events = self._all_events[:done]
+        """What was done up to the playhead; of very many events, the last."""
+        done = bisect_right(self.recording.events.clocks, self.playhead.position)
+        if done != self._events_done:
+            recent = self.recording.events[max(0, done - EVENTS_SHOWN) : done]
+            self._events_done, self._events = done, [event for _, event in recent]
         return self._events
 
     @property
     def later_marks(self) -> Sequence[Event]:
-        return [mark_event(mark, self._all_events) for mark in self.marks if mark.clock <= self.playhead.position]
+        marks = list(self.marks)
+        if len(self._mark_events) != len(marks):
+            self._mark_events = list(mark_events(marks, self.recording.events))
+        done = bisect_right(marks, self.playhead.position, key=attrgetter("clock"))
+        return self._mark_events[max(0, done - EVENTS_SHOWN) : done]
 
     @property
     def stepping(self) -> Stepping:
@@ -88,7 +102,7 @@ class Replay(Source):
     def tick(self, now: float) -> Sample:
         """Follow the clock to `now`: stop at the ends, or go round in the loop."""
         self.playhead = self.playhead.at(now)
-        if not self.playhead.paused:
+        if not self.playhead.paused and not self._closed:
             self._stay_inside()
             self._cursor.go_to(self.playhead.position)
         self.fill()
@@ -96,6 +110,8 @@ class Replay(Source):
 
     def fill(self) -> bool:
         """Read more of the past, and then look for milestones; whether the past of the sample is known by now."""
+        if self._closed:
+            return True
         until = self._clock() + FILL_BUDGET
         filled = self._cursor.fill(lambda: self._clock() < until)
         times: list[float] | None = []
@@ -117,12 +133,15 @@ class Replay(Source):
 
     def step(self, n: int) -> Sample:
         self.pause(True)
-        self._cursor.step(n)
+        if not self._closed:
+            self._cursor.step(n)
         self.playhead = self.playhead.moved_to(self._cursor.clock)
         return self.sample
 
     def seek(self, position: float) -> None:
         """Go to a moment of the recording clock [s], or to the nearer end."""
+        if self._closed:
+            return
         self._filled = False
         self.playhead = self.playhead.moved_to(min(max(position, 0.0), self.length))
         self._cursor.go_to(self.playhead.position)
@@ -138,8 +157,12 @@ class Replay(Source):
     @property
     def ticks(self) -> list[float]:
         """The events, marks and milestones known by now, on the recording clock [s]."""
-        done = (clock for clock, event in self.recording.events if event.kind != "stop")
-        return sorted({*done, *(mark.clock for mark in self.marks), *self._milestone_times})
+        known = len(list(self.marks)), len(self._milestone_times)
+        if known != self._ticks_known:
+            done = (clock for clock, event in self.recording.events if event.kind != "stop")
+            marked = (mark.clock for mark in self.marks)
+            self._ticks_known, self._ticks = known, sorted({*done, *marked, *self._milestone_times})
+        return self._ticks
 
     def mark(self, text: str | None = None) -> None:
         """Leave a mark at the sample, unless it has one; it is kept next to the recording, which is not touched."""
@@ -151,6 +174,8 @@ class Replay(Source):
         return Live(self.scene, changes=self._cursor.changes(self.playhead.position)[1:], so_far=self.so_far)
 
     def close(self) -> None:
+        """Close the file; a frame that was due already shows what was there."""
+        self._closed = True
         self.recording.close()
 
     def _stay_inside(self) -> None:

@@ -16,6 +16,7 @@ from tui.screens.keys import COMMON, REPLAY
 from tui.screens.seek_bar import SeekBar
 from tui.views.keys import Key, bindings
 
+NO_LENGTH = "A loop cannot start and end at the same moment: move along the recording, then set the other end."
 LONG = 100_000  # steps; a quarter of a second
 
 
@@ -81,11 +82,17 @@ class ReplayScreen(SourceScreen):
         """Set the loop's start (0) or end (1) here."""
         ends = list(self.replay.ends)
         ends[number] = self.replay.playhead.position
+        if self.replay.stretch(*ends) is None:
+            self.notify(NO_LENGTH, severity="warning")
+            return
         self.replay.ends = (ends[0], ends[1])
         self.replay.looping = None not in ends or self.replay.looping
         self.show_now()
 
     def action_loop(self) -> None:
+        if self.replay.stretch(*self.replay.ends) is None:
+            self.notify(NO_LENGTH, severity="warning")
+            return
         self.replay.looping = not self.replay.looping
         self.show_now()
 

@@ -28,9 +28,11 @@ def bar(position: float, length: float, ticks: Sequence[float], ends: Sequence[t
     here = column(position)
     cells = ["━" if at < here else "─" for at in range(width)]
     owners = [TEXT if at < here else FRAME for at in range(width)]
-    for tick in ticks:
-        at = column(tick)
+    tick = 0
+    while tick < len(ticks):  # the first in each column
+        at = column(ticks[tick])
         cells[at] = "┿" if at < here else "┼"
+        tick = bisect_right(ticks, at, tick, key=column)
     for clock, letter in ends:
         cells[column(clock)], owners[column(clock)] = letter, TEXT
     cells[here], owners[here] = "█", WARN
@@ -40,11 +42,11 @@ def bar(position: float, length: float, ticks: Sequence[float], ends: Sequence[t
 
 def facts(replay: Replay, room: int) -> str:
     """Position and length of the recording; loop, run, step and event as far as there is room."""
-    runs, ticks = [run.number for run in replay.recording.runs], replay.ticks
+    runs, ticks = replay.recording.runs, replay.ticks
     text = f"recording {seconds(replay.playhead.position)} of {seconds(replay.length)}"
     for part in (
         "loop" if replay.loop else "",
-        f"run {runs.index(replay.run.number) + 1}/{len(runs)}",
+        f"run {runs.place(replay.run.number) + 1}/{len(runs)}",
         f"step {replay.sample.step}/{replay.run.steps}",
         f"event {bisect_right(ticks, replay.playhead.position)}/{len(ticks)}",
     ):

@@ -76,7 +76,9 @@ def test_recover_overwrites_nothing_unless_by_force(tmp_path):
 
 
 def test_recover_accepts_the_same_names_as_replay(tmp_path):
-    assert "samples saved" in pendu("recover", "drift", "-o", tmp_path / "saved.mcap").out
+    told = pendu("recover", "drift", "-o", tmp_path / "saved.mcap").out
+    assert "samples saved" in told
+    assert told.endswith("\nNothing was lost.\n")
     assert pendu("recover", "drfit", "-o", tmp_path / "other.mcap").refused(3, "did you mean drift?")
 
 

@@ -289,3 +289,20 @@ def test_a_change_of_the_step_is_known_of_wherever_the_pieces_of_a_long_past_beg
     for seen, was in zip(table.replay.judgements, live.judgements, strict=True):
         assert seen.verdict == was.verdict
         assert seen.periods == pytest.approx(was.periods, abs=table.replay.exact.period * 5)  # a bin, and a gap
+
+
+def test_a_closed_replay_stands_still(sitting):
+    table = Table(sitting)
+    here = table.replay.sample
+    table.replay.close()
+    table.recording._decoded.cache_clear()
+    assert table.run(1.0) == here
+    table.replay.seek(5.0)
+    assert table.replay.step(3) == here
+    assert table.replay.fill()
+
+
+def test_a_loop_needs_a_length(table):
+    table.replay.looping, table.replay.ends = True, (2.0, 2.0)
+    assert table.replay.loop is None
+    assert table.replay.stretch(2.0, None) == (2.0, LENGTH)

@@ -16,7 +16,7 @@ from tui.playback.marks import Marks
 from tui.playback.replay import Replay
 from tui.screens.keys import COMMON, REPLAY
 from tui.screens.live import LiveScreen
-from tui.screens.replay import ReplayScreen
+from tui.screens.replay import NO_LENGTH, ReplayScreen
 from tui.screens.seek_bar import SeekBar
 from tui.screens.status_line import StatusLine
 from tui.screens.text import help_text
@@ -83,6 +83,14 @@ async def test_a_loop_is_set_and_left_and_a_mark_becomes_a_tick(path):
         assert replay.loop is None
         await theatre.press("home", "shift+right", "m")
         assert 10 in replay.ticks
+
+
+async def test_a_loop_without_a_length_is_refused_in_a_sentence(path):
+    async with player(path) as theatre:
+        await theatre.press("space", "A", "B")
+        assert theatre.source.ends == (0.0, None)
+        assert theatre.source.loop is None
+        assert [notice.message for notice in theatre.app._notifications] == [NO_LENGTH]
 
 
 async def test_a_click_and_a_drag_on_the_bar_go_there(path):
