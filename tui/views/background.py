@@ -13,6 +13,7 @@ from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager, redirect_stderr
 from multiprocessing import resource_tracker
 from threading import Thread
+from types import ModuleType
 from typing import Any, TypeVar
 
 Item = TypeVar("Item")
@@ -49,13 +50,16 @@ async def computed(function: Callable[..., Iterator[Item]], *arguments: object) 
 def _spawning() -> Iterator[None]:
     """Let processes be started: with the real stderr, deaf to Ctrl+C, and in ENVIRONMENT."""
     before = {name: os.environ.get(name, "") for name in ENVIRONMENT}  # empty is as good as not set
+    script = sys.modules["__main__"]
     os.environ.update(ENVIRONMENT)
     try:
         with redirect_stderr(sys.__stderr__):  # Textual's has no file number
             resource_tracker.ensure_running()  # or it would be started now, and unblock the signal
             signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+            sys.modules["__main__"] = ModuleType("__main__")  # or the script that started the lab would be run again
             yield
     finally:
+        sys.modules["__main__"] = script
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
         os.environ.update(before)
 
