@@ -26,7 +26,11 @@ async def test_a_theme_changes_all_colours_and_no_character(theme, view):
     async with lab() as theatre:
         await theatre.run(1)
         await theatre.press("space", key_of(view))
-        before = await picture(theatre)
+        before = ""
+        while before != (
+            before := await picture(theatre)
+        ):  # a resting lab draws what is late a quarter of a second later
+            await theatre.pilot.pause(0.4)
         theatre.app.action_use_theme(theme)
         after = await picture(theatre)
         assert lines_of(before) == lines_of(after)
