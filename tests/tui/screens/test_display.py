@@ -27,9 +27,7 @@ async def test_a_theme_changes_all_colours_and_no_character(theme, view):
         await theatre.run(1)
         await theatre.press("space", key_of(view))
         before = ""
-        while before != (
-            before := await picture(theatre)
-        ):  # a resting lab draws what is late a quarter of a second later
+        while before != (before := await picture(theatre)):  # a resting lab draws late panes after 1/4 s
             await theatre.pilot.pause(0.4)
         theatre.app.action_use_theme(theme)
         after = await picture(theatre)
