@@ -218,6 +218,8 @@ def test_an_open_recording_may_be_closed_twice(path):
     recording = Recording.open(path)
     recording.close()
     recording.close()
+    with pytest.raises(ValueError, match="closed file"):
+        list(recording.entries())
 
 
 def test_a_long_recording_is_read_in_pieces(tmp_path):
