@@ -42,8 +42,8 @@ def test_the_help_of_a_command_loads_nothing_heavy(name):
 
 
 def test_every_command_in_the_table_has_a_module_and_every_module_is_in_the_table():
-    modules = {module.name for module in pkgutil.iter_modules(tui.commands.__path__)}
-    assert {name for name in modules if hasattr(import_module(f"tui.commands.{name}"), "add_options")} == set(COMMANDS)
+    modules = [module.name for module in pkgutil.walk_packages(tui.commands.__path__, "tui.commands.")]
+    assert {name.split(".")[-1] for name in modules if hasattr(import_module(name), "add_options")} == set(COMMANDS)
 
 
 def test_the_import_contracts_hold():

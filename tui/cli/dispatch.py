@@ -13,25 +13,35 @@ from tui.cli.errors import Exit, UserError, explained
 if TYPE_CHECKING:
     from tui.cli.options import Parser
 
-COMMANDS = {
-    "live": "the lab: four pendulums, their errors, a recording",
-    "replay": "play a recording on the same screen",
-    "snapshot": "save the lab as an SVG image",
-    "accuracy": "speed against accuracy: which method, which h, at what cost",
-    "stability": "where each method becomes unstable: theory and measurement",
-    "run": "run a scene without the screen and judge each method; for CI",
-    "verify": "re-simulate recordings and compare every bit",
-    "info": "show what is in a recording, whole or damaged",
-    "recover": "salvage a damaged recording",
-    "export": "convert a recording to CSV",
-    "recordings": "list the recordings, or prune them",
-    "keys": "list all keys and mouse actions",
-    "scenes": "list the scenes, with what to watch",
-    "methods": "list the methods with claimed and measured properties",
-    "doctor": "check the environment and suggest fixes",
-    "completion": "print a shell completion script",
+GROUPS = {
+    "lab": {
+        "live": "the lab: four pendulums, their errors, a recording",
+        "replay": "play a recording on the same screen",
+        "snapshot": "save the lab as an SVG image",
+        "keys": "list all keys and mouse actions",
+    },
+    "studies": {
+        "accuracy": "speed against accuracy: which method, which h, at what cost",
+        "stability": "where each method becomes unstable: theory and measurement",
+        "run": "run a scene without the screen and judge each method; for CI",
+    },
+    "files": {
+        "verify": "re-simulate recordings and compare every bit",
+        "info": "show what is in a recording, whole or damaged",
+        "recover": "salvage a damaged recording",
+        "export": "convert a recording to CSV",
+        "recordings": "list the recordings, or prune them",
+    },
+    "about": {
+        "scenes": "list the scenes, with what to watch",
+        "methods": "list the methods with claimed and measured properties",
+        "doctor": "check the environment and suggest fixes",
+        "completion": "print a shell completion script",
+    },
 }
-"""Name of the command -> what it does.  Its module is tui.commands.NAME."""
+"""Folder of tui.commands -> name of a command in it -> what it does."""
+
+COMMANDS = {name: does for group in GROUPS.values() for name, does in group.items()}
 
 USAGE = """\
 usage: pendu-tui [COMMAND] [OPTIONS]
@@ -128,7 +138,7 @@ def command_of(name: str) -> tuple["Parser", ModuleType]:
         if name in SCENES:
             hint = f"; for the scene use: pendu-tui --scene {name}"
         raise UserError(f"there is no command {name!r}{hint}")
-    command = import_module(f"tui.commands.{name}")
+    command = module_of(name)
     parser = Parser(
         prog=f"pendu-tui {name}",
         description=command.__doc__,
@@ -138,3 +148,9 @@ def command_of(name: str) -> tuple["Parser", ModuleType]:
     )
     command.add_options(parser)
     return parser, command
+
+
+def module_of(name: str) -> ModuleType:
+    """A command's module."""
+    group = next(group for group, names in GROUPS.items() if name in names)
+    return import_module(f"tui.commands.{group}.{name}")

@@ -55,7 +55,7 @@ def test_a_command_after_its_options_is_refused_with_the_right_order():
 
 
 def test_a_bug_is_not_hidden_behind_a_sentence(monkeypatch):
-    monkeypatch.setattr("tui.commands.scenes.run", lambda _: 1 / 0)
+    monkeypatch.setattr("tui.commands.about.scenes.run", lambda _: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         pendu("scenes")
 
@@ -64,7 +64,7 @@ def test_an_interrupt_is_one_sentence_and_exit_130(monkeypatch):
     def interrupted(_: object) -> int:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("tui.commands.scenes.run", interrupted)
+    monkeypatch.setattr("tui.commands.about.scenes.run", interrupted)
     outcome = pendu("scenes")
     assert (outcome.code, outcome.err) == (130, "pendu-tui: interrupted.\n")
 
@@ -76,7 +76,7 @@ def test_an_interrupt_that_a_library_turns_into_an_error_is_still_an_interrupt(m
         except KeyboardInterrupt:
             raise ImportError("half imported") from None
 
-    monkeypatch.setattr("tui.commands.scenes.run", interrupted)
+    monkeypatch.setattr("tui.commands.about.scenes.run", interrupted)
     outcome = pendu("scenes")
     assert (outcome.code, outcome.err) == (130, "pendu-tui: interrupted.\n")
 

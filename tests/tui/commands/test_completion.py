@@ -16,7 +16,7 @@ from engine.scenes import SCENES
 from recordings.library import golden_names
 from tests.tui.command_line import pendu
 from tui.cli.dispatch import COMMANDS
-from tui.commands.completion import EXAMPLES, SHELLS, whole_parser
+from tui.commands.about.completion import EXAMPLES, SHELLS, whole_parser
 from tui.drawing.palette import PALETTES
 
 THEMES = {"auto", *PALETTES}

@@ -3,7 +3,7 @@ from types import SimpleNamespace
 import pytest
 
 from tests.tui.command_line import pendu
-from tui.commands.doctor import colour, encoding, folder, mouse, size, unfinished
+from tui.commands.about.doctor import colour, encoding, folder, mouse, size, unfinished
 
 
 def test_doctor_reports_and_never_fails():
@@ -74,7 +74,7 @@ def test_a_dangling_link_and_a_name_too_long_are_not_folders(tmp_path):
 
 def test_low_disk_space_is_reported(tmp_path, monkeypatch):
     assert "GB free" in folder(tmp_path).found
-    monkeypatch.setattr("tui.commands.doctor.shutil.disk_usage", lambda _: SimpleNamespace(free=5_000_000))
+    monkeypatch.setattr("tui.commands.about.doctor.shutil.disk_usage", lambda _: SimpleNamespace(free=5_000_000))
     finding = folder(tmp_path)
     assert "5.0 MB free" in finding.found
     assert "prune" in finding.advice

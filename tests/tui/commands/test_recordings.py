@@ -192,6 +192,6 @@ def test_prune_without_a_measure_deletes_nothing(library, arguments):
 
 @pytest.mark.parametrize(("text", "bytes_"), [("2000", 2000), ("500MB", 5e8), ("1.5 GB", 1.5e9), ("3k", 3000)])
 def test_sizes_are_read_with_their_units(text, bytes_):
-    from tui.commands.recordings import size
+    from tui.commands.files.recordings import size
 
     assert size(text) == bytes_

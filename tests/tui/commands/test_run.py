@@ -15,7 +15,7 @@ from recordings.recording import Recording
 from recordings.verify import verify
 from tests.tui.command_line import pendu
 from tui.cli.fail_if import FIELDS
-from tui.commands.run import SAMPLE_BYTES
+from tui.commands.studies.run import SAMPLE_BYTES
 
 
 def test_json_has_the_fields_of_the_design_and_the_numbers_of_the_engine():

@@ -88,7 +88,7 @@ def run(options: argparse.Namespace) -> int:
     from concurrent.futures import BrokenExecutor
 
     from engine.stability.study import StabilityStudy
-    from tui.commands.reports.stability import print_csv, print_json, print_text, write_file
+    from tui.commands.studies.reports.stability import print_csv, print_json, print_text, write_file
 
     bar = partial(progress, "stability")
     with _workers(options) as executor:

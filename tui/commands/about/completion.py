@@ -1,7 +1,6 @@
 """Print a completion script for bash, zsh or fish: commands, options, scenes, choices and files."""
 
 import argparse
-from importlib import import_module
 
 from tui.cli.errors import Exit
 from tui.cli.options import Parser
@@ -32,14 +31,14 @@ def run(options: argparse.Namespace) -> int:
 
 def whole_parser() -> Parser:
     """All commands in one parser, as shtab wants them."""
-    from tui.cli.dispatch import COMMANDS
+    from tui.cli.dispatch import COMMANDS, module_of
 
     parser = Parser(prog="pendu-tui")
     parser.add_argument("--version", action="store_true", help="print the version")
-    import_module("tui.commands.live").add_options(parser)  # which pendu-tui alone is
+    module_of("live").add_options(parser)  # which pendu-tui alone is
     commands = parser.add_subparsers()
     for name, does in COMMANDS.items():
-        import_module(f"tui.commands.{name}").add_options(commands.add_parser(name, help=does, description=does))
+        module_of(name).add_options(commands.add_parser(name, help=does, description=does))
     for each in (parser, *commands.choices.values()):
         for action in each._actions:
             if action.nargs == argparse.ONE_OR_MORE:

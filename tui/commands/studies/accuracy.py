@@ -14,7 +14,7 @@ from tui.cli.output import progress, warn
 
 if TYPE_CHECKING:
     from engine.accuracy.recommend import Attempt
-    from tui.commands.reports.accuracy import Findings
+    from tui.commands.studies.reports.accuracy import Findings
 
 EXAMPLES = """\
 examples:
@@ -106,7 +106,7 @@ def run(options: argparse.Namespace) -> int:
     if budget == 0:
         raise UserError(f"--budget {options.budget:g} is too small; use at least 1 force evaluation.")
     from engine.run.compiled import available
-    from tui.commands.reports.accuracy import Findings, print_csv, print_json, print_text
+    from tui.commands.studies.reports.accuracy import Findings, print_csv, print_json, print_text
 
     found = Findings(scene, times[-1], options.error, options.cost, options.target, budget)
     file = None if options.csv in (None, "-") else Path(options.csv)
@@ -136,7 +136,7 @@ def _fill(found: "Findings", times: list[float], rungs: list[int], fast: bool) -
     from engine.accuracy.recommend import MOST_EVALUATIONS, cheapest, most_accurate, reach, spend
     from engine.accuracy.study import Study, orders, timed
     from engine.run import compiled, loops
-    from tui.commands.reports.accuracy import Advice
+    from tui.commands.studies.reports.accuracy import Advice
 
     study = Study(found.scene, found.time, compiled.tiered if fast else loops.plain)
     with progress("measuring") as show:

@@ -1,0 +1,1 @@
+"""Lists and help: `scenes`, `methods`, `doctor`, `completion`."""

@@ -1,0 +1,1 @@
+"""Recordings: `verify`, `info`, `recover`, `export`, and the list of them, `recordings`."""

@@ -1,0 +1,1 @@
+"""On screen: `live`, `replay`, and their `keys`; `snapshot` saves a picture."""
