@@ -1,7 +1,13 @@
 """Scene: everything that determines a run.  SCENES: the ones worth watching, with what to watch."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
+from functools import cache
+from typing import Any
+
+from engine.methods import USUAL_CAST, Cast
+from engine.models import MODELS
+from engine.models.model import ExactMotion, Model
 
 LIMITS = {  # inclusive; beyond them a value is a typing error, not a pendulum
     "theta": (-1e9, 1e9),
@@ -37,6 +43,8 @@ class Scene:
     gravity: float = 9.81  # m/s²
     h: float = 0.05  # s, the step size; positive at a start
     watch: str = ""
+    model: str = "pendulum"  # a key of MODELS
+    cast: Cast = USUAL_CAST  # the methods, in order
 
     def __post_init__(self) -> None:
         for field, (low, high) in LIMITS.items():
@@ -50,6 +58,15 @@ class Scene:
                 f"h = {self.h:g} s is not a usable step; use a positive one, for example {0.15 / self.w0:.1g}."
             )
         check_h(self.h, self.w0)
+
+    @property
+    def equations(self) -> Model:
+        """The model with this scene's parameters."""
+        return _equations(self.model, self.w0_squared)
+
+    def exact(self) -> ExactMotion:
+        """The exact motion from this scene's start."""
+        return self.equations.exact(self.theta, self.omega)
 
     @property
     def w0_squared(self) -> float:
@@ -66,10 +83,24 @@ class Scene:
         """h·w0, the only number that linear stability depends on."""
         return self.h * self.w0
 
-    def altered(self, **changes: float) -> "Scene":
+    def fields(self) -> dict[str, Any]:
+        """What determines the run and names it, as JSON shows it."""
+        named = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "cast"}
+        return named | {"methods": [method.key for method in self.cast]}
+
+    def altered(self, **changes: Any) -> "Scene":
         """This scene with other numbers; it keeps its name only if nothing changes."""
-        other = replace(self, **changes)  # type: ignore[arg-type]
+        other = replace(self, **changes)
         return self if other == self else replace(other, name="custom", watch="")
+
+    def with_cast(self, cast: Cast) -> "Scene":
+        """This scene with other methods; what to watch goes with the methods that show it."""
+        return replace(self, cast=cast, watch=self.watch if set(self.cast) <= set(cast) else "")
+
+
+@cache
+def _equations(model: str, w0_squared: float) -> Model:
+    return MODELS[model](w0_squared)
 
 
 _UNIT_W0 = 9.81  # m, the length with which w0 = 1 s⁻¹, so that z reads like h

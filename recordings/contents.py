@@ -44,7 +44,7 @@ class Layout:
         for message in messages:
             if message.channel == self.events and not readings:
                 event = decode_event(message.data)
-                if event.methods and event.methods != self.methods:
+                if event.scene and tuple(method.key for method in event.scene.cast) != self.methods:
                     raise RecordingError("a run has other methods than the file")
                 yield [message], Entry(clock_of(message), event)
             elif message.channel in self.places and not only_events:

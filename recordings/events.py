@@ -23,7 +23,6 @@ class Event:
     step: int
     t: float  # s, simulated
     scene: Scene | None = None  # start
-    methods: tuple[str, ...] = ()  # start: keys of METHODS, in order
     h: float | None = None  # set_h [s]
     equal_cost: bool = False  # set_h: methods that need fewer force evaluations take the step in parts
     speed: float | None = None  # speed, times real time

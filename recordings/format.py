@@ -13,7 +13,7 @@ from dataclasses import replace
 from functools import cache
 from typing import Any, NoReturn
 
-from engine.methods import METHODS
+from engine.methods import Cast, method_of
 from engine.run.lockstep import Reading, Sample
 from engine.scenes import Scene, SceneError
 from recordings.errors import RecordingError, printable
@@ -31,7 +31,6 @@ STEP_LIMIT = 1 << 53
 
 _NUMBERS = ("t", *NUMBERS)
 _ENERGY_ERROR = NUMBERS.index("energy_error")
-_KNOWN_METHODS = frozenset(method.key for method in METHODS)
 
 
 def topic(method: str) -> str:
@@ -88,7 +87,7 @@ def encode_event(event: Event) -> bytes:
         fields["scene"] = event.scene.name
         fields |= {"watch": event.scene.watch} if event.scene.watch else {}
         fields |= {name: float(getattr(event.scene, name)) for name in SCENE_NUMBERS}
-        fields["methods"] = event.methods
+        fields["methods"] = [method.key for method in event.scene.cast]
     fields |= {name: value for name in ("h", "speed") if (value := getattr(event, name)) is not None}
     if event.text is not None:
         fields["text"] = printable(event.text)
@@ -103,12 +102,12 @@ def decode_event(data: bytes) -> Event:
     run, step, t, kind = _count(fields, "run"), _count(fields, "step"), _number(fields, "t"), _text(fields, "kind")
     match kind:
         case "start":
-            numbers = {name: _number(fields, name) for name in SCENE_NUMBERS}
+            numbers: dict[str, Any] = {name: _number(fields, name) for name in SCENE_NUMBERS}
             try:
-                scene = Scene(name=_text(fields, "scene"), watch=_text(fields, "watch", ""), **numbers)
+                scene = Scene(_text(fields, "scene"), watch=_text(fields, "watch", ""), cast=_cast(fields), **numbers)
             except SceneError as error:
                 raise RecordingError(f"run {run} cannot have been recorded: {error}") from error
-            return Event("start", run, step, t, scene=scene, methods=_methods(fields))
+            return Event("start", run, step, t, scene=scene)
         case "set_h":
             return Event("set_h", run, step, t, h=_number(fields, "h"), equal_cost=_flag(fields, "equal_cost"))
         case "speed":
@@ -181,13 +180,16 @@ def _flag(fields: dict[str, Any], name: str) -> bool:
     return value
 
 
-def _methods(fields: dict[str, Any]) -> tuple[str, ...]:
-    methods = fields.get("methods")
-    if type(methods) is not list or not methods:
+def _cast(fields: dict[str, Any]) -> Cast:
+    keys = fields.get("methods")
+    if type(keys) is not list or not keys:
         raise RecordingError("a start names no methods")
-    for method in methods:
-        if type(method) is not str or method not in _KNOWN_METHODS:
-            raise RecordingError(f"unknown method {printable(str(method))!r}")
-    if len(set(methods)) < len(methods):
+    cast = []
+    for key in keys:
+        try:
+            cast.append(method_of(key))
+        except (KeyError, TypeError):
+            raise RecordingError(f"unknown method {printable(str(key))!r}") from None
+    if len(set(cast)) < len(cast):
         raise RecordingError("a start names a method twice")
-    return tuple(methods)
+    return tuple(cast)

@@ -1,10 +1,9 @@
 """Headless runs.  The clock of their recordings is the simulated time, so the same run gives the same bytes."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 
-from engine.methods import METHODS, Method
 from engine.run.lockstep import Lockstep, Sample
-from engine.run.loops import Loops, plain
+from engine.run.loops import LoopsOf, plain
 from engine.run.stepping import Stepping
 from engine.scenes import Scene
 from recordings.events import Event
@@ -39,7 +38,7 @@ def simulate(
     recorder: Recorder | None = None,
     sample_every: int | None = None,
     changes: Changes = (),
-    loops: Callable[[Method], Loops] = plain,
+    loops: LoopsOf = plain,
 ) -> Iterator[Sample]:
     """Run a scene for `time` [s]; record and yield its samples, of which the last is the result.
 
@@ -56,14 +55,13 @@ def simulate(
         elif isinstance(value, Event) and recorder:
             recorder.event(value, clock)
 
-    methods = tuple(method.key for method in METHODS)
-    record(Event("start", 1, 0, 0.0, scene=scene, methods=methods))
+    record(Event("start", 1, 0, 0.0, scene=scene))
     record(sample := lockstep.sample())
     yield sample
     for first, last, h in segments(scene, time, changes):
         if h != lockstep.stepping.h:
             record(Event("set_h", 1, first, lockstep.t, h=h))
-            lockstep.set_stepping(Stepping(h))
+            lockstep.set_stepping(Stepping(h, cast=scene.cast))
         begin = clock
         every = sample_every or max(1, round(SAMPLE_EVERY / abs(h)))
         while lockstep.step < last:

@@ -167,10 +167,11 @@ class Recorder:
             self.close()
 
     def _begin(self, start: Event) -> None:
+        assert start.scene is not None
         metadata = self._facts if self._facts is not None else _metadata(start, self._wall)
         facts = {"format": str(FORMAT_VERSION), "sin": metadata["sin"]}
         self._writer.add_metadata(METADATA, dict(metadata))
-        self._topics = [topic(method) for method in start.methods]
+        self._topics = [topic(method.key) for method in start.scene.cast]
         for schema, topics, claims in ((EVENT_SCHEMA, [EVENTS], facts), (SAMPLE_SCHEMA, self._topics, {})):
             data = json.dumps(schema, separators=(",", ":")).encode()
             known = self._writer.register_schema(schema["title"], "jsonschema", data)

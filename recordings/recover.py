@@ -115,7 +115,7 @@ class _Salvage:
         self._scan, self._out, self._overwrite = scan, out, overwrite
         self._recorder: Recorder | None = None
         self._publish_time = 0
-        self._rerun: Rerun | None = None  # of the run being kept; without methods, it only knows the time of a step
+        self._rerun: Rerun | None = None  # of the run being kept, without methods: it only knows the time of a step
         self._broken = False  # something was lost since the last sample kept
         self._next_sequence = 0
         self._clock = self._end = 0.0  # s; of the last sample kept, and of the last thing known of
@@ -147,7 +147,8 @@ class _Salvage:
             if isinstance(value, Event) and value.kind == "start":
                 if self._rerun is not None and value.run <= self._rerun.run:
                     raise RecordingError("its runs are not in order")
-                self._rerun = Rerun(value, methods=())
+                assert value.scene is not None
+                self._rerun = Rerun(replace(value, scene=replace(value.scene, cast=())))
             if self._rerun is None or value.run != self._rerun.run:
                 self._runs_lost.add(value.run)
                 self._broken = True

@@ -12,8 +12,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import compress
 from math import nan
-from typing import TypeVar, get_args, overload
+from typing import Any, TypeVar, get_args, overload
 
+from engine.methods import Cast
 from engine.run.lockstep import Sample
 from engine.scenes import Scene
 from recordings.events import Entry, Event, EventKind
@@ -67,7 +68,7 @@ class Events(_Rows[tuple[float, Event]]):
         self._extras = array("l")  # the number of a mark's text, or of a start's scene
         self._scenes = array("d")  # their numbers, one after the other
         self._names = array("l")  # the numbers of the texts of their names and watches
-        self._methods: tuple[str, ...] = ()
+        self._cast: Cast = ()
         self._texts: dict[str, int] = {}  # each once
         self._room = TEXT_LIMIT
 
@@ -86,7 +87,7 @@ class Events(_Rows[tuple[float, Event]]):
             extra = len(self._names) // 2
             self._scenes.extend(getattr(event.scene, name) for name in SCENE_NUMBERS)
             self._names.extend(map(self._number, (event.scene.name, event.scene.watch)))
-            self._methods = event.methods
+            self._cast = event.scene.cast
         elif event.text is not None:
             extra = self._number(event.text)
         self.clocks.append(clock)
@@ -156,7 +157,6 @@ class Events(_Rows[tuple[float, Event]]):
             self._steps[at],
             self._t[at],
             scene=self._scene(extra) if kind == "start" else None,
-            methods=self._methods if kind == "start" else (),
             h=self._values[at] if kind == "set_h" else None,
             equal_cost=self._kinds[at] >= _EQUAL_COST,
             speed=self._values[at] if kind == "speed" else None,
@@ -167,8 +167,9 @@ class Events(_Rows[tuple[float, Event]]):
     def _scene(self, number: int) -> Scene:
         name, watch = (self._known_texts[text] for text in self._names[2 * number : 2 * number + 2])
         count = len(SCENE_NUMBERS)
-        numbers = self._scenes[count * number : count * (number + 1)]
-        return Scene(name=name, watch=watch, **dict(zip(SCENE_NUMBERS, numbers, strict=True)))
+        values = self._scenes[count * number : count * (number + 1)]
+        numbers: dict[str, Any] = dict(zip(SCENE_NUMBERS, values, strict=True))
+        return Scene(name, watch=watch, cast=self._cast, **numbers)
 
 
 class Runs(_Rows[Run]):

@@ -10,11 +10,10 @@ a thousandth of a radian, as happens in chaos, that method is no longer compared
 import math
 import struct
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from engine.methods import METHODS, Method
 from engine.run.compiled import tiered
 from engine.run.lockstep import Lockstep, Reading, Sample
 from engine.run.stepping import Stepping
@@ -130,19 +129,17 @@ class Rerun:
         self,
         start: Event,
         exact: bool = True,
-        methods: Sequence[Method] = METHODS,
-        budget: StepBudget | None = None,  # without methods, no step costs anything
+        budget: StepBudget | None = None,
     ) -> None:
         if start.scene is None or start.step != 0:
             raise RecordingError(f"run {start.run} does not begin at its start")
         scene, self.run = start.scene, start.run
-        methods = [method for method in methods if method.key in start.methods]
         off = replace(scene, theta=scene.theta * (1 - TOLERANCE), omega=scene.omega * (1 - TOLERANCE))
-        self._locksteps = [Lockstep(each, self.run, methods, tiered) for each in ([scene] if exact else [scene, off])]
+        self._locksteps = [Lockstep(each, self.run, tiered) for each in ([scene] if exact else [scene, off])]
         self._exact, self._budget = exact, budget
         self._changes: list[Event] = []  # that no sample has come after yet
         self._allowed: dict[tuple[str, str], float] = defaultdict(float)
-        self._methods = start.methods
+        self._cast, self._methods = scene.cast, [method.key for method in scene.cast]
         self._sampled = -1
         self._reached = 0  # the step of the last change
         self.max_difference = 0.0
@@ -153,7 +150,7 @@ class Rerun:
             if event.step < max(self._reached, self._sampled):
                 raise RecordingError(f"the steps of run {self.run} are not in order")
             try:
-                Stepping(event.h, event.equal_cost).check(self._locksteps[0].scene.w0)
+                Stepping(event.h, event.equal_cost, self._cast).check(self._locksteps[0].scene.w0)
             except SceneError as error:
                 raise RecordingError(f"run {self.run} cannot have been recorded: {error}") from error
             self._reached = event.step
@@ -172,7 +169,7 @@ class Rerun:
             assert change.h is not None
             self._go(change.step)
             for lockstep in self._locksteps:
-                lockstep.set_stepping(Stepping(change.h, change.equal_cost))
+                lockstep.set_stepping(Stepping(change.h, change.equal_cost, self._cast))
         self._changes.clear()
         self._go(step)
         return [lockstep.sample() for lockstep in self._locksteps]

@@ -1,15 +1,14 @@
 """What runs of a million steps came to, on a grid of starts and h·w0; tests/bench/truths.py computed it."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 from engine.methods import METHODS, Method
-from engine.models.exact_pendulum import ExactMotion
-from engine.models.pendulum import energy_reference
 from engine.run.judging import Judging
 from engine.run.lockstep import Lockstep
-from engine.run.loops import Loops
+from engine.run.loops import LoopsOf
 from engine.run.verdict import stride
 from engine.scenes import Scene
 
@@ -60,12 +59,12 @@ Course = list[tuple[str, int, float]]
 """Verdicts in turn, with the step and the periods of each."""
 
 
-def verdicts(method: Method, scene: Scene, loops: Callable[[Method], Loops], steps: int) -> Course:
+def verdicts(method: Method, scene: Scene, loops: LoopsOf, steps: int) -> Course:
     """The verdicts on a method in turn, with the step and the periods of each."""
-    period = ExactMotion(scene).period or math.tau / scene.w0
-    reference = energy_reference(scene.w0_squared, scene.theta, scene.omega)
-    lockstep = Lockstep(scene, methods=(method,), loops=loops)
-    judging = Judging(method, reference, scene.w0_squared, scene.h, 1, period, loops(method).advance)
+    period = scene.exact().period or math.tau / scene.w0
+    reference = scene.equations.reference(scene.theta, scene.omega)
+    lockstep = Lockstep(replace(scene, cast=(method,)), loops=loops)
+    judging = Judging(method, scene.equations, reference, scene.h, 1, period, loops)
     judging.follow(0, lockstep.sample().readings[0])
     given: Course = []
     every = stride(period, scene.h)
@@ -78,7 +77,7 @@ def verdicts(method: Method, scene: Scene, loops: Callable[[Method], Loops], ste
 
 def watch(scene: Scene) -> int:
     """How many steps a test watches a cell: 80 periods, and at least 6000 steps where h·w0 is not small."""
-    period = ExactMotion(scene).period or math.tau / scene.w0
+    period = scene.exact().period or math.tau / scene.w0
     return max(round(80 * period / scene.h), 6000 if scene.z > 0.3 else 1500)
 
 

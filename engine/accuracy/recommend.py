@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from engine.accuracy.study import REASONS, ErrorKind, Point, Study
-from engine.methods import METHODS, Method
+from engine.methods import Method
 from engine.scenes import Z_LIMITS
 
 MOST_EVALUATIONS = 20_000_000  # of a run; some seconds in plain Python
@@ -39,22 +39,21 @@ def reach(
     kind: ErrorKind,
     target: float,
     most: int = MOST_EVALUATIONS,
-    methods: Sequence[Method] = METHODS,
 ) -> Iterator[Attempt]:
     """For each method, from the highest order down, its cheapest run with an error up to `target`.
 
     A method is given up where it costs more than `most` evaluations or than one before it.
     """
-    for method in sorted(methods, key=lambda method: -method.order):
+    for method in sorted(study.scene.cast, key=lambda method: -method.order):
         attempt = _cheapest(study, method, kind, target, most)
         if attempt.point and attempt.succeeded:
             most = min(most, attempt.point.force_evaluations)
         yield attempt
 
 
-def spend(study: Study, kind: ErrorKind, budget: int, methods: Sequence[Method] = METHODS) -> Iterator[Attempt]:
+def spend(study: Study, kind: ErrorKind, budget: int) -> Iterator[Attempt]:
     """For each method its run with the smallest error for at most `budget` evaluations."""
-    for method in methods:
+    for method in study.scene.cast:
         steps = _affordable(study, method, budget)
         if not steps:
             yield Attempt(method, None, _no_h(budget))

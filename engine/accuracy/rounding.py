@@ -4,14 +4,14 @@ import math
 import sys
 from statistics import fmean
 
-from engine.models.exact_pendulum import ExactMotion
+from engine.scenes import Scene
 
 SAMPLES = 400
 NUDGE = 1e-9  # relative; small even next to the separatrix, and far above the exact swing's own error
 MARGIN = 2  # errors above the floor are then due to the method, but for a fraction
 
 
-def rounding_floor(exact: ExactMotion, time: float) -> tuple[float, float]:
+def rounding_floor(scene: Scene, time: float) -> tuple[float, float]:
     """What rounding leaves in energy (relative) and theta [rad] after one step; n steps leave sqrt(n) times that.
 
     A step changes the energy by a relative epsilon, at random (Brouwer, Astron. J. 46 (1937) 149); by more
@@ -21,11 +21,12 @@ def rounding_floor(exact: ExactMotion, time: float) -> tuple[float, float]:
     An estimate from above: RK4 at tiny steps errs by 0.005 to 0.6 times it.
     """
     epsilon = sys.float_info.epsilon
+    exact = scene.exact()
     if exact.regime == "equilibrium":
         return epsilon, epsilon
-    scene, start = exact.scene, exact.at(exact.period / 4 if exact.regime == "libration" and exact.period else 0.0)
-    moving = ExactMotion(scene.altered(theta=start.theta, omega=start.omega))
-    slower = ExactMotion(scene.altered(theta=start.theta, omega=start.omega * (1 - NUDGE)))
+    start = exact.at(exact.period / 4 if exact.regime == "libration" and exact.period else 0.0)
+    moving = scene.altered(theta=start.theta, omega=start.omega).exact()
+    slower = scene.altered(theta=start.theta, omega=start.omega * (1 - NUDGE)).exact()
     times = [time * sample / SAMPLES for sample in range(SAMPLES + 1)]
     widest = max(abs(exact.at(t).theta) for t in times)
     fastest = max(abs(exact.at(t).omega) for t in times)

@@ -12,11 +12,10 @@ from statistics import linear_regression
 from typing import Literal, NamedTuple
 
 from engine.accuracy.rounding import rounding_floor
-from engine.methods import METHODS, Method
-from engine.models.exact_pendulum import ExactMotion
+from engine.methods import Method
 from engine.run.compiled import tiered
 from engine.run.lockstep import Lockstep
-from engine.run.loops import Loops, plain
+from engine.run.loops import LoopsOf, plain
 from engine.scenes import Z_LIMITS, Scene
 
 ErrorKind = Literal["theta", "energy", "final"]
@@ -70,7 +69,7 @@ class Point:
     @property
     def force_evaluations(self) -> int:
         """Cost of the run."""
-        return evaluations(self.method, self.steps)
+        return self.method.evaluations(self.steps)
 
     def error(self, kind: ErrorKind) -> float:
         """theta_error, energy_error or final_error."""
@@ -88,18 +87,13 @@ class Order(NamedTuple):
     measured: float | None  # None: fewer than three errors to fit
 
 
-def evaluations(method: Method, steps: int) -> int:
-    """Force evaluations of a run."""
-    return steps * method.force_evaluations + method.first_same_as_last
-
-
 class Study:
     """Runs of one scene over one time, with what they share: the exact swing and the rounding floor."""
 
-    def __init__(self, scene: Scene, time: float, loops: Callable[[Method], Loops] = plain) -> None:
+    def __init__(self, scene: Scene, time: float, loops: LoopsOf = plain) -> None:
         self.scene, self.time, self.loops = scene, time, loops
-        self.exact = ExactMotion(scene)
-        self._energy_floor, self._theta_floor = rounding_floor(self.exact, time)
+        self.exact = scene.exact()
+        self._energy_floor, self._theta_floor = rounding_floor(scene, time)
         times = (time * comparison / COMPARISONS for comparison in range(COMPARISONS + 1))
         self._width = min(math.pi, max(abs(self.exact.at(t).theta) for t in times))
 
@@ -129,7 +123,7 @@ class Study:
 
     def _errors(self, method: Method, steps: int, comparisons: int) -> tuple[tuple[float, float, float], bool]:
         """The largest errors in theta [rad] and energy, the last in theta; and whether the numbers overflowed."""
-        lockstep = Lockstep(self.scene.altered(h=self.time / steps), methods=(method,), loops=self.loops)
+        lockstep = Lockstep(self.scene.altered(h=self.time / steps, cast=(method,)), loops=self.loops)
         stride = max(1, steps // comparisons)
         theta_error = final_error = 0.0
         while lockstep.step < steps:
@@ -146,19 +140,19 @@ class Study:
     def points(self, ladder: Sequence[int]) -> Iterator[Point]:
         """A point for every number of steps and every method."""
         for steps in ladder:
-            for method in METHODS:
+            for method in self.scene.cast:
                 yield self.run(method, steps)
 
 
-def timed(point: Point, scene: Scene, clock: Clock, loops: Callable[[Method], Loops] = plain) -> Point:
+def timed(point: Point, scene: Scene, clock: Clock, loops: LoopsOf = plain) -> Point:
     """The same point with its seconds: the same steps again, without comparisons and energies."""
-    travel, start = loops(point.method).travel, (scene.theta, scene.omega)
-    travel(scene.w0_squared, start, point.h, 1)  # may have to be compiled
+    travel, start = loops(point.method, scene.equations).travel, (scene.theta, scene.omega)
+    travel(start, point.h, 1)  # may have to be compiled
     runs, lengths = max(1, TIMED_STEPS // point.steps), []
     for _ in range(REPEATS):
         began = clock()
         for _ in range(runs):
-            travel(scene.w0_squared, start, point.h, point.steps)
+            travel(start, point.h, point.steps)
         lengths.append((clock() - began) / runs)
     return replace(point, seconds=min(lengths), spread=max(lengths) / min(lengths) - 1)
 
@@ -181,7 +175,7 @@ def measured(scene: Scene, time: float, rungs: Sequence[int]) -> Iterator[Point]
     return Study(scene, time, tiered).points(rungs)
 
 
-def orders(scene: Scene, time: float, loops: Callable[[Method], Loops] = plain) -> list[Order]:
+def orders(scene: Scene, time: float, loops: LoopsOf = plain) -> list[Order]:
     """The order of each method: the slope of log theta error over log h, fitted over one period or less.
 
     Over longer times RK4 reads 5 and more.  Its phase error at the time t is a·h⁴·t, but it also loses energy
@@ -190,9 +184,9 @@ def orders(scene: Scene, time: float, loops: Callable[[Method], Loops] = plain) 
     where phase hangs steeply on energy, it reads 5 within the first period.  Symplectic Euler reads 2
     from theta = 0, where its angles are velocity Verlet's.
     """
-    study = Study(scene, min(time, ExactMotion(scene).period or math.tau / scene.w0), loops)
+    study = Study(scene, min(time, scene.exact().period or math.tau / scene.w0), loops)
     usable = [steps for steps in ORDER_STEPS if study.time / steps * scene.w0 >= Z_LIMITS[0]]
-    runs = {method: [study.run(method, steps, ORDER_COMPARISONS) for steps in usable] for method in METHODS}
+    runs = {method: [study.run(method, steps, ORDER_COMPARISONS) for steps in usable] for method in scene.cast}
     return [
         Order(method, _slope([point for point in points if not study.may_be_rounding(point)]))
         for method, points in runs.items()

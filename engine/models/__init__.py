@@ -1,5 +1,12 @@
-"""What is simulated, and what it is compared with.
+"""The models: what is simulated, one a file, and what it is compared with.
 
-`state` holds the types a method meets, `pendulum` the forces and energies.  `exact_pendulum` is the closed-form
-motion, the reference of every error in theta; `modified_energy` is what symplectic methods conserve instead.
+`model` says what a model is, and holds the types a method meets.  `pendulum` and `linear` are the models;
+`exact_pendulum` is the pendulum's motion in closed form, the reference of every error in theta; `modified_energy`
+is what symplectic methods conserve instead of the energy.
 """
+
+from engine.models.linear import LinearOscillator
+from engine.models.model import Model as Model
+from engine.models.pendulum import Pendulum
+
+MODELS: dict[str, type[Pendulum | LinearOscillator]] = {model.key: model for model in (Pendulum, LinearOscillator)}

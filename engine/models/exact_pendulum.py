@@ -12,41 +12,33 @@ Carlson, Numer. Algorithms 10 (1995) 13.  Bulirsch, Numer. Math. 7 (1965) 78.
 import math
 from collections.abc import Callable
 from decimal import Context, Decimal, localcontext
-from typing import Literal
+from typing import NamedTuple
 
-from engine.models.state import State
-from engine.scenes import Scene
+from engine.models.model import ExactMotion, State
 
-Regime = Literal["libration", "rotation", "separatrix", "equilibrium"]
 Motion = Callable[[float], State]
 
 
-class ExactMotion:
-    """The exact motion of a scene's pendulum: where it is at any time, its period and its regime."""
+class _Start(NamedTuple):
+    theta: float  # rad
+    omega: float  # rad/s
+    w0: float  # rad/s
 
-    regime: Regime
-    period: float | None = None  # s, per swing or, in rotation, per turn; None: not periodic
 
-    def __init__(self, scene: Scene) -> None:
-        self.scene = scene
-        with localcontext(Context(prec=100)):
-            k_squared = _k_squared(scene.theta, scene.omega, scene.w0_squared)
-            d = 1 - k_squared
-            k, k_prime = float(k_squared.sqrt()), float(abs(d).sqrt())
-        if k == 0:
-            self.regime, self._motion = "equilibrium", _rest(scene)
-        elif d > 0:
-            self.regime = "libration"
-            self._motion, self.period = _libration(scene, k, k_prime)
-        elif d < 0:
-            self.regime = "rotation"
-            self._motion, self.period = _rotation(scene, k, k_prime)
-        else:
-            self.regime, self._motion = "separatrix", _separatrix(scene)
-
-    def at(self, t: float) -> State:
-        """The state at time t [s], negative times included; theta continues from the start, unwrapped."""
-        return self._motion(t)
+def exact_pendulum(w0_squared: float, theta: float, omega: float) -> ExactMotion:
+    """The exact motion of a pendulum from theta [rad] and omega [rad/s]."""
+    start = _Start(theta, omega, math.sqrt(w0_squared))
+    with localcontext(Context(prec=100)):
+        k_squared = _k_squared(theta, omega, w0_squared)
+        d = 1 - k_squared
+        k, k_prime = float(k_squared.sqrt()), float(abs(d).sqrt())
+    if k == 0:
+        return ExactMotion(lambda t: State(theta, omega), "equilibrium")
+    if d > 0:
+        return _libration(start, k, k_prime)
+    if d < 0:
+        return _rotation(start, k, k_prime)
+    return ExactMotion(_separatrix(start), "separatrix")
 
 
 def _k_squared(theta: float, omega: float, w0_squared: float) -> Decimal:
@@ -63,32 +55,27 @@ def _k_squared(theta: float, omega: float, w0_squared: float) -> Decimal:
     return Decimal(versine) / 2 + Decimal(omega) ** 2 / (4 * Decimal(w0_squared))
 
 
-def _rest(scene: Scene) -> Motion:
-    start = State(scene.theta, scene.omega)
-    return lambda t: start
-
-
-def _half_angle(scene: Scene) -> tuple[float, float, float]:
+def _half_angle(start: _Start) -> tuple[float, float, float]:
     """sin and cos of half the start angle brought to (-pi, pi), and the whole turns taken off [rad]."""
-    s, c = math.sin(scene.theta / 2), math.cos(scene.theta / 2)
+    s, c = math.sin(start.theta / 2), math.cos(start.theta / 2)
     if c < 0:
         s, c = -s, -c
-    turns = round((scene.theta - 2 * math.atan2(s, c)) / math.tau)
+    turns = round((start.theta - 2 * math.atan2(s, c)) / math.tau)
     return s, c, turns * math.tau
 
 
-def _libration(scene: Scene, k: float, k_prime: float) -> tuple[Motion, float]:
+def _libration(start: _Start, k: float, k_prime: float) -> ExactMotion:
     """theta = 2 atan2(k sn u, dn u), omega = 2 w0 k cn u, u = w0 t + F(phi0), T = 4 K/w0."""
-    w0 = scene.w0
-    s, c, turns = _half_angle(scene)
-    cn0 = scene.omega / (2 * w0) / k
+    w0 = start.w0
+    s, c, turns = _half_angle(start)
+    cn0 = start.omega / (2 * w0) / k
     quarter, sn_cn = _jacobi(k_prime)
-    start = s / k * _carlson_rf(cn0 * cn0, c * c, 1.0)  # 1 - k² sn² = c², which cannot cancel
+    offset = s / k * _carlson_rf(cn0 * cn0, c * c, 1.0)  # 1 - k² sn² = c², which cannot cancel
     if cn0 < 0:
-        start = 2 * quarter - start
+        offset = 2 * quarter - offset
 
     def motion(t: float) -> State:
-        u = w0 * t + start
+        u = w0 * t + offset
         half_periods = round(u / (2 * quarter))
         sn, cn = sn_cn(u - half_periods * 2 * quarter)
         if half_periods % 2:
@@ -96,37 +83,37 @@ def _libration(scene: Scene, k: float, k_prime: float) -> tuple[Motion, float]:
         dn = math.hypot(k_prime, k * cn)
         return State(turns + 2 * math.atan2(k * sn, dn), 2 * w0 * k * cn)
 
-    return motion, 4 * quarter / w0
+    return ExactMotion(motion, "libration", 4 * quarter / w0)
 
 
-def _rotation(scene: Scene, k: float, k_prime: float) -> tuple[Motion, float]:
+def _rotation(start: _Start, k: float, k_prime: float) -> ExactMotion:
     """theta = ±2 am(u, 1/k), omega = ±2 w0 k dn(u, 1/k), u = k w0 t + F(±theta0/2), a turn 2 K(1/k)/(k w0)."""
-    direction = math.copysign(1.0, scene.omega)
-    rate = scene.w0 * k
-    s, c, turns = _half_angle(scene)
-    dn0 = scene.omega / (2 * rate)
+    direction = math.copysign(1.0, start.omega)
+    rate = start.w0 * k
+    s, c, turns = _half_angle(start)
+    dn0 = start.omega / (2 * rate)
     quarter, sn_cn = _jacobi(k_prime / k)
-    start = direction * s * _carlson_rf(c * c, dn0 * dn0, 1.0)
+    offset = direction * s * _carlson_rf(c * c, dn0 * dn0, 1.0)
 
     def motion(t: float) -> State:
-        u = rate * t + start
+        u = rate * t + offset
         half_turns = round(u / (2 * quarter))
         sn, cn = sn_cn(u - half_turns * 2 * quarter)
         angle = 2 * math.atan2(sn, cn) + half_turns * math.tau
         dn = math.hypot(k_prime, cn) / k
         return State(turns + direction * angle, direction * 2 * rate * dn)
 
-    return motion, 2 * quarter / rate
+    return ExactMotion(motion, "rotation", 2 * quarter / rate)
 
 
-def _separatrix(scene: Scene) -> Motion:
+def _separatrix(start: _Start) -> Motion:
     """theta = 2 gd(u), omega = ±2 w0/cosh u, u = ±w0 t + u0: upright only after an infinite time."""
-    s, c, turns = _half_angle(scene)
-    rate = math.copysign(scene.w0, scene.omega)
-    start = math.asinh(s / c)
+    s, c, turns = _half_angle(start)
+    rate = math.copysign(start.w0, start.omega)
+    offset = math.asinh(s / c)
 
     def motion(t: float) -> State:
-        u = rate * t + start
+        u = rate * t + offset
         decay = math.exp(-abs(u))  # cosh itself overflows at u = 711
         return State(turns + 4 * math.atan(math.tanh(u / 2)), 4 * rate * decay / (1 + decay * decay))
 

@@ -5,17 +5,23 @@ a nearby energy.  The energy itself then wobbles and comes back; the modified en
 Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), IX.3 and IX.8.
 """
 
-from math import cos, sin
+from collections.abc import Callable
 
-from engine.models.pendulum import energy
+from engine.models.model import Model, Phase
 
-
-def velocity_verlet_modified_energy(w0_squared: float, theta: float, omega: float, h: float) -> float:
-    """H + h² (w0²/24) (2 omega² cos theta - w0² sin² theta) [s⁻²]; what remains wobbles with h⁴."""
-    correction = 2 * omega * omega * cos(theta) - w0_squared * sin(theta) ** 2
-    return float(energy(w0_squared, theta, omega)) + h * h * w0_squared / 24 * correction
+ModifiedEnergy = Callable[[Model, Phase, float], float]
+"""(model, (theta, omega), h [s]) -> modified energy [s⁻²]."""
 
 
-def symplectic_euler_modified_energy(w0_squared: float, theta: float, omega: float, h: float) -> float:
+def velocity_verlet_modified_energy(model: Model, phase: Phase, h: float) -> float:
+    """H - h² (2 omega² f'(theta) + f(theta)²)/24 [s⁻²], f being the force; what remains wobbles with h⁴."""
+    theta, omega = phase
+    force, energy = float(model.force()(theta)), float(model.energy()(phase))
+    value: float = energy - h * h / 24 * (2 * omega * omega * model.slope(theta) + force * force)
+    return value
+
+
+def symplectic_euler_modified_energy(model: Model, phase: Phase, h: float) -> float:
     """Verlet's modified energy half a kick later: symplectic Euler is Verlet seen between its kicks."""
-    return velocity_verlet_modified_energy(w0_squared, theta, omega - h / 2 * w0_squared * sin(theta), h)
+    theta, omega = phase
+    return velocity_verlet_modified_energy(model, (theta, omega + h / 2 * model.force()(theta)), h)

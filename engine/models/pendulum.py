@@ -5,15 +5,38 @@ theta'' = -w0² sin theta.  Mass cancels; energies are per unit m·L², in s⁻�
 
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
-from engine.models.state import Acceleration
+from engine.models.exact_pendulum import exact_pendulum
+from engine.models.model import Energy, ExactMotion, Force, Model, Phase, Sine
 
-Sine = Callable[[Any], Any]
+
+@dataclass(frozen=True)
+class Pendulum(Model):
+    """theta'' = -w0² sin theta."""
+
+    w0_squared: float  # g/L [s⁻²], the only parameter of the motion
+
+    key: ClassVar[str] = "pendulum"
+    equation: ClassVar[str] = "theta'' = -w0² sin theta"
+    turns: ClassVar[bool] = True
+
+    def force(self, sin: Sine = math.sin) -> Force:
+        return acceleration(self.w0_squared, sin)
+
+    def slope(self, theta: float) -> float:
+        return -self.w0_squared * math.cos(theta)
+
+    def energy(self, sin: Sine = math.sin) -> Energy:
+        return energy_of(self.w0_squared, sin)
+
+    def exact(self, theta: float, omega: float) -> ExactMotion:
+        return exact_pendulum(self.w0_squared, theta, omega)
 
 
-def acceleration(w0_squared: float, sin: Sine = math.sin) -> Acceleration:
-    """theta -> -w0² sin theta [rad/s²].  Pass the `sin` of your numbers: NumPy's, cmath's, mpmath's."""
+def acceleration(w0_squared: float, sin: Sine = math.sin) -> Force:
+    """theta -> -w0² sin theta [rad/s²]."""
 
     def pendulum_acceleration(theta: Any) -> Any:
         return -w0_squared * sin(theta)
@@ -21,13 +44,23 @@ def acceleration(w0_squared: float, sin: Sine = math.sin) -> Acceleration:
     return pendulum_acceleration
 
 
-def energy(w0_squared: float, theta: Any, omega: Any, sin: Sine = math.sin) -> Any:
-    """omega²/2 + 2 w0² sin²(theta/2) [s⁻²].
+def energy_of(w0_squared: float, sin: Sine = math.sin) -> Energy:
+    """(theta, omega) -> omega²/2 + 2 w0² sin²(theta/2) [s⁻²].
 
     Equal to omega²/2 + w0² (1 - cos theta), which would cancel to nothing near the bottom.
     """
-    half = sin(theta / 2)
-    return omega * omega / 2 + 2 * w0_squared * half * half
+
+    def pendulum_energy(phase: Phase) -> Any:
+        theta, omega = phase
+        half = sin(theta / 2)
+        return omega * omega / 2 + 2 * w0_squared * half * half
+
+    return pendulum_energy
+
+
+def energy(w0_squared: float, theta: Any, omega: Any, sin: Sine = math.sin) -> Any:
+    """The energy of one state, or of arrays [s⁻²]."""
+    return energy_of(w0_squared, sin)((theta, omega))
 
 
 def separatrix_energy(w0_squared: float) -> float:
@@ -43,19 +76,3 @@ def separatrix_margin(w0: float, theta: Any, omega: Any, cos: Callable[[Any], An
     """
     c, v = cos(theta / 2), omega / (2 * w0)
     return (c - v) * (c + v)
-
-
-class EnergyReference(NamedTuple):
-    """What the energy errors of a run are relative to."""
-
-    start: float  # s⁻², the energy at the start
-    scale: float  # s⁻², the same, or 2 w0² where that is zero
-
-    def error(self, energy: float) -> float:
-        return (energy - self.start) / self.scale
-
-
-def energy_reference(w0_squared: float, theta: float, omega: float) -> EnergyReference:
-    """The reference of a run that starts at theta [rad] and omega [rad/s]."""
-    start: float = energy(w0_squared, theta, omega)
-    return EnergyReference(start, start if start > 0 else separatrix_energy(w0_squared))

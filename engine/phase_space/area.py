@@ -6,11 +6,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.methods import METHODS, Method
-from engine.models.pendulum import acceleration
-from engine.models.state import Phase
-from engine.phase_space.tangent import jacobian
+from engine.methods import Method
+from engine.models.model import Phase
+from engine.run.loops import OVERFLOW
 from engine.run.stepping import Stepping, SteppingChange, change_before
+from engine.run.tangent import jacobian
 from engine.scenes import Scene
 
 Ring = tuple[NDArray[np.float64], NDArray[np.float64]]  # theta [rad] and omega [rad/s] of the neighbours
@@ -38,16 +38,14 @@ class Neighbourhood:
 
     def __init__(self, scene: Scene, radius: float, points: int = 64) -> None:
         """Put `points` starts around the scene's, `radius` rad away in theta and radius·w0 in omega."""
-        self._w0_squared = scene.w0_squared
-        self._force = acceleration(scene.w0_squared)
-        self._ring_force = acceleration(scene.w0_squared, np.sin)
+        self._model = scene.equations
         angle = np.linspace(0.0, 2 * math.pi, points, endpoint=False)
         ring = (scene.theta + radius * np.cos(angle), scene.omega + radius * scene.w0 * np.sin(angle))
-        self._carried = [_Carried(method, scene, ring) for method in METHODS]
+        self._carried = [_Carried(method, scene, ring) for method in scene.cast]
 
     @property
     def rings(self) -> tuple[Ring, ...]:
-        """Each method's ring, in the order of METHODS."""
+        """Each method's ring, in the order of the cast."""
         return tuple(carried.ring for carried in self._carried)
 
     @property
@@ -58,26 +56,25 @@ class Neighbourhood:
     def advance(self, n: int, stepping: Stepping) -> None:
         """Carry everything forward by n steps of the lockstep."""
         with np.errstate(over="ignore", invalid="ignore"):
-            for carried, part in zip(self._carried, stepping.parts(), strict=True):
-                for _ in range(n * part):
-                    if carried.lost:
-                        break
-                    self._step(carried, stepping.h / part)
+            for carried, part in zip(self._carried, stepping.parts, strict=True):
+                if not carried.lost:
+                    self._carry(carried, n * part, stepping.h / part)
 
-    def _step(self, carried: _Carried, h: float) -> None:
-        step = carried.method.step
+    def _carry(self, carried: _Carried, steps: int, h: float) -> None:
+        method, model = carried.method, self._model
+        phases = method.phases(model.force(), carried.phase, h)
+        rings = method.phases(model.force(np.sin), carried.ring, h)
         try:
-            determinant = jacobian(step, self._w0_squared, *carried.phase, h).determinant
-            phase = step(self._force, carried.phase, h)
-            log_area = carried.log_area + math.log(abs(determinant))
-        except (ValueError, OverflowError):  # sin of something infinite, or log of a determinant 0
+            for _ in range(steps):
+                determinant = jacobian(method, model, *carried.phase, h).determinant
+                phase, ring = next(phases), next(rings)
+                log_area = carried.log_area + math.log(abs(determinant))
+                if not (all(map(math.isfinite, (*phase, log_area))) and np.isfinite(ring).all()):
+                    carried.lost = True
+                    return
+                carried.phase, carried.ring, carried.log_area = phase, ring, log_area
+        except OVERFLOW:  # also the logarithm of a determinant 0
             carried.lost = True
-            return
-        ring = step(self._ring_force, carried.ring, h)
-        if not (all(map(math.isfinite, (*phase, log_area))) and np.isfinite(ring).all()):
-            carried.lost = True
-            return
-        carried.phase, carried.ring, carried.log_area = phase, ring, log_area
 
 
 class Neighbours:

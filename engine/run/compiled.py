@@ -1,19 +1,19 @@
 """The loops of engine.run.loops compiled by Numba, from the same functions: the same bits, some ten times as fast.
 
 Numba is the optional extra `fast`.  It is imported at the first use and not before: it takes half a
-second, and compiling another quarter of a second for each method.  Nothing is kept on disk: Numba's
+second, and compiling another fifth of a second for each method and model.  Nothing is kept on disk: Numba's
 cache does not notice when a function in another file changes, and ours are in three.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
 
 from engine.methods import Method
-from engine.models.state import Phase
+from engine.models.model import Model, Phase
 from engine.run import loops
 from engine.run.loops import Advanced, Loops, plain
 
@@ -27,30 +27,41 @@ def available() -> bool:
 
 
 @cache
-def compiled(method: Method) -> Loops:
-    """The method's loops, compiled.  Raises ImportError without Numba.
+def compiled(method: Method, model: Model) -> Loops:
+    """The method's loops on this model, compiled; its parameters become constants.  Raises ImportError without Numba.
 
     They release the interpreter's lock while they run.  Where Numba's sine is not Python's, which
     depends on the platform's libraries, bits would differ: there the plain loops are returned.
     """
     numba: Any = import_module("numba")
     if not _same_sine(numba):
-        return plain(method)
+        return plain(method, model)
     inner = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)  # never called by Python: compiles twice as fast
-    step, travel, advance = (inner(function) for function in (method.step, loops.travel, loops.advance))
-    pendulum = _pendulum(numba)
+    phases, force, energy = inner(method.phases), inner(model.force()), inner(model.energy())
+    travel, advance = inner(_travel), inner(loops.advance)
 
-    def travelling(w0_squared: float, phase: Phase, h: float, n: int) -> Any:
-        return travel(step, pendulum(w0_squared).acceleration, phase, h, n)
+    def travelling(phase: Phase, h: float, n: int) -> Any:
+        return travel(phases(force, phase, h), phase, n)
 
-    def advancing(w0_squared: float, phase: Phase, h: float, n: int, limit: float) -> Any:
-        return advance(step, pendulum(w0_squared).acceleration, w0_squared, phase, h, n, limit)
+    def advancing(phase: Phase, h: float, n: int, limit: float) -> Any:
+        return advance(phases(force, phase, h), energy, phase, n, limit)
 
-    return Loops(*(_function(numba.njit(nogil=True)(loop)) for loop in (travelling, advancing)))
+    return Loops(*(numba.njit(nogil=True)(loop) for loop in (travelling, advancing)))
+
+
+def _travel(phases: Iterator[Phase], phase: Phase, n: int) -> Phase:
+    for following in phases:
+        phase = following
+        n -= 1
+        if n == 0:
+            break
+    return phase
 
 
 @cache
-def tiered(method: Method, fast: Callable[[Method], Loops | None] = compiled, ahead: int = 0) -> Loops:
+def tiered(
+    method: Method, model: Model, fast: Callable[[Method, Model], Loops | None] = compiled, ahead: int = 0
+) -> Loops:
     """Plain loops, and from COMPILED_FROM steps on those of `fast`, as soon as it has any, if Numba is installed.
 
     Counted are the method's steps so far; more than those count if so many are known to lie `ahead`.
@@ -61,20 +72,15 @@ def tiered(method: Method, fast: Callable[[Method], Loops | None] = compiled, ah
     def loops_for(n: int) -> Loops:
         nonlocal done
         done += n
-        return (max(done, ahead) >= COMPILED_FROM and available() and fast(method)) or plain(method)
+        return (max(done, ahead) >= COMPILED_FROM and available() and fast(method, model)) or plain(method, model)
 
-    def travel(w0_squared: float, phase: Phase, h: float, n: int) -> Phase:
-        return loops_for(n).travel(w0_squared, phase, h, n)
+    def travel(phase: Phase, h: float, n: int) -> Phase:
+        return loops_for(n).travel(phase, h, n)
 
-    def advance(w0_squared: float, phase: Phase, h: float, n: int, limit: float) -> Advanced:
-        return loops_for(n).advance(w0_squared, phase, h, n, limit)
+    def advance(phase: Phase, h: float, n: int, limit: float) -> Advanced:
+        return loops_for(n).advance(phase, h, n, limit)
 
     return Loops(travel, advance)
-
-
-def _function(dispatcher: Callable[..., Any]) -> Callable[..., Any]:
-    """The same as a function of Python's, which a copy of a Lockstep shares; Numba's own cannot be copied."""
-    return lambda *arguments: dispatcher(*arguments)
 
 
 @cache
@@ -82,21 +88,3 @@ def _same_sine(numba: Any) -> bool:
     """Whether compiled code has Python's sine.  Of another library's values, one in 1400 or so differs."""
     sine = numba.njit(lambda x: math.sin(x))
     return all(sine(x) == math.sin(x) for x in (0.001 * n for n in range(20_000)))
-
-
-@cache
-def _pendulum(numba: Any) -> Any:
-    """engine.models.pendulum for Numba: w0_squared -> an object with the acceleration as its method.
-
-    A closure over w0_squared would be compiled again for each pendulum.
-    """
-    experimental: Any = import_module("numba.experimental")
-
-    class Pendulum:
-        def __init__(self, w0_squared: float) -> None:
-            self.w0_squared = w0_squared
-
-        def acceleration(self, theta: float) -> float:
-            return -self.w0_squared * math.sin(theta)
-
-    return experimental.jitclass([("w0_squared", numba.float64)])(Pendulum)

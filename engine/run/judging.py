@@ -3,10 +3,9 @@
 import math
 
 from engine.methods import Method
-from engine.models.pendulum import EnergyReference
-from engine.models.state import Phase
+from engine.models.model import EnergyReference, Model, Phase
 from engine.run.lockstep import Reading
-from engine.run.loops import Advance
+from engine.run.loops import LoopsOf
 from engine.run.verdict import Judge, Judgement, Look, Verdict, stride
 
 MOST_STEPS = 20_000
@@ -22,23 +21,17 @@ class Judging:
     def __init__(
         self,
         method: Method,
+        model: Model,
         reference: EnergyReference,
-        w0_squared: float,
         h: float,
         parts: int,
         period: float,
-        advance: Advance,
+        loops: LoopsOf,
     ) -> None:
         """`h` [s] is the lockstep's step, of which the method takes so many `parts`."""
-        own = h / parts
-        self._judge = Judge(method, w0_squared, reference.scale, own, period)
-        self._reference, self._w0_squared, self._h, self._parts, self._advance = (
-            reference,
-            w0_squared,
-            own,
-            parts,
-            advance,
-        )
+        self._h, self._parts, self._reference = h / parts, parts, reference
+        self._judge = Judge(method, model, reference.scale, self._h, period)
+        self._advance = loops(method, model).advance
         self._stride = stride(period, h)
         self._step = -1  # of the lockstep, since the first sample; -1: there was none
         self._phase: Phase = (0.0, 0.0)
@@ -73,7 +66,7 @@ class Judging:
         at, phase = self._step, self._phase
         for stop in [*range(first, step, self._stride), step]:
             n = (stop - at) * self._parts
-            done, phase, value, low, high = self._advance(self._w0_squared, phase, self._h, n, math.inf)
+            done, phase, value, low, high = self._advance(phase, self._h, n, math.inf)
             if done < n:
                 return False
             self._low = min(self._low, self._reference.error(low))

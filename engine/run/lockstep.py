@@ -1,12 +1,10 @@
-"""All methods side by side on one scene, step by step."""
+"""A scene's methods side by side, step by step."""
 
-from collections.abc import Callable, Sequence
+import copy
 from dataclasses import dataclass
 
-from engine.methods import METHODS, Method
-from engine.models.pendulum import energy_reference
-from engine.models.state import Phase
-from engine.run.loops import Advance, Loops, plain
+from engine.models.model import Phase
+from engine.run.loops import Advance, LoopsOf, plain
 from engine.run.stepping import Stepping
 from engine.scenes import Scene, check_h
 
@@ -30,7 +28,7 @@ class Reading:
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """All methods' readings at one step, in the order of METHODS."""
+    """All methods' readings at one step, in the order of the cast."""
 
     run: int  # counts from 1 within a recording
     step: int  # steps since the run's start
@@ -53,7 +51,7 @@ class _Track:
 
 
 class Lockstep:
-    """The methods in lockstep.  The same scene and stepping give the same bits, however the steps are cut.
+    """A scene's cast in lockstep.  The same scene and stepping give the same bits, however the steps are cut.
 
     `scene.h` is the step size at the start, `stepping` what is in force.  Time is `t_base + n·h`, never a
     running sum.  A method whose numbers stop being finite is frozen; the others go on.
@@ -63,18 +61,24 @@ class Lockstep:
         self,
         scene: Scene,
         run: int = 1,
-        methods: Sequence[Method] = METHODS,
-        loops: Callable[[Method], Loops] = plain,  # or engine.run.compiled.compiled
+        loops: LoopsOf = plain,  # or engine.run.compiled.compiled
     ) -> None:
         self.scene = scene
         self.run = run
         self.step = 0
-        self.stepping = Stepping(scene.h)
+        self.stepping = Stepping(scene.h, cast=scene.cast)
         self._t_base, self._base_step = 0.0, 0
-        self._reference = energy_reference(scene.w0_squared, scene.theta, scene.omega)
+        self._reference = scene.equations.reference(scene.theta, scene.omega)
         self._limit = min(1.0, self._reference.scale) * 1e300  # so that relative errors are finite, too
-        self._tracks = [_Track(loops(method).advance, scene, self._reference.start) for method in methods]
-        self._methods = tuple(methods)
+        self._tracks = [
+            _Track(loops(method, scene.equations).advance, scene, self._reference.start) for method in scene.cast
+        ]
+
+    def copy(self) -> "Lockstep":
+        """Another lockstep that goes on from here."""
+        other = copy.copy(self)
+        other._tracks = [copy.copy(track) for track in self._tracks]
+        return other
 
     @property
     def t(self) -> float:
@@ -86,16 +90,17 @@ class Lockstep:
         check_h(stepping.h, self.scene.w0)
         self._t_base, self._base_step = self.t, self.step
         self.stepping = stepping
-        for track, part in zip(self._tracks, stepping.parts(self._methods), strict=True):
+        for track, part in zip(self._tracks, stepping.parts, strict=True):
             track.parts = part
 
     def advance(self, n: int) -> None:
-        w0_squared = self.scene.w0_squared
+        if n <= 0:
+            return
         for track in self._tracks:
             if track.diverged_at is not None:
                 continue
             h, steps = self.stepping.h / track.parts, n * track.parts
-            done, track.phase, value, low, high = track.advance(w0_squared, track.phase, h, steps, self._limit)
+            done, track.phase, value, low, high = track.advance(track.phase, h, steps, self._limit)
             if done:
                 track.energy = value
                 track.low, track.high = min(track.low, low), max(track.high, high)

@@ -5,18 +5,16 @@ Nothing here is recorded: it follows from the samples, so a replay shows what th
 
 import math
 from bisect import bisect_right, insort
-from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import islice
 from operator import attrgetter
 from typing import Literal
 
-from engine.methods import METHODS, Method
-from engine.models.exact_pendulum import ExactMotion
-from engine.models.pendulum import acceleration, energy, energy_reference
-from engine.models.state import Phase
+from engine.methods import Method
+from engine.models.model import Phase
 from engine.run.judging import MOST_STEPS, Judging
-from engine.run.lockstep import Sample
-from engine.run.loops import Loops, plain
+from engine.run.lockstep import Reading, Sample
+from engine.run.loops import OVERFLOW, LoopsOf, plain
 from engine.run.stepping import Stepping, SteppingChange
 from engine.run.verdict import Judgement, Verdict
 from engine.scenes import Scene
@@ -27,15 +25,11 @@ class Milestone:
     """Something that a method did: it went over the top, its numbers ended, or it earned a verdict."""
 
     kind: Literal["over the top", "failed", "verdict"]
-    index: int  # into METHODS
+    method: Method
     step: int
     t: float  # s, simulated
     energy_error: float  # relative, at this step
     verdict: Verdict = "too early"
-
-    @property
-    def method(self) -> Method:
-        return METHODS[self.index]
 
 
 _step = attrgetter("step")
@@ -44,17 +38,18 @@ _step = attrgetter("step")
 class RunObserver:
     """Watches one run, live, replayed or without a screen, sample by sample."""
 
-    def __init__(self, scene: Scene, loops: Callable[[Method], Loops] = plain) -> None:
+    def __init__(self, scene: Scene, loops: LoopsOf = plain) -> None:
         """`loops` take the steps between samples again."""
         self.scene = scene
         self._loops = loops
-        self.exact = exact = ExactMotion(scene)
-        self.reference = energy_reference(scene.w0_squared, scene.theta, scene.omega)
+        self.exact = exact = scene.exact()
+        self.reference = scene.equations.reference(scene.theta, scene.omega)
         self.seen = -1
         """The last step that was looked at."""
         self._period = exact.period or math.tau / scene.w0
-        self._bottom = math.tau * round(scene.theta / math.tau) if exact.regime == "libration" else None
-        self._start = SteppingChange(0, 0.0, Stepping(scene.h))
+        swings = scene.equations.turns and exact.regime == "libration"
+        self._bottom = math.tau * round(scene.theta / math.tau) if swings else None
+        self._start = SteppingChange(0, 0.0, Stepping(scene.h, cast=scene.cast))
         self._milestones: list[Milestone] = []
         self._before: Sample | None = None
         self._modified_starts: dict[int, list[float]] = {}  # by the step of the change that they begin at
@@ -63,7 +58,7 @@ class RunObserver:
     @property
     def judgements(self) -> list[Judgement]:
         """The verdicts on the run since the last change of the stepping."""
-        return [judging.judgement for judging in self._judgings] or [Judgement()] * len(METHODS)
+        return [judging.judgement for judging in self._judgings] or [Judgement()] * len(self.scene.cast)
 
     def milestones(self, step: int) -> list[Milestone]:
         """What happened up to a step, in its order."""
@@ -72,7 +67,7 @@ class RunObserver:
     def judge_anew(self, step: int) -> None:
         """The stepping changes here: verdicts begin anew, and what came later has never been."""
         self._milestones = self.milestones(step)
-        self._known = {(each.kind, each.index) for each in self._milestones}
+        self._known = {(each.kind, each.method) for each in self._milestones}
         self._modified_starts = {at: starts for at, starts in self._modified_starts.items() if at < step}
         self._judgings: list[Judging] = []
         if self._before is not None and self._before.step == step:
@@ -95,17 +90,19 @@ class RunObserver:
             self._begin = sample
         if not self._judgings:
             self._judgings = self._begun(change.stepping)
-        for index, (judging, reading) in enumerate(zip(self._judgings, sample.readings, strict=True)):
+        for index, (method, judging, reading) in enumerate(
+            zip(self.scene.cast, self._judgings, sample.readings, strict=True)
+        ):
             for since, error, verdict in judging.follow(sample.step - self._begin.step, reading):
                 if reading.diverged_at is None:
                     t = self._begin.t + since * change.stepping.h
-                    self._note(Milestone("verdict", index, self._begin.step + since, t, error, verdict))
-            if reading.diverged_at is not None and self._is_new("failed", index):
+                    self._note(Milestone("verdict", method, self._begin.step + since, t, error, verdict))
+            if reading.diverged_at is not None and self._is_new("failed", method):
                 error = reading.energy_error
-                self._note(Milestone("failed", index, sample.step, reading.diverged_at, error))
+                self._note(Milestone("failed", method, sample.step, reading.diverged_at, error))
             if (
                 before is not None
-                and self._is_new("over the top", index)
+                and self._is_new("over the top", method)
                 and self._is_over(reading.theta)
                 and not self._is_over(before.readings[index].theta)
             ):
@@ -115,8 +112,8 @@ class RunObserver:
         """A judging of each method from the sample on at which this stepping begins."""
         scene, reference = self.scene, self.reference
         judgings = [
-            Judging(method, reference, scene.w0_squared, stepping.h, part, self._period, self._loops(method).advance)
-            for method, part in zip(METHODS, stepping.parts(), strict=True)
+            Judging(method, scene.equations, reference, stepping.h, part, self._period, self._loops)
+            for method, part in zip(scene.cast, stepping.parts, strict=True)
         ]
         for judging, reading in zip(judgings, self._begin.readings, strict=True):
             judging.follow(0, reading)
@@ -131,17 +128,17 @@ class RunObserver:
         starts = self._modified_starts.get(change.step)
         if starts is None:
             if before is None or not change.step <= before.step < sample.step:
-                return [math.nan] * len(METHODS)
+                return [math.nan] * len(self.scene.cast)
             starts = self._modified_starts[change.step] = self._modified_energies(before, change.stepping)
         energies = self._modified_energies(sample, change.stepping)
         return [(now - start) / self.reference.scale for now, start in zip(energies, starts, strict=True)]
 
     def _modified_energies(self, sample: Sample, stepping: Stepping) -> list[float]:
         energies = [
-            method.modified_energy(self.scene.w0_squared, reading.theta, reading.omega, h)
+            method.modified_energy(self.scene.equations, (reading.theta, reading.omega), h)
             if method.modified_energy
             else math.nan
-            for method, reading, h in zip(METHODS, sample.readings, stepping.own(), strict=True)
+            for method, reading, h in zip(self.scene.cast, sample.readings, stepping.own, strict=True)
         ]
         return [energy if math.isfinite(energy) else math.nan for energy in energies]  # it overflows where H does not
 
@@ -149,12 +146,12 @@ class RunObserver:
         """Whether theta [rad] is where the exact motion never comes: beyond the top."""
         return self._bottom is not None and abs(theta - self._bottom) > math.pi
 
-    def _is_new(self, kind: str, index: int) -> bool:
+    def _is_new(self, kind: str, method: Method) -> bool:
         """Whether this has not happened to a method before."""
-        return (kind, index) not in self._known
+        return (kind, method) not in self._known
 
     def _note(self, milestone: Milestone) -> None:
-        self._known.add((milestone.kind, milestone.index))
+        self._known.add((milestone.kind, milestone.method))
         insort(self._milestones, milestone, key=_step)
 
     def _crossing(self, index: int, before: Sample, sample: Sample, stepping: Stepping) -> Milestone:
@@ -163,18 +160,20 @@ class RunObserver:
         The steps between them are taken again.  Where they do not lead to the sample, as when the step size
         changed in a gap, or where there are too many, it is where it was first seen there.
         """
-        method, part, found = METHODS[index], stepping.parts()[index], sample.readings[index]
-        steps, h, force = (sample.step - before.step) * part, stepping.h / part, acceleration(self.scene.w0_squared)
-        phase: Phase = (before.readings[index].theta, before.readings[index].omega)
-        crossing = None
+        method, part, found = self.scene.cast[index], stepping.parts[index], sample.readings[index]
+        steps, h = (sample.step - before.step) * part, stepping.h / part
+        phases = self._phases(method, before.readings[index], h, steps if steps <= MOST_STEPS * part else 0)
+        if phases and math.isclose(phases[-1][0], found.theta, rel_tol=1e-6):
+            for n, phase in enumerate(phases, 1):
+                if self._is_over(phase[0]):
+                    error = self.reference.error(self.scene.equations.energy()(phase))
+                    step, t = before.step + math.ceil(n / part), before.t + n * h
+                    return Milestone("over the top", method, step, t, error)
+        return Milestone("over the top", method, sample.step, sample.t, found.energy_error)
+
+    def _phases(self, method: Method, reading: Reading, h: float, steps: int) -> list[Phase]:
+        """The phases after so many steps from a reading; none if they end before."""
         try:
-            for n in range(1, steps + 1 if steps <= MOST_STEPS * part else 1):
-                phase = method.step(force, phase, h)
-                if crossing is None and self._is_over(phase[0]):
-                    crossing = n, self.reference.error(energy(self.scene.w0_squared, *phase))
-        except ValueError:  # the sine of something infinite
-            crossing = None
-        if crossing is None or not math.isclose(phase[0], found.theta, rel_tol=1e-6):
-            return Milestone("over the top", index, sample.step, sample.t, found.energy_error)
-        n, error = crossing
-        return Milestone("over the top", index, before.step + math.ceil(n / part), before.t + n * h, error)
+            return list(islice(method.phases(self.scene.equations.force(), (reading.theta, reading.omega), h), steps))
+        except OVERFLOW:
+            return []

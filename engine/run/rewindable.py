@@ -4,16 +4,14 @@ Going back is simulating again from a copy of the lockstep taken earlier.  The o
 are, the further they lie apart, so their number grows with the logarithm of the run's length only.
 """
 
-import copy
 import math
 from bisect import bisect_right
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import NamedTuple
 
-from engine.methods import Method
 from engine.run.compiled import tiered
 from engine.run.lockstep import Lockstep, Sample
-from engine.run.loops import Loops
+from engine.run.loops import LoopsOf
 from engine.run.stepping import Stepping, SteppingChange
 from engine.scenes import Scene
 
@@ -32,10 +30,10 @@ class RewindableRun:
     Between a step back and the step reached before, forward repeats what was, changes included.
     """
 
-    def __init__(self, scene: Scene, run: int = 1, loops: Callable[[Method], Loops] = tiered) -> None:
+    def __init__(self, scene: Scene, run: int = 1, loops: LoopsOf = tiered) -> None:
         self.scene = scene
         self.run = run
-        self.changes = [SteppingChange(0, 0.0, Stepping(scene.h))]
+        self.changes = [SteppingChange(0, 0.0, Stepping(scene.h, cast=scene.cast))]
         self.furthest = 0  # the last step sampled
         self._x = [0.0]  # s, the simulated time run up to each change; it goes up even while t goes down
         self._applied = 1
@@ -113,7 +111,7 @@ class RewindableRun:
         """Go back to a step, before any change of the step size made there."""
         at = bisect_right(self._copies, step, key=lambda place: place.lockstep.step) - 1
         lockstep, self._applied = self._copies[at]
-        self._lockstep = copy.deepcopy(lockstep)
+        self._lockstep = lockstep.copy()
         self._lockstep.run = self.run
         self.forward(step - self.step)
 
@@ -134,7 +132,7 @@ class RewindableRun:
         self.furthest = self.step
 
     def _copy(self) -> _Checkpoint:
-        return _Checkpoint(copy.deepcopy(self._lockstep), self._applied)
+        return _Checkpoint(self._lockstep.copy(), self._applied)
 
     def _thin(self) -> None:
         steps = [place.lockstep.step for place in self._copies]

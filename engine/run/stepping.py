@@ -8,51 +8,48 @@ import math
 from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from operator import attrgetter
 from typing import NamedTuple, Self
 
-from engine.methods import METHODS, Method
+from engine.methods import USUAL_CAST, Cast, Method
 from engine.scenes import check_h
-
-
-def parts(methods: Sequence[Method] = METHODS) -> tuple[int, ...]:
-    """In how many parts each method takes a step at equal cost: 4, 4, 4 and 1 for METHODS."""
-    dearest = max((method.force_evaluations for method in methods), default=1)
-    return tuple(max(1, round(dearest / method.force_evaluations)) for method in methods)
 
 
 @dataclass(frozen=True, slots=True)
 class Stepping:
-    """How a run steps: its step size, and whether at equal cost."""
+    """How a run steps: its step size, whether at equal cost, and the methods that share it."""
 
     h: float  # s, of the lockstep, and so of the method that is not cut; negative: time runs backwards
     equal_cost: bool = False
+    cast: Cast = USUAL_CAST
 
-    @classmethod
-    def of_smallest(cls, h: float, equal_cost: bool) -> Self:
-        """The stepping whose smallest own step is h [s]."""
-        return cls(h * max(parts()) if equal_cost else h, equal_cost)
+    @property
+    def parts(self) -> tuple[int, ...]:
+        """In how many parts each method takes a step: at equal cost 4, 4, 4 and 1 for the usual cast."""
+        return _parts(self.cast) if self.equal_cost else (1,) * len(self.cast)
 
-    def parts(self, methods: Sequence[Method] = METHODS) -> tuple[int, ...]:
-        """In how many parts each method takes a step."""
-        return parts(methods) if self.equal_cost else (1,) * len(methods)
-
-    def own(self, methods: Sequence[Method] = METHODS) -> tuple[float, ...]:
+    @property
+    def own(self) -> tuple[float, ...]:
         """Each method's own step size [s], with its sign."""
-        return tuple(self.h / part for part in self.parts(methods))
+        return tuple(self.h / part for part in self.parts)
 
     @property
     def smallest(self) -> float:
         """The smallest own step size, without its sign [s]: a scene's `h` at equal cost."""
-        return min(map(abs, self.own()))
+        return min(map(abs, self.own))
 
     def with_own(self, method: Method, h: float) -> Self:
         """With |h| [s] as this method's own step size, in the same direction."""
-        return replace(self, h=math.copysign(h * self.parts()[METHODS.index(method)], self.h))
+        return replace(self, h=math.copysign(h * self.parts[self.cast.index(method)], self.h))
 
     def next(self, up: bool) -> Self:
         """With the smallest own step size at the next rung of 1, 2, 5, 10, …, or at the one before."""
-        return self.of_smallest(math.copysign(_next_rung(self.smallest, up), self.h), self.equal_cost)
+        return self.with_smallest(_next_rung(self.smallest, up))
+
+    def with_smallest(self, h: float) -> Self:
+        """With |h| [s] as the smallest own step size, in the same direction."""
+        return replace(self, h=math.copysign(h * max(self.parts), self.h))
 
     def reversed(self) -> Self:
         """With time running the other way."""
@@ -60,12 +57,18 @@ class Stepping:
 
     def toggled(self) -> Self:
         """With equal cost switched on, or off; the smallest own step size stays."""
-        return self.of_smallest(math.copysign(self.smallest, self.h), not self.equal_cost)
+        return replace(self, equal_cost=not self.equal_cost).with_smallest(self.smallest)
 
     def check(self, w0: float) -> None:
         """Raise SceneError unless a pendulum of natural frequency w0 [rad/s] can be given each method's own step."""
-        for h in dict.fromkeys((self.h, *self.own())):
+        for h in dict.fromkeys((self.h, *self.own)):
             check_h(h, w0)
+
+
+@cache
+def _parts(cast: Cast) -> tuple[int, ...]:
+    dearest = max((method.force_evaluations for method in cast), default=1)
+    return tuple(max(1, round(dearest / method.force_evaluations)) for method in cast)
 
 
 class SteppingChange(NamedTuple):

@@ -29,9 +29,9 @@ from statistics import median
 from typing import Literal, NamedTuple
 
 from engine.methods import Method
-from engine.models.state import Phase
+from engine.models.model import Model, Phase
 from engine.run.bands import FLOOR, MOST_BINS, Bands, hull, rising, steady
-from engine.run.stretching import Stretching, conserved_ellipse
+from engine.run.tangent import Stretching, conserved_ellipse
 
 Verdict = Literal["too early", "bounded", "loses", "grows", "chaotic", "caught", "wanders"]
 
@@ -82,18 +82,19 @@ def stride(period: float, h: float) -> int:
 class Judge:
     """Judges one method from a start on; another h needs another Judge."""
 
-    def __init__(self, method: Method, w0_squared: float, scale: float, h: float, period: float) -> None:
+    def __init__(self, method: Method, model: Model, scale: float, h: float, period: float) -> None:
         """`h` [s] is the method's own step; `period` [s] is that of the exact motion, or 2 pi/w0 if it has none.
 
         Energy errors are relative to `scale` [s⁻²].
         """
-        self._method, self._w0_squared, self._h, self._period = method, w0_squared, h, period
+        self._method, self._model, self._h, self._period = method, model, h, period
         self._scale = scale
-        self._z, self._w0 = abs(h) * math.sqrt(w0_squared), math.sqrt(w0_squared)
+        self._w0 = math.sqrt(model.w0_squared)
+        self._z = abs(h) * self._w0
         self._width = max(LEAST_STEPS, round(period / abs(h)))  # steps of a bin, at first
         self._energy, self._modified = Bands(self._width), Bands(self._width)
-        self._neighbours = Stretching(method.step, w0_squared, h)
-        self._form = conserved_ellipse(method, w0_squared, h)
+        self._neighbours = Stretching(method, model, h)
+        self._form = conserved_ellipse(method, h * self._w0)
         self._ellipse = (math.inf, 0.0)  # lowest and highest size seen
         self._omegas = (math.inf, -math.inf)  # rad/s
         self._first: Look | None = None
@@ -126,7 +127,8 @@ class Judge:
         self._omegas = min(self._omegas[0], phase[1]), max(self._omegas[1], phase[1])
         if self._form is not None:
             a, b, c = self._form
-            theta, omega = math.remainder(phase[0], math.tau), phase[1] / self._w0
+            theta = math.remainder(phase[0], math.tau) if self._model.turns else phase[0]
+            omega = phase[1] / self._w0
             size = a * theta * theta + b * theta * omega + c * omega * omega
             self._ellipse = min(self._ellipse[0], size), max(self._ellipse[1], size)
         if self._z > QUIET and self._neighbours.steps < LYAPUNOV_STEPS and steps <= 2 * stride(self._period, self._h):
@@ -137,8 +139,8 @@ class Judge:
         function, first = self._method.modified_energy, self._first
         assert function is not None
         assert first is not None
-        start = function(self._w0_squared, first.theta, first.omega, self._h)
-        value = (function(self._w0_squared, *phase, self._h) - start) / self._scale
+        start = function(self._model, (first.theta, first.omega), self._h)
+        value = (function(self._model, phase, self._h) - start) / self._scale
         return value if math.isfinite(value) else math.inf
 
     def _judge(self) -> None:
@@ -161,7 +163,7 @@ class Judge:
     def _is_conserved(self) -> bool:
         """Whether the modified energy hardly moves; the energy of velocity Verlet wobbles by z²/4 in small swings."""
         moved = (self._modified.high - self._modified.low) * self._scale
-        energy = min(self._scale, 2 * self._w0_squared)
+        energy = min(self._scale, 2 * self._model.w0_squared)
         return bool(self._modified.bins) and moved <= max(CONSERVED * self._z**2 * energy, FLOOR * self._scale)
 
     def _symplectic(self, conserved: bool, periods: float) -> Verdict:

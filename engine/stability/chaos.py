@@ -10,42 +10,42 @@ from typing import Any
 
 import numpy as np
 
-from engine.methods import Step
-from engine.models.pendulum import acceleration
-from engine.phase_space.tangent import tangent_map
+from engine.methods import Method
+from engine.models.pendulum import Pendulum
+from engine.run.tangent import tangent_map
 
 GREENE_K = 0.971635
 GREENE_Z = math.sqrt(GREENE_K)  # 0.985716
 
 
-def parting(step: Step, theta: Any, omega: Any, z: Any, steps: int) -> Any:
+def parting(method: Method, theta: Any, omega: Any, z: Any, steps: int) -> Any:
     """ln of how far two neighbouring starts have parted after so many steps, with w0 = 1; for numbers or arrays.
 
     The displacement is brought back to length 1 after each step: Benettin et al., Meccanica 15 (1980) 9.  On
     regular orbits it grows in proportion to the steps, on chaotic ones exponentially.
     """
-    force = acceleration(1.0, np.sin)
+    force = Pendulum(1.0).force(np.sin)
     along, across, total = 1.0 + 0.0 * theta, 0.0 * theta, 0.0 * theta
     for _ in range(steps):
-        (theta, omega), (along, across) = tangent_map(step, force, (theta, omega), (along, across), z)
+        (theta, omega), (along, across) = tangent_map(method, force, (theta, omega), (along, across), z)
         growth = np.hypot(along, across)
         along, across, total = along / growth, across / growth, total + np.log(growth)
     return total
 
 
-def lyapunov(step: Step, theta: float, omega: float, z: float, steps: int) -> float:
+def lyapunov(method: Method, theta: float, omega: float, z: float, steps: int) -> float:
     """Largest Lyapunov exponent per step, with w0 = 1: mean growth of ln |a small displacement| along an orbit.
 
     Regular orbits tend to 0 as ln(steps)/steps, chaotic ones to a positive number; for K >= 10 that
     is ln(K/2): Chirikov, Phys. Rep. 52 (1979) 263.
     """
-    return float(parting(step, theta, omega, z, steps)) / steps
+    return float(parting(method, theta, omega, z, steps)) / steps
 
 
-def is_chaotic(step: Step, theta: Any, z: Any, steps: int = 10_000) -> Any:
+def is_chaotic(method: Method, theta: Any, z: Any, steps: int = 10_000) -> Any:
     """Whether swings from rest at theta [rad] are chaotic, judged from `steps` steps: theta and z are arrays, or not.
 
     Over a million steps regular orbits part by at most e^14, chaotic ones by e^28 within some thousand.  From
     beside upright the exact swing alone parts neighbours by 1/cos²(theta/2), which counts as none.
     """
-    return parting(step, theta, 0.0 * theta, z, steps) > 15 + math.log(steps) - 2 * np.log(np.cos(theta / 2))
+    return parting(method, theta, 0.0 * theta, z, steps) > 15 + math.log(steps) - 2 * np.log(np.cos(theta / 2))

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from engine.methods import METHODS, Method
+from engine.methods import USUAL_CAST, Cast
 from engine.stability.outcomes import CELL, UNKNOWN, Cells, Floats, outcomes
 
 STRIP = 2048
@@ -20,7 +20,7 @@ class Grid:
     theta: Floats  # rad, amplitudes between 0 and pi
     z: Floats  # h·w0, above 0
     steps: int
-    methods: tuple[Method, ...] = METHODS
+    methods: Cast = USUAL_CAST
 
     @property
     def shape(self) -> tuple[int, int, int]:
@@ -70,6 +70,6 @@ def pieces(grid: Grid, passes: Sequence[int], width: int = 10) -> Iterator[Piece
             yield Piece(z, m, part.cells()[:, 0], steps, done / len(places))
 
 
-def default_grid() -> Grid:
+def default_grid(cast: Cast = USUAL_CAST) -> Grid:
     """The middles of 200 steps z up to 3, beyond every method's limit, and of 100 amplitudes up to pi."""
-    return Grid(theta=(np.arange(100) + 0.5) * np.pi / 100, z=(np.arange(200) + 0.5) * 3 / 200, steps=10_000)
+    return Grid((np.arange(100) + 0.5) * np.pi / 100, (np.arange(200) + 0.5) * 3 / 200, 10_000, cast)

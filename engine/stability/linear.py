@@ -7,31 +7,31 @@ import cmath
 import math
 from fractions import Fraction
 
-from engine.methods import Step
-from engine.models.state import Number
-from engine.phase_space.tangent import jacobian
+from engine.methods import Method
+from engine.models.model import Number
+from engine.run.tangent import at_bottom
 
 
-def amplification(step: Step, z: float) -> float:
+def amplification(method: Method, z: float) -> float:
     """Largest |multiplier| of one step at the bottom of the pendulum, from the step's Jacobian.
 
     Below a symplectic method's limit it is 1 to rounding, 1e-15; at the limit the two multipliers
     meet and rounding shows as its square root, 1e-8.
     """
-    a, b, c, d = jacobian(step, 1.0, 0.0, 0.0, z)
+    a, b, c, d = at_bottom(method, z)
     mean, spread = (a + d) / 2, cmath.sqrt((a - d) ** 2 / 4 + b * c)
     return max(abs(mean + spread), abs(mean - spread))
 
 
-def is_stable(step: Step, z: Number) -> bool:
+def is_stable(method: Method, z: Number) -> bool:
     """Whether neither multiplier of the step is larger than 1, decided without rounding for a Fraction z.
 
     A step has only + and * on the phase, so rational numbers go through it exactly, and no tolerance
     has to tell |multiplier| = 1, where symplectic methods live, from growth.
     Both multipliers lie in the closed unit disc if det <= 1 and |trace| <= 1 + det (Jury's conditions).
     """
-    a, c = step(_spring, (1, 0), z)
-    b, d = step(_spring, (0, 1), z)
+    a, c = method.step(_spring, (1, 0), z)
+    b, d = method.step(_spring, (0, 1), z)
     determinant = a * d - b * c
     return bool(determinant <= 1 and abs(a + d) <= 1 + determinant)
 
@@ -40,7 +40,7 @@ def _spring(theta: Number) -> Number:
     return -theta
 
 
-def linear_limit(step: Step) -> float:
+def linear_limit(method: Method) -> float:
     """The z up to which the step is stable, by bisection to 1e-9; 0.0 where no step is small enough.
 
     Takes it that the step, once unstable, stays so.
@@ -48,14 +48,14 @@ def linear_limit(step: Step) -> float:
     stable, unstable = Fraction(0), Fraction(8)  # beyond any method's limit: 2√2 is the largest of ours
     while unstable - stable > Fraction(1, 2**33):  # 1.2e-10
         middle = (stable + unstable) / 2
-        if is_stable(step, middle):
+        if is_stable(method, middle):
             stable = middle
         else:
             unstable = middle
     return float(stable)
 
 
-def energy_range(step: Step, z: float) -> tuple[float, float]:
+def energy_range(method: Method, z: float) -> tuple[float, float]:
     """Lowest and highest energy, over the start's, that a linear swing from rest is taken to by this step.
 
     A symplectic step keeps a quadratic form, not the energy: the swing stays on the ellipse
@@ -64,18 +64,18 @@ def energy_range(step: Step, z: float) -> tuple[float, float]:
     Euler (1/(1 + z/2), 1/(1 - z/2)).  Explicit Euler and RK4 do not wobble: (1, 1).  Beyond the limit of a
     symplectic step there is no ellipse, and (0, 1) is what velocity Verlet's has become there.
     """
-    a, b, c, d = jacobian(step, 1.0, 0.0, 0.0, z)
+    a, b, c, d = at_bottom(method, z)
     if (a - d) ** 2 / 4 + b * c >= 0:
         return 0.0, 1.0
     mean, spread = (b - c) / 2, math.hypot((b + c) / 2, (a - d) / 2)
     return -c / (mean + spread), -c / (mean - spread)
 
 
-def widest(step: Step, z: float) -> float:
+def widest(method: Method, z: float) -> float:
     """How wide, over its start, a linear swing from rest may go with this step: the reach of its ellipse.
 
     1 for velocity Verlet, 1/sqrt(1 - z²/4) for symplectic Euler, and 1 where there is no ellipse.
     """
-    a, b, c, d = jacobian(step, 1.0, 0.0, 0.0, z)
+    a, b, c, d = at_bottom(method, z)
     skew = (a - d) ** 2 / 4 + b * c
     return math.sqrt(b * c / skew) if skew < 0 else 1.0

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engine.methods import Method
-from engine.models.pendulum import acceleration, energy
-from engine.models.state import Number
+from engine.models.model import Number
+from engine.models.pendulum import Pendulum
 from engine.stability.chaos import is_chaotic
 from engine.stability.linear import energy_range, widest
 
@@ -52,22 +52,23 @@ def outcomes(method: Method, theta: Floats, z: Floats, steps: int) -> Cells:
     theta [rad], between 0 and pi, and z are one-dimensional and of one length; the answer is a CELL
     for each.  A swing that is lost leaves the ensemble at once.  No cell depends on the others.
     """
-    force = acceleration(1.0, np.sin)
+    force, energy = Pendulum(1.0).force(np.sin), Pendulum(1.0).energy(np.sin)
     h: Number = z
     distinct, where = np.unique(z, return_inverse=True)
-    lowest, highest = np.array([energy_range(method.step, value) for value in distinct.tolist()]).T
+    lowest, highest = np.array([energy_range(method, value) for value in distinct.tolist()]).T
     phase: tuple[Floats, Floats] = (theta, np.zeros(len(theta)))
-    start: Floats = energy(1.0, *phase, np.sin)
+    start: Floats = energy(phase)
     floor = (1 - BAND) * lowest[where] * start
     ceiling = (1 + BAND) * highest[where] * start
-    reach = np.array([widest(method.step, value) for value in distinct.tolist()])[where] * theta
+    reach = np.array([widest(method, value) for value in distinct.tolist()])[where] * theta
     worst, amplitude = np.zeros(len(theta)), theta.copy()
     index: NDArray[Any] = np.arange(len(theta))
     cells = np.zeros(len(theta), CELL)
     cells["steps"] = steps
+    phases = method.phases(force, phase, h)
     for step in range(steps):
-        phase = method.step(force, phase, h)
-        value, width = energy(1.0, *phase, np.sin), np.abs(phase[0])
+        phase = next(phases)
+        value, width = energy(phase), np.abs(phase[0])
         np.maximum(worst, np.abs(value - start), out=worst)
         np.maximum(amplitude, width, out=amplitude)
         over, above = width > math.pi, value > ceiling
@@ -83,11 +84,12 @@ def outcomes(method: Method, theta: Floats, z: Floats, steps: int) -> Cells:
             worst, amplitude = worst[kept], amplitude[kept]
             if not len(index):
                 break
+            phases = method.phases(force, phase, h)
     cells["error"][index] = worst / start
     if method.symplectic and len(index):
         wobbling = index[(amplitude > WOBBLE * reach[index]) | (z[index] > method.linear_limit)]
         beyond = z[wobbling] > method.linear_limit
-        chaotic = is_chaotic(method.step, theta[wobbling], z[wobbling], min(steps, CHAOS_STEPS))
+        chaotic = is_chaotic(method, theta[wobbling], z[wobbling], min(steps, CHAOS_STEPS))
         cells["fate"][wobbling] = np.where(chaotic, CHAOTIC, np.where(beyond, CAUGHT, WOBBLES))
     return cells
 

@@ -61,7 +61,9 @@ class StabilityStudy:
         """
         swing, z = amplitude(self.scene), self.scene.z
         thetas = self.thetas or sorted({*THETAS, *([swing] if swing else [])})
-        grid = Grid(np.array(thetas), np.union1d(LADDER if self.zs is None else self.zs, [z]), self.steps)
+        grid = Grid(
+            np.array(thetas), np.union1d(LADDER if self.zs is None else self.zs, [z]), self.steps, self.scene.cast
+        )
         at, here = int(np.searchsorted(grid.z, z)), replace(grid, z=grid.z[:1]).unknown()[0]
         failures: dict[tuple[int, int], Failure | None] = {}
         done = 0
@@ -85,9 +87,9 @@ class StabilityStudy:
         return rows, whole
 
     def grid(self) -> Grid:
-        grid = default_grid()
+        grid = default_grid(self.scene.cast)
         theta = grid.theta if self.thetas is None else np.array(self.thetas)
-        return Grid(theta, grid.z if self.zs is None else np.array(self.zs), self.steps)
+        return Grid(theta, grid.z if self.zs is None else np.array(self.zs), self.steps, self.scene.cast)
 
     def map(self) -> tuple[Grid, Cells, int]:
         """The map, and for how many of its z it was computed before Ctrl+C."""

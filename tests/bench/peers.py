@@ -17,7 +17,6 @@ import numpy as np
 from engine.accuracy.recommend import cheapest, reach
 from engine.accuracy.study import Study
 from engine.methods import METHODS
-from engine.models.exact_pendulum import ExactMotion
 from engine.run.compiled import compiled
 from engine.scenes import Scene
 
@@ -25,7 +24,7 @@ SCENE, TIME = Scene(theta=2.0), 100.0
 TARGETS = (1e-3, 1e-6, 1e-9)
 TOLERANCES = [10 ** (-power / 4) for power in range(4, 57)]
 TIMES = np.linspace(0, TIME, 401)[1:]
-EXACT = np.array([ExactMotion(SCENE).at(t).theta for t in TIMES])
+EXACT = np.array([SCENE.exact().at(t).theta for t in TIMES])
 TOO_LONG = 5.0  # s; a solver that takes longer is not asked for smaller errors
 W0_SQUARED, START = SCENE.w0_squared, [SCENE.theta, SCENE.omega]
 

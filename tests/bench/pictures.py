@@ -11,7 +11,6 @@ from collections.abc import Callable
 import numpy as np
 
 from engine.methods import METHODS
-from engine.models.exact_pendulum import ExactMotion
 from engine.run.lockstep import Lockstep
 from engine.scenes import DEFAULT_SCENE
 from tui.drawing.canvas import Canvas, Picture
@@ -55,7 +54,7 @@ def scattered(random: np.random.Generator) -> Callable[[], Picture]:
 
 def long_run() -> tuple[ErrorHistory, float]:
     """A history of many frames, and what adding one took on average [ms]."""
-    lockstep, exact, history = Lockstep(DEFAULT_SCENE), ExactMotion(DEFAULT_SCENE), ErrorHistory(DEFAULT_SCENE)
+    lockstep, exact, history = Lockstep(DEFAULT_SCENE), DEFAULT_SCENE.exact(), ErrorHistory(DEFAULT_SCENE)
     samples = []
     for _ in range(FRAMES):
         samples.append(lockstep.sample())

@@ -12,7 +12,6 @@ import sys
 import time
 
 from engine.methods import METHODS
-from engine.models.exact_pendulum import ExactMotion
 from engine.run.compiled import compiled
 from engine.run.verdict import Judge, Look
 from engine.scenes import Scene
@@ -46,7 +45,7 @@ def main() -> None:
             undecided.append(cell)
         elif not is_true(letter, given):
             wrong.append(cell)
-        elif z <= 0.9 and (ExactMotion(scene).period or math.inf) >= 8 * scene.h:
+        elif z <= 0.9 and (scene.exact().period or math.inf) >= 8 * scene.h:
             periods.append(given[0][2])
         else:
             steps.append(given[0][1])

@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.models.exact_pendulum import ExactMotion
 from engine.run.lockstep import Lockstep, Sample
 from engine.scenes import DEFAULT_SCENE, LIMITS, SCENES, Z_LIMITS, Scene, SceneError, check_h
 
@@ -104,7 +103,7 @@ def test_drift_explicit_euler_gains_the_symplectic_ones_keep_rk4_loses() -> None
 def test_gentle_the_textbooks_formulas_hold() -> None:
     scene, samples = SCENES["gentle"], watch("gentle", 60)
     z, first, last = scene.z, samples[1].readings, samples[-1].readings
-    assert ExactMotion(scene).period == pytest.approx(2 * math.pi / scene.w0, rel=1e-3)  # theta²/16 longer
+    assert scene.exact().period == pytest.approx(2 * math.pi / scene.w0, rel=1e-3)  # theta²/16 longer
     assert samples[40].readings[EXPLICIT].energy_error == pytest.approx((1 + z**2) ** 40 - 1, rel=0.02)
     assert first[EXPLICIT].energy_error == pytest.approx(z**2, rel=0.01)
     assert last[RK4].energy_error / samples[-1].step == pytest.approx(-(z**6) / 72, rel=0.02)
@@ -113,7 +112,7 @@ def test_gentle_the_textbooks_formulas_hold() -> None:
 
 def test_large_swing_is_slow_and_explicit_euler_never_finishes_its_first() -> None:
     scene, samples = SCENES["large-swing"], watch("large-swing", 10)
-    period = ExactMotion(scene).period
+    period = scene.exact().period
     assert period is not None
     assert period * scene.w0 / (2 * math.pi) == pytest.approx(1.643, abs=1e-3)
     assert math.degrees(scene.theta) == pytest.approx(143, abs=0.5)
@@ -131,7 +130,7 @@ def test_crossover_rk4_starts_far_ahead_of_verlet_and_falls_behind_after_half_a_
 
 
 def test_near_separatrix_the_best_energy_does_not_mean_the_right_time() -> None:
-    exact, samples = ExactMotion(SCENES["near-separatrix"]), watch("near-separatrix", 120)
+    exact, samples = SCENES["near-separatrix"].exact(), watch("near-separatrix", 120)
 
     def late(method: int) -> float:
         return next((s.t for s in samples if abs(s.readings[method].theta - exact.at(s.t).theta) > 1), math.inf)
@@ -149,7 +148,7 @@ def test_spin_symplectic_euler_and_verlet_show_the_same_angle_a_turn_a_second() 
         readings = sample.readings
         assert readings[SYMPLECTIC].theta == pytest.approx(readings[VERLET].theta, abs=1e-10)  # 3000 roundings
     assert abs(last[SYMPLECTIC].omega - last[VERLET].omega) > 1e-3
-    assert ExactMotion(SCENES["spin"]).period == pytest.approx(1, abs=0.02)
+    assert SCENES["spin"].exact().period == pytest.approx(1, abs=0.02)
     assert [round(reading.theta / math.tau) for reading in last] == [94, 61, 61, 61]
 
 

@@ -15,7 +15,7 @@ SCENE = Scene("test", theta=2.0, h=0.1)
 
 
 def start(run: int = 1, scene: Scene = SCENE) -> Event:
-    return Event("start", run, 0, 0.0, scene=scene, methods=METHOD_KEYS)
+    return Event("start", run, 0, 0.0, scene=scene)
 
 
 def two_runs() -> list[Entry]:
@@ -75,8 +75,9 @@ def record(path: Path, entries: list[Entry], wall=None) -> Path:
 def tiny(path: Path) -> Path:
     """As small as a recording gets: one method, three samples, two chunks and one for the stop."""
     verlet = METHODS[2]
-    lockstep = Lockstep(SCENE, methods=[verlet])
-    entries = [Entry(0.0, replace(start(), methods=(verlet.key,))), Entry(0.0, lockstep.sample())]
+    scene = replace(SCENE, cast=(verlet,))
+    lockstep = Lockstep(scene)
+    entries = [Entry(0.0, start(scene=scene)), Entry(0.0, lockstep.sample())]
     for clock in (0.5, 1.0):
         lockstep.advance(3)
         entries.append(Entry(clock, lockstep.sample()))

@@ -22,7 +22,7 @@ from recordings.format import (
     sin_fingerprint,
     without_extremes,
 )
-from tests.recordings.examples import METHOD_KEYS, SCENE, start
+from tests.recordings.examples import SCENE, start
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
 counts = st.integers(0, 2**53 - 1)
@@ -51,7 +51,7 @@ scenes = st.builds(
     h=st.floats(1e-6, 1),
 )
 events = st.one_of(
-    st.builds(Event, st.just("start"), counts, counts, finite, scene=scenes, methods=st.just(METHOD_KEYS)),
+    st.builds(Event, st.just("start"), counts, counts, finite, scene=scenes),
     st.builds(Event, st.just("set_h"), counts, counts, finite, h=finite, equal_cost=st.booleans()),
     st.builds(Event, st.just("speed"), counts, counts, finite, speed=finite),
     st.builds(Event, st.just("mark"), counts, counts, finite, text=st.none() | texts.filter(bool)),

@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from engine.models.pendulum import acceleration
 from engine.run import loops
 from engine.run.lockstep import Lockstep, Sample
 from engine.scenes import SCENES
@@ -149,13 +148,12 @@ def foreign_loops(monkeypatch, every):
         value = math.sin(x)
         return math.nextafter(value, math.inf) if calls % every == 0 else value
 
-    def loops_of(method):
-        def advance(w0_squared, *rest):
-            return loops.advance(method.step, acceleration(w0_squared, sin), w0_squared, *rest)
+    def loops_of(method, model):
+        def advance(phase, h, n, limit):
+            return loops.advance(method.phases(model.force(sin), phase, h), model.energy(sin), phase, n, limit)
 
-        return loops.plain(method)._replace(advance=advance)
+        return loops.plain(method, model)._replace(advance=advance)
 
-    monkeypatch.setattr(loops, "sin", sin)
     monkeypatch.setattr("recordings.recorder.sin_fingerprint", lambda: "another")
     return loops_of
 

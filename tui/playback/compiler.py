@@ -5,25 +5,26 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from functools import cache
 
 from engine.methods import Method
+from engine.models.model import Model
 from engine.run.compiled import compiled, tiered
 from engine.run.loops import Loops
 
 
-def patient(method: Method) -> Loops:
+def patient(method: Method, model: Model) -> Loops:
     """The method's loops: plain until the thread has compiled them, with the same bits at any time."""
-    return tiered(method, _ready)
+    return tiered(method, model, _ready)
 
 
-def _ready(method: Method) -> Loops | None:
-    future = _compiling(method)
+def _ready(method: Method, model: Model) -> Loops | None:
+    future = _compiling(method, model)
     return future.result() if future.done() else None
 
 
 @cache
-def _compiling(method: Method) -> Future[Loops]:
+def _compiling(method: Method, model: Model) -> Future[Loops]:
     def compile_now() -> Loops:
-        loops = compiled(method)
-        loops.advance(1.0, (0.0, 0.0), 0.1, 1, math.inf)  # Numba compiles at the first call
+        loops = compiled(method, model)
+        loops.advance((0.0, 0.0), 0.1, 1, math.inf)  # Numba compiles at the first call
         return loops
 
     return _thread().submit(compile_now)

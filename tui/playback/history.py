@@ -7,7 +7,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, NamedTuple
 
 from engine.methods import METHODS
-from engine.models.state import State
+from engine.models.model import State
 from engine.run.lockstep import Sample
 from engine.run.observer import RunObserver
 

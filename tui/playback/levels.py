@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from engine.methods import METHODS
-from engine.models.state import State
+from engine.models.model import State
 from tui.playback.shown import Quantity
 
 STORED: tuple[Quantity, ...] = ("energy_error", "theta_error", "shadow_error")  # the energy follows from its error

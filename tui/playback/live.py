@@ -6,7 +6,6 @@ from copy import copy
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from engine.methods import METHODS
 from engine.run.lockstep import Sample
 from engine.run.rewindable import RewindableRun
 from engine.run.stepping import Stepping, SteppingChange
@@ -113,7 +112,7 @@ class Live(Source):
 
     def start(self, scene: Scene) -> None:
         """Begin a new run.  Raises SceneError, before anything has changed, for a step too large at equal cost."""
-        stepping = Stepping.of_smallest(scene.h, self.stepping.equal_cost)
+        stepping = Stepping(scene.h, self.stepping.equal_cost, scene.cast).with_smallest(scene.h)
         stepping.check(scene.w0)
         self._runs += 1
         self._enter(RewindableRun(scene, self._runs, patient))
@@ -172,8 +171,7 @@ class Live(Source):
 
     def _note_start(self) -> None:
         """The start of the run, and the changes of its step size where it goes on from another's past."""
-        keys = tuple(method.key for method in METHODS)
-        self._note(Event("start", self._run.run, 0, 0.0, scene=self.scene, methods=keys))
+        self._note(Event("start", self._run.run, 0, 0.0, scene=self.scene))
         for step, t, stepping in self._run.changes[1:]:
             self._note(Event("set_h", self._run.run, step, t, h=stepping.h, equal_cost=stepping.equal_cost))
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
-from engine.models.exact_pendulum import ExactMotion
+from engine.models.model import ExactMotion
 from engine.run.lockstep import Sample
 from engine.run.observer import Milestone
 from engine.run.stepping import Stepping, SteppingChange

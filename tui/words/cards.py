@@ -4,7 +4,6 @@ import math
 import textwrap
 
 from engine.methods import METHODS
-from engine.models.exact_pendulum import ExactMotion
 from engine.scenes import Scene
 from tui.drawing.palette import mark
 from tui.words.motion import motion_text
@@ -43,7 +42,7 @@ def scene_card(scene: Scene, now: str = "") -> str:
             "pendulum": f"length {scene.length:.5g} m, gravity {scene.gravity:.5g} m/s², w0 = {scene.w0:.4g} 1/s",
             "step": f"h = {scene.h:.5g} s, z = h w0 = {scene.z:.4g}",
             "now": now,
-            "motion": motion_text(ExactMotion(scene)),
+            "motion": motion_text(scene, scene.exact()),
         },
     )
 

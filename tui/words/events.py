@@ -22,7 +22,7 @@ class EventLine(NamedTuple):
     t: float  # s, simulated
     text: str
     kind: Literal["change", "mark", "milestone"]
-    method: int | None = None  # of a milestone: index into METHODS
+    method: int | None = None  # of a milestone: its place in the cast
 
     def __str__(self) -> str:
         return f"{self.t:7.2f} {self.text}" if abs(self.t) < 1e4 else f"{self.t:7.1e} {self.text}"
@@ -34,7 +34,10 @@ def event_lines(source: Source) -> list[EventLine]:
     Pauses and speeds are not listed: they change no number.
     """
     run = source.sample.run
-    milestones = [EventLine(run, m.step, m.t, milestone_text(m), "milestone", m.index) for m in source.milestones]
+    index = source.scene.cast.index
+    milestones = [
+        EventLine(run, m.step, m.t, milestone_text(m), "milestone", index(m.method)) for m in source.milestones
+    ]
     return sorted([*_inputs(source), *milestones], key=lambda line: line[:2])  # stable: inputs first
 
 

@@ -55,7 +55,8 @@ def _bands(source: Source) -> list[tuple[float, int]]:
 def endings(source: Source) -> dict[int, Milestone]:
     """The methods, by index, that failed or went over the top: their verdict no longer matters."""
     found = [each for each in source.milestones if each.kind != "verdict"]
-    return {each.index: each for each in sorted(found, key=lambda each: each.kind == "failed")}
+    index = source.scene.cast.index
+    return {index(each.method): each for each in sorted(found, key=lambda each: each.kind == "failed")}
 
 
 def ending(milestone: Milestone) -> str:

@@ -61,7 +61,8 @@ def _news(source: Source, seconds: float) -> str:
 def _sentence(source: Source, milestone: Milestone) -> str:
     if milestone.kind != "verdict":
         return ending(milestone)
-    return staying(source) if milestone.verdict == "bounded" else leaving(source, milestone.index)
+    index = source.scene.cast.index(milestone.method)
+    return staying(source) if milestone.verdict == "bounded" else leaving(source, index)
 
 
 def lasting(source: Source) -> list[str]:

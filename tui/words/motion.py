@@ -1,7 +1,8 @@
 """The exact motion in words: regime, energy and period."""
 
-from engine.models.exact_pendulum import ExactMotion
+from engine.models.model import ExactMotion
 from engine.models.pendulum import separatrix_margin
+from engine.scenes import Scene
 
 
 def regime(w0: float, theta: float, omega: float) -> str:
@@ -18,8 +19,8 @@ def energy_share(w0: float, theta: float, omega: float) -> str:
     return f"{1 - value:.4g}"
 
 
-def motion_text(exact: ExactMotion) -> str:
+def motion_text(scene: Scene, exact: ExactMotion) -> str:
     """As "exact period 2.139 s  E/Es 0.2298  libration"."""
-    scene = exact.scene
-    energy = f"E/Es {energy_share(scene.w0, scene.theta, scene.omega)}  {exact.regime}"
-    return energy if exact.period is None else f"exact period {exact.period:.6g} s  {energy}"
+    share = f"E/Es {energy_share(scene.w0, scene.theta, scene.omega)}" if scene.equations.turns else ""
+    period = "" if exact.period is None else f"exact period {exact.period:.6g} s"
+    return "  ".join(filter(None, [period, share, exact.regime]))

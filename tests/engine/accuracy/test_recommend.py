@@ -1,13 +1,13 @@
 """What is recommended was found by search and holds when it is run again, compared at every step."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
 from engine.accuracy.recommend import cheapest, most_accurate, reach, spend
 from engine.accuracy.study import Study
 from engine.methods import METHODS
-from engine.models.exact_pendulum import ExactMotion
 from engine.run import compiled
 from engine.run.lockstep import Lockstep
 from engine.run.loops import plain
@@ -24,7 +24,7 @@ def recommended(scene, time, kind, target):
 
 def largest_error(scene, point, kind):
     """Of every step, by the lockstep and the exact swing alone."""
-    lockstep, exact = Lockstep(scene.altered(h=point.h), methods=(point.method,)), ExactMotion(scene)
+    lockstep, exact = Lockstep(scene.altered(h=point.h, cast=(point.method,))), scene.exact()
     largest = 0.0
     for _ in range(point.steps):
         lockstep.advance(1)
@@ -57,7 +57,7 @@ def test_no_method_reaches_it_noticeably_cheaper(kind, target):
 
 
 def test_explicit_euler_never_reaches_1e_3_over_100_s():
-    euler = next(a for a in reach(Study(DRIFT, 100.0, LOOPS), "theta", 1e-3, methods=(E,)))
+    euler = next(a for a in reach(Study(replace(DRIFT, cast=(E,)), 100.0, LOOPS), "theta", 1e-3))
     assert not euler.succeeded
     assert euler.point.force_evaluations >= 1_000_000
     assert euler.point.theta_error > 1e-3

@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 from engine.accuracy.rounding import rounding_floor
 from engine.accuracy.study import REPEATS, Study, ladder, orders, timed
 from engine.methods import METHODS
-from engine.models.exact_pendulum import ExactMotion
 from engine.models.pendulum import energy
 from engine.run import compiled
+from engine.run.loops import plain
 from engine.scenes import SCENES, SceneError
-from tests.engine.run.test_loops import OVERFLOWING, plain
+from tests.engine.run.test_loops import OVERFLOWING
 
 E, S, V, R = METHODS
 DRIFT = SCENES["drift"]
@@ -90,10 +90,10 @@ def test_more_evaluations_buy_smaller_errors(points, method):
 @pytest.mark.parametrize("steps", [100, 999, 5000])
 def test_errors_are_the_largest_of_the_run(steps):
     point = Study(DRIFT, 10.0).run(V, steps, comparisons=steps)
-    exact, w0_squared, phase = ExactMotion(DRIFT), DRIFT.w0_squared, (DRIFT.theta, DRIFT.omega)
+    exact, w0_squared, phase = DRIFT.exact(), DRIFT.w0_squared, (DRIFT.theta, DRIFT.omega)
     start, path = energy(w0_squared, *phase), []
     for _ in range(steps):
-        path.append(phase := plain(V).travel(w0_squared, phase, 10.0 / steps, 1))
+        path.append(phase := plain(V, DRIFT.equations).travel(phase, 10.0 / steps, 1))
     off = [abs(theta - exact.at(n * (10.0 / steps)).theta) for n, (theta, _) in enumerate(path, 1)]
     assert point.theta_error == max(off)
     assert point.final_error == off[-1]
@@ -123,7 +123,7 @@ def test_a_method_whose_numbers_overflow_is_said_to_have_diverged():
 def test_the_rounding_floor_lies_above_what_rounding_does_and_not_far_above(name, time):
     study, steps = Study(SCENES[name], time), 2**17
     point = study.run(R, steps)
-    energy_floor, theta_floor = (floor * math.sqrt(steps) for floor in rounding_floor(study.exact, time))
+    energy_floor, theta_floor = (floor * math.sqrt(steps) for floor in rounding_floor(SCENES[name], time))
     # measured 0.005 to 0.6 in theta and 0.001 to 0.5 in energy, for steps from 2^14 to 2^22
     assert 0.003 * theta_floor < point.theta_error < theta_floor
     assert 0.0005 * energy_floor < point.energy_error < energy_floor
@@ -132,7 +132,7 @@ def test_the_rounding_floor_lies_above_what_rounding_does_and_not_far_above(name
 
 def test_errors_below_the_rounding_floor_are_not_fitted():
     fitted = orders(DRIFT, 20.0)[METHODS.index(R)].measured
-    study = Study(DRIFT, ExactMotion(DRIFT).period)
+    study = Study(DRIFT, DRIFT.exact().period)
     deep = [study.run(R, 2**power) for power in range(13, 17)]
     assert all(study.may_be_rounding(point) for point in deep)
     # with them the slope would be flat: RK4 at 2^13 steps and at 2^16 errs alike

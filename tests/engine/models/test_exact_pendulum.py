@@ -7,8 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from engine.models.exact_pendulum import ExactMotion
-from engine.models.state import State
+from engine.models.model import State
 from engine.scenes import LIMITS, SCENES, Scene
 
 W0 = math.sqrt(9.81)
@@ -62,7 +61,7 @@ def reference(scene: Scene, t: float) -> tuple[mp.mpf, mp.mpf]:
 def assert_exact(scene: Scene, t: float) -> None:
     with mp.workdps(50):
         theta, omega = reference(scene, t)
-        state = ExactMotion(scene).at(t)
+        state = scene.exact().at(t)
         # 1e-12 is the contract; beyond a turn it is relative, as the float that holds theta is.
         assert abs(state.theta - theta) <= 1e-12 * max(1.0, abs(state.theta))
         assert abs(state.omega - omega) <= 1e-12 * max(scene.w0, abs(state.omega))
@@ -84,7 +83,7 @@ def test_the_swing_is_exact_to_1e_12_forwards_and_backwards(start: tuple[float, 
 )
 def test_the_swing_is_exact_from_any_start(theta: float, omega: float, phase: float, gravity: float) -> None:
     scene = Scene(theta=theta, omega=omega, gravity=gravity)
-    if ExactMotion(scene).regime in ("libration", "rotation"):
+    if scene.exact().regime in ("libration", "rotation"):
         assert_exact(scene, phase / scene.w0)
 
 
@@ -92,7 +91,7 @@ def test_the_closed_form_solves_the_equation_of_motion_itself() -> None:
     """Against a Taylor integration of theta'' = -w0² sin theta: no elliptic function on this side."""
     for theta, omega in ((2.0, 1.0), (0.0, 7.0)):
         solution = mp.odefun(lambda _, y: [y[1], -mp.mpf(9.81) * mp.sin(y[0])], 0, [theta, omega], tol=mp.mpf("1e-15"))
-        state = ExactMotion(Scene(theta=theta, omega=omega)).at(2.0)
+        state = Scene(theta=theta, omega=omega).exact().at(2.0)
         assert state == pytest.approx([float(value) for value in solution(2)], abs=1e-13)  # tol of the integration
 
 
@@ -106,11 +105,11 @@ def test_the_closed_form_solves_the_equation_of_motion_itself() -> None:
     ],
 )
 def test_the_regime_is_told(theta: float, omega: float, regime: str) -> None:
-    assert ExactMotion(Scene(theta=theta, omega=omega)).regime == regime
+    assert Scene(theta=theta, omega=omega).exact().regime == regime
 
 
 def test_the_separatrix_climbs_forever() -> None:
-    exact = ExactMotion(Scene(theta=0.0, omega=-2.0, gravity=1.0))  # w0 = 1: the one start exactly on it
+    exact = Scene(theta=0.0, omega=-2.0, gravity=1.0).exact()  # w0 = 1: the one start exactly on it
     assert (exact.regime, exact.period) == ("separatrix", None)
     for t in (-3.0, 0.5, 3.0):
         # Gudermann: theta = 2 atan sinh u, omega = 2/cosh u; a few roundings.
@@ -119,13 +118,13 @@ def test_the_separatrix_climbs_forever() -> None:
 
 
 def test_at_rest_at_the_bottom_it_stays() -> None:
-    exact = ExactMotion(Scene(theta=0.0))
+    exact = Scene(theta=0.0).exact()
     assert exact.period is None
     assert exact.at(1e5) == State(0.0, 0.0)
 
 
 def test_math_pi_is_not_upright_and_falls() -> None:
-    exact = ExactMotion(Scene(theta=math.pi))
+    exact = Scene(theta=math.pi).exact()
     assert exact.period == pytest.approx(49.4470164, abs=1e-6)  # s, 4 K(k)/w0 from mpmath
     assert abs(exact.at(exact.period / 4).theta) < 1e-14  # a quarter of it later it is at the bottom
 
@@ -133,7 +132,7 @@ def test_math_pi_is_not_upright_and_falls() -> None:
 @pytest.mark.parametrize("name", SCENES)
 def test_after_its_period_it_is_back(name: str) -> None:
     scene = SCENES[name]
-    exact = ExactMotion(scene)
+    exact = scene.exact()
     assert exact.period is not None
     turn = math.tau if exact.regime == "rotation" else 0.0
     later = exact.at(exact.period)
@@ -150,7 +149,7 @@ def test_no_legal_start_gives_anything_but_finite_numbers(
     theta: float, omega: float, length: float, gravity: float, t: float
 ) -> None:
     scene = Scene(theta=theta, omega=omega, length=length, gravity=gravity, h=0.1 * math.sqrt(length / gravity))
-    state = ExactMotion(scene).at(t)
+    state = scene.exact().at(t)
     assert math.isfinite(state.theta)
     assert math.isfinite(state.omega)
 
@@ -158,6 +157,6 @@ def test_no_legal_start_gives_anything_but_finite_numbers(
 @pytest.mark.parametrize("theta", [0.0, 5e-324, 1e-320, math.pi, 1e6, -1e9])
 @pytest.mark.parametrize("omega", [0.0, 5e-324, 1e-300, JUST, 1e8, -1e9])
 def test_the_ends_of_the_number_line_are_no_trap(theta: float, omega: float) -> None:
-    exact = ExactMotion(Scene(theta=theta, omega=omega))
+    exact = Scene(theta=theta, omega=omega).exact()
     for t in (0.0, 1.0, -1e5):
         assert all(math.isfinite(value) for value in exact.at(t))

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from engine.methods import METHODS, Method
-from engine.models.pendulum import acceleration, energy
+from engine.models.pendulum import Pendulum, acceleration, energy
 
 W0_SQUARED = 9.81
 
@@ -22,7 +22,7 @@ def energy_range(quantity, method: Method, h: float, time: float = 20.0) -> floa
 
 def shadow_of(method: Method, h: float):
     assert method.modified_energy is not None
-    return lambda theta, omega: method.modified_energy(W0_SQUARED, theta, omega, h)
+    return lambda theta, omega: method.modified_energy(Pendulum(W0_SQUARED), (theta, omega), h)
 
 
 def plain_energy(theta: float, omega: float) -> float:

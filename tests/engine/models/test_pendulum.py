@@ -6,8 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.models.exact_pendulum import ExactMotion
-from engine.models.pendulum import acceleration, energy, energy_reference, separatrix_energy, separatrix_margin
+from engine.models.pendulum import Pendulum, acceleration, energy, separatrix_energy, separatrix_margin
 from engine.scenes import Scene
 
 
@@ -28,9 +27,7 @@ def test_near_the_bottom_it_does_not_cancel() -> None:
 def test_the_exact_swing_keeps_it(theta: float, omega: float, t: float) -> None:
     start = energy(9.81, theta, omega)
     # Relative to the energy where it is small: the state is right to 1e-13 of its own size.
-    assert energy(9.81, *ExactMotion(Scene(theta=theta, omega=omega)).at(t)) == pytest.approx(
-        start, rel=1e-12, abs=1e-300
-    )
+    assert energy(9.81, *Scene(theta=theta, omega=omega).exact().at(t)) == pytest.approx(start, rel=1e-12, abs=1e-300)
 
 
 @given(theta=st.floats(-10, 10))
@@ -55,5 +52,5 @@ def test_the_margin_keeps_its_digits_where_the_energy_has_lost_them() -> None:
 
 
 def test_errors_are_relative_to_the_start_or_where_that_has_no_energy_to_the_separatrix() -> None:
-    assert energy_reference(9.81, 0.0, 2.0) == (2.0, 2.0)
-    assert energy_reference(9.81, 0.0, 0.0) == (0.0, separatrix_energy(9.81))
+    assert Pendulum(9.81).reference(0.0, 2.0) == (2.0, 2.0)
+    assert Pendulum(9.81).reference(0.0, 0.0) == (0.0, separatrix_energy(9.81))

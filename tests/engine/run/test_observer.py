@@ -19,7 +19,7 @@ DRIFT = SCENES["drift"]
 def watched(scene: Scene, seconds: float, every: int = 1, equal_cost: bool = False) -> RunObserver:
     """A witness that has seen one sample in `every` steps."""
     observer, lockstep = RunObserver(scene), Lockstep(scene)
-    lockstep.set_stepping(Stepping.of_smallest(scene.h, equal_cost))
+    lockstep.set_stepping(Stepping(scene.h, equal_cost).with_smallest(scene.h))
     change = SteppingChange(0, 0.0, lockstep.stepping)
     observer.add(lockstep.sample(), change)
     while lockstep.t < seconds:
@@ -117,10 +117,10 @@ def test_verdicts_happen_when_they_are_given():
         lockstep.advance(1)
         observer.add(lockstep.sample())
         after = [judgement.verdict for judgement in observer.judgements]
-        changes += [(lockstep.step, i, after[i]) for i in range(len(METHODS)) if after[i] != before[i]]
-    verdicts = [(each.step, each.index, each.verdict) for each in observer.milestones(1200) if each.kind == "verdict"]
+        changes += [(lockstep.step, m, after[i]) for i, m in enumerate(METHODS) if after[i] != before[i]]
+    verdicts = [(each.step, each.method, each.verdict) for each in observer.milestones(1200) if each.kind == "verdict"]
     assert verdicts == changes
-    assert {(METHODS[i].key, verdict) for _, i, verdict in changes} >= {
+    assert {(method.key, verdict) for _, method, verdict in changes} >= {
         ("explicit_euler", "grows"),
         ("symplectic_euler", "bounded"),
         ("velocity_verlet", "bounded"),

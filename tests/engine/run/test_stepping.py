@@ -1,6 +1,7 @@
 """How a run steps: h along 1, 2, 5, time both ways, and equal cost, where all meet at the same times."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 
 import pytest
@@ -8,9 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.methods import METHODS
-from engine.models.state import Acceleration, Phase
+from engine.models.model import Force, Phase
 from engine.run.lockstep import Lockstep
-from engine.run.stepping import Stepping, SteppingChange, change_before, parts
+from engine.run.stepping import Stepping, SteppingChange, change_before
 from engine.scenes import DEFAULT_SCENE, Scene, SceneError
 
 STEPPINGS = st.builds(
@@ -44,15 +45,15 @@ def test_equal_cost_on_and_off_and_time_both_ways_keep_the_smallest_step(steppin
 
 
 def test_at_equal_cost_the_cheap_methods_take_a_step_in_parts():
-    assert EQUAL.own() == (0.05, 0.05, 0.05, 0.2)
-    assert Stepping.of_smallest(0.05, equal_cost=True) == EQUAL
+    assert EQUAL.own == (0.05, 0.05, 0.05, 0.2)
+    assert Stepping(0.05, True).with_smallest(0.05) == EQUAL
     assert Stepping(-0.1).with_own(METHODS[0], 0.3) == Stepping(-0.3)
     assert EQUAL.reversed().with_own(METHODS[0], 0.5) == Stepping(-2.0, equal_cost=True)
 
 
 def test_a_method_whose_cost_divides_no_other_takes_the_nearest_number_of_parts():
-    costs = [replace(METHODS[0], force_evaluations=n) for n in (1, 3, 4, 7)]
-    assert parts(costs) == (7, 2, 2, 1)
+    costs = tuple(replace(METHODS[0], force_evaluations=n) for n in (1, 3, 4, 7))
+    assert Stepping(0.1, True, costs).parts == (7, 2, 2, 1)
 
 
 @pytest.mark.parametrize("h", [0.0, math.nan, 1e9, 2e-9])
@@ -76,16 +77,16 @@ def bits(lockstep: Lockstep) -> list[tuple[float, float, float]]:
 
 
 def test_at_equal_cost_every_method_needs_the_same_number_of_evaluations():
-    assert len({method.force_evaluations * part for method, part in zip(METHODS, EQUAL.parts(), strict=True)}) == 1
+    assert len({method.force_evaluations * part for method, part in zip(METHODS, EQUAL.parts, strict=True)}) == 1
 
 
 @pytest.mark.parametrize("index", range(len(METHODS)), ids=[method.key for method in METHODS])
 def test_a_method_takes_the_step_in_its_own_parts(index: int):
     equal, alone = Lockstep(DEFAULT_SCENE), Lockstep(DEFAULT_SCENE)
     equal.set_stepping(EQUAL)
-    alone.set_stepping(Stepping(EQUAL.own()[index]))
+    alone.set_stepping(Stepping(EQUAL.own[index]))
     equal.advance(50)
-    alone.advance(50 * EQUAL.parts()[index])
+    alone.advance(50 * EQUAL.parts[index])
     assert equal.t == 50 * 0.2
     assert bits(equal)[index] == bits(alone)[index]
 
@@ -102,12 +103,15 @@ def test_any_cut_of_the_steps_gives_the_same_bits():
 
 
 def test_a_method_that_diverges_says_when_to_its_own_part_of_a_step():
-    def doubling(acceleration: Acceleration, phase: Phase, h: float) -> Phase:
-        return phase[0], phase[1] * 2 + 1
+    def doubling(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
+        theta, omega = phase
+        while True:
+            omega = omega * 2 + 1
+            yield theta, omega
 
-    bad = replace(METHODS[0], key="bad", step=doubling)
-    lockstep = Lockstep(DEFAULT_SCENE, methods=(bad, METHODS[3]))
-    lockstep.set_stepping(EQUAL)
+    cast = replace(METHODS[0], key="bad", phases=doubling), METHODS[3]
+    lockstep = Lockstep(replace(DEFAULT_SCENE, cast=cast))
+    lockstep.set_stepping(Stepping(0.2, True, cast))
     lockstep.advance(1000)
     at = lockstep.sample().readings[0].diverged_at
     assert at is not None

@@ -7,7 +7,7 @@ from statistics import median
 import pytest
 
 from engine.methods import METHODS
-from engine.models.exact_pendulum import ExactMotion
+from engine.models.pendulum import Pendulum
 from engine.run import compiled
 from engine.run.lockstep import Lockstep
 from engine.run.loops import plain
@@ -46,7 +46,7 @@ def test_verdicts_wait_for_nine_periods_as_a_rule() -> None:
     waits = []
     for method, start, z, _ in SAMPLED:
         scene = scene_at(start, z)
-        period = ExactMotion(scene).period or math.inf
+        period = scene.exact().period or math.inf
         if 0.01 <= z <= 0.9 and period >= 8 * scene.h and len(waits) < 80:
             given = verdicts(method, scene, LOOPS, round(60 * period / scene.h))
             waits += [given[0][2]] if given else [60.0]
@@ -102,7 +102,7 @@ def change(step: int, t: float, h: float) -> SteppingChange:
 @pytest.mark.parametrize("name", ["drift", "large-swing", "spin", "verlet-limit-above"])
 def test_verdicts_come_at_the_same_steps_however_often_one_looks(name: str) -> None:
     scene, uneven = SCENES[name], random.Random(1)
-    steps = math.ceil(40 * (ExactMotion(scene).period or 1.0) / scene.h)
+    steps = math.ceil(40 * (scene.exact().period or 1.0) / scene.h)
     told = []
     for gaps in ([1] * steps, [7] * (steps // 7), [uneven.randint(1, 400) for _ in range(steps // 200)], [steps]):
         observer, lockstep = RunObserver(scene), Lockstep(scene)
@@ -148,7 +148,7 @@ def test_backwards_in_time_the_same_methods_gain_keep_and_lose() -> None:
 
 def judged(errors: list[float], method=R) -> Judge:
     """A Judge of made-up errors, 16 steps a period."""
-    judge = Judge(method, 1.0, 1.0, 0.1, 1.6)
+    judge = Judge(method, Pendulum(1.0), 1.0, 0.1, 1.6)
     for step, error in enumerate(errors):
         judge.look(step, Look(0.0, 0.0, error, error, error))
     return judge

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.methods import METHODS, Method
-from engine.models.state import Number
+from engine.models.model import Number
 from engine.stability.linear import amplification, energy_range, is_stable, linear_limit
 
 BY_KEY = {method.key: method for method in METHODS}
@@ -34,21 +34,21 @@ def method(request: pytest.FixtureRequest) -> Method:
 def test_the_amplification_is_the_textbooks(z: float) -> None:
     # At z = 2 two multipliers meet and rounding shows as its square root; 1e-3 away it is below 1e-13.
     for key, formula in FORMULAS.items():
-        assert amplification(BY_KEY[key].step, z) == pytest.approx(formula(z), rel=1e-12)
+        assert amplification(BY_KEY[key], z) == pytest.approx(formula(z), rel=1e-12)
 
 
 def test_rk4_halves_the_energy_fastest_at_the_square_root_of_six() -> None:
-    assert amplification(BY_KEY["rk4"].step, math.sqrt(6)) == pytest.approx(0.5, rel=1e-12)
+    assert amplification(BY_KEY["rk4"], math.sqrt(6)) == pytest.approx(0.5, rel=1e-12)
 
 
 def test_the_limit_is_the_claimed_one(method: Method) -> None:
-    assert linear_limit(method.step) == pytest.approx(method.linear_limit, abs=1e-9)
+    assert linear_limit(method) == pytest.approx(method.linear_limit, abs=1e-9)
 
 
 @given(z=st.fractions(0, 8, max_denominator=10**6))
 def test_below_the_limit_every_step_is_stable_and_above_it_none(z: Fraction) -> None:
     for method in METHODS:
-        assert is_stable(method.step, z) == (z <= Fraction(method.linear_limit))
+        assert is_stable(method, z) == (z <= Fraction(method.linear_limit))
 
 
 @given(z=st.floats(0.05, 1.9), steps=st.just(2000))
@@ -57,11 +57,11 @@ def test_the_wobble_bounds_the_energy_of_a_linear_swing_and_is_reached(z: float,
         return -theta
 
     for key in ("symplectic_euler", "velocity_verlet"):
-        step, phase, energies = BY_KEY[key].step, (1.0, 0.0), [1.0]
+        phase, energies = (1.0, 0.0), [1.0]
         for _ in range(steps):
-            phase = step(spring, phase, z)
+            phase = BY_KEY[key].step(spring, phase, z)
             energies.append(phase[0] ** 2 + phase[1] ** 2)
-        lowest, highest = energy_range(step, z)
+        lowest, highest = energy_range(BY_KEY[key], z)
         assert lowest * (1 - 1e-9) <= min(energies)  # 2000 steps' rounding is 1e-12
         assert max(energies) <= highest * (1 + 1e-9)
         if all(abs(z - 2 * math.sin(math.pi * p / q)) > 0.01 for q in range(2, 21) for p in range(1, q)):
@@ -72,19 +72,17 @@ def test_the_wobble_bounds_the_energy_of_a_linear_swing_and_is_reached(z: float,
 
 @given(z=st.floats(0.05, 1.9))
 def test_the_wobble_of_the_symplectic_steps_has_a_closed_form(z: float) -> None:
-    assert energy_range(BY_KEY["velocity_verlet"].step, z) == pytest.approx((1 - z**2 / 4, 1), rel=1e-12)
-    assert energy_range(BY_KEY["symplectic_euler"].step, z) == pytest.approx(
-        (1 / (1 + z / 2), 1 / (1 - z / 2)), rel=1e-12
-    )
+    assert energy_range(BY_KEY["velocity_verlet"], z) == pytest.approx((1 - z**2 / 4, 1), rel=1e-12)
+    assert energy_range(BY_KEY["symplectic_euler"], z) == pytest.approx((1 / (1 + z / 2), 1 / (1 - z / 2)), rel=1e-12)
 
 
 @given(z=st.floats(0.01, 2.8))
 def test_explicit_euler_and_rk4_do_not_wobble(z: float) -> None:
     for key in ("explicit_euler", "rk4"):
-        assert energy_range(BY_KEY[key].step, z) == pytest.approx((1.0, 1.0), abs=1e-9)
+        assert energy_range(BY_KEY[key], z) == pytest.approx((1.0, 1.0), abs=1e-9)
 
 
 @given(z=st.floats(2.001, 1000))
 def test_beyond_its_limit_a_symplectic_step_has_no_ellipse(z: float) -> None:
     for key in ("symplectic_euler", "velocity_verlet"):
-        assert energy_range(BY_KEY[key].step, z) == (0.0, 1.0)
+        assert energy_range(BY_KEY[key], z) == (0.0, 1.0)

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods import METHODS, Method, Step, explicit_euler, rk4, velocity_verlet
+from engine.methods import EXPLICIT_EULER, METHODS, RK4, VELOCITY_VERLET, Method
+from engine.models.model import Phase
 from engine.models.pendulum import acceleration, energy
-from engine.models.state import Phase
 from engine.stability.linear import energy_range
 from engine.stability.outcomes import (
     BAND,
@@ -27,10 +27,10 @@ BY_KEY = {method.key: method for method in METHODS}
 FORCE = acceleration(1.0)
 
 
-def after(step: Step, theta: float, z: float, steps: int) -> Phase:
+def after(method: Method, theta: float, z: float, steps: int) -> Phase:
     phase: Phase = (theta, 0.0)
     for _ in range(steps):
-        phase = step(FORCE, phase, z)
+        phase = method.step(FORCE, phase, z)
     return phase
 
 
@@ -59,7 +59,7 @@ def test_each_swing_of_an_ensemble_is_what_a_plain_loop_says(
     for cell, (theta, z) in zip(cells, swings, strict=True):
         phase, survived, expected = (theta, 0.0), 0, "holds"
         start = energy(1.0, *phase, np.sin)
-        lowest, highest = energy_range(method.step, z)
+        lowest, highest = energy_range(method, z)
         worst = 0.0
         while survived < steps and expected == "holds":
             phase = method.step(force, phase, z)
@@ -109,7 +109,7 @@ def test_explicit_eulers_time_to_the_top_goes_as_one_over_z() -> None:
     for z in (0.01, 0.005, 0.0025):
         phase, steps = (2.0, 0.0), 0
         while abs(phase[0]) <= math.pi:
-            phase, steps = explicit_euler(FORCE, phase, z), steps + 1
+            phase, steps = EXPLICIT_EULER.step(FORCE, phase, z), steps + 1
         times.append(steps * z)
     for slow, fast in pairwise(times):
         assert fast / slow == pytest.approx(2, rel=0.06)  # it goes over on one swing or the next: 6 of 100 s
@@ -118,7 +118,7 @@ def test_explicit_eulers_time_to_the_top_goes_as_one_over_z() -> None:
 @pytest.mark.parametrize("theta", [0.5, 1.0, 2.5])
 def test_rk4_loses_energy_as_h_to_the_fifth(theta: float) -> None:
     start = energy(1.0, theta, 0.0)
-    drifts = [energy(1.0, *after(rk4, theta, z, round(200 / z))) - start for z in (0.05, 0.1, 0.2)]
+    drifts = [energy(1.0, *after(RK4, theta, z, round(200 / z))) - start for z in (0.05, 0.1, 0.2)]
     assert all(drift < 0 for drift in drifts)
     for small, large in pairwise(drifts):
         assert math.log2(large / small) == pytest.approx(5, abs=0.1)  # measured 4.96 to 5.00
@@ -142,8 +142,8 @@ def test_beyond_two_velocity_verlet_is_caught_by_an_orbit_of_period_two(z: float
         q = (low + high) / 2
         low, high = (q, high) if z**2 * math.sin(q) > 4 * q else (low, q)
     # A step's rounding is 1e-16; ten steps multiply it by at most 20 each where the orbit is unstable.
-    assert after(velocity_verlet, q, z, 1) == pytest.approx((-q, 0.0), abs=1e-12)
-    assert after(velocity_verlet, q, z, 2) == pytest.approx((q, 0.0), abs=1e-12)
+    assert after(VELOCITY_VERLET, q, z, 1) == pytest.approx((-q, 0.0), abs=1e-12)
+    assert after(VELOCITY_VERLET, q, z, 2) == pytest.approx((q, 0.0), abs=1e-12)
 
 
 @pytest.mark.parametrize(("z", "q"), [(2.01, 0.2444), (2.02, 0.3449), (2.05, 0.5417)])
@@ -151,7 +151,7 @@ def test_a_tiny_swing_just_beyond_two_grows_to_the_catching_orbit_and_stays(z: f
     assert z**2 * math.sin(q) == pytest.approx(4 * q, rel=1e-4)
     phase, largest = (1e-3, 0.0), 0.0
     for _ in range(5000):
-        phase = velocity_verlet(FORCE, phase, z)
+        phase = VELOCITY_VERLET.step(FORCE, phase, z)
         largest = max(largest, abs(phase[0]))
     # Away from the unstable bottom and around q it swings as in a double well: out to q times the root of 2.
     assert largest == pytest.approx(math.sqrt(2) * q, rel=0.02)

@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from engine.methods import METHODS
+from engine.models.model import State
 from engine.models.pendulum import energy
-from engine.models.state import State
 from engine.run.lockstep import Lockstep, Reading, Sample
 from engine.run.observer import RunObserver
 from engine.scenes import DEFAULT_SCENE, SCENES

@@ -28,21 +28,21 @@ def test_each_method_has_its_own_step_and_all_meet(tmp_path: Path):
     recorded(
         tmp_path / "a.mcap",
         toggle,
-        lambda live: steps.append((live.stepping.h, live.stepping.own(), live.stepping.smallest)),
+        lambda live: steps.append((live.stepping.h, live.stepping.own, live.stepping.smallest)),
     )
     assert steps == [(0.2, (0.05, 0.05, 0.05, 0.2), 0.05)]
 
 
 def test_the_same_key_goes_back_to_the_same_step_for_all(tmp_path: Path):
     steps = []
-    recorded(tmp_path / "a.mcap", toggle, 0.5, toggle, lambda live: steps.append(live.stepping.own()))
+    recorded(tmp_path / "a.mcap", toggle, 0.5, toggle, lambda live: steps.append(live.stepping.own))
     assert steps == [(0.05,) * 4]
 
 
 def test_a_restart_stays_at_equal_cost(tmp_path: Path):
     steps = []
     recorded(
-        tmp_path / "a.mcap", toggle, 0.5, Live.restart, lambda live: steps.append((live.scene.h, live.stepping.own()))
+        tmp_path / "a.mcap", toggle, 0.5, Live.restart, lambda live: steps.append((live.scene.h, live.stepping.own))
     )
     assert steps == [(0.05, (0.05, 0.05, 0.05, 0.2))]
 

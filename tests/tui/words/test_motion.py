@@ -4,7 +4,6 @@ import math
 
 import pytest
 
-from engine.models.exact_pendulum import ExactMotion
 from engine.scenes import Scene
 from tui.words.motion import energy_share, motion_text, regime
 
@@ -35,5 +34,5 @@ def test_the_energy_near_the_separatrix_is_written_as_its_distance_from_it():
 
 
 def test_the_exact_motion_has_its_period():
-    assert motion_text(ExactMotion(Scene())) == "exact period 2.13914 s  E/Es 0.2298  libration"
-    assert motion_text(ExactMotion(Scene(theta=0.0))) == "E/Es 0  equilibrium"
+    assert motion_text(Scene(), Scene().exact()) == "exact period 2.13914 s  E/Es 0.2298  libration"
+    assert motion_text(Scene(theta=0.0), Scene(theta=0.0).exact()) == "E/Es 0  equilibrium"

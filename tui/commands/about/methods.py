@@ -60,6 +60,6 @@ def _measured() -> list[dict[str, Any]]:
     from engine.stability.linear import linear_limit
 
     return [
-        fields_of(method, *CLAIMS) | {"measured_order": order, "measured_linear_limit": linear_limit(method.step)}
+        fields_of(method, *CLAIMS) | {"measured_order": order, "measured_linear_limit": linear_limit(method)}
         for method, order in orders(DEFAULT_SCENE, math.inf)
     ]

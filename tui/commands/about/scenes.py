@@ -2,7 +2,6 @@
 
 import argparse
 import math
-from dataclasses import asdict
 
 from engine.scenes import SCENES
 from tui.cli.errors import Exit
@@ -22,7 +21,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     if options.json:
-        write_json("scenes", {"scenes": [asdict(scene) for scene in SCENES.values()]})
+        write_json("scenes", {"scenes": [scene.fields() for scene in SCENES.values()]})
         return Exit.FINE
     print_table(
         "lrrrrl",

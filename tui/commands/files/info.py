@@ -1,7 +1,6 @@
 """Show what a recording contains and whether it is complete."""
 
 import argparse
-from dataclasses import asdict
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
@@ -47,7 +46,7 @@ def _fields(recording: "Recording", size: int) -> dict[str, Any]:
         "format": recording.version,
         **fields_of(recording, "complete", "damaged", "reason"),
         "runs": (
-            {"scene": asdict(run.scene), "steps": run.steps, "time": run.t, "seconds": run.end - run.begin}
+            {"scene": run.scene.fields(), "steps": run.steps, "time": run.t, "seconds": run.end - run.begin}
             | {"events": run.events}
             for run in recording.runs
         ),

@@ -4,7 +4,6 @@ import argparse
 import math
 import time
 from contextlib import nullcontext
-from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -76,7 +75,7 @@ def run(options: argparse.Namespace) -> int:
     wall_seconds = time.perf_counter() - began
     rows = _rows(sample, observer)
     if options.json:
-        fields = {"scene": asdict(scene), "time": sample.t, "steps": sample.step, "wall_seconds": wall_seconds}
+        fields = {"scene": scene.fields(), "time": sample.t, "steps": sample.step, "wall_seconds": wall_seconds}
         write_json("run", {**fields, "methods": rows})
     else:
         _print(scene, sample, wall_seconds, rows, observer)
@@ -122,7 +121,6 @@ def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int)
 
 def _rows(sample: "Sample", observer: "RunObserver") -> list[dict[str, Any]]:
     """The results by method, as in --json.  A method that diverged has no theta to compare."""
-    from engine.accuracy.study import evaluations
     from recordings.fields import NUMBERS
 
     exact = observer.exact.at(sample.t).theta
@@ -136,7 +134,7 @@ def _rows(sample: "Sample", observer: "RunObserver") -> list[dict[str, Any]]:
                 "theta_error": abs(reading.theta - exact) if end is None else None,
                 "drift_per_second": judgement.slope,
                 "verdict": judgement.verdict,
-                "force_evaluations": evaluations(method, sample.step if end is None else round(end / observer.scene.h)),
+                "force_evaluations": method.evaluations(sample.step if end is None else round(end / observer.scene.h)),
                 "diverged_at": end,
             }
         )

@@ -42,7 +42,7 @@ class AccuracyView(View):
             pane.begin(*usual(scene))
             self._compute(scene, pane.time, pane.rungs, "ladder")
             pane.here = ()
-        here = tuple(max(1, round(pane.time / abs(h))) for h in self.source.stepping.own())
+        here = tuple(max(1, round(pane.time / abs(h))) for h in self.source.stepping.own)
         if here != pane.here:
             pane.here = here
             known = {*pane.rungs, *(steps for _, steps in pane.points)}

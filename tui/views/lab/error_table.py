@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from engine.methods import METHODS, Method
-from engine.models.state import State
+from engine.models.model import State
 from engine.run.lockstep import Reading, Sample
 from engine.run.verdict import Judgement
 from tui.drawing.cells import Row
@@ -106,4 +106,4 @@ class ErrorTable(Pane):
 
     def paint(self, source: Source, sample: Sample) -> None:
         exact = source.exact.at(sample.t)
-        self.show(table(sample, source.judgements, exact, source.stepping.own(), self.shown, self.room.width))
+        self.show(table(sample, source.judgements, exact, source.stepping.own, self.shown, self.room.width))

@@ -6,7 +6,7 @@ from functools import partial
 from textual.content import Content
 
 from engine.methods import METHODS
-from engine.models.exact_pendulum import ExactMotion
+from engine.models.model import ExactMotion
 from engine.run.lockstep import Sample
 from tui.playback.shown import Quantity, Shown
 from tui.playback.source import Source

@@ -3,9 +3,9 @@
 import math
 
 from engine.methods import METHODS
-from engine.models.exact_pendulum import ExactMotion
-from engine.models.state import State
+from engine.models.model import ExactMotion, State
 from engine.phase_space.area import Neighbourhood, Neighbours
+from engine.scenes import Scene
 from tui.drawing.axes import in_pi
 from tui.drawing.canvas import Canvas, Picture, Span
 from tui.drawing.palette import FRAME, TEXT, mark
@@ -47,19 +47,19 @@ def _ring_text(source: Source, neighbours: Neighbours | None) -> str:
     return f"{text}: {behind} steps behind" if behind else f"{text} (g: larger, G: smaller)"
 
 
-def captioned(plot: Picture, exact: ExactMotion, aim: State | None) -> Picture:
+def captioned(plot: Picture, scene: Scene, exact: ExactMotion, aim: State | None) -> Picture:
     """The portrait, and a line below it: a state, if one is aimed at, and the exact motion as far as there is room."""
-    return Picture.stacked(plot, _caption(exact, aim, plot.characters.shape[1]))
+    return Picture.stacked(plot, _caption(scene, exact, aim, plot.characters.shape[1]))
 
 
-def _caption(exact: ExactMotion, aim: State | None, width: int) -> Picture:
-    motion = motion_text(exact)
+def _caption(scene: Scene, exact: ExactMotion, aim: State | None, width: int) -> Picture:
+    motion = motion_text(scene, exact)
     line = Canvas(width, 1).picture()
     if aim is None:
         line.write(0, 0, motion, FRAME)
         return line
     room = width - len(motion) - 2
-    line.write(0, 0, place_text(exact.scene.w0, *aim, room if room >= 60 else width), TEXT)
+    line.write(0, 0, place_text(scene.w0, *aim, room if room >= 60 else width), TEXT)
     if room >= 60:
         line.write(0, width - len(motion), motion, FRAME)
     return line

@@ -7,7 +7,7 @@ from textual.binding import BindingType
 from textual.message import Message
 from textual.reactive import var
 
-from engine.models.state import State
+from engine.models.model import State
 from engine.run.lockstep import Sample
 from engine.scenes import SceneError
 from tui.playback.source import Source
@@ -134,7 +134,7 @@ class PhasePane(Chooser[State]):
         if self.source is not None and self._plot is not None:
             from tui.views.phase.facts import captioned
 
-            self.show_picture(captioned(self._plot, self.source.exact, self.aim))
+            self.show_picture(captioned(self._plot, self.source.scene, self.source.exact, self.aim))
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         return (action == "cancel" and self.aiming) or super().check_action(action, parameters)

@@ -8,7 +8,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any
 
-from engine.models.state import State
+from engine.models.model import State
 from engine.scenes import Scene
 
 NARROWEST, WIDEST = 1e-6, 200 * math.pi  # rad of theta from the left edge to the right one

@@ -68,7 +68,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
         """The (z, amplitude) of a method on screen, if it swings."""
         if self.source is None or (theta := amplitude(self.source.scene)) is None:
             return None
-        return abs(self.source.stepping.own()[index]) * self.source.scene.w0, theta
+        return abs(self.source.stepping.own[index]) * self.source.scene.w0, theta
 
     def aim(self, index: int) -> tuple[int, int] | None:
         """The place that is described for a method: at the cursor, under the pointer, or nearest to here."""
@@ -83,7 +83,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
         columns, rows = self.panel_size()
         if columns <= 2 * MARGIN:
             return
-        drawn_for = source.scene, source.stepping.own(), self.shown, self.app.theme, self.room, self.cursor, self.index
+        drawn_for = source.scene, source.stepping.own, self.shown, self.app.theme, self.room, self.cursor, self.index
         changed = drawn_for != self._drawn_for
         if changed or (self._is_filled and self._is_shown):
             self._drawn_for, self._is_filled, self._is_shown = drawn_for, False, False

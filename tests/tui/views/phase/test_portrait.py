@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.models.exact_pendulum import ExactMotion
 from engine.models.pendulum import separatrix_margin
 from engine.scenes import SCENES, Scene
 from tui.drawing.axes import in_pi, omega_ticks, theta_ticks
@@ -73,7 +72,7 @@ def test_the_orbit_through_a_state_is_where_the_exact_swing_goes(theta, omega):
     viewport = Viewport.portrait(80, 30, scene)
     x, y = Portrait.of(viewport, scene.w0).orbit(theta, omega)
     orbit = set(zip(x.tolist(), y.tolist(), strict=True))
-    exact = ExactMotion(scene)
+    exact = scene.exact()
     assert exact.period is not None
     passed = set()
     for k in range(2000):

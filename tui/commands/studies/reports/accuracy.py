@@ -1,7 +1,7 @@
 """What the accuracy command prints: table, chart, recommendation; JSON; CSV."""
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from itertools import groupby, pairwise
 from typing import Any, TextIO
 
@@ -68,7 +68,7 @@ def print_json(found: Findings) -> None:
     write_json(
         "accuracy",
         {
-            "scene": asdict(found.scene),
+            "scene": found.scene.fields(),
             "time": found.time,
             "error": found.kind,
             "points": [_point_fields(point, found.kind) for point in found.points],

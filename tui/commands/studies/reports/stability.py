@@ -4,7 +4,7 @@ import math
 import sys
 import zipfile
 from collections.abc import Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -49,16 +49,16 @@ def print_json(study: StabilityStudy, with_map: bool) -> int:
     scene = study.scene
     rows, whole = study.table()
     fields = {
-        "scene": asdict(scene),
+        "scene": scene.fields(),
         "z": scene.z,
         "steps": study.steps,
         "band": BAND,
         "linear": [
             {
                 "method": method.key,
-                "limit_z": linear_limit(method.step),
+                "limit_z": linear_limit(method),
                 "theory_z": method.linear_limit,
-                "amplification": amplification(method.step, scene.z),
+                "amplification": amplification(method, scene.z),
             }
             for method in METHODS
         ],
@@ -146,10 +146,7 @@ def _print_linear(z: float) -> None:
     print_table(
         "lrrr",
         ("method", "stable to z, measured", "theory", f"spectral radius at z = {z:.4g}"),
-        (
-            (m.label, limit(linear_limit(m.step)), limit(m.linear_limit), f"{amplification(m.step, z):.9f}")
-            for m in METHODS
-        ),
+        ((m.label, limit(linear_limit(m)), limit(m.linear_limit), f"{amplification(m, z):.9f}") for m in METHODS),
     )
 
 

@@ -3,6 +3,7 @@
 import cmath
 import math
 import re
+from itertools import islice
 
 import mpmath as mp
 import numpy as np
@@ -10,28 +11,28 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods import METHODS, Method
-from engine.models.exact_pendulum import ExactMotion
-from engine.models.pendulum import acceleration
-from engine.models.state import Acceleration, Phase
-from engine.phase_space.tangent import jacobian
+from engine.methods import EXPLICIT_EULER, METHODS, RK4, Method
+from engine.models.model import Force, Phase
+from engine.models.pendulum import Pendulum, acceleration
 from engine.run.loops import plain
+from engine.run.tangent import jacobian
 from engine.scenes import Scene
 
 W0_SQUARED = 9.81
 each_method = pytest.mark.parametrize("method", METHODS, ids=lambda method: method.key)
 
 
-def travel(method: Method, force: Acceleration, phase: Phase, h: float, n: int) -> Phase:
+def travel(method: Method, force: Force, phase: Phase, h: float, n: int) -> Phase:
     for _ in range(n):
         phase = method.step(force, phase, h)
     return phase
 
 
-def largest_theta_error(method: Method, exact: ExactMotion, time: float, n: int) -> float:
-    scene, phase, worst = exact.scene, (exact.scene.theta, exact.scene.omega), 0.0
+def largest_theta_error(method: Method, scene: Scene, time: float, n: int) -> float:
+    exact, phase, worst = scene.exact(), (scene.theta, scene.omega), 0.0
+    loops = plain(method, scene.equations)
     for k in range(1, n + 1):
-        phase = plain(method).travel(scene.w0_squared, phase, time / n, 1)
+        phase = loops.travel(phase, time / n, 1)
         worst = max(worst, abs(phase[0] - exact.at(k * time / n).theta))
     return worst
 
@@ -40,10 +41,10 @@ def largest_theta_error(method: Method, exact: ExactMotion, time: float, n: int)
 @pytest.mark.parametrize("start", [(1.0, 0.0), (2.5, 0.5), (0.5, 8.0)])
 def test_the_error_falls_with_the_claimed_power_of_h(method: Method, start: tuple[float, float]) -> None:
     """Over half a period: later, what RK4 loses in energy adds a power of its own, and it reads 5 to 6.6."""
-    exact = ExactMotion(Scene(theta=start[0], omega=start[1]))
-    assert exact.period is not None
+    scene = Scene(theta=start[0], omega=start[1])
+    half = scene.exact().period / 2
     steps = [int(n * {1: 80, 2: 8, 4: 1}[method.order]) for n in (50, 71, 100, 141, 200)]
-    errors = [largest_theta_error(method, exact, exact.period / 2, n) for n in steps]
+    errors = [largest_theta_error(method, scene, half, n) for n in steps]
     slope = np.polyfit(np.log(steps), np.log(errors), 1)[0]
     assert -slope == pytest.approx(method.order, abs=0.1)  # the next power of h is still felt at 50 steps
 
@@ -56,39 +57,39 @@ def test_a_step_evaluates_the_force_as_often_as_claimed(method: Method) -> None:
         where.append(theta)
         return -W0_SQUARED * math.sin(theta)
 
-    travel(method, counted, (1.0, 0.5), 0.05, 2)
-    first, second = where[: len(where) // 2], where[len(where) // 2 :]
-    assert len(first) == len(second) == method.force_evaluations + method.first_same_as_last
-    assert (first[-1] == second[0]) == method.first_same_as_last  # so a loop need not evaluate it again
+    for steps in (1, 2, 10):
+        where.clear()
+        next(islice(method.phases(counted, (1.0, 0.5), 0.05), steps - 1, None))
+        assert len(where) == method.evaluations(steps)
 
 
 @pytest.mark.parametrize("method", [m for m in METHODS if m.symplectic], ids=lambda m: m.key)
 @given(theta=st.floats(-4, 4), omega=st.floats(-8, 8), h=st.floats(-0.5, 0.5))
 def test_area_is_kept_where_claimed(method: Method, theta: float, omega: float, h: float) -> None:
     # Jacobian entries up to 3 and a few products of them, each rounded.
-    assert jacobian(method.step, W0_SQUARED, theta, omega, h).determinant == pytest.approx(1, abs=1e-14)
+    assert jacobian(method, Pendulum(W0_SQUARED), theta, omega, h).determinant == pytest.approx(1, abs=1e-14)
 
 
 @each_method
 def test_area_is_lost_or_gained_where_it_is_not_claimed(method: Method) -> None:
     phases = [(theta, omega) for theta in (-2.0, 0.0, 1.0, 3.0) for omega in (-4.0, 0.0, 3.0)]
-    kept = all(abs(jacobian(method.step, W0_SQUARED, *phase, 0.05).determinant - 1) < 1e-12 for phase in phases)
+    kept = all(abs(jacobian(method, Pendulum(W0_SQUARED), *phase, 0.05).determinant - 1) < 1e-12 for phase in phases)
     assert kept == method.symplectic
 
 
 @given(theta=st.floats(-4, 4), omega=st.floats(-8, 8), h=st.floats(-0.5, 0.5))
 def test_explicit_euler_blows_area_up_by_h2_w02_cos_theta(theta: float, omega: float, h: float) -> None:
-    determinant = jacobian(METHODS[0].step, W0_SQUARED, theta, omega, h).determinant
+    determinant = jacobian(EXPLICIT_EULER, Pendulum(W0_SQUARED), theta, omega, h).determinant
     assert determinant == pytest.approx(1 + h**2 * W0_SQUARED * math.cos(theta), abs=1e-14)
 
 
 def test_rk4_loses_area_with_the_sixth_power_of_h() -> None:
     """det - 1 of a step at the bottom is -z⁶/72 + z⁸/576; along a swing the power is the same."""
-    exact = ExactMotion(Scene())
+    exact = Scene().exact()
     lost = []
     for h in (0.02, 0.04):
         states = [exact.at(k * 0.1) for k in range(22)]  # a period
-        logs = [math.log(jacobian(METHODS[3].step, W0_SQUARED, *state, h).determinant) for state in states]
+        logs = [math.log(jacobian(RK4, Pendulum(W0_SQUARED), *state, h).determinant) for state in states]
         lost.append(sum(logs))
     assert all(loss < 0 for loss in lost)
     assert math.log2(lost[1] / lost[0]) == pytest.approx(6, abs=0.1)  # z⁸ is 0.4 % of z⁶
@@ -148,13 +149,13 @@ def test_one_definition_serves_floats_arrays_complex_and_mpmath(method: Method) 
 
 
 def test_names_are_unique_and_every_method_says_where_it_comes_from() -> None:
-    for field in ("key", "label", "letter", "step", "formula"):
+    for field in ("key", "label", "letter", "phases", "formula"):
         assert len({getattr(method, field) for method in METHODS}) == len(METHODS)
     for method in METHODS:
-        assert method.key == method.step.__name__
+        assert method.key == method.phases.__name__
         assert method.other_names
         assert "Hairer, Lubich & Wanner" in method.reference
-        assert method.step.__doc__
+        assert method.phases.__doc__
 
 
 @each_method

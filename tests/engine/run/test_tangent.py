@@ -5,7 +5,8 @@ import math
 import pytest
 
 from engine.methods import METHODS, Method
-from engine.phase_space.tangent import jacobian
+from engine.models.pendulum import Pendulum
+from engine.run.tangent import jacobian
 
 
 @pytest.mark.parametrize("method", METHODS, ids=lambda m: m.key)
@@ -15,7 +16,7 @@ def test_the_jacobian_agrees_with_central_differences(method: Method):
     def force(angle: float) -> float:
         return -9.81 * math.sin(angle)
 
-    exact = jacobian(method.step, 9.81, theta, omega, h)
+    exact = jacobian(method, Pendulum(9.81), theta, omega, h)
     right, left = (method.step(force, (theta + s * d, omega), h) for s in (1, -1))
     up, down = (method.step(force, (theta, omega + s * d), h) for s in (1, -1))
     differences = [(p - q) / (2 * d) for p, q in ((right[0], left[0]), (up[0], down[0]))]

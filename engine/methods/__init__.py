@@ -1,0 +1,35 @@
+"""The methods, one family a file, and the list that everything else derives from.
+
+`method` says what a method is: a generator function (force, phase, h) -> phases, written as in the book, with only
++ and * on the phase and never `+=`, which would change arrays in place.  It therefore runs unchanged on floats,
+NumPy arrays, complex numbers, mpmath numbers and under Numba.  The families: `euler`, `verlet`, `runge_kutta`.
+
+To add a method, write its function, its entry and its place in FAMILY in one of these files.  Every field of an
+entry is a claim, and tests/engine/methods measure each of them.
+"""
+
+import copyreg
+
+from engine.methods import euler, runge_kutta, verlet
+from engine.methods.euler import EXPLICIT_EULER, SYMPLECTIC_EULER
+from engine.methods.method import Method as Method
+from engine.methods.runge_kutta import RK4
+from engine.methods.verlet import VELOCITY_VERLET
+
+Cast = tuple[Method, ...]
+"""The methods of a run, in order."""
+
+METHODS: Cast = (*euler.FAMILY, *verlet.FAMILY, *runge_kutta.FAMILY)
+
+USUAL_CAST: Cast = (EXPLICIT_EULER, SYMPLECTIC_EULER, VELOCITY_VERLET, RK4)
+
+
+def method_of(key: str) -> Method:
+    """The method of a key.  Raises KeyError."""
+    return _BY_KEY[key]
+
+
+_BY_KEY = {method.key: method for method in METHODS}
+
+# A method goes to another process by its key: the generator functions of builders have no name to be found by.
+copyreg.pickle(Method, lambda method: (method_of, (method.key,)))

@@ -1,0 +1,68 @@
+"""The Euler methods: one force a step, order 1."""
+
+from collections.abc import Iterator
+
+from engine.methods.method import Method
+from engine.models.model import Force, Phase
+from engine.models.modified_energy import symplectic_euler_modified_energy
+
+
+def explicit_euler(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
+    """Explicit (forward) Euler: both updates from the old state.
+
+    Order 1.  Not symplectic: the step's determinant is 1 + h² w0² cos theta.  Hairer, Lubich & Wanner (2006), I.1.2.
+    """
+    theta, omega = phase
+    while True:
+        theta, omega = theta + h * omega, omega + h * force(theta)
+        yield theta, omega
+
+
+def symplectic_euler(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
+    """Symplectic Euler: kick omega, then drift theta with the new omega.
+
+    Order 1, symplectic.  Not reversible under omega -> -omega.  Hairer, Lubich & Wanner (2006), I.1.2 and VI.3.1.
+    """
+    theta, omega = phase
+    while True:
+        omega = omega + h * force(theta)
+        theta = theta + h * omega
+        yield theta, omega
+
+
+EXPLICIT_EULER = Method(
+    key="explicit_euler",
+    label="Explicit Euler",
+    letter="e",
+    phases=explicit_euler,
+    formula="theta' = theta + h omega;  omega' = omega + h a(theta)",
+    order=1,
+    force_evaluations=1,
+    first_same_as_last=False,
+    symplectic=False,
+    reversible=False,
+    linear_limit=0.0,
+    other_names=("forward Euler",),
+    reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), I.1.2",
+    used="equations with additive noise (Euler-Maruyama): Brian 2 [brian2.readthedocs.io, Numerical integration]",
+)
+
+SYMPLECTIC_EULER = Method(
+    key="symplectic_euler",
+    label="Symplectic Euler",
+    letter="s",
+    phases=symplectic_euler,
+    formula="omega' = omega + h a(theta);  theta' = theta + h omega'",
+    order=1,
+    force_evaluations=1,
+    first_same_as_last=False,
+    symplectic=True,
+    reversible=False,
+    linear_limit=2.0,
+    other_names=("semi-implicit Euler", "Euler-Cromer"),
+    reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), I.1.2",
+    used="robots and physics simulation: the default of MuJoCo [mujoco.readthedocs.io, XML Reference, integrator]",
+    modified_energy=symplectic_euler_modified_energy,
+)
+
+FAMILY = (EXPLICIT_EULER, SYMPLECTIC_EULER)

@@ -1,0 +1,39 @@
+"""What a method is, and what is claimed of it."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from engine.models.model import Force, Phase
+from engine.models.modified_energy import ModifiedEnergy
+
+Phases = Callable[[Force, Phase, float], Iterator[Phase]]
+"""(force, phase, h) -> the phases after one step of h [s], after two, and so on without end."""
+
+
+@dataclass(frozen=True, slots=True)
+class Method:
+    """A method and what is claimed of it; tests/engine/methods measure every claim."""
+
+    key: str  # in topics, JSON and on the command line
+    label: str  # for people
+    letter: str  # its mark on charts, never colour alone
+    phases: Phases
+    formula: str
+    order: int  # global order on the nonlinear pendulum, over at most one period
+    force_evaluations: int  # a step
+    first_same_as_last: bool  # the last force of a step is the next one's first: a run needs one more than its steps
+    symplectic: bool  # the step's Jacobian has determinant 1
+    reversible: bool  # the step and omega -> -omega undo each other
+    linear_limit: float  # largest z = h·w0 that is stable on the linear oscillator; 0: none
+    other_names: tuple[str, ...]
+    reference: str
+    used: str  # where, and in brackets who says so
+    modified_energy: ModifiedEnergy | None = None  # which it keeps but for O(h⁴); None: none is known, or there is none
+
+    def step(self, force: Force, phase: Phase, h: float) -> Phase:
+        """The phase after one step of h [s]."""
+        return next(self.phases(force, phase, h))
+
+    def evaluations(self, steps: int) -> int:
+        """How many times a run of so many steps evaluates the force."""
+        return steps * self.force_evaluations + self.first_same_as_last

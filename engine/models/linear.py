@@ -1,0 +1,50 @@
+"""The linear oscillator theta'' = -w0² theta: the limit of small swings, and what the linear theory talks about."""
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from engine.models.model import Energy, ExactMotion, Force, Model, Phase, Sine, State
+
+
+@dataclass(frozen=True)
+class LinearOscillator(Model):
+    """theta'' = -w0² theta.  It swings with the same period however wide, and never goes over the top."""
+
+    w0_squared: float  # s⁻²
+
+    key: ClassVar[str] = "linear"
+    equation: ClassVar[str] = "theta'' = -w0² theta"
+    turns: ClassVar[bool] = False
+
+    def force(self, sin: Sine = math.sin) -> Force:
+        w0_squared = self.w0_squared
+
+        def linear_force(theta: Any) -> Any:
+            return -w0_squared * theta
+
+        return linear_force
+
+    def slope(self, theta: float) -> float:
+        return -self.w0_squared
+
+    def energy(self, sin: Sine = math.sin) -> Energy:
+        """(omega² + w0² theta²)/2 [s⁻²]."""
+        w0_squared = self.w0_squared
+
+        def linear_energy(phase: Phase) -> Any:
+            theta, omega = phase
+            return omega * omega / 2 + w0_squared / 2 * theta * theta
+
+        return linear_energy
+
+    def exact(self, theta: float, omega: float) -> ExactMotion:
+        """theta cos w0 t + omega/w0 sin w0 t."""
+        w0 = math.sqrt(self.w0_squared)
+
+        def at(t: float) -> State:
+            c, s = math.cos(w0 * t), math.sin(w0 * t)
+            return State(theta * c + omega / w0 * s, omega * c - theta * w0 * s)
+
+        rests = theta == 0 == omega
+        return ExactMotion(at, "equilibrium" if rests else "libration", None if rests else math.tau / w0)

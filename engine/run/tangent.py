@@ -1,0 +1,80 @@
+"""The derivative of a step, by complex step; stability, chaos, area and symplecticity follow from it.
+
+step(x + i·tiny·v) = step(x) + i·tiny·J v + O(tiny²).  Squire & Trapp, SIAM Review 40 (1998) 110.
+"""
+
+import cmath
+import math
+from itertools import islice
+from typing import Any, NamedTuple
+
+from engine.methods import Method
+from engine.models.linear import LinearOscillator
+from engine.models.model import Force, Model, Phase
+
+_TINY = 1e-100  # a complex step has no subtraction, so it may be as small as one likes
+
+
+def tangent_map(
+    method: Method, force: Force, phase: Phase, along: Phase, h: Any, steps: int = 1
+) -> tuple[Phase, Phase]:
+    """The phase after some steps, and what a small displacement `along` has become; `force` takes complexes."""
+    displaced = phase[0] + 1j * (_TINY * along[0]), phase[1] + 1j * (_TINY * along[1])
+    theta, omega = next(islice(method.phases(force, displaced, h), steps - 1, None))
+    return (theta.real, omega.real), (theta.imag / _TINY, omega.imag / _TINY)
+
+
+class Jacobian(NamedTuple):
+    """Derivative of one step: d(theta', omega') / d(theta, omega), row by row."""
+
+    theta_theta: float
+    theta_omega: float  # s
+    omega_theta: float  # 1/s
+    omega_omega: float
+
+    @property
+    def determinant(self) -> float:
+        """Area after the step over area before it; 1 for a symplectic method."""
+        return self.theta_theta * self.omega_omega - self.theta_omega * self.omega_theta
+
+
+def jacobian(method: Method, model: Model, theta: float, omega: float, h: float) -> Jacobian:
+    """The step's Jacobian at (theta, omega), exact to rounding."""
+    force = model.force(cmath.sin)
+    _, by_theta = tangent_map(method, force, (theta, omega), (1.0, 0.0), h)
+    _, by_omega = tangent_map(method, force, (theta, omega), (0.0, 1.0), h)
+    return Jacobian(by_theta[0], by_omega[0], by_theta[1], by_omega[1])
+
+
+def at_bottom(method: Method, z: float) -> Jacobian:
+    """The step's Jacobian for small swings with h·w0 = z, in units where w0 = 1."""
+    return jacobian(method, LinearOscillator(1.0), 0.0, 0.0, z)
+
+
+class Stretching:
+    """The logarithm of how much longer a displacement has become since the start of a run."""
+
+    def __init__(self, method: Method, model: Model, h: float) -> None:
+        self._method, self._force, self._h = method, model.force(cmath.sin), h
+        self._w0 = math.sqrt(model.w0_squared)
+        self._along: Phase = (1.0, 0.0)
+        self.log = 0.0
+        self.steps = 0
+
+    def carry(self, phase: Phase, steps: int) -> None:
+        """Carry it forward, from this phase, by some steps; few enough that its length stays a double."""
+        _, (theta, omega) = tangent_map(self._method, self._force, phase, self._along, self._h, steps)
+        length = math.hypot(theta, omega / self._w0)
+        if 0 < length < math.inf:
+            self._along = theta / length, omega / length
+            self.log += math.log(length)
+            self.steps += steps
+
+
+def conserved_ellipse(method: Method, z: float) -> tuple[float, float, float] | None:
+    """What a symplectic step keeps of small swings: -c theta² + (a - d) theta omega + b omega², in units where w0 = 1.
+
+    ((a, b), (c, d)) is the step's Jacobian at the bottom.  None where that is no ellipse.
+    """
+    a, b, c, d = at_bottom(method, z)
+    return (-c, a - d, b) if method.symplectic and (a - d) ** 2 / 4 + b * c < 0 else None
