@@ -1,5 +1,7 @@
 import io
 import math
+import subprocess
+import sys
 import time
 from itertools import pairwise
 from pathlib import Path
@@ -160,6 +162,17 @@ def test_errors_are_relative_to_the_scale_that_is_given():
 )
 def test_what_cannot_be_judged_is_one_sentence(text, names, code, words):
     assert judge(text, time=names[0], energy=names[1]).refused(code, *words)
+
+
+@pytest.mark.parametrize(("end", "code", "word"), [("< energies.csv", 0, "bounded"), ("<&-", 3, "Bad file descr")])
+def test_stdin_is_read_where_it_is_open(end, code, word):
+    Path("energies.csv").write_text(table())
+    program = Path(sys.executable).with_name("pendu-tui")
+    line = f"{program} judge - --time t --energy E {end}"
+    done = subprocess.run(["bash", "-c", line], capture_output=True, text=True, check=False)
+    assert done.returncode == code
+    assert word in done.stdout + done.stderr
+    assert "Traceback" not in done.stderr
 
 
 def test_a_file_that_cannot_be_read_is_one_sentence():

@@ -5,7 +5,6 @@ relative to the first energy, and trends are per unit of the time column: per se
 """
 
 import argparse
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -89,8 +88,8 @@ def run(options: argparse.Namespace) -> int:
 def _input(name: str) -> Iterator[TextIO]:
     """The lines of a file or of stdin, as UTF-8.  Raises UserError if it cannot be read."""
     try:
-        with open(sys.stdin.fileno() if name == "-" else name, encoding="utf-8-sig", errors="replace",
-                  closefd=name != "-") as stream:  # fmt: skip
+        source = 0 if name == "-" else name
+        with open(source, encoding="utf-8-sig", errors="replace", closefd=source != 0) as stream:
             yield stream
     except OSError as error:
         raise UserError(f"{printable(name)}: {error.strerror or error}.", Exit.INPUT_UNREADABLE) from None
