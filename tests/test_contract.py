@@ -20,6 +20,8 @@ COMMANDS = {
     "stability --map": ["stability", "--steps", "9", "--z-values", "0.5,2.5", "--theta-values", "1", "--map", "--json"],
     "run": ["run", "--time", "2", "--json"],
     "run of a method that diverges": ["run", "--h", "2", "--length", "0.1", "--time", "4000", "--json"],
+    "judge": ["judge", "energies.csv", "--time", "t", "--energy", "E", "--json"],
+    "judge of a few energies": ["judge", "few.csv", "--time", "1", "--energy", "2", "--json"],
     "verify": ["verify", "whole.mcap", "cut.mcap", "--json"],
     "info": ["info", "whole.mcap", "--json"],
     "info of a cut recording": ["info", "cut.mcap", "--json"],
@@ -38,6 +40,9 @@ def folder(tmp_path, monkeypatch):
     """A folder with a whole recording and one that was cut, which is the library, too."""
     whole = record(tmp_path / "whole.mcap", two_runs())
     (tmp_path / "cut.mcap").write_bytes(whole.read_bytes()[:-700])
+    rows = [f"{n},{10 + (-1) ** n}\n" for n in range(200)]
+    (tmp_path / "energies.csv").write_text("t,E\n" + "".join(rows), encoding="utf-8")
+    (tmp_path / "few.csv").write_text("t,E\n0,1\n1,2\n2,nan\n", encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path / "library"))
     (tmp_path / "library").mkdir()
@@ -78,6 +83,11 @@ def test_the_schema_is_that_of_the_command(name):
         (1, ["run", "--time", "2", "--fail-if", "rk4.max_energy_error >= 0"]),
         (1, ["verify", "cut.mcap"]),
         (1, ["run", "--time", "2", "--fail-if", "rk4.verdict == grows or rk4.verdict != grows"]),
+        (0, ["judge", "energies.csv", "--time", "t", "--energy", "E", "--fail-if", "verdict != bounded"]),
+        (1, ["judge", "energies.csv", "--time", "t", "--energy", "E", "--fail-if", "max_energy_error > 0.1"]),
+        (2, ["judge", "energies.csv", "--time", "t", "--energy", "H"]),
+        (3, ["judge", "absent.csv", "--time", "t", "--energy", "E"]),
+        (5, ["judge", "energies.csv", "--time", "t", "--energy", "E", "--junit", "absent/judge.xml"]),
         (2, ["run", "--time", "0"]),
         (2, ["run", "--time", "2", "--fail-if", "rk5.max_energy_error > 0"]),
         (2, ["nothing"]),

@@ -24,6 +24,7 @@ GROUPS = {
         "accuracy": "speed against accuracy: which method, which h, at what cost",
         "stability": "where each method becomes unstable: theory and measurement",
         "run": "run a scene without the screen and judge each method; for CI",
+        "judge": "judge the energies of another program, from a file or stdin; for CI",
     },
     "files": {
         "verify": "re-simulate recordings and compare every bit",
