@@ -95,9 +95,10 @@ def test_speeds_are_read_as_people_say_them():
 
 
 def rows(live: Live, width: int, shown: Shown | None = None) -> str:
-    exact = live.exact.at(live.sample.t)
+    cast, exact = live.scene.cast, live.exact.at(live.sample.t)
     return "\n".join(
-        text(row) for row in table(live.sample, live.judgements, exact, live.stepping.own, shown or Shown(), width)
+        text(row)
+        for row in table(cast, live.sample, live.judgements, exact, live.stepping.own, shown or Shown(), width)
     )
 
 
