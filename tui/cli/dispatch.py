@@ -28,6 +28,7 @@ GROUPS = {
     "files": {
         "verify": "re-simulate recordings and compare every bit",
         "info": "show what is in a recording, whole or damaged",
+        "diff": "compare two recordings: scene, changes, every number",
         "recover": "salvage a damaged recording",
         "export": "convert a recording to CSV",
         "recordings": "list the recordings, or prune them",
