@@ -30,7 +30,7 @@ GROUPS = {
         "info": "show what is in a recording, whole or damaged",
         "diff": "compare two recordings: scene, changes, every number",
         "recover": "salvage a damaged recording",
-        "export": "convert a recording to CSV",
+        "export": "convert a recording to CSV, or to a film (asciicast)",
         "recordings": "list the recordings, or prune them",
     },
     "about": {
