@@ -18,6 +18,7 @@ GROUPS = {
         "live": "the lab: four pendulums, their errors, a recording",
         "replay": "play a recording on the same screen",
         "snapshot": "save the lab as an SVG image",
+        "serve": "the lab in a browser",
         "keys": "list all keys and mouse actions",
     },
     "studies": {
