@@ -90,6 +90,7 @@ def test_the_schema_is_that_of_the_command(name):
         (1, ["diff", "whole.mcap", "other.mcap"]),
         (2, ["diff", "whole.mcap"]),
         (3, ["diff", "whole.mcap", "absent.mcap"]),
+        (2, ["serve", "--port", "x"]),
         (2, ["nothing"]),
         (2, ["--scene", "nothing"]),
         (3, ["info", "absent.mcap"]),

@@ -264,8 +264,7 @@ async def test_what_no_terminal_says_is_not(said):
 
 
 async def test_and_ends_the_tab(server):
-    async with server.tab(size=(10**9, 10**9)) as tab:
-        tab.screen.resize(200, 400)
+    async with server.tab() as tab:
         await tab.shows("LIVE")
         await tab.socket.send_str("no json")
         assert await tab.closed()
