@@ -56,7 +56,7 @@ COLUMNS = (
     Column(3, ("th.err", 7), ("theta error", 11), lambda line, width: scientific(theta_error(line), width, 1, "-")),
     Column(1, ("f", 1), ("evals/step", 10), lambda line, width: str(line.method.force_evaluations).rjust(width)),
 )
-NAME = 21  # columns of the longest name and its mark
+NAME = 20  # columns of the longest name and its mark
 MOST_GAP = 3
 
 
