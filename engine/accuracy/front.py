@@ -5,15 +5,16 @@ there.  Taylor's series is set by a tolerance, and is absent without Numba.
 """
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import Protocol, TypeVar
 
 import numpy as np
 
 from engine.accuracy.rounding import rounding_floor
-from engine.accuracy.study import COMPARISONS, REPEATS, TIMED_STEPS, Clock, ErrorKind, Flaw, Flaws
+from engine.accuracy.study import COMPARISONS, TIMED_STEPS, Clock, ErrorKind, Flaw, Flaws
 from engine.accuracy.taylor import MOST_STEPS, Floats, follow
+from engine.accuracy.timing import shortest
 from engine.models.exact_pendulum import ExactMotion
 from engine.models.pendulum import energy, energy_reference
 from engine.scenes import Scene
@@ -139,7 +140,7 @@ class TaylorStudy:
     def timed(self, point: TaylorPoint, clock: Clock) -> TaylorPoint:
         """The same point with its seconds: the same steps again, with the state at the end alone."""
         end = np.array([self.time])
-        seconds, spread = _shortest(
+        seconds, spread = shortest(
             lambda: self._follow(end, point.tolerance), max(1, TIMED_STEPS // point.steps), clock
         )
         return replace(point, seconds=seconds, spread=spread)
@@ -167,12 +168,6 @@ class TaylorStudy:
         return (float(np.max(off)), float(np.max(np.abs(energies))), float(off[-1])), steps
 
 
-def closed_form_seconds(scene: Scene, time: float, clock: Clock) -> float:
-    """Seconds of the exact motion at COMPARISONS + 1 times, in plain Python: what no step beats that shows as much."""
-    exact, times = ExactMotion(scene), [time * n / COMPARISONS for n in range(COMPARISONS + 1)]
-    return _shortest(lambda: [exact.at(t) for t in times], 1, clock)[0]
-
-
 class Timed(Protocol):
     """A point of any line on the chart."""
 
@@ -196,15 +191,3 @@ def front(points: Iterable[P], kind: ErrorKind) -> list[P]:
         if not best or point.error(kind) < best[-1].error(kind):
             best.append(point)
     return best
-
-
-def _shortest(work: Callable[[], object], runs: int, clock: Clock) -> tuple[float, float]:
-    """Seconds of one piece of work, the shortest of REPEATS; and by how much the longest took longer, relative."""
-    work()  # may have to be compiled
-    lengths = []
-    for _ in range(REPEATS):
-        began = clock()
-        for _ in range(runs):
-            work()
-        lengths.append((clock() - began) / runs)
-    return min(lengths), max(lengths) / min(lengths) - 1

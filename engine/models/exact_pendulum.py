@@ -25,6 +25,7 @@ class ExactMotion:
     """The exact motion of a scene's pendulum: where it is at any time, its period and its regime."""
 
     regime: Regime
+    motion: Motion
     period: float | None = None  # s, per swing or, in rotation, per turn; None: not periodic
 
     def __init__(self, scene: Scene) -> None:
@@ -34,19 +35,19 @@ class ExactMotion:
             d = 1 - k_squared
             k, k_prime = float(k_squared.sqrt()), float(abs(d).sqrt())
         if k == 0:
-            self.regime, self._motion = "equilibrium", _rest(scene)
+            self.regime, self.motion = "equilibrium", _rest(scene)
         elif d > 0:
             self.regime = "libration"
-            self._motion, self.period = _libration(scene, k, k_prime)
+            self.motion, self.period = _libration(scene, k, k_prime)
         elif d < 0:
             self.regime = "rotation"
-            self._motion, self.period = _rotation(scene, k, k_prime)
+            self.motion, self.period = _rotation(scene, k, k_prime)
         else:
-            self.regime, self._motion = "separatrix", _separatrix(scene)
+            self.regime, self.motion = "separatrix", _separatrix(scene)
 
     def at(self, t: float) -> State:
         """The state at time t [s], negative times included; theta continues from the start, unwrapped."""
-        return self._motion(t)
+        return self.motion(t)
 
 
 def _k_squared(theta: float, omega: float, w0_squared: float) -> Decimal:

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from engine.accuracy.closed_form import closed_form_seconds
 from engine.accuracy.taylor import follow
 from engine.methods import METHODS
 from engine.models.exact_pendulum import ExactMotion
@@ -291,6 +292,8 @@ def main() -> None:
         "bench": "peers",
         "scene": "theta 2 rad, 100 s, 1 m",
         "solvers": rows,
+        "closed_form_ms": 1e3
+        * min(closed_form_seconds(SCENE, TIME, time.perf_counter) for _ in range(9)),  # 401 states
         "first": first,
         "ratio_to_taylor_20": ratios,
         "skipped": skipped,

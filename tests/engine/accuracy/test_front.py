@@ -1,4 +1,4 @@
-"""The lines beside the methods: Taylor's series at a ladder of tolerances, the closed form, and who is ahead."""
+"""The lines beside the methods: Taylor's series at a ladder of tolerances, and who is ahead."""
 
 import itertools
 import math
@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from engine.accuracy import front as module
-from engine.accuracy.front import CONFIRMING, FINER, TAYLOR_20, TaylorStudy, closed_form_seconds, front
+from engine.accuracy.front import CONFIRMING, FINER, TAYLOR_20, TaylorStudy, front
 from engine.accuracy.study import Flaws, Study, timed
 from engine.accuracy.taylor import follow
 from engine.methods import METHODS
@@ -90,11 +90,6 @@ def test_seconds_are_the_shortest_of_several_runs_with_their_spread(study):
     runs = 20_000 // point.steps
     assert study.timed(point, lambda: next(ticks)) == replace(point, seconds=30.0 / runs, spread=1.0)
     assert next(ticks, None) is None
-
-
-def test_the_seconds_of_the_closed_form_are_those_of_a_clock():
-    ticks = itertools.count()
-    assert closed_form_seconds(SWING, 100.0, lambda: next(ticks)) == 1
 
 
 def at(study, error, seconds, flaw=None):
