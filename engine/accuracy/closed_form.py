@@ -18,9 +18,9 @@ RUNS = 20  # in a row, as one is short
 
 
 def closed_form_seconds(scene: Scene, time: float, clock: Clock) -> float:
-    """Seconds of the exact motion at COMPARISONS + 1 times, compiled where Numba is: what no step beats.
+    """Seconds of the exact motion at COMPARISONS + 1 times, compiled where Numba is.
 
-    The time it takes does not depend on how accurate it is, nor on the time that is simulated.
+    A floor for runs of some hundred steps and more; it does not depend on the time that is simulated.
     """
     motion, times = ExactMotion(scene).motion, np.linspace(0, time, COMPARISONS + 1)
     at_all: Callable[[Any, Floats], Any] = at_times
