@@ -15,6 +15,7 @@ from textual.screen import Screen
 from textual.widget import Widget
 
 from engine.run.lockstep import Sample
+from tui.drawing.faults import Guarded
 from tui.playback.frame_rate import FrameTimer
 from tui.playback.playhead import doubled
 from tui.playback.shown import Shown
@@ -51,7 +52,7 @@ def _first_source(screen: Any) -> Source:
     return source
 
 
-class SourceScreen(Screen[None]):
+class SourceScreen(Guarded, Screen[None]):
     """Shows a source, following a clock that is passed in."""
 
     BLANK = True  # everything on it is covered
