@@ -47,11 +47,6 @@ class Host(Protocol):
         """Whether frames are still on their way, so that the terminal should get no more of them now."""
 
 
-def _first_source(screen: Any) -> Source:
-    source: Source = screen.first_source
-    return source
-
-
 class SourceScreen(Guarded, Screen[None]):
     """Shows a source, following a clock that is passed in."""
 
@@ -67,7 +62,7 @@ class SourceScreen(Guarded, Screen[None]):
     AUTO_FOCUS = ""  # keys belong to the screen until a pane is clicked
     KEYS: ClassVar[tuple[Key, ...]] = COMMON
 
-    source: var[Source] = var(Initialize(_first_source))
+    source: var[Source] = var(Initialize(lambda screen: cast(Source, cast(Any, screen).first_source)))
     sample: var[Sample | None] = var(None)
     sample_10hz: var[Sample | None] = var(None, always_update=True)
     sample_5hz: var[Sample | None] = var(None)
