@@ -141,9 +141,13 @@ class PenduApp(Guarded, App[Exit | OSError]):
     def action_interrupt(self) -> None:
         self.interrupt()
 
+    def finish(self) -> None:
+        """Finish the recording."""
+        self.source_screen.source.close()
+
     def interrupt(self) -> None:
         """Finish the recording and exit, even if the terminal is gone."""
-        self.source_screen.source.close()
+        self.finish()
         if is_gone():
             os._exit(Exit.INTERRUPTED)
         self.exit(Exit.INTERRUPTED)
