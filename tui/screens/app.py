@@ -13,7 +13,7 @@ from typing import ClassVar
 
 from rich.markup import escape
 from textual._context import active_message_pump
-from textual.app import App, SystemCommand
+from textual.app import App, ScreenStackError, SystemCommand
 from textual.binding import Binding, BindingType
 from textual.driver import Driver
 from textual.filter import LineFilter
@@ -130,6 +130,8 @@ class PenduApp(Guarded, App[Exit | OSError]):
 
     def fail(self, error: BaseException, shown: bool = False) -> None:
         """Write to the log what failed, and say so unless it is shown; both once for each place in the program."""
+        if isinstance(error, ScreenStackError):
+            return  # a key that came when the screens were gone
         where = [(frame.f_code, line) for frame, line in traceback.walk_tb(error.__traceback__)]
         if (type(error), *where[-1:]) in self._faults:
             return
