@@ -2,6 +2,7 @@
 
 import gc
 import time
+from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -33,6 +34,7 @@ READ, BUILT = 10, 5
 """How often a second numbers that people read are updated, and charts, which take time to build."""
 
 STALL = 1.0  # s; a longer gap between frames does not count as time: Ctrl+Z, a computer asleep, a dead line
+UNDOS = 30  # changes; each may hold a run
 ALREADY = "Already marked"
 
 
@@ -86,7 +88,7 @@ class SourceScreen(Guarded, Screen[None]):
         self._timer = FrameTimer(lambda seconds: self.set_interval(seconds, self.frame))
         self._missed = 0.0  # s of the clock while the program was stopped
         self._late = False  # the next frame shows everything
-        self._undo: list[Callable[[], object]] = []
+        self._undo: deque[Callable[[], object]] = deque(maxlen=UNDOS)
         for reactive in (SourceScreen.sample, SourceScreen.sample_10hz, SourceScreen.sample_5hz):
             self.set_reactive(reactive, source.sample)
 
