@@ -17,6 +17,7 @@ from textual.app import App, ScreenStackError, SystemCommand
 from textual.binding import Binding, BindingType
 from textual.driver import Driver
 from textual.filter import LineFilter
+from textual.notifications import SeverityLevel
 from textual.reactive import var
 from textual.screen import Screen
 from textual.theme import BUILTIN_THEMES, Theme
@@ -139,6 +140,21 @@ class PenduApp(Guarded, App[Exit | OSError]):
         fault_log.append(library.folder() / LOG, error)
         if not shown:
             self.notify(sentence(error), severity="warning", timeout=15, markup=False)
+
+    def notify(
+        self,
+        message: str,
+        *,
+        title: str = "",
+        severity: SeverityLevel = "information",
+        timeout: float | None = None,
+        markup: bool = True,
+    ) -> None:
+        """Show a notice in place of an equal one: a key held down is to cover no more than a line."""
+        for notice in [*self._notifications]:
+            if notice.message == message:
+                self._unnotify(notice, refresh=False)
+        super().notify(message, title=title, severity=severity, timeout=timeout, markup=markup)
 
     def action_interrupt(self) -> None:
         self.interrupt()
