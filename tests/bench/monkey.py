@@ -13,6 +13,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from unittest.mock import patch
 
+from textual.pilot import WaitForScreenTimeout
+
 from recordings.verify import verify
 from tests.tui.harness import on_stage
 from tests.tui.monkey import SIZE, play_on_stage, small_studies, wild_presses, wild_replay, wild_stage
@@ -29,8 +31,13 @@ async def sitting(folder: Path, events: int, seed: int) -> tuple[bool, int]:
     with small_studies(library):
         async with on_stage(wild_stage(library), SIZE) as theatre:
             theatre.app.open_replay = wild_replay(library, lambda: theatre.now)
-            await play_on_stage(theatre, wild_presses(events, seed), seed, BATCH)
-            lives = theatre.app.is_running
+            try:
+                await play_on_stage(theatre, wild_presses(events, seed), seed, BATCH)
+                lives = theatre.app.is_running
+            except WaitForScreenTimeout:  # 30 s without an answer from some widget
+                lives = False
+                for task in asyncio.all_tasks():
+                    task.print_stack(limit=3)
             theatre.source.close()
     recordings = list(library.glob("*.mcap"))
     assert not list(library.glob("*.part"))
