@@ -107,12 +107,12 @@ def table(
 class ErrorTable(Pane):
     """As many columns as fit."""
 
-    _lines = 0
+    _rows_shown = 0
 
     def paint(self, source: Source, sample: Sample) -> None:
         exact, h = source.exact.at(sample.t), source.stepping.own
         rows = table(self.cast, sample, source.judgements, exact, h, self.shown, self.room.width)
-        if len(rows) != self._lines:
-            self._lines = len(rows)
+        if len(rows) != self._rows_shown:
+            self._rows_shown = len(rows)
             self.styles.height = len(rows)  # hidden methods leave no gap
         self.show(rows)
