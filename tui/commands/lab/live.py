@@ -4,7 +4,8 @@ import argparse
 import gc
 from pathlib import Path
 
-from tui.cli.options import add_file, add_scene_options, positive, scene_of
+from tui.cli.options import add_file, positive
+from tui.cli.scene import add_scene_options, scene_of
 from tui.terminal.options import add_terminal_options
 
 EXAMPLES = """\
