@@ -21,7 +21,7 @@ WIDEST_Z = 16.0
 NO_LIMIT_BELOW = 0.1  # z up to which some unstable methods grow by less than rounding
 ROUNDING = 1e-12
 RETURNED = 1e-11  # rad; rounding of 100 steps of a dozen forces
-FLOOR = 1e-11  # rad; smaller errors are rounding
+FLOOR = 1e-14  # rad a step; smaller errors are rounding
 FITTED_BELOW = 0.1  # rad; larger errors are not yet proportional to a power of h
 
 
@@ -55,16 +55,16 @@ def order(phases: Phases, start: Phase = START) -> float | None:
     exact, force = PENDULUM.exact(*start), PENDULUM.force()
     half = (exact.period or 1.0) / 2
     found: list[tuple[float, float]] = []
-    for power in range(8, 25):
+    for power in range(2, 25):
         steps = round(2 ** (power / 2))
         largest = 0.0
         for step, phase in enumerate(islice(phases(force, start, half / steps), steps), 1):
             largest = max(largest, abs(phase[0] - exact.at(step * half / steps).theta))
             if not largest < FITTED_BELOW:  # nan, too
                 break
-        if found and not largest > FLOOR:
+        if largest <= FLOOR * steps:
             break
-        if FLOOR < largest < FITTED_BELOW:
+        if largest < FITTED_BELOW:
             found.append((math.log(half / steps), math.log(largest)))
     if len(found) < 3:
         return None

@@ -28,7 +28,7 @@ COMPLETE_KEYS = {  # the last of a list with commas, in the words of each shell,
   local head=""; [[ $1 == *,* ]] && head="${{1%,*}},"
   compgen -P "$head" -W '{KEYS}' -- "${{1##*,}}"
 }}""",
-        "zsh": f"_pendu_tui_methods() {{ _sequence compadd - {KEYS}; }}",
+        "zsh": f"_pendu_tui_methods() {{ _values -s , method {KEYS}; }}",
     },
 }
 
