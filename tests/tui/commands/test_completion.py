@@ -135,19 +135,13 @@ def test_bash_completes_the_last_of_several_methods(script):
     assert done.stdout == "rk4,symplectic_euler\n"
 
 
+COMPLETED = {"NAME", "KEY,KEY", "FILE.py FUNCTION[,letter=m]", "FILE", "OUT", "EXPR", "FILE.svg", "FILE.npz"}
+
+
 def test_every_option_with_a_choice_or_a_file_can_be_completed():
     for command in whole_parser()._subparsers._group_actions[0].choices.values():
         for action in command._actions:
-            if action.metavar in (
-                "NAME",
-                "KEY,KEY",
-                "FILE.py FUNCTION[,letter=m]",
-                "FILE",
-                "OUT",
-                "EXPR",
-                "FILE.svg",
-                "FILE.npz",
-            ):
+            if action.metavar in COMPLETED:
                 assert action.choices or action.complete, (command.prog, action.dest)
 
 
