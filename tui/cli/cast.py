@@ -128,7 +128,7 @@ def _own(text: str, others: Sequence[Method]) -> Method:
 
 def _loaded(path: Path, key: str, letter: str) -> Method:
     try:
-        source = path.read_text(encoding="utf-8")
+        source = path.read_text(encoding="utf-8-sig")
     except (OSError, ValueError) as error:
         why = error.strerror if isinstance(error, OSError) else "it is not text in UTF-8"
         raise UserError(f"--method: {path} cannot be read: {why}.", Exit.INPUT_UNREADABLE) from None

@@ -21,6 +21,7 @@ EXAMPLES = """\
 examples:
   pendu-tui accuracy
   pendu-tui accuracy --target 1e-6 --time 100
+  pendu-tui accuracy --methods rk4,verlet
   pendu-tui accuracy --budget 2e4 --theta 150deg
   pendu-tui accuracy --target 1e-3 --error energy --time 10,100,1000
   pendu-tui accuracy --cost seconds --h-values 0.1:0.001:8

@@ -26,6 +26,7 @@ EXAMPLES = """\
 examples:
   pendu-tui run --time 100
   pendu-tui run --scene crossover --time 100 --record crossover.mcap
+  pendu-tui run --time 60 --methods rk4,verlet --method mine.py:my_step,letter=m
   pendu-tui run --theta 170deg --time 60 --json | jq '.methods[] | {method, verdict}'
   pendu-tui run --time 60 --fail-if 'velocity_verlet.max_energy_error > 1e-2 or rk4.drift_per_second < -1e-5'
   pendu-tui run --time 600 --fail-if 'velocity_verlet.verdict != bounded'
