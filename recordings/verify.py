@@ -146,6 +146,8 @@ class Rerun:
         self._changes: list[Event] = []  # that no sample has come after yet
         self._allowed: dict[tuple[str, str], float] = defaultdict(float)
         self._cast, self._methods = scene.cast, [method.key for method in scene.cast]
+        if only is not None and not set(only) & set(self._methods):
+            raise RecordingError(f"run {self.run} has none of the methods {', '.join(only)}")
         self._sampled = -1
         self._reached = 0  # the step of the last change
         self.max_difference = 0.0

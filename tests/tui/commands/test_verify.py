@@ -159,3 +159,6 @@ def test_only_the_methods_asked_for_are_compared(tmp_path):
     assert pendu("verify", path, "--methods", "rk4,verlet").code == 1
     assert pendu("verify", path, "--methods", "rk4,s").code == 0
     assert pendu("verify", path, "--methods", "rk5").refused(2, "did you mean rk4?")
+    assert pendu("run", "--time", "2", "--methods", "rk4", "--record", tmp_path / "alone.mcap").code == 0
+    assert pendu("verify", tmp_path / "alone.mcap", "--methods", "rk4").code == 0
+    assert pendu("verify", tmp_path / "alone.mcap", "--methods", "s,v").refused(3, "run 1 has none of the methods sym")
