@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from engine.methods import METHODS
+from engine.methods import METHODS, method_of
 from engine.scenes import SCENES
 from recordings import library
 from tui.cli.errors import explained
@@ -16,9 +16,9 @@ from tui.terminal.screenshot import save_screenshot
 from tui.views import VIEWS
 from tui.views.keys import Key
 from tui.words.cards import method_card
-from tui.words.command_line import command
+from tui.words.command_line import command, reproduces
 from tui.words.describe import description
-from tui.words.events import event_lines
+from tui.words.events import event_lines, numbered
 
 
 def show_description(screen: SourceScreen) -> None:
@@ -30,13 +30,12 @@ def show_description(screen: SourceScreen) -> None:
 
 def show_events(screen: SourceScreen) -> None:
     """List all events."""
-    screen.app.push_screen(TextScreen("Events", "\n".join(map(str, event_lines(screen.source)))))
+    screen.app.push_screen(TextScreen("Events", "\n".join(numbered(event_lines(screen.source)))))
 
 
 def show_card(screen: SourceScreen, key: str) -> None:
     """Show a method's card."""
-    index = next(index for index, method in enumerate(METHODS) if method.key == key)
-    screen.app.push_screen(TextScreen("Method", method_card(index)))
+    screen.app.push_screen(TextScreen("Method", method_card(method_of(key))))
 
 
 def take_screenshot(screen: SourceScreen) -> None:
@@ -53,7 +52,8 @@ def copy_command(screen: SourceScreen) -> None:
     """Copy the command that shows this again, and show it: not every terminal has a clipboard."""
     text = command(screen.source)
     screen.app.copy_to_clipboard(text)
-    screen.notify(f"Copied: {text}", markup=False, timeout=15)
+    missing = "" if reproduces(screen.source) else " (the scene only: the change of h is not recorded)"
+    screen.notify(f"Copied: {text}{missing}", markup=False, timeout=15)
 
 
 def replay(screen: SourceScreen, path: str) -> None:

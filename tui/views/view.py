@@ -3,21 +3,24 @@
 from typing import ClassVar, Generic, TypeVar
 
 from textual.containers import Container
+from textual.content import Content
 from textual.reactive import var
+from textual.worker import Worker, WorkerState
 
-from engine.methods import METHODS
+from engine.methods import Cast
 from engine.run.lockstep import Sample
 from tui.drawing.cells import CellWidget
+from tui.drawing.faults import Guarded, sentence
 from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.views.keys import Key
 
 Place = TypeVar("Place")
 
-DESCRIBED_FIRST = [method.key for method in METHODS].index("velocity_verlet")
+DESCRIBED_FIRST = "velocity_verlet"
 
 
-class Box(Container):
+class Box(Guarded, Container):
     """A container that its children cover, so that Textual need not ask the sheet how it looks with every paint."""
 
     BLANK = True
@@ -55,6 +58,13 @@ class View(Box):
         self.watch_sample()
         self.call_after_refresh(self._begin)
 
+    def on_worker_state_changed(self, event: Worker.StateChanged) -> None:
+        """Say at the panes why nothing more is computed."""
+        if (error := event.worker.error) is not None and event.state is WorkerState.ERROR:
+            self.fail(error)
+            for pane in self.query(Pane):
+                pane.border_subtitle = Content(sentence(error))
+
     def _begin(self) -> None:
         self._moving += self._late
         self.watch_sample()
@@ -82,13 +92,26 @@ class Pane(CellWidget):
         self.draw()
 
     @property
+    def cast(self) -> Cast:
+        """The methods of the run on screen."""
+        return self.source.scene.cast if self.source is not None else ()
+
+    @property
+    def places(self) -> list[int]:
+        """The places in the cast of the methods that are shown."""
+        return self.shown.places(self.cast)
+
+    @property
     def is_live(self) -> bool:
         """Whether the source is the lab, where runs can be started, and not a recording."""
         return self.source is not None and self.source.kind == "LIVE"
 
     def draw(self) -> None:
         if self.source is not None and self.sample is not None and self.drawable:
-            self.paint(self.source, self.sample)
+            try:
+                self.paint(self.source, self.sample)
+            except Exception as error:
+                self.fail(error)
 
     def paint(self, source: Source, sample: Sample) -> None:
         """Show the sample; called when there is one, and room to show it."""
@@ -104,7 +127,16 @@ class Chooser(Pane, Generic[Place], can_focus=True):
     def __init__(self, id: str | None = None) -> None:
         super().__init__(id)
         self.cursor: Place | None = None
-        self.index = DESCRIBED_FIRST  # of the method that is described
+        self._described = DESCRIBED_FIRST  # key of a method
+
+    @property
+    def index(self) -> int:
+        """The place in the cast of the method that is described."""
+        return next((place for place, method in enumerate(self.cast) if method.key == self._described), 0)
+
+    def describe(self, place: int) -> None:
+        """Describe another method."""
+        self._described = self.cast[place].key
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         if action in ("choose", "cancel"):
@@ -126,7 +158,7 @@ class Chooser(Pane, Generic[Place], can_focus=True):
 
     def action_method(self, down: int) -> None:
         """Describe the next of the methods that are shown."""
-        if shown := self.shown.indices:
+        if shown := self.places:
             at = shown.index(self.index) if self.index in shown else -1
-            self.index = shown[(at + down) % len(shown)]
+            self.describe(shown[(at + down) % len(shown)])
             self.draw()

@@ -1,9 +1,10 @@
 """The list of events: the user's inputs and the methods' milestones, with their simulated times."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Literal, NamedTuple
 
+from engine.methods import Method
 from engine.run.observer import Milestone
 from engine.run.verdict import Verdict
 from recordings.events import Event
@@ -22,7 +23,7 @@ class EventLine(NamedTuple):
     t: float  # s, simulated
     text: str
     kind: Literal["change", "mark", "milestone"]
-    method: int | None = None  # of a milestone: its place in the cast
+    method: Method | None = None  # of a milestone
 
     def __str__(self) -> str:
         return f"{self.t:7.2f} {self.text}" if abs(self.t) < 1e4 else f"{self.t:7.1e} {self.text}"
@@ -34,11 +35,14 @@ def event_lines(source: Source) -> list[EventLine]:
     Pauses and speeds are not listed: they change no number.
     """
     run = source.sample.run
-    index = source.scene.cast.index
-    milestones = [
-        EventLine(run, m.step, m.t, milestone_text(m), "milestone", index(m.method)) for m in source.milestones
-    ]
+    milestones = [EventLine(run, m.step, m.t, milestone_text(m), "milestone", m.method) for m in source.milestones]
     return sorted([*_inputs(source), *milestones], key=lambda line: line[:2])  # stable: inputs first
+
+
+def numbered(lines: Sequence[EventLine]) -> list[str]:
+    """The lines, where there are several runs each with the number of its own."""
+    several = len({line.run for line in lines}) > 1
+    return [f"{line.run:2} {line}" if several else str(line) for line in lines]
 
 
 def _inputs(source: Source) -> Iterator[EventLine]:
@@ -67,5 +71,7 @@ def milestone_text(milestone: Milestone) -> str:
     """What a method does."""
     name = short_name(milestone.method)
     if milestone.kind == "over the top":
-        return f"{name} over the top, {two_digits(1 + milestone.energy_error)} E0"
+        error = milestone.energy_error
+        energy = f"{two_digits(1 + error)} E0" if abs(error) >= 0.1 else f"{100 * error:+.2g} %"
+        return f"{name} over the top, {energy}"
     return f"{name} {'failed' if milestone.kind == 'failed' else VERDICTS[milestone.verdict]}"

@@ -129,6 +129,7 @@ def _workers(options: argparse.Namespace) -> "Iterator[Executor | None]":
         from concurrent.futures import ProcessPoolExecutor
         from multiprocessing import get_context
 
+        os.environ["PYTHONSAFEPATH"] = "1"  # workers import no module from the current folder
         most = min(options.workers, os.cpu_count() or 1)
         ignore = (signal.SIGINT, signal.SIG_IGN)
         with ProcessPoolExecutor(most, get_context("spawn"), signal.signal, ignore) as executor:
