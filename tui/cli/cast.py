@@ -11,10 +11,10 @@ from pathlib import Path
 from types import FrameType
 
 from engine.methods import METHODS, Cast, Method
+from engine.scenes import MOST_METHODS
 from tui.cli.errors import Exit, UserError
 from tui.cli.options import add_file, did_you_mean
 
-MOST = 6  # methods on stage
 MOST_SECONDS = 10.0  # of computing, to load and measure a method; a fiftieth is usual
 LONGEST_NAME = 30  # characters of a method's key
 
@@ -38,7 +38,7 @@ def add_cast_options(parser: argparse._ActionsContainer, usual: str = "the scene
     parser.add_argument(
         "--methods",
         metavar="KEY,KEY",
-        help=f"these methods, 1 to {MOST}, in this order (default: {usual}); the start of a name is enough",
+        help=f"these methods, 1 to {MOST_METHODS}, in this order (default: {usual}); the start of a name is enough",
     ).complete = COMPLETE_KEYS  # type: ignore[attr-defined]
     parser.set_defaults(method=[])
     if own:
@@ -58,7 +58,7 @@ def add_own_option(parser: argparse._ActionsContainer) -> None:
     )
 
 
-def cast_of(options: argparse.Namespace, usual: Cast, most: int | None = MOST) -> Cast:
+def cast_of(options: argparse.Namespace, usual: Cast, most: int | None = MOST_METHODS) -> Cast:
     """The methods that the options choose; `usual` are those where --methods is not given.
 
     The user's own that --methods does not name come last.  Raises UserError and OwnMethodError.
