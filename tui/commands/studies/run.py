@@ -59,7 +59,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     scene = scene_of(options)
-    gate = None if options.fail_if is None else parse(options.fail_if, scene.cast)
+    gate = None if options.fail_if is None else parse(options.fail_if, cast=scene.cast)
     from recordings.headless import SAMPLE_EVERY, steps_for
 
     if options.time > LONGEST:
