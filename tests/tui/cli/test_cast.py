@@ -166,7 +166,7 @@ def test_one_that_never_yields_is_given_up(mine, monkeypatch):
 
 
 def test_more_than_six_are_too_many_for_a_stage(mine):
-    names = [f"m{n}" for n in range(cast_options.MOST_METHODS)]
+    names = [f"m{n}" for n in range(MOST_METHODS)]
     Path("six.py").write_text("".join(MINE.format(name=name) for name in names))
     each = [word for name in names for word in ("--method", f"six.py:{name}")]
     assert pendu("run", "--time", "2", *each).refused(2, "10 methods are too many for one stage; choose at most 6")
