@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from engine.methods import EXPLICIT_EULER, METHODS, RK4, SYMPLECTIC_EULER, USUAL_CAST, VELOCITY_VERLET, Cast
 from engine.methods.own import OwnMethod
 from engine.run.lockstep import Lockstep
-from engine.scenes import DEFAULT_SCENE, Scene
+from engine.scenes import DEFAULT_SCENE, MOST_METHODS, Scene
 from tests.tui.command_line import pendu
 from tui.cli import cast as cast_options
 from tui.cli.errors import Exit, UserError
