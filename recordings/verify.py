@@ -25,6 +25,9 @@ from recordings.format import sin_fingerprint
 from recordings.library import open_file
 from recordings.scan import MOST_STEPS, Gap, Scan, ShowProgress, StepBudget
 
+Only = Collection[str] | None
+"""Keys of the methods that are compared; None: all."""
+
 TOLERANCE = 1e-11
 LOST = 1e-3  # rad, or rad/s
 STEPS_AT_ONCE = 50_000  # between reports of progress: a fifth of a second
@@ -72,7 +75,7 @@ def verify(
     path: Path,
     progress: ShowProgress | None = None,
     max_steps: int = MOST_STEPS,
-    only: Collection[str] | None = None,
+    only: Only = None,
 ) -> Verification:
     """Verify a recording up to where it is first damaged; `only`: compare the methods of these keys.
 
@@ -128,13 +131,7 @@ class Rerun:
     `max_difference`: the largest so far of any number, within tolerance or not.
     """
 
-    def __init__(
-        self,
-        start: Event,
-        exact: bool = True,
-        budget: StepBudget | None = None,
-        only: Collection[str] | None = None,
-    ) -> None:
+    def __init__(self, start: Event, exact: bool = True, budget: StepBudget | None = None, only: Only = None) -> None:
         if start.scene is None or start.step != 0:
             raise RecordingError(f"run {start.run} does not begin at its start")
         scene, self.run = start.scene, start.run

@@ -242,3 +242,14 @@ def test_workers_and_this_process_agree_about_ones_own_method(mine):
 @pytest.mark.parametrize("command", ["live", "run", "accuracy", "stability", "methods", "snapshot"])
 def test_the_help_says_whose_rights_the_code_has(command):
     assert "with your rights" in " ".join(pendu(command, "--help").out.split())
+
+
+def test_a_replay_shows_only_the_methods_asked_for(monkeypatch):
+    screens = []
+    monkeypatch.setattr("tui.terminal.check.check_terminal", lambda: None)
+    monkeypatch.setattr("tui.screens.launch.show", lambda screen, options: screens.append(screen) or 0)
+    for words, places in ((("--methods", "rk4,verlet"), [2, 3]), ((), [0, 1, 2, 3])):
+        assert pendu("replay", "drift", *words).code == 0
+        assert screens[-1].shown.places(USUAL_CAST) == places
+        screens[-1].source.close()
+    assert pendu("replay", "drift", "--methods", "rk5").refused(2, "did you mean rk4?")
