@@ -15,7 +15,7 @@ from engine.methods import METHODS
 from engine.run.lockstep import Lockstep
 from engine.run.stepping import Stepping
 from engine.scenes import DEFAULT_SCENE
-from recordings.export import COLUMNS
+from recordings.fields import COLUMNS
 from tests.tui.command_line import pendu
 from tui.cli.dispatch import COMMANDS, command_of
 from tui.screens.keys import COMMON, LIVE

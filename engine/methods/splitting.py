@@ -5,7 +5,6 @@ Made of kicks and drifts they are symplectic, and the same forwards as backwards
 
 from collections.abc import Iterator
 from itertools import pairwise
-from typing import Any
 
 from engine.methods.method import Method, Phases
 from engine.models.model import Force, Phase

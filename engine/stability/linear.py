@@ -15,7 +15,6 @@ from engine.methods import Method
 from engine.models.model import Number
 from engine.run.tangent import at_bottom
 
-
 ROUNDING = 1e-13  # of a determinant and a trace in floats; some hundred times what the steps here make
 HIGHEST, RUNGS = 8, 2048  # z is looked at up to here, in steps of 1/2048: two thirds of the narrowest gap, BM6's
 

@@ -16,7 +16,7 @@ from engine.run.loops import plain
 from engine.run.stepping import Stepping
 from engine.scenes import Scene
 
-each_splitting = pytest.mark.parametrize("method", (VELOCITY_VERLET, *FAMILY), ids=lambda method: method.key)
+each_splitting = pytest.mark.parametrize("method", [VELOCITY_VERLET, *FAMILY], ids=lambda method: method.key)
 Tree = tuple[int, tuple["Tree", ...]]  # powers of the node's time, and the trees that hang from it
 
 

@@ -59,9 +59,7 @@ def test_below_the_first_edge_a_method_with_rounded_coefficients_is_stable_too(s
 
 
 @pytest.mark.parametrize(("key", "island"), [("blanes_moan_4", (3.1686, 5.02)), ("blanes_moan_6", (3.1424, 6.34))])
-def test_above_the_first_edge_lies_a_gap_and_then_an_island(
-    key: str, island: tuple[float, float]
-) -> None:
+def test_above_the_first_edge_lies_a_gap_and_then_an_island(key: str, island: tuple[float, float]) -> None:
     method, (near, far) = BY_KEY[key], island
     assert is_stable(method, np.linspace(near, far, 1000)).all()
     assert not is_stable(method, np.linspace(method.linear_limit + 1e-6, near - 3e-4, 1000)).any()
