@@ -4,5 +4,6 @@
 `loops`; `compiled` gives these to Numba, with the same bits. `rewindable` is a lockstep that can also go back.
 `observer` reads the samples, live, replayed or without a screen, and notes milestones; `judging` shows one
 method at fixed steps to a Judge of `verdict`, which reads the `bands` of its energy error and, by `tangent`,
-how fast neighbouring starts part. `energies` judges any program, by times and energies.
+how fast neighbouring starts part. `energies` judges any program, by times and energies. `ensemble` runs
+many swings together, as arrays.
 """
