@@ -5,5 +5,5 @@
 `observer` reads the samples, live, replayed or without a screen, and notes milestones; `judging` shows one
 method at fixed steps to a Judge of `verdict`, whose words are in `judgement`, which reads the `bands` of its
 energy error and, by `tangent`, how fast neighbouring starts part. `energies` judges any program, by times and
-energies.
+energies. `ensemble` runs many swings together, as arrays.
 """
