@@ -107,7 +107,8 @@ def compiled(method: Method, model: Model) -> Ensembles:
     phases, force, energy = numba.njit(method.phases), inner(model.force(numba.vectorize(sine))), model.energy
     look = numba.njit(_looking(inner(energy(inner(sine)))))
 
-    # The loop over phases is Python's: in compiled code Numba never frees what a generator yields.
+    # The loop over phases is Python's: in compiled code Numba 0.68 never frees what a generator yields.  What the
+    # generator itself holds when it is given up, a few arrays, is not freed either.
     def watch(phase: Arrays, h: Floats, watched: Watched, n: int) -> tuple[int, Arrays]:
         for done, (theta, omega) in enumerate(phases(force, phase, h), 1):
             if look(theta, omega, *watched) > 0 or done == n:
