@@ -101,31 +101,31 @@ def plain(method: Method, model: Model) -> Ensembles:
 
 @cache
 def compiled(method: Method, model: Model) -> Ensembles:
-    """The loops compiled, which takes a second.  Raises ImportError without Numba."""
+    """The loops with steps and what is watched compiled, which takes a second.  Raises ImportError without Numba."""
     numba: Any = import_module("numba")
     inner = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)  # never called by Python: compiles twice as fast
-    phases, force, energy = inner(method.phases), inner(model.force(numba.vectorize(sine))), model.energy(inner(sine))
-    look, fill = inner(_looking(inner(energy))), inner(_record)
+    phases, force, energy = numba.njit(method.phases), inner(model.force(numba.vectorize(sine))), model.energy
+    look = numba.njit(_looking(inner(energy(inner(sine)))))
 
-    def watching(phase: Arrays, h: Floats, watched: Watched, n: int) -> tuple[int, Arrays]:
-        done = 0
-        for following in phases(force, phase, h):
-            phase = following
-            done += 1
-            if look(phase[0], phase[1], watched) > 0 or done == n:
+    # The loop over phases is Python's: in compiled code Numba 0.68 never frees what a generator yields.  What the
+    # generator itself holds when it is given up, a few arrays, is not freed either.
+    def watch(phase: Arrays, h: Floats, watched: Watched, n: int) -> tuple[int, Arrays]:
+        for done, (theta, omega) in enumerate(phases(force, phase, h), 1):
+            if look(theta, omega, *watched) > 0 or done == n:
                 break
-        return done, phase
+        return done, (theta, omega)
 
-    def recording(phase: Arrays, h: float, points: Floats, every: int) -> None:
-        fill(phases(force, phase, h), points, every)
+    def record(phase: Arrays, h: float, points: Floats, every: int) -> None:
+        _record(phases(force, phase, h), points, every)
 
-    return Ensembles(*(numba.njit(nogil=True)(loop) for loop in (watching, recording)))
+    return Ensembles(watch, record)
 
 
-def _looking(energy: Callable[[Phase], Any]) -> Callable[[Floats, Floats, Watched], int]:
-    def looking(theta: Floats, omega: Floats, watched: Watched) -> int:
+def _looking(energy: Callable[[Phase], Any]) -> Callable[..., int]:
+    def looking(
+        theta: Floats, omega: Floats, start: Floats, band: Floats, off: Floats, worst: Floats, width: Floats
+    ) -> int:
         """How many swings are over the top or out of their band."""
-        start, band, off, worst, width = watched
         outside = 0
         for i in range(theta.size):
             off[i] = energy((theta[i], omega[i])) - start[i]

@@ -13,9 +13,6 @@ from engine.stability.outcomes import CELL, UNKNOWN, Cells, Floats, outcomes
 STRIP = 2048
 """Swings a method in a strip: enough that NumPy's calls cost little, few enough that they stay in the cache."""
 
-COMPILED_STRIP = 1024
-"""The same for loops that Numba has compiled."""
-
 COMPILED_FROM = 100_000_000  # steps of a method: in NumPy they take as long as importing and compiling
 
 
@@ -54,7 +51,7 @@ class Grid:
     def strips(self) -> list["Grid"]:
         """The grid cut along z.  However it is cut, the cells are the same to the last bit."""
         fast = self.compiled
-        width = max(1, (COMPILED_STRIP if fast else STRIP) // len(self.theta))
+        width = max(1, STRIP // len(self.theta))
         return [replace(self, z=self.z[start : start + width], fast=fast) for start in range(0, len(self.z), width)]
 
     def compute(self, executor: Executor | None = None) -> Iterator[Cells]:

@@ -29,7 +29,6 @@ def test_the_picture_is_the_same_bit_for_bit_however_it_is_split(
     strip: int, fast: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(stability_map, "STRIP", strip)
-    monkeypatch.setattr(stability_map, "COMPILED_STRIP", strip)
     grid = replace(GRID, fast=fast)
     strips = list(grid.compute())
     assert len(strips) == -(-13 // max(1, strip // 7))
