@@ -53,6 +53,7 @@ SCENE_NUMBERS = ("theta", "omega", "length", "gravity", "h")
 EVENT = (
     Field("kind", about=" ".join(get_args(EventKind)), type="string"),
     Field("scene", type="string", required=False),
+    Field("model", type="string", required=False),
     Field("watch", type="string", required=False),
     Field("theta", "rad", required=False),
     Field("omega", "rad/s", required=False),
@@ -63,8 +64,20 @@ EVENT = (
     Field("methods", type="array", required=False),
     Field("speed", about="times real time", required=False),
     Field("text", type="string", required=False),
+    Field("milestone", about="over the top, failed or verdict", type="string", required=False),
+    Field("method", about="of the milestone", type="string", required=False),
+    Field("verdict", type="string", required=False),
+    Field("energy_error", about="(E - E0) / E0", required=False),
 )
 """An event: its kind, and what that kind needs."""
+
+SEAL = (
+    Field("samples", about="so far", type="integer"),
+    Field("events", about="so far", type="integer"),
+    Field("sha256", about="of the metadata and of all records in chunks so far", type="string"),
+    Field("end", about="whether the recording ends here", type="boolean"),
+)
+"""The last message of a chunk."""
 
 VALUES = tuple(field.name for field in READING)
 NUMBERS = tuple(field.name for field in READING if field.required)
@@ -92,7 +105,12 @@ def schema_of(title: str, about: str, fields: tuple[Field, ...]) -> dict[str, An
     }
 
 
-SAMPLE_SCHEMA = schema_of(
-    "pendu.Sample", "A method at a step; theta from the downward vertical, energy per m L^2.", (*MOMENT, *READING)
-)
 EVENT_SCHEMA = schema_of("pendu.Event", "What was done before this step of this run.", (*MOMENT, *EVENT))
+SEAL_SCHEMA = schema_of("pendu.Seal", "What the recording holds so far.", SEAL)
+
+
+def sample_schema(model: str) -> dict[str, Any]:
+    """The schema of the samples of a model."""
+    title = "pendu.Sample" if model == "pendulum" else f"pendu.Sample.{model}"
+    about = f"A method at a step of the model {model}; theta from the downward vertical, energy per m L^2."
+    return schema_of(title, about, (*MOMENT, *READING))

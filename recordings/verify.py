@@ -19,11 +19,12 @@ from engine.run.lockstep import Lockstep, Reading, Sample
 from engine.run.stepping import Stepping
 from engine.scenes import SceneError
 from recordings.errors import RecordingError, named
-from recordings.events import Event
+from recordings.events import Event, unknown_in
 from recordings.fields import EXTREMES, NUMBERS, VALUES, numbers_of
-from recordings.format import sin_fingerprint
+from recordings.headless import MOST_STEPS, StepBudget
 from recordings.library import open_file
-from recordings.scan import MOST_STEPS, Gap, Scan, ShowProgress, StepBudget
+from recordings.scan import Gap, Scan, ShowProgress
+from recordings.seal import other_functions
 
 TOLERANCE = 1e-11
 LOST = 1e-3  # rad, or rad/s
@@ -64,10 +65,17 @@ class Verification:
     reason: str | None  # why not, a clause
     runs: int
     samples: int
-    same_sin: bool
+    other_functions: tuple[str, ...]  # that this machine computes differently
     identical: bool  # every sample, to the last bit, or within the tolerance where sin differs; and no damage
+    sealed: bool | None  # whether the digest of all that is in it is right; None: it has none
+    sha256: str | None  # the last right digest
     max_difference: float  # of any number, in its unit, within tolerance or not
     first_difference: Difference | None
+
+    @property
+    def same_sin(self) -> bool:
+        """Whether this machine's sine is the recording's."""
+        return "sin" not in self.other_functions
 
 
 def verify(path: Path, progress: ShowProgress | None = None, max_steps: int = MOST_STEPS) -> Verification:
@@ -80,20 +88,22 @@ def verify(path: Path, progress: ShowProgress | None = None, max_steps: int = MO
         scan = Scan(stream, progress)
         budget = StepBudget(max_steps)
         runs = samples = 0
-        same_sin = True
+        others: tuple[str, ...] = ()
         max_difference = 0.0
         first: Difference | None = None
         rerun: Rerun | None = None
         for piece in scan:
             if isinstance(piece, Gap):
                 break
-            same_sin = piece.layout.sin == sin_fingerprint()
+            others = other_functions(piece.layout.functions)
             budget.show = scan.progress_within(piece)
-            for _, (_, value) in piece.layout.entries(piece.chunk.messages):
-                if isinstance(value, Event) and value.kind == "start":
+            for _, (_, value) in scan.entries(piece):
+                if isinstance(value, Event) and value.scene is not None:
                     if rerun is not None and value.run <= rerun.run:
                         raise RecordingError("its runs are not in order")
-                    rerun = Rerun(value, exact=same_sin, budget=budget)
+                    if unknown := unknown_in(value.scene):
+                        raise RecordingError(f"it cannot be verified: this version does not know {unknown}")
+                    rerun = Rerun(value, exact=not others, budget=budget)
                     runs += 1
                 if rerun is None or value.run != rerun.run:
                     raise RecordingError(f"data of run {value.run} lies outside that run")
@@ -112,8 +122,10 @@ def verify(path: Path, progress: ShowProgress | None = None, max_steps: int = MO
             reason=scan.reason,
             runs=runs,
             samples=samples,
-            same_sin=same_sin,
+            other_functions=others,
             identical=first is None and not scan.damaged,
+            sealed=scan.sealed,
+            sha256=scan.seal.sha256 if scan.seal else None,
             max_difference=max_difference,
             first_difference=first,
         )
@@ -125,12 +137,7 @@ class Rerun:
     `max_difference`: the largest so far of any number, within tolerance or not.
     """
 
-    def __init__(
-        self,
-        start: Event,
-        exact: bool = True,
-        budget: StepBudget | None = None,
-    ) -> None:
+    def __init__(self, start: Event, exact: bool = True, budget: StepBudget | None = None) -> None:
         if start.scene is None or start.step != 0:
             raise RecordingError(f"run {start.run} does not begin at its start")
         scene, self.run = start.scene, start.run
@@ -158,9 +165,7 @@ class Rerun:
 
     def reach(self, step: int) -> list[Sample]:
         """The run's sample at this step; if not `exact`, also that of the run with the changed start."""
-        if step <= self._sampled:
-            raise RecordingError(f"the steps of run {self.run} are not in order")
-        if step < self._reached:
+        if step <= self._sampled or step < self._reached:
             raise RecordingError(f"the steps of run {self.run} are not in order")
         if self._budget is not None:
             self._budget.spend(self.run, step, step - self._locksteps[0].step)

@@ -22,7 +22,6 @@ from mcap.writer import CompressionType, IndexType, Writer
 from recordings import framing
 from recordings.errors import RecordingError
 from recordings.events import Event
-from recordings.export import write_csv
 from recordings.format import EVENTS, encode_event, encode_readings, topic
 from recordings.framing import read_chunk
 from recordings.recorder import FLUSH_EVERY, Recorder
@@ -33,6 +32,7 @@ from recordings.summary import CHUNK_LIMIT, Chunks
 from recordings.verify import verify
 from tests.recordings.examples import METHOD_KEYS, record, start, two_runs
 from tests.recordings.hostile import FILES
+from tui.commands.files.export import write_csv
 
 SECOND = 1_000_000_000
 
@@ -171,7 +171,7 @@ def test_a_file_of_another_program_is_recognized(tmp_path):
         ({"format": "\x1b[2J"}, "or its format version is missing"),
         ({"format": "0x1"}, "or its format version is missing"),
         ({"format": "9" * 5000}, "or its format version is missing"),
-        ({"format": "2"}, "has format 2"),
+        ({"format": "3"}, "has format 3"),
     ],
 )
 def test_an_unknown_format_is_refused(tmp_path, facts, why):

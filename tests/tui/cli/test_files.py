@@ -92,7 +92,7 @@ def test_every_command_overwrites_only_with_force(tmp_path, command):
 def test_a_missing_folder_is_refused_before_anything_is_computed(tmp_path, command, monkeypatch):
     monkeypatch.setattr("engine.accuracy.study.Study.points", None)
     monkeypatch.setattr("engine.stability.grid.Grid.compute", None)
-    monkeypatch.setattr("recordings.export.write_csv", None)
+    monkeypatch.setattr("tui.commands.files.export.write_csv", None)
     assert pendu(*command, tmp_path / "no" / "file.svg").refused(5, "no folder", "create the folder")
 
 

@@ -113,7 +113,7 @@ def test_an_export_that_fails_half_way_leaves_no_file(tmp_path, monkeypatch):
     def full(*_: object) -> int:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("recordings.export.write_csv", full)
+    monkeypatch.setattr("tui.commands.files.export.write_csv", full)
     assert pendu("export", "drift", "-o", tmp_path / "drift.csv").refused(5, "No space")
     assert names(tmp_path) == []
 

@@ -1,13 +1,25 @@
 """Write a recording as CSV: one row per sample and method, units in the header."""
 
 import argparse
+import csv
 from pathlib import Path
+from typing import TYPE_CHECKING, TextIO
 
+from engine.methods import Cast
+from engine.run.lockstep import Sample
 from recordings.errors import printable
+from recordings.fields import MOMENT, READING, values_of
 from tui.cli.errors import Exit
 from tui.cli.files import text_file
 from tui.cli.options import add_file, add_recording
 from tui.cli.output import progress, warn
+
+if TYPE_CHECKING:
+    from recordings.recording import Recording
+    from recordings.scan import ShowProgress
+
+COLUMNS = ("clock_s", *(field.column for field in MOMENT), "method", *(field.column for field in READING))
+"""Names with their units; energies are per unit m·L²."""
 
 EXAMPLES = """\
 examples:
@@ -25,7 +37,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     from recordings import library
-    from recordings.export import write_csv
     from recordings.recording import Recording
 
     path = library.resolve(options.file)
@@ -38,3 +49,23 @@ def run(options: argparse.Namespace) -> int:
         if recording.reason:
             warn(f"{printable(str(path))}: {recording.reason}; the rest is exported.")
     return Exit.FINE
+
+
+def write_csv(recording: "Recording", out: TextIO, show: "ShowProgress | None" = None) -> int:
+    """Write all samples and return how many there were.  Every number reads back with the same bits."""
+    rows = csv.writer(out, lineterminator="\n")
+    rows.writerow(COLUMNS)
+    count, run = 0, 0
+    cast: Cast = ()
+    for clock, value in recording.entries():
+        if not isinstance(value, Sample):
+            continue
+        if value.run != run:
+            run, scene = value.run, recording.events.start_of(value.run)
+            cast = scene.cast if scene else cast
+        for method, reading in zip(cast, value.readings, strict=True):
+            rows.writerow((clock, value.run, value.step, value.t, method.key, *values_of(reading)))
+        count += 1
+        if show and count % 1000 == 0:
+            show(count, recording.samples)
+    return count
