@@ -16,6 +16,7 @@ LIMITS = {  # inclusive; beyond them a value is a typing error, not a pendulum
     "gravity": (1e-6, 1e6),
 }
 UNITS = {"theta": "rad", "omega": "rad/s", "length": "m", "gravity": "m/s²", "h": "s"}
+MOST_METHODS = 6  # of a cast: more cannot be told apart on a screen
 Z_LIMITS = (1e-9, 1e3)  # z = h·w0; the methods' own limits lie at 2 and 2√2
 
 

@@ -24,8 +24,7 @@ from recordings.format import (
     keys_of,
 )
 from recordings.framing import Chunk, Message, read_chunk, read_record, record_at
-from recordings.seal import FUNCTIONS
-from recordings.summary import Chunks, find_summary
+from recordings.summary import FUNCTIONS, Chunks, find_summary
 
 CHECK_LIMIT = 1 << 26  # bytes checked whenever a file is opened: the first two hours, in 50 ms
 _BLOCK = 1 << 20

@@ -3,9 +3,11 @@
 Messages, their schemas, the columns of a CSV, `verify`, `run --json` and `--fail-if` take names and units from here.
 """
 
+from collections.abc import Iterator, Sequence
 from operator import attrgetter
 from typing import Any, NamedTuple, get_args
 
+from engine.run.lockstep import Sample
 from recordings.events import EventKind
 
 
@@ -87,6 +89,16 @@ values_of = attrgetter(*VALUES)
 """The values of a Reading, in the order of VALUES."""
 numbers_of = attrgetter(*NUMBERS)
 """Those of them that are always there."""
+
+
+COLUMNS = ("clock_s", *(field.column for field in MOMENT), "method", *(field.column for field in READING))
+"""Of a table of samples: names with their units; energies are per unit m·L²."""
+
+
+def rows(clock: float, sample: Sample, methods: Sequence[str]) -> Iterator[tuple[object, ...]]:
+    """A sample as rows of such a table, one for each method."""
+    for method, reading in zip(methods, sample.readings, strict=True):
+        yield clock, sample.run, sample.step, sample.t, method, *values_of(reading)
 
 
 def left_out(energy_error: float) -> dict[str, float | None]:

@@ -9,7 +9,7 @@ from recordings.errors import DiskError, NameTakenError, writing
 from recordings.events import Entry, Event
 from recordings.library import free_path
 from recordings.recorder import Recorder
-from recordings.seal import WallClock
+from recordings.summary import WallClock
 
 RETRY_EVERY = 5.0  # s of the recording clock
 

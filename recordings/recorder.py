@@ -34,7 +34,7 @@ from recordings.format import (
     without_extremes,
 )
 from recordings.library import hold, part_of
-from recordings.seal import FUNCTIONS, Digest, WallClock, facts_of, program_version
+from recordings.summary import FUNCTIONS, Digest, WallClock, facts_of, program_version
 
 FLUSH_EVERY = 0.8  # s of real time; with a slow frame's delay the loss at kill -9 stays below 1 s
 FLUSH_FIRST = 0.2  # s; from there on the time between flushes doubles until it is FLUSH_EVERY

@@ -64,6 +64,7 @@ class Recording:
         self.length = (contents.chunks.ends[-1] - CLOCK_OFFSET) / 1e9 if contents.chunks else 0.0
         self._stream, self._layout, self._chunks = stream, contents.layout, contents.chunks
         self._decoded = lru_cache(CHUNKS_KEPT)(self._decode)
+        self.methods_of = lru_cache(1)(self._methods_of)
         self._sampled = bytearray(b"\1" * len(self._chunks))  # 0 once a chunk turned out to hold no samples
         self.events = Events()
         starts: list[tuple[int, int]] = []  # chunk, run
@@ -150,6 +151,11 @@ class Recording:
                 if entry.clock > end:
                     return
                 yield entry
+
+    def _methods_of(self, run: int) -> tuple[str, ...]:
+        """The methods of a run, in its order."""
+        scene = self.events.start_of(run)
+        return tuple(method.key for method in scene.cast) if scene else ()
 
     def _read_entries(self, chunk: int, only_events: bool = False) -> tuple[Entry, ...]:
         """A chunk's entries; none if it turns out to be damaged."""

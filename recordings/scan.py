@@ -17,8 +17,7 @@ from recordings.errors import RecordingError, printable_items
 from recordings.events import Entry, Event, Seal
 from recordings.format import METADATA, PROFILE
 from recordings.framing import CHANNEL_LIMIT, MAGIC, RECORD, Chunk, Message, Search, read_chunk, read_record, record_at
-from recordings.seal import MESSAGE_SIZE, Digest
-from recordings.summary import Chunks, Summary, find_summary, read_summary
+from recordings.summary import MESSAGE_SIZE, Chunks, Digest, Summary, find_summary, read_summary
 
 ShowProgress = Callable[[int, int], None]
 """Called with how much is done and how much there is: bytes, or samples."""

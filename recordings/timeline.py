@@ -25,7 +25,7 @@ TEXT_LIMIT = 1 << 22  # characters of all the different texts together
 _KINDS: tuple[EventKind, ...] = get_args(EventKind)
 _EQUAL_COST = 1 << 7  # beside the kind
 _NOTHING = -1
-_NOT_DONE = ("start", "stop", "noticed")  # by somebody in a run
+NOT_DONE = ("start", "stop", "noticed")  # by somebody in a run
 T = TypeVar("T")
 
 
@@ -130,7 +130,7 @@ class Events(_Rows[tuple[float, Event]]):
     def made(self, run: int) -> int:
         """How many events a run has besides start and stop."""
         kinds = (_KINDS[self._kinds[at] & 7] for at in self.places(run))
-        return sum(kind not in _NOT_DONE for kind in kinds)
+        return sum(kind not in NOT_DONE for kind in kinds)
 
     def done(self) -> Iterator[float]:
         """The clocks of all but the stops [s]."""

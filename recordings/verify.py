@@ -24,7 +24,7 @@ from recordings.fields import EXTREMES, NUMBERS, VALUES, numbers_of
 from recordings.headless import MOST_STEPS, StepBudget
 from recordings.library import open_file
 from recordings.scan import Gap, Scan, ShowProgress
-from recordings.seal import other_functions
+from recordings.summary import other_functions
 
 TOLERANCE = 1e-11
 LOST = 1e-3  # rad, or rad/s
@@ -46,14 +46,12 @@ class Difference:
     @property
     def size(self) -> float:
         """Their distance; infinite if one is missing."""
-        return _distance(self.recorded, self.computed)
+        return distance(self.recorded, self.computed)
 
     @property
     def ulps(self) -> int | None:
         """Their distance in doubles; None if one is missing."""
-        if self.recorded is None or self.computed is None:
-            return None
-        return abs(_ordinal(self.recorded) - _ordinal(self.computed))
+        return ulps(self.recorded, self.computed)
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,7 +182,7 @@ class Rerun:
         computed, *astray = self.reach(recorded.step)
         for other in astray:
             self._widen(computed, other)
-        if self._exact and computed.t == recorded.t and all(map(_same, recorded.readings, computed.readings)):
+        if self._exact and computed.t == recorded.t and all(map(same_bits, recorded.readings, computed.readings)):
             return []
         return list(self._differences(recorded, computed))
 
@@ -203,7 +201,7 @@ class Rerun:
 
     def _differences(self, recorded: Sample, computed: Sample) -> Iterator[Difference]:
         if recorded.t != computed.t:
-            self.max_difference = max(self.max_difference, _distance(recorded.t, computed.t))
+            self.max_difference = max(self.max_difference, distance(recorded.t, computed.t))
             yield Difference(self.run, recorded.step, recorded.t, "", "t", recorded.t, computed.t)
         for method, was, now in zip(self._methods, recorded.readings, computed.readings, strict=True):
             lost = max(self._allowed[method, "theta"], self._allowed[method, "omega"]) > LOST
@@ -211,31 +209,37 @@ class Rerun:
                 a, b = getattr(was, field), getattr(now, field)
                 if field in EXTREMES and a == was.energy_error:
                     continue  # such an extreme claims nothing: see format.without_extremes
-                self.max_difference = max(self.max_difference, _distance(a, b))
+                self.max_difference = max(self.max_difference, distance(a, b))
                 if self._exact:
-                    equal = a == b and (a is None or _ordinal(a) == _ordinal(b))
+                    equal = a == b and not ulps(a, b)
                 else:
-                    equal = _distance(a, b) <= max(self._allowed[method, field], TOLERANCE * max(1.0, abs(b or 0.0)))
+                    equal = distance(a, b) <= max(self._allowed[method, field], TOLERANCE * max(1.0, abs(b or 0.0)))
                 if not (equal or lost):
                     yield Difference(self.run, recorded.step, recorded.t, method, field, a, b)
 
     def _widen(self, computed: Sample, astray: Sample) -> None:
         for method, a, b in zip(self._methods, computed.readings, astray.readings, strict=True):
             for field in VALUES:
-                distance = _distance(getattr(a, field), getattr(b, field))
-                self._allowed[method, field] = max(self._allowed[method, field], distance)
+                apart = distance(getattr(a, field), getattr(b, field))
+                self._allowed[method, field] = max(self._allowed[method, field], apart)
 
 
 _pack = struct.Struct(f"<{len(NUMBERS)}d").pack
 
 
-def _same(a: Reading, b: Reading) -> bool:
+def same_bits(a: Reading, b: Reading) -> bool:
     """Whether two readings have the same bits, quickly.  (0.0 == -0.0, hence the second half.)"""
     return a == b and _pack(*numbers_of(a)) == _pack(*numbers_of(b))
 
 
-def _distance(a: float | None, b: float | None) -> float:
+def distance(a: float | None, b: float | None) -> float:
+    """How far apart two numbers are; infinite if only one is there."""
     return 0.0 if a == b else math.inf if a is None or b is None else abs(a - b)
+
+
+def ulps(a: float | None, b: float | None) -> int | None:
+    """How many doubles lie between them, and one; 1 for 0.0 and -0.0; None if one is missing."""
+    return None if a is None or b is None else abs(_ordinal(a) - _ordinal(b))
 
 
 def _ordinal(value: float) -> int:

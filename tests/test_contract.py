@@ -6,8 +6,11 @@ from typing import Any
 
 import pytest
 
+from engine.run.stepping import Stepping
 from tests.recordings.examples import record, two_runs
 from tests.tui.command_line import pendu
+from tests.tui.harness import recorded
+from tui.playback.live import Live
 
 FIELDS = Path(__file__).with_name("json_fields.json")
 
@@ -20,9 +23,13 @@ COMMANDS = {
     "stability --map": ["stability", "--steps", "9", "--z-values", "0.5,2.5", "--theta-values", "1", "--map", "--json"],
     "run": ["run", "--time", "2", "--json"],
     "run of a method that diverges": ["run", "--h", "2", "--length", "0.1", "--time", "4000", "--json"],
+    "judge": ["judge", "energies.csv", "--time", "t", "--energy", "E", "--json"],
+    "judge of a few energies": ["judge", "few.csv", "--time", "1", "--energy", "2", "--json"],
     "verify": ["verify", "whole.mcap", "cut.mcap", "--json"],
     "info": ["info", "whole.mcap", "--json"],
     "info of a cut recording": ["info", "cut.mcap", "--json"],
+    "diff": ["diff", "whole.mcap", "other.mcap", "--json"],
+    "diff of the same": ["diff", "whole.mcap", "whole.mcap", "--json"],
     "recover": ["recover", "cut.mcap", "-o", "saved.mcap", "--json"],
     "recordings": ["recordings", "--json"],
     "recordings prune": ["recordings", "prune", "--keep", "1", "--json"],
@@ -38,6 +45,10 @@ def folder(tmp_path, monkeypatch):
     """A folder with a whole recording and one that was cut, which is the library, too."""
     whole = record(tmp_path / "whole.mcap", two_runs())
     (tmp_path / "cut.mcap").write_bytes(whole.read_bytes()[:-700])
+    rows = [f"{n},{10 + (-1) ** n}\n" for n in range(200)]
+    (tmp_path / "energies.csv").write_text("t,E\n" + "".join(rows), encoding="utf-8")
+    (tmp_path / "few.csv").write_text("t,E\n0,1\n1,2\n2,nan\n", encoding="utf-8")
+    recorded(tmp_path / "other.mcap", 1.0, Live.mark, lambda live: live.set_stepping(Stepping(0.1)), 0.5)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path / "library"))
     (tmp_path / "library").mkdir()
@@ -78,8 +89,18 @@ def test_the_schema_is_that_of_the_command(name):
         (1, ["run", "--time", "2", "--fail-if", "rk4.max_energy_error >= 0"]),
         (1, ["verify", "cut.mcap"]),
         (1, ["run", "--time", "2", "--fail-if", "rk4.verdict == grows or rk4.verdict != grows"]),
+        (0, ["judge", "energies.csv", "--time", "t", "--energy", "E", "--fail-if", "verdict != bounded"]),
+        (1, ["judge", "energies.csv", "--time", "t", "--energy", "E", "--fail-if", "max_energy_error > 0.1"]),
+        (2, ["judge", "energies.csv", "--time", "t", "--energy", "H"]),
+        (3, ["judge", "absent.csv", "--time", "t", "--energy", "E"]),
+        (5, ["judge", "energies.csv", "--time", "t", "--energy", "E", "--junit", "absent/judge.xml"]),
         (2, ["run", "--time", "0"]),
         (2, ["run", "--time", "2", "--fail-if", "rk5.max_energy_error > 0"]),
+        (0, ["diff", "whole.mcap", "whole.mcap"]),
+        (1, ["diff", "whole.mcap", "other.mcap"]),
+        (2, ["diff", "whole.mcap"]),
+        (3, ["diff", "whole.mcap", "absent.mcap"]),
+        (2, ["serve", "--port", "x"]),
         (2, ["nothing"]),
         (2, ["--scene", "nothing"]),
         (3, ["info", "absent.mcap"]),

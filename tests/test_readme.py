@@ -15,9 +15,9 @@ from engine.methods import METHODS
 from engine.run.lockstep import Lockstep
 from engine.run.stepping import Stepping
 from engine.scenes import DEFAULT_SCENE
+from recordings.fields import COLUMNS
 from tests.tui.command_line import pendu
 from tui.cli.dispatch import COMMANDS, command_of
-from tui.commands.files.export import COLUMNS
 from tui.screens.keys import COMMON, LIVE
 
 ROOT = Path(__file__).parent.parent

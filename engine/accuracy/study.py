@@ -6,12 +6,14 @@ every machine, or in seconds by a clock that is passed in.
 """
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from statistics import linear_regression
 from typing import Literal, NamedTuple
 
 from engine.accuracy.rounding import rounding_floor
+from engine.accuracy.timing import Clock as Clock
+from engine.accuracy.timing import shortest
 from engine.methods import Method
 from engine.run.compiled import tiered
 from engine.run.lockstep import Lockstep
@@ -19,10 +21,7 @@ from engine.run.loops import LoopsOf, plain
 from engine.scenes import Z_LIMITS, Scene
 
 ErrorKind = Literal["theta", "energy", "final"]
-Clock = Callable[[], float]
-
 COMPARISONS = 400  # with the exact swing in a run: at least so many, or at every step; never twice as many
-REPEATS = 5  # of a timed run
 TIMED_STEPS = 20_000  # at least, in each of them
 SWINGS = 10
 Z_LADDER = (0.6, 0.0015, 12)  # from about ten steps a small swing to four thousand
@@ -148,13 +147,9 @@ def timed(point: Point, scene: Scene, clock: Clock, loops: LoopsOf = plain) -> P
     """The same point with its seconds: the same steps again, without comparisons and energies."""
     travel, start = loops(point.method, scene.equations).travel, (scene.theta, scene.omega)
     travel(start, point.h, 1)  # may have to be compiled
-    runs, lengths = max(1, TIMED_STEPS // point.steps), []
-    for _ in range(REPEATS):
-        began = clock()
-        for _ in range(runs):
-            travel(start, point.h, point.steps)
-        lengths.append((clock() - began) / runs)
-    return replace(point, seconds=min(lengths), spread=max(lengths) / min(lengths) - 1)
+    runs = max(1, TIMED_STEPS // point.steps)
+    seconds, spread = shortest(lambda: travel(start, point.h, point.steps), runs, clock)
+    return replace(point, seconds=seconds, spread=spread)
 
 
 def ladder(time: float, h_max: float, h_min: float, count: int) -> list[int]:

@@ -40,7 +40,7 @@ class LinearOscillator(Model):
 
     def exact(self, theta: float, omega: float) -> ExactMotion:
         """theta cos w0 t + omega/w0 sin w0 t."""
-        w0 = math.sqrt(self.w0_squared)
+        w0 = self.w0
 
         def at(t: float) -> State:
             c, s = math.cos(w0 * t), math.sin(w0 * t)

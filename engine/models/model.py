@@ -59,6 +59,11 @@ class Model(ABC):
 
     w0_squared: float  # the square of the frequency of small swings [s⁻²]
 
+    @property
+    def w0(self) -> float:
+        """The frequency of small swings [rad/s]."""
+        return math.sqrt(self.w0_squared)
+
     @abstractmethod
     def force(self, sin: Sine = math.sin) -> Force:
         """The force.  Pass the `sin` of your numbers: NumPy's, cmath's, mpmath's."""

@@ -56,7 +56,7 @@ class Stretching:
 
     def __init__(self, method: Method, model: Model, h: float) -> None:
         self._method, self._force, self._h = method, model.force(cmath.sin), h
-        self._w0 = math.sqrt(model.w0_squared)
+        self._w0 = model.w0
         self._along: Phase = (1.0, 0.0)
         self.log = 0.0
         self.steps = 0

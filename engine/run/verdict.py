@@ -89,8 +89,7 @@ class Judge:
         """
         self._method, self._model, self._h, self._period = method, model, h, period
         self._scale = scale
-        self._w0 = math.sqrt(model.w0_squared)
-        self._z = abs(h) * self._w0
+        self._z, self._w0 = abs(h) * model.w0, model.w0
         self._width = max(LEAST_STEPS, round(period / abs(h)))  # steps of a bin, at first
         self._energy, self._modified = Bands(self._width), Bands(self._width)
         self._neighbours = Stretching(method, model, h)

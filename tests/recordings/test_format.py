@@ -30,7 +30,7 @@ from recordings.format import (
     topic,
     without_extremes,
 )
-from recordings.seal import FUNCTIONS, fingerprint
+from recordings.summary import FUNCTIONS, fingerprint
 from tests.recordings.examples import SCENE, start
 
 SAMPLE_SCHEMA = sample_schema("pendulum")

@@ -8,14 +8,15 @@ import pytest
 from engine.methods import METHODS
 from engine.run.lockstep import Sample
 from recordings.events import Event
+from recordings.fields import COLUMNS
 from recordings.format import without_extremes
 from recordings.library import GOLDEN, golden_names
 from recordings.recording import Recording
-from recordings.seal import other_functions
+from recordings.summary import other_functions
 from recordings.verify import verify
 from tests.recordings.examples import two_runs
 from tests.recordings.make_golden import FORMAT_1, RECORDINGS, make
-from tui.commands.files import export
+from tests.tui.command_line import pendu
 
 ROOM = 64_000  # bytes; they are in every installation
 
@@ -75,10 +76,9 @@ def test_a_recording_holds_runs_with_different_methods_and_says_what_the_lab_not
     ends = [[sample for sample in samples if sample.run == run][-1].readings for run in (1, 2, 3)]
     assert (ends[2][2:], ends[2][:2]) == (ends[0], ends[1][::-1])  # the cast's order changes no number
     with Recording.open(GOLDEN / "verdicts.mcap") as recording:
-        said = [
-            (event.milestone.verdict, event.milestone.method.letter) for _, event in recording.events if event.milestone
-        ]
-    assert said == [("too early", "E"), ("grows", "E"), ("loses", "R"), ("bounded", "S"), ("bounded", "V")]
+        said = [f"{each.method.letter} {each.kind} {each.verdict}" for _, each in recording.events.milestones(1)]
+    assert said[0] == "e over the top too early"
+    assert said[1:] == ["e verdict grows", "r verdict loses", "s verdict bounded", "v verdict bounded"]
 
 
 def last_readings(name):
@@ -129,11 +129,11 @@ def test_the_shipped_layout_shows_what_is_in_a_recording():
 
 def test_the_csv_has_a_row_for_each_sample_and_method_and_every_number(tmp_path):
     path = tmp_path / "drift.csv"
-    with Recording.open(GOLDEN / "drift.mcap") as recording, path.open("w", newline="") as out:
-        assert export.write_csv(recording, out) == recording.samples
+    assert pendu("export", "drift", "-o", path).code == 0
+    with Recording.open(GOLDEN / "drift.mcap") as recording:
         samples = [entry for entry in recording.entries() if isinstance(entry.value, Sample)]
     head, *rows = (line.split(",") for line in path.read_text().splitlines())
-    assert tuple(head) == export.COLUMNS
+    assert tuple(head) == COLUMNS
     assert len(rows) == 4 * len(samples)
     for row, (clock, sample, place) in zip(
         rows, ((clock, sample, place) for clock, sample in samples for place in range(4)), strict=True

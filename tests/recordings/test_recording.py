@@ -202,7 +202,7 @@ def test_a_run_whose_start_is_lost_is_not_shown(path, tmp_path):
 
 @pytest.mark.parametrize("check", [False, True])
 def test_a_newer_format_is_refused_in_a_sentence(tmp_path, monkeypatch, check):
-    monkeypatch.setattr("recordings.seal.FORMAT_VERSION", 3)
+    monkeypatch.setattr("recordings.summary.FORMAT_VERSION", 3)
     path = tiny(tmp_path / "newer.mcap")
     with pytest.raises(RecordingError, match="has format 3, this pendu-tui reads formats up to 2; install a newer"):
         Recording.open(path, check)

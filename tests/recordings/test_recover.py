@@ -203,7 +203,7 @@ def test_an_interrupted_recovery_leaves_nothing_behind(tmp_path, out):
 
 def test_the_fingerprint_of_sin_is_the_recordings_not_this_machines(tmp_path, out, monkeypatch):
     with monkeypatch.context() as elsewhere:
-        elsewhere.setattr("recordings.seal.fingerprints", lambda: {"sin": "another"})
+        elsewhere.setattr("recordings.summary.fingerprints", lambda: {"sin": "another"})
         path = record(tmp_path / "a.mcap", two_runs())
     recover(path, out)
     assert not verify(out).same_sin

@@ -15,7 +15,7 @@ from recordings.errors import RecordingError
 from recordings.events import Entry, Event
 from recordings.headless import simulate
 from recordings.recorder import Recorder
-from recordings.seal import fingerprints
+from recordings.summary import fingerprints
 from recordings.verify import TOLERANCE, Difference, verify
 from tests.recordings.examples import SCENE, record, start, tiny, two_runs
 
@@ -142,7 +142,7 @@ def test_an_impossible_recording_is_refused_in_a_sentence(tmp_path, entries, why
 
 def of_another_machine(monkeypatch):
     """From here on this machine's sin has another fingerprint."""
-    monkeypatch.setattr("recordings.seal.fingerprints", lambda: fingerprints() | {"sin": "another"})
+    monkeypatch.setattr("recordings.summary.fingerprints", lambda: fingerprints() | {"sin": "another"})
 
 
 def foreign_loops(monkeypatch, every):

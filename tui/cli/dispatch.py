@@ -18,18 +18,21 @@ GROUPS = {
         "live": "the lab: four pendulums, their errors, a recording",
         "replay": "play a recording on the same screen",
         "snapshot": "save the lab as an SVG image",
+        "serve": "the lab in a browser",
         "keys": "list all keys and mouse actions",
     },
     "studies": {
         "accuracy": "speed against accuracy: which method, which h, at what cost",
         "stability": "where each method becomes unstable: theory and measurement",
         "run": "run a scene without the screen and judge each method; for CI",
+        "judge": "judge the energies of another program, from a file or stdin; for CI",
     },
     "files": {
         "verify": "re-simulate recordings and compare every bit",
         "info": "show what is in a recording, whole or damaged",
+        "diff": "compare two recordings: scene, changes, every number",
         "recover": "salvage a damaged recording",
-        "export": "convert a recording to CSV",
+        "export": "convert a recording to CSV, or to a film (asciicast)",
         "recordings": "list the recordings, or prune them",
     },
     "about": {

@@ -41,8 +41,11 @@ _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", re.IGNORECASE | re.A
 _EXAMPLE = "velocity_verlet.max_energy_error > 1e-2"
 
 
-def parse(text: str) -> Gate:
-    """The gate that `text` states.  Raises UserError for anything else."""
+def parse(text: str, fields: Sequence[str] = ()) -> Gate:
+    """The gate that `text` states.  Raises UserError for anything else.
+
+    With `fields`, comparisons name one of these, or `verdict`, and no method; their values stand under the key "".
+    """
     source = " ".join(text.split())
     for verdict in get_args(Verdict):
         source = source.replace(verdict, verdict.replace(" ", "_"))
@@ -50,22 +53,31 @@ def parse(text: str) -> Gate:
         with warnings.catch_warnings(action="ignore"):  # of what is odd but legal, such as `1or`
             node = ast.parse(source, mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        raise _no_comparison(source) from None
+        raise _no_comparison(source, fields) from None
     if "#" in source:  # a comment would hide what follows
-        raise _no_comparison(source)
-    return _gate(node, source)
+        raise _no_comparison(source, fields)
+    return _gate(node, source, fields)
 
 
-def _gate(node: ast.expr, source: str) -> Gate:
+def _gate(node: ast.expr, source: str, fields: Sequence[str]) -> Gate:
     match node:
         case ast.BoolOp(op, parts):
-            join, gates = all if isinstance(op, ast.And) else any, [_gate(part, source) for part in parts]
+            join, gates = all if isinstance(op, ast.And) else any, [_gate(part, source, fields) for part in parts]
             return lambda values: join(gate(values) for gate in gates)
-        case ast.Compare(ast.Attribute(ast.Name(method), field), [sign], [value]) if type(sign) in _SIGNS:
+        case ast.Compare(ast.Attribute(ast.Name(method), field), [sign], [value]) if (
+            not fields and type(sign) in _SIGNS
+        ):
             method = _known("method", method, [method.key for method in METHODS])
             field = _known("field", field, (*FIELDS, "verdict"))
             return partial(_holds, method, field, _SIGNS[type(sign)], _value(field, sign, value, source))
-    raise _no_comparison(ast.get_source_segment(source, node) or source)
+        case ast.Compare(ast.Name(field), [sign], [value]) if fields and _is_sign(sign):
+            field = _known("field", field, (*fields, "verdict"))
+            return partial(_holds, "", field, _SIGNS[type(sign)], _value(field, sign, value, source))
+    raise _no_comparison(ast.get_source_segment(source, node) or source, fields)
+
+
+def _is_sign(sign: ast.cmpop) -> bool:
+    return type(sign) in _SIGNS
 
 
 def _holds(method: str, field: str, compare: Callable[[Any, Any], bool], value: float | str, values: Values) -> bool:
@@ -96,8 +108,9 @@ def _refusal(sentence: str) -> UserError:
     return UserError(f"--fail-if: {sentence}")
 
 
-def _no_comparison(text: str) -> UserError:
-    return _refusal(f"{_quoted(text)} is not a comparison; write METHOD.FIELD > NUMBER, for example {_EXAMPLE!r}.")
+def _no_comparison(text: str, fields: Sequence[str]) -> UserError:
+    form, example = ("FIELD", f"{fields[0]} > 1e-2") if fields else ("METHOD.FIELD", _EXAMPLE)
+    return _refusal(f"{_quoted(text)} is not a comparison; write {form} > NUMBER, for example {example!r}.")
 
 
 def _known(what: str, name: str, names: Sequence[str]) -> str:

@@ -106,7 +106,7 @@ def progress(what: str) -> Iterator[Callable[[float, float], None]]:
             from rich.console import Console
             from rich.progress import Progress
 
-            bar = Progress(*Progress.get_default_columns(), "left", console=Console(stderr=True), transient=True)
+            bar = Progress(*Progress.get_default_columns(), "left", console=Console(file=sys.stderr), transient=True)
             bar.add_task(what)
             bar.start()
         bar.update(0, completed=done, total=total)

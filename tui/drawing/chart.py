@@ -11,10 +11,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from engine.methods import METHODS
+from engine.methods import Cast, Method
 from tui.drawing.axes import Axis, Floats, held, linear_axis, log_axis, log_x_axis, per_column, time_axis, time_span
 from tui.drawing.canvas import Canvas, Picture
 from tui.drawing.palette import FRAME, NOBODY, TEXT
+from tui.drawing.palette import series as series_of
 from tui.playback.levels import Window
 from tui.playback.shown import Quantity
 
@@ -40,15 +41,16 @@ class Series:
 
 def time_chart(
     window: Window,
+    cast: Cast,
     quantity: Quantity,
     width: int,
     height: int,
     *,
     log: bool = True,
     seconds: float | None = None,
-    shown: Sequence[int] = range(len(METHODS)),
+    shown: Sequence[int] | None = None,
 ) -> Picture:
-    """A quantity of the shown methods over the last `seconds`, or over the whole run.
+    """A quantity of a cast over the last `seconds`, or over the whole run; `shown`: only those at these places.
 
     On a linear axis, each column of characters spans the lowest to the highest value in it.  On a
     logarithmic axis, it shows the largest magnitude of the half swing that ends in it, or of the
@@ -56,8 +58,8 @@ def time_chart(
     """
     if width < SMALLEST[0] or height < SMALLEST[1]:
         return _too_small(width, height, *SMALLEST)
-    index, rows = list(shown), height - 2
-    low, high = (np.clip(side[quantity][:, index], -TOP, TOP) for side in (window.low, window.high))
+    places, rows = list(range(len(cast)) if shown is None else shown), height - 2
+    low, high = (np.clip(side[quantity][:, places], -TOP, TOP) for side in (window.low, window.high))
     if log:
         low = high = np.log10(np.maximum(np.fmax(abs(low), abs(high)), FLOOR))
     y_axis = _y_axis(low, high, rows, log)
@@ -68,7 +70,7 @@ def time_chart(
     else:
         low, high = per_column(window.x, low, high, start, end, columns)
     heights = [(rows * y_axis.share(side)).T for side in (low, high)]
-    curves = [_outline(*each) for each in zip(index, *heights, strict=True)]
+    curves = [_outline(cast[place], *each) for place, *each in zip(places, *heights, strict=True)]
     x_axis = time_axis(start, end, columns, " run" if window.turned else "")
     picture = _plot(curves, x_axis, y_axis, width, height)
     _write_letters(picture, curves, rows, width - columns - _ROOM)
@@ -126,14 +128,14 @@ def _logs(series: Series) -> Floats:
     return np.log10(points[np.argsort(points[:, 0], kind="stable")])
 
 
-def _outline(index: int, low: Floats, high: Floats) -> Series:
+def _outline(method: Method, low: Floats, high: Floats) -> Series:
     """A line through the lows and highs of all columns, in the order that keeps it short."""
     known = np.flatnonzero(~np.isnan(low))
     low, high = low[known], high[known]
     falling = np.diff(low + high, prepend=0.0) < 0
     heights = np.stack([np.where(falling, high, low), np.where(falling, low, high)], axis=1).ravel()
     distinct = np.stack([np.full(len(low), True), low != high], axis=1).ravel()
-    return Series(index, METHODS[index].letter, np.repeat(known + 0.5, 2)[distinct], heights[distinct])
+    return Series(series_of(method), method.letter, np.repeat(known + 0.5, 2)[distinct], heights[distinct])
 
 
 def _plot(curves: Sequence[Series], x_axis: Axis, y_axis: Axis, width: int, height: int) -> Picture:

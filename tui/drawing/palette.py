@@ -5,21 +5,24 @@ a colour.  Colour is never alone: methods also have a digit and a letter.
 """
 
 from dataclasses import dataclass
+from zlib import crc32
 
-from engine.methods import METHODS
+from engine.methods import METHODS, Method
 
 EXACT, FRAME, TEXT, WARN, NOBODY = -1, -2, -3, -4, -5
-"""Owners that are not methods (those are their index in METHODS): exact motion, axes, text, warnings, blanks."""
+"""Owners that are not methods (whose numbers are their `series`): exact motion, axes, text, warnings, blanks."""
 
 FAINT = 64
-"""Added to a method's index: its fainter colour, for trails."""
+"""Added to a method's series: its fainter colour, for trails."""
+
+_SERIES = {method.key: number for number, method in enumerate(METHODS)}
 
 
 @dataclass(frozen=True, slots=True)
 class Palette:
     """The colours of a theme as #rrggbb, or as Rich's names of the terminal's own 16."""
 
-    methods: tuple[str, ...]  # in the order of METHODS
+    methods: tuple[str, ...]  # by series, which share them where there are more
     exact: str
     frame: str
     text: str
@@ -86,9 +89,14 @@ def faint(owner: int) -> int:
     return owner + FAINT if owner >= 0 else owner
 
 
-def mark(index: int) -> str:
-    """A method's digit and letter, as "1 e"."""
-    return f"{index + 1} {METHODS[index].letter}"
+def series(method: Method) -> int:
+    """A method's number as an owner: the same in every cast, so a method keeps its colour."""
+    return _SERIES.get(method.key, len(_SERIES) + crc32(method.key.encode()) % 8)
+
+
+def mark(place: int, method: Method) -> str:
+    """A method's digit, which is its place in the cast from 1, and its letter, as "1 e"."""
+    return f"{place + 1} {method.letter}"
 
 
 def mixed(colour: str, other: str, share: float) -> str:

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from itertools import islice
 from typing import TYPE_CHECKING, NamedTuple
 
-from engine.methods import METHODS
 from engine.models.model import State
 from engine.run.lockstep import Sample
 from engine.run.observer import RunObserver
@@ -30,7 +29,7 @@ class ErrorHistory:
     """The past of one run, up to the last sample added."""
 
     def __init__(self, observer: RunObserver, capacity: int = 2048) -> None:
-        exact, self._reference = observer.exact, observer.reference
+        exact, self._reference, self._methods = observer.exact, observer.reference, len(observer.scene.cast)
         self._repeats = (exact.period or 0.0) / (2 if exact.regime == "libration" else 1)
         self._capacity = capacity
         self._run = 0
@@ -71,12 +70,12 @@ class ErrorHistory:
         if self._levels is None:
             from tui.playback.levels import Levels
 
-            self._levels = Levels(self._repeats, self._reference, self._capacity)
+            self._levels = Levels(self._repeats, self._reference, self._methods, self._capacity)
         for sample, x, exact, modified in self._waiting:
             states = [State(reading.theta, reading.omega) for reading in sample.readings]
             theta_errors = [theta - exact.theta for theta, _ in states]
             low, high = (
-                (errors, theta_errors, modified or [math.nan] * len(METHODS))
+                (errors, theta_errors, modified or [math.nan] * len(states))
                 for errors in zip(
                     *((reading.energy_error_low, reading.energy_error_high) for reading in sample.readings), strict=True
                 )
@@ -92,7 +91,7 @@ class ErrorHistory:
         levels = self.levels
         levels.rewind(step)
         self._latest = levels.latest()
-        thetas = [levels.trail(index, RECENT)[0].tolist() for index in range(len(METHODS))]
+        thetas = [levels.trail(index, RECENT)[0].tolist() for index in range(self._methods)]
         self._recent = deque(map(list, zip(*thetas, strict=True)), RECENT)
 
     def window(self, seconds: float | None = None) -> "Window":

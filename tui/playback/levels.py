@@ -13,7 +13,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from engine.methods import METHODS
 from engine.models.model import State
 from tui.playback.shown import Quantity
 
@@ -37,8 +36,8 @@ class Window:
 class Level:
     """A ring of rows, numbered from the run's start on; it holds [first, count)."""
 
-    def __init__(self, capacity: int) -> None:
-        shape = (capacity, len(STORED), len(METHODS))
+    def __init__(self, methods: int, capacity: int) -> None:
+        shape = (capacity, len(STORED), methods)
         self.capacity = capacity
         self.first = self.count = 0
         self.steps = np.zeros(capacity, np.int64)  # at the end of the row
@@ -79,10 +78,11 @@ class Level:
 class Levels:
     """The rows of one run; times that errors repeat after and what energies are relative to are the run's, too."""
 
-    def __init__(self, repeats: float, reference: tuple[float, float], capacity: int) -> None:
+    def __init__(self, repeats: float, reference: tuple[float, float], methods: int, capacity: int) -> None:
         self._repeats, self._reference = repeats, reference
-        self.levels = [Level(capacity)]
-        self._states = np.zeros((capacity, len(METHODS) + 1, 2))  # next to level 0; the exact motion comes last
+        self._methods = methods
+        self.levels = [Level(methods, capacity)]
+        self._states = np.zeros((capacity, methods + 1, 2))  # next to level 0; the exact motion comes last
 
     def append(
         self, step: int, times: tuple[float, float], states: Sequence[State], low: ArrayLike, high: ArrayLike
@@ -101,7 +101,7 @@ class Levels:
             coarser.append_pairs(level, level.count - 2)
         last = self.levels[-1]
         if last.count == last.capacity:
-            self.levels.append(Level(last.capacity))
+            self.levels.append(Level(self._methods, last.capacity))
             self.levels[-1].append_pairs(last, 0)
 
     def rewind(self, step: int) -> None:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
-from engine.methods import METHODS
+from engine.methods import Cast
 
 Quantity = Literal["energy_error", "theta_error", "shadow_error", "energy"]
 QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
@@ -16,24 +16,22 @@ WINDOWS: tuple[float | None, ...] = (5.0, 20.0, 60.0, 300.0, 1800.0, None)
 class Shown:
     """What is shown of a source, and how."""
 
-    shown: tuple[bool, ...] = (True,) * len(METHODS)
+    hidden: frozenset[str] = frozenset()  # keys of methods
     exact: bool = False  # the exact motion as a ghost
     trails: bool = True
     quantity: Quantity = "energy_error"  # of the chart
     log: bool = True
     seconds: float | None = 20.0  # of the chart, one of WINDOWS
 
-    @property
-    def indices(self) -> list[int]:
-        """The shown methods as indices into METHODS."""
-        return [index for index, shown in enumerate(self.shown) if shown]
+    def places(self, cast: Cast) -> list[int]:
+        """The places in the cast of the methods that are shown."""
+        return [place for place, method in enumerate(cast) if method.key not in self.hidden]
 
-    def toggled(self, number: int) -> "Shown":
-        """With one method shown or hidden; the number after the last method's is the exact motion's."""
-        if number == len(self.shown):
+    def toggled(self, place: int, cast: Cast) -> "Shown":
+        """With one method of the cast shown or hidden; the place after the last one is the exact motion's."""
+        if place == len(cast):
             return replace(self, exact=not self.exact)
-        shown = tuple(was != (index == number) for index, was in enumerate(self.shown))
-        return replace(self, shown=shown)
+        return replace(self, hidden=self.hidden ^ {cast[place].key}) if place < len(cast) else self
 
     def next_quantity(self) -> "Shown":
         return replace(self, quantity=QUANTITIES[(QUANTITIES.index(self.quantity) + 1) % len(QUANTITIES)])

@@ -38,7 +38,7 @@ class PenduApp(App[Exit | OSError]):
 
     HORIZONTAL_BREAKPOINTS = WIDTHS
     VERTICAL_BREAKPOINTS = HEIGHTS
-    CSS_PATH = "app.tcss"
+    CSS_PATH = Path(__file__).with_name("app.tcss")  # for those derived from it, too
     TITLE = "pendu"
     ALLOW_SELECT = False  # Textual stumbles over a click on a notice where text can be selected
     BINDINGS: ClassVar[list[BindingType]] = [

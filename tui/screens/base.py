@@ -197,7 +197,7 @@ class SourceScreen(Screen[None]):
             self.show_now()
 
     def action_show(self, number: int) -> None:
-        self.change_shown(self.shown.toggled(number))
+        self.change_shown(self.shown.toggled(number, self.source.scene.cast))
 
     def action_trails(self) -> None:
         self.change_shown(replace(self.shown, trails=not self.shown.trails))

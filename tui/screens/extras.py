@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from engine.methods import METHODS
+from engine.methods import METHODS, method_of
 from engine.scenes import SCENES
 from recordings import library
 from tui.cli.errors import explained
@@ -35,8 +35,7 @@ def show_events(screen: SourceScreen) -> None:
 
 def show_card(screen: SourceScreen, key: str) -> None:
     """Show a method's card."""
-    index = next(index for index, method in enumerate(METHODS) if method.key == key)
-    screen.app.push_screen(TextScreen("Method", method_card(index)))
+    screen.app.push_screen(TextScreen("Method", method_card(method_of(key))))
 
 
 def take_screenshot(screen: SourceScreen) -> None:

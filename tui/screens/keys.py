@@ -5,22 +5,18 @@ Bindings, key line, help, command palette and `pendu-tui keys` come from these t
 
 from collections.abc import Iterable
 
-from engine.methods import METHODS
+from engine.scenes import MOST_METHODS
 from tui.views.keys import Key
 
 _TIME, _SHOW, _VIEWS, _PROGRAM, _RUN, _PLAY = "time", "display", "views", "program", "run", "playback"
-_EXACT = len(METHODS) + 1
 
 COMMON = (
     Key("space", "space", "pause/resume", "pause", _TIME, "Pause"),
     Key("less_than_sign", "<", "half speed", "speed(-1)", _TIME),
     Key("greater_than_sign", ">", "double speed", "speed(1)", _TIME, "Faster"),
     Key("0", "0", "normal speed (1×)", "real_time", _TIME),
-    *(
-        Key(str(number), str(number), f"show or hide {method.label}", f"show({number - 1})", _SHOW)
-        for number, method in enumerate(METHODS, 1)
-    ),
-    Key(str(_EXACT), str(_EXACT), "show or hide the exact solution", f"show({_EXACT - 1})", _SHOW),
+    Key("1", "1, 2, ...", "show or hide a method; after the last, the exact one", "show(0)", _SHOW),
+    *(Key(str(number), "", "", f"show({number - 1})", _SHOW) for number in range(2, MOST_METHODS + 2)),
     Key("t", "t", "toggle trails", "trails", _SHOW),
     Key("y", "y", "chart: log/linear", "log", _SHOW, "Log"),
     Key("e", "e", "chart: next quantity, such as the angle error", "quantity", _SHOW, "Quantity"),

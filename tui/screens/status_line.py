@@ -40,7 +40,7 @@ def status_row(source: Source, width: int, frames: int | None = None) -> Row:
     """The line, as far as there is room; `frames` a second where the machine is too slow for more."""
     scene, playhead, pace, recording = source.scene, source.playhead, source.pace, source.recording_status
     z, live, named = abs(source.stepping.h) * scene.w0, source.kind == "LIVE", bool(scene.watch)
-    warning = limit_warning([abs(h) * scene.w0 for h in source.stepping.own])
+    warning = limit_warning(source.scene.cast, [abs(h) * scene.w0 for h in source.stepping.own])
     parts = [
         _Part(12, "paused " if playhead.paused else "backwards" if source.stepping.h < 0 else "running"),
         _Part(7, speed_text(playhead.speed)),

@@ -8,7 +8,6 @@ from textual.binding import Binding, BindingType
 from textual.containers import VerticalScroll
 from textual.widgets import Static
 
-from engine.methods import METHODS
 from tui.playback.source import Source
 from tui.screens.keys import key_list
 from tui.screens.modal import Modal
@@ -21,7 +20,7 @@ def help_text(keys: Sequence[Key], source: Source) -> str:
     """What to watch in the scene, the keys by group, and the methods."""
     scene = source.scene
     now = "" if source.stepping.h == scene.h else f"h = {step_text(source)}"
-    return "\n\n".join([scene_card(scene, now), key_list(keys), *map(method_card, range(len(METHODS)))])
+    return "\n\n".join([scene_card(scene, now), key_list(keys), *map(method_card, scene.cast)])
 
 
 class TextScreen(Modal[None]):

@@ -4,5 +4,5 @@ Before the screen: `options` reads theme, characters, mouse and frames from the 
 `check` tests whether the lab can be shown, and later whether the terminal is still there.
 Each frame: Textual -> `character_sets` (braille to half blocks or ASCII) -> `driver` -> terminal.  The driver handles
 stop and continue, and measures its writes for `throughput`; on a slow line it sends `sgr`'s shorter form.
-`screenshot` saves the screen as SVG and text.
+`screenshot` saves the screen as SVG and text, `asciicast` has what a terminal is sent for a film.
 """

@@ -1,6 +1,7 @@
 """Theme, characters, mouse and frames a second: from the command line, else from what the terminal reports."""
 
 import argparse
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal, get_args
@@ -14,6 +15,7 @@ CharacterSet = Literal["braille", "half", "ascii"]
 CHARACTER_SETS: tuple[CharacterSet, ...] = get_args(CharacterSet)
 FPS, CALM_FPS, MOST_FPS = 30, 10, 60
 SMALLEST = (60, 16)  # columns and rows of the smallest terminal on which the lab fits
+LARGEST = (400, 200)
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +38,10 @@ def add_terminal_options(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--plain", action="store_true", help="no TUI: print a sentence per second; Ctrl+C to stop")
     group.add_argument("--no-mouse", action="store_true", help="disable the mouse; every mouse action also has a key")
     group.add_argument(
-        "--fps", metavar="N", type=_fps, help=f"frames per second ({FPS}; {CALM_FPS} with TEXTUAL_ANIMATIONS=none)"
+        "--fps",
+        metavar="N",
+        type=frames_per_second,
+        help=f"frames per second ({FPS}; {CALM_FPS} with TEXTUAL_ANIMATIONS=none)",
     )
 
 
@@ -55,7 +60,18 @@ def add_picture_options(parser: argparse.ArgumentParser, theme: str, character_s
     return group
 
 
-def _fps(text: str) -> int:
+def cells(text: str) -> tuple[int, int]:
+    """A size in columns and rows as `120x40`."""
+    match = re.fullmatch(r"(\d{1,4})[x×](\d{1,4})", text)
+    columns, rows = (int(match[1]), int(match[2])) if match else (0, 0)
+    if not (SMALLEST[0] <= columns <= LARGEST[0] and SMALLEST[1] <= rows <= LARGEST[1]):
+        limits = " to ".join(f"{columns}x{rows}" for columns, rows in (SMALLEST, LARGEST))
+        raise argparse.ArgumentTypeError(f"{text!r} is not a size; use for example 120x40, from {limits}")
+    return columns, rows
+
+
+def frames_per_second(text: str) -> int:
+    """A frame rate that the lab can be shown at."""
     if count(text) > MOST_FPS:
         raise argparse.ArgumentTypeError(f"{text!r} is out of range; use 1 to {MOST_FPS} frames per second")
     return count(text)

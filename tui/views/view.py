@@ -5,7 +5,7 @@ from typing import ClassVar, Generic, TypeVar
 from textual.containers import Container
 from textual.reactive import var
 
-from engine.methods import METHODS
+from engine.methods import Cast
 from engine.run.lockstep import Sample
 from tui.drawing.cells import CellWidget
 from tui.playback.shown import Shown
@@ -14,7 +14,7 @@ from tui.views.keys import Key
 
 Place = TypeVar("Place")
 
-DESCRIBED_FIRST = [method.key for method in METHODS].index("velocity_verlet")
+DESCRIBED_FIRST = "velocity_verlet"
 
 
 class Box(Container):
@@ -82,6 +82,16 @@ class Pane(CellWidget):
         self.draw()
 
     @property
+    def cast(self) -> Cast:
+        """The methods of the run on screen."""
+        return self.source.scene.cast if self.source is not None else ()
+
+    @property
+    def places(self) -> list[int]:
+        """The places in the cast of the methods that are shown."""
+        return self.shown.places(self.cast)
+
+    @property
     def is_live(self) -> bool:
         """Whether the source is the lab, where runs can be started, and not a recording."""
         return self.source is not None and self.source.kind == "LIVE"
@@ -104,7 +114,16 @@ class Chooser(Pane, Generic[Place], can_focus=True):
     def __init__(self, id: str | None = None) -> None:
         super().__init__(id)
         self.cursor: Place | None = None
-        self.index = DESCRIBED_FIRST  # of the method that is described
+        self._described = DESCRIBED_FIRST  # key of a method
+
+    @property
+    def index(self) -> int:
+        """The place in the cast of the method that is described."""
+        return next((place for place, method in enumerate(self.cast) if method.key == self._described), 0)
+
+    def describe(self, place: int) -> None:
+        """Describe another method."""
+        self._described = self.cast[place].key
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         if action in ("choose", "cancel"):
@@ -126,7 +145,7 @@ class Chooser(Pane, Generic[Place], can_focus=True):
 
     def action_method(self, down: int) -> None:
         """Describe the next of the methods that are shown."""
-        if shown := self.shown.indices:
+        if shown := self.places:
             at = shown.index(self.index) if self.index in shown else -1
-            self.index = shown[(at + down) % len(shown)]
+            self.describe(shown[(at + down) % len(shown)])
             self.draw()

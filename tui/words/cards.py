@@ -3,21 +3,19 @@
 import math
 import textwrap
 
-from engine.methods import METHODS
+from engine.methods import Method
 from engine.scenes import Scene
-from tui.drawing.palette import mark
 from tui.words.motion import motion_text
 
 WIDTH = 72  # characters; of 80 columns, frame and scroll bar take the rest
 _HEAD = 14
 
 
-def method_card(index: int) -> str:
-    """A method's properties; every line is a tested field of METHODS."""
-    method = METHODS[index]
+def method_card(method: Method) -> str:
+    """A method's properties; every line is a tested claim."""
     limit = f"up to z = h w0 = {method.linear_limit:.4g} (small swings)" if method.linear_limit else "at no h"
     return _card(
-        f"{mark(index)} {method.label}",
+        f"{method.letter}  {method.label}",
         {
             "also called": ", ".join(method.other_names),
             "formula": method.formula,

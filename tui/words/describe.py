@@ -2,7 +2,6 @@
 
 import math
 
-from engine.methods import METHODS
 from tui.playback.source import Source
 from tui.words.findings import ending, endings, leaving
 from tui.words.numbers import about, seconds
@@ -10,7 +9,11 @@ from tui.words.numbers import about, seconds
 
 def description(source: Source) -> list[str]:
     """The run, each method and the recording, one sentence each."""
-    return [*_run(source), *(method_sentence(source, index) for index in range(len(METHODS))), _recording(source)]
+    return [
+        *_run(source),
+        *(method_sentence(source, index) for index in range(len(source.scene.cast))),
+        _recording(source),
+    ]
 
 
 def _run(source: Source) -> list[str]:
@@ -37,7 +40,7 @@ def step_text(source: Source) -> str:
 
 def method_sentence(source: Source, index: int) -> str:
     """Whether a method failed or went over the top; if not, its verdict or its error so far."""
-    method, reading = METHODS[index], source.sample.readings[index]
+    method, reading = source.scene.cast[index], source.sample.readings[index]
     if milestone := endings(source).get(index):
         return ending(milestone)
     if source.judgements[index].verdict == "bounded":

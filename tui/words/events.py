@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 from typing import Literal, NamedTuple
 
+from engine.methods import Method
 from engine.run.observer import Milestone
 from engine.run.verdict import Verdict
 from recordings.events import Event
@@ -22,7 +23,7 @@ class EventLine(NamedTuple):
     t: float  # s, simulated
     text: str
     kind: Literal["change", "mark", "milestone"]
-    method: int | None = None  # of a milestone: its place in the cast
+    method: Method | None = None  # of a milestone
 
     def __str__(self) -> str:
         return f"{self.t:7.2f} {self.text}" if abs(self.t) < 1e4 else f"{self.t:7.1e} {self.text}"
@@ -34,10 +35,7 @@ def event_lines(source: Source) -> list[EventLine]:
     Pauses and speeds are not listed: they change no number.
     """
     run = source.sample.run
-    index = source.scene.cast.index
-    milestones = [
-        EventLine(run, m.step, m.t, milestone_text(m), "milestone", index(m.method)) for m in source.milestones
-    ]
+    milestones = [EventLine(run, m.step, m.t, milestone_text(m), "milestone", m.method) for m in source.milestones]
     return sorted([*_inputs(source), *milestones], key=lambda line: line[:2])  # stable: inputs first
 
 

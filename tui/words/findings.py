@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from engine.methods import METHODS, Method
+from engine.methods import METHODS, Cast, Method
 from engine.run.observer import Milestone
 from tui.playback.source import Source
 from tui.words.numbers import about, two_digits
@@ -43,7 +43,7 @@ def forecast(source: Source, index: int) -> Forecast | None:
     if band > LARGEST_BAND:
         return None
     seconds = (band - math.copysign(error, error * slope)) / abs(slope)
-    return Forecast(seconds, METHODS[other]) if seconds < LONGEST else None
+    return Forecast(seconds, source.scene.cast[other]) if seconds < LONGEST else None
 
 
 def _bands(source: Source) -> list[tuple[float, int]]:
@@ -70,7 +70,7 @@ def ending(milestone: Milestone) -> str:
 
 def staying(source: Source) -> str:
     """The sentence on the bounded methods; "" if there are none yet."""
-    bounded = [(m, j) for m, j in zip(METHODS, source.judgements, strict=True) if j.verdict == "bounded"]
+    bounded = [(m, j) for m, j in zip(source.scene.cast, source.judgements, strict=True) if j.verdict == "bounded"]
     if not bounded:
         return ""
     period = source.exact.period or math.tau / source.scene.w0  # the unit of Judgement.periods
@@ -87,13 +87,13 @@ def leaving(source: Source, index: int) -> str:
     if slope <= 0:
         return ""
     verb = "gains" if judgement.verdict == "grows" else "loses"
-    what = f"{short_name(METHODS[index])} {verb} {two_digits(100 * slope)} % of E0/s"
+    what = f"{short_name(source.scene.cast[index])} {verb} {two_digits(100 * slope)} % of E0/s"
     if ahead := forecast(source, index):
         other = short_name(ahead.other)
         return f"{what}; its error will pass {other}'s in about {about(ahead.seconds)}."
     error, bands = abs(source.sample.readings[index].energy_error), _bands(source)
     if bands and error > bands[0][0] > 0:
-        ratio, other = two_digits(error / bands[0][0]), short_name(METHODS[bands[0][1]])
+        ratio, other = two_digits(error / bands[0][0]), short_name(source.scene.cast[bands[0][1]])
         return f"{what}; its error is {ratio} times {other}'s maximum."
     return f"{what}."
 
@@ -102,17 +102,17 @@ def so_far(source: Source) -> str:
     """The largest energy errors of the best and of the worst method, for as long as there is no verdict."""
     errors = sorted((reading.max_energy_error, index) for index, reading in enumerate(source.sample.readings))
     (least, nearest), (most, furthest) = errors[0], errors[-1]
-    near, far = short_name(METHODS[nearest]), short_name(METHODS[furthest])
+    near, far = short_name(source.scene.cast[nearest]), short_name(source.scene.cast[furthest])
     return f"Energy errors so far: {least:.2g} ({near}) to {most:.2g} ({far})."
 
 
-def limit_warning(zs: Sequence[float]) -> str:
+def limit_warning(cast: Cast, zs: Sequence[float]) -> str:
     """As "unstable: s v (z > 2), r (z > 2.83)", the methods by their letters; "" below all limits.
 
-    `zs` are in the order of METHODS.  Explicit Euler has no limit: it is never stable.
+    `zs` are in the order of the cast.  Explicit Euler has no limit: it is never stable.
     """
     letters: dict[float, list[str]] = {}
-    for method, z in zip(METHODS, zs, strict=True):
+    for method, z in zip(cast, zs, strict=True):
         if 0 < method.linear_limit < z:
             letters.setdefault(method.linear_limit, []).append(method.letter)
     each = ", ".join(f"{' '.join(who)} (z > {limit:.3g})" for limit, who in letters.items())

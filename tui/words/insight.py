@@ -3,7 +3,6 @@
 import math
 from collections.abc import Iterable
 
-from engine.methods import METHODS
 from engine.run.lockstep import Sample
 from engine.run.observer import Milestone
 from engine.scenes import Scene
@@ -69,7 +68,7 @@ def lasting(source: Source) -> list[str]:
     """All that is known of the run, the most important first; at least one sentence."""
     ended = endings(source)
     ends = sorted(ended.values(), key=lambda each: (each.kind != "failed", each.step))
-    moves = [leaving(source, index) for index in range(len(METHODS)) if index not in ended]
+    moves = [leaving(source, index) for index in range(len(source.scene.cast)) if index not in ended]
     known = list(filter(None, [*map(ending, ends), staying(source), *moves]))
     return [*known, *filter(None, [_watch(source)])] if known else [so_far(source)]
 
@@ -87,5 +86,5 @@ def return_text(scene: Scene, sample: Sample) -> str:
         else f"{math.hypot(reading.theta - scene.theta, (reading.omega - scene.omega) / scene.w0):.2g}"
         for reading in sample.readings
     ]
-    each = ", ".join(f"{method.letter} {miss}" for method, miss in zip(METHODS, misses, strict=True))
+    each = ", ".join(f"{method.letter} {miss}" for method, miss in zip(scene.cast, misses, strict=True))
     return f"Back at t = 0. Missed the start by {each} rad."

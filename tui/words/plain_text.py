@@ -3,7 +3,6 @@
 import time
 from collections.abc import Callable
 
-from engine.methods import METHODS
 from tui.playback.source import Source
 from tui.words.describe import description
 from tui.words.events import event_lines
@@ -43,5 +42,6 @@ def plain(
 
 def numbers(source: Source) -> str:
     """As "3.00 s: energy errors Explicit Euler +0.4, …"."""
-    errors = [f"{short_name(m)} {r.energy_error:+.2g}" for m, r in zip(METHODS, source.sample.readings, strict=True)]
+    each = zip(source.scene.cast, source.sample.readings, strict=True)
+    errors = [f"{short_name(method)} {reading.energy_error:+.2g}" for method, reading in each]
     return f"{seconds(source.sample.t)}: energy errors {', '.join(errors)}."

@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.accuracy.rounding import rounding_floor
-from engine.accuracy.study import REPEATS, Study, ladder, orders, timed
+from engine.accuracy.study import Study, ladder, orders, timed
+from engine.accuracy.timing import REPEATS
 from engine.methods import METHODS
 from engine.models.pendulum import energy
 from engine.run import compiled

@@ -17,6 +17,7 @@ WRITERS = {
     "export": ("export", "drift", "-o"),
     "accuracy": ("accuracy", "--time", 1, "--h-values", "0.2:0.1:2", "--csv"),
     "stability": ("stability", "--steps", 5, "--z-values", "0.1,0.2", "--theta-values", "1", "-o"),
+    "film": ("export", "drift", "--format", "cast", "--speed", 15, "--fps", 1, "-o"),
     "snapshot": ("snapshot", "--time", 0, "--size", "60x16", "-o"),
 }
 LONG = {
@@ -93,6 +94,7 @@ def test_a_missing_folder_is_refused_before_anything_is_computed(tmp_path, comma
     monkeypatch.setattr("engine.accuracy.study.Study.points", None)
     monkeypatch.setattr("engine.stability.grid.Grid.compute", None)
     monkeypatch.setattr("tui.commands.files.export.write_csv", None)
+    monkeypatch.setattr("tui.screens.still.film", None)
     assert pendu(*command, tmp_path / "no" / "file.svg").refused(5, "no folder", "create the folder")
 
 

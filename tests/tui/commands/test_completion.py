@@ -32,8 +32,11 @@ CASES = [  # what is typed before the tab, and what it offers: just that, or tha
     ("pendu-tui replay ", ANY_RECORDING),
     ("pendu-tui verify drift ", ANY_RECORDING | {"golden"}),
     ("pendu-tui run --record ", {"swing.mcap"}),
+    ("pendu-tui diff drift ", ANY_RECORDING),
+    ("pendu-tui export drift --format ", {"csv", "cast"}),
     ("pendu-tui run --fail-if rk4.m", {"rk4.max_energy_error"}),
     ("pendu-tui recordings ", {"list", "prune"}),
+    ("pendu-tui serve --at-m", {"--at-most"}),
     ("pendu-tui completion ", set(SHELLS)),
     ("pendu-tui accuracy --h-values 0.1:0.01:3 --err", {"--error"}),
 ]

@@ -8,7 +8,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from engine.methods import METHODS
+from engine.methods import USUAL_CAST
 from tests.tui.drawing.test_canvas import dots
 from tui.drawing.axes import held, per_column, time_span
 from tui.drawing.chart import SMALLEST, Series, loglog_chart, time_chart
@@ -16,7 +16,7 @@ from tui.drawing.palette import EXACT, FRAME, NOBODY, TEXT
 from tui.playback.levels import Window
 
 ANY = st.floats(allow_nan=True, allow_infinity=True)
-COUNT = len(METHODS)
+COUNT = len(USUAL_CAST)
 ROOM = 4  # columns for letters
 
 
@@ -28,7 +28,7 @@ def window(x, low, high=None, repeats=0.0, turned=False):
 
 
 def chart(data, width=40, height=10, **options):
-    return time_chart(data, "energy_error", width, height, **options)
+    return time_chart(data, USUAL_CAST, "energy_error", width, height, **options)
 
 
 def plotted(picture, log):
@@ -179,7 +179,7 @@ def test_only_shown_methods_have_letters(shown):
     letters = "".join(
         line[6:] for line in chart(window([1, 2, 3], [1, 1, 1]), shown=sorted(shown)).text.splitlines()[:-2]
     )
-    assert {letter for letter in letters if letter.isalpha()} == {METHODS[index].letter for index in shown}
+    assert {letter for letter in letters if letter.isalpha()} == {USUAL_CAST[index].letter for index in shown}
 
 
 def test_zeros_are_drawn_at_the_floor():

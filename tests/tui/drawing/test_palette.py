@@ -139,7 +139,7 @@ def test_other_themes_get_the_palette_that_suits_their_name(theme, name):
 
 
 def test_marks_are_distinct_and_take_one_column_in_every_terminal():
-    marks = [mark(index) for index in range(len(METHODS))]
+    marks = [mark(place, method) for place, method in enumerate(METHODS)]
     assert marks[0] == "1 e"
     assert len(set(marks)) == len(METHODS)
     assert all(text.isascii() for text in marks)

@@ -7,7 +7,7 @@ import pytest
 from textual.actions import parse
 from textual.command import CommandList
 
-from engine.methods import METHODS
+from engine.methods import METHODS, VELOCITY_VERLET
 from engine.scenes import SCENES
 from recordings.library import GOLDEN, listing
 from recordings.live_recorder import LiveRecorder
@@ -85,7 +85,7 @@ async def test_a_scene_a_theme_and_a_card_can_be_chosen():
         await chosen(theatre, "theme light")
         assert theatre.app.theme == "light"
         await chosen(theatre, "method Velocity Verlet")
-        assert theatre.app.screen.text == method_card(2)
+        assert theatre.app.screen.text == method_card(VELOCITY_VERLET)
 
 
 async def test_the_command_is_copied_and_shown():

@@ -129,7 +129,7 @@ def unfinished(count: int) -> Check:
 def sine(golden: Path) -> Check:
     """Whether this machine's sin() gives the same bits as the one of the bundled recordings."""
     from recordings.recording import Recording
-    from recordings.seal import fingerprint
+    from recordings.summary import fingerprint
 
     with Recording.open(golden) as recording:
         same = recording.functions["sin"] == fingerprint("sin")

@@ -1,1 +1,1 @@
-"""Recordings: `verify`, `info`, `recover`, `export`, and the list of them, `recordings`."""
+"""Recordings: `verify`, `info`, `diff`, `recover`, `export`, and the list of them, `recordings`."""

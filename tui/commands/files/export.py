@@ -1,71 +1,115 @@
-"""Write a recording as CSV: one row per sample and method, units in the header."""
+"""Write a recording as CSV, one row per sample and method, or as an asciicast: the replay as a film for a terminal."""
 
 import argparse
-import csv
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import redirect_stderr
 from pathlib import Path
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
-from engine.methods import Cast
-from engine.run.lockstep import Sample
 from recordings.errors import printable
-from recordings.fields import MOMENT, READING, values_of
-from tui.cli.errors import Exit
+from tui.cli.errors import Exit, UserError
 from tui.cli.files import text_file
-from tui.cli.options import add_file, add_recording
-from tui.cli.output import progress, warn
+from tui.cli.options import add_file, add_recording, positive
+from tui.cli.output import progress, warn, write_csv
+from tui.terminal.options import add_picture_options, cells, frames_per_second, terminal_options_of
 
 if TYPE_CHECKING:
-    from recordings.recording import Recording
-    from recordings.scan import ShowProgress
+    from textual.strip import Strip
 
-COLUMNS = ("clock_s", *(field.column for field in MOMENT), "method", *(field.column for field in READING))
-"""Names with their units; energies are per unit m·L²."""
+    from recordings.recording import Recording
+
+MOST_FRAMES = 100_000  # almost three hours at the usual rate
+FILM = {"size": (80, 24), "speed": 1.0, "fps": 10}
+"""The options of a film, with their defaults."""
 
 EXAMPLES = """\
 examples:
   pendu-tui export latest --format csv -o latest.csv
   pendu-tui export drift --format csv | head -3
+  pendu-tui export drift --format cast --size 120x40 --speed 2 -o drift.cast
+
+asciinema plays a .cast: asciinema play drift.cast, or its player on a web page.
 """
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_recording(parser)
-    parser.add_argument("--format", choices=("csv",), default="csv", help="output format (only %(default)s)")
+    parser.add_argument("--format", choices=("csv", "cast"), default="csv", help="output format (%(default)s)")
     add_file(parser, "-o", "--output", metavar="OUT", type=Path, help="write to OUT instead of stdout")
     parser.add_argument("--force", action="store_true", help="overwrite OUT")
+    add_picture_options(parser, "dark", "braille")
+    film = parser.add_argument_group("cast", "of --format cast only, as is display")
+    film.add_argument("--size", metavar="CxR", type=cells, help="columns x rows (80x24)")
+    film.add_argument("--speed", metavar="X", type=positive, help="playback speed (1)")
+    film.add_argument("--fps", metavar="N", type=frames_per_second, help="frames per second of the film (10)")
 
 
 def run(options: argparse.Namespace) -> int:
     from recordings import library
     from recordings.recording import Recording
 
+    given = [name for name in FILM if getattr(options, name) is not None]
+    if options.format == "csv" and given:
+        raise UserError(f"--{given[0]} belongs to --format cast; a CSV has every sample.")
     path = library.resolve(options.file)
     with (
         Recording.open(path) as recording,
         progress(printable(path.name)) as show,
         text_file(options.output, options.force) as out,
     ):
-        write_csv(recording, out, show)
+        if options.format == "csv":
+            from recordings.fields import COLUMNS
+
+            write_csv(out, COLUMNS, _rows(recording, show))
+        else:
+            _film(recording, options, out, show)
         if recording.reason:
             warn(f"{printable(str(path))}: {recording.reason}; the rest is exported.")
     return Exit.FINE
 
 
-def write_csv(recording: "Recording", out: TextIO, show: "ShowProgress | None" = None) -> int:
-    """Write all samples and return how many there were.  Every number reads back with the same bits."""
-    rows = csv.writer(out, lineterminator="\n")
-    rows.writerow(COLUMNS)
-    count, run = 0, 0
-    cast: Cast = ()
-    for clock, value in recording.entries():
-        if not isinstance(value, Sample):
-            continue
-        if value.run != run:
-            run, scene = value.run, recording.events.start_of(value.run)
-            cast = scene.cast if scene else cast
-        for method, reading in zip(cast, value.readings, strict=True):
-            rows.writerow((clock, value.run, value.step, value.t, method.key, *values_of(reading)))
-        count += 1
-        if show and count % 1000 == 0:
+def _rows(recording: "Recording", show: Callable[[int, int], None]) -> "Iterator[tuple[object, ...]]":
+    from engine.run.lockstep import Sample
+    from recordings.fields import rows
+
+    samples = ((clock, value) for clock, value in recording.entries() if isinstance(value, Sample))
+    for count, (clock, sample) in enumerate(samples, 1):
+        yield from rows(clock, sample, recording.methods_of(sample.run))
+        if count % 1000 == 0:
             show(count, recording.samples)
-    return count
+
+
+def _film(recording: "Recording", options: argparse.Namespace, out: TextIO, show: Callable[[int, int], None]) -> None:
+    import asyncio
+
+    from tui.playback.marks import Marks
+    from tui.playback.replay import Replay
+    from tui.screens.still import film
+    from tui.terminal import asciicast
+
+    if recording.at(0.0) is None:
+        raise UserError(f"{printable(str(recording.path))} contains no samples.", Exit.INPUT_UNREADABLE)
+    chosen: dict[str, Any] = {name: getattr(options, name) or usual for name, usual in FILM.items()}
+    frames = int(recording.length / chosen["speed"] * chosen["fps"]) + 2  # the last one lies behind the end
+    if frames > MOST_FRAMES:
+        raise UserError(f"the film would have {frames} frames, more than {MOST_FRAMES}: use a higher --speed.")
+    replay = Replay(recording, Marks(recording.path), clock=lambda: 0.0)
+    replay.set_speed(chosen["speed"])
+    options.fps = chosen["fps"]
+    before: list[list[asciicast.Cell]] = []
+    terminal, stderr = terminal_options_of(options, {}, "utf-8"), sys.stderr
+
+    def take(frame: int, screen: "list[Strip]") -> None:
+        nonlocal before
+        now = asciicast.cells(screen)
+        sent = asciicast.changed(before, now)
+        begin, end = asciicast.BEGIN * (frame == 0), asciicast.END * (frame == frames - 1)
+        if begin + sent + end:
+            print(asciicast.event(frame / chosen["fps"], begin + sent + end), file=out)
+        before = now
+        with redirect_stderr(stderr):  # Textual's is deaf
+            show(frame, frames)
+
+    print(asciicast.header(chosen["size"], f"pendu-tui replay {printable(recording.path.stem)}"), file=out)
+    asyncio.run(film(replay, frames, chosen["size"], terminal, take))

@@ -2,27 +2,25 @@
 
 import argparse
 import os
-import re
 from pathlib import Path
 
 from tui.cli.errors import Exit
 from tui.cli.files import whole_file
 from tui.cli.options import add_file, add_scene_options, number, scene_of
-from tui.terminal.options import SMALLEST, add_picture_options, terminal_options_of
+from tui.terminal.options import add_picture_options, cells, terminal_options_of
 
 EXAMPLES = """\
 examples:
   pendu-tui snapshot --time 12 -o lab.svg
   pendu-tui snapshot --scene crossover --time 40 --size 200x60 --theme light -o crossover.svg
 """
-LARGEST = (400, 200)  # columns, rows
 LONGEST = 3600.0  # s
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_scene_options(parser)
     parser.add_argument("--time", metavar="S", type=moment, default=12.0, help="simulated seconds (%(default)g)")
-    parser.add_argument("--size", metavar="CxR", type=size, default=(120, 40), help="columns x rows (120x40)")
+    parser.add_argument("--size", metavar="CxR", type=cells, default=(120, 40), help="columns x rows (120x40)")
     add_picture_options(parser, "dark", "braille")
     add_file(parser, "-o", "--output", metavar="FILE.svg", type=picture, required=True, help="the image to write")
     parser.add_argument("--force", action="store_true", help="overwrite FILE.svg")
@@ -38,16 +36,6 @@ def run(options: argparse.Namespace) -> int:
     with whole_file(options.output, options.force) as file:
         file.write_text(asyncio.run(still(scene, options.time, options.size, display)), encoding="utf-8")
     return Exit.FINE
-
-
-def size(text: str) -> tuple[int, int]:
-    """A size as `120x40`."""
-    match = re.fullmatch(r"(\d{1,4})[x×](\d{1,4})", text)
-    columns, rows = (int(match[1]), int(match[2])) if match else (0, 0)
-    if not (SMALLEST[0] <= columns <= LARGEST[0] and SMALLEST[1] <= rows <= LARGEST[1]):
-        limits = " to ".join(f"{columns}x{rows}" for columns, rows in (SMALLEST, LARGEST))
-        raise argparse.ArgumentTypeError(f"{text!r} is not a size; use for example 120x40, from {limits}")
-    return columns, rows
 
 
 def picture(text: str) -> Path:

@@ -1,1 +1,4 @@
-"""Without a screen: `run` judges; `accuracy` and `stability` study, and print with `reports`."""
+"""Without a screen: `run` judges methods, and `judge` another program's energies; `accuracy` and `stability` study.
+
+`reports` prints what the last two found.
+"""

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from typing import Literal
 
 from engine.accuracy.study import ErrorKind, Flaw, Point
-from engine.methods import METHODS
 from tui.drawing.canvas import Picture
 from tui.drawing.chart import Series, loglog_chart
 from tui.drawing.palette import FRAME
+from tui.drawing.palette import series as series_of
 
 Cost = Literal["evaluations", "seconds"]
 
@@ -21,7 +21,11 @@ ERROR_LABELS: dict[ErrorKind, str] = {
 }
 COST_LABELS: dict[Cost, str] = {"evaluations": "force evaluations", "seconds": "seconds"}
 BESIDE = 0.2  # of a method's errors: where the dotted line of its order runs
-POWERS = {1: "h", 2: "h²", 3: "h³", 4: "h⁴"}
+
+
+def power(order: int) -> str:
+    """h to the power of an order."""
+    return "h" + "".join("⁰¹²³⁴⁵⁶⁷⁸⁹"[int(digit)] for digit in str(order) if order != 1)
 
 
 def cost_of(point: Point, cost: Cost) -> float:
@@ -41,9 +45,10 @@ def accuracy_chart(
 
     def series(some: Sequence[Point], mark: str) -> Series:
         costs, errors = [cost_of(point, cost) for point in some], [point.error(kind) for point in some]
-        return Series(METHODS.index(some[0].method), mark, costs, errors)
+        return Series(series_of(some[0].method), mark, costs, errors)
 
-    by_method = [ours for method in METHODS if (ours := [point for point in points if point.method == method])]
+    methods = dict.fromkeys(point.method for point in points)
+    by_method = [[point for point in points if point.method == method] for method in methods]
     lines = [series(ours, ours[0].method.letter) for ours in by_method]
     flawed = [series([point], MARKS[flaw]) for point in points if (flaw := point.flaw(kind))]
     marked = [series([point], mark) for mark, point in marks]
@@ -67,4 +72,4 @@ def _slope(ours: Sequence[Point], kind: ErrorKind, cost: Cost, points: Sequence[
     costs = [cost_of(point, cost) for point in points]
     ends = [min(costs), max(costs)]
     errors = [BESIDE * anchor.error(kind) * (end / cost_of(anchor, cost)) ** -order for end in ends]
-    return Series(FRAME, POWERS.get(order, f"h^{order}"), ends, errors, dotted=True)
+    return Series(FRAME, power(order), ends, errors, dotted=True)

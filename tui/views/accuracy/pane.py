@@ -9,11 +9,10 @@ from typing import ClassVar
 from textual.binding import BindingType
 
 from engine.accuracy.study import REASONS, ErrorKind, Point
-from engine.methods import METHODS
 from engine.run.lockstep import Sample
 from tui.drawing.palette import TEXT
 from tui.playback.source import Source
-from tui.views.accuracy.chart import POWERS, accuracy_chart
+from tui.views.accuracy.chart import accuracy_chart, power
 from tui.views.keys import Key, bindings
 from tui.views.messages import StepSizeChosen
 from tui.views.view import Chooser
@@ -21,8 +20,7 @@ from tui.views.view import Chooser
 WORDS = 2  # lines
 MOST_STEPS = 2_000_000  # of a run for the mark at the present h: some seconds
 HERE, CURSOR = "X", "O"
-POWERS_OF_H = ", ".join(POWERS[order] for order in sorted({method.order for method in METHODS}))
-LEGEND = f"{HERE} current h  x useless  ~ rounding limit  dotted: slopes {POWERS_OF_H}"
+LEGEND = f"{HERE} current h  x useless  ~ rounding limit  dotted: slopes"
 
 _GROUP = "accuracy"
 KEYS = (
@@ -43,7 +41,6 @@ class AccuracyPane(Chooser[int]):
 
     def __init__(self) -> None:
         super().__init__()
-        self.border_subtitle = LEGEND
         self.time, self.rungs = 0.0, list[int]()
         self.here: tuple[int, ...] = ()  # steps of each method at the present h
         self.points: dict[tuple[int, int], Point] = {}  # by method and steps
@@ -51,12 +48,14 @@ class AccuracyPane(Chooser[int]):
         self._building = False
 
     def begin(self, time: float, rungs: Sequence[int]) -> None:
-        """Start over: points of other step counts, or of another pendulum, are to come."""
+        """Start over: points of other step counts, methods or pendulums are to come."""
+        self.border_subtitle = f"{LEGEND} {', '.join(map(power, sorted({method.order for method in self.cast})))}"
         self.time, self.rungs, self.points, self.cursor = time, list(rungs), {}, None
 
     def add(self, point: Point) -> None:
         """Take in a point; it is drawn with one of the next samples."""
-        self.points[METHODS.index(point.method), point.steps] = point
+        if point.method in self.cast:
+            self.points[self.cast.index(point.method), point.steps] = point
 
     @property
     def kind(self) -> ErrorKind:
@@ -66,7 +65,7 @@ class AccuracyPane(Chooser[int]):
     @property
     def missing(self) -> int:
         """How many points of the ladder are not there yet."""
-        wanted = [(index, steps) for index in range(len(METHODS)) for steps in self.rungs]
+        wanted = [(index, steps) for index in range(len(self.cast)) for steps in self.rungs]
         return sum(place not in self.points for place in wanted)
 
     @property
@@ -94,7 +93,7 @@ class AccuracyPane(Chooser[int]):
             self.run_worker(self._build(), group="chart")
 
     async def _build(self) -> None:
-        state, kind, shown = self._state, self.kind, self.shown.indices
+        state, kind, shown = self._state, self.kind, self.places
         points = [p for (i, steps), p in sorted(self.points.items()) if i in shown and steps in self.rungs]
         here = [
             (HERE, self.points[place]) for place in enumerate(self.here) if place in self.points and place[0] in shown
@@ -135,4 +134,4 @@ class AccuracyPane(Chooser[int]):
     def choose(self, rung: int) -> None:
         assert self.source is not None
         h = self.time / self.rungs[rung]
-        self.post_message(StepSizeChosen(self.source.stepping.with_own(METHODS[self.index], h)))
+        self.post_message(StepSizeChosen(self.source.stepping.with_own(self.cast[self.index], h)))

@@ -10,8 +10,8 @@ from tui.views.accuracy.pane import KEYS, MOST_STEPS, AccuracyPane
 from tui.views.background import computed
 from tui.views.view import View
 
-Start = tuple[float, float, float]
-"""theta, omega, w0²: what the chart depends on."""
+Start = tuple[object, ...]
+"""theta, omega, the model and the cast: what the chart depends on."""
 
 
 class AccuracyView(View):
@@ -35,7 +35,7 @@ class AccuracyView(View):
         if self.source is None or not self.display or not self.query(AccuracyPane):
             return
         pane, scene = self.query_one(AccuracyPane), self.source.scene
-        start = (scene.theta, scene.omega, scene.w0_squared)
+        start = (scene.theta, scene.omega, scene.equations, scene.cast)
         if start != self._start:
             self._start = start
             self.workers.cancel_node(self)

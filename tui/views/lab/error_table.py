@@ -4,12 +4,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from engine.methods import METHODS, Method
+from engine.methods import Cast, Method
 from engine.models.model import State
 from engine.run.lockstep import Reading, Sample
 from engine.run.verdict import Judgement
 from tui.drawing.cells import Row
-from tui.drawing.palette import FRAME, TEXT, WARN, mark
+from tui.drawing.palette import FRAME, TEXT, WARN, mark, series
 from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.views.view import Pane
@@ -56,7 +56,7 @@ COLUMNS = (
     Column(3, ("th.err", 7), ("theta error", 11), lambda line, width: scientific(theta_error(line), width, 1, "-")),
     Column(1, ("f", 1), ("evals/step", 10), lambda line, width: str(line.method.force_evaluations).rjust(width)),
 )
-NAME = max(len(mark(index) + method.label) for index, method in enumerate(METHODS)) + 1
+NAME = 20  # columns of the longest name and its mark
 MOST_GAP = 3
 
 
@@ -81,29 +81,38 @@ def chosen(columns: Sequence[Column], room: int) -> list[tuple[str, int, Callabl
 
 
 def table(
-    sample: Sample, judgements: Sequence[Judgement], exact: State, h: Sequence[float], shown: Shown, width: int
+    cast: Cast,
+    sample: Sample,
+    judgements: Sequence[Judgement],
+    exact: State,
+    h: Sequence[float],
+    shown: Shown,
+    width: int,
 ) -> list[Row]:
     """The table's rows, its head first; each method's own step size where they differ."""
     columns = chosen(COLUMNS[len(set(h)) == 1 :], width - NAME)
     spare = width - NAME - sum(size + 1 for _, size, _ in columns)
     gap = " " * (1 + min(spare // max(len(columns), 1), MOST_GAP))
     rows: list[Row] = [[("method".ljust(NAME), FRAME), *((gap + head.rjust(size), FRAME) for head, size, _ in columns)]]
-    for index in shown.indices:
-        line = TableLine(METHODS[index], sample.readings[index], judgements[index], exact, h[index])
+    for place in shown.places(cast):
+        method = cast[place]
+        line = TableLine(method, sample.readings[place], judgements[place], exact, h[place])
         failed = line.reading.diverged_at is not None
         cells = "".join(gap + cell(line, size) for _, size, cell in columns)
-        rows.append([(f"{mark(index)} {METHODS[index].label}".ljust(NAME), index), (cells, WARN if failed else TEXT)])
+        name = f"{mark(place, method)} {method.label}"[:NAME].ljust(NAME)
+        rows.append([(name, series(method)), (cells, WARN if failed else TEXT)])
     return rows
 
 
 class ErrorTable(Pane):
     """As many columns as fit."""
 
-    def watch_shown(self) -> None:
-        """Hidden methods leave no gap."""
-        self.styles.height = 1 + len(self.shown.indices)
-        super().watch_shown()
+    _lines = 0
 
     def paint(self, source: Source, sample: Sample) -> None:
-        exact = source.exact.at(sample.t)
-        self.show(table(sample, source.judgements, exact, source.stepping.own, self.shown, self.room.width))
+        exact, h = source.exact.at(sample.t), source.stepping.own
+        rows = table(self.cast, sample, source.judgements, exact, h, self.shown, self.room.width)
+        if len(rows) != self._lines:
+            self._lines = len(rows)
+            self.styles.height = len(rows)  # hidden methods leave no gap
+        self.show(rows)

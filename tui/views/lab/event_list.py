@@ -1,7 +1,7 @@
 """EventList: what was done and what happened, the newest last."""
 
 from engine.run.lockstep import Sample
-from tui.drawing.palette import FRAME, TEXT
+from tui.drawing.palette import FRAME, TEXT, series
 from tui.playback.source import Source
 from tui.views.view import Pane
 from tui.words.events import EventLine, event_lines
@@ -9,7 +9,7 @@ from tui.words.events import EventLine, event_lines
 
 def owner_of(line: EventLine) -> int:
     """A milestone has its method's colour."""
-    return line.method if line.method is not None else TEXT if line.kind == "mark" else FRAME
+    return series(line.method) if line.method is not None else TEXT if line.kind == "mark" else FRAME
 
 
 class EventList(Pane):

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from rich.style import Style
 from textual.renderables.digits import Digits
 
-from engine.methods import METHODS
-from engine.run.lockstep import Sample
+from engine.methods import Cast, Method
+from engine.run.lockstep import Reading, Sample
 from engine.run.verdict import Judgement
 from tui.drawing.cells import Row
-from tui.drawing.palette import mark
+from tui.drawing.palette import mark, series
 from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.views.view import Pane
@@ -27,30 +27,33 @@ def large(text: str) -> list[str]:
     return [" ".join(segment.text.ljust(3) for segment in row) for row in zip(*digits, strict=True)]
 
 
-def large_rows(sample: Sample, judgements: Sequence[Judgement], shown: Shown, width: int) -> list[Row]:
+def large_rows(cast: Cast, sample: Sample, judgements: Sequence[Judgement], shown: Shown, width: int) -> list[Row]:
     """A name, a verdict and a large energy error for each method, in as few lines as fit."""
-    lines = math.ceil(len(shown.indices) / max(width // CELL, 1))
-    across = math.ceil(len(shown.indices) / max(lines, 1))
+    places = shown.places(cast)
+    lines = math.ceil(len(places) / max(width // CELL, 1))
+    across = math.ceil(len(places) / max(lines, 1))
     rows: list[Row] = []
-    for first in range(0, len(shown.indices), max(across, 1)):
+    for first in range(0, len(places), max(across, 1)):
         room = width // across
-        cells = [_cell(index, sample, judgements[index], room) for index in shown.indices[first : first + across]]
+        cells = [
+            _cell(place, cast[place], sample.readings[place], judgements[place], room)
+            for place in places[first : first + across]
+        ]
         rows += [[cell[y] for cell in cells] for y in range(HEIGHT + 1)]
     return rows
 
 
-def _cell(index: int, sample: Sample, judgement: Judgement, width: int) -> list[tuple[str, int]]:
-    reading = sample.readings[index]
+def _cell(place: int, method: Method, reading: Reading, judgement: Judgement, width: int) -> list[tuple[str, int]]:
     verdict = "failed" if reading.diverged_at is not None else judgement.verdict
-    title = f" {mark(index)} {METHODS[index].label}: {verdict}"
+    title = f" {mark(place, method)} {method.label}: {verdict}"
     lines = [title, *(f" {row}" for row in large(scientific(reading.energy_error, DIGITS)))]
-    return [(line.ljust(width), index) for line in lines]
+    return [(line.ljust(width), series(method)) for line in lines]
 
 
 class LargeTable(Pane):
     """Takes as many rows as it needs."""
 
     def paint(self, source: Source, sample: Sample) -> None:
-        rows = large_rows(sample, source.judgements, self.shown, self.room.width)
+        rows = large_rows(self.cast, sample, source.judgements, self.shown, self.room.width)
         self.styles.height = len(rows)
         self.show(rows)

@@ -8,9 +8,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import cos, sin
 
-from engine.methods import METHODS
 from engine.run.lockstep import Sample
-from tui.drawing.palette import EXACT, FRAME, faint, mark
+from tui.drawing.palette import EXACT, FRAME, faint, mark, series
 from tui.drawing.sketch import Sketch
 from tui.playback.source import Source
 from tui.views.view import Pane
@@ -59,29 +58,37 @@ def pendulum_sketch(columns: int, rows: int, bobs: Sequence[Bob]) -> Sketch:
 
 
 class Pendulum(Pane):
-    """The pendulums of some methods; if there are several, with their letters."""
+    """The pendulum of one method, or those of all that are shown, with their letters."""
 
-    def __init__(self, indices: Sequence[int], id: str | None = None, classes: str | None = None) -> None:
-        super().__init__(id, classes)
-        self._indices = indices
-        alone = len(indices) == 1
-        self.border_title = f"{mark(indices[0])} {METHODS[indices[0]].label}" if alone else "Pendulums"
+    def __init__(self, place: int | None = None, id: str | None = None) -> None:
+        """`place` in the cast; None: all."""
+        super().__init__(id)
+        self._place = place
+        self._title = ""
+
+    def _retitle(self) -> None:
+        place = self._place
+        title = "Pendulums" if place is None else f"{mark(place, self.cast[place])} {self.cast[place].label}"
+        if title != self._title:  # setting it paints all of the pane
+            self.border_title = self._title = title
 
     def paint(self, source: Source, sample: Sample) -> None:
+        if self._place is not None and self._place >= len(self.cast):
+            return
+        self._retitle()
         length = TRAIL if self.shown.trails else 0
         bobs = []
         if self.shown.exact:
             bobs.append(Bob(source.exact.at(sample.t).theta, EXACT, ghost=True))
-        for index in self._indices:
-            if self.shown.shown[index]:
-                reading = sample.readings[index]
-                bobs.append(
-                    Bob(
-                        reading.theta,
-                        index,
-                        trail=source.history.thetas(index, length),
-                        letter=METHODS[index].letter if len(self._indices) > 1 else "",
-                        diverged=reading.diverged_at is not None,
-                    )
+        for place in self.places if self._place is None else [self._place]:
+            reading, method = sample.readings[place], self.cast[place]
+            bobs.append(
+                Bob(
+                    reading.theta,
+                    series(method),
+                    trail=source.history.thetas(place, length),
+                    letter=method.letter if self._place is None else "",
+                    diverged=reading.diverged_at is not None,
                 )
+            )
         self.show_sketch(pendulum_sketch(*self.room, bobs))

@@ -5,7 +5,7 @@ from functools import partial
 
 from textual.content import Content
 
-from engine.methods import METHODS
+from engine.methods import Cast
 from engine.models.model import ExactMotion
 from engine.run.lockstep import Sample
 from tui.playback.shown import Quantity, Shown
@@ -21,7 +21,11 @@ NAMES: dict[Quantity, tuple[str, str]] = {
 }
 """Of the quantity itself, and of its magnitude for a logarithmic chart."""
 
-NO_MODIFIED_ENERGY = f"shadow energy is known for {' and '.join(m.letter for m in METHODS if m.modified_energy)} only"
+
+def modified_energy_of(cast: Cast) -> str:
+    """For which methods the chart of the modified energy has a line, unless it has one for all."""
+    known = [method.letter for method in cast if method.modified_energy]
+    return "" if len(known) == len(cast) else f"shadow energy is known for {' and '.join(known) or 'none'} only"
 
 
 def title(shown: Shown, exact: ExactMotion) -> str:
@@ -61,7 +65,7 @@ class TimeChart(Pane):
         if text != self._title:  # setting it paints all of the pane
             self._title = text
             self.border_title = Content(text)  # as markup, units in brackets would be gone
-            self.border_subtitle = NO_MODIFIED_ENERGY if self.shown.quantity == "shadow_error" else ""
+            self.border_subtitle = modified_energy_of(self.cast) if self.shown.quantity == "shadow_error" else ""
 
     async def _build_on_demand(self) -> None:
         from tui.drawing.chart import time_chart  # brings NumPy, which can wait for the first paint
@@ -73,7 +77,7 @@ class TimeChart(Pane):
                 continue
             self._building = True
             shown, (width, height) = self.shown, self.room
-            build = partial(time_chart, log=shown.log, seconds=shown.seconds, shown=shown.indices)
+            build = partial(time_chart, log=shown.log, seconds=shown.seconds, shown=self.places)
             window = self.source.history.window(shown.seconds)
-            self.show_picture(await asyncio.to_thread(build, window, shown.quantity, width, height))
+            self.show_picture(await asyncio.to_thread(build, window, self.cast, shown.quantity, width, height))
             self._building = False

@@ -2,13 +2,12 @@
 
 import math
 
-from engine.methods import METHODS
 from engine.models.model import ExactMotion, State
 from engine.phase_space.area import Neighbourhood, Neighbours
 from engine.scenes import Scene
 from tui.drawing.axes import in_pi
 from tui.drawing.canvas import Canvas, Picture, Span
-from tui.drawing.palette import FRAME, TEXT, mark
+from tui.drawing.palette import FRAME, TEXT, mark, series
 from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.words.motion import energy_share, motion_text, regime
@@ -27,15 +26,16 @@ def fact_rows(
         [(_ring_text(source, neighbours)[:width], TEXT)],
         [(" " * _NAME + "".join(head.rjust(_CELL) for head in heads), FRAME)],
     ]
-    for index in shown.indices:
+    for index in shown.places(source.scene.cast):
+        method = source.scene.cast[index]
         reading = source.sample.readings[index]
         cells = (
             *(("-", "-") if ring is None else area_text(ring.area_ratios[index])),
             scientific(reading.theta - exact.theta, _CELL, 3),
             scientific(reading.energy_error, _CELL, 3),
         )
-        name = f" {mark(index)} {METHODS[index].label}".ljust(_NAME)
-        rows.append([(name, index), ("".join(cell.rjust(_CELL) for cell in cells[:fit]), TEXT)])
+        name = f" {mark(index, method)} {method.label}".ljust(_NAME)
+        rows.append([(name, series(method)), ("".join(cell.rjust(_CELL) for cell in cells[:fit]), TEXT)])
     return rows
 
 

@@ -6,12 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.methods import METHODS
 from engine.models.model import State
 from engine.phase_space.area import Neighbourhood
 from engine.run.lockstep import Sample
 from tui.drawing.canvas import Canvas, Picture
-from tui.drawing.palette import EXACT, TEXT, faint
+from tui.drawing.palette import EXACT, TEXT, faint, series
 from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.views.phase.portrait import Portrait
@@ -50,10 +49,11 @@ def method_points(source: Source, sample: Sample, shown: Shown, ring: Neighbourh
     """The points that are to be shown of a sample, the exact one first."""
     length = TRAIL if shown.trails else 0
     points = [PhasePoint(*source.exact.at(sample.t), EXACT, "x")] if shown.exact else []
-    for index in shown.indices:
+    for index in shown.places(source.scene.cast):
+        method = source.scene.cast[index]
         reading, trail = sample.readings[index], source.history.trail(index, length)
         around = None if ring is None else ring.rings[index]
-        points.append(PhasePoint(reading.theta, reading.omega, index, METHODS[index].letter, trail, around))
+        points.append(PhasePoint(reading.theta, reading.omega, series(method), method.letter, trail, around))
     return points
 
 

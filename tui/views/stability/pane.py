@@ -6,7 +6,6 @@ from typing import ClassVar
 from textual import events
 from textual.binding import BindingType
 
-from engine.methods import METHODS
 from engine.run.lockstep import Sample
 from engine.stability.grid import Grid
 from engine.stability.outcomes import Cells
@@ -45,10 +44,15 @@ class StabilityPane(Chooser[tuple[int, int]]):
 
     def __init__(self, grid: Grid) -> None:
         super().__init__()
+        self.pointer: tuple[int, int] | None = None
+        self.begin(grid)
+
+    def begin(self, grid: Grid) -> None:
+        """Start over, with a map of which nothing is known."""
         self.grid = grid
         self.cells: Cells = grid.unknown()
         self.complete = False  # nothing will be added to them
-        self.pointer: tuple[int, int] | None = None
+        self.cursor = None
         self._panels: dict[int, list[Segments]] = {}  # by method, as they were last drawn
         self._drawn_for: object = None
         self._is_filled = False  # there are cells that the panels do not show yet
@@ -81,14 +85,14 @@ class StabilityPane(Chooser[tuple[int, int]]):
     def paint(self, source: Source, sample: Sample) -> None:
         """Show at once what the user has changed, and a few rows at a time what has been computed."""
         columns, rows = self.panel_size()
-        if columns <= 2 * MARGIN:
+        if columns <= 2 * MARGIN or self.grid.methods != self.cast:
             return
         drawn_for = source.scene, source.stepping.own, self.shown, self.app.theme, self.room, self.cursor, self.index
         changed = drawn_for != self._drawn_for
         if changed or (self._is_filled and self._is_shown):
             self._drawn_for, self._is_filled, self._is_shown = drawn_for, False, False
             cursor = (self.grid.z[self.cursor[0]], self.grid.theta[self.cursor[1]]) if self.cursor else None
-            for index in self.shown.indices:
+            for index in self.places:
                 self._panels[index] = panel(
                     self.grid,
                     self.cells,
@@ -108,8 +112,8 @@ class StabilityPane(Chooser[tuple[int, int]]):
             return
         columns = self.panel_size()[0]
         panels = [
-            [title(index, columns, self._colours, self._note(index)), *self._panels[index][1:]]
-            for index in self.shown.indices
+            [title(index, self.cast[index], columns, self._colours, self._note(index)), *self._panels[index][1:]]
+            for index in self.places
         ]
         said = [*textwrap.wrap(self._verdict(), max(self.room.width - 1, 1)), "", ""][:WORDS]
         words: list[Row] = [[(f" {line}", NOBODY)] for line in said]
@@ -122,7 +126,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
 
     def panel_size(self) -> tuple[int, int]:
         """Columns of a panel, and rows of its map: two panels in a row, below them words and the legend."""
-        lines = -(-len(self.shown.indices) // 2) or 1
+        lines = -(-len(self.places) // 2) or 1
         return (self.room.width - 2) // 2, max(1, (self.room.height - WORDS - len(self._legend())) // lines - 2)
 
     def _legend(self) -> list[Segments]:
@@ -136,13 +140,13 @@ class StabilityPane(Chooser[tuple[int, int]]):
         return note(self.cells[z, index, theta])
 
     def _verdict(self) -> str:
-        shown = self.shown.indices
+        shown = self.places
         index = self.index if self.index in shown else shown[0] if shown else 0
         if self.source is None or not shown or (aim := self.aim(index)) is None:
             return ""
         z, theta = aim
         cells, w0 = self.cells[:, index, theta], self.source.scene.w0
-        return verdict(METHODS[index], self.grid.theta[theta], self.grid.z, cells, z, w0)
+        return verdict(self.cast[index], self.grid.theta[theta], self.grid.z, cells, z, w0)
 
     def action_move(self, right: int, up: int) -> None:
         z, theta = self.aim(self.index) or (0, 0)
@@ -175,10 +179,10 @@ class StabilityPane(Chooser[tuple[int, int]]):
         x, y = event.get_content_offset_capture(self)
         across, column = divmod(x, columns + 2)
         down, row = divmod(y, rows + 2)
-        number, shown = 2 * down + across, self.shown.indices
+        number, shown = 2 * down + across, self.places
         if not (across in (0, 1) and MARGIN <= column < columns and 1 <= row <= rows and 0 <= number < len(shown)):
             return None
-        self.index = shown[number]
+        self.describe(shown[number])
         return place_at(self.grid, row - 1, column - MARGIN, rows, columns - MARGIN)
 
 

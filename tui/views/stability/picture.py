@@ -13,16 +13,17 @@ from numpy.typing import NDArray
 from rich.segment import Segment
 from rich.style import Style
 
-from engine.methods import METHODS, Method
+from engine.methods import Method
+from engine.methods.verlet import VELOCITY_VERLET
 from engine.stability.chaos import GREENE_Z
 from engine.stability.grid import Grid
 from engine.stability.outcomes import HELD, UNKNOWN, Cells
-from tui.drawing.palette import Palette, mark, mixed
+from tui.drawing.palette import Palette, mark, mixed, series
 
 EXACT_ENOUGH = 1e-12  # energy errors below it are drawn alike
 LIMIT, THRESHOLD, CATCHING, HERE = "│", "┊", "•", "X"
 _WITHOUT_COLOUR = {LIMIT: "|", THRESHOLD: ":", CATCHING: "o", HERE: "X"}
-EXAMPLE = [method.key for method in METHODS].index("velocity_verlet")  # whose colours the legend shows
+EXAMPLE = VELOCITY_VERLET  # whose colours the legend shows
 MARGIN = 4  # for the labels of the amplitudes
 SHADES = 16  # from lost at once to lost at the end, and again from there to held exactly
 
@@ -82,7 +83,7 @@ def panel(
     values = scores(cells[:, index], grid.steps)
     character_set = worst(values, width, rows if palette is None else 2 * rows).tolist()
     levels = range(-SHADES, 2 * SHADES + 1)
-    shades = [] if palette is None else [colour(level / SHADES, index, palette) for level in levels]
+    shades = [] if palette is None else [colour(level / SHADES, method, palette) for level in levels]
 
     def drawn(row: int, column: int) -> tuple[str, str, str, bool]:
         """The character, its colour, the colour behind it, and whether they change places."""
@@ -92,7 +93,7 @@ def panel(
         upper, lower = (shades[round((character_set[2 * row + half][column] + 1) * SHADES)] for half in (0, 1))
         return sign or "▀", palette.text if sign else upper, lower, sign == HERE
 
-    lines = [title(index, columns, palette)]
+    lines = [title(index, method, columns, palette)]
     for row in range(rows):
         degrees = math.degrees(_theta_of_row(grid, row, rows))
         line = [Segment(f"{degrees:3.0f} " if row in (0, rows // 2, rows - 1) else " " * MARGIN)]
@@ -106,9 +107,9 @@ def panel(
     return [*lines, [Segment(" " * MARGIN + axis)]]
 
 
-def title(index: int, columns: int, palette: Palette | None, note: str = "") -> Segments:
+def title(place: int, method: Method, columns: int, palette: Palette | None, note: str = "") -> Segments:
     """The line above a panel, with a note behind the method's name or, where there is no room, instead of it."""
-    texts = [f"{'':{MARGIN}}{mark(index)} {name}{note}" for name in (f"{METHODS[index].label}  ", "")]
+    texts = [f"{'':{MARGIN}}{mark(place, method)} {name}{note}" for name in (f"{method.label}  ", "")]
     text = next((text for text in texts if len(text) <= columns), texts[-1])
     return [Segment(text[:columns].ljust(columns), Style(bold=True) if palette else None)]
 
@@ -138,13 +139,13 @@ def worst(values: Scores, columns: int, rows: int) -> Scores:
     return np.minimum.reduceat(across, starts(values.shape[1], rows), axis=1).T[::-1]
 
 
-def colour(score: float, index: int, palette: Palette) -> str:
+def colour(score: float, method: Method, palette: Palette) -> str:
     """Stable: the method's colour, brighter for a smaller energy error.  Lost: the warning colour, darker if sooner."""
     if score < 0:
         return palette.background
     if score < 1:
         return mixed(palette.warn, palette.background, 0.9 - 0.5 * score)
-    return mixed(palette.colour(index), palette.background, 0.6 * (2 - score))
+    return mixed(palette.colour(series(method)), palette.background, 0.6 * (2 - score))
 
 
 def character(score: float, steps: int) -> str:

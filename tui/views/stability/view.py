@@ -6,6 +6,7 @@ import numpy as np
 from textual.app import ComposeResult
 from textual.content import Content
 
+from engine.methods import Cast
 from engine.stability.grid import Grid, pieces
 from tui.views.background import computed
 from tui.views.stability.pane import KEYS, StabilityPane
@@ -15,19 +16,31 @@ PASSES = (300, 10_000)
 """Steps of each swing: a first map at once, then the final one."""
 
 
+def _grid(cast: Cast) -> Grid:
+    return Grid((np.arange(48) + 0.5) * math.pi / 48, (np.arange(80) + 0.5) * 3 / 80, PASSES[-1], cast)
+
+
 class StabilityView(View):
     """The map depends on z and amplitude only: another scene moves the mark and the axis, not the map."""
 
     KEYS = KEYS
 
     def compose(self) -> ComposeResult:
-        grid = Grid((np.arange(48) + 0.5) * math.pi / 48, (np.arange(80) + 0.5) * 3 / 80, PASSES[-1])
-        yield StabilityPane(grid).data_bind(View.source, View.shown, sample=View.sample_10hz)
+        yield StabilityPane(_grid(())).data_bind(View.source, View.shown, sample=View.sample_10hz)
 
     def on_mount(self) -> None:
-        pane = self.query_one(StabilityPane)
-        pane.focus()
-        self.run_worker(self._fill(pane), exit_on_error=False)
+        self.query_one(StabilityPane).focus()
+        self.watch_sample_10hz()
+
+    def watch_sample_10hz(self) -> None:
+        """Compute the map for the methods on screen."""
+        if self.source is None or not self.display or not self.query(StabilityPane):
+            return
+        pane, cast = self.query_one(StabilityPane), self.source.scene.cast
+        if cast != pane.grid.methods:
+            self.workers.cancel_node(self)
+            pane.begin(_grid(cast))
+            self.run_worker(self._fill(pane), exclusive=True, exit_on_error=False)
 
     async def _fill(self, pane: StabilityPane) -> None:
         """Compute the map, and show how far it is in tenths: with a new title, Textual sends all of the pane again."""

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods import METHODS
+from engine.methods import METHODS, Method
 from engine.stability.grid import Grid
 from engine.stability.outcomes import CELL, GROWS, HOLDS, LOSES, UNKNOWN
 from tui.drawing.palette import PALETTES
@@ -131,11 +131,11 @@ def test_a_held_swings_character_is_its_energy_error(error: float, sign: str):
 
 
 @pytest.mark.parametrize("theme", PALETTES)
-@pytest.mark.parametrize("index", range(len(METHODS)))
-def test_colours_of_held_lost_and_unknown_swings_differ_for_every_method(theme: str, index: int):
+@pytest.mark.parametrize("method", METHODS, ids=lambda method: method.key)
+def test_colours_of_held_lost_and_unknown_swings_differ_for_every_method(theme: str, method: Method):
     palette = PALETTES[theme]
-    held = {colour(score, index, palette) for score in (1.0, 1.5, 1.9)}
-    lost = {colour(score, index, palette) for score in (0.0, 0.5, 0.9)}
+    held = {colour(score, method, palette) for score in (1.0, 1.5, 1.9)}
+    lost = {colour(score, method, palette) for score in (0.0, 0.5, 0.9)}
     assert len(lost) == (3 if palette.warn.startswith("#") else 1)  # sixteen colours have no shades of how soon
     assert not held & lost
-    assert colour(-1, index, palette) not in held | lost
+    assert colour(-1, method, palette) not in held | lost

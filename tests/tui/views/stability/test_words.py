@@ -3,12 +3,12 @@ import math
 import numpy as np
 import pytest
 
-from engine.methods import METHODS
+from engine.methods import USUAL_CAST
 from engine.stability.outcomes import CAUGHT, CELL, GROWS, HOLDS, LOSES, OVER_THE_TOP, UNKNOWN, outcomes
 from tui.views.stability.words import note, verdict
 from tui.words.findings import limit_warning
 
-EULER, _, VERLET, RK4 = METHODS
+EULER, _, VERLET, RK4 = USUAL_CAST
 ZS = np.array([0.5, 1.0, 1.5, 2.0, 2.5])
 
 
@@ -71,9 +71,9 @@ def test_a_symplectic_swing_wobbles_at_a_resonance_or_is_chaotic(theta: float, z
     ],
 )
 def test_a_step_beyond_a_linear_limit_is_warned_of(z: float, warning: str):
-    assert limit_warning([z] * 4) == warning
+    assert limit_warning(USUAL_CAST, [z] * 4) == warning
 
 
 def test_at_equal_cost_only_the_dearest_method_may_be_beyond_its_limit():
-    assert limit_warning([0.7, 0.7, 0.7, 2.8]) == ""
-    assert limit_warning([0.725, 0.725, 0.725, 2.9]) == "unstable: r (z > 2.83)"
+    assert limit_warning(USUAL_CAST, [0.7, 0.7, 0.7, 2.8]) == ""
+    assert limit_warning(USUAL_CAST, [0.725, 0.725, 0.725, 2.9]) == "unstable: r (z > 2.83)"
