@@ -41,6 +41,7 @@ class Layout:
     events: int
     seals: int | None  # none in format 1
     methods: dict[int, tuple[str, str]]  # channel -> model, method
+    channels: dict[tuple[str, str], int]  # the other way round
     version: int
     functions: dict[str, str]  # fingerprints of those it was made with
 
@@ -54,9 +55,8 @@ class Layout:
 
     def channels_of(self, scene: Scene) -> list[int]:
         """The channels of a run's methods, in their order.  Raises RecordingError if one has none."""
-        channels = {keys: channel for channel, keys in self.methods.items()}
         try:
-            return [channels[scene.model, method.key] for method in scene.cast]
+            return [self.channels[scene.model, method.key] for method in scene.cast]
         except KeyError as error:
             raise RecordingError("a run has other methods than the file") from error
 
@@ -113,10 +113,12 @@ def layout_of(channels: Iterable[Channel]) -> Layout:
         raise RecordingError(
             f"it has format {version}, this pendu-tui reads formats up to {FORMAT_VERSION}; install a newer version"
         )
+    methods = {channel.id: keys for channel in channels if (keys := keys_of(channel.topic))}
     return Layout(
         events=by_topic[EVENTS].id,
         seals=by_topic[SEALS].id if int(version) > 1 and SEALS in by_topic else None,
-        methods={channel.id: keys for channel in channels if (keys := keys_of(channel.topic))},
+        methods=methods,
+        channels={keys: channel for channel, keys in methods.items()},
         version=int(version),
         functions={name: printable(facts[name]) for name in FUNCTIONS if name in facts},
     )

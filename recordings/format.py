@@ -8,9 +8,10 @@ Reading checks every field; anything that is not written here raises RecordingEr
 import json
 import math
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any, NoReturn, get_args
 
-from engine.methods import Cast
+from engine.methods import Cast, Method
 from engine.run.lockstep import Reading, Sample
 from engine.run.observer import Milestone
 from engine.run.verdict import Verdict
@@ -28,6 +29,7 @@ CLOCK_OFFSET = 1_000_000_000  # ns: the clock's zero in log_time; several reader
 CLOCK_LIMIT = 1e9  # s, 30 years
 MESSAGE_LIMIT = 1 << 16  # bytes; ours stay below 1 kB
 STEP_LIMIT = 1 << 53
+CAST_LIMIT = 32  # methods of a run
 KEY_LIMIT = 64  # characters of a method's or a model's key
 MODEL = "pendulum"  # where none is named, as in format 1
 MILESTONES = ("over the top", "failed", "verdict")
@@ -223,18 +225,23 @@ def _scene(fields: dict[str, Any]) -> Scene:
 
 def _cast(fields: dict[str, Any]) -> Cast:
     keys = fields.get("methods")
-    if type(keys) is not list or not keys:
-        raise RecordingError("a start names no methods")
-    cast = tuple(method_named(_key(key)) for key in keys)
+    if type(keys) is not list or not 0 < len(keys) <= CAST_LIMIT:
+        raise RecordingError("a start names no methods, or unexpectedly many")
+    cast = tuple(_method(key) if type(key) is str else _method(_key(key)) for key in keys)
     if len(set(keys)) < len(keys):
         raise RecordingError("a start names a method twice")
     return cast
 
 
+@lru_cache(64)
+def _method(key: str) -> Method:
+    return method_named(_key(key))
+
+
 def _milestone(fields: dict[str, Any], step: int, t: float) -> Milestone:
     return Milestone(
         kind=_one_of(fields, "milestone", MILESTONES),
-        method=method_named(_key(fields.get("method"))),
+        method=_method(_key(fields.get("method"))),
         step=step,
         t=t,
         energy_error=_number(fields, "energy_error"),

@@ -98,7 +98,8 @@ class Recorder:
             model = event.scene.model
             self._topics = [topic(method.key, model) for method in event.scene.cast]
             for name in self._topics:
-                self._register(name, sample_schema(model))
+                if name not in self._channels:
+                    self._register(name, sample_schema(model))
         self._add([(EVENTS, data)], clock)
         self.events += 1
         self._stopped = event.kind == "stop"
@@ -188,16 +189,15 @@ class Recorder:
         self._register(SEALS, SEAL_SCHEMA)
 
     def _register(self, name: str, schema: dict[str, Any], facts: Mapping[str, str] = MappingProxyType({})) -> None:
-        """Make a channel, and its schema, unless they are there already."""
+        """Make a channel, and its schema unless it is there already."""
         title = schema["title"]
         if title not in self._schemas:
             data = json.dumps(schema, separators=(",", ":")).encode()
             self._schemas[title] = self._writer.register_schema(title, "jsonschema", data)
             self._digest.record(Schema(self._schemas[title], data, "jsonschema", title))
-        if name not in self._channels:
-            known, claims = self._schemas[title], dict(facts)
-            self._channels[name] = self._writer.register_channel(name, "json", known, claims)
-            self._digest.record(Channel(self._channels[name], name, "json", claims, known))
+        known, claims = self._schemas[title], dict(facts)
+        self._channels[name] = self._writer.register_channel(name, "json", known, claims)
+        self._digest.record(Channel(self._channels[name], name, "json", claims, known))
 
     def _add(self, messages: list[tuple[str, bytes]], clock: float) -> None:
         """Hand messages to the writer.  All are checked first, because a rejected one spoils its chunk."""

@@ -18,7 +18,7 @@ from engine.methods import Method
 from engine.run.lockstep import Sample
 from engine.run.observer import Milestone
 from engine.scenes import Scene
-from recordings.events import Entry, Event, EventKind, noticed, scene_named
+from recordings.events import Entry, Event, EventKind, method_named, noticed, scene_named
 from recordings.fields import SCENE_NUMBERS
 
 TEXT_LIMIT = 1 << 22  # characters of all the different texts together
@@ -70,7 +70,7 @@ class Events(_Rows[tuple[float, Event]]):
         self._extras = array("l")  # the number of a mark's text, of a start's scene, or of what a milestone is
         self._scenes = array("d")  # their numbers, one after the other
         self._names = array("l")  # the numbers of the texts of their names and watches
-        self._methods: dict[Method, int] = {}  # each once; a file has as many as it has channels, at most
+        self._methods: dict[str, int] = {}  # keys, each once; a file has as many as it has channels, at most
         self._models: dict[str, int] = {}  # likewise
         self._casts = bytearray()  # the numbers of their models and methods, one after the other
         self._cast_ends = array("L", [0])
@@ -94,11 +94,11 @@ class Events(_Rows[tuple[float, Event]]):
             self._scenes.extend(getattr(scene, name) for name in SCENE_NUMBERS)
             self._names.extend(map(self._number, (scene.name, scene.watch)))
             self._casts.append(self._models.setdefault(scene.model, len(self._models)))
-            self._casts.extend(self._methods.setdefault(method, len(self._methods)) for method in scene.cast)
+            self._casts.extend(self._methods.setdefault(method.key, len(self._methods)) for method in scene.cast)
             self._cast_ends.append(len(self._casts))
         elif (milestone := event.milestone) is not None:
             value = milestone.energy_error
-            extra = self._sorts.setdefault((milestone.kind, milestone.method, milestone.verdict), len(self._sorts))
+            extra = self._sorts.setdefault((milestone.kind, milestone.method.key, milestone.verdict), len(self._sorts))
         elif event.text is not None:
             extra = self._number(event.text)
         self.clocks.append(clock)
@@ -161,7 +161,7 @@ class Events(_Rows[tuple[float, Event]]):
 
     @cached_property
     def _known(self) -> tuple[list[Method], list[str], list[tuple[Any, ...]]]:
-        return list(self._methods), list(self._models), list(self._sorts)
+        return [method_named(key) for key in self._methods], list(self._models), list(self._sorts)
 
     @cached_property
     def _known_texts(self) -> list[str]:
@@ -179,7 +179,7 @@ class Events(_Rows[tuple[float, Event]]):
         clock, run, step, t = self.head(at)
         if kind == "noticed":
             what, method, verdict = self._known[2][extra]
-            return clock, noticed(run, Milestone(what, method, step, t, self._values[at], verdict))
+            return clock, noticed(run, Milestone(what, method_named(method), step, t, self._values[at], verdict))
         event = Event(
             kind,
             run,
