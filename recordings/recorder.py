@@ -66,7 +66,7 @@ class Recorder:
         self._wall, self._facts = wall, facts
         self._flush_by_time = wall is not None and facts is None  # real time passes while it records
         self._last: Sample | None = None
-        self._channels: dict[str, int] = {}
+        self._channels: dict[str, Channel] = {}
         self._schemas: dict[str, int] = {}
         self._topics: list[str] = []  # of the run's methods
         self._digest = Digest()
@@ -95,11 +95,7 @@ class Recorder:
         if event.scene is not None:
             if not self._channels:
                 self._begin(event.scene)
-            model = event.scene.model
-            self._topics = [topic(method.key, model) for method in event.scene.cast]
-            for name in self._topics:
-                if name not in self._channels:
-                    self._register(name, sample_schema(model))
+            self._declare(event.scene)
         self._add([(EVENTS, data)], clock)
         self.events += 1
         self._stopped = event.kind == "stop"
@@ -188,6 +184,16 @@ class Recorder:
         self._register(EVENTS, EVENT_SCHEMA, facts)
         self._register(SEALS, SEAL_SCHEMA)
 
+    def _declare(self, scene: Scene) -> None:
+        """Declare the channels of a run in its first chunk, so that it can be read even where those before are lost."""
+        self._topics = [topic(method.key, scene.model) for method in scene.cast]
+        for name in (EVENTS, SEALS, *self._topics):
+            if name not in self._channels:
+                self._register(name, sample_schema(scene.model))
+            elif self.events:
+                self._writer._Writer__chunk_builder.add_channel(self._channels[name])  # type: ignore[attr-defined]
+                self._digest.record(self._channels[name])
+
     def _register(self, name: str, schema: dict[str, Any], facts: Mapping[str, str] = MappingProxyType({})) -> None:
         """Make a channel, and its schema unless it is there already."""
         title = schema["title"]
@@ -196,8 +202,9 @@ class Recorder:
             self._schemas[title] = self._writer.register_schema(title, "jsonschema", data)
             self._digest.record(Schema(self._schemas[title], data, "jsonschema", title))
         known, claims = self._schemas[title], dict(facts)
-        self._channels[name] = self._writer.register_channel(name, "json", known, claims)
-        self._digest.record(Channel(self._channels[name], name, "json", claims, known))
+        number = self._writer.register_channel(name, "json", known, claims)
+        self._channels[name] = Channel(number, name, "json", claims, known)
+        self._digest.record(self._channels[name])
 
     def _add(self, messages: list[tuple[str, bytes]], clock: float) -> None:
         """Hand messages to the writer.  All are checked first, because a rejected one spoils its chunk."""
@@ -215,7 +222,7 @@ class Recorder:
                 self._unflushed += len(data)
 
     def _write(self, name: str, data: bytes) -> None:
-        channel, sequence = self._channels[name], self.samples % (1 << 32)
+        channel, sequence = self._channels[name].id, self.samples % (1 << 32)
         self._writer.add_message(channel, self._log_time, data, self._publish_time, sequence)
         self._digest.message(channel, sequence, self._log_time, self._publish_time, data)
 

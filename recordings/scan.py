@@ -164,8 +164,10 @@ class Scan:
                 continue
             if chunk:
                 if self.layout is None:
-                    if self.damaged and not self.channels:
-                        raise self.nothing("read")
+                    if self.damaged and not self.channels:  # they were declared in what is lost
+                        yield Gap(offset)
+                        offset += RECORD.size + len(content)
+                        continue
                     self.layout = layout_of(self.channels.values())
                 found = Counter(message.channel for message in chunk.messages)
                 self.messages += found

@@ -48,6 +48,8 @@ def rewritten(path, change=kept, metadata=dict):
             for each in breakup_chunk(item):
                 if isinstance(each, Schema):
                     writer.register_schema(each.name, each.encoding, each.data)
+                elif isinstance(each, Channel) and each.id in topics:
+                    writer._Writer__chunk_builder.add_channel(each)  # declared again
                 elif isinstance(each, Channel):
                     writer.register_channel(each.topic, each.message_encoding, each.schema_id, each.metadata)
                     topics[each.id] = each.topic
