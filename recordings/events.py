@@ -5,7 +5,7 @@ recorded: nothing is computed of them, so they cannot be verified.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
@@ -78,11 +78,12 @@ def scene_named(name: str, **fields: Any) -> Scene:
     return (Scene if fields["model"] in MODELS else _UnknownScene)(name, **fields)
 
 
-def unknown_in(scene: Scene) -> str | None:
-    """What of a scene this version does not know; None if it knows all of it."""
+def unknown_in(scene: Scene, only: Collection[str] | None = None) -> str | None:
+    """What of a scene this version does not know; None if it knows all of it, or all of the methods of these keys."""
     if scene.model not in MODELS:
         return f"the model {scene.model}"
-    return next((f"the method {method.key}" for method in scene.cast if method.phases is _no_phases), None)
+    unknown = (method.key for method in scene.cast if method.phases is _no_phases)
+    return next((f"the method {key}" for key in unknown if only is None or key in only), None)
 
 
 def _no_phases(force: Force, phase: Phase, h: float) -> Iterator[Phase]:

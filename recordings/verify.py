@@ -10,7 +10,7 @@ a thousandth of a radian, as happens in chaos, that method is no longer compared
 import math
 import struct
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -25,6 +25,9 @@ from recordings.headless import MOST_STEPS, StepBudget
 from recordings.library import open_file
 from recordings.scan import Gap, Scan, ShowProgress
 from recordings.summary import other_functions
+
+Only = Collection[str] | None
+"""Keys of the methods that are compared; None: all."""
 
 TOLERANCE = 1e-11
 LOST = 1e-3  # rad, or rad/s
@@ -76,8 +79,10 @@ class Verification:
         return "sin" not in self.other_functions
 
 
-def verify(path: Path, progress: ShowProgress | None = None, max_steps: int = MOST_STEPS) -> Verification:
-    """Verify a recording up to where it is first damaged.
+def verify(
+    path: Path, progress: ShowProgress | None = None, max_steps: int = MOST_STEPS, only: Only = None
+) -> Verification:
+    """Verify a recording up to where it is first damaged; `only`: compare the methods of these keys.
 
     Raises RecordingError if it is not a recording, is inconsistent, has no samples, or claims more than `max_steps`
     steps: the number is in the file's hands, and the time that they take is not.
@@ -99,9 +104,9 @@ def verify(path: Path, progress: ShowProgress | None = None, max_steps: int = MO
                 if isinstance(value, Event) and value.scene is not None:
                     if rerun is not None and value.run <= rerun.run:
                         raise RecordingError("its runs are not in order")
-                    if unknown := unknown_in(value.scene):
+                    if unknown := unknown_in(value.scene, only):
                         raise RecordingError(f"it cannot be verified: this version does not know {unknown}")
-                    rerun = Rerun(value, exact=not others, budget=budget)
+                    rerun = Rerun(value, exact=not others, budget=budget, only=only)
                     runs += 1
                 if rerun is None or value.run != rerun.run:
                     raise RecordingError(f"data of run {value.run} lies outside that run")
@@ -135,16 +140,18 @@ class Rerun:
     `max_difference`: the largest so far of any number, within tolerance or not.
     """
 
-    def __init__(self, start: Event, exact: bool = True, budget: StepBudget | None = None) -> None:
+    def __init__(self, start: Event, exact: bool = True, budget: StepBudget | None = None, only: Only = None) -> None:
         if start.scene is None or start.step != 0:
             raise RecordingError(f"run {start.run} does not begin at its start")
         scene, self.run = start.scene, start.run
         off = replace(scene, theta=scene.theta * (1 - TOLERANCE), omega=scene.omega * (1 - TOLERANCE))
         self._locksteps = [Lockstep(each, self.run, tiered) for each in ([scene] if exact else [scene, off])]
-        self._exact, self._budget = exact, budget
+        self._exact, self._budget, self._only = exact, budget, only
         self._changes: list[Event] = []  # that no sample has come after yet
         self._allowed: dict[tuple[str, str], float] = defaultdict(float)
         self._cast, self._methods = scene.cast, [method.key for method in scene.cast]
+        if only is not None and not set(only) & set(self._methods):
+            raise RecordingError(f"run {self.run} has none of the methods {', '.join(only)}")
         self._sampled = -1
         self._reached = 0  # the step of the last change
         self.max_difference = 0.0
@@ -204,6 +211,8 @@ class Rerun:
             self.max_difference = max(self.max_difference, distance(recorded.t, computed.t))
             yield Difference(self.run, recorded.step, recorded.t, "", "t", recorded.t, computed.t)
         for method, was, now in zip(self._methods, recorded.readings, computed.readings, strict=True):
+            if self._only is not None and method not in self._only:
+                continue
             lost = max(self._allowed[method, "theta"], self._allowed[method, "omega"]) > LOST
             for field in VALUES:
                 a, b = getattr(was, field), getattr(now, field)

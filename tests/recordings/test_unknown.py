@@ -47,6 +47,11 @@ def test_it_cannot_be_verified_and_says_why(path, scene):
     assert unknown in report.json["files"][0]["reason"]
 
 
+def test_the_methods_that_are_known_can_be_verified_alone(path, scene):
+    outcome = pendu("verify", path, "--methods", "velocity_verlet")
+    assert outcome.code == (0 if scene is METHOD else 3)
+
+
 def test_it_opens_and_holds_what_was_recorded(path, scene):
     with Recording.open(path, check=True) as recording:
         assert recording.complete

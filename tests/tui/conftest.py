@@ -1,7 +1,7 @@
 import difflib
 import html
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -13,6 +13,16 @@ SNAPSHOTS = Path(__file__).parent / "snapshots"
 CELL = 12.2  # units of a picture, across
 
 Hold = Callable[[str, str], None]
+
+
+@pytest.fixture(autouse=True)
+def faults(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[BaseException]]:
+    """What failed in the lab without ending it: a test that means it to takes it out, any other fails."""
+    found: list[BaseException] = []
+    monkeypatch.setattr("tui.terminal.fault_log.append", lambda path, error: found.append(error))
+    yield found
+    if found:
+        raise found[0]
 
 
 @pytest.fixture

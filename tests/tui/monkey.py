@@ -1,20 +1,38 @@
 """A monkey at the keyboard and the mouse: random, and the same for the same seed."""
 
+import asyncio
+import itertools
 import random
-from collections.abc import Iterator
-from contextlib import suppress
+import shutil
+import string
+from collections.abc import AsyncIterator, Callable, Iterable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
+from pathlib import Path
+from unittest.mock import patch
 
 from textual._xterm_parser import XTermParser
-from textual.events import Key
+from textual.events import Key, Resize
+from textual.geometry import Size
 
+from engine.accuracy.study import ladder
+from engine.scenes import DEFAULT_SCENE
+from recordings.library import new_path
+from recordings.live_recorder import LiveRecorder
+from recordings.recording import Recording
 from tests.tui.harness import Theatre
 from tests.tui.pty_lab import PtyLab
+from tui.playback.live import Live
+from tui.playback.marks import Marks
+from tui.playback.replay import Replay
 from tui.screens.keys import COMMON, LIVE, REPLAY
+from tui.screens.live import LiveScreen
+from tui.screens.replay import ReplayScreen
 from tui.views.accuracy import pane as accuracy
 from tui.views.phase import pane as phase
 from tui.views.stability import pane as stability
 
-SIZE = COLUMNS, ROWS = 120, 40  # the key line is last, where a click on Quit would end it all
+SIZE = 120, 40
+LARGEST = 300, 90
 SENT = {  # what a terminal sends for keys that are no characters
     "left": "\x1b[D",
     "right": "\x1b[C",
@@ -44,15 +62,20 @@ BATCH, EPISODE = 10, 60  # presses at once; and until what lies over the lab is 
 PAUSE = 0.03  # s after a batch
 ESCDELAY = "20"  # ms; Textual's name for how long it waits after an escape, which may begin something longer
 ESC, PALETTE = "\x1b", "\x10"
+PRESENT = "--present"
+OVERLAYS = ("?", "i", "d", "E", PALETTE)
+GARBAGE = "aeq0.-~\t\r\n\x00\x07\x1b[]{}()\\/%<>|\xa0\u2067é漢🙂\u0301\udc80"  # of which pasted text is made
 ESCAPE = 0.15  # s after one; Textual looks every 0.1 s whether there is more to come
+LOOK = 0.004  # s that seem to pass between two looks at the clock, so that a frame's budget ends
 STRIDES = (0.0, 1 / 30, 1 / 30, 0.2)  # s of the clock from one press to the next, on a stage
 
 
-def press(chance: random.Random) -> str:
-    """A key or something with the mouse, as a terminal sends it."""
+def press(chance: random.Random, size: tuple[int, int] = SIZE) -> str:
+    """A key or something with the mouse, as a terminal of this size sends it."""
+    columns, rows = size
 
-    def mouse(button: int, end: str) -> str:
-        return f"\x1b[<{button};{chance.randint(1, COLUMNS)};{chance.randint(1, ROWS - 1)}{end}"
+    def mouse(button: int, end: str) -> str:  # the key line is last, where a click on Quit would end it all
+        return f"\x1b[<{button};{chance.randint(1, columns)};{chance.randint(1, max(rows - 1, 1))}{end}"
 
     match chance.choices(("key", "calm", "view", "text", "click", "drag", "wheel"), (60, 8, 5, 5, 15, 5, 2))[0]:
         case "key":
@@ -88,6 +111,32 @@ def presses(number: int, seed: int) -> Iterator[str]:
         yield press(chance)
 
 
+def wild_presses(number: int, seed: int) -> Iterator[str | tuple[int, int]]:
+    """The same with dialogs, the palette and what it offers, pasted garbage, large numbers, and other sizes."""
+    chance, size = random.Random(seed), SIZE
+    for done in range(number):
+        if done % EPISODE == 0:
+            yield from (ESC, ESC)
+        match chance.choices(("press", "over", "type", "enter", "paste", "size", "present"), (70, 6, 8, 4, 3, 8, 1))[0]:
+            case "press":
+                yield press(chance, size)
+            case "over":
+                yield chance.choice(OVERLAYS)
+            case "type":
+                yield chance.choice(string.ascii_lowercase + string.digits + "\x7f. ")
+            case "enter":
+                yield "\r"
+            case "paste":
+                yield f"\x1b[200~{''.join(chance.choices(GARBAGE, k=chance.choice((1, 9, 999))))}\x1b[201~"
+            case "size":
+                narrow = chance.random() < 0.3
+                largest = (12, 12) if narrow else LARGEST
+                size = SIZE if chance.random() < 0.3 else (chance.randint(1, largest[0]), chance.randint(1, largest[1]))
+                yield size
+            case _:
+                yield PRESENT
+
+
 def play(pendu: PtyLab, number: int, seed: int) -> int:
     """Let the monkey play on the real program, then quit; returns the exit code."""
     for done, typed in enumerate(presses(number, seed)):
@@ -105,21 +154,52 @@ def play(pendu: PtyLab, number: int, seed: int) -> int:
     raise TimeoutError("it does not quit")
 
 
-async def play_on_stage(theatre: Theatre, number: int, seed: int) -> None:
-    """Let the monkey play where nothing depends on how fast the machine is."""
+async def play_on_stage(theatre: Theatre, what: Iterable[str | tuple[int, int]], seed: int, batch: int = 1) -> None:
+    """Let the monkey play where nothing depends on how fast the machine is, if the lab may rest after each press."""
     app, parser, chance = theatre.app, XTermParser(), random.Random(-seed)
     driver = app._driver
     assert driver is not None
-    for typed in presses(number, seed):
-        for message in [Key("escape", None)] if typed == ESC else parser.feed(typed):
-            driver.process_message(message)
+    for number, did in enumerate(what):
+        if isinstance(did, tuple):
+            driver._size = did
+            app.post_message(Resize(Size(*did), Size(*did)))
+        elif did == PRESENT:
+            app.call_later(app.action_present)
+        else:
+            for message in [Key("escape", None)] if did == ESC else parser.feed(did):
+                driver.process_message(message)
+        if number % batch:
+            continue
         await still(theatre)
         if stride := chance.choice(STRIDES):
             theatre.now += stride
             theatre.stage.frame()
             await still(theatre)
-        if app._exception is not None:  # leaving the stage raises it
+        if not app.is_running:
             return
+
+
+async def computed_here(function: Callable[..., Iterator[object]], *arguments: object) -> AsyncIterator[object]:
+    """What `computed` yields, without another process: when it comes does not depend on the machine."""
+    for item in function(*arguments):
+        yield item
+        await asyncio.sleep(0)
+
+
+@contextmanager
+def small_studies(library: Path) -> Iterator[None]:
+    """F4 and F5 compute little, and here; recordings and pictures go to the library."""
+    few = ladder(5.0, 0.2, 0.05, 2)
+    with ExitStack() as stack:
+        stack.enter_context(patch.dict("os.environ", PENDU_RECORDINGS=str(library)))
+        for name, value in (
+            ("accuracy.view.computed", computed_here),
+            ("stability.view.computed", computed_here),
+            ("accuracy.view.usual", lambda scene: (5.0, few)),
+            ("stability.view.PASSES", (2, 6)),
+        ):
+            stack.enter_context(patch(f"tui.views.{name}", value))
+        yield
 
 
 async def still(theatre: Theatre) -> None:
@@ -127,3 +207,32 @@ async def still(theatre: Theatre) -> None:
     await theatre.pilot.pause(0)
     while not all(worker.is_finished for worker in theatre.app.workers if worker.group != "chart"):
         await theatre.pilot.pause(0.001)
+
+
+def wild_stage(library: Path) -> Callable[[Callable[[], float]], LiveScreen]:
+    """Makes a lab that is recorded in a library."""
+
+    def make(clock: Callable[[], float]) -> LiveScreen:
+        return _recorded(Live(DEFAULT_SCENE, clock=_looks()), library, clock)
+
+    return make
+
+
+def wild_replay(library: Path, clock: Callable[[], float]) -> Callable[[Path], ReplayScreen]:
+    """Makes the screen for a recording that the palette offers; going live from it is recorded, too."""
+
+    def make(path: Path) -> ReplayScreen:
+        copied = Path(shutil.copy(path, library.parent))  # marks are kept beside it
+        replay = Replay(Recording.open(copied), Marks(copied), clock=_looks())
+        return ReplayScreen(replay, lambda live: _recorded(live, library, clock), clock)
+
+    return make
+
+
+def _recorded(live: Live, library: Path, clock: Callable[[], float]) -> LiveScreen:
+    live.record(LiveRecorder(new_path(library)))
+    return LiveScreen(live, clock)
+
+
+def _looks() -> Callable[[], float]:
+    return itertools.count(0.0, LOOK).__next__

@@ -30,6 +30,7 @@ class PtyLab:
         size: tuple[int, int] = (120, 40),
         rate: float | None = None,
         program: Sequence[str] = PENDU,
+        folder: Path = ROOT,
         **environment: str,
     ) -> None:
         self.rate = rate
@@ -38,7 +39,7 @@ class PtyLab:
         self.pid, self.terminal = pty.fork()
         if self.pid == 0:
             fcntl.ioctl(0, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
-            os.chdir(ROOT)
+            os.chdir(folder)
             terminal = {"TERM": "xterm-256color", "COLORTERM": "truecolor", "PYTHONUTF8": "1"}
             ours = {name: value for name, value in os.environ.items() if name not in ("COLUMNS", "LINES")}
             os.execvpe(program[0], [*program, *arguments], {**ours, **terminal, **environment})

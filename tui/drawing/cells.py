@@ -1,5 +1,6 @@
 """CellWidget: a widget made of rows of characters with owners.  Only rows that changed are sent to the terminal."""
 
+import textwrap
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from itertools import zip_longest
@@ -14,7 +15,8 @@ from textual.geometry import Region, Size, Spacing
 from textual.strip import Strip
 from textual.widget import Widget
 
-from tui.drawing.palette import NOBODY, palette
+from tui.drawing.faults import Fault, Guarded, sentence
+from tui.drawing.palette import NOBODY, WARN, palette
 from tui.drawing.sketch import Sketch
 
 if TYPE_CHECKING:
@@ -56,7 +58,7 @@ class _Painted:
         self.lines[self.gutter.top + y] = Strip([*self.left, *row, *self.right], self.crop.width)
 
 
-class CellWidget(Widget):
+class CellWidget(Guarded, Widget):
     """Shows rows, a picture or a sketch; what is missing is blank, what is too long is cut off."""
 
     ALLOW_SELECT = False
@@ -80,6 +82,13 @@ class CellWidget(Widget):
 
     def draw(self) -> None:
         """Bring what is shown up to date."""
+
+    def fail(self, error: BaseException) -> None:
+        """Say so in place of what cannot be shown; what is drawn next replaces it."""
+        width, height = self.room
+        self._painted = _Painted()
+        self.show([[(line, WARN)] for line in textwrap.wrap(sentence(error), max(width, 1))[:height]])
+        self.app.post_message(Fault(error, shown=self.drawable))
 
     def on_resize(self) -> None:
         self._fit()
@@ -154,6 +163,13 @@ class CellWidget(Widget):
 
         They are kept, and only rows that changed are made anew: Textual would go through the sheet for each paint.
         """
+        try:
+            return self._lines(crop)
+        except Exception as error:
+            self.call_later(self.fail, error)  # nothing is to change while it is painted
+            return [Strip.blank(crop.width, self.rich_style)] * crop.height
+
+    def _lines(self, crop: Region) -> list[Strip]:
         painted = self._painted
         if crop != painted.crop:
             lines, gutter = super().render_lines(crop), self.gutter

@@ -28,6 +28,8 @@ class Live(Source):
     """The lab: it runs, it is changed, it is recorded once a recorder is there."""
 
     kind = "LIVE"
+    _run: RewindableRun
+    _so_far: RunSoFar
 
     def __init__(
         self,
@@ -119,6 +121,20 @@ class Live(Source):
         self._enter(RewindableRun(scene, self._runs, patient))
         if stepping.equal_cost:
             self.set_stepping(stepping)
+
+    def way_back(self) -> Callable[[], None]:
+        """What brings the run back to where it is now, after other runs: as one more, which shares its past."""
+        run, so_far = self._run, self._so_far
+
+        def bring_back() -> None:
+            self._run, self._so_far = run, so_far
+            self._runs += 1
+            run.branch(self._runs)
+            self.playhead = self.playhead.moved_to(run.x)
+            self._note_start()
+            self._take_sample()
+
+        return bring_back
 
     def _enter(self, run: RewindableRun, so_far: RunSoFar | None = None) -> None:
         self._run, self._so_far = run, copy(so_far) if so_far else RunSoFar(run.scene, run.changes)

@@ -28,10 +28,10 @@ class Shown:
         return [place for place, method in enumerate(cast) if method.key not in self.hidden]
 
     def toggled(self, place: int, cast: Cast) -> "Shown":
-        """With one method of the cast shown or hidden; the place after the last one is the exact motion's."""
-        if place == len(cast):
+        """With one method of the cast shown or hidden; places after the last one are the exact motion's."""
+        if place >= len(cast):
             return replace(self, exact=not self.exact)
-        return replace(self, hidden=self.hidden ^ {cast[place].key}) if place < len(cast) else self
+        return replace(self, hidden=self.hidden ^ {cast[place].key})
 
     def next_quantity(self) -> "Shown":
         return replace(self, quantity=QUANTITIES[(QUANTITIES.index(self.quantity) + 1) % len(QUANTITIES)])

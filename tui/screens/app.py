@@ -4,25 +4,33 @@ import asyncio
 import os
 import signal
 import time
+import traceback
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import ClassVar
 
-from textual.app import App, SystemCommand
+from rich.markup import escape
+from textual._context import active_message_pump
+from textual.app import App, ScreenStackError, SystemCommand
 from textual.binding import Binding, BindingType
 from textual.driver import Driver
 from textual.filter import LineFilter
+from textual.notifications import SeverityLevel
 from textual.reactive import var
 from textual.screen import Screen
 from textual.theme import BUILTIN_THEMES, Theme
+from textual.widget import Widget
 
+from recordings import library
 from tui.cli.errors import Exit
 from tui.drawing.cells import PRESENT
+from tui.drawing.faults import LOG, Fault, Guarded, sentence
 from tui.drawing.palette import PALETTES, Palette
 from tui.screens.base import SourceScreen
-from tui.screens.modal import Commands
+from tui.screens.modal import Commands, Modal
+from tui.terminal import fault_log
 from tui.terminal.character_sets import CharacterSetFilter
 from tui.terminal.check import is_gone
 from tui.terminal.options import CHARACTER_SETS, SMALLEST, USUAL, CharacterSet, TerminalOptions
@@ -33,7 +41,7 @@ HEIGHTS = [(0, "-flat"), (SMALLEST[1], "-low"), (24, "-middle"), (36, "-high")]
 """The classes of a terminal's size in the style sheet, each from so many columns or rows on."""
 
 
-class PenduApp(App[Exit | OSError]):
+class PenduApp(Guarded, App[Exit | OSError]):
     """Shows the lab or a replay.  Returns the exit code, or an error that ended it; None if the user quit."""
 
     HORIZONTAL_BREAKPOINTS = WIDTHS
@@ -67,6 +75,8 @@ class PenduApp(App[Exit | OSError]):
         self.set_class(terminal.present, PRESENT)
         self.source_screens = [screen]
         self.throughput = Throughput()
+        self._on_stage = False  # before that, what fails ends the program
+        self._faults: set[object] = set()
 
     def get_driver_class(self) -> type[Driver]:
         """Ours in place of Textual's for Linux and its kin, unless another was asked for."""
@@ -94,6 +104,7 @@ class PenduApp(App[Exit | OSError]):
         return self.source_screen
 
     def on_source_screen_began(self, message: SourceScreen.Began) -> None:
+        self._on_stage = True
         if message.screen is not self.source_screen:
             self.source_screens.append(message.screen)
 
@@ -105,24 +116,70 @@ class PenduApp(App[Exit | OSError]):
             for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
                 loop.add_signal_handler(number, self.interrupt)
 
+    def _handle_exception(self, error: Exception) -> None:
+        """Go on: Textual would end the program.  It has stopped the widget, and a dialog that is deaf is closed."""
+        if not self._on_stage:
+            super()._handle_exception(error)
+            return
+        self.fail(error)
+        widget = active_message_pump.get(None)
+        if isinstance(widget, Widget) and not isinstance(widget, Guarded) and isinstance(widget.screen, Modal):
+            self.call_later(widget.screen.dismiss)
+
+    def on_fault(self, fault: Fault) -> None:
+        self.fail(fault.error, fault.shown)
+
+    def fail(self, error: BaseException, shown: bool = False) -> None:
+        """Write to the log what failed, and say so unless it is shown; both once for each place in the program."""
+        if isinstance(error, ScreenStackError):
+            return  # a key that came when the screens were gone
+        where = [(frame.f_code, line) for frame, line in traceback.walk_tb(error.__traceback__)]
+        if (type(error), *where[-1:]) in self._faults:
+            return
+        self._faults.add((type(error), *where[-1:]))
+        fault_log.append(library.folder() / LOG, error)
+        if not shown:
+            self.notify(sentence(error), severity="warning", timeout=15, markup=False)
+
+    def notify(
+        self,
+        message: str,
+        *,
+        title: str = "",
+        severity: SeverityLevel = "information",
+        timeout: float | None = None,
+        markup: bool = True,
+    ) -> None:
+        """Show a notice in place of an equal one: a key held down is to cover no more than a line."""
+        for notice in [*self._notifications]:
+            if notice.message == message:
+                self._unnotify(notice, refresh=False)
+        super().notify(message, title=title, severity=severity, timeout=timeout, markup=markup)
+
     def action_interrupt(self) -> None:
         self.interrupt()
 
+    def finish(self) -> None:
+        """Finish the recording."""
+        self.source_screen.source.close()
+
     def interrupt(self) -> None:
         """Finish the recording and exit, even if the terminal is gone."""
-        self.source_screen.source.close()
+        self.finish()
         if is_gone():
             os._exit(Exit.INTERRUPTED)
         self.exit(Exit.INTERRUPTED)
 
     def get_system_commands(self, screen: Screen[object]) -> Iterable[SystemCommand]:
-        from recordings.library import GOLDEN, listing
         from tui.screens.extras import palette_entries
 
-        recordings = [item.path for item in (*listing(), *listing(GOLDEN))] if self.open_replay else []
+        folders = (None, library.GOLDEN) if self.open_replay else ()
+        recordings = [item.path for folder in folders for item in library.listing(folder)]
         here = self.source_screen
         for entry in palette_entries(here.KEYS, here.source.kind == "LIVE", recordings):
-            yield SystemCommand(entry.title, entry.about, partial(here.call_next, here.run_action, entry.action))
+            yield SystemCommand(
+                escape(entry.title), escape(entry.about), partial(here.call_next, here.run_action, entry.action)
+            )
 
     def action_extra(self, name: str, *arguments: object) -> None:
         from tui.screens.extras import EXTRAS

@@ -2,6 +2,7 @@
 
 import gc
 import time
+from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,6 +16,7 @@ from textual.screen import Screen
 from textual.widget import Widget
 
 from engine.run.lockstep import Sample
+from tui.drawing.faults import Guarded
 from tui.playback.frame_rate import FrameTimer
 from tui.playback.playhead import doubled
 from tui.playback.shown import Shown
@@ -32,6 +34,7 @@ READ, BUILT = 10, 5
 """How often a second numbers that people read are updated, and charts, which take time to build."""
 
 STALL = 1.0  # s; a longer gap between frames does not count as time: Ctrl+Z, a computer asleep, a dead line
+UNDOS = 30  # changes; each may hold a run
 ALREADY = "Already marked"
 
 
@@ -46,12 +49,7 @@ class Host(Protocol):
         """Whether frames are still on their way, so that the terminal should get no more of them now."""
 
 
-def _first_source(screen: Any) -> Source:
-    source: Source = screen.first_source
-    return source
-
-
-class SourceScreen(Screen[None]):
+class SourceScreen(Guarded, Screen[None]):
     """Shows a source, following a clock that is passed in."""
 
     BLANK = True  # everything on it is covered
@@ -66,7 +64,7 @@ class SourceScreen(Screen[None]):
     AUTO_FOCUS = ""  # keys belong to the screen until a pane is clicked
     KEYS: ClassVar[tuple[Key, ...]] = COMMON
 
-    source: var[Source] = var(Initialize(_first_source))
+    source: var[Source] = var(Initialize(lambda screen: cast(Source, cast(Any, screen).first_source)))
     sample: var[Sample | None] = var(None)
     sample_10hz: var[Sample | None] = var(None, always_update=True)
     sample_5hz: var[Sample | None] = var(None)
@@ -90,7 +88,7 @@ class SourceScreen(Screen[None]):
         self._timer = FrameTimer(lambda seconds: self.set_interval(seconds, self.frame))
         self._missed = 0.0  # s of the clock while the program was stopped
         self._late = False  # the next frame shows everything
-        self._undo: list[Callable[[], object]] = []
+        self._undo: deque[Callable[[], object]] = deque(maxlen=UNDOS)
         for reactive in (SourceScreen.sample, SourceScreen.sample_10hz, SourceScreen.sample_5hz):
             self.set_reactive(reactive, source.sample)
 

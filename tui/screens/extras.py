@@ -16,9 +16,9 @@ from tui.terminal.screenshot import save_screenshot
 from tui.views import VIEWS
 from tui.views.keys import Key
 from tui.words.cards import method_card
-from tui.words.command_line import command
+from tui.words.command_line import command, reproduces
 from tui.words.describe import description
-from tui.words.events import event_lines
+from tui.words.events import event_lines, numbered
 
 
 def show_description(screen: SourceScreen) -> None:
@@ -30,7 +30,7 @@ def show_description(screen: SourceScreen) -> None:
 
 def show_events(screen: SourceScreen) -> None:
     """List all events."""
-    screen.app.push_screen(TextScreen("Events", "\n".join(map(str, event_lines(screen.source)))))
+    screen.app.push_screen(TextScreen("Events", "\n".join(numbered(event_lines(screen.source)))))
 
 
 def show_card(screen: SourceScreen, key: str) -> None:
@@ -52,7 +52,8 @@ def copy_command(screen: SourceScreen) -> None:
     """Copy the command that shows this again, and show it: not every terminal has a clipboard."""
     text = command(screen.source)
     screen.app.copy_to_clipboard(text)
-    screen.notify(f"Copied: {text}", markup=False, timeout=15)
+    missing = "" if reproduces(screen.source) else " (the scene only: the change of h is not recorded)"
+    screen.notify(f"Copied: {text}{missing}", markup=False, timeout=15)
 
 
 def replay(screen: SourceScreen, path: str) -> None:

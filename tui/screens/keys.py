@@ -10,13 +10,18 @@ from tui.views.keys import Key
 
 _TIME, _SHOW, _VIEWS, _PROGRAM, _RUN, _PLAY = "time", "display", "views", "program", "run", "playback"
 
+_EXACT = MOST_METHODS + 1
+
 COMMON = (
     Key("space", "space", "pause/resume", "pause", _TIME, "Pause"),
     Key("less_than_sign", "<", "half speed", "speed(-1)", _TIME),
     Key("greater_than_sign", ">", "double speed", "speed(1)", _TIME, "Faster"),
     Key("0", "0", "normal speed (1×)", "real_time", _TIME),
-    Key("1", "1, 2, ...", "show or hide a method; after the last, the exact one", "show(0)", _SHOW),
-    *(Key(str(number), "", "", f"show({number - 1})", _SHOW) for number in range(2, MOST_METHODS + 2)),
+    *(
+        Key(str(number), str(number), f"show or hide method {number}", f"show({number - 1})", _SHOW)
+        for number in range(1, MOST_METHODS + 1)
+    ),
+    Key(str(_EXACT), str(_EXACT), "show or hide the exact motion", f"show({MOST_METHODS})", _SHOW),
     Key("t", "t", "toggle trails", "trails", _SHOW),
     Key("y", "y", "chart: log/linear", "log", _SHOW, "Log"),
     Key("e", "e", "chart: next quantity, such as the angle error", "quantity", _SHOW, "Quantity"),

@@ -26,10 +26,10 @@ class LiveScreen(SourceScreen):
         return self.source
 
     def start(self, scene: Scene) -> None:
-        """Start a new run; `u` starts one of the scene before."""
-        before = self.live.scene
+        """Start a new run; `u` goes back to the one before, where it was."""
+        back = self.live.way_back()
         if self._do(lambda: self.live.start(scene)):
-            self.remember(lambda: self._do(lambda: self.live.start(before)))
+            self.remember(lambda: self._do(back))
 
     def set_stepping(self, stepping: Stepping) -> None:
         """Change the step size from here on."""
@@ -54,7 +54,9 @@ class LiveScreen(SourceScreen):
         self.set_stepping(choice.stepping)
 
     def action_restart(self) -> None:
+        back = self.live.way_back()
         self.live.restart()
+        self.remember(lambda: self._do(back))
         self.show_now()
 
     def action_larger_h(self, direction: int) -> None:

@@ -5,11 +5,14 @@ from contextlib import suppress
 from textual import work
 from textual.await_complete import AwaitComplete
 from textual.command import CommandList, CommandPalette
+from textual.css.query import NoMatches
 from textual.screen import ModalScreen, Screen, ScreenResultType
 from textual.widgets import Input
 
+from tui.drawing.faults import Guarded
 
-class _Once(Screen[ScreenResultType]):
+
+class _Once(Guarded, Screen[ScreenResultType]):
     _dismissed = False
 
     def on_mount(self) -> None:
@@ -39,6 +42,14 @@ class Commands(CommandPalette, _Once[None]):
     async def _gather_commands(self, search_value: str) -> None:
         if self.query(CommandList):  # else it was closed meanwhile
             await _gather(self, search_value)
+
+    def _watch__list_visible(self) -> None:
+        with suppress(NoMatches):  # it was closed while it searched
+            super()._watch__list_visible()
+
+    async def _watch__show_busy(self) -> None:
+        with suppress(NoMatches):
+            await super()._watch__show_busy()
 
     def _action_command_list(self, action: str) -> None:
         with suppress(KeyError):  # the list is not laid out yet

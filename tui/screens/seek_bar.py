@@ -41,18 +41,27 @@ def bar(position: float, length: float, ticks: Sequence[float], ends: Sequence[t
 
 
 def facts(replay: Replay, room: int) -> str:
-    """Position and length of the recording; loop, run, step and event as far as there is room."""
+    """Position and length of the recording; loop, run, step and event as far as there is room.
+
+    A number has the room of the largest, so that the bar beside it stays where it is.
+    """
     runs, ticks = replay.recording.runs, replay.ticks
-    text = f"recording {seconds(replay.playhead.position)} of {seconds(replay.length)}"
+    whole = seconds(replay.length)
+    widest = max(len(whole), len("59.99 s" if replay.length >= 60 else whole))
+    text = f"recording {seconds(replay.playhead.position):>{widest}} of {whole}"
     for part in (
         "loop" if replay.loop else "",
-        f"run {runs.place(replay.run.number) + 1}/{len(runs)}",
-        f"step {replay.sample.step}/{replay.run.steps}",
-        f"event {bisect_right(ticks, replay.playhead.position)}/{len(ticks)}",
+        f"run {_of(runs.place(replay.run.number) + 1, len(runs))}",
+        f"step {_of(replay.sample.step, replay.run.steps)}",
+        f"event {_of(bisect_right(ticks, replay.playhead.position), len(ticks))}",
     ):
         if part and len(text) + len(part) + 2 <= room:
             text += "  " + part
     return text
+
+
+def _of(number: int, last: int) -> str:
+    return f"{number:>{len(str(last))}}/{last}"
 
 
 class SeekBar(Pane):

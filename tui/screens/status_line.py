@@ -13,7 +13,7 @@ from tui.drawing.palette import FRAME, TEXT, WARN
 from tui.playback.source import Source
 from tui.views.view import Pane
 from tui.words.findings import limit_warning
-from tui.words.numbers import file_size, percent, seconds
+from tui.words.numbers import file_size, percent, seconds, two_digits
 
 BADGE = -10
 """The owner of LIVE and REPLAY."""
@@ -28,7 +28,11 @@ class _Part(NamedTuple):
 def speed_text(speed: float) -> str:
     """As "1×", "1/8×", "1024×", "-2×"."""
     sign, size = "-" if speed < 0 else "", abs(speed)
-    return f"{sign}{size:.4g}×" if size >= 1 else f"{sign}1/{1 / size:.4g}×"
+    return f"{sign}{_factor(size)}×" if size >= 1 else f"{sign}1/{_factor(1 / size)}×"
+
+
+def _factor(value: float) -> str:
+    return f"{value:.0f}" if 1e3 <= value < 1e9 else f"{value:.4g}"
 
 
 def coarse(value: float) -> str:
@@ -52,7 +56,9 @@ def status_row(source: Source, width: int, frames: int | None = None) -> Row:
         _Part(4 if named else 6, f"{math.degrees(scene.theta):.4g}° {scene.omega:.4g} rad/s"),
     ]
     if pace.share < 0.99:
-        parts.insert(2, _Part(10, f"only {percent(pace.share)} of {speed_text(playhead.speed)}", WARN))
+        reached = playhead.speed * pace.share
+        share = f"only {percent(pace.share)} of" if pace.share >= 0.095 else f"reached {two_digits(abs(reached))}× of"
+        parts.insert(2, _Part(10, f"{share} {speed_text(playhead.speed)}", WARN))
     if frames is not None:
         parts.append(_Part(9, f"{frames} frames/s", WARN))
     if recording is None:

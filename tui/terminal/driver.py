@@ -4,12 +4,14 @@ import asyncio
 import os
 import signal
 import time
+from collections.abc import Callable
 from typing import IO, Any
 
 from textual.drivers.linux_driver import LinuxDriver
 
 from tui.terminal.sgr import without_repeated_colours
 from tui.terminal.throughput import Throughput
+from tui.terminal.watchdog import watch
 
 
 def _size(text: str) -> int:
@@ -51,6 +53,16 @@ class LabDriver(LinuxDriver):
         self._loop.add_signal_handler(signal.SIGTSTP, self._stop_asked)
         self._loop.add_signal_handler(signal.SIGCONT, self._continue_heard)
         signal.signal(signal.SIGCONT, self._sigcont_application)  # sets a flag at once, and the loop hears of it, too
+
+        self._leave: Callable[[], None] = app.interrupt
+        watch(self._loop, self._leave, app.finish)
+
+    def run_input_thread(self) -> None:
+        """Read keys; a terminal that is at its end has none."""
+        try:
+            super().run_input_thread()
+        except OSError:
+            self._loop.call_soon_threadsafe(self._leave)
 
     def start_application_mode(self) -> None:
         """Take the terminal, with another thread that writes."""

@@ -3,11 +3,14 @@
 from typing import ClassVar, Generic, TypeVar
 
 from textual.containers import Container
+from textual.content import Content
 from textual.reactive import var
+from textual.worker import Worker, WorkerState
 
 from engine.methods import Cast
 from engine.run.lockstep import Sample
 from tui.drawing.cells import CellWidget
+from tui.drawing.faults import Guarded, sentence
 from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.views.keys import Key
@@ -17,7 +20,7 @@ Place = TypeVar("Place")
 DESCRIBED_FIRST = "velocity_verlet"
 
 
-class Box(Container):
+class Box(Guarded, Container):
     """A container that its children cover, so that Textual need not ask the sheet how it looks with every paint."""
 
     BLANK = True
@@ -54,6 +57,13 @@ class View(Box):
     def on_mount(self) -> None:
         self.watch_sample()
         self.call_after_refresh(self._begin)
+
+    def on_worker_state_changed(self, event: Worker.StateChanged) -> None:
+        """Say at the panes why nothing more is computed."""
+        if (error := event.worker.error) is not None and event.state is WorkerState.ERROR:
+            self.fail(error)
+            for pane in self.query(Pane):
+                pane.border_subtitle = Content(sentence(error))
 
     def _begin(self) -> None:
         self._moving += self._late
@@ -98,7 +108,10 @@ class Pane(CellWidget):
 
     def draw(self) -> None:
         if self.source is not None and self.sample is not None and self.drawable:
-            self.paint(self.source, self.sample)
+            try:
+                self.paint(self.source, self.sample)
+            except Exception as error:
+                self.fail(error)
 
     def paint(self, source: Source, sample: Sample) -> None:
         """Show the sample; called when there is one, and room to show it."""

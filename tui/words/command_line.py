@@ -15,11 +15,19 @@ def command(source: Source) -> str:
     """
     if isinstance(source, Replay):
         return _moment(str(source.recording.path), source.playhead.position)
-    changed = any(event.kind == "set_h" and event.run == source.sample.run for event in source.events)
-    if changed and isinstance(source, Live) and source.recorder is not None:
+    if _changed(source) and isinstance(source, Live) and source.recorder is not None:
         return _moment(str(source.recorder.path), source.recorder.seconds)
     speed = () if source.playhead.speed == 1 else ("--speed", f"{source.playhead.speed:g}")
     return shlex.join(["pendu-tui", "live", *scene_arguments(source.scene), *speed])
+
+
+def reproduces(source: Source) -> bool:
+    """Whether the command brings back all: not a change of the step size that no file holds."""
+    return isinstance(source, Replay) or not _changed(source) or source.recording_status is not None
+
+
+def _changed(source: Source) -> bool:
+    return any(event.kind == "set_h" and event.run == source.sample.run for event in source.events)
 
 
 def _moment(file: str, position: float) -> str:

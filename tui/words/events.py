@@ -1,7 +1,7 @@
 """The list of events: the user's inputs and the methods' milestones, with their simulated times."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Literal, NamedTuple
 
 from engine.methods import Method
@@ -39,6 +39,12 @@ def event_lines(source: Source) -> list[EventLine]:
     return sorted([*_inputs(source), *milestones], key=lambda line: line[:2])  # stable: inputs first
 
 
+def numbered(lines: Sequence[EventLine]) -> list[str]:
+    """The lines, where there are several runs each with the number of its own."""
+    several = len({line.run for line in lines}) > 1
+    return [f"{line.run:2} {line}" if several else str(line) for line in lines]
+
+
 def _inputs(source: Source) -> Iterator[EventLine]:
     marks = 0
     for event in [*source.events, *source.later_marks]:
@@ -65,5 +71,7 @@ def milestone_text(milestone: Milestone) -> str:
     """What a method does."""
     name = short_name(milestone.method)
     if milestone.kind == "over the top":
-        return f"{name} over the top, {two_digits(1 + milestone.energy_error)} E0"
+        error = milestone.energy_error
+        energy = f"{two_digits(1 + error)} E0" if abs(error) >= 0.1 else f"{100 * error:+.2g} %"
+        return f"{name} over the top, {energy}"
     return f"{name} {'failed' if milestone.kind == 'failed' else VERDICTS[milestone.verdict]}"

@@ -2,19 +2,20 @@
 
 import csv
 import io
+import math
 from itertools import islice
 
 import jsonschema
 import pytest
 
 from engine.accuracy.study import REASONS, Study, ladder
-from engine.methods import METHODS
+from engine.methods import USUAL_CAST
 from engine.scenes import SCENES
 from tests.tui.command_line import pendu
 from tui.views.accuracy.chart import accuracy_chart
 
 QUICK = ("accuracy", "--time", "5", "--h-values", "0.2:0.01:4")
-KEYS = [method.key for method in METHODS]
+KEYS = [method.key for method in USUAL_CAST]
 NUMBER = {"type": "number"}
 MAYBE = {"type": ["number", "null"]}
 
@@ -128,14 +129,14 @@ def test_as_json_it_holds_points_orders_and_recommendation():
     answer = pendu(*QUICK, "--target", "1e-4", "--json").json
     jsonschema.validate(answer, SCHEMA)
     assert [point["method"] for point in answer["points"]] == KEYS * 4
-    assert [order["claimed"] for order in answer["orders"]] == [method.order for method in METHODS]
+    assert [order["claimed"] for order in answer["orders"]] == [method.order for method in USUAL_CAST]
     advice = answer["recommendation"]
     assert advice == answer["durations"][-1]
     assert (advice["target"], advice["method"]) == (1e-4, "rk4")
     assert advice["reached"] <= 1e-4
     # the recommended run, run again
     study = Study(SCENES["drift"], 5.0)
-    again = study.run(METHODS[KEYS.index("rk4")], round(5.0 / advice["h"]), 10_000)
+    again = study.run(USUAL_CAST[KEYS.index("rk4")], round(5.0 / advice["h"]), 10_000)
     assert (again.h, again.theta_error) == (advice["h"], advice["reached"])
 
 
@@ -249,3 +250,28 @@ def test_ctrl_c_keeps_what_is_done(monkeypatch):
     jsonschema.validate(told.json, SCHEMA)
     assert told.json["interrupted"]
     assert (len(told.json["points"]), told.json["recommendation"]) == (5, None)
+
+
+def test_the_linear_oscillator_is_compared_with_its_cosine():
+    command = ("accuracy", "--scene", "linear", "--time", "6", "--h-values", "0.1:0.01:3")
+    answer = pendu(*command, "--target", "1e-4", "--json").json
+    assert answer["scene"]["model"] == "linear"
+    for order in answer["orders"]:
+        assert order["measured"] == pytest.approx(order["claimed"], abs=0.05)
+    assert answer["recommendation"]["method"] == "rk4"
+    (verlet,) = (p for p in answer["points"] if p["method"] == "velocity_verlet" and p["steps"] == 60)
+    w = 2 / verlet["h"] * math.asin(verlet["h"] / 2)  # Verlet's own frequency: from rest it is cos w t
+    apart = max(abs(math.cos(w * n * verlet["h"]) - math.cos(n * verlet["h"])) for n in range(61))
+    assert verlet["theta_error"] == pytest.approx(apart, rel=1e-10)
+    assert "theta'' = -w0² theta" in pendu(*command).out
+
+
+def test_seconds_of_ones_own_method_are_compared_without_numba(tmp_path):
+    (tmp_path / "mine.py").write_text(
+        "def mine(force, phase, h):\n    theta, omega = phase\n    while True:\n"
+        "        theta, omega = theta + h * omega, omega + h * force(theta)\n        yield theta, omega\n"
+    )
+    own = ("--method", f"{tmp_path}/mine.py:mine", "--methods", "mine,explicit_euler", "--cost", "seconds")
+    points = pendu("accuracy", "--time", "2", "--h-values", "0.01:0.001:2", *own, "--json").json["points"]
+    mine, euler = (sum(p["seconds"] for p in points if p["method"] == key) for key in ("mine", "explicit_euler"))
+    assert euler < mine < 8 * euler  # the guard's share; compiled, Euler would be some 25 times as fast

@@ -348,7 +348,7 @@ def test_settings_survive_the_way_to_the_lab():
 
     for folder in (None, Path("/somewhere/ours")):
         settings = Settings(SCENES["spin"].altered(theta=1 / 3), TerminalOptions(theme="light"), folder)
-        assert Settings.from_json(settings.as_json()) == settings
+        assert Settings.from_text(settings.as_text()) == settings
 
 
 def test_the_keys_that_are_kept_out_are_keys_of_the_lab():

@@ -7,7 +7,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from engine.methods import METHODS
+from engine.methods import USUAL_CAST
 from engine.scenes import SCENES, Scene
 from engine.stability.grid import Grid
 from engine.stability.outcomes import FATES, UNKNOWN
@@ -15,7 +15,7 @@ from engine.stability.study import StabilityStudy, amplitude
 from tests.tui.command_line import pendu
 
 SMALL = ("--steps", 300, "--z-values", "0.1:3:12", "--theta-values", "0.5,2")
-KEYS = [method.key for method in METHODS]
+KEYS = [method.key for method in USUAL_CAST]
 
 
 @pytest.fixture
@@ -43,7 +43,7 @@ def test_json_has_the_fields_of_the_design():
     answer = pendu("stability", *SMALL, "--json").json
     assert answer["schema"] == "pendu.stability/1"
     assert answer["map"] is None
-    for linear, method in zip(answer["linear"], METHODS, strict=True):
+    for linear, method in zip(answer["linear"], USUAL_CAST, strict=True):
         assert linear["method"] == method.key
         assert linear["limit_z"] == pytest.approx(linear["theory_z"], abs=1e-9)
     assert [(row["method"], row["theta"]) for row in answer["pendulum"]] == [(k, t) for k in KEYS for t in (0.5, 2.0)]
@@ -226,3 +226,23 @@ def test_the_map_has_a_line_for_each_of_its_rows_when_it_is_piped():
     assert max(map(len, lines)) <= 120
     titles = [line for line in lines if "1 e Explicit Euler" in line or "4 r RK4" in line]
     assert len(titles) == 2
+
+
+def test_of_the_linear_oscillator_there_are_the_lines_of_theory_and_a_sentence():
+    out = pendu("stability", "--scene", "linear").out
+    for method in USUAL_CAST:
+        (line,) = (line for line in out.splitlines() if line.startswith(method.label))
+        limit = f"{method.linear_limit:.9f}" if method.linear_limit else "none"
+        assert line.split()[-3:-1] == [limit, limit]
+    assert "the linear oscillator itself: these limits hold at every amplitude" in out
+    assert "Pendulum:" not in out
+    answer = pendu("stability", "--scene", "linear", "--json").json
+    assert (answer["pendulum"], answer["map"]) == ([], None)
+    assert [row["limit_z"] for row in answer["linear"]] == pytest.approx([m.linear_limit for m in USUAL_CAST], abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    "words", [("--map",), ("--csv",), ("-o", "map.npz"), ("--theta-values", "1"), ("--z-values", "1")], ids=" ".join
+)
+def test_what_is_only_about_a_pendulum_says_so_of_the_linear_oscillator(words):
+    assert pendu("stability", "--scene", "linear", *words).refused(2, f"{words[0]} is about a pendulum", "leave out")

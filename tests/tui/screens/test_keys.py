@@ -5,10 +5,13 @@ import math
 import pytest
 
 from engine.scenes import DEFAULT_SCENE, SCENES
-from tests.tui.harness import lab
+from recordings.live_recorder import LiveRecorder
+from recordings.verify import verify
+from tests.tui.harness import lab, on_stage
 from tui.playback.live import Live
 from tui.playback.shown import QUANTITIES, WINDOWS
 from tui.screens.keys import COMMON, LIVE
+from tui.screens.live import LiveScreen
 from tui.screens.start_form import StartForm
 from tui.screens.status_line import StatusLine
 from tui.screens.text import TextScreen, help_text
@@ -82,13 +85,41 @@ async def test_settings_are_undone_one_after_the_other():
         await theatre.press("u")  # there is nothing left to undo
 
 
+async def test_a_run_that_another_start_replaced_is_brought_back_where_it_was_and_verifies(tmp_path):
+    path = tmp_path / "run.mcap"
+
+    def make(clock):
+        live = Live(SCENES["drift"], clock=lambda: 0.0)
+        live.record(LiveRecorder(path))
+        return LiveScreen(live, clock)
+
+    async with on_stage(make, (120, 40)) as theatre:
+        await theatre.run(2)
+        await theatre.press("plus")
+        await theatre.run(2)
+        before, milestones = theatre.source.sample, theatre.source.milestones
+        for key in ("p", "r"):
+            await theatre.press(key)
+            await theatre.run(1)
+        await theatre.press("u", "u")
+        there = theatre.source.sample
+        assert (there.step, there.t, there.readings) == (before.step, before.t, before.readings)
+        assert (theatre.source.scene.name, theatre.source.stepping.h) == ("drift", 0.1)
+        assert theatre.source.milestones == milestones
+        await theatre.run(4)
+        assert theatre.source.sample.t == pytest.approx(before.t + 4, abs=0.11)
+        assert there.run == 5  # drift, the next, that again, that again, drift again
+        theatre.source.close()
+    assert verify(path).identical
+
+
 async def test_what_is_shown_digits_t_y_e_and_w():
     async with lab() as theatre:
         await theatre.run(2)
         panes = list(theatre.stage.query("#pendulums Pendulum").results(Pendulum))
         await theatre.press("1")
         await theatre.pilot.pause()
-        assert [pane.display for pane in panes] == [False, True, True, True]
+        assert [pane.display for pane in panes] == [False, True, True, True, False, False]
         assert "Explicit" not in theatre.text(ErrorTable)
         await theatre.press("1", "5")
         assert theatre.stage.shown.exact

@@ -1,8 +1,19 @@
 """What lies over the lab is closed once, and nothing else with it."""
 
-from textual.containers import VerticalScroll
+import asyncio
 
-from tests.tui.harness import lab
+import pytest
+from textual.command import CommandList
+from textual.containers import VerticalScroll
+from textual.system_commands import SystemCommandsProvider
+from textual.widgets import Input, OptionList
+from textual.widgets._toast import Toast
+
+from engine.scenes import DEFAULT_SCENE
+from tests.tui.harness import lab, on_stage
+from tui.playback.live import Live
+from tui.screens.live import LiveScreen
+from tui.screens.modal import Commands
 from tui.screens.text import TextScreen
 
 
@@ -44,3 +55,59 @@ async def test_with_reduced_motion_a_text_scrolls_at_once():
         await theatre.press("pagedown")
         assert places == [scroll.scroll_target_y]
         assert places[0] > 0
+
+
+async def test_a_palette_that_is_closed_while_it_searches_ends_quietly(monkeypatch):
+    search = SystemCommandsProvider.search
+
+    async def closed_meanwhile(self, query):
+        async for hit in search(self, query):
+            yield hit
+        await theatre.app.screen.query_one(CommandList).remove()  # closing takes its parts away one by one
+        searched.set()
+
+    async with lab() as theatre:
+        await theatre.press("ctrl+p")
+        assert isinstance(theatre.app.screen, Commands)
+        async with asyncio.timeout(20):
+            while not theatre.app.screen.query_one(OptionList).option_count:
+                await theatre.pilot.pause(0.01)
+        searched = asyncio.Event()
+        monkeypatch.setattr(SystemCommandsProvider, "search", closed_meanwhile)
+        theatre.app.screen.query_one(Input).value = "zzz"  # finds nothing: the list is to be hidden
+        async with asyncio.timeout(20):
+            await searched.wait()
+            while any(worker.node is theatre.app.screen and not worker.is_finished for worker in theatre.app.workers):
+                await theatre.pilot.pause(0.01)
+        await theatre.press("escape")
+        assert theatre.app.screen is theatre.stage
+
+
+async def test_the_palette_shows_names_as_they_are(tmp_path, monkeypatch):
+    folder = tmp_path / "a["
+    folder.mkdir()
+    (folder / "b]x.mcap").write_bytes(b"")  # with its folder as an end of something in markup
+    monkeypatch.setenv("PENDU_RECORDINGS", str(folder))
+    async with on_stage(lambda clock: LiveScreen(Live(DEFAULT_SCENE), clock), (120, 40)) as theatre:
+        theatre.app.open_replay = lambda path: None
+        await theatre.press("ctrl+p", "b", "]", "x")
+        options = theatre.app.screen.query_one(OptionList)
+        async with asyncio.timeout(20):
+            while options.option_count != 1:
+                await theatre.pilot.pause(0.01)
+        assert "replay b]x" in str(options.get_option_at_index(0).prompt)
+
+
+@pytest.mark.parametrize("opening", ["question_mark", "i", "ctrl+p", "E"])
+async def test_what_lies_over_the_lab_can_be_as_narrow_as_a_terminal(opening):
+    async with lab() as theatre:
+        theatre.app._disable_notifications = False
+        await theatre.press(opening)
+        theatre.app.notify("words that take more than a line")
+        await theatre.pilot.pause()
+        assert theatre.app.screen.query(Toast)
+        for columns in range(12, 0, -1):
+            for rows in (1, 3, 30):
+                await theatre.pilot.resize_terminal(columns, rows)
+        await theatre.press("escape")
+        assert theatre.app.screen is theatre.stage

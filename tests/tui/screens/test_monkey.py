@@ -1,33 +1,42 @@
 """Five thousand random keys and clicks over all views, live and replay."""
 
-import asyncio
 import itertools
 import os
 import shutil
-from collections.abc import AsyncIterator, Callable, Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
-from engine.accuracy.study import ladder
 from engine.scenes import DEFAULT_SCENE
 from recordings.library import resolve
 from recordings.live_recorder import LiveRecorder
 from recordings.recording import Recording
 from recordings.verify import verify
 from tests.tui.harness import on_stage
-from tests.tui.monkey import ESCDELAY, SIZE, play, play_on_stage
+from tests.tui.monkey import (
+    ESCDELAY,
+    LOOK,
+    SIZE,
+    play,
+    play_on_stage,
+    presses,
+    small_studies,
+    wild_presses,
+    wild_replay,
+    wild_stage,
+)
 from tests.tui.pty_lab import PtyLab
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
+from tui.screens.app import PenduApp
 from tui.screens.base import SourceScreen
 from tui.screens.live import LiveScreen
 from tui.screens.replay import ReplayScreen
 
-PRESSES = 2500
-LOOK = 0.004  # s that seem to pass between two looks at the clock, so that a frame's budget ends
-FEW = ladder(5.0, 0.2, 0.05, 2)
+PRESSES, WILD = 2500, 600
+SEED = int(os.environ.get("PENDU_MONKEY", "1"))
 
 
 def all_verify(library: Path) -> int:
@@ -39,23 +48,12 @@ def all_verify(library: Path) -> int:
     return len(recordings)
 
 
-async def computed_here(function: Callable[..., Iterator[object]], *arguments: object) -> AsyncIterator[object]:
-    """What `computed` yields, without another process: when it comes does not depend on the machine."""
-    for item in function(*arguments):
-        yield item
-        await asyncio.sleep(0)
-
-
 @pytest.fixture
-def library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def library(tmp_path: Path) -> Iterator[Path]:
     folder = tmp_path / "library"
     folder.mkdir()
-    monkeypatch.setenv("PENDU_RECORDINGS", str(folder))
-    monkeypatch.setattr("tui.views.accuracy.view.computed", computed_here)
-    monkeypatch.setattr("tui.views.stability.view.computed", computed_here)
-    monkeypatch.setattr("tui.views.accuracy.view.usual", lambda scene: (5.0, FEW))
-    monkeypatch.setattr("tui.views.stability.view.PASSES", (2, 6))
-    return folder
+    with small_studies(folder):
+        yield folder
 
 
 @pytest.mark.parametrize("command", ["live", "replay"])
@@ -73,10 +71,21 @@ async def test_random_keys_and_clicks_do_no_harm_and_the_recordings_verify(tmp_p
         return ReplayScreen(replay, lambda live: LiveScreen(recorded(live), clock), clock)
 
     async with on_stage(make, SIZE) as theatre:
-        await play_on_stage(theatre, PRESSES, int(os.environ.get("PENDU_MONKEY", "1")))
+        await play_on_stage(theatre, presses(PRESSES, SEED), SEED)
         assert theatre.stage.source.kind == "LIVE"
         theatre.source.close()
     assert all_verify(library) == 1
+
+
+async def test_dialogs_the_palette_pasted_garbage_and_all_sizes_do_no_harm_either(library, monkeypatch):
+    monkeypatch.setattr(PenduApp, "exit", lambda self: None)  # it finds `quit`, too
+    async with on_stage(wild_stage(library), SIZE) as theatre:
+        theatre.app.open_replay = wild_replay(library, lambda: theatre.now)
+        await play_on_stage(theatre, wild_presses(WILD, SEED), SEED)
+        assert theatre.app.is_running
+        theatre.source.close()
+        recorded = [each.source.recorder for each in theatre.app.source_screens if each.source.kind == "LIVE"]
+    assert all_verify(library) == len(recorded)
 
 
 @pytest.mark.skipif("PENDU_MONKEY" not in os.environ, reason="its keys meet the program at other moments each time")
@@ -88,6 +97,6 @@ def test_random_keys_and_clicks_do_no_harm_to_the_real_program(tmp_path, command
         arguments.append(str(shutil.copy(resolve("drift"), tmp_path)))  # marks are kept beside it
     with PtyLab(*arguments, size=SIZE, PENDU_RECORDINGS=str(library), ESCDELAY=ESCDELAY) as pendu:
         pendu.wait_for("Quit")
-        code = play(pendu, PRESSES, int(os.environ["PENDU_MONKEY"]))
+        code = play(pendu, PRESSES, SEED)
         assert code == 0, pendu.output.decode(errors="replace").rpartition("\x1b[?1049l")[2]
     assert all_verify(library) >= 1

@@ -23,6 +23,18 @@ async def test_the_notice_of_a_mark_lies_on_the_insight_line():
         assert app.screen.query_one(InsightLine).region.contains_region(toasts.first().region)
 
 
+async def test_equal_notices_replace_each_other():
+    app = PenduApp(LiveScreen(Live(DEFAULT_SCENE.altered(h=5e-10), clock=lambda: 0.0), lambda: 0.0))
+    async with app.run_test(size=(80, 24), notifications=True) as pilot:
+        await pilot.press(*["minus"] * 9)
+        assert len(app._notifications) == 1
+        async with asyncio.timeout(20):
+            while len(app.screen.query(Toast)) != 1:
+                await pilot.pause(0.01)
+        await pilot.press("m")
+        assert len(app._notifications) == 2
+
+
 async def test_a_second_mark_at_one_moment_is_none_and_is_said_to_be():
     live = Live(DEFAULT_SCENE, clock=lambda: 0.0)
     app = PenduApp(LiveScreen(live, lambda: 0.0))

@@ -84,6 +84,41 @@ def test_a_closed_terminal_finishes_the_recording(library):
     assert whole(library).samples
 
 
+STUCK = """
+import time
+from tui.screens.live import LiveScreen
+LiveScreen.action_mark = lambda self: time.sleep(1000)
+"""
+
+
+def test_a_closed_terminal_ends_a_lab_that_is_stuck_and_finishes_its_recording(library):
+    with PtyLab(program=[*PENDU[:2], STUCK + PENDU[2]], PENDU_RECORDINGS=str(library)) as session:
+        session.wait_for(RECORDING)
+        session.type("m")
+        session.run(0.5)
+        session.hang_up()
+        assert session.end() == 130
+    assert whole(library).samples
+
+
+DEAF = """
+import asyncio
+asyncio.unix_events._UnixSelectorEventLoop.add_signal_handler = lambda *_: None
+import signal
+signal.signal(signal.SIGHUP, signal.SIG_IGN)
+"""
+
+
+def test_a_lab_whose_input_is_at_its_end_leaves_without_a_signal(library):
+    with PtyLab(program=[*PENDU[:2], DEAF + PENDU[2]], PENDU_RECORDINGS=str(library)) as session:
+        session.wait_for(RECORDING)
+        began = session.now
+        session.hang_up()
+        assert session.end() == 130
+        assert session.now - began < 4.0  # it looks every second
+    assert whole(library).samples
+
+
 def test_what_a_killed_sitting_leaves_is_recovered_at_the_next_start_and_told(library):
     with lab(library) as session:
         session.wait_for("REC 2 s")

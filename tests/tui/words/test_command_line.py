@@ -13,11 +13,11 @@ from recordings.library import GOLDEN
 from recordings.live_recorder import LiveRecorder
 from recordings.recording import Recording
 from tui.cli.dispatch import command_of
-from tui.cli.options import scene_of
+from tui.cli.scene import scene_of
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
-from tui.words.command_line import command
+from tui.words.command_line import command, reproduces
 
 
 def options_of(text: str):
@@ -70,3 +70,13 @@ def test_the_command_of_a_replay_starts_where_it_stands():
     options = options_of(command(replay))
     assert (Path(options.file), options.start_at, options.paused) == (path, 1.5, True)
     replay.close()
+
+
+def test_a_changed_step_that_no_file_holds_is_not_reproduced(tmp_path):
+    live = Live(SCENES["drift"])
+    assert reproduces(live)
+    live.set_stepping(Stepping(0.1))
+    assert not reproduces(live)
+    live.record(LiveRecorder(tmp_path / "run.mcap"))
+    assert reproduces(live)
+    live.close()

@@ -2,6 +2,8 @@
 
 import pytest
 
+from engine.methods import RK4
+from engine.run.observer import Milestone
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES
 from recordings.recording import Recording
@@ -12,7 +14,7 @@ from tui.playback.replay import Replay
 from tui.screens.app import PenduApp
 from tui.screens.live import LiveScreen
 from tui.views.lab.event_list import EventList
-from tui.words.events import event_lines
+from tui.words.events import event_lines, milestone_text, numbered
 
 DRIFT = SCENES["drift"]
 
@@ -57,6 +59,18 @@ def test_changes_and_marks_are_listed_and_pauses_are_not():
         "h 0.2 s, equal cost",
     ]
     assert [line.run for line in event_lines(live)] == [1] * 6 + [2] * 2
+
+
+def test_where_there_are_several_runs_each_event_has_the_number_of_its_own():
+    live = after(DRIFT, 1)
+    assert numbered(event_lines(live)) == ["   0.00 start drift, h 0.05 s"]
+    live.start(SCENES["spin"])
+    assert numbered(event_lines(live)) == [" 1    0.00 start drift, h 0.05 s", " 2    0.00 start spin, h 0.02 s"]
+
+
+def test_over_the_top_with_almost_the_energy_of_the_start_the_excess_is_told():
+    milestone = Milestone("over the top", RK4, 10, 0.5, 0.0034)
+    assert milestone_text(milestone) == "RK4 over the top, +0.34 %"
 
 
 def test_marks_next_to_a_recording_have_the_time_of_their_step(tmp_path):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from recordings.errors import RecordingError, printable
 from recordings.library import PART
+from tui.cli.cast import add_cast_options, cast_of
 from tui.cli.errors import Exit
 from tui.cli.options import add_recording, count
 from tui.cli.output import fields_of, progress, warn, write_json
@@ -20,6 +21,7 @@ examples:
   pendu-tui verify latest
   pendu-tui verify tests/recordings/ crossover.mcap
   pendu-tui verify golden
+  pendu-tui verify crossover.mcap --methods rk4
 
 A folder means all recordings below it; golden means the bundled ones.
 A recording holds a SHA-256 of all that is in it, which shows what was changed, added or left out later. It proves
@@ -32,6 +34,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_recording(
         parser, "files", nargs="+", help="a file, a folder, latest, or a name such as drift", offered=["golden"]
     )
+    add_cast_options(parser, "all of a recording's", own=False)
     parser.add_argument(
         "--max-steps",
         metavar="N",
@@ -44,7 +47,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     results: list[tuple[Path, Verification | RecordingError]] = []
-    for path, result in (verified for name in options.files for verified in _verified(name, options.max_steps)):
+    only = None if options.methods is None else [method.key for method in cast_of(options, ())]
+    for path, result in (verified for name in options.files for verified in _verified(name, options.max_steps, only)):
         results.append((path, result))
         if options.json:
             continue
@@ -69,7 +73,9 @@ def _passes(result: "Verification | RecordingError") -> bool:
     return result.identical and result.sealed is not False and (result.complete or result.file.suffix == PART)
 
 
-def _verified(name: str, max_steps: int) -> "Iterator[tuple[Path, Verification | RecordingError]]":
+def _verified(
+    name: str, max_steps: int, only: list[str] | None
+) -> "Iterator[tuple[Path, Verification | RecordingError]]":
     """Verify the recordings that a name on the command line stands for, the unreadable ones notwithstanding."""
     from recordings import library
     from recordings.verify import verify
@@ -86,7 +92,7 @@ def _verified(name: str, max_steps: int) -> "Iterator[tuple[Path, Verification |
         result: Verification | RecordingError
         try:
             with progress(printable(file.name)) as show:
-                result = verify(file, show, max_steps)
+                result = verify(file, show, max_steps, only)
         except RecordingError as error:
             result = error
         yield file, result

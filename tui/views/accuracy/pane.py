@@ -7,6 +7,7 @@ from textwrap import wrap
 from typing import ClassVar
 
 from textual.binding import BindingType
+from textual.worker import Worker, WorkerState
 
 from engine.accuracy.study import REASONS, ErrorKind, Point
 from engine.run.lockstep import Sample
@@ -90,7 +91,13 @@ class AccuracyPane(Chooser[int]):
         """Build a chart of what is new in a thread, unless one is being built; the next sample asks again."""
         if self._drawn != self._state and not self._building:
             self._building = True
-            self.run_worker(self._build(), group="chart")
+            self.run_worker(self._build(), group="chart", exit_on_error=False)
+
+    def on_worker_state_changed(self, event: Worker.StateChanged) -> None:
+        """Say what failed; the next change asks for another chart."""
+        if event.state is WorkerState.ERROR and event.worker.error is not None:
+            self._drawn, self._building = self._state, False
+            self.fail(event.worker.error)
 
     async def _build(self) -> None:
         state, kind, shown = self._state, self.kind, self.places

@@ -51,7 +51,7 @@ COLUMNS = (
     Column(
         6, ("largest", 7), ("largest", 8), lambda line, width: scientific(line.reading.max_energy_error, width, 1, "-")
     ),
-    Column(5, ("per s", 8), ("trend per s", 11), lambda line, width: scientific(line.judgement.slope, width)),
+    Column(5, ("per s", 8), ("trend per s", 11), lambda line, width: scientific(line.judgement.trend, width)),
     Column(8, ("verdict", 9), ("verdict", 9), lambda line, width: verdict(line).rjust(width)),
     Column(3, ("th.err", 7), ("theta error", 11), lambda line, width: scientific(theta_error(line), width, 1, "-")),
     Column(1, ("f", 1), ("evals/step", 10), lambda line, width: str(line.method.force_evaluations).rjust(width)),
@@ -107,12 +107,12 @@ def table(
 class ErrorTable(Pane):
     """As many columns as fit."""
 
-    _lines = 0
+    _rows_shown = 0
 
     def paint(self, source: Source, sample: Sample) -> None:
         exact, h = source.exact.at(sample.t), source.stepping.own
         rows = table(self.cast, sample, source.judgements, exact, h, self.shown, self.room.width)
-        if len(rows) != self._lines:
-            self._lines = len(rows)
+        if len(rows) != self._rows_shown:
+            self._rows_shown = len(rows)
             self.styles.height = len(rows)  # hidden methods leave no gap
         self.show(rows)

@@ -4,7 +4,7 @@ from engine.run.lockstep import Sample
 from tui.drawing.palette import FRAME, TEXT, series
 from tui.playback.source import Source
 from tui.views.view import Pane
-from tui.words.events import EventLine, event_lines
+from tui.words.events import EventLine, event_lines, numbered
 
 
 def owner_of(line: EventLine) -> int:
@@ -20,5 +20,6 @@ class EventList(Pane):
         self.border_title = "Events (E: all)"
 
     def paint(self, source: Source, sample: Sample) -> None:
-        lines = event_lines(source)[-self.room.height :]
-        self.show([[(str(line), owner_of(line))] for line in lines])
+        lines = event_lines(source)
+        texts = numbered(lines)
+        self.show([[(text, owner_of(line))] for line, text in [*zip(lines, texts, strict=True)][-self.room.height :]])

@@ -79,5 +79,8 @@ class TimeChart(Pane):
             shown, (width, height) = self.shown, self.room
             build = partial(time_chart, log=shown.log, seconds=shown.seconds, shown=self.places)
             window = self.source.history.window(shown.seconds)
-            self.show_picture(await asyncio.to_thread(build, window, self.cast, shown.quantity, width, height))
+            try:
+                self.show_picture(await asyncio.to_thread(build, window, self.cast, shown.quantity, width, height))
+            except Exception as error:
+                self.fail(error)
             self._building = False

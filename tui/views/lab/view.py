@@ -7,6 +7,7 @@ from textual.containers import Grid, Horizontal
 from textual.widget import Widget
 
 from engine.scenes import MOST_METHODS
+from tui.drawing.faults import Guarded
 from tui.views.lab.error_table import ErrorTable
 from tui.views.lab.event_list import EventList
 from tui.views.lab.large_table import LargeTable
@@ -16,11 +17,11 @@ from tui.views.phase.pane import KEYS, PhasePane
 from tui.views.view import Box, View
 
 
-class _Row(Horizontal):
+class _Row(Guarded, Horizontal):
     BLANK = True
 
 
-class _Square(Grid):
+class _Square(Guarded, Grid):
     BLANK = True
 
 

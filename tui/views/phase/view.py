@@ -37,4 +37,7 @@ class PhaseView(View):
     def _write_facts(self) -> None:
         facts, pane = self.query_one("#facts", CellWidget), self.query_one(PhasePane)
         if self.source is not None and facts.drawable:
-            facts.show(fact_rows(self.source, self.shown, pane.neighbours, pane.ring, facts.size.width))
+            try:
+                facts.show(fact_rows(self.source, self.shown, pane.neighbours, pane.ring, facts.size.width))
+            except Exception as error:
+                facts.fail(error)

@@ -67,7 +67,7 @@ def main(text: str) -> None:
     """Show the lab of these settings, and record it if they have a folder."""
     from recordings import library
 
-    settings = Settings.from_json(text)
+    settings = Settings.from_text(text)
     live = Live(settings.scene)
     path = settings.folder and library.new_path(settings.folder)
     screen = ServedScreen(live, prepare=lambda: start_recording(live, path, or_next=True))
