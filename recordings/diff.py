@@ -13,11 +13,10 @@ from typing import Any, NamedTuple
 from engine.run.lockstep import Reading, Sample
 from engine.scenes import Scene
 from recordings.events import Event
-from recordings.fields import EXTREMES, VALUES
+from recordings.fields import EXTREMES, VALUES, distance, same_bits, ulps
 from recordings.recording import Recording
 from recordings.scan import ShowProgress
 from recordings.timeline import NOT_DONE
-from recordings.verify import distance, same_bits, ulps
 
 SAME_TIME = 1e-9  # of the simulated time: a multiple of h is rounded to a few parts in 10^16
 SHOW_EVERY = 1000  # samples

@@ -7,20 +7,18 @@ one value of 1400; the tests use one that differs in every second value.  Once t
 a thousandth of a radian, as happens in chaos, that method is no longer compared.
 """
 
-import math
-import struct
 from collections import defaultdict
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from engine.run.compiled import tiered
-from engine.run.lockstep import Lockstep, Reading, Sample
+from engine.run.lockstep import Lockstep, Sample
 from engine.run.stepping import Stepping
 from engine.scenes import SceneError
 from recordings.errors import RecordingError, named
 from recordings.events import Event, unknown_in
-from recordings.fields import EXTREMES, NUMBERS, VALUES, numbers_of
+from recordings.fields import EXTREMES, VALUES, distance, same_bits, ulps
 from recordings.headless import MOST_STEPS, StepBudget
 from recordings.library import open_file
 from recordings.scan import Gap, Scan, ShowProgress
@@ -231,27 +229,3 @@ class Rerun:
             for field in VALUES:
                 apart = distance(getattr(a, field), getattr(b, field))
                 self._allowed[method, field] = max(self._allowed[method, field], apart)
-
-
-_pack = struct.Struct(f"<{len(NUMBERS)}d").pack
-
-
-def same_bits(a: Reading, b: Reading) -> bool:
-    """Whether two readings have the same bits, quickly.  (0.0 == -0.0, hence the second half.)"""
-    return a == b and _pack(*numbers_of(a)) == _pack(*numbers_of(b))
-
-
-def distance(a: float | None, b: float | None) -> float:
-    """How far apart two numbers are; infinite if only one is there."""
-    return 0.0 if a == b else math.inf if a is None or b is None else abs(a - b)
-
-
-def ulps(a: float | None, b: float | None) -> int | None:
-    """How many doubles lie between them, and one; 1 for 0.0 and -0.0; None if one is missing."""
-    return None if a is None or b is None else abs(_ordinal(a) - _ordinal(b))
-
-
-def _ordinal(value: float) -> int:
-    """The position of a double among all doubles in order; -0.0 comes just before 0.0."""
-    bits = int.from_bytes(struct.pack(">d", value), "big", signed=True)
-    return bits if bits >= 0 else -(bits & (1 << 63) - 1) - 1
