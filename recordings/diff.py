@@ -218,6 +218,6 @@ class _Pairing:
             for name in VALUES:
                 x, y = getattr(one, name), getattr(other, name)
                 if name in EXTREMES and (self._gap or x == one.energy_error or y == other.energy_error):
-                    continue  # it claims nothing, see format.without_extremes, or they are about different steps
+                    continue  # it claims nothing, see fields.without_extremes, or they are about different steps
                 if x != y or ulps(x, y):
                     yield replace(at, method=key, field=name, a=x, b=y)

@@ -5,12 +5,13 @@ recorded: nothing is computed of them, so they cannot be verified.
 """
 
 import math
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
 from engine.methods import Method, method_of
+from engine.methods.own import OwnMethod
 from engine.models import MODELS, Model
 from engine.models.model import Energy, EnergyReference, ExactMotion, Force, Phase, Sine, State
 from engine.run.lockstep import Sample
@@ -65,12 +66,27 @@ def noticed(run: int, milestone: "Milestone") -> Event:
     return Event("noticed", run, milestone.step, milestone.t, milestone=milestone)
 
 
-def method_named(key: str) -> Method:
-    """The method of this key, or a stand-in."""
+_own: dict[str, OwnMethod] = {}
+
+
+def remember(own: Iterable[OwnMethod]) -> None:
+    """Know these methods when a recording names them; nothing in a recording is ever executed."""
+    _own.update({name_of(method): method for method in own})
+
+
+def name_of(method: Method) -> str:
+    """What a recording calls a method: its key, and for a user's own one the hash of its text."""
+    sha256 = getattr(method, "sha256", "")
+    return f"{method.key}@{sha256}" if sha256 else method.key
+
+
+def method_named(name: str) -> Method:
+    """The method of this name, or a stand-in."""
+    key, _, sha256 = name.partition("@")
     try:
-        return method_of(key)
+        return _own[name] if sha256 else method_of(key)
     except KeyError:
-        return _unknown_method(key)
+        return _unknown_method(key, sha256)
 
 
 def scene_named(name: str, **fields: Any) -> Scene:
@@ -82,8 +98,24 @@ def unknown_in(scene: Scene, only: Collection[str] | None = None) -> str | None:
     """What of a scene this version does not know; None if it knows all of it, or all of the methods of these keys."""
     if scene.model not in MODELS:
         return f"the model {scene.model}"
-    unknown = (method.key for method in scene.cast if method.phases is _no_phases)
-    return next((f"the method {key}" for key in unknown if only is None or key in only), None)
+    unknown = (method for method in scene.cast if method.phases is _no_phases and (only is None or method.key in only))
+    return next(map(_described, unknown), None)
+
+
+def _described(method: Method) -> str:
+    if not (sha256 := getattr(method, "sha256", "")):
+        return f"the method {method.key}"
+    return (
+        f"the method {method.key}, a user's own; give it with --method FILE.py:{method.key}, "
+        f"its file as it was (SHA-256 {sha256[:12]}…)"
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Unknown(Method):
+    """A method of which only what was recorded is known."""
+
+    sha256: str = ""  # of a user's own
 
 
 def _no_phases(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
@@ -94,8 +126,8 @@ def _no_phases(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
 
 
 @lru_cache(64)
-def _unknown_method(key: str) -> Method:
-    return Method(
+def _unknown_method(key: str, sha256: str) -> Method:
+    return _Unknown(
         key=key,
         label=key,
         letter="?",
@@ -110,6 +142,7 @@ def _unknown_method(key: str) -> Method:
         other_names=(),
         reference="",
         used="",
+        sha256=sha256,
     )
 
 

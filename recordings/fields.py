@@ -6,6 +6,7 @@ Messages, their schemas, the columns of a CSV, `verify`, `run --json` and `--fai
 import math
 import struct
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from operator import attrgetter
 from typing import Any, NamedTuple, get_args
 
@@ -152,3 +153,9 @@ def _ordinal(value: float) -> int:
     """The position of a double among all doubles in order; -0.0 comes just before 0.0."""
     bits = int.from_bytes(struct.pack(">d", value), "big", signed=True)
     return bits if bits >= 0 else -(bits & (1 << 63) - 1) - 1
+
+
+def without_extremes(sample: Sample) -> Sample:
+    """The sample as the first of its run or the first after a gap, where the steps before it are unknown."""
+    readings = (replace(reading, **dict.fromkeys(EXTREMES, reading.energy_error)) for reading in sample.readings)
+    return replace(sample, readings=tuple(readings))

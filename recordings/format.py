@@ -7,8 +7,6 @@ Reading checks every field; anything that is not written here raises RecordingEr
 
 import json
 import math
-from dataclasses import replace
-from functools import lru_cache
 from typing import Any, NoReturn, get_args
 
 from engine.methods import Cast, Method
@@ -17,14 +15,15 @@ from engine.run.observer import Milestone
 from engine.run.verdict import Verdict
 from engine.scenes import Scene, SceneError
 from recordings.errors import RecordingError, printable
-from recordings.events import Event, Seal, method_named, noticed, scene_named
-from recordings.fields import EXTREMES, NUMBERS, SCENE_NUMBERS, VALUES, left_out, values_of
+from recordings.events import Event, Seal, method_named, name_of, noticed, scene_named
+from recordings.fields import NUMBERS, SCENE_NUMBERS, VALUES, left_out, values_of
 
 FORMAT_VERSION = 2
 PROFILE = "pendu"  # in the file's header
 EVENTS = "/pendu/events"
 SEALS = "/pendu/seals"
 METADATA = "pendu.recording"
+OWN_METHOD = "pendu.method"  # the metadata record with the text of a user's own method
 CLOCK_OFFSET = 1_000_000_000  # ns: the clock's zero in log_time; several readers mishandle a time of 0
 CLOCK_LIMIT = 1e9  # s, 30 years
 MESSAGE_LIMIT = 1 << 16  # bytes; ours stay below 1 kB
@@ -54,12 +53,6 @@ def keys_of(name: str) -> tuple[str, str] | None:
 
 def _is_key(text: str) -> bool:
     return text.isidentifier() and text.isprintable() and len(text) <= KEY_LIMIT
-
-
-def without_extremes(sample: Sample) -> Sample:
-    """The sample as the first of its run or the first after a gap, where the steps before it are unknown."""
-    readings = (replace(reading, **dict.fromkeys(EXTREMES, reading.energy_error)) for reading in sample.readings)
-    return replace(sample, readings=tuple(readings))
 
 
 def encode_readings(sample: Sample) -> list[bytes]:
@@ -96,14 +89,18 @@ def encode_event(event: Event) -> bytes:
         fields |= {"watch": event.scene.watch} if event.scene.watch else {}
         fields |= {name: float(getattr(event.scene, name)) for name in SCENE_NUMBERS}
         fields["model"] = event.scene.model
-        fields["methods"] = [method.key for method in event.scene.cast]
+        fields["methods"] = [name_of(method) for method in event.scene.cast]
     fields |= {name: value for name in ("h", "speed") if (value := getattr(event, name)) is not None}
     if event.text is not None:
         fields["text"] = printable(event.text)
     if event.equal_cost:
         fields["equal_cost"] = True
     if (milestone := event.milestone) is not None:
-        fields |= {"milestone": milestone.kind, "method": milestone.method.key, "energy_error": milestone.energy_error}
+        fields |= {
+            "milestone": milestone.kind,
+            "method": name_of(milestone.method),
+            "energy_error": milestone.energy_error,
+        }
         fields |= {"verdict": milestone.verdict} if milestone.kind == "verdict" else {}
     return _dumps(fields)
 
@@ -228,20 +225,21 @@ def _cast(fields: dict[str, Any]) -> Cast:
     if type(keys) is not list or not 0 < len(keys) <= CAST_LIMIT:
         raise RecordingError("a start names no methods, or unexpectedly many")
     cast = tuple(_method(key) if type(key) is str else _method(_key(key)) for key in keys)
-    if len(set(keys)) < len(keys):
+    if len({method.key for method in cast}) < len(cast):
         raise RecordingError("a start names a method twice")
     return cast
 
 
-@lru_cache(64)
-def _method(key: str) -> Method:
-    return method_named(_key(key))
+def _method(name: str) -> Method:
+    """The method of a key, or of a key, @ and the hash of a user's text."""
+    key, at, sha256 = name.partition("@")
+    return method_named(_key(key) + at + printable(sha256))
 
 
 def _milestone(fields: dict[str, Any], step: int, t: float) -> Milestone:
     return Milestone(
         kind=_one_of(fields, "milestone", MILESTONES),
-        method=_method(_key(fields.get("method"))),
+        method=_method(_text(fields, "method")),
         step=step,
         t=t,
         energy_error=_number(fields, "energy_error"),

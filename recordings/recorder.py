@@ -15,23 +15,24 @@ from typing import Any, Self
 from mcap.records import Channel, Metadata, Schema
 from mcap.writer import CompressionType, Writer
 
+from engine.methods.own import OwnMethod
 from engine.run.lockstep import Sample
 from engine.scenes import Scene
 from recordings.errors import DiskError, NameTakenError, writing
 from recordings.events import Event, Seal
-from recordings.fields import EVENT_SCHEMA, SEAL_SCHEMA, sample_schema
+from recordings.fields import EVENT_SCHEMA, SEAL_SCHEMA, sample_schema, without_extremes
 from recordings.format import (
     CLOCK_LIMIT,
     CLOCK_OFFSET,
     EVENTS,
     METADATA,
+    OWN_METHOD,
     PROFILE,
     SEALS,
     encode_event,
     encode_readings,
     encode_seal,
     topic,
-    without_extremes,
 )
 from recordings.library import hold, part_of
 from recordings.summary import FUNCTIONS, Digest, WallClock, facts_of, program_version
@@ -180,6 +181,11 @@ class Recorder:
         metadata = dict(self._facts) if self._facts is not None else facts_of(scene, self._wall)
         self._writer.add_metadata(METADATA, metadata)
         self._digest.record(Metadata(METADATA, metadata))
+        for method in scene.cast:
+            if isinstance(method, OwnMethod):
+                own = {"method": method.key, "letter": method.letter, "sha256": method.sha256, "source": method.source}
+                self._writer.add_metadata(OWN_METHOD, own)
+                self._digest.record(Metadata(OWN_METHOD, own))
         facts = {name: metadata[name] for name in ("format", *FUNCTIONS) if name in metadata}
         self._register(EVENTS, EVENT_SCHEMA, facts)
         self._register(SEALS, SEAL_SCHEMA)

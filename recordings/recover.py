@@ -14,7 +14,8 @@ from engine.run.lockstep import Sample
 from recordings.contents import layout_of
 from recordings.errors import DiskError, RecordingError, named, printable, writing
 from recordings.events import Event
-from recordings.format import CLOCK_OFFSET, FORMAT_VERSION, encode_readings, without_extremes
+from recordings.fields import without_extremes
+from recordings.format import CLOCK_OFFSET, FORMAT_VERSION, encode_readings
 from recordings.framing import Message
 from recordings.library import PART, alone_with, free_path, open_file, part_of
 from recordings.recorder import Recorder

@@ -18,7 +18,7 @@ from engine.methods import Method
 from engine.run.lockstep import Sample
 from engine.run.observer import Milestone
 from engine.scenes import Scene
-from recordings.events import Entry, Event, EventKind, method_named, noticed, scene_named
+from recordings.events import Entry, Event, EventKind, method_named, name_of, noticed, scene_named
 from recordings.fields import SCENE_NUMBERS
 
 TEXT_LIMIT = 1 << 22  # characters of all the different texts together
@@ -94,11 +94,13 @@ class Events(_Rows[tuple[float, Event]]):
             self._scenes.extend(getattr(scene, name) for name in SCENE_NUMBERS)
             self._names.extend(map(self._number, (scene.name, scene.watch)))
             self._casts.append(self._models.setdefault(scene.model, len(self._models)))
-            self._casts.extend(self._methods.setdefault(method.key, len(self._methods)) for method in scene.cast)
+            self._casts.extend(self._methods.setdefault(name_of(method), len(self._methods)) for method in scene.cast)
             self._cast_ends.append(len(self._casts))
         elif (milestone := event.milestone) is not None:
             value = milestone.energy_error
-            extra = self._sorts.setdefault((milestone.kind, milestone.method.key, milestone.verdict), len(self._sorts))
+            extra = self._sorts.setdefault(
+                (milestone.kind, name_of(milestone.method), milestone.verdict), len(self._sorts)
+            )
         elif event.text is not None:
             extra = self._number(event.text)
         self.clocks.append(clock)

@@ -215,7 +215,7 @@ class Rerun:
             for field in VALUES:
                 a, b = getattr(was, field), getattr(now, field)
                 if field in EXTREMES and a == was.energy_error:
-                    continue  # such an extreme claims nothing: see format.without_extremes
+                    continue  # such an extreme claims nothing: see fields.without_extremes
                 self.max_difference = max(self.max_difference, distance(a, b))
                 if self._exact:
                     equal = a == b and not ulps(a, b)

@@ -18,7 +18,7 @@ from engine.run.verdict import Verdict
 from engine.scenes import LIMITS
 from recordings.errors import TEXT_LIMIT, RecordingError, printable
 from recordings.events import Event, Seal, method_named, noticed, scene_named, unknown_in
-from recordings.fields import EVENT_SCHEMA, NUMBERS, SEAL_SCHEMA, VALUES, sample_schema
+from recordings.fields import EVENT_SCHEMA, NUMBERS, SEAL_SCHEMA, VALUES, sample_schema, without_extremes
 from recordings.format import (
     decode_event,
     decode_reading,
@@ -28,7 +28,6 @@ from recordings.format import (
     encode_seal,
     keys_of,
     topic,
-    without_extremes,
 )
 from recordings.summary import FUNCTIONS, fingerprint
 from tests.recordings.examples import SCENE, start

@@ -8,8 +8,7 @@ import pytest
 from engine.methods import USUAL_CAST
 from engine.run.lockstep import Sample
 from recordings.events import Event
-from recordings.fields import COLUMNS
-from recordings.format import without_extremes
+from recordings.fields import COLUMNS, without_extremes
 from recordings.library import GOLDEN, golden_names
 from recordings.recording import Recording
 from recordings.summary import other_functions

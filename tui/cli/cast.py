@@ -9,11 +9,15 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, redirect_stdout
 from pathlib import Path
 from types import FrameType
+from typing import TYPE_CHECKING
 
 from engine.methods import METHODS, Cast, Method
 from engine.scenes import MOST_METHODS
 from tui.cli.errors import Exit, UserError
 from tui.cli.options import add_file, did_you_mean
+
+if TYPE_CHECKING:
+    from engine.methods.own import OwnMethod
 
 MOST_SECONDS = 10.0  # of computing, to load and measure a method; a fiftieth is usual
 LONGEST_NAME = 30  # characters of a method's key
@@ -71,9 +75,9 @@ def cast_of(options: argparse.Namespace, usual: Cast, most: int | None = MOST_ME
     return cast
 
 
-def own_methods(options: argparse.Namespace) -> tuple[Method, ...]:
+def own_methods(options: argparse.Namespace) -> tuple["OwnMethod", ...]:
     """The user's own methods, in the order given, examined and measured.  Raises UserError and OwnMethodError."""
-    own: list[Method] = []
+    own: list[OwnMethod] = []
     for text in options.method:
         own.append(_own(text, own))
     return tuple(own)
@@ -104,7 +108,7 @@ def find(name: str, known: Sequence[Method]) -> Method:
     raise UserError(f"--methods: there is no method {name!r}{advice}")
 
 
-def _own(text: str, others: Sequence[Method]) -> Method:
+def _own(text: str, others: Sequence[Method]) -> "OwnMethod":
     """The method of FILE.py:FUNCTION[,letter=m]."""
     place, *settings = text.split(",")
     file, _, key = place.rpartition(":")
@@ -126,7 +130,7 @@ def _own(text: str, others: Sequence[Method]) -> Method:
     return _loaded(Path(file), key, letter or free[0])
 
 
-def _loaded(path: Path, key: str, letter: str) -> Method:
+def _loaded(path: Path, key: str, letter: str) -> "OwnMethod":
     try:
         source = path.read_text(encoding="utf-8-sig")
     except (OSError, ValueError) as error:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from recordings.errors import RecordingError, printable
 from recordings.library import PART
-from tui.cli.cast import add_cast_options, cast_of
+from tui.cli.cast import add_cast_options, cast_of, own_methods
 from tui.cli.errors import Exit
 from tui.cli.options import add_recording, count
 from tui.cli.output import fields_of, progress, warn, write_json
@@ -34,7 +34,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_recording(
         parser, "files", nargs="+", help="a file, a folder, latest, or a name such as drift", offered=["golden"]
     )
-    add_cast_options(parser, "all of a recording's", own=False)
+    add_cast_options(parser, "all of a recording's")
     parser.add_argument(
         "--max-steps",
         metavar="N",
@@ -47,6 +47,11 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     results: list[tuple[Path, Verification | RecordingError]] = []
+    own = own_methods(options)
+    if own:
+        from recordings.events import remember
+
+        remember(own)
     only = None if options.methods is None else [method.key for method in cast_of(options, ())]
     for path, result in (verified for name in options.files for verified in _verified(name, options.max_steps, only)):
         results.append((path, result))

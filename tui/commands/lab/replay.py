@@ -4,7 +4,7 @@ import argparse
 from dataclasses import replace
 
 from engine.methods import METHODS
-from tui.cli.cast import add_cast_options, cast_of
+from tui.cli.cast import add_cast_options, cast_of, own_methods
 from tui.cli.errors import UserError
 from tui.cli.options import add_recording, number, positive
 from tui.terminal.options import add_terminal_options
@@ -23,7 +23,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--start-at", metavar="S", type=number, default=0.0, help="start S seconds into the recording (%(default)g)"
     )
-    add_cast_options(parser, "all of the recording's", own=False)
+    add_cast_options(parser, "all of the recording's")
     parser.add_argument("--speed", metavar="X", type=positive, default=1.0, help="playback speed (%(default)g)")
     parser.add_argument("--loop", action="store_true", help="loop")
     parser.add_argument("--paused", action="store_true", help="start paused")
@@ -32,11 +32,13 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
+    from recordings.events import remember
     from recordings.library import resolve
     from tui.screens import launch
     from tui.terminal.check import check_terminal
 
     path = resolve(options.file)
+    remember(own_methods(options))
     only = None if options.methods is None else cast_of(options, ())
     if not options.plain:
         check_terminal()
