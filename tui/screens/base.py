@@ -229,7 +229,7 @@ class SourceScreen(Guarded, Screen[None]):
 
     def action_help(self) -> None:
         """Show the help, with the keys of a focused pane first."""
-        from tui.screens.text import TextScreen, help_text
+        from tui.screens.dialogs.text import TextScreen, help_text
 
         panes = self.query_one(f"#{self.view}", View).KEYS
         keys = (*panes, *self.KEYS) if self.focused is not None else (*self.KEYS, *panes)

@@ -44,6 +44,7 @@ LIVE = (
     Key("plus,equals_sign", "+", "larger step (1-2-5)", "larger_h(1)", _RUN, "Larger h"),
     Key("minus", "-", "smaller step", "larger_h(-1)", _RUN),
     Key("i", "i", "edit start values", "start_values", _RUN, "Edit"),
+    Key("M,shift+m", "M", "choose the methods on stage", "methods", _RUN, "Methods"),
     Key("p", "p", "next scene", "scene(1)", _RUN, "Scene"),
     Key("P,shift+p", "P", "previous scene", "scene(-1)", _RUN),
     Key("r", "r", "restart", "restart", _RUN, "Restart"),
@@ -78,12 +79,13 @@ REPLAY = (
 
 OVERLAYS = (
     Key("", "esc", "close the text, the form or the palette", "", "texts and forms"),
-    Key("", "enter", "in the form: start with these values", "", "texts and forms"),
+    Key("", "enter", "in the form: start with these values or methods", "", "texts and forms"),
+    Key("", "space", "in the list of methods: take one, or leave it", "", "texts and forms"),
     Key("", "up, down", "scroll the text, or go to another field", "", "texts and forms"),
 )
 """Only listed: Textual binds them."""
 
-HINTS = ("space", "+", "right", "i", "p", "]", "?", "q", "v", ">", "f", "home", "end", "L", "r", *"yewbnmudEs")
+HINTS = ("space", "+", "right", "i", "p", "]", "?", "q", "v", ">", "M", "f", "home", "end", "L", "r", *"yewbnmudEs")
 """The keys on the key line, the most important first: those that do not fit are left out."""
 
 

@@ -14,12 +14,12 @@ from tui.cli.errors import UserError
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
+from tui.screens.dialogs.text import help_text
 from tui.screens.keys import COMMON, REPLAY
 from tui.screens.live import LiveScreen
 from tui.screens.replay import NO_LENGTH, ReplayScreen
 from tui.screens.seek_bar import SeekBar
 from tui.screens.status_line import StatusLine
-from tui.screens.text import help_text
 from tui.views.lab.event_list import EventList
 
 

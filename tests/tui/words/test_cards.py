@@ -7,8 +7,8 @@ from engine.run.stepping import Stepping
 from engine.scenes import SCENES
 from tests.tui.harness import lab
 from tui.playback.live import Live
+from tui.screens.dialogs.text import help_text
 from tui.screens.keys import COMMON, LIVE, REPLAY
-from tui.screens.text import help_text
 from tui.views.accuracy import pane as accuracy
 from tui.views.phase import pane as phase
 from tui.views.phase.pane import PhasePane

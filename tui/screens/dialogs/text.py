@@ -9,8 +9,8 @@ from textual.containers import VerticalScroll
 from textual.widgets import Static
 
 from tui.playback.source import Source
+from tui.screens.dialogs.modal import Modal
 from tui.screens.keys import key_list
-from tui.screens.modal import Modal
 from tui.views.keys import Key
 from tui.words.cards import method_card, scene_card
 from tui.words.describe import step_text
