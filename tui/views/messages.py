@@ -20,3 +20,10 @@ class StepSizeChosen(Message):
     """The user wants to continue with this step size."""
 
     stepping: Stepping
+
+
+@dataclass
+class MethodChosen(Message):
+    """The user wants to see this method alone or, if it is, all of them again."""
+
+    place: int  # in the cast

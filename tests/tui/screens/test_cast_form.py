@@ -78,5 +78,5 @@ async def test_a_run_has_the_pendulums_and_lines_of_its_own_cast():
     async with lab() as theatre:
         await theatre.press("M", *["space", "down"] * 3, "enter")
         await theatre.run(1)
-        shown = [pane for pane in theatre.stage.query("#pendulums Pendulum") if pane.is_on_screen]
+        shown = [pane for pane in theatre.stage.query("Pendulum") if pane.is_on_screen]
         assert [str(pane.border_title) for pane in shown] == ["1 r RK4"]

@@ -180,7 +180,7 @@ async def test_a_dialog_that_cannot_be_composed_can_be_closed(faults, monkeypatc
     faults.clear()
 
 
-@pytest.mark.parametrize(("key", "action"), [("t", "trails"), ("question_mark", "help"), ("v", "view")])
+@pytest.mark.parametrize(("key", "action"), [("X", "alone"), ("question_mark", "help"), ("v", "view")])
 async def test_a_key_that_fails_is_told(faults, monkeypatch, key, action):
     monkeypatch.setattr(LiveScreen, f"action_{action}", broken)
     async with lab() as theatre:

@@ -4,6 +4,7 @@ import math
 
 import pytest
 
+from engine.methods import USUAL_CAST
 from engine.scenes import DEFAULT_SCENE, SCENES
 from recordings.live_recorder import LiveRecorder
 from recordings.verify import verify
@@ -16,8 +17,8 @@ from tui.screens.keys import COMMON, LIVE
 from tui.screens.live import LiveScreen
 from tui.screens.status_line import StatusLine
 from tui.views.lab.error_table import ErrorTable
-from tui.views.lab.pendulums import Pendulum
 from tui.views.lab.time_chart import TimeChart
+from tui.views.lab.view import LabView
 
 
 async def test_time_space_pauses_and_goes_on_full_stop_and_comma_step():
@@ -116,10 +117,10 @@ async def test_a_run_that_another_start_replaced_is_brought_back_where_it_was_an
 async def test_what_is_shown_digits_t_y_e_and_w():
     async with lab() as theatre:
         await theatre.run(2)
-        panes = list(theatre.stage.query("#pendulums Pendulum").results(Pendulum))
+        panes = theatre.stage.query_one(LabView).pendulums
         await theatre.press("1")
         await theatre.pilot.pause()
-        assert [pane.display for pane in panes[:4]] == [False, True, True, True]
+        assert [pane.is_on_screen for pane in panes] == [False, True, True, True, False, False]
         assert "Explicit" not in theatre.text(ErrorTable)
         await theatre.press("1", "5")
         assert theatre.stage.shown.exact
@@ -147,6 +148,44 @@ async def test_what_is_shown_digits_t_y_e_and_w():
         before = theatre.stage.shown
         await theatre.press("w", "W")
         assert theatre.stage.shown == before
+
+
+async def test_capital_x_shows_one_method_alone_and_then_all_and_next_time_the_next_one():
+    async with lab() as theatre:
+        seen = []
+        for _ in range(5):
+            await theatre.press("X")
+            seen.append("".join(USUAL_CAST[at].letter for at in theatre.stage.shown.places(USUAL_CAST)))
+        assert seen == ["e", "esvr", "s", "esvr", "v"]
+        await theatre.press("u")
+        assert theatre.stage.shown.places(USUAL_CAST) == [0, 1, 2, 3]
+
+
+async def test_a_click_on_a_row_or_a_pendulum_shows_that_method_alone_and_another_one_all():
+    async with lab() as theatre:
+        await theatre.run(1)
+        for widget, offset in ((ErrorTable, (5, 3)), (theatre.stage.query_one(LabView).pendulums[2], (9, 5))):
+            await theatre.pilot.click(widget, offset=offset)
+            await theatre.run(0.1)
+            assert theatre.stage.shown.places(USUAL_CAST) == [2]
+            assert [line[:3] for line in theatre.text(ErrorTable).splitlines()[1:]] == ["3 v"]
+            await theatre.pilot.click(ErrorTable, offset=(5, 1))
+            await theatre.run(0.1)
+            assert theatre.stage.shown.places(USUAL_CAST) == [0, 1, 2, 3]
+
+
+async def test_capital_o_puts_all_pendulums_on_one_pivot():
+    async with lab() as theatre:
+        view = theatre.stage.query_one(LabView)
+        await theatre.press("O")
+        await theatre.run(3)
+        assert not any(pane.is_on_screen for pane in view.pendulums)
+        assert view.overlay.is_on_screen
+        for method in USUAL_CAST:
+            assert method.letter in view.overlay.text
+        await theatre.press("O")
+        await theatre.run(0.1)
+        assert not view.overlay.is_on_screen
 
 
 async def test_the_form_takes_radians_and_degrees_and_starts_with_enter():

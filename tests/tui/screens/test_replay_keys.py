@@ -101,7 +101,7 @@ async def test_a_click_and_a_drag_on_the_bar_go_there(path):
         await theatre.pilot.mouse_down(SeekBar, offset=(half, 0))
         await theatre.pilot.pause()
         assert replay.playhead.position == pytest.approx(6, abs=cell)
-        await theatre.pilot.hover("#pendulums", offset=(1 + bar._columns // 4, 3))  # far off the bar
+        await theatre.pilot.hover("Stage", offset=(1 + bar._columns // 4, 3))  # far off the bar
         await theatre.pilot.pause()
         assert replay.playhead.position == pytest.approx(3, abs=cell)
         await theatre.pilot.hover("KeyLine", offset=(119, 0))

@@ -4,6 +4,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from textual import events
+
 from engine.methods import Cast, Method
 from engine.models.model import State
 from engine.run.lockstep import Reading, Sample
@@ -12,6 +14,7 @@ from tui.drawing.cells import Row
 from tui.drawing.palette import FRAME, TEXT, WARN, mark, series
 from tui.playback.shown import Shown
 from tui.playback.source import Source
+from tui.views.messages import MethodChosen
 from tui.views.view import Pane
 from tui.words.numbers import decimal, scientific
 
@@ -116,3 +119,8 @@ class ErrorTable(Pane):
             self._rows_shown = len(rows)
             self.styles.height = len(rows)  # hidden methods leave no gap
         self.show(rows)
+
+    def on_click(self, event: events.Click) -> None:
+        """Show the method of this row alone, or all again."""
+        if 0 < event.y <= len(self.places):
+            self.post_message(MethodChosen(self.places[event.y - 1]))
