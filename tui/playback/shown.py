@@ -8,7 +8,7 @@ from engine.methods import Cast
 Quantity = Literal["energy_error", "theta_error", "shadow_error", "energy"]
 QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
 
-WINDOWS: tuple[float | None, ...] = (5.0, 20.0, 60.0, 300.0, 1800.0, None)
+WINDOWS: tuple[float | None, ...] = (None, 20.0, 60.0, 300.0, 1800.0, 5.0)
 """How much of the past the chart shows [s]; None: the whole run."""
 
 
@@ -22,7 +22,7 @@ class Shown:
     trails: bool = True
     quantity: Quantity = "energy_error"  # of the chart
     log: bool = True
-    seconds: float | None = 20.0  # of the chart, one of WINDOWS
+    seconds: float | None = None  # of the chart, one of WINDOWS
     turn: int = 0  # place of the method that is to be alone next
 
     def places(self, cast: Cast) -> list[int]:
@@ -59,6 +59,6 @@ class Shown:
         return replace(self, quantity=self.quantity_ahead(1))
 
     def next_window(self, forward: bool = True) -> "Shown":
-        """With the chart's next longer window, or the next shorter one, round and round."""
+        """With the next of the chart's windows, or the one before, round and round."""
         at = WINDOWS.index(self.seconds) + (1 if forward else -1)
         return replace(self, seconds=WINDOWS[at % len(WINDOWS)])

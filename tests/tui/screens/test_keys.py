@@ -136,10 +136,10 @@ async def test_what_is_shown_digits_t_y_e_and_w():
         for _ in QUANTITIES:
             await theatre.press("e")
             titles.append(chart.border_title)
-        assert titles[0] == titles[-1] == "max |dE/E0| per half swing, 20 s"
+        assert titles[0] == titles[-1] == "max |dE/E0| per half swing, all"
         assert len(set(titles)) == len(QUANTITIES)
         await theatre.press("y")
-        assert chart.border_title == "energy error dE/E0, 20 s"
+        assert chart.border_title == "energy error dE/E0, all"
         spans = set()
         for _ in WINDOWS:
             await theatre.press("w")
