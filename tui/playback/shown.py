@@ -22,6 +22,7 @@ class Shown:
     trails: bool = True
     quantity: Quantity = "energy_error"  # of the chart
     log: bool = True
+    percent: bool = True  # errors from 1 % on
     seconds: float | None = None  # of the chart, one of WINDOWS
     turn: int = 0  # place of the method that is to be alone next
 

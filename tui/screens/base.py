@@ -226,6 +226,7 @@ class SourceScreen(Guarded, Screen[None]):
         for view in views.children:
             view.display = view.id == name
         self.view = name
+        self.query_one(KeyLine).keys = hinted(self.KEYS, name, self.query_one(f"#{name}", View).KEYS)
         self.show_now()
 
     def action_help(self) -> None:

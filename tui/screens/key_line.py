@@ -5,9 +5,10 @@ from dataclasses import dataclass
 
 from textual import events
 from textual.message import Message
+from textual.reactive import var
 
 from tui.drawing.cells import CellWidget, Row
-from tui.drawing.palette import FRAME, TEXT
+from tui.drawing.palette import QUIET, TEXT
 from tui.views.keys import Key
 
 
@@ -18,7 +19,7 @@ def key_row(keys: Sequence[Key], width: int) -> tuple[Row, list[tuple[int, int, 
     for key in keys:
         end = column + len(key.shown) + len(key.hint) + 3
         if end <= width:
-            row += [(f" {key.shown} ", TEXT), (f"{key.hint} ", FRAME)]
+            row += [(f" {key.shown} ", TEXT), (f"{key.hint} ", QUIET)]
             places.append((column, end, key.action))
             column = end
     return row, places
@@ -33,13 +34,18 @@ class KeyLine(CellWidget):
 
         action: str
 
+    keys: var[Sequence[Key]] = var(())
+
     def __init__(self, keys: Sequence[Key]) -> None:
         super().__init__()
-        self._keys = keys
+        self.set_reactive(KeyLine.keys, keys)
         self._places: list[tuple[int, int, str]] = []
 
+    def watch_keys(self) -> None:
+        self.draw()
+
     def draw(self) -> None:
-        row, self._places = key_row(self._keys, self.room.width)
+        row, self._places = key_row(self.keys, self.room.width)
         self.show([row])
 
     def on_click(self, event: events.Click) -> None:

@@ -247,7 +247,7 @@ async def test_a_click_on_the_key_line_does_what_the_key_does():
         row = theatre.text("KeyLine")
         for label, check in (
             ("Pause", lambda: theatre.source.playhead.paused),
-            ("Faster", lambda: theatre.source.playhead.speed == 2),
+            ("Larger h", lambda: theatre.source.stepping.h == 0.1),
         ):
             assert not check()
             await theatre.pilot.click("KeyLine", offset=(row.index(label) + 1, 0))

@@ -1,7 +1,7 @@
 """EventList: what was done and what happened, the newest last."""
 
 from engine.run.lockstep import Sample
-from tui.drawing.palette import FRAME, TEXT, series
+from tui.drawing.palette import QUIET, TEXT, series
 from tui.playback.source import Source
 from tui.views.view import Pane
 from tui.words.events import EventLine, event_lines, numbered
@@ -9,7 +9,7 @@ from tui.words.events import EventLine, event_lines, numbered
 
 def owner_of(line: EventLine) -> int:
     """A milestone has its method's colour."""
-    return series(line.method) if line.method is not None else TEXT if line.kind == "mark" else FRAME
+    return series(line.method) if line.method is not None else TEXT if line.kind == "mark" else QUIET
 
 
 class EventList(Pane):
@@ -17,7 +17,7 @@ class EventList(Pane):
 
     def __init__(self) -> None:
         super().__init__()
-        self.border_title = "Events (E: all)"
+        self.border_title = "Events (E)"
 
     def paint(self, source: Source, sample: Sample) -> None:
         lines = event_lines(source)

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from textual import events
 from textual.binding import BindingType
+from textual.content import Content
 from textual.message import Message
 from textual.reactive import var
 
@@ -21,17 +22,18 @@ if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
     from tui.drawing.canvas import Picture
 
 RING_STEPS = 100  # a frame; 52 µs each, so a ring that has to catch up costs 5 ms of a frame at most
+TITLE = "Phase space (F3): theta [rad], omega [rad/s]"
 BIG_STEP, _GROUP = 8, "phase space"  # dots
 KEYS = (
     Key("", "tab", "in the lab: to this pane, for its keys", "", _GROUP),
     *arrows(_GROUP, "crosshair", "choose a start", BIG_STEP),
-    Key("enter", "enter", "start at the crosshair", "choose", _GROUP),
+    Key("enter", "enter", "start at the crosshair", "choose", _GROUP, "Start"),
     Key("escape", "esc", "leave the crosshair, cancel a drag", "cancel", _GROUP),
-    Key("z", "z", "zoom in at the crosshair or the pointer", "zoom(0.5)", _GROUP),
+    Key("z", "z", "zoom in at the crosshair or the pointer", "zoom(0.5)", _GROUP, "Zoom"),
     Key("Z,shift+z", "Z", "zoom out", "zoom(2.0)", _GROUP),
-    Key("o", "o", "overview: the whole portrait", "whole", _GROUP),
-    Key("c", "c", "angles within a turn, or unwrapped", "wrap", _GROUP),
-    Key("g", "g", "a ring of neighbours, of another radius", "radius(1)", _GROUP),
+    Key("o", "o", "overview: the whole portrait", "whole", _GROUP, "Overview"),
+    Key("c", "c", "angles within a turn, or unwrapped", "wrap", _GROUP, "Wrap"),
+    Key("g", "g", "a ring of neighbours, of another radius", "radius(1)", _GROUP, "Ring"),
     Key("G,shift+g", "G", "a smaller ring, or none", "radius(-1)", _GROUP),
     Key("", "click, drag", "start there; a drag shows the orbit first", "", _GROUP),
     Key("", "wheel", "zoom at the pointer", "", _GROUP),
@@ -40,10 +42,7 @@ KEYS = (
 
 
 class PhasePane(Chooser[State]):
-    """Click or enter chooses a start; a drag first shows the exact orbit through the pointer.
-
-    The wheel zooms; a drag with a modifier or another button moves the picture.
-    """
+    """Click or enter chooses a start; a drag shows the orbit through the pointer, or with shift moves the picture."""
 
     BINDINGS: ClassVar[list[BindingType]] = bindings(*KEYS)
 
@@ -73,7 +72,8 @@ class PhasePane(Chooser[State]):
         return self.sample is not None and not (self.drawable and self._catching_up)
 
     def watch_source(self) -> None:
-        self.border_title = f"Phase space: theta, omega ({'click: start, ' if self.is_live else ''}wheel: zoom)"
+        self.border_title = Content(TITLE)
+        self.border_subtitle = f"{'click: start, ' if self.is_live else ''}wheel: zoom"
         super().watch_source()
 
     def watch_wrap(self) -> None:
