@@ -102,7 +102,7 @@ def _magnitudes(window: Window, high: Floats, seconds: float | None, columns: in
     if seconds is not None or end <= LONG:
         largest = held(window.x, high, start, end, columns, window.repeats)
         return largest, time_axis(start, end, columns, note)
-    axis = log_time_axis(log_start(end), end, columns, note)
+    axis = log_time_axis(max(log_start(end), min(window.repeats, end / 10)), end, columns, note)
     largest = envelope(window.x, high, window.repeats)
     late = np.log10(np.maximum(window.x, 1e-9))
     return per_column(late, largest, largest, axis.low, axis.high, columns)[1], axis

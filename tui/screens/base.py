@@ -28,7 +28,7 @@ from tui.screens.status_line import StatusLine
 from tui.screens.too_small import TooSmall
 from tui.views import create, following
 from tui.views.keys import Key, bindings
-from tui.views.messages import MethodChosen
+from tui.views.messages import Asked, MethodChosen
 from tui.views.view import Box, View
 
 READ, BUILT = 10, 5
@@ -168,7 +168,7 @@ class SourceScreen(Guarded, Screen[None]):
         self.remember(lambda: setattr(self, "shown", before))
         self.shown = shown
 
-    def on_key_line_pressed(self, message: KeyLine.Pressed) -> None:
+    def on_asked(self, message: Asked) -> None:
         self.call_next(self.run_action, message.action)
 
     def action_pause(self) -> None:

@@ -1,15 +1,14 @@
 """KeyLine: the keys that matter most, each also a button."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from textual import events
-from textual.message import Message
 from textual.reactive import var
 
 from tui.drawing.cells import CellWidget, Row
 from tui.drawing.palette import QUIET, TEXT
 from tui.views.keys import Key
+from tui.views.messages import Asked
 
 
 def key_row(keys: Sequence[Key], width: int) -> tuple[Row, list[tuple[int, int, str]]]:
@@ -28,12 +27,6 @@ def key_row(keys: Sequence[Key], width: int) -> tuple[Row, list[tuple[int, int, 
 class KeyLine(CellWidget):
     """The line; a click on a key is as if it were pressed."""
 
-    @dataclass
-    class Pressed(Message):
-        """A key was clicked."""
-
-        action: str
-
     keys: var[Sequence[Key]] = var(())
 
     def __init__(self, keys: Sequence[Key]) -> None:
@@ -51,4 +44,4 @@ class KeyLine(CellWidget):
     def on_click(self, event: events.Click) -> None:
         for first, end, action in self._places:
             if first <= event.x < end:
-                self.post_message(self.Pressed(action))
+                self.post_message(Asked(action))

@@ -27,3 +27,10 @@ class MethodChosen(Message):
     """The user wants to see this method alone or, if it is, all of them again."""
 
     place: int  # in the cast
+
+
+@dataclass
+class Asked(Message):
+    """The user clicked what a key does as well."""
+
+    action: str  # of the screen

@@ -255,6 +255,22 @@ async def test_a_click_on_the_key_line_does_what_the_key_does():
             assert check()
 
 
+async def test_a_click_on_the_chart_the_events_or_the_title_of_phase_space_does_what_their_keys_do():
+    async with lab() as theatre:
+        await theatre.run(1)
+        await theatre.pilot.click(TimeChart, offset=(20, 5))
+        await theatre.run(0.1)
+        assert theatre.stage.shown.quantity == QUANTITIES[1]
+        await theatre.pilot.click("EventList", offset=(5, 2))
+        await theatre.pilot.pause()
+        assert theatre.app.screen.text_title == "Events"
+        await theatre.press("escape")
+        run = theatre.source.sample.run
+        await theatre.pilot.click("PhasePane", offset=(5, 0))
+        await theatre.pilot.pause()
+        assert (theatre.stage.view, theatre.source.sample.run) == ("phase", run)
+
+
 def test_the_help_names_every_key():
     said = help_text((*LIVE, *COMMON), Live(DEFAULT_SCENE))
     for key in (*LIVE, *COMMON):

@@ -3,6 +3,7 @@
 from engine.run.lockstep import Sample
 from tui.drawing.palette import QUIET, TEXT, series
 from tui.playback.source import Source
+from tui.views.messages import Asked
 from tui.views.view import Pane
 from tui.words.events import EventLine, event_lines, numbered
 
@@ -23,3 +24,7 @@ class EventList(Pane):
         lines = event_lines(source)
         texts = numbered(lines)
         self.show([[(text, owner_of(line))] for line, text in [*zip(lines, texts, strict=True)][-self.room.height :]])
+
+    def on_click(self) -> None:
+        """List them all."""
+        self.post_message(Asked("app.extra('events')"))

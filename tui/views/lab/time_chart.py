@@ -11,6 +11,7 @@ from engine.models.model import ExactMotion
 from engine.run.lockstep import Sample
 from tui.playback.shown import Quantity, Shown
 from tui.playback.source import Source
+from tui.views.messages import Asked
 from tui.views.view import Pane
 from tui.words.numbers import about
 
@@ -60,6 +61,10 @@ class TimeChart(Pane):
         """What to show of the source here."""
         return replace(self.shown, quantity=self.shown.quantity_ahead(self._ahead))
 
+    def on_click(self) -> None:
+        """Show the next quantity."""
+        self.post_message(Asked("quantity"))
+
     def on_mount(self) -> None:
         """Build from the first paint on: plotext takes as long to import as all else takes to paint."""
         self.call_after_refresh(self._start)
@@ -73,7 +78,8 @@ class TimeChart(Pane):
         if text != self._title:  # setting it paints all of the pane
             self._title = text
             self.border_title = Content(text)  # as markup, units in brackets would be gone
-            self.border_subtitle = modified_energy_of(self.cast) if self._look.quantity == "shadow_error" else ""
+            unknown = modified_energy_of(self.cast) if self._look.quantity == "shadow_error" else ""
+            self.border_subtitle = unknown or "e: quantity, w: window, y: log"
 
     async def _build_on_demand(self) -> None:
         from tui.drawing.chart import time_chart  # brings NumPy, which can wait for the first paint

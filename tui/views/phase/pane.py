@@ -13,7 +13,7 @@ from engine.run.lockstep import Sample
 from engine.scenes import SceneError
 from tui.playback.source import Source
 from tui.views.keys import Key, arrows, bindings
-from tui.views.messages import SceneChosen
+from tui.views.messages import Asked, SceneChosen
 from tui.views.phase.viewport import Viewport
 from tui.views.view import Chooser
 
@@ -21,8 +21,8 @@ if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
     from engine.phase_space.area import Neighbourhood, Neighbours
     from tui.drawing.canvas import Picture
 
-RING_STEPS = 100  # a frame; 52 µs each, so a ring that has to catch up costs 5 ms of a frame at most
 TITLE = "Phase space (F3): theta [rad], omega [rad/s]"
+RING_STEPS = 100  # a frame; 52 µs each, so a ring that has to catch up costs 5 ms of a frame at most
 BIG_STEP, _GROUP = 8, "phase space"  # dots
 KEYS = (
     Key("", "tab", "in the lab: to this pane, for its keys", "", _GROUP),
@@ -169,9 +169,9 @@ class PhasePane(Chooser[State]):
     def action_zoom(self, factor: float) -> None:
         """Zoom at the crosshair, which comes to the middle, or at the pointer, or else at the middle."""
         middle = self.viewport.middle
-        if self.cursor is not None:
-            x, y = self.viewport.x(self.cursor.theta), self.viewport.y(self.cursor.omega)
-            self.zoomed = self.viewport.panned(middle[0] - float(x), middle[1] - float(y))
+        if (at := self.cursor) is not None:
+            right, down = middle[0] - float(self.viewport.x(at.theta)), middle[1] - float(self.viewport.y(at.omega))
+            self.zoomed = self.viewport.panned(right, down)
         elif self.pointer is not None:
             middle = 2 * self.pointer[0] + 1, 4 * self.pointer[1] + 2
         self._zoom(factor, *middle)
@@ -193,6 +193,8 @@ class PhasePane(Chooser[State]):
     def on_mouse_down(self, event: events.MouseDown) -> None:
         """Begin to choose a start or, with a modifier or another button, to move the picture."""
         if (cell := self._cell(event)) is None:
+            if event.y == 0:
+                self.post_message(Asked("view('phase')"))
             return
         self.focus(scroll_visible=False)
         self.capture_mouse()
@@ -203,8 +205,7 @@ class PhasePane(Chooser[State]):
             self.draw()
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
-        held = self.aiming or self._panning is not None
-        self.pointer = self._cell(event, clamp=held)
+        self.pointer = self._cell(event, clamp=(held := self.aiming or self._panning is not None))
         if self._panning is not None and self.pointer is not None:
             right, down = self.pointer[0] - self._panning[0], self.pointer[1] - self._panning[1]
             self._panning, self.zoomed = self.pointer, self.viewport.panned(2 * right, 4 * down)
