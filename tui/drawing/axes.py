@@ -37,10 +37,22 @@ def nice(value: float) -> float:
     return next(power * factor for factor in (1, 2, 5, 10) if power * factor >= value * (1 - 1e-9))
 
 
+_LADDER = (
+    *((1 / 4, 1), (1 / 3, 1), (1 / 2, 1), (2 / 3, 2), (1, 2), (3 / 2, 3), (2, 4), (3, 6), (4, 8)),
+    *((6, 12), (12, 24), (50, 100), (200, 400), (500, 1000)),
+)
+"""Decades a row of characters, and decades from label to label."""
+
+
 def log_axis(low: float, high: float, rows: int) -> Axis:
-    """A vertical axis of log10 from low to high or beyond, at least two decades long."""
-    top = math.ceil(high)
-    return _ruled(min(math.floor(low), top - 2), top, rows, (1, 2, 3, 4, 6, 8, 12, 24, 100, 400, 1000), _power)
+    """A vertical axis of log10 from low to high, at least two decades long, and hardly longer."""
+    low = min(low, high - 2)
+    size, step = next((size, step) for size, step in _LADDER if round(high / size) - round(low / size) < rows)
+    bottom, top = (round(high / size) + 0.5 - rows) * size, (round(high / size) + 0.5) * size
+    inside: list[float] = [number * step for number in range(math.ceil(bottom / step), math.floor(top / step) + 1)]
+    if len(inside) < 2 and size >= 1:  # a few rows: each has its label
+        inside = [round(high / size) * size - size * row for row in range(rows)][::-1]
+    return Axis(bottom, top, {value: _power(value) for value in inside})
 
 
 def log_x_axis(low: float, high: float, columns: int) -> Axis:
@@ -93,6 +105,27 @@ def time_axis(start: float, end: float, columns: int, note: str = "") -> Axis:
     if labels:
         labels[max(labels)] += f" {unit}{note}"
     return Axis(start, end, labels)
+
+
+_TIMES = (
+    *((value, f"{value:g} s") for value in (0.01, 0.1, 1, 2, 5, 10, 20)),
+    *((60 * value, f"{value} min") for value in (1, 2, 5, 10, 20)),
+    *((3600 * value, f"{value} h") for value in (1, 2, 5, 10)),
+    *((86400 * 10.0**power, f"1{'0' * power} d") for power in range(5)),
+)
+
+
+def log_time_axis(start: float, end: float, columns: int, note: str = "") -> Axis:
+    """An axis of log10 of seconds, labelled in s, min, h or d, each label 8 columns or more from the next."""
+    low, high = math.log10(start), math.log10(end)
+    labels: dict[float, str] = {}
+    for seconds, text in _TIMES:
+        place = math.log10(seconds)
+        if low <= place <= high and (not labels or (place - max(labels)) / (high - low) * columns >= 8):
+            labels[place] = text
+    if labels:
+        labels[max(labels)] += note
+    return Axis(low, high, labels)
 
 
 def omega_ticks(low: float, high: float, most: int) -> Ticks:
@@ -158,6 +191,24 @@ def time_span(x: Floats, seconds: float | None, columns: int) -> tuple[float, fl
     column = seconds / columns
     end = max(math.ceil(latest / column) * column, seconds)
     return end - seconds, end
+
+
+LONG = 60.0  # s; a whole run that is longer has a logarithmic time axis
+
+
+def log_start(end: float) -> float:
+    """Where a logarithmic time axis to `end` begins: a power of ten, two or three decades before."""
+    return float(10.0 ** math.floor(math.log10(end) - 2.3))
+
+
+def envelope(x: Floats, values: Floats, hold: float) -> Floats:
+    """At each x the largest value of the piece of `hold` seconds that it is in, and of the piece before."""
+    if not hold or not len(x):
+        return values
+    starts = np.flatnonzero(np.diff(np.floor(x / hold), prepend=-1.0))
+    largest = np.fmax.reduceat(values, starts, axis=0)
+    largest[1:] = np.fmax(largest[1:], largest[:-1].copy())
+    return np.repeat(largest, np.diff(starts, append=len(x)), axis=0)
 
 
 def per_column(x: Floats, low: Floats, high: Floats, start: float, end: float, columns: int) -> tuple[Floats, Floats]:

@@ -12,7 +12,21 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine.methods import Cast, Method
-from tui.drawing.axes import Axis, Floats, held, linear_axis, log_axis, log_x_axis, per_column, time_axis, time_span
+from tui.drawing.axes import (
+    LONG,
+    Axis,
+    Floats,
+    envelope,
+    held,
+    linear_axis,
+    log_axis,
+    log_start,
+    log_time_axis,
+    log_x_axis,
+    per_column,
+    time_axis,
+    time_span,
+)
 from tui.drawing.canvas import Canvas, Picture
 from tui.drawing.palette import FRAME, NOBODY, TEXT
 from tui.drawing.palette import series as series_of
@@ -21,6 +35,8 @@ from tui.playback.shown import Quantity
 
 FLOOR = 1e-17  # below the resolution of doubles; zeros are drawn here
 TOP = 1e6  # larger magnitudes are drawn here, so that a failing method leaves room for the others
+FEW = 0.05  # of the columns of an error, which may lie below the axis
+LABEL = 5  # columns of a label of decades
 SMALLEST = (20, 5)  # columns, rows
 _ROOM = 4  # columns for the letters at the right end
 _FIRST_COLOUR = 32  # owners are passed through plotext as colours of the 256-colour palette, from this one
@@ -54,37 +70,57 @@ def time_chart(
 
     On a linear axis, each column of characters spans the lowest to the highest value in it.  On a
     logarithmic axis, it shows the largest magnitude of the half swing that ends in it, or of the
-    column if that is longer; otherwise zero crossings would tear the lines.
+    column if that is longer; otherwise zero crossings would tear the lines.  There a long run as a whole has
+    a logarithmic axis of time, too: steady growth is a slope, and a bounded error is flat.
     """
     if width < SMALLEST[0] or height < SMALLEST[1]:
         return _too_small(width, height, *SMALLEST)
     places, rows = list(range(len(cast)) if shown is None else shown), height - 2
     low, high = (np.clip(side[quantity][:, places], -TOP, TOP) for side in (window.low, window.high))
+    note = " run" if window.turned else ""
     if log:
-        low = high = np.log10(np.maximum(np.fmax(abs(low), abs(high)), FLOOR))
-    y_axis = _y_axis(low, high, rows, log)
-    columns = width - 1 - _ROOM - y_axis.label_width
-    start, end = time_span(window.x, seconds, columns)
-    if log:
-        low = high = held(window.x, high, start, end, columns, window.repeats)
+        columns = width - 1 - _ROOM - LABEL
+        high = np.log10(np.maximum(np.fmax(abs(low), abs(high)), FLOOR))
+        low, x_axis = _magnitudes(window, high, seconds, columns, note)
+        high, y_axis = low, _log_y_axis(low, rows)
     else:
+        y_axis = _linear_y_axis(low, high, rows)
+        columns = width - 1 - _ROOM - y_axis.label_width
+        start, end = time_span(window.x, seconds, columns)
         low, high = per_column(window.x, low, high, start, end, columns)
+        x_axis = time_axis(start, end, columns, note)
     heights = [(rows * y_axis.share(side)).T for side in (low, high)]
     curves = [_outline(cast[place], *each) for place, *each in zip(places, *heights, strict=True)]
-    x_axis = time_axis(start, end, columns, " run" if window.turned else "")
     picture = _plot(curves, x_axis, y_axis, width, height)
     _write_letters(picture, curves, rows, width - columns - _ROOM)
     return picture
 
 
-def _y_axis(low: Floats, high: Floats, rows: int, log: bool) -> Axis:
-    known = ~np.isnan(high).all(axis=0)
+def _magnitudes(window: Window, high: Floats, seconds: float | None, columns: int, note: str) -> tuple[Floats, Axis]:
+    """The largest magnitude at each column, (columns, series), and the axis of time: logarithmic for a long run."""
+    start, end = time_span(window.x, seconds, columns)
+    if seconds is not None or end <= LONG:
+        largest = held(window.x, high, start, end, columns, window.repeats)
+        return largest, time_axis(start, end, columns, note)
+    axis = log_time_axis(max(log_start(end), min(window.repeats, end / 10)), end, columns, note)
+    largest = envelope(window.x, high, window.repeats)
+    late = np.log10(np.maximum(window.x, 1e-9))
+    return per_column(late, largest, largest, axis.low, axis.high, columns)[1], axis
+
+
+def _log_y_axis(largest: Floats, rows: int) -> Axis:
+    """From the smallest error but for the first few columns, as errors begin at zero, to the largest."""
+    seen = np.where(largest > np.log10(FLOOR), largest, np.nan)
+    known = ~np.isnan(seen).all(axis=0)
     if not known.any():
-        return log_axis(-4, 0, rows) if log else linear_axis(-1, 1, rows)
-    if not log:
-        return linear_axis(float(np.nanmin(low)), float(np.nanmax(high)), rows)
-    # Errors begin at zero: a decade below the smallest median is low enough.
-    return log_axis(float(np.nanmedian(low[:, known], axis=0).min()) - 1, float(np.nanmax(high)), rows)
+        return log_axis(-4, 0, rows)
+    return log_axis(float(np.nanquantile(seen[:, known], FEW, axis=0).min()), float(np.nanmax(seen)), rows)
+
+
+def _linear_y_axis(low: Floats, high: Floats, rows: int) -> Axis:
+    if np.isnan(high).all():
+        return linear_axis(-1, 1, rows)
+    return linear_axis(float(np.nanmin(low)), float(np.nanmax(high)), rows)
 
 
 def loglog_chart(series: Sequence[Series], width: int, height: int, *, x_label: str, y_label: str) -> Picture:

@@ -9,8 +9,9 @@ from zlib import crc32
 
 from engine.methods import METHODS, Method
 
-EXACT, FRAME, TEXT, WARN, NOBODY = -1, -2, -3, -4, -5
-"""Owners that are not methods (whose numbers are their `series`): exact motion, axes, text, warnings, blanks."""
+EXACT, FRAME, TEXT, WARN, QUIET, GOOD, NOBODY = -1, -2, -3, -4, -5, -6, -7
+"""Owners that are not methods (whose numbers are their `series`): exact motion, lines and borders, text, warnings,
+text that matters less, what is as it should be, blanks.  FRAME is too faint for words."""
 
 FAINT = 64
 """Added to a method's series: its fainter colour, for trails."""
@@ -28,6 +29,7 @@ class Palette:
     text: str
     warn: str
     background: str
+    good: str
 
     def colour(self, owner: int) -> str:
         """The colour of an owner; a ninth method gets another shade of the first one's colour, and so on."""
@@ -36,7 +38,8 @@ class Palette:
         if owner >= 0:
             lap, index = divmod(owner, len(self.methods))
             return mixed(self.methods[index], self.text, 1 - 0.6**lap)
-        return {EXACT: self.exact, FRAME: self.frame, WARN: self.warn}.get(owner, self.text)
+        others = {EXACT: self.exact, FRAME: self.frame, WARN: self.warn, QUIET: self.exact, GOOD: self.good}
+        return others.get(owner, self.text)
 
 
 # The methods' colours are optimised for contrast and for separation under all kinds of colour blindness:
@@ -52,6 +55,7 @@ PALETTES = {
         text="#D8D8D8",
         warn="#FF6B6B",
         background="#121212",
+        good="#7FD17F",
     ),
     "light": Palette(
         methods=("#AE3D04", "#5139C6", "#101070", "#631D1D", "#964B96", "#3C5AFF", "#693C69", "#00002D"),
@@ -60,6 +64,7 @@ PALETTES = {
         text="#202020",
         warn="#C00000",
         background="#F4F4F4",
+        good="#006B2D",
     ),
     "high-contrast": Palette(
         methods=("#EE7766", "#8888FF", "#77FFFF", "#FFDD00", "#69B4F0", "#C3FFA5", "#96D2F0", "#D2B40F"),
@@ -68,6 +73,7 @@ PALETTES = {
         text="#FFFFFF",
         warn="#FF9C9C",
         background="#000000",
+        good="#9CFF9C",
     ),
     "ansi": Palette(
         methods=("bright_red", "bright_blue", "bright_cyan", "bright_yellow"),
@@ -76,6 +82,7 @@ PALETTES = {
         text="bright_white",
         warn="bright_magenta",
         background="black",
+        good="bright_green",
     ),
 }
 

@@ -62,6 +62,10 @@ class Live(Source):
         return self._run.stepping
 
     @property
+    def next_step(self) -> float | None:
+        return (self._run.x + abs(self.stepping.h) - self.playhead.position) / abs(self.playhead.speed)
+
+    @property
     def events(self) -> Sequence[Event]:
         if not self._run.in_past:
             return self._events

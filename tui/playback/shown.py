@@ -1,14 +1,14 @@
 """Shown: which methods and quantities are on screen, and how.  Nothing in it changes a number."""
 
 from dataclasses import dataclass, replace
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 from engine.methods import Cast
 
 Quantity = Literal["energy_error", "theta_error", "shadow_error", "energy"]
 QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
 
-WINDOWS: tuple[float | None, ...] = (5.0, 20.0, 60.0, 300.0, 1800.0, None)
+WINDOWS: tuple[float | None, ...] = (None, 20.0, 60.0, 300.0, 1800.0, 5.0)
 """How much of the past the chart shows [s]; None: the whole run."""
 
 
@@ -18,10 +18,13 @@ class Shown:
 
     hidden: frozenset[str] = frozenset()  # keys of methods
     exact: bool = False  # the exact motion as a ghost
+    overlay: bool = False  # all pendulums on one pivot, even where there is room for a pane each
     trails: bool = True
     quantity: Quantity = "energy_error"  # of the chart
     log: bool = True
-    seconds: float | None = 20.0  # of the chart, one of WINDOWS
+    percent: bool = True  # errors from 1 % on
+    seconds: float | None = None  # of the chart, one of WINDOWS
+    turn: int = 0  # place of the method that is to be alone next
 
     def places(self, cast: Cast) -> list[int]:
         """The places in the cast of the methods that are shown."""
@@ -33,10 +36,30 @@ class Shown:
             return replace(self, exact=not self.exact)
         return replace(self, hidden=self.hidden ^ {cast[place].key})
 
+    def switched(self, name: str) -> "Shown":
+        """With one of the settings that are on or off the other way."""
+        changes: dict[str, Any] = {name: not getattr(self, name)}
+        return replace(self, **changes)
+
+    def alone(self, place: int, cast: Cast) -> "Shown":
+        """With this method alone; with all of them, if it is alone already."""
+        others = frozenset(method.key for at, method in enumerate(cast) if at != place)
+        return replace(self, hidden=frozenset() if self.places(cast) == [place] else others)
+
+    def next_alone(self, cast: Cast) -> "Shown":
+        """With all methods if one is alone, else with one alone: the first, the next time the second, and so on."""
+        if len(alone := self.places(cast)) == 1 < len(cast):
+            return replace(self.alone(alone[0], cast), turn=alone[0] + 1)
+        return self.alone(self.turn % len(cast), cast)
+
+    def quantity_ahead(self, ahead: int) -> Quantity:
+        """The quantity, or one of those after it."""
+        return QUANTITIES[(QUANTITIES.index(self.quantity) + ahead) % len(QUANTITIES)]
+
     def next_quantity(self) -> "Shown":
-        return replace(self, quantity=QUANTITIES[(QUANTITIES.index(self.quantity) + 1) % len(QUANTITIES)])
+        return replace(self, quantity=self.quantity_ahead(1))
 
     def next_window(self, forward: bool = True) -> "Shown":
-        """With the chart's next longer window, or the next shorter one, round and round."""
+        """With the next of the chart's windows, or the one before, round and round."""
         at = WINDOWS.index(self.seconds) + (1 if forward else -1)
         return replace(self, seconds=WINDOWS[at % len(WINDOWS)])

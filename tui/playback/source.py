@@ -95,6 +95,11 @@ class Source(ABC):
         """The recording; None where nothing is recorded."""
 
     @property
+    def next_step(self) -> float | None:
+        """Seconds of the clock until the next step; None where that cannot be said."""
+        return None
+
+    @property
     def is_at_rest(self) -> bool:
         """Whether the clock alone changes nothing."""
         return self.playhead.paused

@@ -29,7 +29,7 @@ from tui.drawing.cells import PRESENT
 from tui.drawing.faults import LOG, Fault, Guarded, sentence
 from tui.drawing.palette import PALETTES, Palette
 from tui.screens.base import SourceScreen
-from tui.screens.modal import Commands, Modal
+from tui.screens.dialogs.modal import Commands, Modal
 from tui.terminal import fault_log
 from tui.terminal.character_sets import CharacterSetFilter
 from tui.terminal.check import is_gone

@@ -4,7 +4,7 @@ import gc
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar, Protocol, cast
 
@@ -28,6 +28,7 @@ from tui.screens.status_line import StatusLine
 from tui.screens.too_small import TooSmall
 from tui.views import create, following
 from tui.views.keys import Key, bindings
+from tui.views.messages import Asked, MethodChosen
 from tui.views.view import Box, View
 
 READ, BUILT = 10, 5
@@ -167,7 +168,7 @@ class SourceScreen(Guarded, Screen[None]):
         self.remember(lambda: setattr(self, "shown", before))
         self.shown = shown
 
-    def on_key_line_pressed(self, message: KeyLine.Pressed) -> None:
+    def on_asked(self, message: Asked) -> None:
         self.call_next(self.run_action, message.action)
 
     def action_pause(self) -> None:
@@ -181,12 +182,9 @@ class SourceScreen(Guarded, Screen[None]):
         self.show_now()
 
     def action_speed(self, doublings: int) -> None:
-        self.set_speed(doubled(self.source.playhead.speed, doublings))
+        self.action_set_speed(doubled(self.source.playhead.speed, doublings))
 
-    def action_real_time(self) -> None:
-        self.set_speed(1.0)
-
-    def set_speed(self, speed: float) -> None:
+    def action_set_speed(self, speed: float) -> None:
         """Set the speed; `u` undoes it."""
         before = self.source.playhead.speed
         if speed != before:
@@ -197,11 +195,14 @@ class SourceScreen(Guarded, Screen[None]):
     def action_show(self, number: int) -> None:
         self.change_shown(self.shown.toggled(number, self.source.scene.cast))
 
-    def action_trails(self) -> None:
-        self.change_shown(replace(self.shown, trails=not self.shown.trails))
+    def action_switch(self, name: str) -> None:
+        self.change_shown(self.shown.switched(name))
 
-    def action_log(self) -> None:
-        self.change_shown(replace(self.shown, log=not self.shown.log))
+    def action_alone(self) -> None:
+        self.change_shown(self.shown.next_alone(self.source.scene.cast))
+
+    def on_method_chosen(self, message: MethodChosen) -> None:
+        self.change_shown(self.shown.alone(message.place, self.source.scene.cast))
 
     def action_quantity(self) -> None:
         self.change_shown(self.shown.next_quantity())
@@ -225,11 +226,12 @@ class SourceScreen(Guarded, Screen[None]):
         for view in views.children:
             view.display = view.id == name
         self.view = name
+        self.query_one(KeyLine).keys = hinted(self.KEYS, name, self.query_one(f"#{name}", View).KEYS)
         self.show_now()
 
     def action_help(self) -> None:
         """Show the help, with the keys of a focused pane first."""
-        from tui.screens.text import TextScreen, help_text
+        from tui.screens.dialogs.text import TextScreen, help_text
 
         panes = self.query_one(f"#{self.view}", View).KEYS
         keys = (*panes, *self.KEYS) if self.focused is not None else (*self.KEYS, *panes)

@@ -11,7 +11,7 @@ from tui.cli.errors import explained
 from tui.drawing.palette import PALETTES
 from tui.playback.live import Live
 from tui.screens.base import SourceScreen
-from tui.screens.text import TextScreen
+from tui.screens.dialogs.text import TextScreen
 from tui.terminal.screenshot import save_screenshot
 from tui.views import VIEWS
 from tui.views.keys import Key

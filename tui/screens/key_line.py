@@ -1,14 +1,14 @@
 """KeyLine: the keys that matter most, each also a button."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from textual import events
-from textual.message import Message
+from textual.reactive import var
 
 from tui.drawing.cells import CellWidget, Row
-from tui.drawing.palette import FRAME, TEXT
+from tui.drawing.palette import QUIET, TEXT
 from tui.views.keys import Key
+from tui.views.messages import Asked
 
 
 def key_row(keys: Sequence[Key], width: int) -> tuple[Row, list[tuple[int, int, str]]]:
@@ -18,7 +18,7 @@ def key_row(keys: Sequence[Key], width: int) -> tuple[Row, list[tuple[int, int, 
     for key in keys:
         end = column + len(key.shown) + len(key.hint) + 3
         if end <= width:
-            row += [(f" {key.shown} ", TEXT), (f"{key.hint} ", FRAME)]
+            row += [(f" {key.shown} ", TEXT), (f"{key.hint} ", QUIET)]
             places.append((column, end, key.action))
             column = end
     return row, places
@@ -27,22 +27,21 @@ def key_row(keys: Sequence[Key], width: int) -> tuple[Row, list[tuple[int, int, 
 class KeyLine(CellWidget):
     """The line; a click on a key is as if it were pressed."""
 
-    @dataclass
-    class Pressed(Message):
-        """A key was clicked."""
-
-        action: str
+    keys: var[Sequence[Key]] = var(())
 
     def __init__(self, keys: Sequence[Key]) -> None:
         super().__init__()
-        self._keys = keys
+        self.set_reactive(KeyLine.keys, keys)
         self._places: list[tuple[int, int, str]] = []
 
+    def watch_keys(self) -> None:
+        self.draw()
+
     def draw(self) -> None:
-        row, self._places = key_row(self._keys, self.room.width)
+        row, self._places = key_row(self.keys, self.room.width)
         self.show([row])
 
     def on_click(self, event: events.Click) -> None:
         for first, end, action in self._places:
             if first <= event.x < end:
-                self.post_message(self.Pressed(action))
+                self.post_message(Asked(action))

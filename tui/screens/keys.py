@@ -3,7 +3,7 @@
 Bindings, key line, help, command palette and `pendu-tui keys` come from these tables.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from engine.scenes import MOST_METHODS
 from tui.views.keys import Key
@@ -16,22 +16,25 @@ COMMON = (
     Key("space", "space", "pause/resume", "pause", _TIME, "Pause"),
     Key("less_than_sign", "<", "half speed", "speed(-1)", _TIME),
     Key("greater_than_sign", ">", "double speed", "speed(1)", _TIME, "Faster"),
-    Key("0", "0", "normal speed (1×)", "real_time", _TIME),
+    Key("0", "0", "normal speed (1×)", "set_speed(1.0)", _TIME),
     *(
         Key(str(number), str(number), f"show or hide method {number}", f"show({number - 1})", _SHOW)
         for number in range(1, MOST_METHODS + 1)
     ),
     Key(str(_EXACT), str(_EXACT), "show or hide the exact motion", f"show({MOST_METHODS})", _SHOW),
-    Key("t", "t", "toggle trails", "trails", _SHOW),
-    Key("y", "y", "chart: log/linear", "log", _SHOW, "Log"),
+    Key("O,shift+o", "O", "all pendulums on one pivot, or one pane each", "switch('overlay')", _SHOW, "One pivot"),
+    Key("X,shift+x", "X", "one method alone, or all again", "alone", _SHOW, "Alone"),
+    Key("t", "t", "toggle trails", "switch('trails')", _SHOW),
+    Key("y", "y", "chart: log/linear", "switch('log')", _SHOW, "Log"),
     Key("e", "e", "chart: next quantity, such as the angle error", "quantity", _SHOW, "Quantity"),
-    Key("w", "w", "chart: longer window", "window(1)", _SHOW, "Window"),
-    Key("W,shift+w", "W", "chart: shorter window", "window(-1)", _SHOW),
+    Key("percent_sign", "%", "errors from 1 % on: as percent, or in powers of ten", "switch('percent')", _SHOW),
+    Key("w", "w", "chart: whole run, last 20 s, 60 s, ...", "window(1)", _SHOW, "Window"),
+    Key("W,shift+w", "W", "chart: the window before", "window(-1)", _SHOW),
     Key("v", "v", "next view", "view", _VIEWS, "View"),
-    Key("f2", "F2", "lab view", "view('lab')", _VIEWS),
-    Key("f3", "F3", "phase space view", "view('phase')", _VIEWS),
-    Key("f4", "F4", "accuracy view", "view('accuracy')", _VIEWS),
-    Key("f5", "F5", "stability view", "view('stability')", _VIEWS),
+    Key("f2", "F2", "lab view", "view('lab')", _VIEWS, "Lab"),
+    Key("f3", "F3", "phase space view", "view('phase')", _VIEWS, "Phase"),
+    Key("f4", "F4", "accuracy view", "view('accuracy')", _VIEWS, "Accuracy"),
+    Key("f5", "F5", "stability view", "view('stability')", _VIEWS, "Stability"),
     Key("E,shift+e", "E", "list all events", "app.extra('events')", _SHOW, "Events"),
     Key("d", "d", "describe the screen in words", "app.extra('describe')", _SHOW, "Describe"),
     Key("s", "s", "save a screenshot (SVG and text)", "app.extra('screenshot')", _PROGRAM, "Screenshot"),
@@ -49,6 +52,7 @@ LIVE = (
     Key("plus,equals_sign", "+", "larger step (1-2-5)", "larger_h(1)", _RUN, "Larger h"),
     Key("minus", "-", "smaller step", "larger_h(-1)", _RUN),
     Key("i", "i", "edit start values", "start_values", _RUN, "Edit"),
+    Key("M,shift+m", "M", "choose the methods on stage", "methods", _RUN, "Methods"),
     Key("p", "p", "next scene", "scene(1)", _RUN, "Scene"),
     Key("P,shift+p", "P", "previous scene", "scene(-1)", _RUN),
     Key("r", "r", "restart", "restart", _RUN, "Restart"),
@@ -83,18 +87,25 @@ REPLAY = (
 
 OVERLAYS = (
     Key("", "esc", "close the text, the form or the palette", "", "texts and forms"),
-    Key("", "enter", "in the form: start with these values", "", "texts and forms"),
+    Key("", "enter", "in the form: start with these values or methods", "", "texts and forms"),
+    Key("", "space", "in the list of methods: take one, or leave it", "", "texts and forms"),
     Key("", "up, down", "scroll the text, or go to another field", "", "texts and forms"),
 )
 """Only listed: Textual binds them."""
 
-HINTS = ("space", "+", "right", "i", "p", "]", "?", "q", "v", ">", "f", "home", "end", "L", "r", *"yewbnmudEs")
+ALWAYS = ("F2", "F3", "F4", "F5", "space", "?")
+HINTS = ("+", "]", "f", "M", "i", "p", "q", "u", ">", *"ewyXO", "right", "home", "end", "L", *"rbnmdEsv")
 """The keys on the key line, the most important first: those that do not fit are left out."""
+CHARTS = frozenset("ewyO")
+"""Keys of what only the lab's view shows."""
 
 
-def hinted(keys: Iterable[Key]) -> list[Key]:
-    """The keys for the key line, the most important first."""
-    return sorted((key for key in keys if key.hint), key=lambda key: HINTS.index(key.shown))
+def hinted(keys: Iterable[Key], view: str = "lab", panes: Sequence[Key] = ()) -> list[Key]:
+    """The keys for the key line, the most important first: those that always work, the panes' own, and the others."""
+    hints = [key for key in keys if key.hint and (view == "lab" or key.shown not in CHARTS)]
+    always = [key for name in ALWAYS for key in hints if key.shown == name]
+    others = [key for name in HINTS for key in hints if key.shown == name]
+    return [*always, *(key for key in panes if key.hint and view != "lab"), *others]
 
 
 def key_list(keys: Iterable[Key], where: str = "") -> str:

@@ -5,6 +5,7 @@ from typing import ClassVar
 
 from textual.binding import BindingType
 
+from engine.methods import Cast
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene, SceneError
 from tui.playback.live import Live
@@ -80,13 +81,22 @@ class LiveScreen(SourceScreen):
         self.start(SCENES[name])
 
     def action_start_values(self) -> None:
-        from tui.screens.start_form import StartForm  # Textual's input field is imported when it is needed
+        from tui.screens.dialogs.start_form import StartForm  # Textual's input field is imported when it is needed
 
         def chosen(scene: Scene | None) -> None:
             if scene is not None:
                 self.start(scene)
 
         self.app.push_screen(StartForm(self.live.scene.altered(h=self.live.stepping.smallest)), chosen)
+
+    def action_methods(self) -> None:
+        from tui.screens.dialogs.cast_form import CastForm
+
+        def chosen(cast: Cast | None) -> None:
+            if cast:
+                self.start(self.live.scene.altered(h=self.live.stepping.smallest).with_cast(cast))
+
+        self.app.push_screen(CastForm(self.live.scene.cast), chosen)
 
     def action_mark(self) -> None:
         text = ALREADY if self.live.is_marked else f"Mark at {self.live.sample.t:.2f} s"

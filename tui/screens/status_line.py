@@ -9,12 +9,13 @@ from textual.reactive import var
 from engine.run.lockstep import Sample
 from recordings.errors import printable
 from tui.drawing.cells import Row
-from tui.drawing.palette import FRAME, TEXT, WARN
+from tui.drawing.palette import QUIET, TEXT, WARN
 from tui.playback.source import Source
 from tui.views.view import Pane
 from tui.words.findings import limit_warning
 from tui.words.numbers import file_size, percent, seconds, two_digits
 
+SLOW = 1.0  # s of the clock from step to step: without a word, the lab would seem to stand still
 BADGE = -10
 """The owner of LIVE and REPLAY."""
 
@@ -52,24 +53,26 @@ def status_row(source: Source, width: int, frames: int | None = None) -> Row:
         _Part(11, f"h {source.stepping.h:.4g} s{' equal cost' if source.stepping.equal_cost else ''}"),
         _Part(10, f"z {z:.3g}", WARN if warning else TEXT),
         *([_Part(9, warning, WARN)] if warning else []),
-        _Part(6 if named else 3, f"scene {scene.name}" if named else f"{scene.name} scene", FRAME),
+        _Part(6 if named else 3, f"scene {scene.name}" if named else f"{scene.name} scene", QUIET),
         _Part(4 if named else 6, f"{math.degrees(scene.theta):.4g}° {scene.omega:.4g} rad/s"),
     ]
     if pace.share < 0.99:
         reached = playhead.speed * pace.share
         share = f"only {percent(pace.share)} of" if pace.share >= 0.095 else f"reached {two_digits(abs(reached))}× of"
         parts.insert(2, _Part(10, f"{share} {speed_text(playhead.speed)}", WARN))
+    if not playhead.paused and abs(source.stepping.h / playhead.speed) >= SLOW and source.next_step is not None:
+        parts.append(_Part(9, f"next step in {coarse(max(source.next_step, 0.0))}"))
     if frames is not None:
         parts.append(_Part(9, f"{frames} frames/s", WARN))
     if recording is None:
-        parts.append(_Part(8, "not recorded", FRAME))
+        parts.append(_Part(8, "not recorded", QUIET))
     elif recording.failed:
         parts.append(_Part(10, "NOT RECORDED", WARN))
     else:
         if live:
             parts.append(_Part(8, f"REC {coarse(recording.seconds)}"))
-        parts.append(_Part(2, file_size(recording.bytes), FRAME))
-        parts.append(_Part(1, printable(recording.name), FRAME))
+        parts.append(_Part(2, file_size(recording.bytes), QUIET))
+        parts.append(_Part(1, printable(recording.name), QUIET))
     badge = f" {source.kind} "
     while parts and len(badge) + sum(len(part.text) + 2 for part in parts) > width:
         parts.remove(min(parts))

@@ -20,3 +20,17 @@ class StepSizeChosen(Message):
     """The user wants to continue with this step size."""
 
     stepping: Stepping
+
+
+@dataclass
+class MethodChosen(Message):
+    """The user wants to see this method alone or, if it is, all of them again."""
+
+    place: int  # in the cast
+
+
+@dataclass
+class Asked(Message):
+    """The user clicked what a key does as well."""
+
+    action: str  # of the screen

@@ -11,6 +11,29 @@ WIDTH = 72  # characters; of 80 columns, frame and scroll bar take the rest
 _HEAD = 14
 
 
+GLOSSARY = {
+    "h": "the step size [s]: methods know the pendulum only at times 0, h, 2h, ...",
+    "z": "h w0, the step in units of the swing; w0 = sqrt(g/L). Methods become unstable beyond a z of their own",
+    "theta, omega": "angle from the downward vertical [rad] and its speed [rad/s]",
+    "dE/E0": "the energy error over the start's energy. The exact pendulum keeps its energy, so all of it is error",
+    "largest": "the largest |dE/E0| of the run so far",
+    "trend": "the mean change of dE/E0 per second; a bounded error can be larger than one that grows",
+    "E/Es": "the energy over that of the separatrix: below 1 it swings (libration), above it turns (rotation)",
+    "= bounded": "the error stays in a band however long it runs: no trend",
+    "+ grows": "the method gains energy without end",
+    "- loses": "the method loses energy steadily",
+    "too early": "not enough swings yet to tell",
+    "! chaotic": "starts next to each other part exponentially",
+    "colours": "each method keeps its own, and its letter, wherever it is shown; its digit is its place and its key",
+    "dotted": "the exact motion",
+}
+
+
+def glossary() -> str:
+    """What the words, signs and colours on the screen mean."""
+    return _card("What is on the screen", GLOSSARY)
+
+
 def method_card(method: Method) -> str:
     """A method's properties; every line is a tested claim."""
     limit = f"up to z = h w0 = {method.linear_limit:.4g} (small swings)" if method.linear_limit else "at no h"

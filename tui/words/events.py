@@ -12,7 +12,14 @@ from tui.playback.source import Source
 from tui.words.findings import short_name
 from tui.words.numbers import two_digits
 
-VERDICTS: dict[Verdict, str] = {"bounded": "stays bounded", "loses": "loses energy", "grows": "gains energy"}
+VERDICTS: dict[Verdict, str] = {
+    "bounded": "stays bounded",
+    "loses": "loses energy",
+    "grows": "gains energy",
+    "chaotic": "turns chaotic",
+    "caught": "stops gaining energy",
+    "wanders": "wanders",
+}
 
 
 class EventLine(NamedTuple):

@@ -28,6 +28,22 @@ def scientific(value: float | None, width: int, digits: int = 1, sign: str = "+"
     return "#" * width  # as spreadsheets do
 
 
+def relative(value: float | None, width: int, sign: str = "+") -> str:
+    """An error relative to 1: from 1 % on as "-4.2 %", with a sign from 100 % on as what becomes of 1, "x6.7"."""
+    if value is None or not math.isfinite(value) or abs(value) < 0.01:
+        return scientific(value, width, 1, sign)
+    whole = f"x{two_digits(1 + value)}" if value >= 1 and sign == "+" else f"{100 * value:{sign}.0f} %"
+    fine = whole if abs(value) >= 1 else f"{100 * value:{sign}.1f} %"
+    return next((text.rjust(width) for text in (fine, whole) if len(text) <= width), scientific(value, width, 1, sign))
+
+
+def angle(theta: float, width: int, decimals: int) -> str:
+    """An angle [rad]; beyond a turn, where there is room, as turns and the rest: "-5 t +0.89"."""
+    turns = round(theta / math.tau) if math.isfinite(theta) else 0
+    text = f"{turns:+d} t {theta - turns * math.tau:+.2f}"
+    return text.rjust(width) if abs(theta) > math.tau and len(text) <= width else decimal(theta, width, decimals)
+
+
 def seconds(value: float) -> str:
     """A time or a duration: "12.34 s", "3 min 05 s", "1 h 02 min", "3 d 04 h"."""
     if not math.isfinite(value):

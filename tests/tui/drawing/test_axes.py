@@ -5,7 +5,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from tui.drawing.axes import linear_axis, log_axis, log_x_axis, time_axis
+from tui.drawing.axes import envelope, linear_axis, log_axis, log_time_axis, log_x_axis, time_axis
 
 ROWS = st.integers(3, 60)
 
@@ -59,15 +59,8 @@ def test_labels_stay_narrow_enough_for_the_smallest_chart(middle, spread, rows):
 
 
 def test_the_most_common_axes_of_the_lab():
-    assert log_axis(-7.3, 0.6, 14).labels == {
-        2: "100",
-        0: "1",
-        -2: "1e-2",
-        -4: "1e-4",
-        -6: "1e-6",
-        -8: "1e-8",
-        -10: "1e-10",
-    }
+    assert log_axis(-7.3, 0.6, 14).labels == {0: "1", -2: "1e-2", -4: "1e-4", -6: "1e-6", -8: "1e-8"}
+    assert log_axis(-6.0, 0.8, 11).low == pytest.approx(-6.333, abs=1e-3)  # no empty decade
     assert list(linear_axis(-0.06, 4.3, 14).labels.values()) == ["-1", "0", "1", "2", "3", "4", "5"]
     assert list(linear_axis(4.503, 4.509, 10).labels.values()) == ["4.502", "4.504", "4.506", "4.508", "4.510"]
     assert list(linear_axis(-3e-7, 2e-7, 10).labels.values())[:2] == ["-4e-7", "-2e-7"]
@@ -101,3 +94,16 @@ def test_a_horizontal_logarithmic_axis_covers_its_range_and_does_not_crowd_label
 def test_a_share_is_clipped_to_the_axis():
     assert log_axis(-4, 0, 9).share([-100, 100]).tolist() == [0, 1]
     assert np.isnan(log_axis(-4, 0, 9).share(np.nan))
+
+
+def test_a_long_run_is_labelled_in_s_min_h_and_days():
+    axis = log_time_axis(1.0, 86400.0, 60)
+    assert list(axis.labels.values()) == ["1 s", "5 s", "1 min", "5 min", "1 h", "5 h", "1 d"]
+    assert [round(10**place) for place in axis.labels] == [1, 5, 60, 300, 3600, 18000, 86400]
+
+
+def test_an_envelope_holds_the_largest_value_for_one_piece_or_two():
+    x = np.arange(0.0, 6.0, 0.5)
+    values = np.where(x == 2.5, 9.0, 1.0)[:, None]
+    assert envelope(x, values, 1.0).ravel().tolist() == [1] * 4 + [9] * 4 + [1] * 4
+    assert envelope(x, values, 0.0) is values

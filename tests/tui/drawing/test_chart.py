@@ -68,7 +68,7 @@ def test_on_a_linear_axis_every_column_shows_its_lowest_and_highest_value(run, i
 @given(runs(), st.floats(0, 3), st.integers(30, 60), st.integers(8, 16))
 def test_on_a_logarithmic_axis_every_column_shows_its_largest_magnitude(run, repeats, width, height):
     x, values = run
-    values = np.copysign(0.5 + abs(values), values)  # within a decade: the axis begins one below what is usual
+    values = np.copysign(0.5 + abs(values), values)  # so that the smallest is on the axis, too
     found, dot, columns = plotted(chart(window(x, values, repeats=repeats), width, height, seconds=10, shown=[0]), True)
     largest = held(x, abs(values)[:, None], *time_span(x, 10, columns), columns, repeats).ravel()
     for column, value in enumerate(np.log10(largest)):
@@ -117,7 +117,6 @@ def test_the_largest_errors_of_half_a_swing_over_decades():
     t = np.linspace(0, 18, 400)
     errors = np.stack([0.3 * t, 0.08 * np.sin(6 * t), 0.005 * np.sin(6 * t) ** 2, 3e-6 * t], axis=1)
     assert chart(window(t, errors, repeats=1.0), 48, 11, seconds=20).text == (
-        "  100┤\n"
         "     │                    ⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⡀e\n"
         "    1┤  ⣀⡠⠤⠤⠒⠒⠒⠒⠒⠉⠉⠉⠉⠉⠉⠉⠉⠉\n"
         "     │⠰⠭⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠄s\n"
@@ -126,6 +125,7 @@ def test_the_largest_errors_of_half_a_swing_over_decades():
         " 1e-4┤                    ⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⡀r\n"
         "     │  ⣀⡠⠤⠤⠒⠒⠒⠒⠒⠉⠉⠉⠉⠉⠉⠉⠉⠉\n"
         " 1e-6┤⠐⠉\n"
+        "     │\n"
         "     └┬──────────────────┬─────────────────┬────\n"
         "      0                  10               20 s"
     )
@@ -156,15 +156,15 @@ def test_speed_against_accuracy():
     picture = loglog_chart(series, 48, 14, x_label="force evaluations", y_label="theta error [rad]")
     assert picture.text == (
         "theta error [rad]\n"
-        "  1e4┤\n"
-        "     │\n"
-        "    1┤   e⠒⠒⠤e⠤⠤⠤e⣀⣀⣀e⣀⣀⣀\n"
-        "     │                   e⠉⠉e⠉⠉⠒e\n"
-        " 1e-4┤    ⠄⠄⡀    r⠒⠒⠤r⣀\n"
-        "     │       ⠁⠁⠂⠄⠄⡀    ⠉⠉r⠢⠤r⡀\n"
-        " 1e-8┤             ⠁⠁⠂⠂⠄⡀⢀   ⠈⠉⠒r⠤⢄⣀\n"
-        "     │                    ⠈⠐⠐⠠⢀⢀    r⠑⠒⠤r\n"
-        "1e-12┤                          ⠈⠐order 4\n"
+        "    1┤   e⠒⠒⠤e⠤⠤⢄e⣀⣀⣀e\n"
+        "     │               ⠈⠉⠉⠉e⠑⠒e⠒⠒⠤e\n"
+        " 1e-3┤           r⣀\n"
+        "     │    ⠁⠂⠄⡀     ⠉⠑r⠤⣀\n"
+        " 1e-6┤        ⠁⠂⠄⠄⡀     ⠉r⠢⢄⡀\n"
+        "     │             ⠁⠂⠄⡀     r⠉⠒⠤r⡀\n"
+        " 1e-9┤                 ⠁⠂⠐⠠⢀     ⠈⠉⠒r⣀⡀\n"
+        "     │                      ⠈⠐⠠⢀⢀     ⠈⠑r\n"
+        "1e-12┤                           ⠈order 4\n"
         "     │\n"
         "     └┬───────────┬────────────┬───────────┬────\n"
         "      10         100          1e3         1e4\n"
@@ -184,7 +184,7 @@ def test_only_shown_methods_have_letters(shown):
 
 def test_zeros_are_drawn_at_the_floor():
     picture = chart(window([1, 2, 3, 4], [0, 0, 0, 0]), 40, 12, shown=[3])
-    assert "1e-17" in picture.text or "1e-18" in picture.text
+    assert picture.text.splitlines()[9].rstrip().endswith("r")  # the last row above the axis of time
     assert "⣀" in picture.text or "⠤" in picture.text
 
 
@@ -197,7 +197,9 @@ def test_a_failed_method_leaves_room_for_the_others():
     picture = chart(window([1, 2], [[1e300, 1e-3, 1e-3, 1e-5]] * 2))
     labels = [float(line.partition("┤")[0]) for line in picture.text.splitlines() if "┤" in line]
     assert 1e6 <= max(labels) <= 1e8
-    assert min(labels) <= 1e-4
+    assert min(labels) <= 1e-3
+    lines = {letter: at for at, line in enumerate(picture.text.splitlines()) for letter in "er" if letter in line[6:]}
+    assert lines["e"] < lines["r"] < len(picture.text.splitlines()) - 2
 
 
 def test_after_a_reversal_the_axis_is_labelled_as_time_run():
@@ -227,3 +229,25 @@ def test_plotext_is_loaded_with_the_first_chart_and_not_before():
     script = "import sys, tui.drawing.chart; print('plotext' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "False"
+
+
+def test_over_a_long_run_growth_is_a_slope_and_a_bounded_error_is_flat():
+    t = np.linspace(0, 600, 2000)
+    errors = np.stack([1e-5 * t, 0.08 * np.sin(6 * t)], axis=1)
+    rows = chart(window(t, np.hstack([errors, errors]), repeats=1.0), 60, 14, shown=[0, 1]).text.splitlines()
+    assert [label.strip() for label in rows[-1].split("  ") if label.strip()] == [
+        "1 s",
+        "5 s",
+        "20 s",
+        "1 min",
+        "5 min",
+    ]
+    heights = {}
+    for column in range(8, 50):
+        dots = [row for row, line in enumerate(rows[:-2]) if len(line) > column and "\u2800" < line[column] <= "\u28ff"]
+        heights[column] = (min(dots), max(dots))
+    bounded = {top for top, _ in heights.values()}
+    growing = [bottom for _, bottom in heights.values()]
+    assert len(bounded) == 1
+    assert growing == sorted(growing, reverse=True)
+    assert growing[0] - growing[-1] >= 5

@@ -5,7 +5,7 @@ import pytest
 from rich.color import Color, ColorSystem
 
 from engine.methods import METHODS
-from tui.drawing.palette import EXACT, FAINT, FRAME, NOBODY, PALETTES, TEXT, WARN, mark, palette
+from tui.drawing.palette import EXACT, FAINT, FRAME, GOOD, NOBODY, PALETTES, QUIET, TEXT, WARN, mark, palette
 
 # Machado, Oliveira & Fernandes, IEEE Trans. Vis. Comput. Graph. 15 (2009) 1291: what the colour blind see, linear RGB.
 SIGHT = {
@@ -77,13 +77,13 @@ def test_methods_are_told_apart_by_the_colour_blind(theme, apart, all_apart):
 @THEMES
 def test_text_has_the_contrast_required_by_wcag(theme):
     colours = PALETTES[theme]
-    for owner in (*range(len(METHODS)), EXACT, TEXT, WARN):
+    for owner in (*range(len(METHODS)), EXACT, TEXT, WARN, QUIET, GOOD):
         assert contrast(colours.colour(owner), colours.background) >= 4.5
 
 
 def test_in_high_contrast_text_meets_the_strictest_level_of_wcag():
     colours = PALETTES["high-contrast"]
-    for owner in (*range(len(METHODS)), EXACT, FRAME, TEXT, WARN):
+    for owner in (*range(len(METHODS)), EXACT, FRAME, TEXT, WARN, QUIET, GOOD):
         assert contrast(colours.colour(owner), colours.background) >= 7
 
 

@@ -15,11 +15,11 @@ from tests.tui.pty_lab import PtyLab
 from tests.tui.terminal.test_lab_terminal import PENDU
 from tui.drawing.faults import LOG, sentence
 from tui.playback.live import Live
+from tui.screens.dialogs.start_form import StartForm
+from tui.screens.dialogs.text import TextScreen
 from tui.screens.insight_line import InsightLine
 from tui.screens.key_line import KeyLine
 from tui.screens.live import LiveScreen
-from tui.screens.start_form import StartForm
-from tui.screens.text import TextScreen
 from tui.views.accuracy.pane import AccuracyPane
 from tui.views.lab.error_table import ErrorTable
 from tui.views.lab.event_list import EventList
@@ -146,7 +146,7 @@ async def test_a_worker_of_any_pane_that_fails_is_told(faults):
 
 async def test_a_dialog_whose_handler_fails_stays_and_can_be_closed(faults, monkeypatch):
     async with lab() as theatre:
-        monkeypatch.setattr("tui.screens.start_form.scene_from", broken)
+        monkeypatch.setattr("tui.screens.dialogs.start_form.scene_from", broken)
         await theatre.press("i", "1")
         form = theatre.app.screen
         assert isinstance(form, StartForm)
@@ -180,7 +180,7 @@ async def test_a_dialog_that_cannot_be_composed_can_be_closed(faults, monkeypatc
     faults.clear()
 
 
-@pytest.mark.parametrize(("key", "action"), [("t", "trails"), ("question_mark", "help"), ("v", "view")])
+@pytest.mark.parametrize(("key", "action"), [("X", "alone"), ("question_mark", "help"), ("v", "view")])
 async def test_a_key_that_fails_is_told(faults, monkeypatch, key, action):
     monkeypatch.setattr(LiveScreen, f"action_{action}", broken)
     async with lab() as theatre:

@@ -4,20 +4,21 @@ import math
 
 import pytest
 
+from engine.methods import USUAL_CAST
 from engine.scenes import DEFAULT_SCENE, SCENES
 from recordings.live_recorder import LiveRecorder
 from recordings.verify import verify
 from tests.tui.harness import lab, on_stage
 from tui.playback.live import Live
 from tui.playback.shown import QUANTITIES, WINDOWS
+from tui.screens.dialogs.start_form import StartForm
+from tui.screens.dialogs.text import TextScreen, help_text
 from tui.screens.keys import COMMON, LIVE
 from tui.screens.live import LiveScreen
-from tui.screens.start_form import StartForm
 from tui.screens.status_line import StatusLine
-from tui.screens.text import TextScreen, help_text
 from tui.views.lab.error_table import ErrorTable
-from tui.views.lab.pendulums import Pendulum
 from tui.views.lab.time_chart import TimeChart
+from tui.views.lab.view import LabView
 
 
 async def test_time_space_pauses_and_goes_on_full_stop_and_comma_step():
@@ -116,29 +117,29 @@ async def test_a_run_that_another_start_replaced_is_brought_back_where_it_was_an
 async def test_what_is_shown_digits_t_y_e_and_w():
     async with lab() as theatre:
         await theatre.run(2)
-        panes = list(theatre.stage.query("#pendulums Pendulum").results(Pendulum))
+        panes = theatre.stage.query_one(LabView).pendulums
         await theatre.press("1")
         await theatre.pilot.pause()
-        assert [pane.display for pane in panes] == [False, True, True, True, False, False]
+        assert [pane.is_on_screen for pane in panes] == [False, True, True, True, False, False]
         assert "Explicit" not in theatre.text(ErrorTable)
         await theatre.press("1", "5")
         assert theatre.stage.shown.exact
-        dotted = panes[0].text
+        dotted = panes[1].text
         await theatre.press("5")
-        assert panes[0].text != dotted
-        with_trails = panes[0].text
+        assert panes[1].text != dotted
+        with_trails = panes[1].text
         await theatre.press("t")
-        assert len(panes[0].text.split()) < len(with_trails.split())
+        assert len(panes[1].text.split()) < len(with_trails.split())
 
         chart = theatre.stage.query_one(TimeChart)
         titles = [chart.border_title]
         for _ in QUANTITIES:
             await theatre.press("e")
             titles.append(chart.border_title)
-        assert titles[0] == titles[-1] == "max |dE/E0| per half swing, 20 s"
+        assert titles[0] == titles[-1] == "max |dE/E0| per half swing, all"
         assert len(set(titles)) == len(QUANTITIES)
         await theatre.press("y")
-        assert chart.border_title == "energy error dE/E0, 20 s"
+        assert chart.border_title == "energy error dE/E0, all"
         spans = set()
         for _ in WINDOWS:
             await theatre.press("w")
@@ -147,6 +148,44 @@ async def test_what_is_shown_digits_t_y_e_and_w():
         before = theatre.stage.shown
         await theatre.press("w", "W")
         assert theatre.stage.shown == before
+
+
+async def test_capital_x_shows_one_method_alone_and_then_all_and_next_time_the_next_one():
+    async with lab() as theatre:
+        seen = []
+        for _ in range(5):
+            await theatre.press("X")
+            seen.append("".join(USUAL_CAST[at].letter for at in theatre.stage.shown.places(USUAL_CAST)))
+        assert seen == ["e", "esvr", "s", "esvr", "v"]
+        await theatre.press("u")
+        assert theatre.stage.shown.places(USUAL_CAST) == [0, 1, 2, 3]
+
+
+async def test_a_click_on_a_row_or_a_pendulum_shows_that_method_alone_and_another_one_all():
+    async with lab() as theatre:
+        await theatre.run(1)
+        for widget, offset in ((ErrorTable, (5, 3)), (theatre.stage.query_one(LabView).pendulums[2], (9, 5))):
+            await theatre.pilot.click(widget, offset=offset)
+            await theatre.run(0.1)
+            assert theatre.stage.shown.places(USUAL_CAST) == [2]
+            assert [line[:3] for line in theatre.text(ErrorTable).splitlines()[1:]] == ["3 v"]
+            await theatre.pilot.click(ErrorTable, offset=(5, 1))
+            await theatre.run(0.1)
+            assert theatre.stage.shown.places(USUAL_CAST) == [0, 1, 2, 3]
+
+
+async def test_capital_o_puts_all_pendulums_on_one_pivot():
+    async with lab() as theatre:
+        view = theatre.stage.query_one(LabView)
+        await theatre.press("O")
+        await theatre.run(3)
+        assert not any(pane.is_on_screen for pane in view.pendulums)
+        assert view.overlay.is_on_screen
+        for method in USUAL_CAST:
+            assert method.letter in view.overlay.text
+        await theatre.press("O")
+        await theatre.run(0.1)
+        assert not view.overlay.is_on_screen
 
 
 async def test_the_form_takes_radians_and_degrees_and_starts_with_enter():
@@ -208,12 +247,28 @@ async def test_a_click_on_the_key_line_does_what_the_key_does():
         row = theatre.text("KeyLine")
         for label, check in (
             ("Pause", lambda: theatre.source.playhead.paused),
-            ("Faster", lambda: theatre.source.playhead.speed == 2),
+            ("Larger h", lambda: theatre.source.stepping.h == 0.1),
         ):
             assert not check()
             await theatre.pilot.click("KeyLine", offset=(row.index(label) + 1, 0))
             await theatre.pilot.pause()
             assert check()
+
+
+async def test_a_click_on_the_chart_the_events_or_the_title_of_phase_space_does_what_their_keys_do():
+    async with lab() as theatre:
+        await theatre.run(1)
+        await theatre.pilot.click(TimeChart, offset=(20, 5))
+        await theatre.run(0.1)
+        assert theatre.stage.shown.quantity == QUANTITIES[1]
+        await theatre.pilot.click("EventList", offset=(5, 2))
+        await theatre.pilot.pause()
+        assert theatre.app.screen.text_title == "Events"
+        await theatre.press("escape")
+        run = theatre.source.sample.run
+        await theatre.pilot.click("PhasePane", offset=(5, 0))
+        await theatre.pilot.pause()
+        assert (theatre.stage.view, theatre.source.sample.run) == ("phase", run)
 
 
 def test_the_help_names_every_key():

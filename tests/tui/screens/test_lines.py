@@ -5,8 +5,9 @@ from dataclasses import replace
 import pytest
 
 from engine.run.stepping import Stepping
-from engine.scenes import DEFAULT_SCENE
+from engine.scenes import DEFAULT_SCENE, SCENES
 from tests.tui.harness import after, eventful
+from tui.drawing.palette import GOOD, WARN
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.playhead import Pace, Playhead
@@ -19,6 +20,7 @@ from tui.screens.keys import COMMON, LIVE, hinted
 from tui.screens.seek_bar import bar, facts
 from tui.screens.status_line import speed_text, status_row
 from tui.views.lab.error_table import table
+from tui.views.phase import pane as phase
 
 
 def text(row) -> str:
@@ -107,11 +109,39 @@ def rows(live: Live, width: int, shown: Shown | None = None) -> str:
 def test_the_table_at_80_columns_has_every_column():
     assert rows(lab(), 80) == (
         "method                theta  omega    dE/E0 largest    per s   verdict  th.err f\n"
-        "1 e Explicit Euler   -30.53 -7.643 +6.3e+00 6.6e+00 +5.4e-01     grows 3.0e+01 1\n"
-        "2 s Symplectic Euler -0.719 +1.885 -6.8e-02 7.9e-02        - too early 5.9e-02 1\n"
+        "1 e Explicit Euler   -30.53 -7.643     x7.3   665 % +5.4e-01   + grows 3.0e+01 1\n"
+        "2 s Symplectic Euler -0.719 +1.885   -6.8 %   7.9 %        - too early 5.9e-02 1\n"
         "3 v Velocity Verlet  -0.758 +1.904 -1.7e-03 5.7e-03        - too early 2.0e-02 1\n"
-        "4 r RK4              -0.778 +1.835 -3.6e-05 3.6e-05 -2.9e-06     loses 3.1e-05 4"
+        "4 r RK4              -0.778 +1.835 -3.6e-05 3.6e-05 -2.9e-06   - loses 3.1e-05 4"
     )
+
+
+def test_errors_from_1_percent_on_are_in_percent_or_in_powers_of_ten():
+    usual, powers = (rows(lab(), 80, Shown(percent=percent)).splitlines() for percent in (True, False))
+    assert usual[1].split()[6:9] == ["x7.3", "665", "%"]
+    assert powers[1].split()[6:8] == ["+6.3e+00", "6.6e+00"]
+    assert usual[4] == powers[4]
+
+
+def test_where_there_is_room_an_angle_beyond_a_turn_is_told_in_turns_and_the_rest():
+    assert "-5 t +0.89" in rows(lab(), 120)
+
+
+def test_a_verdict_has_a_colour_and_a_sign():
+    live = lab(20.0)
+    shown = table(live.scene.cast, live.sample, live.judgements, live.exact.at(20.0), live.stepping.own, Shown(), 80)
+    verdicts = ("+ grows", "= bounded", "- loses")
+    found = {words.strip(): owner for row in shown[1:] for words, owner in row if words.strip() in verdicts}
+    assert found == {"+ grows": WARN, "= bounded": GOOD, "- loses": WARN}
+
+
+def test_where_steps_are_slow_the_status_line_says_when_the_next_one_is_due():
+    live = after(SCENES["verlet-limit"], 2.5)
+    assert live.next_step == pytest.approx(2 * 1.98 - 2.5)
+    assert "next step in 1 s" in text(status_row(live, 120))
+    live.pause(True)
+    assert "next step" not in text(status_row(live, 120))
+    assert "next step" not in text(status_row(lab(), 120))
 
 
 def test_a_wide_table_has_units_and_more_digits():
@@ -126,7 +156,7 @@ def test_a_wide_table_has_units_and_more_digits():
         "RK4",
         "-0.77844",
         "+1.83535",
-        *["-3.6e-05", "3.6e-05", "-2.9e-06", "loses", "3.1e-05", "4"],
+        *["-3.6e-05", "3.6e-05", "-2.9e-06", "-", "loses", "3.1e-05", "4"],
     ]
 
 
@@ -182,6 +212,16 @@ def test_a_sentence_that_does_not_fit_ends_in_an_ellipsis():
 def test_the_key_line_shows_whole_hints_each_a_button():
     keys = hinted((*LIVE, *COMMON))
     row, places = key_row(keys, 60)
-    assert text(row) == " space Pause  + Larger h  i Edit  p Scene  ? Help  q Quit"
+    assert text(row) == " F2 Lab  F3 Phase  F4 Accuracy  F5 Stability  space Pause"
     for first, end, action in places:
         assert action in [key.action for key in keys if f" {key.shown} {key.hint} " == (text(row) + " ")[first:end]]
+
+
+def test_the_key_line_is_about_the_view_in_front_and_always_leads_to_the_others():
+    panes = phase.KEYS
+    lab_line, phase_line = (text(key_row(hinted((*LIVE, *COMMON), view, panes), 120)[0]) for view in ("lab", "phase"))
+    for line in (lab_line, phase_line):
+        assert line.startswith(" F2 Lab  F3 Phase  F4 Accuracy  F5 Stability  space Pause  ? Help ")
+    assert "o Overview" in phase_line
+    assert "o Overview" not in lab_line
+    assert not {"Log", "Quantity", "Window"} & set(phase_line.split())

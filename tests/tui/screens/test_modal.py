@@ -12,9 +12,9 @@ from textual.widgets._toast import Toast
 from engine.scenes import DEFAULT_SCENE
 from tests.tui.harness import lab, on_stage
 from tui.playback.live import Live
+from tui.screens.dialogs.modal import Commands
+from tui.screens.dialogs.text import TextScreen
 from tui.screens.live import LiveScreen
-from tui.screens.modal import Commands
-from tui.screens.text import TextScreen
 
 
 async def opened(theatre) -> TextScreen:

@@ -14,12 +14,12 @@ from tui.cli.errors import UserError
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
+from tui.screens.dialogs.text import help_text
 from tui.screens.keys import COMMON, REPLAY
 from tui.screens.live import LiveScreen
 from tui.screens.replay import NO_LENGTH, ReplayScreen
 from tui.screens.seek_bar import SeekBar
 from tui.screens.status_line import StatusLine
-from tui.screens.text import help_text
 from tui.views.lab.event_list import EventList
 
 
@@ -101,7 +101,7 @@ async def test_a_click_and_a_drag_on_the_bar_go_there(path):
         await theatre.pilot.mouse_down(SeekBar, offset=(half, 0))
         await theatre.pilot.pause()
         assert replay.playhead.position == pytest.approx(6, abs=cell)
-        await theatre.pilot.hover("#pendulums", offset=(1 + bar._columns // 4, 3))  # far off the bar
+        await theatre.pilot.hover("Stage", offset=(1 + bar._columns // 4, 3))  # far off the bar
         await theatre.pilot.pause()
         assert replay.playhead.position == pytest.approx(3, abs=cell)
         await theatre.pilot.hover("KeyLine", offset=(119, 0))

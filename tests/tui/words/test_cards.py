@@ -7,13 +7,13 @@ from engine.run.stepping import Stepping
 from engine.scenes import SCENES
 from tests.tui.harness import lab
 from tui.playback.live import Live
+from tui.screens.dialogs.text import help_text
 from tui.screens.keys import COMMON, LIVE, REPLAY
-from tui.screens.text import help_text
 from tui.views.accuracy import pane as accuracy
 from tui.views.phase import pane as phase
 from tui.views.phase.pane import PhasePane
 from tui.views.stability import pane as stability
-from tui.words.cards import WIDTH, method_card, scene_card
+from tui.words.cards import WIDTH, glossary, method_card, scene_card
 
 
 def words(card: str) -> str:
@@ -51,9 +51,10 @@ def test_lines_fit_the_text_screen():
         assert max(map(len, help_text(keys, Live(SCENES["drift"])).splitlines())) <= WIDTH
 
 
-def test_the_help_begins_with_what_to_watch_and_ends_with_the_methods():
+def test_the_help_begins_with_the_glossary_and_what_to_watch_and_ends_with_the_methods():
     text = help_text((*LIVE, *COMMON), Live(SCENES["drift"]))
-    assert text.startswith(scene_card(SCENES["drift"]))
+    assert text.startswith(glossary())
+    assert text.index(glossary()) < text.index(scene_card(SCENES["drift"])) < text.index("Time\n")
     assert text.endswith(method_card(USUAL_CAST[-1]))
     assert text.index("Time\n") < text.index("Display\n") < text.index(METHODS[0].formula)
 
@@ -80,6 +81,12 @@ async def test_the_help_begins_with_the_keys_of_the_focused_pane():
                 theatre.stage.query_one(pane).focus()
             await theatre.press("question_mark")
             groups = [part.partition("\n")[0] for part in theatre.app.screen.text.split("\n\n")]
-            assert groups[1] == first
+            assert groups[2] == first
             assert {"Run", "Time", "Display", "Program"} < set(groups)
             await theatre.press("escape")
+
+
+def test_the_glossary_explains_every_sign_of_a_verdict_that_ends_well_or_badly():
+    for words in ("h ", "z ", "dE/E0", "E/Es", "= bounded", "+ grows", "- loses", "! chaotic", "too early", "colours"):
+        assert f"\n  {words}" in glossary()
+    assert max(map(len, glossary().splitlines())) <= WIDTH

@@ -1,10 +1,13 @@
 """The list of events: inputs and milestones, in order and with their times."""
 
+from typing import get_args
+
 import pytest
 
-from engine.methods import RK4
+from engine.methods import USUAL_CAST
 from engine.run.observer import Milestone
 from engine.run.stepping import Stepping
+from engine.run.verdict import Verdict
 from engine.scenes import SCENES
 from recordings.recording import Recording
 from tests.tui.harness import after, recorded
@@ -69,8 +72,15 @@ def test_where_there_are_several_runs_each_event_has_the_number_of_its_own():
 
 
 def test_over_the_top_with_almost_the_energy_of_the_start_the_excess_is_told():
-    milestone = Milestone("over the top", RK4, 10, 0.5, 0.0034)
+    milestone = Milestone("over the top", USUAL_CAST[3], 10, 0.5, 0.0034)
     assert milestone_text(milestone) == "RK4 over the top, +0.34 %"
+
+
+def test_every_verdict_has_words():
+    for verdict in get_args(Verdict):
+        if verdict != "too early":
+            milestone = Milestone("verdict", USUAL_CAST[3], 10, 0.5, 0.0, verdict)
+            assert milestone_text(milestone).startswith("RK4 ")
 
 
 def test_marks_next_to_a_recording_have_the_time_of_their_step(tmp_path):

@@ -29,8 +29,8 @@ KEYS = (
     Key("right", "", "", "move(1)", _GROUP),
     Key("up", "", "", "method(-1)", _GROUP),
     Key("down", "", "", "method(1)", _GROUP),
-    Key("enter", "enter", "use the h of the cursor's point", "choose", _GROUP),
-    Key("tab", "tab", "the next method in words", "method(1)", _GROUP),
+    Key("enter", "enter", "use the h of the cursor's point", "choose", _GROUP, "Take it"),
+    Key("tab", "tab", "the next method in words", "method(1)", _GROUP, "Next method"),
     Key("escape", "esc", "leave the cursor", "cancel", _GROUP),
 )
 

@@ -4,16 +4,19 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from textual import events
+
 from engine.methods import Cast, Method
 from engine.models.model import State
 from engine.run.lockstep import Reading, Sample
 from engine.run.verdict import Judgement
 from tui.drawing.cells import Row
-from tui.drawing.palette import FRAME, TEXT, WARN, mark, series
+from tui.drawing.palette import GOOD, QUIET, TEXT, WARN, mark, series
 from tui.playback.shown import Shown
 from tui.playback.source import Source
+from tui.views.messages import MethodChosen
 from tui.views.view import Pane
-from tui.words.numbers import decimal, scientific
+from tui.words.numbers import angle, decimal, relative, scientific
 
 
 class TableLine(NamedTuple):
@@ -24,6 +27,7 @@ class TableLine(NamedTuple):
     judgement: Judgement
     exact: State
     h: float  # s, its own step size
+    percent: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +43,7 @@ class Column:
 COLUMNS = (
     Column(9, ("h", 6), ("h [s]", 8), lambda line, width: f"{line.h:.4g}"[:width].rjust(width)),
     Column(
-        4, ("theta", 6), ("theta [rad]", 11), lambda line, width: decimal(line.reading.theta, width, max(width - 6, 3))
+        4, ("theta", 6), ("theta [rad]", 11), lambda line, width: angle(line.reading.theta, width, max(width - 6, 3))
     ),
     Column(
         2,
@@ -47,12 +51,17 @@ COLUMNS = (
         ("omega [rad/s]", 13),
         lambda line, width: decimal(line.reading.omega, width, max(width - 8, 3)),
     ),
-    Column(7, ("dE/E0", 8), ("dE/E0 now", 9), lambda line, width: scientific(line.reading.energy_error, width)),
+    Column(7, ("dE/E0", 8), ("dE/E0 now", 9), lambda line, width: share(line, line.reading.energy_error, width)),
     Column(
-        6, ("largest", 7), ("largest", 8), lambda line, width: scientific(line.reading.max_energy_error, width, 1, "-")
+        6,
+        ("largest", 7),
+        ("largest", 8),
+        lambda line, width: share(line, line.reading.max_energy_error, width, "-"),
     ),
     Column(5, ("per s", 8), ("trend per s", 11), lambda line, width: scientific(line.judgement.trend, width)),
-    Column(8, ("verdict", 9), ("verdict", 9), lambda line, width: verdict(line).rjust(width)),
+    Column(
+        8, ("verdict", 9), ("verdict", 9), lambda line, width: verdict_of(line.reading, line.judgement).rjust(width)
+    ),
     Column(3, ("th.err", 7), ("theta error", 11), lambda line, width: scientific(theta_error(line), width, 1, "-")),
     Column(1, ("f", 1), ("evals/step", 10), lambda line, width: str(line.method.force_evaluations).rjust(width)),
 )
@@ -60,14 +69,29 @@ NAME = 20  # columns of the longest name and its mark
 MOST_GAP = 3
 
 
+def share(line: TableLine, value: float, width: int, sign: str = "+") -> str:
+    """An energy error, relative to the start's energy."""
+    return relative(value, width, sign) if line.percent else scientific(value, width, 1, sign)
+
+
 def theta_error(line: TableLine) -> float:
     """|theta - exact theta| [rad]."""
     return abs(line.reading.theta - line.exact.theta)
 
 
-def verdict(line: TableLine) -> str:
-    """The verdict in a word; "failed" for a method that has diverged."""
-    return "failed" if line.reading.diverged_at is not None else line.judgement.verdict
+SIGNS = {"bounded": "=", "grows": "+", "loses": "-", "caught": "=", "chaotic": "!", "wanders": "~", "failed": "!"}
+"""Before a verdict, so that its colour is not alone."""
+
+
+def verdict_of(reading: Reading, judgement: Judgement) -> str:
+    """The verdict in a word after its sign, as "+ grows"; "failed" for a method that has diverged."""
+    word = "failed" if reading.diverged_at is not None else judgement.verdict
+    return f"{SIGNS.get(word, '')} {word}".strip()
+
+
+def owner_of(text: str) -> int:
+    """Whose colour a verdict has."""
+    return GOOD if text.startswith("=") else WARN if text[:1] in "+-!~" else QUIET
 
 
 def chosen(columns: Sequence[Column], room: int) -> list[tuple[str, int, Callable[[TableLine, int], str]]]:
@@ -93,14 +117,17 @@ def table(
     columns = chosen(COLUMNS[len(set(h)) == 1 :], width - NAME)
     spare = width - NAME - sum(size + 1 for _, size, _ in columns)
     gap = " " * (1 + min(spare // max(len(columns), 1), MOST_GAP))
-    rows: list[Row] = [[("method".ljust(NAME), FRAME), *((gap + head.rjust(size), FRAME) for head, size, _ in columns)]]
+    rows: list[Row] = [[("method".ljust(NAME), QUIET), *((gap + head.rjust(size), QUIET) for head, size, _ in columns)]]
     for place in shown.places(cast):
         method = cast[place]
-        line = TableLine(method, sample.readings[place], judgements[place], exact, h[place])
+        line = TableLine(method, sample.readings[place], judgements[place], exact, h[place], shown.percent)
         failed = line.reading.diverged_at is not None
-        cells = "".join(gap + cell(line, size) for _, size, cell in columns)
         name = f"{mark(place, method)} {method.label}"[:NAME].ljust(NAME)
-        rows.append([(name, series(method)), (cells, WARN if failed else TEXT)])
+        rows.append([(name, series(method))])
+        for head, size, cell in columns:
+            text = gap + cell(line, size)
+            owner = owner_of(text.strip()) if head == "verdict" else WARN if failed else TEXT
+            rows[-1] = [*rows[-1], (text, owner)]
     return rows
 
 
@@ -116,3 +143,8 @@ class ErrorTable(Pane):
             self._rows_shown = len(rows)
             self.styles.height = len(rows)  # hidden methods leave no gap
         self.show(rows)
+
+    def on_click(self, event: events.Click) -> None:
+        """Show the method of this row alone, or all again."""
+        if 0 < event.y <= len(self.places):
+            self.post_message(MethodChosen(self.places[event.y - 1]))

@@ -13,17 +13,19 @@ from tui.drawing.cells import Row
 from tui.drawing.palette import mark, series
 from tui.playback.shown import Shown
 from tui.playback.source import Source
+from tui.views.lab.error_table import verdict_of
 from tui.views.view import Pane
-from tui.words.numbers import scientific
+from tui.words.numbers import relative
 
 DIGITS = 8  # of an energy error
 HEIGHT = 3  # rows of large digits
-CELL = 4 * DIGITS + 2  # columns that a method needs
+CELL = 40  # columns that a method needs: its digits, and what they are
+OFTEN = 0.5  # s of the clock between two changes, so that a class can read them
 
 
 def large(text: str) -> list[str]:
     """A number as three rows, four columns a character."""
-    digits = [list(Digits(character.upper()).render(Style(bold=True)))[::2] for character in text]
+    digits = [list(Digits(character.replace("e", "E")).render(Style(bold=True)))[::2] for character in text]
     return [" ".join(segment.text.ljust(3) for segment in row) for row in zip(*digits, strict=True)]
 
 
@@ -43,17 +45,35 @@ def large_rows(cast: Cast, sample: Sample, judgements: Sequence[Judgement], show
     return rows
 
 
+def labelled(value: float) -> tuple[str, str]:
+    """The number that is shown large, and what it is: "+3.3", "% dE/E0"; "x6.7", "E0"."""
+    text = relative(value, DIGITS).strip()
+    if text.endswith("%"):
+        return text[:-2], "% dE/E0"
+    return text, "E0" if text.startswith("x") else "dE/E0"
+
+
 def _cell(place: int, method: Method, reading: Reading, judgement: Judgement, width: int) -> list[tuple[str, int]]:
-    verdict = "failed" if reading.diverged_at is not None else judgement.verdict
-    title = f" {mark(place, method)} {method.label}: {verdict}"
-    lines = [title, *(f" {row}" for row in large(scientific(reading.energy_error, DIGITS)))]
+    verdict = verdict_of(reading, judgement)
+    number, what = labelled(reading.energy_error)
+    *upper, last = large(number)
+    lines = [f" {mark(place, method)} {method.label}: {verdict}", *(f" {row}" for row in upper), f" {last} {what}"]
     return [(line.ljust(width), series(method)) for line in lines]
 
 
 class LargeTable(Pane):
     """Takes as many rows as it needs."""
 
+    _changed: float | None = None  # s, the clock
+
+    def watch_sample(self) -> None:
+        now = self.source.playhead.seen if self.source is not None else None
+        recent = now is not None and self._changed is not None and 0 <= now - self._changed < OFTEN
+        if not recent or (self.source is not None and self.source.playhead.paused):
+            self.draw()
+
     def paint(self, source: Source, sample: Sample) -> None:
+        self._changed = source.playhead.seen
         rows = large_rows(self.cast, sample, source.judgements, self.shown, self.room.width)
         self.styles.height = len(rows)
         self.show(rows)

@@ -1,19 +1,22 @@
 """Pendulum: one method's pendulum, or all on one pivot, in braille.
 
-Dots are square in a cell twice as high as wide, so x and y have the same physical scale.  The
-pivot is exactly in the middle: explicit Euler goes over the top.
+Dots are square in a cell twice as high as wide, so x and y have the same physical scale.  The pivot is exactly in
+the middle, since explicit Euler goes over the top; where no method can, it is at the top and the rods are longer.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import cos, sin
+from math import cos, pi, sin
 
 from engine.run.lockstep import Sample
 from tui.drawing.palette import EXACT, FRAME, faint, mark, series
 from tui.drawing.sketch import Sketch
 from tui.playback.source import Source
+from tui.views.lab.reach import reach
+from tui.views.messages import MethodChosen
 from tui.views.view import Pane
 
+TOP = 4  # dots between the edge and a pivot at the top
 TRAIL = 15  # samples, half a second at 30 frames a second
 
 
@@ -29,11 +32,17 @@ class Bob:
     diverged: bool = False  # its numbers ended here: crossed out
 
 
-def pendulum_sketch(columns: int, rows: int, bobs: Sequence[Bob]) -> Sketch:
-    """Pendulums on one pivot, in the middle of `columns` × `rows` cells; later ones in front."""
+def pendulum_sketch(columns: int, rows: int, bobs: Sequence[Bob], reach: float = pi) -> Sketch:
+    """Pendulums on one pivot in `columns` × `rows` cells; later ones in front.
+
+    The pivot is in the middle, or at the top if they stay within a `reach` [rad] of a quarter turn.
+    """
     sketch = Sketch(columns, rows)
     x0, y0 = sketch.width / 2, sketch.height / 2
     room = min(x0, y0)
+    if reach <= pi / 2:
+        y0 = float(TOP)
+        room = min(sketch.height - y0, x0 / sin(reach))
     bob_radius = min(max(room / 9, 1.5), 3.0)
     room_for_letters = 4 if any(bob.letter for bob in bobs) else 0
     length = max(room - bob_radius - room_for_letters, 1.0)  # of the rod, in dots
@@ -65,10 +74,17 @@ class Pendulum(Pane):
         super().__init__(id)
         self._place = place
         self._title = ""
+        if place is None:
+            self.border_subtitle = "dotted: exact"
+
+    def on_click(self) -> None:
+        """Show this method alone, or all again."""
+        if self._place is not None:
+            self.post_message(MethodChosen(self._place))
 
     def _retitle(self) -> None:
         place = self._place
-        title = "Pendulums" if place is None else f"{mark(place, self.cast[place])} {self.cast[place].label}"
+        title = "Pendulums (O)" if place is None else f"{mark(place, self.cast[place])} {self.cast[place].label}"
         if title != self._title:  # setting it paints all of the pane
             self.border_title = self._title = title
 
@@ -78,7 +94,7 @@ class Pendulum(Pane):
         self._retitle()
         length = TRAIL if self.shown.trails else 0
         bobs = []
-        if self.shown.exact:
+        if self.shown.exact or self._place is None:
             bobs.append(Bob(source.exact.at(sample.t).theta, EXACT, ghost=True))
         for place in self.places if self._place is None else [self._place]:
             reading, method = sample.readings[place], self.cast[place]
@@ -91,4 +107,4 @@ class Pendulum(Pane):
                     diverged=reading.diverged_at is not None,
                 )
             )
-        self.show_sketch(pendulum_sketch(*self.room, bobs))
+        self.show_sketch(pendulum_sketch(*self.room, bobs, reach(source.scene, source.stepping, sample, self.places)))

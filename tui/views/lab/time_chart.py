@@ -1,6 +1,7 @@
 """TimeChart: a quantity of all methods over time."""
 
 import asyncio
+from dataclasses import replace
 from functools import partial
 
 from textual.content import Content
@@ -10,6 +11,7 @@ from engine.models.model import ExactMotion
 from engine.run.lockstep import Sample
 from tui.playback.shown import Quantity, Shown
 from tui.playback.source import Source
+from tui.views.messages import Asked
 from tui.views.view import Pane
 from tui.words.numbers import about
 
@@ -41,8 +43,10 @@ def title(shown: Shown, exact: ExactMotion) -> str:
 class TimeChart(Pane):
     """Builds the chart in a thread, always from the newest data; samples that come too quickly are skipped."""
 
-    def __init__(self, id: str | None = None) -> None:
+    def __init__(self, id: str | None = None, ahead: int = 0) -> None:
+        """`ahead`: so many quantities after the one that is chosen."""
         super().__init__(id)
+        self._ahead = ahead
         self._wanted = asyncio.Event()
         self._building = False
         self._title = ""
@@ -51,6 +55,15 @@ class TimeChart(Pane):
     def settled(self) -> bool:
         """Whether the chart shows the newest data."""
         return not (self._building or self._wanted.is_set())
+
+    @property
+    def _look(self) -> Shown:
+        """What to show of the source here."""
+        return replace(self.shown, quantity=self.shown.quantity_ahead(self._ahead))
+
+    def on_click(self) -> None:
+        """Show the next quantity."""
+        self.post_message(Asked("quantity"))
 
     def on_mount(self) -> None:
         """Build from the first paint on: plotext takes as long to import as all else takes to paint."""
@@ -61,11 +74,12 @@ class TimeChart(Pane):
 
     def paint(self, source: Source, sample: Sample) -> None:
         self._wanted.set()
-        text = title(self.shown, source.exact)
+        text = title(self._look, source.exact)
         if text != self._title:  # setting it paints all of the pane
             self._title = text
             self.border_title = Content(text)  # as markup, units in brackets would be gone
-            self.border_subtitle = modified_energy_of(self.cast) if self.shown.quantity == "shadow_error" else ""
+            unknown = modified_energy_of(self.cast) if self._look.quantity == "shadow_error" else ""
+            self.border_subtitle = unknown or "e: quantity, w: window, y: log"
 
     async def _build_on_demand(self) -> None:
         from tui.drawing.chart import time_chart  # brings NumPy, which can wait for the first paint
@@ -76,7 +90,7 @@ class TimeChart(Pane):
             if self.source is None or not self.drawable:
                 continue
             self._building = True
-            shown, (width, height) = self.shown, self.room
+            shown, (width, height) = self._look, self.room
             build = partial(time_chart, log=shown.log, seconds=shown.seconds, shown=self.places)
             window = self.source.history.window(shown.seconds)
             try:

@@ -1,72 +1,86 @@
-"""LabView: four pendulums, the chart of their errors, phase space, the events, and the table."""
-
-from collections.abc import Iterator
+"""LabView: the pendulums, the chart of their errors, phase space, the events, and the table."""
 
 from textual.app import ComposeResult
-from textual.containers import Grid, Horizontal
+from textual.geometry import Region, Size
 from textual.widget import Widget
 
 from engine.scenes import MOST_METHODS
-from tui.drawing.faults import Guarded
+from tui.playback.source import Source
 from tui.views.lab.error_table import ErrorTable
 from tui.views.lab.event_list import EventList
 from tui.views.lab.large_table import LargeTable
+from tui.views.lab.layout import CellLayout, places
 from tui.views.lab.pendulums import Pendulum
 from tui.views.lab.time_chart import TimeChart
 from tui.views.phase.pane import KEYS, PhasePane
 from tui.views.view import Box, View
 
 
-class _Row(Guarded, Horizontal):
-    BLANK = True
+class Stage(Box):
+    """What is above the table.  Its size decides which panes there are and how large."""
 
+    def __init__(self, view: "LabView", *panes: Widget) -> None:
+        super().__init__(*panes)
+        self._layout = CellLayout(view.regions)
 
-class _Square(Guarded, Grid):
-    BLANK = True
+    @property
+    def layout(self) -> CellLayout:
+        return self._layout
 
 
 class LabView(View):
-    """The style sheet decides which panes there are and how large, by the size of the terminal."""
+    """Arranges the panes anew when their size, the cast or what is shown of it changes."""
 
     KEYS = KEYS
 
     def __init__(self, id: str | None = None) -> None:
         super().__init__(id)
-        self._laid_out: list[int] | None = None
-
-    def on_mount(self) -> None:
-        super().on_mount()
-        self._lay_out()
+        self._arranged_for: object = None
+        self.pendulums = [Pendulum(place) for place in range(MOST_METHODS)]
+        self.overlay = Pendulum(id="overlay")
+        self.chart, self.second_chart, self.phase = TimeChart(), TimeChart(ahead=1), PhasePane()
+        self.events = EventList()
 
     def compose(self) -> ComposeResult:
-        with _Row():
-            with Box(id="side"):
-                with _Square(id="pendulums"):
-                    yield from self._pendulums()
-                yield EventList().data_bind(View.source, sample=View.sample_10hz)
-            yield self.moving(Pendulum(id="overlay"))
-            with Box(id="charts"):
-                yield TimeChart().data_bind(View.source, View.shown, sample=View.sample_5hz)
-                yield self.moving(PhasePane(), late=True)
+        for pendulum in (*self.pendulums, self.overlay):
+            self.moving(pendulum)
+        for chart in (self.chart, self.second_chart):
+            chart.data_bind(View.source, View.shown, sample=View.sample_5hz)
+        self.moving(self.phase, late=True)
+        self.events.data_bind(View.source, sample=View.sample_10hz)
+        panes = self.overlay, self.events, self.chart, self.second_chart, self.phase
+        yield Stage(self, *self.pendulums, *panes)
         yield ErrorTable().data_bind(View.source, View.shown, sample=View.sample_10hz)
         yield LargeTable().data_bind(View.source, View.shown, sample=View.sample_10hz)
 
-    def _pendulums(self) -> Iterator[Widget]:
-        for place in range(MOST_METHODS):
-            yield self.moving(Pendulum(place))
+    def regions(self, size: Size) -> dict[Widget, Region]:
+        """Where each pane is on a stage of this size.  A method that is hidden leaves its room to the others."""
+        shown = self.shown.places(self.source.scene.cast) if self.source is not None else []
+        found = places(size.width, size.height, len(shown), self.shown.overlay)
+        regions: dict[Widget, Region] = {
+            self.pendulums[place]: region for place, region in zip(shown, found.pendulums, strict=False)
+        }
+        others: dict[Widget, Region | None] = {
+            self.overlay: found.overlay,
+            self.events: found.events,
+            self.chart: found.chart,
+            self.second_chart: found.second_chart,
+            self.phase: found.phase,
+        }
+        return regions | {pane: region for pane, region in others.items() if region is not None}
 
     def watch_shown(self) -> None:
-        self._lay_out()
+        self._arrange()
+
+    def watch_source(self, source: Source | None) -> None:
+        self._arrange()
 
     def watch_sample_10hz(self) -> None:
-        self._lay_out()
+        self._arrange()
 
-    def _lay_out(self) -> None:
-        """A pendulum for each method that is shown: the others leave their room to them."""
+    def _arrange(self) -> None:
+        """Have Textual arrange the stage again, where that would change anything."""
         shown = self.shown.places(self.source.scene.cast) if self.source is not None else []
-        if shown == self._laid_out or not self.is_mounted:
-            return
-        self._laid_out = shown
-        for place, pendulum in enumerate(self.query("#pendulums Pendulum")):
-            pendulum.display = place in shown
-        self.query_one("#pendulums").set_class(len(shown) < 3, "-few").set_class(len(shown) > 4, "-many")
+        if (shown, self.shown.overlay) != self._arranged_for and self.is_mounted:
+            self._arranged_for = shown, self.shown.overlay
+            self.overlay.refresh(layout=True)  # of one pane: Textual forgets what it knows of what is around it

@@ -7,7 +7,7 @@ from engine.phase_space.area import Neighbourhood, Neighbours
 from engine.scenes import Scene
 from tui.drawing.axes import in_pi
 from tui.drawing.canvas import Canvas, Picture, Span
-from tui.drawing.palette import FRAME, TEXT, mark, series
+from tui.drawing.palette import QUIET, TEXT, mark, series
 from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.words.motion import energy_share, motion_text, regime
@@ -24,7 +24,7 @@ def fact_rows(
     heads = ("ln area ratio", "area/area0", "theta error", "dE/E0")[:fit]
     rows: list[list[Span]] = [
         [(_ring_text(source, neighbours)[:width], TEXT)],
-        [(" " * _NAME + "".join(head.rjust(_CELL) for head in heads), FRAME)],
+        [(" " * _NAME + "".join(head.rjust(_CELL) for head in heads), QUIET)],
     ]
     for index in shown.places(source.scene.cast):
         method = source.scene.cast[index]
@@ -56,12 +56,12 @@ def _caption(scene: Scene, exact: ExactMotion, aim: State | None, width: int) ->
     motion = motion_text(scene, exact)
     line = Canvas(width, 1).picture()
     if aim is None:
-        line.write(0, 0, motion, FRAME)
+        line.write(0, 0, motion, QUIET)
         return line
     room = width - len(motion) - 2
     line.write(0, 0, place_text(scene.w0, *aim, room if room >= 60 else width), TEXT)
     if room >= 60:
-        line.write(0, width - len(motion), motion, FRAME)
+        line.write(0, width - len(motion), motion, QUIET)
     return line
 
 

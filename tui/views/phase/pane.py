@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from textual import events
 from textual.binding import BindingType
+from textual.content import Content
 from textual.message import Message
 from textual.reactive import var
 
@@ -12,7 +13,7 @@ from engine.run.lockstep import Sample
 from engine.scenes import SceneError
 from tui.playback.source import Source
 from tui.views.keys import Key, arrows, bindings
-from tui.views.messages import SceneChosen
+from tui.views.messages import Asked, SceneChosen
 from tui.views.phase.viewport import Viewport
 from tui.views.view import Chooser
 
@@ -20,18 +21,19 @@ if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
     from engine.phase_space.area import Neighbourhood, Neighbours
     from tui.drawing.canvas import Picture
 
+TITLE = "Phase space (F3): theta [rad], omega [rad/s]"
 RING_STEPS = 100  # a frame; 52 µs each, so a ring that has to catch up costs 5 ms of a frame at most
 BIG_STEP, _GROUP = 8, "phase space"  # dots
 KEYS = (
     Key("", "tab", "in the lab: to this pane, for its keys", "", _GROUP),
     *arrows(_GROUP, "crosshair", "choose a start", BIG_STEP),
-    Key("enter", "enter", "start at the crosshair", "choose", _GROUP),
+    Key("enter", "enter", "start at the crosshair", "choose", _GROUP, "Start"),
     Key("escape", "esc", "leave the crosshair, cancel a drag", "cancel", _GROUP),
-    Key("z", "z", "zoom in at the crosshair or the pointer", "zoom(0.5)", _GROUP),
+    Key("z", "z", "zoom in at the crosshair or the pointer", "zoom(0.5)", _GROUP, "Zoom"),
     Key("Z,shift+z", "Z", "zoom out", "zoom(2.0)", _GROUP),
-    Key("o", "o", "overview: the whole portrait", "whole", _GROUP),
-    Key("c", "c", "angles within a turn, or unwrapped", "wrap", _GROUP),
-    Key("g", "g", "a ring of neighbours, of another radius", "radius(1)", _GROUP),
+    Key("o", "o", "overview: the whole portrait", "whole", _GROUP, "Overview"),
+    Key("c", "c", "angles within a turn, or unwrapped", "wrap", _GROUP, "Wrap"),
+    Key("g", "g", "a ring of neighbours, of another radius", "radius(1)", _GROUP, "Ring"),
     Key("G,shift+g", "G", "a smaller ring, or none", "radius(-1)", _GROUP),
     Key("", "click, drag", "start there; a drag shows the orbit first", "", _GROUP),
     Key("", "wheel", "zoom at the pointer", "", _GROUP),
@@ -40,10 +42,7 @@ KEYS = (
 
 
 class PhasePane(Chooser[State]):
-    """Click or enter chooses a start; a drag first shows the exact orbit through the pointer.
-
-    The wheel zooms; a drag with a modifier or another button moves the picture.
-    """
+    """Click or enter chooses a start; a drag shows the orbit through the pointer, or with shift moves the picture."""
 
     BINDINGS: ClassVar[list[BindingType]] = bindings(*KEYS)
 
@@ -73,7 +72,8 @@ class PhasePane(Chooser[State]):
         return self.sample is not None and not (self.drawable and self._catching_up)
 
     def watch_source(self) -> None:
-        self.border_title = f"Phase space: theta, omega ({'click: start, ' if self.is_live else ''}wheel: zoom)"
+        self.border_title = Content(TITLE)
+        self.border_subtitle = f"{'click: start, ' if self.is_live else ''}wheel: zoom"
         super().watch_source()
 
     def watch_wrap(self) -> None:
@@ -169,9 +169,9 @@ class PhasePane(Chooser[State]):
     def action_zoom(self, factor: float) -> None:
         """Zoom at the crosshair, which comes to the middle, or at the pointer, or else at the middle."""
         middle = self.viewport.middle
-        if self.cursor is not None:
-            x, y = self.viewport.x(self.cursor.theta), self.viewport.y(self.cursor.omega)
-            self.zoomed = self.viewport.panned(middle[0] - float(x), middle[1] - float(y))
+        if (at := self.cursor) is not None:
+            right, down = middle[0] - float(self.viewport.x(at.theta)), middle[1] - float(self.viewport.y(at.omega))
+            self.zoomed = self.viewport.panned(right, down)
         elif self.pointer is not None:
             middle = 2 * self.pointer[0] + 1, 4 * self.pointer[1] + 2
         self._zoom(factor, *middle)
@@ -193,6 +193,8 @@ class PhasePane(Chooser[State]):
     def on_mouse_down(self, event: events.MouseDown) -> None:
         """Begin to choose a start or, with a modifier or another button, to move the picture."""
         if (cell := self._cell(event)) is None:
+            if event.y == 0:
+                self.post_message(Asked("view('phase')"))
             return
         self.focus(scroll_visible=False)
         self.capture_mouse()
@@ -203,8 +205,7 @@ class PhasePane(Chooser[State]):
             self.draw()
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
-        held = self.aiming or self._panning is not None
-        self.pointer = self._cell(event, clamp=held)
+        self.pointer = self._cell(event, clamp=(held := self.aiming or self._panning is not None))
         if self._panning is not None and self.pointer is not None:
             right, down = self.pointer[0] - self._panning[0], self.pointer[1] - self._panning[1]
             self._panning, self.zoomed = self.pointer, self.viewport.panned(2 * right, 4 * down)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from engine.models.pendulum import separatrix_margin
 from tui.drawing.axes import nice, omega_ticks, theta_ticks
 from tui.drawing.canvas import Canvas, Picture
-from tui.drawing.palette import EXACT, FAINT, FRAME, TEXT
+from tui.drawing.palette import EXACT, FAINT, FRAME, QUIET, TEXT
 from tui.views.phase.viewport import Viewport
 
 Dots = tuple[NDArray[np.intp], NDArray[np.intp]]  # x, y
@@ -173,7 +173,7 @@ def _inside(name: str, region: NDArray[np.bool_], preferred: Sequence[NDArray[np
     middle = rows.mean(), columns.mean() - len(name) / 2 - 1
     for cells in preferred:
         if (place := _nearest(_windows(cells, len(name) + 2), *middle)) is not None:
-            return [(place[1] + 1, place[0], name, FRAME)]
+            return [(place[1] + 1, place[0], name, QUIET)]
     return []
 
 

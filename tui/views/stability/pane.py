@@ -27,8 +27,8 @@ BIG_STEP = 5  # cells of the map
 _GROUP = "stability"
 KEYS = (
     *arrows(_GROUP, "cursor", "choose h and amplitude", BIG_STEP),
-    Key("enter", "enter", "start with the cursor's h and amplitude", "choose", _GROUP),
-    Key("tab", "tab", "the next method in words", "method(1)", _GROUP),
+    Key("enter", "enter", "start with the cursor's h and amplitude", "choose", _GROUP, "Take it"),
+    Key("tab", "tab", "the next method in words", "method(1)", _GROUP, "Next method"),
     Key("escape", "esc", "leave the cursor", "cancel", _GROUP),
     Key("", "click", "start with that h and amplitude", "", _GROUP),
 )

@@ -1,5 +1,6 @@
 """For a projector: large digits and thick lines."""
 
+import itertools
 import textwrap
 
 import pytest
@@ -7,9 +8,8 @@ import pytest
 from tests.tui.harness import lab
 from tui.drawing.cells import PRESENT
 from tui.views.lab.error_table import ErrorTable
-from tui.views.lab.large_table import CELL, DIGITS, HEIGHT, LargeTable, large
+from tui.views.lab.large_table import CELL, HEIGHT, LargeTable, labelled, large
 from tui.views.lab.time_chart import TimeChart
-from tui.words.numbers import scientific
 
 
 def test_a_number_in_large_digits():
@@ -22,7 +22,7 @@ def test_a_number_in_large_digits():
 
 
 def test_all_characters_of_a_number_are_of_one_width_and_differ():
-    seen = [large(character) for character in "0123456789+-.e "]
+    seen = [large(character) for character in "0123456789+-.ex "]
     assert len(set(map(tuple, seen))) == len(seen)
     assert {len(row) for rows in seen for row in rows} == {3}
     assert {len(rows) for rows in seen} == {HEIGHT}
@@ -42,10 +42,12 @@ async def test_presented_the_table_is_large_and_lines_are_thick(columns, lines):
         assert (table.is_on_screen, usual.is_on_screen) == (True, False)
         rows = table.text.splitlines()
         assert table.size.height == len(rows) == lines * (HEIGHT + 1)
-        assert rows[0].startswith(" 1 e Explicit Euler: grows")
-        numbers = [large(scientific(each.energy_error, DIGITS)) for each in theatre.source.sample.readings]
+        assert rows[0].startswith(" 1 e Explicit Euler: + grows")
+        told = [labelled(each.energy_error) for each in theatre.source.sample.readings]
+        assert [what for _, what in told] == ["E0", "% dE/E0", "dE/E0", "dE/E0"]
+        numbers = [large(number) for number, _ in told]
         assert rows[1][: CELL - 1].rstrip() == f" {numbers[0][0]}".rstrip()
-        assert rows[-1].endswith(numbers[3][2].rstrip())
+        assert rows[-1].endswith(f"{numbers[3][2]} dE/E0")
         assert max(map(len, rows)) <= columns
         assert dots(theatre.text(TimeChart)) > 1.5 * dots(thin)
         theatre.app.action_present()
@@ -64,3 +66,15 @@ async def test_without_room_the_table_stays_small():
         await theatre.run(1)
         assert theatre.stage.query_one(ErrorTable).is_on_screen
         assert not theatre.stage.query_one(LargeTable).is_on_screen
+
+
+async def test_large_numbers_change_twice_a_second_at_most():
+    async with lab(size=(120, 40)) as theatre:
+        theatre.app.action_present()
+        await theatre.run(1)
+        seen = []
+        for _ in range(30):
+            await theatre.run(0.1)
+            seen.append(theatre.text(LargeTable))
+        changes = sum(one != other for one, other in itertools.pairwise(seen))
+        assert 4 <= changes <= 6

@@ -9,18 +9,18 @@ from textual.containers import VerticalScroll
 from textual.widgets import Static
 
 from tui.playback.source import Source
+from tui.screens.dialogs.modal import Modal
 from tui.screens.keys import key_list
-from tui.screens.modal import Modal
 from tui.views.keys import Key
-from tui.words.cards import method_card, scene_card
+from tui.words.cards import glossary, method_card, scene_card
 from tui.words.describe import step_text
 
 
 def help_text(keys: Sequence[Key], source: Source) -> str:
-    """What to watch in the scene, the keys by group, and the methods."""
+    """The glossary, what to watch in the scene, the keys by group, and the methods."""
     scene = source.scene
     now = "" if source.stepping.h == scene.h else f"h = {step_text(source)}"
-    return "\n\n".join([scene_card(scene, now), key_list(keys), *map(method_card, scene.cast)])
+    return "\n\n".join([glossary(), scene_card(scene, now), key_list(keys), *map(method_card, scene.cast)])
 
 
 class TextScreen(Modal[None]):

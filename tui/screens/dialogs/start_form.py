@@ -12,7 +12,7 @@ from textual.widgets import Input, Label
 
 from engine.scenes import Scene
 from tui.cli.options import angle, number
-from tui.screens.modal import Modal
+from tui.screens.dialogs.modal import Modal
 
 FIELDS: dict[str, tuple[str, Callable[[str], float]]] = {
     "theta": ("rad, or 115deg", angle),

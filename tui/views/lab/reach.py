@@ -1,0 +1,25 @@
+"""How far from the bottom the pendulums of a run may swing: what stays below the pivot can be drawn larger."""
+
+import math
+from collections.abc import Sequence
+
+from engine.run.lockstep import Sample
+from engine.run.stepping import Stepping
+from engine.scenes import Scene
+
+REACHES = (0.5, 1.2, math.pi / 2)
+"""rad; beyond the last one the pivot has to be in the middle.  So few, that the picture hardly ever changes."""
+
+
+def reach(scene: Scene, stepping: Stepping, sample: Sample, shown: Sequence[int]) -> float:
+    """The first of REACHES that no shown method and no exact motion can leave with its energy so far; pi: none.
+
+    A method that is unstable at its h will need all the room: it gets it at once.  Largest errors only
+    grow during a run, so the pendulums never jump back and forth.
+    """
+    each = [(scene.cast[place], stepping.own[place], sample.readings[place]) for place in shown]
+    if any(abs(h) * scene.w0 > method.linear_limit or now.diverged_at is not None for method, h, now in each):
+        return math.pi
+    energy, reference = scene.equations.energy(), scene.equations.reference(scene.theta, scene.omega)
+    largest = max([0.0, *(now.max_energy_error for _, _, now in each)])
+    return next((angle for angle in REACHES if reference.error(energy((angle, 0.0))) > largest), math.pi)
