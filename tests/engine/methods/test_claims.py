@@ -103,14 +103,14 @@ def test_a_negative_step_undoes_a_step_only_where_reversible(method: Method, the
 @each_method
 def test_on_the_linear_oscillator_it_is_stable_up_to_the_claimed_limit(method: Method) -> None:
     def amplitude(z: float) -> float:
-        theta, omega = travel(method, lambda theta: -theta, (1.0, 0.0), z, 4000)
+        theta, omega = travel(method, lambda theta: -theta, (1.0, 0.0), z, 20_000)
         return math.hypot(theta, omega)
 
-    # Just below the limit the ellipse of a symplectic method is 32 times as long as wide; just above,
-    # the slowest, RK4, grows by 0.7 % a step.
+    # Just below the limit the ellipse of a symplectic method is 32 times as long as wide; just above, BM6 grows by
+    # 0.04 % a step, BM4 by 0.12 %, the next, RK4, by 0.07 %; from 1.0003 times its limit on BM6 is stable again.
     if method.linear_limit:
         assert amplitude(method.linear_limit * 0.999) < 100
-    assert amplitude(method.linear_limit * 1.001 or 0.1) > 1e6
+    assert amplitude(method.linear_limit * 1.0001 or 0.1) > 1e3
 
 
 @each_method
@@ -128,12 +128,12 @@ def test_names_are_unique_and_every_method_says_where_it_comes_from() -> None:
     for field in ("key", "label", "letter", "phases", "formula"):
         assert len({getattr(method, field) for method in METHODS}) == len(METHODS)
     for method in METHODS:
-        assert method.key == method.phases.__name__
+        assert re.fullmatch("[a-z]", method.letter)
         assert method.other_names
-        assert "Hairer, Lubich & Wanner" in method.reference
+        assert re.search(r"\(\d{4}\)", method.reference)
         assert method.phases.__doc__
 
 
 @each_method
 def test_where_a_method_is_used_is_said_with_who_says_so(method: Method) -> None:
-    assert re.fullmatch(r"[^\[\]]+ \[[a-z0-9.]+\.(io|org), [^\[\]]+\]", method.used)
+    assert re.fullmatch(r"[^\[\]]+ \[[a-z0-9.]+\.(io|org|pw|com), [^\[\]]+\]", method.used)

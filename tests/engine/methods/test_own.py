@@ -7,6 +7,8 @@ from multiprocessing import get_context
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from engine.methods import VELOCITY_VERLET
 from engine.methods.examine import load
@@ -146,7 +148,7 @@ WRONG = {
     "an import of nothing": ("import nothing_of_this_name", "raises ModuleNotFoundError"),
     "another name": ("def other(force, phase, h): yield phase", "has no function 'mine'; it has other."),
     "a class": ("class mine: pass", "has no function 'mine'"),
-    "too much text": ("#" * (LONGEST_SOURCE + 1), "use a file of at most 100,000."),
+    "too much text": ("#" * (LONGEST_SOURCE + 1), "use a file of at most 30,000."),
 }  # fmt: skip
 
 
@@ -154,6 +156,11 @@ WRONG = {
 def test_a_wrong_method_gets_one_sentence_that_says_where(wrong: str) -> None:
     source, said = WRONG[wrong]
     assert said in refusal(source)
+
+
+@given(st.text(max_size=40), st.sampled_from(["{}", "def mine(force, phase, h):\n    yield {}"]))
+def test_whatever_the_text_is_there_is_a_sentence(text: str, around: str) -> None:
+    refusal(around.replace("{}", text))
 
 
 def test_whatever_a_wrong_method_shows_of_itself_the_sentence_is_short() -> None:

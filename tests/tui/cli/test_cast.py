@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from engine.methods import EXPLICIT_EULER, METHODS, RK4, SYMPLECTIC_EULER, USUAL_CAST, VELOCITY_VERLET, Cast
 from engine.methods.own import OwnMethod
 from engine.run.lockstep import Lockstep
-from engine.scenes import DEFAULT_SCENE, Scene
+from engine.scenes import DEFAULT_SCENE, MOST_METHODS, Scene
 from tests.tui.command_line import pendu
 from tui.cli import cast as cast_options
 from tui.cli.errors import Exit, UserError
@@ -166,7 +166,7 @@ def test_one_that_never_yields_is_given_up(mine, monkeypatch):
 
 
 def test_more_than_six_are_too_many_for_a_stage(mine):
-    names = [f"m{n}" for n in range(cast_options.MOST_METHODS)]
+    names = [f"m{n}" for n in range(MOST_METHODS)]
     Path("six.py").write_text("".join(MINE.format(name=name) for name in names))
     each = [word for name in names for word in ("--method", f"six.py:{name}")]
     assert pendu("run", "--time", "2", *each).refused(2, "10 methods are too many for one stage; choose at most 6")
@@ -242,3 +242,14 @@ def test_workers_and_this_process_agree_about_ones_own_method(mine):
 @pytest.mark.parametrize("command", ["live", "run", "accuracy", "stability", "methods", "snapshot"])
 def test_the_help_says_whose_rights_the_code_has(command):
     assert "with your rights" in " ".join(pendu(command, "--help").out.split())
+
+
+def test_a_replay_shows_only_the_methods_asked_for(monkeypatch):
+    screens = []
+    monkeypatch.setattr("tui.terminal.check.check_terminal", lambda: None)
+    monkeypatch.setattr("tui.screens.launch.show", lambda screen, options: screens.append(screen) or 0)
+    for words, places in ((("--methods", "rk4,verlet"), [2, 3]), ((), [0, 1, 2, 3])):
+        assert pendu("replay", "drift", *words).code == 0
+        assert screens[-1].shown.places(USUAL_CAST) == places
+        screens[-1].source.close()
+    assert pendu("replay", "drift", "--methods", "rk5").refused(2, "did you mean rk4?")

@@ -24,6 +24,8 @@ examples:
   pendu-tui verify crossover.mcap --methods rk4
 
 A folder means all recordings below it; golden means the bundled ones.
+A recording holds a SHA-256 of all that is in it, which shows what was changed, added or left out later. It proves
+nothing against somebody who recomputes it.
 Exit 0: all are identical; 1: at least one differs or is incomplete (a .part may be); 3: one cannot be read.
 """
 
@@ -68,7 +70,7 @@ def _passes(result: "Verification | RecordingError") -> bool:
     """Whether nothing differs and, except in a .part, nothing is missing."""
     if isinstance(result, RecordingError):
         return False
-    return result.identical and (result.complete or result.file.suffix == PART)
+    return result.identical and result.sealed is not False and (result.complete or result.file.suffix == PART)
 
 
 def _verified(
@@ -100,14 +102,21 @@ def _sentence(result: "Verification") -> str:
     name = printable(str(result.file))
     size = f"{result.samples} samples in {result.runs} run{'s' * (result.runs != 1)}"
     end = "" if result.complete else f"; {result.reason}"
-    sin = "" if result.same_sin else "; within tolerance only: this machine's sin() differs"
+    others = " and ".join(f"{name}()" for name in result.other_functions)
+    notes = f"; within tolerance only: this machine has another {others}" if others else ""
+    notes += "; it has no digest" if result.sealed is None else ""
+    first = result.first_difference
+    where = "" if first is None else f"\n{_where(first)}"
+    if result.sealed is False:
+        numbers = "identical" if first is None else "different"
+        return f"altered     {name}: {size}; {result.reason}; its numbers are {numbers}{notes}{where}"
     if result.identical and not _passes(result):
-        return f"unfinished  {name}: {size}{end}; identical as far as it goes{sin}"
+        return f"unfinished  {name}: {size}{end}; identical as far as it goes{notes}"
     if result.identical:
-        return f"identical   {name}: {size}{end}{sin}"
-    if result.first_difference is None:
+        return f"identical   {name}: {size}{end}{notes}"
+    if first is None:
         return f"damaged     {name}: {size} before it; {result.reason}"
-    return f"different   {name}: {size}{end}{sin}\n{_where(result.first_difference)}"
+    return f"different   {name}: {size}{end}{notes}{where}"
 
 
 def _where(difference: "Difference") -> str:
@@ -123,11 +132,13 @@ def _where(difference: "Difference") -> str:
 def _fields(path: Path, result: "Verification | RecordingError") -> dict[str, Any]:
     if isinstance(result, RecordingError):
         nothing: dict[str, Any] = {"complete": False, "runs": 0, "samples": 0, "same_sin": None, "identical": False}
-        return {"file": str(path), **nothing, "max_difference": None, "first_difference": None, "reason": str(result)}
+        nothing |= dict.fromkeys(("other_functions", "sha256", "digest_matches", "max_difference", "first_difference"))
+        return {"file": str(path), **nothing, "reason": str(result)}
     first = result.first_difference
     return {
         "file": str(path),
-        **fields_of(result, "complete", "runs", "samples", "same_sin", "identical"),
+        **fields_of(result, "complete", "runs", "samples", "same_sin", "identical", "other_functions", "sha256"),
+        "digest_matches": result.sealed,
         "max_difference": result.max_difference if math.isfinite(result.max_difference) else None,
         "first_difference": None if first is None else _difference_fields(first),
         "reason": result.reason,

@@ -51,6 +51,6 @@ def run(options: argparse.Namespace) -> int:
         return launch.print_sentences(replay)
     screen = launch.replay_screen(replay, options.no_record)
     if only is not None:
-        others = frozenset(method.key for method in METHODS if method not in only)
-        screen.shown = replace(screen.shown, hidden=others)
+        hidden = {method.key for method in (*METHODS, *replay.scene.cast) if method not in only}
+        screen.shown = replace(screen.shown, hidden=frozenset(hidden))
     return launch.show(screen, options)

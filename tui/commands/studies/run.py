@@ -59,7 +59,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     scene = scene_of(options)
-    gate = None if options.fail_if is None else parse(options.fail_if, scene.cast)
+    gate = None if options.fail_if is None else parse(options.fail_if, cast=scene.cast)
     from recordings.headless import SAMPLE_EVERY, steps_for
 
     if options.time > LONGEST:
@@ -113,8 +113,7 @@ def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int)
     fitting = loops.plain if options.no_compiled else partial(compiled.tiered, ahead=steps)
     observer = RunObserver(scene, fitting)
     with stop_requests() as stopped, progress(f"{steps:,} steps") as show, recorder as recording:
-        for sample in simulate(scene, options.time, recording, every, loops=fitting):
-            observer.add(sample)
+        for sample in simulate(scene, options.time, recording, every, loops=fitting, observer=observer):
             show(sample.step, steps)
             if stopped() and sample.step < steps:
                 return sample, observer, True
