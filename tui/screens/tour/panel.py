@@ -5,7 +5,7 @@ import textwrap
 from rich.style import Style
 
 from tui.drawing.cells import CellWidget, Row
-from tui.drawing.palette import EXACT, FRAME, TEXT, WARN
+from tui.drawing.palette import EXACT, TEXT, WARN
 from tui.screens.key_line import KeyLine
 from tui.words.tour.guide import Guide
 
@@ -15,7 +15,7 @@ TITLE = -10
 
 def tour_rows(title: str, keys: str, said: tuple[str, ...], width: int, height: int) -> list[Row]:
     """The title line, and the sentences each on lines of its own, the last of them in full."""
-    heads = [(f" {title} ", TITLE), ("  ", TEXT), (keys[: max(width - len(title) - 4, 0)], FRAME)]
+    heads = [(f" {title} ", TITLE), ("  ", TEXT), (keys[: max(width - len(title) - 4, 0)], EXACT)]
     wrapped = [textwrap.wrap(text, max(width - 2, 2)) for text in said]
     lines = [(line, TEXT if text is wrapped[-1] else EXACT) for text in wrapped for line in text]
     return [heads, *([(f" {line}", owner)] for line, owner in lines[-(height - 1) :])]
