@@ -116,6 +116,7 @@ def test_the_schema_is_that_of_the_command(name):
         (3, ["info", "absent.mcap"]),
         (3, ["verify", "absent.mcap"]),
         (4, ["live", "--no-record"]),
+        (4, ["tour", "--no-record"]),
         (5, ["run", "--time", "2", "--record", "whole.mcap"]),
         (5, ["export", "whole.mcap", "-o", "absent/whole.csv"]),
     ],

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 GROUPS = {
     "lab": {
         "live": "the lab: four pendulums, their errors, a recording",
+        "tour": "a tour of the lab: eight short steps, each with a question",
         "replay": "play a recording on the same screen",
         "snapshot": "save the lab as an SVG image",
         "serve": "the lab in a browser",

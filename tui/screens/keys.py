@@ -61,7 +61,16 @@ LIVE = (
     Key("m", "m", "mark this moment", "mark", _RUN, "Mark"),
     Key("full_stop", ".", "one step forward", "step(1)", _RUN),
     Key("comma", ",", "one step back", "step(-1)", _RUN),
+    Key("T,shift+t", "T", "a tour in eight steps: begin, leave, go on", "tour", _RUN),
 )
+
+TOUR = (
+    Key("enter", "enter, space", "go on: to the moment, the answer, the next step", "tour_forward", "tour"),
+    Key("backspace", "backspace", "back to the question, or to the step before", "tour_back", "tour"),
+    Key("escape", "esc", "leave the tour; T returns to it", "tour_leave", "tour"),
+)
+"""Of the lab while a tour is on its screen.  `space` is the lab's own: it goes on where the tour has paused it."""
+
 
 REPLAY = (
     Key("left", "left", "back 1 s", "seek(-1)", _PLAY),

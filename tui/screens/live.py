@@ -9,13 +9,14 @@ from engine.methods import Cast
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene, SceneError
 from tui.playback.live import Live
-from tui.screens.base import ALREADY, SourceScreen
+from tui.screens.base import ALREADY
 from tui.screens.keys import COMMON, LIVE
+from tui.screens.tour.touring import Touring
 from tui.views.keys import Key, bindings
 from tui.views.messages import SceneChosen, StepSizeChosen
 
 
-class LiveScreen(SourceScreen):
+class LiveScreen(Touring):
     """Shows a live source and changes it."""
 
     BINDINGS: ClassVar[list[BindingType]] = bindings(*LIVE)

@@ -33,7 +33,7 @@ ARGUMENTS: dict[str, list[tuple[str, ...]]] = {
 }
 """Of every command without a screen."""
 
-ON_SCREEN: dict[str, tuple[str, ...]] = {"live": (), "replay": ("drift.mcap",)}
+ON_SCREEN: dict[str, tuple[str, ...]] = {"live": (), "tour": (), "replay": ("drift.mcap",)}
 NAMES = (
     *("pickle", "numpy", "multiprocessing", "json", "random", "signal", "textual", "rich", "mcap", "zstandard"),
     *("plotext", "platformdirs", "shtab", "numba", "sitecustomize", "usercustomize", "tui", "engine", "recordings"),

@@ -29,6 +29,7 @@ CASES = [  # what is typed before the tab, and what it offers: just that, or tha
     ("pendu-tui run --scene ", set(SCENES)),
     ("pendu-tui run --theta 1 --scene sp", {"spin"}),
     ("pendu-tui live --present --theme ", THEMES),
+    ("pendu-tui tour --no-r", {"--no-record"}),
     ("pendu-tui replay ", ANY_RECORDING),
     ("pendu-tui verify drift ", ANY_RECORDING | {"golden"}),
     ("pendu-tui run --record ", {"swing.mcap"}),

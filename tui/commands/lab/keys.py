@@ -34,11 +34,11 @@ def run(options: argparse.Namespace) -> int:
 
 def keys_by_place() -> dict[str, list["Key"]]:
     """Where keys work, and which do there."""
-    from tui.screens.keys import COMMON, LIVE, OVERLAYS, REPLAY
+    from tui.screens.keys import COMMON, LIVE, OVERLAYS, REPLAY, TOUR
     from tui.views import VIEWS, create
 
     panes = dict.fromkeys(key for name in VIEWS for key in create(name).KEYS)  # two views have the phase pane
     places: dict[str, list[Key]] = {"lab and replay": [*COMMON], "lab": [*LIVE], "replay": [*REPLAY]}
-    for key in (*panes, *OVERLAYS):
+    for key in (*panes, *TOUR, *OVERLAYS):
         places.setdefault(key.group, []).append(key)
     return {where: [key for key in keys if key.shown] for where, keys in places.items()}
