@@ -148,8 +148,10 @@ def nearest_fraction(rotation: float, largest: int = LARGEST) -> Fraction:
 
 def _is_island(points: Points, w0: float, rotation: float, fraction: Fraction, spins: bool) -> bool:
     """Whether the points of every q-th step wind around a point of their own."""
-    q = fraction.denominator
-    if q > LARGEST or fraction.numerator == 0 or abs(abs(rotation) - fraction) > 1e-6:
+    q, steps = fraction.denominator, len(points[0]) - 1
+    if (
+        q > LARGEST or fraction.numerator == 0 or abs(abs(rotation) - fraction) > 0.1 / steps
+    ):  # a tenth of a turn in all
         return False
     theta, omega = points[0][::q], points[1][::q] / w0
     if spins:

@@ -26,7 +26,7 @@ def name(method: Method, kind: OrbitKind) -> str:
         return "spirals outwards" if kind.energy_error > 0 else "spirals inwards"
     if kind.rotation is None:
         return "undecided"
-    return ("over the top" if kind.spins else "closed curve") if method.symplectic else "nearly closed"
+    return ("over the top" if kind.spins else "regular") if method.symplectic else "slow spiral"
 
 
 def fraction(kind: OrbitKind) -> str:
@@ -61,7 +61,7 @@ def sentence(method: Method, kind: OrbitKind) -> str:
         near = f"{1 / abs(kind.rotation):.5g} steps a turn{over}, nearest {turns}:{steps}."
         if what.startswith("spirals"):
             return f"It {what}, {near}"
-        return f"{'A closed curve' if method.symplectic else 'Nearly a closed curve'}: {near}"
+        return f"{'Regular' if method.symplectic else 'A slow spiral'}: {near}"
     if what.startswith("spirals"):
         return f"It {what}: no rotation number, for it changes on the way."
     return f"Undecided in {kind.steps} steps: regular so far, but without one rotation number."

@@ -54,6 +54,7 @@ class SectionPane(PhasePane):
         self.wanted: Wanted | None = None
         self.share = 0.0  # of the section that is there
         self._section: Section | None = None
+        self._drawn: object = None
 
     @property
     def settled(self) -> bool:
@@ -75,7 +76,7 @@ class SectionPane(PhasePane):
 
     def watch_shows_section(self) -> None:
         if not self.shows_section:
-            self.wanted, self._section = None, None
+            self.wanted, self._section, self._drawn = None, None, None
             self.watch_source()
             self.post_message(self.SectionWanted())
         self.draw()
@@ -94,6 +95,9 @@ class SectionPane(PhasePane):
             self.tell_progress()
             self.post_message(self.SectionWanted())
         start = self.cursor or State(source.scene.theta, source.scene.omega)
+        if (drawn := (wanted, self.share, start, self.cursor)) == self._drawn:
+            return  # a section does not move
+        self._drawn = drawn
         points, _ = followed(method, model, h, start)
         self._plot = self._section.picture(points, start, self.cursor)
         self.tell()

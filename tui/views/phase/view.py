@@ -34,6 +34,10 @@ class PhaseView(View):
         self.query_one("#facts").display = self.size.height >= ROOMY
 
     def watch_sample_10hz(self) -> None:
+        """Follow h, too: another one brings no other sample."""
+        for pane in self.query(SectionPane):
+            if pane.shows_section:
+                pane.draw()
         self._write_facts()
 
     def on_phase_pane_ring_moved(self) -> None:

@@ -1,6 +1,7 @@
 """What the section command prints: the portrait of a method's map, and the orbits of the scene's start in words."""
 
 import io
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -70,10 +71,10 @@ def print_json(study: Study) -> int:
             "rotation": kind.rotation,
             "fraction": None if kind.fraction is None else fraction(kind),
             "island": kind.island,
-            "lyapunov": kind.lyapunov,
+            "lyapunov": _finite(kind.lyapunov),
             "chaotic": kind.chaotic,
             "over_the_top": kind.spins,
-            "energy_error": kind.energy_error,
+            "energy_error": _finite(kind.energy_error),
             "steps": kind.steps,
             "text": sentence(method, kind),
         }
@@ -91,12 +92,16 @@ def write_file(study: Study, path: Path, force: bool, size: tuple[int, int], dis
         if path.suffix.lower() == ".svg":
             on = Console(file=io.StringIO(), record=True, width=size[0], height=size[1] + 1, color_system="truecolor")
             on.print(*lines, sep="\n", no_wrap=True, overflow="crop")
-            text = on.export_svg(title="pendu-tui section", theme=_theme(display.theme), unique_id="section")
+            text = on.export_svg(title="pendu-tui section", theme=_theme(display.theme), unique_id="terminal")
         else:
             text = "\n".join(line.plain.rstrip() for line in lines) + "\n"
         part.write_text(text, encoding="utf-8")
     print(f"{path}: {_title(study)}")
     return Exit.FINE
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
 
 
 def _title(study: Study) -> str:
