@@ -23,7 +23,7 @@ Floats = NDArray[np.float64]
 Points = tuple[Floats, Floats]  # theta [rad], unwrapped, and omega [rad/s], of one shape
 
 SETTLED = 1e-4
-"""Turns a step: where the two halves of an orbit differ by more, it has no rotation number."""
+"""Where the rotation numbers of the two halves of an orbit differ by a larger part of them, it has none."""
 LARGEST = 12  # denominator of a fraction that counts as small
 _CHUNK = 8  # steps between two looks at a displacement
 
@@ -125,9 +125,10 @@ def rotation_number(theta: Floats, omega: Floats, w0: float, spins: bool = False
         angle = np.arctan2(-omega / w0, np.remainder(theta + math.pi, math.tau) - math.pi)
         turns = np.diff(angle) / math.tau % 1  # a swing goes round clockwise
     half = len(turns) // 2
-    if half < 2 or abs(_average(turns[:half]) - _average(turns[half:])) > SETTLED:
+    if half < 2:
         return None
-    return _average(turns)
+    rotation, change = _average(turns), _average(turns[:half]) - _average(turns[half:])
+    return rotation if abs(change) <= SETTLED * abs(rotation) else None
 
 
 def _average(values: Floats) -> float:
