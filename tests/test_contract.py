@@ -22,6 +22,7 @@ COMMANDS = {
     "stability": ["stability", "--steps", "30", "--z-values", "0.5,2.5", "--theta-values", "1,2", "--json"],
     "stability --scene linear": ["stability", "--scene", "linear", "--json"],
     "stability --map": ["stability", "--steps", "9", "--z-values", "0.5,2.5", "--theta-values", "1", "--map", "--json"],
+    "section": ["section", "--theta", "1.25", "--h", "0.348011", "--steps", "3000", "--json"],
     "run": ["run", "--time", "2", "--json"],
     "run of a method that diverges": ["run", "--h", "2", "--length", "0.1", "--time", "4000", "--json"],
     "judge": ["judge", "energies.csv", "--time", "t", "--energy", "E", "--json"],

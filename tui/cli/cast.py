@@ -93,8 +93,8 @@ def _named(text: str, known: Sequence[Method]) -> Cast:
     return tuple(cast)
 
 
-def find(name: str, known: Sequence[Method]) -> Method:
-    """The method of a key, of the start of one, or of the start of a word in one.  Raises UserError."""
+def find(name: str, known: Sequence[Method], option: str = "--methods") -> Method:
+    """The method of a key, of the start of one, or of the start of a word in one.  Raises UserError for the option."""
     by_key = {method.key: method for method in known}
     if name in by_key:
         return by_key[name]
@@ -103,9 +103,9 @@ def find(name: str, known: Sequence[Method]) -> Method:
         if len(found) == 1:
             return by_key[found[0]]
         if found:
-            raise UserError(f"--methods: {name!r} may be {' or '.join(found)}; write more of it.")
+            raise UserError(f"{option}: {name!r} may be {' or '.join(found)}; write more of it.")
     advice = did_you_mean(name, by_key) or f": choose from {', '.join(by_key)}."
-    raise UserError(f"--methods: there is no method {name!r}{advice}")
+    raise UserError(f"{option}: there is no method {name!r}{advice}")
 
 
 def _own(text: str, others: Sequence[Method]) -> "OwnMethod":

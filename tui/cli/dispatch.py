@@ -25,6 +25,7 @@ GROUPS = {
     "studies": {
         "accuracy": "speed against accuracy: which method, which h, at what cost",
         "stability": "where each method becomes unstable: theory and measurement",
+        "section": "phase portrait of a method's own map: islands, chaos, spirals",
         "run": "run a scene without the screen and judge each method; for CI",
         "judge": "judge the energies of another program, from a file or stdin; for CI",
     },

@@ -18,6 +18,7 @@ ARGUMENTS: dict[str, list[tuple[str, ...]]] = {
     "keys": [()],
     "accuracy": [("--time", "1")],
     "stability": [(*SMALL_MAP, "--workers", "2"), ("--theta-values", "1", "--z-values", "1:2:3", "--steps", "20")],
+    "section": [("--starts", "9", "--steps", "50"), ("--starts", "9", "--steps", "50", "-o", "map.svg")],
     "run": [("--time", "1", "--record", "run.mcap"), ("--time", "1", "--json")],
     "verify": [("drift.mcap",)],
     "judge": [("energies.csv", "--time", "1", "--energy", "2")],
@@ -94,6 +95,9 @@ def test_no_view_runs_a_module_of_the_current_folder(tmp_path, hostile, program,
         session.wait_for("Quit")
         session.type("\x1bOR")  # F3
         session.wait_for("area")
+        session.type("x")
+        session.wait_for("Own map of Velocity Verlet")
+        session.wait_for("computing 10%")  # by another process
         session.type("\x1bOS")  # F4
         session.wait_for("computing")
         session.wait_for("points left")

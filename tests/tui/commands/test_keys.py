@@ -26,7 +26,12 @@ NAMES = {  # of keys that Textual calls something else
     "[": {"left_square_bracket"},
     "]": {"right_square_bracket"},
 }
-PANES = {"PhasePane": "phase space", "AccuracyPane": "accuracy", "StabilityPane": "stability"}
+PANES = {
+    "PhasePane": "phase space",
+    "SectionPane": "phase space",
+    "AccuracyPane": "accuracy",
+    "StabilityPane": "stability",
+}
 MOUSE = {"click", "click, drag", "wheel", "shift+drag"}
 
 
@@ -58,7 +63,8 @@ async def test_the_keys_of_the_screens_and_panes_are_listed_and_no_others(place)
         panes = {type(pane).__name__: pane for pane in theatre.stage.query("*") if pane.can_focus}
         assert set(panes) == set(PANES)
         for name, pane in panes.items():
-            assert bound(pane) == keys[PANES[name]] - ({"tab"} if name == "PhasePane" else set())  # Textual's tab
+            elsewhere = {"PhasePane": {"tab", "x", "X", "shift+x"}, "SectionPane": {"tab"}}.get(name, set())
+            assert bound(pane) == keys[PANES[name]] - elsewhere  # tab is Textual's
 
 
 def test_the_page_groups_the_keys_as_the_help_does():

@@ -80,11 +80,11 @@ def phase_picture(
         theta, omega, owners = _together(trails)
         canvas.points(viewport.x(theta), viewport.y(omega), owners)
     if rings := [(point.owner, _closed(point.ring)) for point in points if point.ring is not None]:
-        canvas.line(*_on_screen(viewport, *_together(rings)))
+        canvas.line(*on_screen(viewport, *_together(rings)))
     for point in points:
         x, y = float(viewport.x(point.theta)), float(viewport.y(point.omega))
         canvas.disc(x, y, 1.6, point.owner, hollow=point.owner == EXACT)
-        _letter(canvas, x, y, point)
+        letter(canvas, x, y, point)
     picture = canvas.picture()
     portrait.letters.write(picture)
     return picture
@@ -101,7 +101,7 @@ def _closed(ring: Track) -> Track:
     return np.append(ring[0], [ring[0][0], np.nan]), np.append(ring[1], [ring[1][0], np.nan])
 
 
-def _on_screen(
+def on_screen(
     viewport: Viewport, theta: Floats, omega: Floats, owners: NDArray[np.int8]
 ) -> tuple[Floats, Floats, NDArray[np.int8]]:
     """Lines in dots, broken where they leave one edge for the other."""
@@ -112,7 +112,7 @@ def _on_screen(
     return np.insert(x, across, np.nan), np.insert(y, across, np.nan), np.insert(owners, across, 0)
 
 
-def _letter(canvas: Canvas, x: float, y: float, point: PhasePoint) -> None:
+def letter(canvas: Canvas, x: float, y: float, point: PhasePoint) -> None:
     """Write the point's letter into the first free cell around it, or at the edge nearest to it."""
     if not (np.isfinite(x) and np.isfinite(y)):
         return

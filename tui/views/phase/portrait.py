@@ -144,7 +144,7 @@ def _words(
     omega: NDArray[np.float64],
 ) -> tuple[Word, ...]:
     """The axes' numbers and the names of the regimes, each where it has room."""
-    words = _axes(viewport)
+    words = axes(viewport)
     bare: Cells = ~np.any(_cells(separatrix), axis=2)
     free = bare.copy()
     for word in words:
@@ -184,7 +184,7 @@ def _beside(name: str, curve: NDArray[np.bool_], free: NDArray[np.bool_]) -> lis
     return [] if place is None else [(place[1] + 1, place[0], name, TEXT)]
 
 
-def _axes(viewport: Viewport) -> list[Word]:
+def axes(viewport: Viewport) -> list[Word]:
     """Numbers along the left edge (rad/s) and the lower one (pi or rad)."""
     columns, bottom = viewport.columns, viewport.rows - 1
     words: list[Word] = [

@@ -1,43 +1,87 @@
-"""PhaseView: phase space over the whole screen, with a table of what the methods do to area."""
+"""PhaseView: phase space over the whole screen, with a table of what the methods do to area, or of their orbits."""
+
+import asyncio
 
 from textual.app import ComposeResult
 
-from tui.drawing.cells import CellWidget
+from tui.drawing.cells import CellWidget, Row
+from tui.views.background import computed
 from tui.views.phase.facts import fact_rows
-from tui.views.phase.pane import KEYS, PhasePane
+from tui.views.phase.section_pane import KEYS, SectionPane, Wanted, followed
 from tui.views.view import View
 
 RADIUS = 0.1  # rad; large enough to be seen, small enough to stay a ring for a while
 
 ROOMY = 18  # rows from which on there is room for the table
+STARTS, STEPS = 300, 2000  # of a section
+SOON = 0.1  # s that a picture has to stand before its section is computed: a wheel turns on and on
 
 
 class PhaseView(View):
-    """The portrait, and the table below it."""
+    """The portrait or a section, and the table below it."""
 
     KEYS = KEYS
 
     def compose(self) -> ComposeResult:
-        yield self.moving(PhasePane(radius=RADIUS), late=True)
+        yield self.moving(SectionPane(radius=RADIUS), late=True)
         yield CellWidget(id="facts")
 
     def on_show(self) -> None:
-        self.query_one(PhasePane).focus()
+        self.query_one(SectionPane).focus()
 
     def on_resize(self) -> None:
         """Where there is little room, leave all of it to the portrait."""
         self.query_one("#facts").display = self.size.height >= ROOMY
 
     def watch_sample_10hz(self) -> None:
+        """Follow h, too: another one brings no other sample."""
+        for pane in self.query(SectionPane):
+            if pane.shows_section:
+                pane.draw()
         self._write_facts()
 
     def on_phase_pane_ring_moved(self) -> None:
         self._write_facts()
 
+    def on_section_pane_section_wanted(self) -> None:
+        """Compute what is wanted, and nothing else any more."""
+        pane = self.query_one(SectionPane)
+        self.workers.cancel_node(self)
+        if pane.wanted is not None:
+            self.run_worker(self._fill(pane, pane.wanted), exclusive=True, exit_on_error=False)
+        self._write_facts()
+
+    async def _fill(self, pane: SectionPane, wanted: Wanted) -> None:
+        await asyncio.sleep(SOON)
+        from engine.phase_space.section import pieces
+        from tui.views.phase.section import starts
+
+        method, model, h, viewport = wanted
+        done = 0
+        async for piece in computed(pieces, method, model, h, starts(viewport, STARTS), STEPS):
+            done += piece[0].shape[1]
+            pane.fill(wanted, piece, done / STARTS)
+
     def _write_facts(self) -> None:
-        facts, pane = self.query_one("#facts", CellWidget), self.query_one(PhasePane)
+        facts, pane = self.query_one("#facts", CellWidget), self.query_one(SectionPane)
         if self.source is not None and facts.drawable:
             try:
-                facts.show(fact_rows(self.source, self.shown, pane.neighbours, pane.ring, facts.size.width))
+                facts.show(self._facts(pane, facts.size.width))
             except Exception as error:
                 facts.fail(error)
+
+    def _facts(self, pane: SectionPane, width: int) -> list[Row]:
+        """What is below the picture."""
+        assert self.source is not None
+        scene = self.source.scene
+        if not pane.shows_section:
+            return [*fact_rows(self.source, self.shown, pane.neighbours, pane.ring, width)]
+        from tui.drawing.palette import TEXT
+        from tui.words.orbit import kind_rows
+
+        known = []
+        for place in self.shown.places(scene.cast):
+            method, h = scene.cast[place], abs(self.source.stepping.own[place])
+            known.append((place, method, followed(method, scene.equations, h, (scene.theta, scene.omega))[1]))
+        head = " The start's orbit under each method's own map (x: back, X: next method)"
+        return [[(head[:width], TEXT)], *kind_rows(known, width)]

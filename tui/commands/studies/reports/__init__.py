@@ -1,1 +1,1 @@
-"""What the commands `accuracy` and `stability` print, kept apart from their options because it loads NumPy and Rich."""
+"""What `accuracy`, `stability` and `section` print, kept apart from their options because it loads NumPy and Rich."""

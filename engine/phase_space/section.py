@@ -1,0 +1,162 @@
+"""The phase portrait of a method's own map: many starts iterated, and what kind of orbit one of them lies on.
+
+A step of fixed h is a map of the phase plane, and its orbits are a Poincaré section as they are: a smooth curve, a
+chain of islands, a chaotic layer or, if the method is not symplectic, a spiral.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import islice
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engine.methods import Method
+from engine.models.model import Model, Phase
+from engine.models.pendulum import separatrix_margin
+from engine.run.loops import OVERFLOW
+from engine.run.tangent import Stretching
+
+Floats = NDArray[np.float64]
+Points = tuple[Floats, Floats]  # theta [rad], unwrapped, and omega [rad/s], of one shape
+
+SETTLED = 1e-4
+"""Where the rotation numbers of the two halves of an orbit differ by a larger part of them, it has none."""
+LARGEST = 12  # denominator of a fraction that counts as small
+_CHUNK = 8  # steps between two looks at a displacement
+
+
+def spread(count: int, theta: tuple[float, float], omega: tuple[float, float]) -> Points:
+    """So many starts evenly over a rectangle, however many of them one takes: Roberts' sequence R2 (2018)."""
+    n = np.arange(1.0, count + 1)
+    across, up = n * 0.7548776662466927 % 1, n * 0.5698402909980532 % 1  # 1/p and 1/p², where p³ = p + 1
+    return theta[0] + (theta[1] - theta[0]) * across, omega[0] + (omega[1] - omega[0]) * up
+
+
+@np.errstate(all="ignore")  # a method that diverges ends beyond the doubles
+def iterate(method: Method, model: Model, h: float, starts: Points, steps: int) -> Points:
+    """The starts (n) and the phases after each step of h [s]: two arrays (steps + 1, n)."""
+    theta, omega = (np.empty((steps + 1, len(part))) for part in starts)
+    theta[0], omega[0] = starts
+    for step, phase in enumerate(islice(method.phases(model.force(np.sin), starts, h), steps), 1):
+        theta[step], omega[step] = phase
+    return theta, omega
+
+
+def pieces(method: Method, model: Model, h: float, starts: Points, steps: int, batch: int = 25) -> Iterator[Points]:
+    """The same for somebody who watches, `batch` starts at a time; however it is cut, the bits are the same."""
+    for first in range(0, len(starts[0]), batch):
+        part = slice(first, first + batch)
+        yield iterate(method, model, h, (starts[0][part], starts[1][part]), steps)
+
+
+def orbit(method: Method, model: Model, h: float, start: Phase, steps: int) -> Points:
+    """One start in plain floats, as a run takes it: two arrays (at most steps + 1), as far as numbers are finite."""
+    found = [start]
+    try:
+        for phase in islice(method.phases(model.force(), start, h), steps):
+            if not (math.isfinite(phase[0]) and math.isfinite(phase[1])):
+                break
+            found.append(phase)
+    except OVERFLOW:
+        pass
+    theta, omega = np.array(found, np.float64).T
+    return theta, omega
+
+
+@dataclass(frozen=True, slots=True)
+class OrbitKind:
+    """What can be told from an orbit of finite length."""
+
+    steps: int  # that were followed
+    moves: bool  # not an equilibrium
+    spins: bool  # goes over the top, at least once
+    rotation: float | None
+    """Turns a step: around the bottom, or over the top and then with its sign; None where there is no one number."""
+    fraction: Fraction | None  # the nearest small one, of |rotation|
+    island: bool  # every so many steps, by the fraction's denominator, the orbit is back in the same island
+    lyapunov: float  # mean growth of ln |a small displacement| a step; tends to 0 where the orbit is regular
+    chaotic: bool  # of a symplectic method: neighbouring starts part faster than regular ones do in so many steps
+    energy_error: float  # (E - E0)/E0 at the end, as in a run
+
+
+def kind_of(method: Method, model: Model, h: float, points: Points) -> OrbitKind:
+    """What kind of orbit this is; `points` are those of `orbit`."""
+    theta, omega = points
+    steps, start = len(theta) - 1, (float(theta[0]), float(omega[0]))
+    moves = bool(np.ptp(theta) or np.ptp(omega))
+    lap = np.floor(theta / math.tau + 0.5)
+    spins = model.turns and bool(np.ptp(lap))
+    neighbours = Stretching(method, model, h)
+    for at in range(0, steps - _CHUNK + 1, _CHUNK):
+        neighbours.carry((float(theta[at]), float(omega[at])), _CHUNK)
+    # Regular orbits part in proportion to the steps, beside upright with a large factor: engine.stability.chaos.
+    slack = -math.log(max(abs(separatrix_margin(model.w0, *start)), 1e-16)) if model.turns else 0.0
+    parted = neighbours.log > 15 + math.log(max(steps, 1)) + max(slack, 0.0)
+    chaotic = method.symplectic and parted  # else neighbours part while they spiral outwards, too
+    rotation = None if chaotic or not moves else rotation_number(theta, omega, model.w0, spins)
+    fraction = None if rotation is None else nearest_fraction(abs(rotation))
+    island = rotation is not None and fraction is not None and _is_island(points, model.w0, rotation, fraction, spins)
+    error = model.reference(*start).error(model.energy()((float(theta[-1]), float(omega[-1]))))
+    return OrbitKind(
+        steps=steps,
+        moves=moves,
+        spins=spins,
+        rotation=rotation,
+        fraction=fraction,
+        island=island,
+        lyapunov=neighbours.log / max(neighbours.steps, 1),
+        chaotic=chaotic,
+        energy_error=error,
+    )
+
+
+def rotation_number(theta: Floats, omega: Floats, w0: float, spins: bool = False) -> float | None:
+    """Turns a step of an orbit around the bottom or, if it spins, over the top; None where its halves disagree.
+
+    A weighted Birkhoff average, which on smooth curves converges faster than any power of the steps:
+    Das, Saiki, Sander & Yorke, Nonlinearity 30 (2017) 4111.
+    """
+    if spins:
+        turns = np.diff(theta) / math.tau
+    else:
+        angle = np.arctan2(-omega / w0, np.remainder(theta + math.pi, math.tau) - math.pi)
+        turns = np.diff(angle) / math.tau % 1  # a swing goes round clockwise
+    half = len(turns) // 2
+    if half < 2:
+        return None
+    rotation, change = _average(turns), _average(turns[:half]) - _average(turns[half:])
+    return rotation if abs(change) <= SETTLED * abs(rotation) else None
+
+
+def _average(values: Floats) -> float:
+    t = np.arange(1, len(values) + 1) / (len(values) + 1)
+    weights = np.exp(-1 / (t * (1 - t)))
+    return float(weights @ values / weights.sum())
+
+
+def nearest_fraction(rotation: float, largest: int = LARGEST) -> Fraction:
+    """The fraction nearest to a rotation number [turns a step] with a denominator up to `largest`.
+
+    Below 1/largest it is one over the nearest number of whole steps a turn.
+    """
+    if 0 < rotation < 1 / largest:
+        return Fraction(1, round(1 / rotation)) if rotation > 1e-9 else Fraction(0)
+    return Fraction(rotation).limit_denominator(largest)
+
+
+def _is_island(points: Points, w0: float, rotation: float, fraction: Fraction, spins: bool) -> bool:
+    """Whether the points of every q-th step wind around a point of their own."""
+    q, steps = fraction.denominator, len(points[0]) - 1
+    if (
+        q > LARGEST or fraction.numerator == 0 or abs(abs(rotation) - fraction) > 0.1 / steps
+    ):  # a tenth of a turn in all
+        return False
+    theta, omega = points[0][::q], points[1][::q] / w0
+    if spins:
+        theta = theta - math.copysign(math.tau * fraction.numerator, rotation) * np.arange(len(theta))
+    x, y = theta - theta.mean(), omega - omega.mean()
+    angle = np.unwrap(np.arctan2(y, x))
+    return bool(np.hypot(x, y).max() > 1e-9 and abs(angle[-1] - angle[0]) >= math.tau)  # not rounding that winds

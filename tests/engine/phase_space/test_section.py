@@ -1,0 +1,175 @@
+"""The method's own map: sections against direct iteration, rotation numbers against theory, chaos where it is known."""
+
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from engine.methods import METHODS, USUAL_CAST, method_of
+from engine.models.linear import LinearOscillator
+from engine.models.pendulum import Pendulum
+from engine.phase_space.section import (
+    OrbitKind,
+    iterate,
+    kind_of,
+    nearest_fraction,
+    orbit,
+    pieces,
+    rotation_number,
+    spread,
+)
+
+UNIT = Pendulum(1.0)  # so that h is z
+EXPLICIT, SYMPLECTIC, VERLET, RK4 = USUAL_CAST
+
+
+def kind(method, theta: float, z: float, steps: int = 4000, omega: float = 0.0) -> OrbitKind:
+    return kind_of(method, UNIT, z, orbit(method, UNIT, z, (theta, omega), steps))
+
+
+@pytest.mark.parametrize("method", METHODS, ids=lambda method: method.key)
+def test_the_section_is_direct_iteration_bit_for_bit(method):
+    model, h, starts = Pendulum(9.81), 0.3, spread(7, (-math.pi, math.pi), (-6.0, 6.0))
+    theta, omega = iterate(method, model, h, starts, 40)
+    phase, force = starts, model.force(np.sin)
+    for step in range(41):
+        assert np.array_equal(theta[step], phase[0])
+        assert np.array_equal(omega[step], phase[1])
+        phase = method.step(force, phase, h)
+
+
+@pytest.mark.parametrize("method", METHODS, ids=lambda method: method.key)
+def test_an_orbit_is_direct_iteration_in_plain_floats_bit_for_bit(method):
+    model = Pendulum(9.81)
+    theta, omega = orbit(method, model, 0.1, (2.0, 0.5), 100)
+    phase = (2.0, 0.5)
+    for at in zip(theta.tolist(), omega.tolist(), strict=True):
+        assert at == phase
+        phase = method.step(model.force(), phase, 0.1)
+
+
+def test_however_a_section_is_cut_its_bits_are_the_same():
+    starts = spread(60, (-math.pi, math.pi), (-2.6, 2.6))
+    whole = iterate(VERLET, UNIT, 1.0, starts, 50)
+    parts = list(pieces(VERLET, UNIT, 1.0, starts, 50, batch=17))
+    assert [part[0].shape for part in parts] == [(51, 17), (51, 17), (51, 17), (51, 9)]
+    for which in (0, 1):
+        assert np.array_equal(np.concatenate([part[which] for part in parts], axis=1), whole[which])
+
+
+def test_starts_are_spread_evenly_however_many_one_takes():
+    theta, omega = spread(400, (-1.0, 3.0), (-2.0, 2.0))
+    counts, _, _ = np.histogram2d(theta[:100], omega[:100], bins=5, range=[(-1, 3), (-2, 2)])
+    assert (counts.min(), counts.max()) == (3, 5)  # 4 each
+    counts, _, _ = np.histogram2d(theta, omega, bins=10, range=[(-1, 3), (-2, 2)])
+    assert (counts.min(), counts.max()) == (2, 6)  # chance would leave some of them empty
+
+
+@pytest.mark.parametrize("key", ["symplectic_euler", "velocity_verlet"])
+@pytest.mark.parametrize("z", [0.05, 0.3, 0.77, 1.0, 1.3, 1.7, 1.95])
+def test_small_swings_turn_by_twice_the_arcsine_of_half_z(key, z):
+    rotation = kind(method_of(key), 1e-4, z).rotation
+    assert rotation == pytest.approx(2 * math.asin(z / 2) / math.tau, abs=1e-7)
+
+
+@pytest.mark.parametrize("z", [0.3, 1.0])
+def test_a_linear_oscillator_turns_so_at_every_amplitude(z):
+    model = LinearOscillator(1.0)
+    theta, omega = orbit(VERLET, model, z, (2.0, 1.0), 3000)
+    assert rotation_number(theta, omega, 1.0) == pytest.approx(2 * math.asin(z / 2) / math.tau, abs=1e-10)
+    assert not kind_of(VERLET, model, z, (theta, omega)).spins
+
+
+def test_small_steps_turn_as_the_exact_pendulum_does():
+    period = UNIT.exact(2.0, 0.0).period
+    assert kind(VERLET, 2.0, 0.01, 8000).rotation == pytest.approx(0.01 / period, rel=2e-5)
+    turning = UNIT.exact(0.0, 3.0).period
+    for omega in (3.0, -3.0):
+        spun = kind(VERLET, 0.0, 0.01, 8000, omega)
+        assert spun.spins
+        assert spun.rotation == pytest.approx(math.copysign(0.01 / turning, omega), rel=2e-5)
+
+
+@pytest.mark.parametrize(
+    ("key", "theta", "z", "fraction"),
+    [
+        ("symplectic_euler", 0.5, 1.44, Fraction(1, 4)),
+        ("velocity_verlet", 1.25, 1.09, Fraction(1, 6)),
+        ("velocity_verlet", 1.47, 1.125, Fraction(1, 6)),
+        ("velocity_verlet", 0.3, 2.05, Fraction(1, 2)),  # beyond the linear limit: caught by a 2-cycle
+    ],
+)
+def test_islands_turn_by_exactly_their_fraction(key, theta, z, fraction):
+    found = kind(method_of(key), theta, z)
+    assert found.rotation == pytest.approx(float(fraction), abs=1e-9)
+    assert (found.fraction, found.island, found.chaotic) == (fraction, True, False)
+
+
+def test_a_curve_beside_a_resonance_is_no_island():
+    for theta in (1e-4, 1e-3, 0.01):  # at z = 1 small swings turn by 1/6 minus some theta²
+        beside = kind(VERLET, theta, 1.0)
+        assert (beside.fraction, beside.island) == (Fraction(1, 6), False)
+
+
+def test_orbits_caught_by_a_step_of_half_a_turn_are_an_island_over_the_top():
+    spun = kind(SYMPLECTIC, 0.1, 0.5, omega=math.pi / 0.5)  # omega h = pi
+    assert (spun.spins, spun.fraction, spun.island) == (True, Fraction(1, 2), True)
+
+
+@pytest.mark.parametrize(
+    ("key", "theta", "z"),
+    [("velocity_verlet", 2.3, 1.1), ("symplectic_euler", 2.3, 1.1), ("velocity_verlet", 0.3, 2.05 + 0.2)],
+)
+def test_chaotic_orbits_have_a_lyapunov_number_and_no_rotation_number(key, theta, z):
+    found = kind(method_of(key), theta, z)
+    assert found.chaotic
+    assert found.lyapunov > 0.05
+    assert found.rotation is None
+
+
+def test_strong_chaos_has_the_lyapunov_number_of_the_standard_map():
+    z = math.sqrt(20.0)  # K = z²; ln(K/2) for K >= 10: Chirikov, Phys. Rep. 52 (1979) 263
+    assert kind(SYMPLECTIC, 2.0, z, 20_000).lyapunov == pytest.approx(math.log(10), abs=0.05)
+
+
+@pytest.mark.parametrize(("theta", "z"), [(2.0, 0.05), (3.0, 0.5), (math.pi - 1e-5, 0.1), (0.5, 1.41)])
+def test_regular_orbits_are_not_called_chaotic(theta, z):
+    assert not kind(VERLET, theta, z).chaotic
+
+
+def test_rk4_ends_at_its_sink_and_explicit_euler_is_not_called_chaotic():
+    sunk = kind(RK4, 1.25, 1.09)
+    assert sunk.energy_error == pytest.approx(-1)
+    assert sunk.lyapunov < 0
+    found = kind(EXPLICIT, 1e-3, 1.0)
+    assert (found.rotation, found.chaotic) == (None, False)
+    assert found.energy_error > 1e6
+
+
+def test_at_rest_nothing_turns():
+    rest = kind(VERLET, 0.0, 0.5)
+    assert (rest.moves, rest.rotation, rest.fraction, rest.chaotic) == (False, None, None, False)
+
+
+def test_an_orbit_ends_where_numbers_stop_being_finite():
+    theta, omega = orbit(EXPLICIT, LinearOscillator(1.0), 3.0, (1.0, 0.0), 2000)
+    assert 500 < len(theta) < 1000
+    assert np.isfinite(theta).all()
+    assert np.isfinite(omega).all()
+    found = kind_of(EXPLICIT, LinearOscillator(1.0), 3.0, (theta, omega))
+    assert found.steps == len(theta) - 1
+
+
+@pytest.mark.parametrize("steps", [1, 2, 5])
+def test_few_steps_tell_nothing_and_fail_nowhere(steps):
+    found = kind(VERLET, 1.0, 0.3, steps)
+    assert (found.steps, found.rotation, found.chaotic) == (steps, None, False)
+
+
+@pytest.mark.parametrize(
+    ("rotation", "fraction"),
+    [(0.2499, (1, 4)), (0.1672, (1, 6)), (0.0159, (1, 63)), (0.38, (3, 8)), (1.0001, (1, 1)), (0.0, (0, 1))],
+)
+def test_the_nearest_fraction_is_a_small_one(rotation, fraction):
+    assert nearest_fraction(rotation) == Fraction(*fraction)

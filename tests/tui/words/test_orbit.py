@@ -1,0 +1,56 @@
+"""Orbits of a method's own map, in words."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+from engine.methods import RK4, VELOCITY_VERLET
+from engine.phase_space.section import OrbitKind
+from tui.words.orbit import HEADS, WIDTHS, cells, kind_rows, sentence
+
+REGULAR = OrbitKind(4000, True, False, 0.1580611, Fraction(1, 6), False, 0.0018, False, 0.1)
+ISLAND = replace(REGULAR, rotation=0.375, fraction=Fraction(3, 8), island=True)
+LOST = replace(REGULAR, rotation=None, fraction=None)
+
+
+@pytest.mark.parametrize(
+    ("method", "kind", "said"),
+    [
+        (VELOCITY_VERLET, REGULAR, "Regular: 6.3267 steps a turn, nearest 1:6."),
+        (VELOCITY_VERLET, replace(REGULAR, spins=True), "Regular: 6.3267 steps a turn over the top, nearest 1:6."),
+        (VELOCITY_VERLET, ISLAND, "A chain of islands: 3 turns in every 8 steps, 3:8."),
+        (
+            VELOCITY_VERLET,
+            replace(ISLAND, rotation=-0.5, fraction=Fraction(1, 2), spins=True),
+            "A chain of islands: 1 turn over the top in every 2 steps, 1:2.",
+        ),
+        (
+            VELOCITY_VERLET,
+            replace(LOST, chaotic=True, lyapunov=0.2108),
+            "Chaotic: neighbouring starts part by a factor of e^0.211 a step.",
+        ),
+        (VELOCITY_VERLET, LOST, "Undecided in 4000 steps: regular so far, but without one rotation number."),
+        (VELOCITY_VERLET, replace(LOST, moves=False), "An equilibrium: it stays where it is."),
+        (RK4, replace(LOST, energy_error=-0.3), "It spirals inwards: no rotation number, for it changes on the way."),
+        (RK4, replace(REGULAR, energy_error=0.3), "It spirals outwards, 6.3267 steps a turn, nearest 1:6."),
+        (RK4, replace(REGULAR, energy_error=-4e-7), "A slow spiral: 6.3267 steps a turn, nearest 1:6."),
+    ],
+    ids=lambda value: value if isinstance(value, str) else "",
+)
+def test_the_orbit_in_a_sentence(method, kind, said):
+    assert sentence(method, kind) == said
+
+
+def test_numbers_that_there_are_not_are_a_hyphen():
+    assert cells(VELOCITY_VERLET, LOST) == ("undecided", "-", "-", "-", "+0.0018")
+    assert cells(VELOCITY_VERLET, replace(REGULAR, rotation=0.0, lyapunov=float("inf")))[1:3] == ("0.0000000", "-")
+    assert cells(VELOCITY_VERLET, replace(REGULAR, lyapunov=float("inf")))[-1] == "-"
+
+
+@pytest.mark.parametrize(("width", "heads"), [(200, 5), (94, 5), (93, 4), (60, 2), (39, 0)])
+def test_the_table_has_the_columns_that_fit(width, heads):
+    rows = ["".join(text for text, _ in row) for row in kind_rows([(2, VELOCITY_VERLET, ISLAND)], width)]
+    assert rows[0] == " " * 22 + "".join(map(str.rjust, HEADS[:heads], WIDTHS))
+    assert rows[1].startswith(" 3 v Velocity Verlet")
+    assert len(rows[1]) == len(rows[0]) <= width

@@ -1,0 +1,155 @@
+"""SectionPane: the phase space of the view, which can also show the phase portrait of a method's own map."""
+
+from functools import lru_cache
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
+
+from textual.binding import BindingType
+from textual.content import Content
+from textual.message import Message
+from textual.reactive import var
+
+from engine.methods import Method
+from engine.models.model import Model, Phase, State
+from engine.run.lockstep import Sample
+from tui.playback.source import Source
+from tui.views.keys import Key, bindings
+from tui.views.phase.pane import KEYS as PORTRAIT_KEYS
+from tui.views.phase.pane import PhasePane
+from tui.views.phase.viewport import Viewport
+
+if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
+    from engine.phase_space.section import OrbitKind, Points
+    from tui.views.phase.section import Section
+
+STEPS = 2000  # of the orbit that is described: some ms
+
+_OWN = (
+    Key("x", "x", "a method's own map: islands, chaos, spirals", "section", "phase space"),
+    Key("X,shift+x", "X", "the map of the next method", "next_map", "phase space"),
+)
+KEYS = (*PORTRAIT_KEYS, *_OWN)
+
+
+class Wanted(NamedTuple):
+    """What a section depends on."""
+
+    method: Method
+    model: Model
+    h: float  # s
+    viewport: Viewport
+
+
+class SectionPane(PhasePane):
+    """The portrait or, after x, the section of the method that is described."""
+
+    BINDINGS: ClassVar[list[BindingType]] = bindings(*_OWN)
+
+    shows_section: var[bool] = var(False)
+
+    class SectionWanted(Message):
+        """Another section is to be computed, or none."""
+
+    def __init__(self, id: str | None = None, radius: float | None = None) -> None:
+        super().__init__(id, radius)
+        self.wanted: Wanted | None = None
+        self.share = 0.0  # of the section that is there
+        self._section: Section | None = None
+        self._drawn: object = None
+
+    @property
+    def settled(self) -> bool:
+        return super().settled and not (self.drawable and self.shows_section and self.share < 1)
+
+    @property
+    def described(self) -> Method | None:
+        """The method whose map is shown: one of those that are."""
+        shown = self.places
+        if not self.cast:
+            return None
+        return self.cast[self.index if self.index in shown or not shown else shown[0]]
+
+    def map_of(self, method: Method) -> tuple[Model, float] | None:
+        """The model and the step [s] of a method on screen."""
+        if self.source is None or method not in self.cast:
+            return None
+        return self.source.scene.equations, abs(self.source.stepping.own[self.cast.index(method)])
+
+    def watch_shows_section(self) -> None:
+        if not self.shows_section:
+            self.wanted, self._section, self._drawn = None, None, None
+            self.watch_source()
+            self.post_message(self.SectionWanted())
+        self.draw()
+
+    def paint(self, source: Source, sample: Sample) -> None:
+        if not self.shows_section or (method := self.described) is None:
+            super().paint(source, sample)
+            return
+        from tui.views.phase.section import Section
+
+        model, h = self.map_of(method) or (source.scene.equations, source.scene.h)
+        wanted = Wanted(method, model, h, self.viewport)
+        if wanted != self.wanted or self._section is None:
+            self.wanted, self.share = wanted, 0.0
+            self._section = Section(wanted.viewport, model, method)
+            self.tell_progress()
+            self.post_message(self.SectionWanted())
+        start = self.cursor or State(source.scene.theta, source.scene.omega)
+        if (drawn := (wanted, self.share, start, self.cursor)) == self._drawn:
+            return  # a section does not move
+        self._drawn = drawn
+        points, _ = followed(method, model, h, start)
+        self._plot = self._section.picture(points, start, self.cursor)
+        self.tell()
+
+    def fill(self, wanted: Wanted, points: "Points", share: float) -> None:
+        """Take in some orbits of a section, unless another one is wanted by now."""
+        if wanted == self.wanted and self._section is not None:
+            self._section.add(points)
+            self.share = share
+            self.tell_progress()
+            self.draw()
+
+    def tell_progress(self) -> None:
+        """Say in the title what is shown; a new title has Textual send all of the pane, so in tenths."""
+        if self.wanted is not None:
+            method, model, h, _ = self.wanted
+            done = "" if self.share == 1 else f", computing {int(10 * self.share) / 10:.0%}"
+            title = f"Own map of {method.label}: h {h:g} s, z {h * model.w0:.4g}{done}"
+            if title != str(self.border_title):
+                self.border_title = Content(title)
+
+    def tell(self) -> None:
+        """In a section, describe the orbit at the crosshair, under the pointer, or of the scene's start."""
+        if not self.shows_section or self.wanted is None:
+            super().tell()
+        elif self.source is not None and self._plot is not None:
+            from tui.drawing.canvas import Canvas, Picture
+            from tui.drawing.palette import TEXT
+            from tui.words.orbit import sentence
+
+            method, model, h, _ = self.wanted
+            scene, aim = self.source.scene, self.aim
+            where = "start" if aim is None else f"{aim.theta:g}, {aim.omega:g}"
+            _, kind = followed(method, model, h, aim or State(scene.theta, scene.omega))
+            line = Canvas(self._plot.characters.shape[1], 1).picture()
+            line.write(0, 0, f"{where}: {sentence(method, kind)}", TEXT)
+            self.show_picture(Picture.stacked(self._plot, line))
+
+    def action_section(self) -> None:
+        self.shows_section = not self.shows_section
+
+    def action_next_map(self) -> None:
+        """Show the section of the next method; where there is none yet, that of the first."""
+        if self.shows_section:
+            self.action_method(1)
+        self.shows_section = True
+
+
+@lru_cache(maxsize=64)
+def followed(method: Method, model: Model, h: float, start: Phase) -> "tuple[Points, OrbitKind]":
+    """The orbit of a start, and its kind."""
+    from engine.phase_space.section import kind_of, orbit
+
+    points = orbit(method, model, h, start, STEPS)
+    return points, kind_of(method, model, h, points)
