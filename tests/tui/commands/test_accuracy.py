@@ -275,3 +275,10 @@ def test_seconds_of_ones_own_method_are_compared_without_numba(tmp_path):
     points = pendu("accuracy", "--time", "2", "--h-values", "0.01:0.001:2", *own, "--json").json["points"]
     mine, euler = (sum(p["seconds"] for p in points if p["method"] == key) for key in ("mine", "explicit_euler"))
     assert euler < mine < 8 * euler  # the guard's share; compiled, Euler would be some 25 times as fast
+
+
+def test_the_growth_of_the_angle_error_is_told_where_it_is_a_power_of_time():
+    out = pendu("accuracy", "--theta", "2", "--h", "0.02", "--time", "2", "--h-values", "0.1:0.05:2").out
+    expected = "the theta error grows as t (Velocity Verlet), as t² (RK4)"
+    assert f"at h = 0.02 s, over up to 100 periods, {expected}" in out.splitlines()
+    assert "grows as" not in pendu("accuracy", "--h", "0.4", "--time", "2", "--h-values", "0.1:0.05:2").out

@@ -136,6 +136,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _fill(found: "Findings", times: list[float], rungs: list[int], fast: bool) -> None:
     """Find what was asked for; what is found by an interrupt stays found."""
+    from engine.accuracy.growth import growth
     from engine.accuracy.recommend import MOST_EVALUATIONS, cheapest, most_accurate, reach, spend
     from engine.accuracy.study import Study, orders, timed
     from engine.run import compiled, loops
@@ -149,6 +150,7 @@ def _fill(found: "Findings", times: list[float], rungs: list[int], fast: bool) -
             found.points.append(point)
             show(sum(point.steps for point in found.points), len(cast) * sum(rungs))
     found.orders += orders(found.scene, found.time, study.loops)
+    found.growth.update((method.key, growth(found.scene, method)) for method in cast)
     if not (found.target or found.budget):
         return
     with progress("searching") as show:

@@ -7,6 +7,7 @@ from typing import Any, TextIO
 
 from rich.text import Text
 
+from engine.accuracy.growth import PERIODS
 from engine.accuracy.recommend import Attempt
 from engine.accuracy.study import REASONS, ErrorKind, Order, Point
 from engine.methods import Method
@@ -17,6 +18,7 @@ from tui.drawing.palette import PALETTES
 from tui.views.accuracy.chart import ERROR_LABELS, MARKS, Cost, accuracy_chart
 
 CHART_SIZE = (100, 24)  # columns at most, rows
+_POWERS = {1: "t", 2: "t²"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +42,7 @@ class Findings:
     budget: int | None
     points: list[Point] = field(default_factory=list)
     orders: list[Order] = field(default_factory=list)
+    growth: dict[str, float | None] = field(default_factory=dict)  # power of t of the theta error, by method
     advice: list[Advice] = field(default_factory=list)  # one for each time asked for
     interrupted: bool = False
 
@@ -107,6 +110,19 @@ def _print_points(found: Findings) -> None:
     for mark in sorted({MARKS[flaw] for flaw in flaws}):
         print(f"{mark} {'; '.join(REASONS[flaw] for flaw in flaws if MARKS[flaw] == mark)}")
     print("order measured on the theta error over at most one period; n/step: force evaluations")
+    if said := growth_text(found):
+        print(said)
+
+
+def growth_text(found: Findings) -> str:
+    """With which power of t the theta error grows at the scene's h, where it follows one."""
+    powers = {m.label: round(power) for m in found.scene.cast if (power := found.growth.get(m.key)) is not None}
+    each = [
+        f"{_POWERS.get(power, f't^{power}')} ({', '.join(label for label in powers if powers[label] == power)})"
+        for power in sorted(set(powers.values()))
+    ]
+    over = f"at h = {found.scene.h:g} s, over up to {PERIODS} periods"
+    return f"{over}, the theta error grows as {', as '.join(each)}" if each else ""
 
 
 def _claimed(method: Method) -> int | None:
