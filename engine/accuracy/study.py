@@ -25,9 +25,10 @@ COMPARISONS = 400  # with the exact swing in a run: at least so many, or at ever
 TIMED_STEPS = 20_000  # at least, in each of them
 SWINGS = 10
 Z_LADDER = (0.6, 0.0015, 12)  # from about ten steps a small swing to four thousand
-ORDER_STEPS = tuple(2**power for power in range(5, 15))
+ORDER_STEPS = tuple(2**power for power in range(4, 15))
 ORDER_COMPARISONS = ORDER_STEPS[0]
 FITTED_BELOW = 0.1  # rad; larger errors are not yet proportional to a power of h
+FITTED = 4  # of the errors that are left, those of the smallest h
 
 
 Flaw = Literal["lost", "rounding", "diverged"]
@@ -190,7 +191,7 @@ def orders(scene: Scene, time: float, loops: LoopsOf = plain) -> list[Order]:
 
 def _slope(points: Sequence[Point]) -> float | None:
     """The slope of log theta error over log h, by least squares."""
-    fitted = [p for p in points if p.flaws.theta is None and p.theta_error < FITTED_BELOW]
+    fitted = [p for p in points if p.flaws.theta is None and p.theta_error < FITTED_BELOW][-FITTED:]
     if len(fitted) < 3:
         return None
     line = linear_regression([math.log(p.h) for p in fitted], [math.log(p.theta_error) for p in fitted])

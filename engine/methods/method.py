@@ -28,6 +28,7 @@ class Method:
     other_names: tuple[str, ...]
     reference: str
     used: str  # where, and in brackets who says so
+    note: str = ""  # what else to know; also tested
     modified_energy: ModifiedEnergy | None = None  # which it keeps but for O(h⁴); None: none is known, or there is none
 
     def step(self, force: Force, phase: Phase, h: float) -> Phase:

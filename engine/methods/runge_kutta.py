@@ -14,16 +14,17 @@ def rk4(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
     some near upright.  Hairer, Lubich & Wanner (2006), II.1.1.
     """
     theta, omega = phase
+    half, sixth = h / 2, h / 6
     while True:
         a1 = force(theta)
-        omega2 = omega + h / 2 * a1
-        a2 = force(theta + h / 2 * omega)
-        omega3 = omega + h / 2 * a2
-        a3 = force(theta + h / 2 * omega2)
+        omega2 = omega + half * a1
+        a2 = force(theta + half * omega)
+        omega3 = omega + half * a2
+        a3 = force(theta + half * omega2)
         omega4 = omega + h * a3
         a4 = force(theta + h * omega3)
-        theta = theta + h / 6 * (omega + 2 * omega2 + 2 * omega3 + omega4)
-        omega = omega + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4)
+        theta = theta + sixth * (omega + 2 * omega2 + 2 * omega3 + omega4)
+        omega = omega + sixth * (a1 + 2 * a2 + 2 * a3 + a4)
         yield theta, omega
 
 

@@ -13,12 +13,13 @@ def velocity_verlet(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
     Order 2, symplectic and reversible.  Hairer, Lubich & Wanner (2006), I.1.4.
     """
     theta, omega = phase
+    half = h / 2
     a = force(theta)
     while True:
-        omega_half = omega + h / 2 * a
+        omega_half = omega + half * a
         theta = theta + h * omega_half
         a = force(theta)
-        omega = omega_half + h / 2 * a
+        omega = omega_half + half * a
         yield theta, omega
 
 

@@ -71,5 +71,9 @@ def pieces(grid: Grid, passes: Sequence[int], width: int = 10) -> Iterator[Piece
 
 
 def default_grid(cast: Cast = USUAL_CAST) -> Grid:
-    """The middles of 200 steps z up to 3, beyond every method's limit, and of 100 amplitudes up to pi."""
-    return Grid((np.arange(100) + 0.5) * np.pi / 100, (np.arange(200) + 0.5) * 3 / 200, 10_000, cast)
+    """The middles of 200 steps z, beyond every method's limit, and of 100 amplitudes up to pi.
+
+    z goes up to 3, or where a method of the cast is still stable there, as BM4 is, up to 3.5.
+    """
+    top = 3 if all(method.linear_limit < 3 for method in cast) else 3.5
+    return Grid((np.arange(100) + 0.5) * np.pi / 100, (np.arange(200) + 0.5) * top / 200, 10_000, cast)

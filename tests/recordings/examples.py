@@ -3,14 +3,14 @@
 from dataclasses import replace
 from pathlib import Path
 
-from engine.methods import METHODS
+from engine.methods import USUAL_CAST
 from engine.run.lockstep import Lockstep, Sample
 from engine.run.stepping import Stepping
 from engine.scenes import Scene
 from recordings.events import Entry, Event
 from recordings.recorder import FLUSH_EVERY, Recorder
 
-METHOD_KEYS = tuple(method.key for method in METHODS)
+METHOD_KEYS = tuple(method.key for method in USUAL_CAST)
 SCENE = Scene("test", theta=2.0, h=0.1)
 
 
@@ -74,7 +74,7 @@ def record(path: Path, entries: list[Entry], wall=None) -> Path:
 
 def tiny(path: Path) -> Path:
     """As small as a recording gets: one method, three samples, two chunks and one for the stop."""
-    verlet = METHODS[2]
+    verlet = USUAL_CAST[2]
     scene = replace(SCENE, cast=(verlet,))
     lockstep = Lockstep(scene)
     entries = [Entry(0.0, start(scene=scene)), Entry(0.0, lockstep.sample())]

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from engine.methods import METHODS
+from engine.methods import USUAL_CAST
 from engine.run.lockstep import Sample
 from recordings.events import Event
 from recordings.fields import COLUMNS
@@ -98,10 +98,10 @@ def test_the_shipped_layout_shows_what_is_in_a_recording():
 
     assert sorted(shown(layout["layout"])) == sorted(panels)
     errors = [path["value"] for path in panels["Plot!energyerror"]["paths"]]
-    assert errors == [f"/pendu/{method.key}.energy_error" for method in METHODS]
+    assert errors == [f"/pendu/{method.key}.energy_error" for method in USUAL_CAST]
     phases = [panel for panel in panels.values() if panel.get("xAxisVal") == "custom"]
     assert [(panel["xAxisPath"]["value"], panel["paths"][0]["value"]) for panel in phases] == [
-        (f"/pendu/{method.key}.theta", f"/pendu/{method.key}.omega") for method in METHODS
+        (f"/pendu/{method.key}.theta", f"/pendu/{method.key}.omega") for method in USUAL_CAST
     ]
     assert panels["RawMessages!events"]["topicPath"] == "/pendu/events"
 
@@ -119,7 +119,7 @@ def test_the_csv_has_a_row_for_each_sample_and_method_and_every_number(tmp_path)
     ):
         reading = sample.readings[place]
         assert (float(row[0]), int(row[1]), int(row[2]), float(row[3])) == (clock, sample.run, sample.step, sample.t)
-        assert row[4] == METHODS[place].key
+        assert row[4] == USUAL_CAST[place].key
         numbers = [float(text) for text in row[5:12]]
         assert numbers == [
             reading.theta,

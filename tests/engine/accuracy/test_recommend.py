@@ -7,13 +7,13 @@ import pytest
 
 from engine.accuracy.recommend import cheapest, most_accurate, reach, spend
 from engine.accuracy.study import Study
-from engine.methods import METHODS
+from engine.methods import USUAL_CAST
 from engine.run import compiled
 from engine.run.lockstep import Lockstep
 from engine.run.loops import plain
 from engine.scenes import SCENES, Z_LIMITS
 
-E, S, V, R = METHODS
+E, S, V, R = USUAL_CAST
 DRIFT = SCENES["drift"]
 LOOPS = compiled.compiled if compiled.available() else plain  # the same bits
 
@@ -50,7 +50,7 @@ def test_the_recommended_run_reaches_its_target(name, time, kind, target):
 def test_no_method_reaches_it_noticeably_cheaper(kind, target):
     study = Study(DRIFT, 10.0)
     cost = recommended(DRIFT, 10.0, kind, target).force_evaluations
-    for method in METHODS:
+    for method in USUAL_CAST:
         # the fewest steps are found to 2 %, and refined by as much where confirming asks for it
         steps = int(0.95 * cost) // method.force_evaluations
         assert study.run(method, steps).error(kind) > target
@@ -104,7 +104,7 @@ def test_a_method_is_not_searched_beyond_the_cost_of_one_that_got_there():
 @pytest.mark.parametrize("budget", [100, 1_000, 20_000])
 def test_a_budget_is_spent_and_not_exceeded(budget, kind):
     attempts = list(spend(Study(DRIFT, 10.0), kind, budget))
-    assert [attempt.method for attempt in attempts] == list(METHODS)
+    assert [attempt.method for attempt in attempts] == list(USUAL_CAST)
     for attempt in attempts:
         assert attempt.point.force_evaluations <= budget
         # a step more would exceed it; these steps are too few for rounding to make fewer of them the better ones

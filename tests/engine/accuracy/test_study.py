@@ -11,14 +11,14 @@ from hypothesis import strategies as st
 from engine.accuracy.rounding import rounding_floor
 from engine.accuracy.study import Study, ladder, orders, timed
 from engine.accuracy.timing import REPEATS
-from engine.methods import METHODS
+from engine.methods import USUAL_CAST
 from engine.models.pendulum import energy
 from engine.run import compiled
 from engine.run.loops import plain
 from engine.scenes import SCENES, SceneError
 from tests.engine.run.test_loops import OVERFLOWING
 
-E, S, V, R = METHODS
+E, S, V, R = USUAL_CAST
 DRIFT = SCENES["drift"]
 STEPS = ladder(20.0, 0.2, 0.0005, 9)
 
@@ -36,7 +36,7 @@ def test_the_measured_orders_are_the_claimed_ones(name):
 
 
 def test_next_to_the_separatrix_rk4_reads_order_5_within_one_period():
-    assert orders(SCENES["near-separatrix"], 20.0)[METHODS.index(R)].measured == pytest.approx(5, abs=0.1)
+    assert orders(SCENES["near-separatrix"], 20.0)[USUAL_CAST.index(R)].measured == pytest.approx(5, abs=0.1)
 
 
 def test_from_the_bottom_symplectic_euler_has_the_angles_and_the_order_of_verlet():
@@ -44,7 +44,7 @@ def test_from_the_bottom_symplectic_euler_has_the_angles_and_the_order_of_verlet
     ours, verlets = study.run(S, 1000), study.run(V, 1000)
     # the same formula in another order of operations: rounding only
     assert ours.theta_error == pytest.approx(verlets.theta_error, rel=1e-6)
-    assert orders(SCENES["spin"], 5.0)[METHODS.index(S)].measured == pytest.approx(2, abs=0.1)
+    assert orders(SCENES["spin"], 5.0)[USUAL_CAST.index(S)].measured == pytest.approx(2, abs=0.1)
 
 
 def test_over_a_hundred_seconds_rk4_reads_more_than_its_order():
@@ -71,13 +71,13 @@ def test_a_ladder_goes_from_the_first_h_to_the_last_in_whole_fractions_of_the_ti
 
 
 def test_a_study_has_a_point_for_every_rung_and_method_and_costs_are_counted(points):
-    assert [(p.steps, p.method) for p in points] == list(itertools.product(STEPS, METHODS))
+    assert [(p.steps, p.method) for p in points] == list(itertools.product(STEPS, USUAL_CAST))
     for point in points:
         assert point.h * point.steps == pytest.approx(20.0)
         assert point.force_evaluations == {E: 1, S: 1, V: 1, R: 4}[point.method] * point.steps + (point.method is V)
 
 
-@pytest.mark.parametrize("method", METHODS, ids=lambda method: method.key)
+@pytest.mark.parametrize("method", USUAL_CAST, ids=lambda method: method.key)
 def test_more_evaluations_buy_smaller_errors(points, method):
     ours = [point for point in points if point.method is method]
     for kind in ("theta", "energy"):
@@ -132,7 +132,7 @@ def test_the_rounding_floor_lies_above_what_rounding_does_and_not_far_above(name
 
 
 def test_errors_below_the_rounding_floor_are_not_fitted():
-    fitted = orders(DRIFT, 20.0)[METHODS.index(R)].measured
+    fitted = orders(DRIFT, 20.0)[USUAL_CAST.index(R)].measured
     study = Study(DRIFT, DRIFT.exact().period)
     deep = [study.run(R, 2**power) for power in range(13, 17)]
     assert all(study.may_be_rounding(point) for point in deep)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from engine.methods import METHODS
+from engine.methods import USUAL_CAST
 from engine.models.pendulum import acceleration
 from engine.phase_space.area import Neighbourhood, Neighbours
 from engine.run.rewindable import RewindableRun
@@ -13,7 +13,7 @@ from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene
 
 DRIFT = SCENES["drift"]
-INDEX = {method.key: i for i, method in enumerate(METHODS)}
+INDEX = {method.key: i for i, method in enumerate(USUAL_CAST)}
 
 
 @pytest.fixture(scope="module")
@@ -23,7 +23,7 @@ def after_ten_thousand_steps() -> dict[str, float]:
     return dict(zip(INDEX, neighbourhood.area_ratios, strict=True))
 
 
-@pytest.mark.parametrize("method", [m for m in METHODS if m.symplectic], ids=lambda m: m.key)
+@pytest.mark.parametrize("method", [m for m in USUAL_CAST if m.symplectic], ids=lambda m: m.key)
 def test_a_symplectic_method_keeps_area_over_ten_thousand_steps(method, after_ten_thousand_steps):
     # each step rounds its determinant by about 1e-16, and the roundings add up like a walk or worse
     assert after_ten_thousand_steps[method.key] == pytest.approx(1.0, abs=1e-12)
@@ -44,7 +44,7 @@ def shoelace(ring) -> float:
     return abs(float(np.sum(theta * np.roll(omega, -1) - omega * np.roll(theta, -1)))) / 2
 
 
-@pytest.mark.parametrize("method", METHODS, ids=lambda m: m.key)
+@pytest.mark.parametrize("method", USUAL_CAST, ids=lambda m: m.key)
 def test_a_small_ring_encloses_what_the_jacobians_say(method):
     neighbourhood = Neighbourhood(DRIFT, radius=1e-4)
     before = shoelace(neighbourhood.rings[INDEX[method.key]])
@@ -58,7 +58,7 @@ def test_the_ring_is_carried_by_the_very_step_of_the_method():
     neighbourhood = Neighbourhood(Scene(theta=0.5), radius=0.1, points=8)
     start = neighbourhood.rings[0]
     neighbourhood.advance(3, Stepping(0.05))
-    for method, ring in zip(METHODS, neighbourhood.rings, strict=True):
+    for method, ring in zip(USUAL_CAST, neighbourhood.rings, strict=True):
         for i in range(8):
             phase = (float(start[0][i]), float(start[1][i]))
             for _ in range(3):

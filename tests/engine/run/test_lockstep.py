@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods import METHODS
+from engine.methods import USUAL_CAST
 from engine.methods.method import Phases
 from engine.models.model import Force, Phase
 from engine.models.pendulum import acceleration, energy
@@ -79,7 +79,7 @@ def test_each_method_goes_where_the_textbooks_loop_goes_to_the_bit(scene: Scene,
     lockstep = Lockstep(scene)
     lockstep.advance(n)
     force = acceleration(scene.w0_squared)
-    for method, reading in zip(METHODS, lockstep.sample().readings, strict=True):
+    for method, reading in zip(USUAL_CAST, lockstep.sample().readings, strict=True):
         phase: Phase = (scene.theta, scene.omega)
         for _ in range(n):
             phase = method.step(force, phase, scene.h)
@@ -177,8 +177,8 @@ def test_a_method_that_diverges_stays_where_it_last_was_finite_and_the_others_go
     phases: Phases, cuts: list[int]
 ) -> None:
     scene, n = SCENES["drift"], sum(cuts) + 100
-    bad = replace(METHODS[0], key="bad", phases=phases)
-    lockstep, others = Lockstep(replace(scene, cast=(bad, *METHODS))), Lockstep(scene)
+    bad = replace(USUAL_CAST[0], key="bad", phases=phases)
+    lockstep, others = Lockstep(replace(scene, cast=(bad, *USUAL_CAST))), Lockstep(scene)
     for cut in (*cuts, 100):
         lockstep.advance(cut)
     others.advance(n)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from engine.methods import METHODS
+from engine.methods import USUAL_CAST
 from engine.run.lockstep import Lockstep, Sample
 from engine.run.observer import Milestone, RunObserver
 from engine.run.stepping import Stepping, SteppingChange
@@ -38,7 +38,7 @@ def tops(scene: Scene, seconds: float, parts: int = 1) -> dict[str, tuple[float,
     while lockstep.t < seconds:
         lockstep.advance(1)
         sample = lockstep.sample()
-        for method, reading in zip(METHODS, sample.readings, strict=True):
+        for method, reading in zip(USUAL_CAST, sample.readings, strict=True):
             if abs(reading.theta) > math.pi:
                 found.setdefault(method.key, (sample.t, reading.energy_error))
     return found
@@ -117,7 +117,7 @@ def test_verdicts_happen_when_they_are_given():
         lockstep.advance(1)
         observer.add(lockstep.sample())
         after = [judgement.verdict for judgement in observer.judgements]
-        changes += [(lockstep.step, m, after[i]) for i, m in enumerate(METHODS) if after[i] != before[i]]
+        changes += [(lockstep.step, m, after[i]) for i, m in enumerate(USUAL_CAST) if after[i] != before[i]]
     verdicts = [(each.step, each.method, each.verdict) for each in observer.milestones(1200) if each.kind == "verdict"]
     assert verdicts == changes
     assert {(method.key, verdict) for _, method, verdict in changes} >= {

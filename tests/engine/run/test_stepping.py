@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods import METHODS
+from engine.methods import USUAL_CAST
 from engine.models.model import Force, Phase
 from engine.run.lockstep import Lockstep
 from engine.run.stepping import Stepping, SteppingChange, change_before
@@ -47,12 +47,12 @@ def test_equal_cost_on_and_off_and_time_both_ways_keep_the_smallest_step(steppin
 def test_at_equal_cost_the_cheap_methods_take_a_step_in_parts():
     assert EQUAL.own == (0.05, 0.05, 0.05, 0.2)
     assert Stepping(0.05, True).with_smallest(0.05) == EQUAL
-    assert Stepping(-0.1).with_own(METHODS[0], 0.3) == Stepping(-0.3)
-    assert EQUAL.reversed().with_own(METHODS[0], 0.5) == Stepping(-2.0, equal_cost=True)
+    assert Stepping(-0.1).with_own(USUAL_CAST[0], 0.3) == Stepping(-0.3)
+    assert EQUAL.reversed().with_own(USUAL_CAST[0], 0.5) == Stepping(-2.0, equal_cost=True)
 
 
 def test_a_method_whose_cost_divides_no_other_takes_the_nearest_number_of_parts():
-    costs = tuple(replace(METHODS[0], force_evaluations=n) for n in (1, 3, 4, 7))
+    costs = tuple(replace(USUAL_CAST[0], force_evaluations=n) for n in (1, 3, 4, 7))
     assert Stepping(0.1, True, costs).parts == (7, 2, 2, 1)
 
 
@@ -77,10 +77,10 @@ def bits(lockstep: Lockstep) -> list[tuple[float, float, float]]:
 
 
 def test_at_equal_cost_every_method_needs_the_same_number_of_evaluations():
-    assert len({method.force_evaluations * part for method, part in zip(METHODS, EQUAL.parts, strict=True)}) == 1
+    assert len({method.force_evaluations * part for method, part in zip(USUAL_CAST, EQUAL.parts, strict=True)}) == 1
 
 
-@pytest.mark.parametrize("index", range(len(METHODS)), ids=[method.key for method in METHODS])
+@pytest.mark.parametrize("index", range(len(USUAL_CAST)), ids=[method.key for method in USUAL_CAST])
 def test_a_method_takes_the_step_in_its_own_parts(index: int):
     equal, alone = Lockstep(DEFAULT_SCENE), Lockstep(DEFAULT_SCENE)
     equal.set_stepping(EQUAL)
@@ -109,7 +109,7 @@ def test_a_method_that_diverges_says_when_to_its_own_part_of_a_step():
             omega = omega * 2 + 1
             yield theta, omega
 
-    cast = replace(METHODS[0], key="bad", phases=doubling), METHODS[3]
+    cast = replace(USUAL_CAST[0], key="bad", phases=doubling), USUAL_CAST[3]
     lockstep = Lockstep(replace(DEFAULT_SCENE, cast=cast))
     lockstep.set_stepping(Stepping(0.2, True, cast))
     lockstep.advance(1000)
@@ -124,5 +124,5 @@ def test_verlet_beats_rk4_in_energy_at_once_at_equal_cost():
     lockstep = Lockstep(Scene(theta=1.0))
     lockstep.set_stepping(Stepping(0.4, equal_cost=True))
     lockstep.advance(25)
-    error = dict(zip((m.key for m in METHODS), lockstep.sample().readings, strict=True))
+    error = dict(zip((m.key for m in USUAL_CAST), lockstep.sample().readings, strict=True))
     assert error["velocity_verlet"].max_energy_error < error["rk4"].max_energy_error / 10

@@ -6,7 +6,7 @@ from statistics import median
 
 import pytest
 
-from engine.methods import METHODS
+from engine.methods import USUAL_CAST
 from engine.models.pendulum import Pendulum
 from engine.run import compiled
 from engine.run.lockstep import Lockstep
@@ -17,7 +17,7 @@ from engine.run.verdict import Judge, Judgement, Look
 from engine.scenes import SCENES, Scene
 from tests.truths import is_true, scene_at, truths, verdicts, watch
 
-E, S, V, R = METHODS
+E, S, V, R = USUAL_CAST
 LOOPS = compiled.compiled if compiled.available() else plain  # the same bits
 CELLS = list(truths())
 SAMPLED = CELLS[::23]  # 23 and the 36 steps of a line have no divisor in common: every start and step has its turn
@@ -69,7 +69,7 @@ def test_an_orbit_in_a_chaotic_sea_is_called_chaotic_with_its_lyapunov_number(
     index: int, theta: float, h: float
 ) -> None:
     scene = Scene(theta=theta, h=h)
-    assert course(METHODS[index], scene, 6000) == ["chaotic", "wanders"]
+    assert course(USUAL_CAST[index], scene, 6000) == ["chaotic", "wanders"]
     observer, lockstep = RunObserver(scene, LOOPS), Lockstep(scene, loops=LOOPS)
     observer.add(lockstep.sample())
     lockstep.advance(6000)

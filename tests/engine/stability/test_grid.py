@@ -3,7 +3,7 @@ from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from engine.methods import METHODS
+from engine.methods import METHODS, USUAL_CAST, Cast
 from engine.stability import grid as stability_map
 from engine.stability.grid import Grid, default_grid
 from engine.stability.outcomes import HOLDS, UNKNOWN, outcomes
@@ -50,8 +50,13 @@ def test_what_is_not_computed_is_not_known() -> None:
     assert (GRID.unknown()["fate"] == UNKNOWN).all()
 
 
-def test_the_default_grid_reaches_beyond_every_limit() -> None:
-    grid = default_grid()
-    assert grid.shape == (200, 4, 100)
-    assert max(method.linear_limit for method in METHODS) < grid.z[-1] < 3
+@pytest.mark.parametrize("cast", [USUAL_CAST, METHODS])
+def test_the_default_grid_reaches_beyond_every_limit(cast: Cast) -> None:
+    grid = default_grid(cast)
+    assert grid.shape == (200, len(cast), 100)
+    assert max(method.linear_limit for method in cast) < grid.z[-1] < 3.5
     assert 0 < grid.theta[0] < grid.theta[-1] < np.pi
+
+
+def test_the_usual_map_goes_up_to_3() -> None:
+    assert default_grid().z[-1] + default_grid().z[0] == pytest.approx(3)

@@ -1,11 +1,12 @@
 import math
 from fractions import Fraction
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods import METHODS, Method
+from engine.methods import METHODS, USUAL_CAST, Method
 from engine.models.model import Number
 from engine.stability.linear import amplification, energy_range, is_stable, linear_limit
 
@@ -47,8 +48,29 @@ def test_the_limit_is_the_claimed_one(method: Method) -> None:
 
 @given(z=st.fractions(0, 8, max_denominator=10**6))
 def test_below_the_limit_every_step_is_stable_and_above_it_none(z: Fraction) -> None:
-    for method in METHODS:
+    for method in USUAL_CAST:
         assert is_stable(method, z) == (z <= Fraction(method.linear_limit))
+
+
+@given(share=st.floats(0, 1 - 1e-8))  # nearer to the edge it is a matter of rounding
+def test_below_the_first_edge_a_method_with_rounded_coefficients_is_stable_too(share: float) -> None:
+    for method in METHODS:
+        assert is_stable(method, share * method.linear_limit)
+
+
+@pytest.mark.parametrize(("key", "island"), [("blanes_moan_4", (3.1686, 5.02)), ("blanes_moan_6", (3.1424, 6.34))])
+def test_above_the_first_edge_lies_a_gap_and_then_an_island(key: str, island: tuple[float, float]) -> None:
+    method, (near, far) = BY_KEY[key], island
+    assert is_stable(method, np.linspace(near, far, 1000)).all()
+    assert not is_stable(method, np.linspace(method.linear_limit + 1e-6, near - 3e-4, 1000)).any()
+
+
+def test_a_fraction_goes_through_a_step_exactly_where_the_coefficients_are_rational() -> None:
+    for method in USUAL_CAST[1:]:
+        assert is_stable(method, Fraction(1))
+    beyond = Fraction(2) + Fraction(1, 10**30)
+    assert not is_stable(BY_KEY["velocity_verlet"], beyond)
+    assert float(beyond) == 2
 
 
 @given(z=st.floats(0.05, 1.9), steps=st.just(2000))

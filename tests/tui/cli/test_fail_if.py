@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods import METHODS
+from engine.methods import USUAL_CAST
 from engine.run.verdict import Verdict
 from tui.cli.errors import UserError
 from tui.cli.fail_if import FIELDS, parse
@@ -19,7 +19,7 @@ SIGNS = {
     "==": operator.eq,
     "!=": operator.ne,
 }
-KEYS = [method.key for method in METHODS]
+KEYS = [method.key for method in USUAL_CAST]
 NO_COMPARISON = (
     "is not a comparison; write METHOD.FIELD > NUMBER, for example 'velocity_verlet.max_energy_error > 1e-2'."
 )

@@ -8,13 +8,13 @@ import jsonschema
 import pytest
 
 from engine.accuracy.study import REASONS, Study, ladder
-from engine.methods import METHODS
+from engine.methods import USUAL_CAST
 from engine.scenes import SCENES
 from tests.tui.command_line import pendu
 from tui.views.accuracy.chart import accuracy_chart
 
 QUICK = ("accuracy", "--time", "5", "--h-values", "0.2:0.01:4")
-KEYS = [method.key for method in METHODS]
+KEYS = [method.key for method in USUAL_CAST]
 NUMBER = {"type": "number"}
 MAYBE = {"type": ["number", "null"]}
 
@@ -128,14 +128,14 @@ def test_as_json_it_holds_points_orders_and_recommendation():
     answer = pendu(*QUICK, "--target", "1e-4", "--json").json
     jsonschema.validate(answer, SCHEMA)
     assert [point["method"] for point in answer["points"]] == KEYS * 4
-    assert [order["claimed"] for order in answer["orders"]] == [method.order for method in METHODS]
+    assert [order["claimed"] for order in answer["orders"]] == [method.order for method in USUAL_CAST]
     advice = answer["recommendation"]
     assert advice == answer["durations"][-1]
     assert (advice["target"], advice["method"]) == (1e-4, "rk4")
     assert advice["reached"] <= 1e-4
     # the recommended run, run again
     study = Study(SCENES["drift"], 5.0)
-    again = study.run(METHODS[KEYS.index("rk4")], round(5.0 / advice["h"]), 10_000)
+    again = study.run(USUAL_CAST[KEYS.index("rk4")], round(5.0 / advice["h"]), 10_000)
     assert (again.h, again.theta_error) == (advice["h"], advice["reached"])
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from engine.methods import METHODS
+from engine.methods import USUAL_CAST
 from engine.run.compiled import available
 from engine.run.lockstep import Lockstep
 from engine.scenes import DEFAULT_SCENE, SCENES
@@ -24,7 +24,7 @@ def test_json_has_the_fields_of_the_design_and_the_numbers_of_the_engine():
     assert (answer["schema"], answer["time"], answer["steps"]) == ("pendu.run/1", 10.0, 200)
     lockstep = Lockstep(DEFAULT_SCENE)
     lockstep.advance(200)
-    for told, method, reading in zip(answer["methods"], METHODS, lockstep.sample().readings, strict=True):
+    for told, method, reading in zip(answer["methods"], USUAL_CAST, lockstep.sample().readings, strict=True):
         assert told.keys() == {"method", "verdict", *FIELDS}
         assert told["method"] == method.key
         assert (told["theta"], told["max_energy_error"]) == (reading.theta, reading.max_energy_error)

@@ -7,7 +7,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from engine.methods import METHODS
+from engine.methods import USUAL_CAST
 from engine.scenes import SCENES, Scene
 from engine.stability.grid import Grid
 from engine.stability.outcomes import FATES, UNKNOWN
@@ -15,7 +15,7 @@ from engine.stability.study import StabilityStudy, amplitude
 from tests.tui.command_line import pendu
 
 SMALL = ("--steps", 300, "--z-values", "0.1:3:12", "--theta-values", "0.5,2")
-KEYS = [method.key for method in METHODS]
+KEYS = [method.key for method in USUAL_CAST]
 
 
 @pytest.fixture
@@ -43,7 +43,7 @@ def test_json_has_the_fields_of_the_design():
     answer = pendu("stability", *SMALL, "--json").json
     assert answer["schema"] == "pendu.stability/1"
     assert answer["map"] is None
-    for linear, method in zip(answer["linear"], METHODS, strict=True):
+    for linear, method in zip(answer["linear"], USUAL_CAST, strict=True):
         assert linear["method"] == method.key
         assert linear["limit_z"] == pytest.approx(linear["theory_z"], abs=1e-9)
     assert [(row["method"], row["theta"]) for row in answer["pendulum"]] == [(k, t) for k in KEYS for t in (0.5, 2.0)]

@@ -5,7 +5,6 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from engine.methods import METHODS
 from engine.scenes import Scene, check_h
 from tui.cli.errors import Exit, UserError
 from tui.cli.files import text_file
@@ -144,7 +143,7 @@ def _fill(found: "Findings", times: list[float], rungs: list[int], fast: bool) -
             if found.cost == "seconds":
                 point = timed(point, found.scene, time.perf_counter, compiled.compiled if fast else loops.plain)
             found.points.append(point)
-            show(sum(point.steps for point in found.points), len(METHODS) * sum(rungs))
+            show(sum(point.steps for point in found.points), len(found.scene.cast) * sum(rungs))
     found.orders += orders(found.scene, found.time, study.loops)
     if not (found.target or found.budget):
         return
@@ -159,7 +158,7 @@ def _fill(found: "Findings", times: list[float], rungs: list[int], fast: bool) -
             attempts: list[Attempt] = []
             for attempt in search:
                 attempts.append(attempt)
-                show(len(METHODS) * len(found.advice) + len(attempts), len(METHODS) * len(times))
+                show(len(found.scene.cast) * len(found.advice) + len(attempts), len(found.scene.cast) * len(times))
             best = cheapest(attempts) if found.target else most_accurate(attempts, found.kind)
             found.advice.append(Advice(duration, attempts, best))
 

@@ -125,7 +125,7 @@ def _rows(sample: "Sample", observer: "RunObserver") -> list[dict[str, Any]]:
 
     exact = observer.exact.at(sample.t).theta
     rows = []
-    for method, reading, judgement in zip(METHODS, sample.readings, observer.judgements, strict=True):
+    for method, reading, judgement in zip(observer.scene.cast, sample.readings, observer.judgements, strict=True):
         end = reading.diverged_at
         rows.append(
             {
@@ -151,7 +151,7 @@ def _print(
 
     forms = {"energy_error": "+.2e", "max_energy_error": ".2e", "drift_per_second": "+.1e", "theta_error": ".2e"}
     table = []
-    for method, row in zip(METHODS, rows, strict=True):
+    for method, row in zip(scene.cast, rows, strict=True):
         end = row["diverged_at"]
         numbers = ("-" if row[name] is None else format(row[name], form) for name, form in forms.items())
         verdict = row["verdict"] if end is None else f"diverged at {end:g} s"

@@ -9,7 +9,7 @@ from rich.text import Text
 
 from engine.accuracy.recommend import Attempt
 from engine.accuracy.study import REASONS, ErrorKind, Order, Point
-from engine.methods import METHODS, Method
+from engine.methods import Method
 from engine.scenes import Scene
 from tui.cli.output import console, fields_of, print_picture, print_table, scene_line, write_csv, write_json
 from tui.drawing.palette import PALETTES
@@ -90,17 +90,18 @@ def print_csv(found: Findings, out: TextIO) -> None:
 
 
 def _print_points(found: Findings) -> None:
+    cast = found.scene.cast
     rungs = [(steps, list(ours)) for steps, ours in groupby(found.points, key=lambda point: point.steps)]
     rows = [
-        (f"{ours[0].h:.4g}", f"{ours[0].h * found.scene.w0:.3g}", str(steps), *(_cell(found, ours, m) for m in METHODS))
+        (f"{ours[0].h:.4g}", f"{ours[0].h * found.scene.w0:.3g}", str(steps), *(_cell(found, ours, m) for m in cast))
         for steps, ours in rungs
     ]
     if found.orders:
         measured = ("-" if order.measured is None else f"{order.measured:.2f}" for order in found.orders)
         rows.append(("order", "", "measured", *measured))
         rows.append(("", "", "claimed", *(str(order.method.order) for order in found.orders)))
-    names = (f"{method.label} ({method.force_evaluations}/step)" for method in METHODS)
-    print_table("rrr" + "r" * len(METHODS), ("h [s]", "z = h·w0", "steps", *names), rows)
+    names = (f"{method.label} ({method.force_evaluations}/step)" for method in cast)
+    print_table("rrr" + "r" * len(cast), ("h [s]", "z = h·w0", "steps", *names), rows)
     flaws = {flaw for point in found.points if (flaw := point.flaw(found.kind))}
     for mark in sorted({MARKS[flaw] for flaw in flaws}):
         print(f"{mark} {'; '.join(REASONS[flaw] for flaw in flaws if MARKS[flaw] == mark)}")

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.lib import format as npy
 from rich.text import Text
 
-from engine.methods import METHODS
 from engine.scenes import Scene
 from engine.stability.grid import Grid
 from engine.stability.linear import amplification, linear_limit
@@ -30,7 +29,7 @@ CELL_FIELDS = ("fate", "steps_survived", "max_energy_error")
 
 def print_text(study: StabilityStudy, with_map: bool) -> int:
     """Print the tables and, if asked for, the map, in colour where the terminal has colours."""
-    _print_linear(study.scene.z)
+    _print_linear(study.scene)
     rows, whole = study.table()
     _print_pendulum(rows, study)
     if not with_map or not whole:
@@ -60,7 +59,7 @@ def print_json(study: StabilityStudy, with_map: bool) -> int:
                 "theory_z": method.linear_limit,
                 "amplification": amplification(method, scene.z),
             }
-            for method in METHODS
+            for method in scene.cast
         ],
         "pendulum": [
             dict(zip(ROW_FIELDS, _row(row), strict=True))
@@ -138,15 +137,18 @@ def _ended(whole: bool, kept: str = "swings already found lost are kept") -> int
     return Exit.INTERRUPTED
 
 
-def _print_linear(z: float) -> None:
+def _print_linear(scene: Scene) -> None:
     def limit(z: float) -> str:
         return f"{z:.9f}" if z else "none"
 
     print("Linear oscillator: spectral radius of one step; stable up to z = h·w0")
     print_table(
         "lrrr",
-        ("method", "stable to z, measured", "theory", f"spectral radius at z = {z:.4g}"),
-        ((m.label, limit(linear_limit(m)), limit(m.linear_limit), f"{amplification(m, z):.9f}") for m in METHODS),
+        ("method", "stable to z, measured", "theory", f"spectral radius at z = {scene.z:.4g}"),
+        (
+            (m.label, limit(linear_limit(m)), limit(m.linear_limit), f"{amplification(m, scene.z):.9f}")
+            for m in scene.cast
+        ),
     )
 
 

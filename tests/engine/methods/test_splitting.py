@@ -1,0 +1,235 @@
+"""Splittings: the coefficients that a step really takes, the conditions of their order, and what their cards say."""
+
+import math
+from collections.abc import Iterator
+from functools import cache
+from itertools import islice, pairwise
+
+import pytest
+
+from engine.methods import METHODS, VELOCITY_VERLET, Method
+from engine.methods.method import Phases
+from engine.methods.splitting import BLANES_MOAN_4, BLANES_MOAN_6, FAMILY, FOREST_RUTH, composition, splitting
+from engine.models.model import Force, Phase
+from engine.models.pendulum import Pendulum
+from engine.run.loops import plain
+from engine.run.stepping import Stepping
+from engine.scenes import Scene
+
+each_splitting = pytest.mark.parametrize("method", [VELOCITY_VERLET, *FAMILY], ids=lambda method: method.key)
+Tree = tuple[int, tuple["Tree", ...]]  # powers of the node's time, and the trees that hang from it
+
+
+def nodes_and_weights(method: Method) -> tuple[list[float], list[float]]:
+    """When, as a fraction of the step, a method takes its forces, and how much of each goes into omega."""
+    nodes: list[float] = []
+    method.step(lambda theta: nodes.append(theta) or 0.0, (0.0, 1.0), 1.0)
+
+    def kicked(which: int) -> float:
+        forces = iter(float(which == n) for n in range(len(nodes)))
+        return float(method.step(lambda theta: next(forces), (0.0, 0.0), 1.0)[1])
+
+    return nodes, [kicked(n) for n in range(len(nodes))]
+
+
+@cache
+def trees(degree: int) -> tuple[Tree, ...]:
+    """The special Nyström trees of a degree: each hanging tree counts two more than its own."""
+
+    def hung(left: int, largest: int) -> Iterator[tuple[Tree, ...]]:
+        yield ()
+        for size in range(min(left - 2, largest), -1, -1):
+            for tree in trees(size):
+                for others in hung(left - 2 - size, size):
+                    if not others or repr(others[0]) <= repr(tree) or degree_of(others[0]) < size:
+                        yield (tree, *others)
+
+    found = {(degree - sum(degree_of(t) + 2 for t in hanging), hanging) for hanging in hung(degree, degree)}
+    return tuple(sorted(found, key=repr))
+
+
+def degree_of(tree: Tree) -> int:
+    return tree[0] + sum(degree_of(hanging) + 2 for hanging in tree[1])
+
+
+def exact_coefficient(tree: Tree) -> float:
+    sizes = [(degree_of(hanging), hanging) for hanging in tree[1]]
+    return math.prod(exact_coefficient(hanging) / ((size + 1) * (size + 2)) for size, hanging in sizes)
+
+
+def residuals(method: Method, order: int) -> list[float]:
+    """By how much each condition of just this order is missed.  Hairer, Lubich & Wanner (2006), III.2 and II.2.3."""
+    c, b = nodes_and_weights(method)
+
+    def at(tree: Tree) -> list[float]:
+        inner = [at(hanging) for hanging in tree[1]]
+        return [
+            c[i] ** tree[0] * math.prod(math.fsum(b[j] * (c[i] - c[j]) * phi[j] for j in range(i)) for phi in inner)
+            for i in range(len(c))
+        ]
+
+    def missed(tree: Tree, weights: list[float], exact: float) -> float:
+        return abs(math.fsum(w * phi for w, phi in zip(weights, at(tree), strict=True)) - exact)
+
+    d = order - 1
+    velocity = [missed(tree, b, exact_coefficient(tree) / (d + 1)) for tree in trees(d)]
+    arms = [weight * (1 - node) for weight, node in zip(b, c, strict=True)]
+    position = [missed(t, arms, exact_coefficient(t) / (d * (d + 1))) for t in trees(d - 1)] if d else [abs(c[-1] - 1)]
+    return velocity + position
+
+
+def test_there_are_as_many_conditions_as_there_are_trees() -> None:
+    counts = [sum(len(residuals(VELOCITY_VERLET, order)) for order in range(1, last + 1)) for last in (4, 6, 8)]
+    assert counts == [12, 37, 123]
+
+
+@each_splitting
+def test_the_conditions_of_the_claimed_order_hold_and_those_of_the_next_do_not(method: Method) -> None:
+    for order in range(1, method.order + 1):
+        assert max(residuals(method, order)) < 1e-14  # doubles; measured up to 4e-16
+    assert max(residuals(method, method.order + 1)) > 1e-6  # the smallest is BM6's, 5e-6
+
+
+@each_splitting
+def test_kicks_and_drifts_add_up_to_the_step_and_are_the_same_backwards(method: Method) -> None:
+    nodes, kicks = nodes_and_weights(method)
+    drifts = [after - before for before, after in pairwise(nodes)]
+    for parts in (kicks, drifts):
+        assert math.fsum(parts) == pytest.approx(1, abs=1e-15)
+        assert parts == pytest.approx(parts[::-1], abs=4e-16)
+
+
+def test_a_splitting_of_two_half_kicks_is_velocity_verlet_to_the_bit() -> None:
+    model = Pendulum(9.81)
+    for phases in (splitting((0.5, 0.5), (1.0,)), composition(1.0)):
+        ours = islice(phases(model.force(), (2.0, 0.3), 0.05), 1000)
+        verlets = islice(VELOCITY_VERLET.phases(model.force(), (2.0, 0.3), 0.05), 1000)
+        assert list(ours) == list(verlets)
+
+
+def test_a_composition_takes_verlet_steps_of_the_given_sizes() -> None:
+    force, phase = Pendulum(9.81).force(), (2.0, 0.3)
+    composed = next(composition(0.3, -0.1, 0.8)(force, phase, 0.05))
+    for weight in (0.3, -0.1, 0.8):
+        phase = VELOCITY_VERLET.step(force, phase, weight * 0.05)
+    assert composed == pytest.approx(phase, abs=1e-15)
+
+
+@cache
+def largest_energy_error(method: Method, h: float, time: float = 60.0) -> float:
+    model = Pendulum(9.81)
+    start: float = model.energy()((1.0, 0.0))
+    _, _, _, low, high = plain(method, model).advance((1.0, 0.0), h, round(time / h), math.inf)
+    return max(high - start, start - low) / start
+
+
+@pytest.mark.parametrize(
+    ("method", "at_one_step", "at_one_cost", "at_a_quarter"),
+    [
+        (VELOCITY_VERLET, 5.7e-3, 5.7e-3, 3.5e-4),
+        (FOREST_RUTH, 5.1e-5, 4.3e-3, 1.6e-5),
+        (BLANES_MOAN_4, 5.7e-9, 3.3e-5, 2.7e-8),
+        (BLANES_MOAN_6, 7.6e-13, 4.6e-4, 2.6e-10),
+    ],
+    ids=lambda value: getattr(value, "key", ""),
+)
+def test_energy_errors_are_the_measured_ones(
+    method: Method, at_one_step: float, at_one_cost: float, at_a_quarter: float
+) -> None:
+    """At h = 0.05 s, and at 20 and 80 force evaluations a second."""
+    assert largest_energy_error(method, 0.05) == pytest.approx(at_one_step, rel=0.2)
+    for seconds, expected in ((0.05, at_one_cost), (0.0125, at_a_quarter)):
+        assert largest_energy_error(method, seconds * method.force_evaluations) == pytest.approx(expected, rel=0.2)
+
+
+def test_forest_ruth_is_the_warning_that_its_card_says_it_is() -> None:
+    assert FOREST_RUTH.linear_limit == min(method.linear_limit for method in METHODS if method.linear_limit)
+    same_cost = Stepping(0.15, equal_cost=True, cast=(FOREST_RUTH, VELOCITY_VERLET)).own
+    ours, verlets = map(largest_energy_error, (FOREST_RUTH, VELOCITY_VERLET), same_cost)
+    assert 0.6 < ours / verlets < 1
+    nodes, _ = nodes_and_weights(FOREST_RUTH)
+    assert nodes[2] - nodes[1] == pytest.approx(-1.7, abs=0.01)
+    assert largest_energy_error(FOREST_RUTH, 0.05) > 1e-5
+
+
+@each_splitting
+def test_its_energy_does_not_drift(method: Method) -> None:
+    h = method.linear_limit / 4 / math.sqrt(9.81)
+    early, late = (largest_energy_error(method, h, steps * h) for steps in (5_000, 50_000))
+    assert late == pytest.approx(early, rel=0.01)
+
+
+def position_extended(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
+    """PEFRL.  Omelyan, Mryglod & Folk, Comput. Phys. Commun. 146 (2002) 188."""
+    xi, lam, chi = 0.17861789584480907, -0.21234183106260540, -0.066264582669818496
+    theta, omega = phase
+    while True:
+        theta = theta + xi * h * omega
+        for kick, drift in zip((0.5 - lam, lam, lam, 0.5 - lam), (chi, 1 - 2 * (chi + xi), chi, xi), strict=True):
+            omega = omega + kick * h * force(theta)
+            theta = theta + drift * h * omega
+        yield theta, omega
+
+
+def composed(*half: float) -> tuple[int, Phases]:
+    weights = (*half, *half[-2::-1])
+    return len(weights), composition(*weights)
+
+
+S = 1 / (4 - 4 ** (1 / 3))
+LEFT_OUT = {
+    "PEFRL": (4, position_extended),
+    # Phys. Lett. A 146 (1990) 319
+    "Suzuki 4": composed(S, S, 1 - 4 * S),
+    # Phys. Lett. A 150 (1990) 262
+    "Yoshida 6": composed(0.78451361047755726382, 0.23557321335935813368, -1.1776799841788710, 1.3151863206839112),
+    # Math. Comput. 66 (1997) 1089
+    "Kahan-Li 6": composed(
+        0.39216144400731413928, 0.33259913678935943860, -0.7062461725576394, 0.08221359629355080, 0.7985440939934800
+    ),
+    "Kahan-Li 8": composed(
+        0.13020248308889008, 0.56116298177510838, -0.38947496264484729, 0.15884190655515560, -0.39590389413323758,
+        0.18453964097831571, 0.25837438768632205, 0.29501172360931030, -0.60550853383003451,
+    ),
+}  # fmt: skip
+HERE = {method.key: (method.force_evaluations, method.phases) for method in METHODS}
+LARGE = Scene(theta=2.0)
+
+
+EXACT = [LARGE.exact().at(t + 1.0).theta for t in range(100)]
+
+
+def reaches(name: str, target: float, cost: int) -> bool:
+    """Whether so many evaluations follow a swing from 2 rad for 100 s, compared at 100 times."""
+    evaluations, phases = (HERE | LEFT_OUT)[name]
+    every = cost // evaluations // 100
+    run = islice(phases(LARGE.equations.force(), (2.0, 0.0), 1 / every), every - 1, None, every)
+    return all(abs(theta - right) <= target for right, (theta, _) in zip(EXACT, run, strict=False))
+
+
+@pytest.mark.parametrize(
+    ("name", "target", "cost"),
+    [
+        ("blanes_moan_4", 1e-3, 3000),
+        ("blanes_moan_4", 1e-6, 7800),
+        ("blanes_moan_4", 1e-9, 36_000),
+        ("blanes_moan_6", 1e-9, 26_400),
+        ("rk4", 1e-3, 15_600),
+        ("rk4", 1e-6, 59_000),
+        ("rk4", 1e-9, 190_000),
+        ("Kahan-Li 8", 1e-9, 30_600),
+    ],
+)
+def test_accuracy_costs_what_the_cards_say(name: str, target: float, cost: int) -> None:
+    assert reaches(name, target, cost)
+    assert not reaches(name, target, round(0.93 * cost))
+
+
+@pytest.mark.parametrize(("target", "cost"), [(1e-3, 4000), (1e-6, 13_600), (1e-9, 30_600)])
+def test_those_left_out_are_beaten_at_every_accuracy(target: float, cost: int) -> None:
+    """No size of their steps reaches it at a smaller cost; one of them does at this one."""
+    assert any(reaches(name, target, cost) for name in LEFT_OUT)
+    for name, (evaluations, _) in LEFT_OUT.items():
+        dearest = (cost - 1) // (100 * evaluations)
+        steps = {max(1, round(dearest * 0.97**n)) for n in range(30)}
+        assert not any(reaches(name, target, 100 * every * evaluations) for every in steps), name
