@@ -31,10 +31,11 @@ def compiled(method: Method, model: Model) -> Loops:
     """The method's loops on this model, compiled; its parameters become constants.  Raises ImportError without Numba.
 
     They release the interpreter's lock while they run.  Where Numba's sine is not Python's, which
-    depends on the platform's libraries, bits would differ: there the plain loops are returned.
+    depends on the platform's libraries, bits would differ: there the plain loops are returned,
+    as for a method that is not general.
     """
     numba: Any = import_module("numba")
-    if not _same_sine(numba):
+    if not method.general or not _same_sine(numba):
         return plain(method, model)
     inner = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)  # never called by Python: compiles twice as fast
     phases, force, energy = inner(method.phases), inner(model.force()), inner(model.energy())

@@ -119,8 +119,8 @@ class Lockstep:
         low, high = error(track.low), error(track.high)
         track.low = track.high = track.energy
         return Reading(
-            theta=theta,
-            omega=omega,
+            theta=float(theta),  # a method may carry other numbers
+            omega=float(omega),
             energy=track.energy,
             energy_error=error(track.energy),
             max_energy_error=max(error(track.run_high), -error(track.run_low)),

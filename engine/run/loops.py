@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import cache
 from itertools import islice
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from engine.methods import Method
 from engine.models.model import Energy, Model, Phase
@@ -66,6 +66,19 @@ def plain(method: Method, model: Model) -> Loops:
             return advance(_to_overflow(phases(force, phase, h), energy), energy, phase, n, limit)
 
     return Loops(travelling, advancing)
+
+
+def count_evaluations(method: Method, model: Model, phase: Phase, h: float, n: int) -> int:
+    """How often a run of n >= 1 steps evaluates the force, by taking them; `Method.evaluations` knows where it is fixed."""
+    count, force = 0, model.force()
+
+    def counted(theta: Any) -> Any:
+        nonlocal count
+        count += 1
+        return force(theta)
+
+    next(islice(method.phases(counted, phase, h), n - 1, None))
+    return count
 
 
 OVERFLOW = (ValueError, ArithmeticError)

@@ -113,7 +113,7 @@ def limit_warning(cast: Cast, zs: Sequence[float]) -> str:
     """
     letters: dict[float, list[str]] = {}
     for method, z in zip(cast, zs, strict=True):
-        if 0 < method.linear_limit < z:
+        if method.linear_limit and method.linear_limit < z:
             letters.setdefault(method.linear_limit, []).append(method.letter)
     each = ", ".join(f"{' '.join(who)} (z > {limit:.3g})" for limit, who in letters.items())
     return f"unstable: {each}" if each else ""

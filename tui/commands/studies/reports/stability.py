@@ -146,7 +146,7 @@ def _print_linear(scene: Scene) -> None:
         "lrrr",
         ("method", "stable to z, measured", "theory", f"spectral radius at z = {scene.z:.4g}"),
         (
-            (m.label, limit(linear_limit(m)), limit(m.linear_limit), f"{amplification(m, scene.z):.9f}")
+            (m.label, limit(linear_limit(m)), limit(m.linear_limit or 0.0), f"{amplification(m, scene.z):.9f}")
             for m in scene.cast
         ),
     )

@@ -1,4 +1,4 @@
-"""Scene: everything that determines a run.  SCENES: the ones worth watching, with what to watch."""
+"""Scene: everything that determines a run."""
 
 import math
 from dataclasses import dataclass, fields, replace
@@ -59,6 +59,11 @@ class Scene:
                 f"h = {self.h:g} s is not a usable step; use a positive one, for example {0.15 / self.w0:.1g}."
             )
         check_h(self.h, self.w0)
+        for method in self.cast:
+            if self.model not in method.models:
+                raise SceneError(
+                    f"{method.label} is not for the model {self.model}; it is for {' and '.join(method.models)}."
+                )
 
     @property
     def equations(self) -> Model:
@@ -102,82 +107,3 @@ class Scene:
 @cache
 def _equations(model: str, w0_squared: float) -> Model:
     return MODELS[model](w0_squared)
-
-
-_UNIT_W0 = 9.81  # m, the length with which w0 = 1 s⁻¹, so that z reads like h
-
-SCENES: dict[str, Scene] = {
-    scene.name: scene
-    for scene in (
-        Scene("drift", watch="Explicit Euler gains energy, the symplectic ones keep it, RK4 loses a little."),
-        Scene(
-            "gentle",
-            theta=0.1,
-            watch="Nearly linear: a step gains explicit Euler z² of its energy, costs RK4 z⁶/72.",
-        ),
-        Scene(
-            "large-swing",
-            theta=2.5,
-            watch="A swing of 143° takes 1.64 small ones; explicit Euler never ends its first.",
-        ),
-        Scene(
-            "crossover", h=0.2, watch="RK4 starts far ahead of Verlet in energy and falls behind after half a minute."
-        ),
-        Scene(
-            "near-separatrix",
-            theta=math.radians(179.9),
-            h=0.02,
-            watch="RK4's energy error is smallest, yet from 30 s on it falls at the wrong time.",
-        ),
-        Scene(
-            "spin",
-            theta=0.0,
-            omega=8.0,
-            h=0.02,
-            watch="A turn a second: symplectic Euler is half a kick from Verlet, the angles agree.",
-        ),
-        Scene(
-            "verlet-limit",
-            theta=0.1,
-            length=_UNIT_W0,
-            h=1.98,
-            watch="Just below z = 2: Verlet loses 98 % of its energy, has it back every 11 steps.",
-        ),
-        Scene(
-            "verlet-limit-above",
-            theta=0.1,
-            length=_UNIT_W0,
-            h=2.02,
-            watch="Just above z = 2: Verlet leaves the bottom, the pendulum holds it at 0.48 rad.",
-        ),
-        Scene(
-            "rk4-limit",
-            theta=0.1,
-            length=_UNIT_W0,
-            h=2.80,
-            watch="Just below z = 2√2: RK4 loses half its energy in 4 steps, the others go over.",
-        ),
-        Scene(
-            "rk4-limit-above",
-            theta=0.1,
-            length=_UNIT_W0,
-            h=2.86,
-            watch="Just above z = 2√2: RK4 gains energy till the pendulum catches it at 0.2 rad.",
-        ),
-        Scene(
-            "chaos-fenced",
-            theta=3.14,
-            length=_UNIT_W0,
-            h=math.sqrt(0.95),
-            watch="K = z² = 0.95: the symplectic ones tumble in chaos, yet |omega| stays < pi/h.",
-        ),
-        Scene(
-            "chaos-loose",
-            theta=3.14,
-            length=_UNIT_W0,
-            h=math.sqrt(1.1),
-            watch="K = z² = 1.1: no fence is left, |omega| passes 2 pi/h within a million steps.",
-        ),
-    )
-}
-DEFAULT_SCENE = SCENES["drift"]
