@@ -1,9 +1,9 @@
 """What a method is, and what is claimed of it."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from engine.models.model import Force, Phase
+from engine.models.model import Force, Model, Phase
 from engine.models.modified_energy import ModifiedEnergy
 
 Phases = Callable[[Force, Phase, float], Iterator[Phase]]
@@ -30,9 +30,14 @@ class Method:
     used: str  # where, and in brackets who says so
     note: str = ""  # what else to know; also tested
     modified_energy: ModifiedEnergy | None = None  # which it keeps but for O(h⁴); None: none is known, or there is none
+    with_friction: Phases | None = None  # the same where the force has `friction`, if `phases` does not ask for it
     models: tuple[str, ...] = ("pendulum", "linear")  # keys of those that it is for
     general: bool = True  # takes any force, and arrays, complex and mpmath numbers too; else there is no map, no area
     varies: bool = False  # its evaluations depend on where it is; `force_evaluations` is then what is usual
+
+    def on(self, model: Model) -> "Method":
+        """This method as it carries a model."""
+        return replace(self, phases=self.with_friction) if model.friction and self.with_friction else self
 
     def step(self, force: Force, phase: Phase, h: float) -> Phase:
         """The phase after one step of h [s]."""

@@ -32,10 +32,10 @@ def compiled(method: Method, model: Model) -> Loops:
 
     They release the interpreter's lock while they run.  Where Numba's sine is not Python's, which
     depends on the platform's libraries, bits would differ: there the plain loops are returned,
-    as for a method that is not general.
+    as for a method that is not general and a model that is not plain.
     """
     numba: Any = import_module("numba")
-    if not method.general or not _same_sine(numba):
+    if not method.general or not model.plain or not _same_sine(numba):
         return plain(method, model)
     inner = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)  # never called by Python: compiles twice as fast
     phases, force, energy = inner(method.phases), inner(model.force()), inner(model.energy())

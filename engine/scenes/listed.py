@@ -16,6 +16,9 @@ def _cast(*keys: str) -> Cast:
 _RESONANT = _cast("velocity_verlet", "symplectic_euler")
 _PRECISE = _cast("verlet_float32", "velocity_verlet", "verlet_compensated")
 
+_SPRING = _cast("velocity_verlet", "rk4", "respa", "implicit_midpoint", "imex_euler")
+_STIFF = 2500.0  # s⁻²: the spring vibrates at 50 rad/s, the swing at 3
+
 _FIRST_LOOK = (
     Scene("drift", watch="Explicit Euler gains energy, the symplectic ones keep it, RK4 loses a little."),
     Scene(
@@ -107,11 +110,47 @@ _STABILITY = (
 
 _STRUCTURE = (
     Scene(
+        "damped",
+        theta=2.0,
+        model="damped",
+        friction=0.05,
+        h=0.025,
+        cast=_cast("explicit_euler", "lagged_verlet", "conformal_verlet", "rk4"),
+        watch="Explicit Euler gains energy against friction, and spins; the others slow down.",
+    ),
+    Scene(
         "halving",
         theta=2.0,
         h=0.2,
         cast=_cast("halving_verlet", "halving_richardson", "velocity_verlet", "rk4"),
         watch="Step doubling gains 19 % a minute; Verlet, 8 times cheaper, stays within 8 %.",
+    ),
+)
+
+_STIFFNESS = (
+    Scene(
+        "stiff-slow",
+        model="spring",
+        stiffness=_STIFF,
+        h=0.02,
+        cast=_SPRING,
+        watch="h·omega = 1: RK4 takes the energy out of the spring, IMEX Euler all of it.",
+    ),
+    Scene(
+        "stiff-limit",
+        model="spring",
+        stiffness=_STIFF,
+        h=0.05,
+        cast=_SPRING,
+        watch="h·omega = 2.5, beyond Verlet's limit of 2: in a quarter second its bob is gone.",
+    ),
+    Scene(
+        "stiff-resonance",
+        model="spring",
+        stiffness=_STIFF,
+        h=0.125,
+        cast=_SPRING,
+        watch="A period of the spring a step: r-RESPA resonates, implicit midpoint holds.",
     ),
 )
 
@@ -136,6 +175,7 @@ GROUPS: dict[str, tuple[Scene, ...]] = {
     "first look": _FIRST_LOOK,
     "stability": _STABILITY,
     "structure": _STRUCTURE,
+    "stiffness": _STIFFNESS,
     "precision": _PRECISION,
 }
 SCENES: dict[str, Scene] = {scene.name: scene for group in GROUPS.values() for scene in group}

@@ -15,7 +15,19 @@ LIMITS = {  # inclusive; beyond them a value is a typing error, not a pendulum
     "length": (1e-6, 1e6),
     "gravity": (1e-6, 1e6),
 }
-UNITS = {"theta": "rad", "omega": "rad/s", "length": "m", "gravity": "m/s²", "h": "s"}
+PARAMETERS = {  # of models that have them, likewise; of others they are 0
+    "friction": (0.0, 100.0),
+    "stiffness": (1.0, 1e18),
+}
+UNITS = {
+    "theta": "rad",
+    "omega": "rad/s",
+    "length": "m",
+    "gravity": "m/s²",
+    "h": "s",
+    "friction": "s⁻¹",
+    "stiffness": "s⁻²",
+}
 MOST_METHODS = 6  # of a cast: more cannot be told apart on a screen
 Z_LIMITS = (1e-9, 1e3)  # z = h·w0; the methods' own limits lie at 2 and 2√2
 
@@ -46,9 +58,15 @@ class Scene:
     watch: str = ""
     model: str = "pendulum"  # a key of MODELS
     cast: Cast = USUAL_CAST  # the methods, in order
+    friction: float = 0.0  # gamma [s⁻¹], of the model damped
+    stiffness: float = 0.0  # spring constant over mass [s⁻²], of the model spring
 
     def __post_init__(self) -> None:
-        for field, (low, high) in LIMITS.items():
+        parameters = MODELS[self.model].parameters
+        for field in PARAMETERS:
+            if field not in parameters and getattr(self, field):
+                raise SceneError(f"the model {self.model} has no {field}; leave it out, or use a model that has.")
+        for field, (low, high) in (LIMITS | {name: PARAMETERS[name] for name in parameters}).items():
             value = getattr(self, field)
             if not low <= value <= high:  # also refuses nan
                 raise SceneError(
@@ -68,7 +86,8 @@ class Scene:
     @property
     def equations(self) -> Model:
         """The model with this scene's parameters."""
-        return _equations(self.model, self.w0_squared)
+        parameters = MODELS[self.model].parameters
+        return _equations(self.model, self.w0_squared, *(getattr(self, name) for name in parameters))
 
     def exact(self) -> ExactMotion:
         """The exact motion from this scene's start."""
@@ -86,12 +105,13 @@ class Scene:
 
     @property
     def z(self) -> float:
-        """h·w0, the only number that linear stability depends on."""
-        return self.h * self.w0
+        """h·w0, the only number that linear stability depends on; of a spring h times its frequency."""
+        return self.h * self.equations.fastest
 
     def fields(self) -> dict[str, Any]:
         """What determines the run and names it, as JSON shows it."""
-        named = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "cast"}
+        others = {"cast"} | set(PARAMETERS) - set(MODELS[self.model].parameters)
+        named = {field.name: getattr(self, field.name) for field in fields(self) if field.name not in others}
         return named | {"methods": [method.key for method in self.cast]}
 
     def altered(self, **changes: Any) -> "Scene":
@@ -105,5 +125,5 @@ class Scene:
 
 
 @cache
-def _equations(model: str, w0_squared: float) -> Model:
-    return MODELS[model](w0_squared)
+def _equations(model: str, w0_squared: float, *parameters: float) -> Model:
+    return MODELS[model](w0_squared, *parameters)

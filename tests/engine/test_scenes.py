@@ -223,7 +223,7 @@ def test_resonance_golden_neither_an_irrational_part_of_h_nor_a_rational_one_res
 
 def test_halving_gains_19_percent_a_minute_and_verlet_stays_within_8() -> None:
     samples = watch("halving", 60)
-    halving, richardson, verlet, rk4 = samples[-1].readings
+    halving, richardson, _, rk4 = samples[-1].readings
     assert halving.energy_error == pytest.approx(0.19, abs=0.005)
     assert richardson.energy_error < -0.09
     assert rk4.energy_error < -0.1
@@ -254,3 +254,47 @@ def test_precision_deep_64_bits_lose_the_angle_at_35_seconds_and_compensated_sum
             late = sample.t
     assert late == pytest.approx(35, abs=0.5)
     assert worst[2] < 3e-4 < 0.1 < worst[1] < worst[0]
+
+
+def test_damped_explicit_euler_gains_energy_against_friction_and_the_others_slow_down() -> None:
+    samples = watch("damped", 60)
+    reference = SCENES["damped"].equations.reference(2.0, 0.0)
+    euler, *others = samples[-1].readings
+    assert euler.energy > reference.start
+    assert abs(euler.theta) > 10 * math.pi
+    for reading in others:
+        assert abs(reading.energy_error) < 0.003  # ln(E/E_true)
+        assert reading.energy < reference.start / 10
+    lagged, conformal, rk4 = (reading.max_energy_error for reading in others)
+    assert rk4 < conformal < lagged
+
+
+def test_stiff_slow_rk4_takes_the_springs_energy_and_imex_euler_all() -> None:
+    verlet, rk4, respa, midpoint, imex = watch("stiff-slow", 30)[-1].readings
+    assert SCENES["stiff-slow"].z == pytest.approx(1)
+    assert rk4.spring_energy is not None
+    assert rk4.spring_energy < 1e-3
+    assert rk4.energy_error == pytest.approx(-2 / 6.5, abs=0.01)  # the swing is left
+    assert imex.energy_error == pytest.approx(-1, abs=0.01)
+    assert max(verlet.max_energy_error, respa.max_energy_error, midpoint.max_energy_error) < 0.1
+
+
+def test_stiff_limit_in_a_quarter_second_verlets_bob_is_gone() -> None:
+    samples = watch("stiff-limit", 0.25)
+    assert SCENES["stiff-limit"].z == pytest.approx(2.5)
+    position = samples[-1].readings[0].position
+    assert position is not None
+    assert abs(position) > 10
+    for reading in samples[-1].readings[2:]:
+        assert reading.position is not None
+        assert abs(reading.position) < 1.05
+
+
+def test_stiff_resonance_respa_resonates_and_the_implicit_midpoint_holds() -> None:
+    samples = watch("stiff-resonance", 30)
+    assert SCENES["stiff-resonance"].h == pytest.approx(math.tau / 50, rel=0.01)
+    last = samples[-1].readings
+    assert last[2].max_energy_error > 10
+    assert last[3].max_energy_error < 0.4
+    late = SCENES["stiff-resonance"].exact()
+    assert max(abs(s.readings[3].theta - late.at(s.t).theta) for s in samples) > 0.5  # yet at the wrong time
