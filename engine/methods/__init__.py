@@ -4,8 +4,8 @@
 + and * on the phase and never `+=`, which would change arrays in place.  It therefore runs unchanged on floats,
 NumPy arrays, complex numbers, mpmath numbers and under Numba.  The families: `euler`, `verlet`, `runge_kutta`, and
 `splitting`, which builds methods from coefficients.  Others are not as general, and there for one scene each:
-`precision` carries Verlet in other numbers, `adaptive` divides its steps, `damped` adds friction, and `stiff` tells
-fast from slow.
+`precision` carries Verlet in other numbers, `adaptive` divides its steps, `damped` adds friction, `stiff` tells fast
+from slow, and `learned` knows the pendulum from the measurements behind `learned_numbers`.
 
 To add a method, write its function, its entry and its place in FAMILY in one of these files.  Every field of an
 entry is a claim, and tests/engine/methods measure each of them.
@@ -13,7 +13,7 @@ entry is a claim, and tests/engine/methods measure each of them.
 
 import copyreg
 
-from engine.methods import adaptive, damped, euler, precision, runge_kutta, splitting, stiff, verlet
+from engine.methods import adaptive, damped, euler, learned, precision, runge_kutta, splitting, stiff, verlet
 from engine.methods.euler import EXPLICIT_EULER, SYMPLECTIC_EULER
 from engine.methods.method import Method as Method
 from engine.methods.runge_kutta import RK4
@@ -25,7 +25,7 @@ Cast = tuple[Method, ...]
 GENERAL: Cast = (*euler.FAMILY, *verlet.FAMILY, *runge_kutta.FAMILY, *splitting.FAMILY)
 """The methods for any force and any numbers.  The others belong to a scene that needs them."""
 
-METHODS: Cast = (*GENERAL, *damped.FAMILY, *adaptive.FAMILY, *precision.FAMILY, *stiff.FAMILY)
+METHODS: Cast = (*GENERAL, *damped.FAMILY, *adaptive.FAMILY, *precision.FAMILY, *stiff.FAMILY, *learned.FAMILY)
 
 USUAL_CAST: Cast = (EXPLICIT_EULER, SYMPLECTIC_EULER, VELOCITY_VERLET, RK4)
 

@@ -298,3 +298,13 @@ def test_stiff_resonance_respa_resonates_and_the_implicit_midpoint_holds() -> No
     assert last[3].max_energy_error < 0.4
     late = SCENES["stiff-resonance"].exact()
     assert max(abs(s.readings[3].theta - late.at(s.t).theta) for s in samples) > 0.5  # yet at the wrong time
+
+
+def test_learned_the_field_loses_60_percent_and_the_hamiltonian_less_than_one() -> None:
+    lockstep = Lockstep(SCENES["learned"])
+    lockstep.advance(5000)
+    sample = lockstep.sample()
+    field, hamiltonian, rk4 = sample.readings
+    assert sample.t == 100
+    assert field.energy_error == pytest.approx(-0.6, abs=0.02)
+    assert rk4.max_energy_error < hamiltonian.max_energy_error < 0.01
