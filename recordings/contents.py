@@ -1,61 +1,96 @@
 """Contents: what a file's channels are for, which chunks it has, and whether it is whole."""
 
 import zlib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import BinaryIO
 
 from mcap.opcode import Opcode
 from mcap.records import Channel, Metadata
 
-from engine.methods import METHODS
 from engine.run.lockstep import Reading, Sample
-from recordings.errors import RecordingError, printable_items
-from recordings.events import Entry
-from recordings.format import CLOCK_OFFSET, EVENTS, FORMAT_VERSION, METADATA, decode_event, decode_reading, topic
-from recordings.framing import Message, read_record, record_at
-from recordings.summary import Chunks, find_summary
+from engine.scenes import Scene
+from recordings.errors import RecordingError, printable, printable_items
+from recordings.events import Entry, Seal
+from recordings.format import (
+    CLOCK_OFFSET,
+    EVENTS,
+    FORMAT_VERSION,
+    METADATA,
+    SEALS,
+    decode_event,
+    decode_reading,
+    decode_seal,
+    keys_of,
+)
+from recordings.framing import Chunk, Message, read_chunk, read_record, record_at
+from recordings.summary import FUNCTIONS, Chunks, find_summary
 
 CHECK_LIMIT = 1 << 26  # bytes checked whenever a file is opened: the first two hours, in 50 ms
 _BLOCK = 1 << 20
 
 
+StartOf = Callable[[int], Scene | None]
+"""The scene that a run started with; None if its start is not known."""
+
+
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """Which channel holds what.  All runs of a file have the same methods, in the order of METHODS."""
+    """Which channel holds what."""
 
     events: int
-    methods: tuple[str, ...]
-    places: dict[int, int]  # channel -> place of its method
+    seals: int | None  # none in format 1
+    methods: dict[int, tuple[str, str]]  # channel -> model, method
+    channels: dict[tuple[str, str], int]  # the other way round
     version: int
-    sin: str  # fingerprint of the sin it was made with
+    functions: dict[str, str]  # fingerprints of those it was made with
 
     def samples(self, messages: Mapping[int, int]) -> int:
-        """How many samples so many messages of each channel make."""
-        return max(messages.get(channel, 0) for channel in self.places)
+        """How many samples so many messages of each channel make, at least: runs may have different methods."""
+        return max((messages.get(channel, 0) for channel in self.methods), default=0)
 
-    def entries(self, messages: Iterable[Message], only_events: bool = False) -> Iterator[tuple[list[Message], Entry]]:
+    def samples_in(self, messages: Iterable[Message]) -> int:
+        """How many samples the messages of a chunk make: those of each have a sequence number of their own."""
+        return len({message.sequence for message in messages if message.channel in self.methods})
+
+    def channels_of(self, scene: Scene) -> list[int]:
+        """The channels of a run's methods, in their order.  Raises RecordingError if one has none."""
+        try:
+            return [self.channels[scene.model, method.key] for method in scene.cast]
+        except KeyError as error:
+            raise RecordingError("a run has other methods than the file") from error
+
+    def entries(
+        self, messages: Iterable[Message], start_of: StartOf, only_events: bool = False
+    ) -> Iterator[tuple[list[Message], Entry]]:
         """The entries of a chunk, each with its messages.  Unknown channels are skipped.
 
-        Raises RecordingError for an unexpected message or an incomplete sample.
+        Of a run whose start is not known, samples have one reading.  Raises RecordingError for an unexpected message
+        or an incomplete sample.
         """
         parts: list[Message] = []  # of a sample
         readings: list[Reading] = []
+        run_before, expected = -1, [0]
         for message in messages:
             if message.channel == self.events and not readings:
                 event = decode_event(message.data)
-                if event.scene and tuple(method.key for method in event.scene.cast) != self.methods:
-                    raise RecordingError("a run has other methods than the file")
+                if event.scene is not None:
+                    run_before, expected = event.run, self.channels_of(event.scene)
+                elif event.milestone and not any(event.milestone.method.key == key for _, key in self.methods.values()):
+                    raise RecordingError("a milestone is of a method that the file does not have")
                 yield [message], Entry(clock_of(message), event)
-            elif message.channel in self.places and not only_events:
+            elif message.channel in self.methods and not only_events:
                 run, step, t, reading = decode_reading(message.data)
                 if not readings:
                     head = run, step, t
-                if self.places[message.channel] != len(readings) or (run, step, t) != head:
+                    if run != run_before:
+                        scene = start_of(run)
+                        run_before, expected = (run, self.channels_of(scene)) if scene else (-1, [message.channel])
+                if expected[len(readings)] != message.channel or (run, step, t) != head:
                     raise RecordingError("a sample is incomplete")
                 parts.append(message)
                 readings.append(reading)
-                if len(readings) == len(self.methods):
+                if len(readings) == len(expected):
                     yield parts, Entry(clock_of(parts[0]), Sample(*head, tuple(readings)))
                     parts, readings = [], []
             elif message.channel == self.events:
@@ -66,6 +101,7 @@ class Layout:
 
 def layout_of(channels: Iterable[Channel]) -> Layout:
     """The layout that these channels declare.  Raises RecordingError if it is not ours, or of a newer format."""
+    channels = list(channels)
     by_topic = {channel.topic: channel for channel in channels}
     if EVENTS not in by_topic:
         raise RecordingError("this is an MCAP file, but not a recording of pendu-tui")
@@ -77,15 +113,14 @@ def layout_of(channels: Iterable[Channel]) -> Layout:
         raise RecordingError(
             f"it has format {version}, this pendu-tui reads formats up to {FORMAT_VERSION}; install a newer version"
         )
-    methods = tuple(method.key for method in METHODS if topic(method.key) in by_topic)
-    if not methods:
-        raise RecordingError("this version knows none of its methods")
+    methods = {channel.id: keys for channel in channels if (keys := keys_of(channel.topic))}
     return Layout(
         events=by_topic[EVENTS].id,
+        seals=by_topic[SEALS].id if int(version) > 1 and SEALS in by_topic else None,
         methods=methods,
-        places={by_topic[topic(method)].id: place for place, method in enumerate(methods)},
+        channels={keys: channel for channel, keys in methods.items()},
         version=int(version),
-        sin=facts.get("sin", ""),
+        functions={name: printable(facts[name]) for name in FUNCTIONS if name in facts},
     )
 
 
@@ -105,6 +140,8 @@ class Contents:
     complete: bool
     damaged: bool
     reason: str | None
+    seal: Seal | None = None  # the last one, if its digest was right
+    sealed: bool | None = None  # whether all seals are right; None: it has none, or they were not checked
 
 
 def from_summary(stream: BinaryIO) -> Contents | None:
@@ -125,7 +162,31 @@ def from_summary(stream: BinaryIO) -> Contents | None:
     except RecordingError:
         return None
     samples = layout.samples(summary.statistics.channel_message_counts)
+    if layout.version > 1:
+        seal = _end(stream, layout, summary.chunks)
+        if seal is None:
+            return None
+        samples = seal.samples
     return Contents(layout, summary.chunks, samples, metadata, complete=True, damaged=False, reason=None)
+
+
+def seal_of(chunk: Chunk, layout: Layout) -> Seal | None:
+    """The seal that ends a chunk."""
+    last = chunk.messages[-1]
+    try:
+        return decode_seal(last.data) if last.channel == layout.seals else None
+    except RecordingError:
+        return None
+
+
+def _end(stream: BinaryIO, layout: Layout, chunks: Chunks) -> Seal | None:
+    """The seal at the end of a recording that was finished."""
+    try:
+        record = record_at(stream, chunks.offsets[-1]) if chunks else None
+        seal = seal_of(read_chunk(record[1]), layout) if record and record[0] == Opcode.CHUNK else None
+    except RecordingError:
+        return None
+    return seal if seal and seal.end else None
 
 
 def _crc(stream: BinaryIO, size: int) -> int:

@@ -5,20 +5,24 @@ simulated up to them, so that the same swing at two step sizes can be held side 
 """
 
 from collections import Counter
-from collections.abc import Container, Iterator, Mapping
-from dataclasses import asdict, dataclass, field, replace
+from collections.abc import Callable, Container, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from math import isclose
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from engine.run.lockstep import Reading, Sample
+from engine.scenes import Scene
 from recordings.events import Event
-from recordings.fields import EXTREMES, VALUES
+from recordings.fields import EXTREMES, VALUES, distance, same_bits, ulps
 from recordings.recording import Recording
 from recordings.scan import ShowProgress
-from recordings.verify import distance, same_bits, ulps
+from recordings.timeline import NOT_DONE
 
 SAME_TIME = 1e-9  # of the simulated time: a multiple of h is rounded to a few parts in 10^16
 SHOW_EVERY = 1000  # samples
+
+MethodsOf = Callable[[int], tuple[str, ...]]
+"""The methods of a run."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +104,7 @@ def compare(a: Recording, b: Recording, progress: ShowProgress | None = None) ->
     """Compare two open recordings, a damaged one as far as it is intact; memory does not grow with their samples."""
     scenes = {run.number: run.scene for run in a.runs}, {run.number: run.scene for run in b.runs}
     common = [number for number in scenes[0] if number in scenes[1]]
-    starts = ((number, asdict(scenes[0][number]), asdict(scenes[1][number])) for number in common)
+    starts = ((number, _fields(scenes[0][number]), _fields(scenes[1][number])) for number in common)
     result = Comparison(
         [SceneDifference(run, name, x[name], y[name]) for run, x, y in starts for name in x if x[name] != y[name]],
         (sorted(scenes[0].keys() - scenes[1].keys()), sorted(scenes[1].keys() - scenes[0].keys())),
@@ -109,7 +113,7 @@ def compare(a: Recording, b: Recording, progress: ShowProgress | None = None) ->
         {key: MethodErrors() for key in dict.fromkeys((*a.methods, *b.methods))},
     )
     by_step = {number for number in common if _stepping(a, number) == _stepping(b, number)}
-    pairing = _Pairing((a.methods, b.methods), by_step, result)
+    pairing = _Pairing((a.methods_of, b.methods_of), by_step, result)
     for done, (one, other) in enumerate(_paired(_moments(a, by_step), _moments(b, by_step)), 1):
         pairing.take(one, other)
         if progress and done % SHOW_EVERY == 0:
@@ -117,9 +121,14 @@ def compare(a: Recording, b: Recording, progress: ShowProgress | None = None) ->
     return result
 
 
+def _fields(scene: Scene) -> dict[str, Any]:
+    """What a run started with, as numbers and texts."""
+    return scene.fields() | {"methods": ", ".join(method.key for method in scene.cast)}
+
+
 def _events(a: Recording, b: Recording, run: int) -> Iterator[EventDifference]:
     """What was done in one of them only, a's first."""
-    done = [[event for _, event in each.events.of(run) if event.kind not in ("start", "stop")] for each in (a, b)]
+    done = [[event for _, event in each.events.of(run) if event.kind not in NOT_DONE] for each in (a, b)]
     for side, only_in in enumerate("ab"):
         left = Counter(done[1 - side])
         for event in done[side]:
@@ -170,9 +179,7 @@ def _paired(a: Iterator[_Moment], b: Iterator[_Moment]) -> Iterator[tuple[Sample
 class _Pairing:
     """Takes pairs of samples into a comparison."""
 
-    def __init__(
-        self, methods: tuple[tuple[str, ...], tuple[str, ...]], by_step: Container[int], result: Comparison
-    ) -> None:
+    def __init__(self, methods: tuple[MethodsOf, MethodsOf], by_step: Container[int], result: Comparison) -> None:
         self._methods, self._by_step, self._result = methods, by_step, result
         self._gap = False  # a sample had no counterpart, so that extremes since then are not about the same steps
 
@@ -182,7 +189,7 @@ class _Pairing:
         for side, sample in enumerate(pair):
             if sample is None:
                 continue
-            readings[side] = dict(zip(self._methods[side], sample.readings, strict=True))
+            readings[side] = dict(zip(self._methods[side](sample.run), sample.readings, strict=True))
             for key, reading in readings[side].items():
                 worst = self._result.errors[key].max_energy_error
                 worst[side] = max(worst[side] or 0.0, reading.max_energy_error)
@@ -211,6 +218,6 @@ class _Pairing:
             for name in VALUES:
                 x, y = getattr(one, name), getattr(other, name)
                 if name in EXTREMES and (self._gap or x == one.energy_error or y == other.energy_error):
-                    continue  # it claims nothing, see format.without_extremes, or they are about different steps
+                    continue  # it claims nothing, see fields.without_extremes, or they are about different steps
                 if x != y or ulps(x, y):
                     yield replace(at, method=key, field=name, a=x, b=y)

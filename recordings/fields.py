@@ -3,11 +3,14 @@
 Messages, their schemas, the columns of a CSV, `verify`, `run --json` and `--fail-if` take names and units from here.
 """
 
+import math
+import struct
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from operator import attrgetter
 from typing import Any, NamedTuple, get_args
 
-from engine.run.lockstep import Sample
+from engine.run.lockstep import Reading, Sample
 from recordings.events import EventKind
 
 
@@ -55,6 +58,7 @@ SCENE_NUMBERS = ("theta", "omega", "length", "gravity", "h")
 EVENT = (
     Field("kind", about=" ".join(get_args(EventKind)), type="string"),
     Field("scene", type="string", required=False),
+    Field("model", type="string", required=False),
     Field("watch", type="string", required=False),
     Field("theta", "rad", required=False),
     Field("omega", "rad/s", required=False),
@@ -65,8 +69,20 @@ EVENT = (
     Field("methods", type="array", required=False),
     Field("speed", about="times real time", required=False),
     Field("text", type="string", required=False),
+    Field("milestone", about="over the top, failed or verdict", type="string", required=False),
+    Field("method", about="of the milestone", type="string", required=False),
+    Field("verdict", type="string", required=False),
+    Field("energy_error", about="(E - E0) / E0", required=False),
 )
 """An event: its kind, and what that kind needs."""
+
+SEAL = (
+    Field("samples", about="so far", type="integer"),
+    Field("events", about="so far", type="integer"),
+    Field("sha256", about="of the metadata and of all records in chunks so far", type="string"),
+    Field("end", about="whether the recording ends here", type="boolean"),
+)
+"""The last message of a chunk."""
 
 VALUES = tuple(field.name for field in READING)
 NUMBERS = tuple(field.name for field in READING if field.required)
@@ -104,7 +120,42 @@ def schema_of(title: str, about: str, fields: tuple[Field, ...]) -> dict[str, An
     }
 
 
-SAMPLE_SCHEMA = schema_of(
-    "pendu.Sample", "A method at a step; theta from the downward vertical, energy per m L^2.", (*MOMENT, *READING)
-)
 EVENT_SCHEMA = schema_of("pendu.Event", "What was done before this step of this run.", (*MOMENT, *EVENT))
+SEAL_SCHEMA = schema_of("pendu.Seal", "What the recording holds so far.", SEAL)
+
+
+def sample_schema(model: str) -> dict[str, Any]:
+    """The schema of the samples of a model."""
+    title = "pendu.Sample" if model == "pendulum" else f"pendu.Sample.{model}"
+    about = f"A method at a step of the model {model}; theta from the downward vertical, energy per m L^2."
+    return schema_of(title, about, (*MOMENT, *READING))
+
+
+_pack = struct.Struct(f"<{len(NUMBERS)}d").pack
+
+
+def same_bits(a: Reading, b: Reading) -> bool:
+    """Whether two readings have the same bits, quickly.  (0.0 == -0.0, hence the second half.)"""
+    return a == b and _pack(*numbers_of(a)) == _pack(*numbers_of(b))
+
+
+def distance(a: float | None, b: float | None) -> float:
+    """How far apart two numbers are; infinite if only one is there."""
+    return 0.0 if a == b else math.inf if a is None or b is None else abs(a - b)
+
+
+def ulps(a: float | None, b: float | None) -> int | None:
+    """How many doubles lie between them, and one; 1 for 0.0 and -0.0; None if one is missing."""
+    return None if a is None or b is None else abs(_ordinal(a) - _ordinal(b))
+
+
+def _ordinal(value: float) -> int:
+    """The position of a double among all doubles in order; -0.0 comes just before 0.0."""
+    bits = int.from_bytes(struct.pack(">d", value), "big", signed=True)
+    return bits if bits >= 0 else -(bits & (1 << 63) - 1) - 1
+
+
+def without_extremes(sample: Sample) -> Sample:
+    """The sample as the first of its run or the first after a gap, where the steps before it are unknown."""
+    readings = (replace(reading, **dict.fromkeys(EXTREMES, reading.energy_error)) for reading in sample.readings)
+    return replace(sample, readings=tuple(readings))

@@ -1,57 +1,58 @@
 """The format: topics and version; samples and events to bytes and back, side by side, by the table in `fields`.
 
-One topic per method, one message per reading: scalars that Foxglove, PlotJuggler and pandas plot directly.
+One topic per method and model, one message per reading: scalars that Foxglove, PlotJuggler and pandas plot directly.
 The messages of one sample are consecutive, in the order of the run's methods, and share their clock.
 Reading checks every field; anything that is not written here raises RecordingError.
 """
 
-import hashlib
 import json
 import math
-import struct
-from dataclasses import replace
-from functools import cache
-from typing import Any, NoReturn
+from typing import Any, NoReturn, get_args
 
-from engine.methods import Cast, method_of
+from engine.methods import Cast, Method
 from engine.run.lockstep import Reading, Sample
+from engine.run.observer import Milestone
+from engine.run.verdict import Verdict
 from engine.scenes import Scene, SceneError
 from recordings.errors import RecordingError, printable
-from recordings.events import Event
-from recordings.fields import EXTREMES, NUMBERS, SCENE_NUMBERS, VALUES, left_out, values_of
+from recordings.events import Event, Seal, method_named, name_of, noticed, scene_named
+from recordings.fields import NUMBERS, SCENE_NUMBERS, VALUES, left_out, values_of
 
-FORMAT_VERSION = 1
+FORMAT_VERSION = 2
 PROFILE = "pendu"  # in the file's header
 EVENTS = "/pendu/events"
+SEALS = "/pendu/seals"
 METADATA = "pendu.recording"
+OWN_METHOD = "pendu.method"  # the metadata record with the text of a user's own method
 CLOCK_OFFSET = 1_000_000_000  # ns: the clock's zero in log_time; several readers mishandle a time of 0
 CLOCK_LIMIT = 1e9  # s, 30 years
 MESSAGE_LIMIT = 1 << 16  # bytes; ours stay below 1 kB
 STEP_LIMIT = 1 << 53
+CAST_LIMIT = 32  # methods of a run
+KEY_LIMIT = 64  # characters of a method's or a model's key
+MODEL = "pendulum"  # where none is named, as in format 1
+MILESTONES = ("over the top", "failed", "verdict")
+VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 
 _NUMBERS = ("t", *NUMBERS)
 _ENERGY_ERROR = NUMBERS.index("energy_error")
 
 
-def topic(method: str) -> str:
+def topic(method: str, model: str = MODEL) -> str:
     """The topic of a method's readings."""
-    return f"/pendu/{method}"
+    return f"/pendu/{method}" if model == MODEL else f"/pendu/{model}/{method}"
 
 
-@cache
-def sin_fingerprint() -> str:
-    """A checksum of this machine's sin over 4096 arguments from 1e-8 to 1e8: where it differs, so do runs' bits.
-
-    Another libm, or the same one on another processor, rounds one value in 1400 the other way.
-    """
-    values = (math.sin((-1) ** i * 10 ** (i / 256 - 8) * 1.1) for i in range(4096))
-    return hashlib.sha256(struct.pack("<4096d", *values)).hexdigest()[:16]
+def keys_of(name: str) -> tuple[str, str] | None:
+    """The model and the method of a topic; None if it holds no readings."""
+    start, *keys = name.removeprefix("/").split("/")
+    if name in (EVENTS, SEALS) or start != "pendu" or len(keys) not in (1, 2) or not all(map(_is_key, keys)):
+        return None
+    return (MODEL, keys[0]) if len(keys) == 1 else (keys[0], keys[1])
 
 
-def without_extremes(sample: Sample) -> Sample:
-    """The sample as the first of its run or the first after a gap, where the steps before it are unknown."""
-    readings = (replace(reading, **dict.fromkeys(EXTREMES, reading.energy_error)) for reading in sample.readings)
-    return replace(sample, readings=tuple(readings))
+def _is_key(text: str) -> bool:
+    return text.isidentifier() and text.isprintable() and len(text) <= KEY_LIMIT
 
 
 def encode_readings(sample: Sample) -> list[bytes]:
@@ -87,12 +88,20 @@ def encode_event(event: Event) -> bytes:
         fields["scene"] = event.scene.name
         fields |= {"watch": event.scene.watch} if event.scene.watch else {}
         fields |= {name: float(getattr(event.scene, name)) for name in SCENE_NUMBERS}
-        fields["methods"] = [method.key for method in event.scene.cast]
+        fields["model"] = event.scene.model
+        fields["methods"] = [name_of(method) for method in event.scene.cast]
     fields |= {name: value for name in ("h", "speed") if (value := getattr(event, name)) is not None}
     if event.text is not None:
         fields["text"] = printable(event.text)
     if event.equal_cost:
         fields["equal_cost"] = True
+    if (milestone := event.milestone) is not None:
+        fields |= {
+            "milestone": milestone.kind,
+            "method": name_of(milestone.method),
+            "energy_error": milestone.energy_error,
+        }
+        fields |= {"verdict": milestone.verdict} if milestone.kind == "verdict" else {}
     return _dumps(fields)
 
 
@@ -102,21 +111,30 @@ def decode_event(data: bytes) -> Event:
     run, step, t, kind = _count(fields, "run"), _count(fields, "step"), _number(fields, "t"), _text(fields, "kind")
     match kind:
         case "start":
-            numbers: dict[str, Any] = {name: _number(fields, name) for name in SCENE_NUMBERS}
-            try:
-                scene = Scene(_text(fields, "scene"), watch=_text(fields, "watch", ""), cast=_cast(fields), **numbers)
-            except SceneError as error:
-                raise RecordingError(f"run {run} cannot have been recorded: {error}") from error
-            return Event("start", run, step, t, scene=scene)
+            return Event("start", run, step, t, scene=_scene(fields))
         case "set_h":
             return Event("set_h", run, step, t, h=_number(fields, "h"), equal_cost=_flag(fields, "equal_cost"))
         case "speed":
             return Event("speed", run, step, t, speed=_number(fields, "speed"))
         case "mark":
             return Event("mark", run, step, t, text=_text(fields, "text", "") or None)
+        case "noticed":
+            return noticed(run, _milestone(fields, step, t))
         case "pause" | "resume" | "stop":
             return Event(kind, run, step, t)
     raise RecordingError(f"unknown kind of event {kind!r}")
+
+
+def encode_seal(seal: Seal) -> bytes:
+    """The message of a seal."""
+    return _dumps(seal._asdict())
+
+
+def decode_seal(data: bytes) -> Seal:
+    """The seal of a message."""
+    fields = _loads(data)
+    counts = _count(fields, "samples"), _count(fields, "events")
+    return Seal(*counts, _text(fields, "sha256"), _flag(fields, "end"))
 
 
 _dumps_text = json.JSONEncoder(separators=(",", ":"), allow_nan=False).encode
@@ -180,16 +198,50 @@ def _flag(fields: dict[str, Any], name: str) -> bool:
     return value
 
 
+def _one_of(fields: dict[str, Any], name: str, values: tuple[Any, ...], default: Any = None) -> Any:
+    value = fields.get(name, default)
+    if value not in values:
+        raise RecordingError(f"{name!r} of a message is none of {', '.join(values)}")
+    return value
+
+
+def _key(value: object) -> str:
+    if type(value) is not str or not _is_key(value):
+        raise RecordingError(f"a start or a milestone has an impossible name, {printable(str(value))!r}")
+    return value
+
+
+def _scene(fields: dict[str, Any]) -> Scene:
+    numbers: dict[str, Any] = {name: _number(fields, name) for name in SCENE_NUMBERS}
+    try:
+        texts = {"watch": _text(fields, "watch", ""), "model": _key(fields.get("model", MODEL))}
+        return scene_named(_text(fields, "scene"), cast=_cast(fields), **texts, **numbers)
+    except SceneError as error:
+        raise RecordingError(f"run {fields['run']} cannot have been recorded: {error}") from error
+
+
 def _cast(fields: dict[str, Any]) -> Cast:
     keys = fields.get("methods")
-    if type(keys) is not list or not keys:
-        raise RecordingError("a start names no methods")
-    cast = []
-    for key in keys:
-        try:
-            cast.append(method_of(key))
-        except (KeyError, TypeError):
-            raise RecordingError(f"unknown method {printable(str(key))!r}") from None
-    if len(set(cast)) < len(cast):
+    if type(keys) is not list or not 0 < len(keys) <= CAST_LIMIT:
+        raise RecordingError("a start names no methods, or unexpectedly many")
+    cast = tuple(_method(key) if type(key) is str else _method(_key(key)) for key in keys)
+    if len({method.key for method in cast}) < len(cast):
         raise RecordingError("a start names a method twice")
-    return tuple(cast)
+    return cast
+
+
+def _method(name: str) -> Method:
+    """The method of a key, or of a key, @ and the hash of a user's text."""
+    key, at, sha256 = name.partition("@")
+    return method_named(_key(key) + at + printable(sha256))
+
+
+def _milestone(fields: dict[str, Any], step: int, t: float) -> Milestone:
+    return Milestone(
+        kind=_one_of(fields, "milestone", MILESTONES),
+        method=_method(_text(fields, "method")),
+        step=step,
+        t=t,
+        energy_error=_number(fields, "energy_error"),
+        verdict=_one_of(fields, "verdict", VERDICTS, "too early"),
+    )

@@ -24,7 +24,7 @@ RECORD_LIMIT = 1 << 23  # bytes of a record, and of what a chunk decompresses to
 EXPANSION = 128  # times its compressed size, and
 SMALL_CHUNK = 1 << 14  # bytes more: what a chunk may decompress to; ours reach 4 times, and 69 where nothing moves
 SMALL_LIMIT = 1 << 16  # bytes of a record that is neither chunk nor index; ours have 1 kB
-CHANNEL_LIMIT = 64  # ours are the methods and the events
+CHANNEL_LIMIT = 64  # ours are the methods, the events and the seals
 RECORD = struct.Struct("<BQ")  # opcode, length of what follows
 _CHUNK = struct.Struct("<QQQI")  # start [ns], end [ns], uncompressed size, its CRC
 MESSAGE = struct.Struct("<HIQQ")  # channel, sequence, log_time [ns], publish_time [ns]
@@ -61,6 +61,7 @@ class Chunk(NamedTuple):
     end: int  # ns, of the last
     channels: list[Channel]  # declared in it
     messages: list[Message]
+    data: bytes  # all its records
 
 
 def read_chunk(content: bytes) -> Chunk:
@@ -87,7 +88,7 @@ def read_chunk(content: bytes) -> Chunk:
     channels, messages = _records(data)
     if not messages or messages[0].log_time != start or messages[-1].log_time != end:
         raise RecordingError("a chunk's times are wrong")
-    return Chunk(start, end, channels, messages)
+    return Chunk(start, end, channels, messages, data)
 
 
 def _is_plausible(size: int, compressed: int) -> bool:

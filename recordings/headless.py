@@ -1,12 +1,17 @@
-"""Headless runs.  The clock of their recordings is the simulated time, so the same run gives the same bytes."""
+"""Headless runs, and how many steps they may take.
 
-from collections.abc import Iterator, Sequence
+The clock of their recordings is the simulated time, so the same run gives the same bytes.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
 
 from engine.run.lockstep import Lockstep, Sample
 from engine.run.loops import LoopsOf, plain
-from engine.run.stepping import Stepping
+from engine.run.observer import RunObserver
+from engine.run.stepping import Stepping, SteppingChange
 from engine.scenes import Scene
-from recordings.events import Event
+from recordings.errors import RecordingError
+from recordings.events import Event, noticed
 from recordings.recorder import Recorder
 
 SAMPLE_EVERY = 1 / 30  # s of simulated time, as often as the live lab paints
@@ -39,33 +44,75 @@ def simulate(
     sample_every: int | None = None,
     changes: Changes = (),
     loops: LoopsOf = plain,
+    observer: RunObserver | None = None,
 ) -> Iterator[Sample]:
     """Run a scene for `time` [s]; record and yield its samples, of which the last is the result.
+
+    What an `observer` notices is recorded, too; without one, a recording has one of its own.
 
     Samples are `sample_every` steps apart, or 1/30 s rounded to whole steps; always the first and the
     last step and the step of each change.  Memory does not grow.  The caller closes the recorder;
     without a wall clock, the recording has the same bytes each time.
     """
     lockstep = Lockstep(scene, loops=loops)
+    change = SteppingChange(0, 0.0, lockstep.stepping)
     clock = 0.0  # s, simulated; goes up while t goes down
+    if recorder:
+        observer = observer or RunObserver(scene, loops)
 
-    def record(value: Sample | Event) -> None:
-        if isinstance(value, Sample) and recorder:
-            recorder.sample(value, clock)
-        elif isinstance(value, Event) and recorder:
-            recorder.event(value, clock)
+    def record(event: Event) -> None:
+        if recorder:
+            recorder.event(event, clock)
+
+    def sampled() -> Sample:
+        sample = lockstep.sample()
+        if recorder:
+            recorder.sample(sample, clock)
+        for milestone in observer.add(sample, change) if observer else ():
+            record(noticed(1, milestone))
+        return sample
 
     record(Event("start", 1, 0, 0.0, scene=scene))
-    record(sample := lockstep.sample())
-    yield sample
+    yield sampled()
     for first, last, h in segments(scene, time, changes):
         if h != lockstep.stepping.h:
             record(Event("set_h", 1, first, lockstep.t, h=h))
-            lockstep.set_stepping(Stepping(h, cast=scene.cast))
+            change = SteppingChange(first, lockstep.t, Stepping(h, cast=scene.cast))
+            lockstep.set_stepping(change.stepping)
         begin = clock
         every = sample_every or max(1, round(SAMPLE_EVERY / abs(h)))
         while lockstep.step < last:
             lockstep.advance(min(every, last - lockstep.step))
             clock = begin + (lockstep.step - first) * abs(h)
-            record(sample := lockstep.sample())
-            yield sample
+            yield sampled()
+
+
+MOST_STEPS = 10_000_000  # simulated again of a file, unless more are asked for: less than a minute
+STEP_SECONDS = 5e-6  # of all four methods in plain Python, about
+
+
+class StepBudget:
+    """How many steps may be simulated, and how to show how far they are."""
+
+    def __init__(self, steps: int) -> None:
+        self.steps = self._left = steps
+        self.show: Callable[[float], object] | None = None  # called with the share done of what is due
+
+    def spend(self, run: int, step: int, steps: int) -> None:
+        """Take so many steps off, or raise RecordingError."""
+        if steps > self._left:
+            needed = self.steps - self._left + steps
+            raise RecordingError(
+                f"run {run} claims to reach step {step}; to simulate {needed} steps takes about"
+                f" {_duration(needed * STEP_SECONDS)}, and the limit is {self.steps} steps; if you trust the file, use"
+                f" --max-steps {needed}"
+            )
+        self._left -= steps
+
+
+def _duration(seconds: float) -> str:
+    """About how long."""
+    for size, unit in ((31_557_600, "years"), (86_400, "days"), (3600, "hours"), (60, "minutes")):
+        if seconds >= 2 * size:
+            return f"{seconds / size:.0f} {unit}"
+    return f"{seconds:.0f} seconds"

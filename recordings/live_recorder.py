@@ -8,7 +8,8 @@ from engine.run.lockstep import Sample
 from recordings.errors import DiskError, NameTakenError, writing
 from recordings.events import Entry, Event
 from recordings.library import free_path
-from recordings.recorder import Recorder, WallClock
+from recordings.recorder import Recorder
+from recordings.summary import WallClock
 
 RETRY_EVERY = 5.0  # s of the recording clock
 
@@ -18,8 +19,8 @@ class LiveRecorder:
 
     Opening the first file may raise DiskError; nothing after that does.  With `or_next`, a name that another
     lab has taken meanwhile becomes the next free one.  `failed` is a sentence on why nothing is being recorded
-    now, or None.  Every file begins with the start and the changes of h of its run, so each replays and
-    verifies by itself.
+    now, or None.  Every file begins with the start of its run, its changes of h and what
+    was noticed of it, so each replays and verifies by itself.
     """
 
     def __init__(self, path: Path, wall: WallClock = time.time_ns, or_next: bool = False) -> None:
@@ -27,7 +28,7 @@ class LiveRecorder:
         self._closed = False
         self.files: list[Path] = []  # that hold something and are no longer written to
         self._path, self._wall = path, wall
-        self._run: list[Event] = []  # of the run: its start and its changes of h
+        self._run: list[Event] = []  # of the run: its start, its changes of h and what was noticed
         self._zero = self._failed_at = 0.0  # s of the lab's clock: where the file begins, the last failure
         self._recorder = self._opened() if or_next else Recorder(path, wall)
 
@@ -48,7 +49,7 @@ class LiveRecorder:
         if event.kind == "start":
             self._run = []
         self._write(Entry(clock, event))
-        if event.kind in ("start", "set_h"):
+        if event.kind in ("start", "set_h", "noticed"):
             self._run.append(event)
 
     def sample(self, sample: Sample, clock: float) -> None:

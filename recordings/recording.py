@@ -48,7 +48,8 @@ class Recording:
     """A recording that is open for reading.
 
     `complete`: finished, and nothing is wrong; `damaged`: something was changed or lost; `reason`:
-    what is wrong, a clause, or None.  In a file too long to be checked at opening, damage may show
+    what is wrong, a clause, or None; `sealed`: whether its digests are right, or None where it has none or they were
+    not checked.  In a file too long to be checked at opening, damage may show
     only while it plays.  Clocks are in s, from 0 to `length`.
     """
 
@@ -56,12 +57,14 @@ class Recording:
         self.path = path
         self.bytes = stream.seek(0, SEEK_END)
         self.metadata = contents.metadata
-        self.version, self.methods, self.sin = contents.layout.version, contents.layout.methods, contents.layout.sin
-        self.samples = contents.samples
+        self.version, self.functions = contents.layout.version, contents.layout.functions
+        self.methods = tuple(dict.fromkeys(method for _, method in contents.layout.methods.values()))
+        self.samples, self.seal, self.sealed = contents.samples, contents.seal, contents.sealed
         self.complete, self.damaged, self.reason = contents.complete, contents.damaged, contents.reason
         self.length = (contents.chunks.ends[-1] - CLOCK_OFFSET) / 1e9 if contents.chunks else 0.0
         self._stream, self._layout, self._chunks = stream, contents.layout, contents.chunks
         self._decoded = lru_cache(CHUNKS_KEPT)(self._decode)
+        self.methods_of = lru_cache(1)(self._methods_of)
         self._sampled = bytearray(b"\1" * len(self._chunks))  # 0 once a chunk turned out to hold no samples
         self.events = Events()
         starts: list[tuple[int, int]] = []  # chunk, run
@@ -149,6 +152,11 @@ class Recording:
                     return
                 yield entry
 
+    def _methods_of(self, run: int) -> tuple[str, ...]:
+        """The methods of a run, in its order."""
+        scene = self.events.start_of(run)
+        return tuple(method.key for method in scene.cast) if scene else ()
+
     def _read_entries(self, chunk: int, only_events: bool = False) -> tuple[Entry, ...]:
         """A chunk's entries; none if it turns out to be damaged."""
         try:
@@ -158,7 +166,8 @@ class Recording:
             read = read_chunk(record[1])
             if (read.start, read.end) != (self._chunks.starts[chunk], self._chunks.ends[chunk]):
                 raise RecordingError("a chunk differs from its entry in the summary")
-            return tuple(entry for _, entry in self._layout.entries(read.messages, only_events))
+            entries = self._layout.entries(read.messages, self.events.start_of, only_events)
+            return tuple(entry for _, entry in entries)
         except (RecordingError, OSError) as error:
             self.complete, self.damaged, self.reason = False, True, self.reason or str(error)
             return ()

@@ -14,7 +14,8 @@ from engine.run.lockstep import Sample
 from recordings.contents import layout_of
 from recordings.errors import DiskError, RecordingError, named, printable, writing
 from recordings.events import Event
-from recordings.format import CLOCK_OFFSET, encode_readings, without_extremes
+from recordings.fields import without_extremes
+from recordings.format import CLOCK_OFFSET, FORMAT_VERSION, encode_readings
 from recordings.framing import Message
 from recordings.library import PART, alone_with, free_path, open_file, part_of
 from recordings.recorder import Recorder
@@ -140,9 +141,9 @@ class _Salvage:
         """Copy what a chunk holds of runs whose start is known."""
         layout = piece.layout
         if self._recorder is None:
-            facts = self._scan.metadata | {"format": str(layout.version), "sin": layout.sin, "recovered": "yes"}
+            facts = self._scan.metadata | layout.functions | {"format": str(FORMAT_VERSION), "recovered": "yes"}
             self._recorder = Recorder(self._out, lambda: self._publish_time, self._overwrite, facts)
-        for parts, (clock, value) in layout.entries(piece.chunk.messages):
+        for parts, (clock, value) in self._scan.entries(piece):
             self._publish_time = parts[0].publish_time
             if isinstance(value, Event) and value.kind == "start":
                 if self._rerun is not None and value.run <= self._rerun.run:
@@ -181,14 +182,15 @@ class _Salvage:
         self._recorder.close()
         summary = self._scan.summary
         if summary and summary.statistics:  # which counts all that was there
-            layout = layout_of(summary.channels.values())
-            self._lost = layout.samples(summary.statistics.channel_message_counts) - self.kept
+            seal, layout = self._scan.seal, layout_of(summary.channels.values())
+            there = layout.samples(summary.statistics.channel_message_counts)
+            self._lost = max(self._lost, (seal.samples if seal and seal.end else there) - self.kept)
             self._chunks_lost = len(summary.chunks) - len(self._scan.chunks)
             self._end = (summary.statistics.message_end_time - CLOCK_OFFSET) / 1e9
         return Recovery(
             file=path,
             out=self._out,
-            damaged=self._scan.damaged,
+            damaged=self._scan.damaged or self._scan.sealed is False,
             reason=self._scan.reason,
             samples_kept=self.kept,
             samples_lost=self._lost,

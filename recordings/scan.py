@@ -11,45 +11,18 @@ from typing import BinaryIO
 from mcap.opcode import Opcode
 from mcap.records import Channel, DataEnd, Header, Metadata
 
-from recordings.contents import Contents, Layout, layout_of
+from engine.scenes import Scene
+from recordings.contents import Contents, Layout, layout_of, seal_of
 from recordings.errors import RecordingError, printable_items
+from recordings.events import Entry, Event, Seal
 from recordings.format import METADATA, PROFILE
-from recordings.framing import CHANNEL_LIMIT, MAGIC, RECORD, Chunk, Search, read_chunk, read_record, record_at
-from recordings.summary import Chunks, Summary, find_summary, read_summary
+from recordings.framing import CHANNEL_LIMIT, MAGIC, RECORD, Chunk, Message, Search, read_chunk, read_record, record_at
+from recordings.summary import MESSAGE_SIZE, Chunks, Digest, Summary, find_summary, read_summary
 
 ShowProgress = Callable[[int, int], None]
 """Called with how much is done and how much there is: bytes, or samples."""
 
-
-MOST_STEPS = 10_000_000  # simulated again of a file, unless more are asked for: less than a minute
-STEP_SECONDS = 5e-6  # of all four methods in plain Python, about
-
-
-class StepBudget:
-    """How many steps may be simulated, and how to show how far they are."""
-
-    def __init__(self, steps: int) -> None:
-        self.steps = self._left = steps
-        self.show: Callable[[float], object] | None = None  # called with the share done of what is due
-
-    def spend(self, run: int, step: int, steps: int) -> None:
-        """Take so many steps off, or raise RecordingError."""
-        if steps > self._left:
-            needed = self.steps - self._left + steps
-            raise RecordingError(
-                f"run {run} claims to reach step {step}; to simulate {needed} steps takes about"
-                f" {_duration(needed * STEP_SECONDS)}, and the limit is {self.steps} steps; if you trust the file, use"
-                f" --max-steps {needed}"
-            )
-        self._left -= steps
-
-
-def _duration(seconds: float) -> str:
-    """About how long."""
-    for size, unit in ((31_557_600, "years"), (86_400, "days"), (3600, "hours"), (60, "minutes")):
-        if seconds >= 2 * size:
-            return f"{seconds / size:.0f} {unit}"
-    return f"{seconds:.0f} seconds"
+ALTERED = "something was changed, added or left out after it was recorded"
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +49,7 @@ class Scan:
 
     `complete`: finished by the recorder, and every checksum right.  `damaged`: something was changed or
     lost; a recording that was only not finished is not.  `reason`: the first thing wrong, a clause.
+    `sealed`: whether the digests are right, up to where it is first damaged; None for a file without any.
     """
 
     def __init__(self, stream: BinaryIO, progress: ShowProgress | None = None) -> None:
@@ -95,6 +69,11 @@ class Scan:
         self.summary = find_summary(stream)
         self.chunks = Chunks()  # the intact ones so far
         self.messages: Counter[int] = Counter()  # in them, by channel
+        self.samples = 0  # in them
+        self.sealed: bool | None = None
+        self.seal: Seal | None = None  # the last right one
+        self._starts: dict[int, Scene] = {}  # of the last run
+        self._digest: Digest | None = Digest()  # None after a gap
         self.layout: Layout | None = None  # once a chunk was met
         self.channels = dict(self.summary.channels) if self.summary else {}
 
@@ -111,13 +90,32 @@ class Scan:
             return RecordingError("this is an MCAP file, but not a recording of pendu-tui")
         return RecordingError(f"nothing in it can be {done}: {self.reason or 'it has no samples'}")
 
+    def entries(self, piece: Intact) -> Iterator[tuple[list[Message], Entry]]:
+        """The entries of an intact chunk, each with its messages.  Raises RecordingError for unexpected ones.
+
+        Of a run whose start was not in the chunk or before, samples have one reading.
+        """
+        for parts, entry in piece.layout.entries(piece.chunk.messages, self._starts.get):
+            if isinstance(entry.value, Event) and entry.value.scene is not None:
+                self._starts = {entry.value.run: entry.value.scene}
+            yield parts, entry
+
     def contents(self) -> Contents:
         """What the file holds, by a scan to its end.  Raises RecordingError if nothing in it can be read."""
         deque(self, maxlen=0)
         if self.layout is None:
             raise self.nothing("read")
-        samples = self.layout.samples(self.messages)
-        return Contents(self.layout, self.chunks, samples, self.metadata, self.complete, self.damaged, self.reason)
+        return Contents(
+            layout=self.layout,
+            chunks=self.chunks,
+            samples=max(self.samples, self.layout.samples(self.messages)),
+            metadata=self.metadata,
+            complete=self.complete,
+            damaged=self.damaged or self.sealed is False,
+            reason=self.reason,
+            seal=self.seal,
+            sealed=self.sealed,
+        )
 
     def __iter__(self) -> Iterator[Intact | Gap]:
         offset, crc = len(MAGIC), zlib.crc32(MAGIC)
@@ -145,8 +143,11 @@ class Scan:
                     match read_record(opcode, content):
                         case Channel() as channel:
                             self._declare([channel])
-                        case Metadata(name=name, metadata=metadata) if name == METADATA:
-                            self.metadata = printable_items(metadata)
+                        case Metadata(name=name, metadata=metadata):
+                            if name == METADATA:
+                                self.metadata = printable_items(metadata)
+                            if self._digest:
+                                self._digest.add(RECORD.pack(opcode, len(content)) + content)
                         case Header(profile=profile):
                             self._profile = profile
                         case DataEnd(data_section_crc=expected):
@@ -155,6 +156,7 @@ class Scan:
             except RecordingError as error:
                 following = search.next_chunk(offset + 1)
                 self._damage(f"{error} (at byte {offset})")
+                self._digest = None
                 yield Gap(offset)
                 if following is None:
                     return
@@ -162,12 +164,16 @@ class Scan:
                 continue
             if chunk:
                 if self.layout is None:
-                    if self.damaged and not self.channels:
-                        raise self.nothing("read")
+                    if self.damaged and not self.channels:  # they were declared in what is lost
+                        yield Gap(offset)
+                        offset += RECORD.size + len(content)
+                        continue
                     self.layout = layout_of(self.channels.values())
                 found = Counter(message.channel for message in chunk.messages)
                 self.messages += found
+                self.samples += self.layout.samples_in(chunk.messages)
                 self.chunks.add(offset, chunk.start, chunk.end, self.layout.events in found)
+                self._check_seal(chunk, self.layout)
                 yield Intact(offset, offset + RECORD.size + len(content), self.layout, chunk)
             crc = zlib.crc32(content, zlib.crc32(RECORD.pack(opcode, len(content)), crc))
             offset += RECORD.size + len(content)
@@ -179,8 +185,24 @@ class Scan:
         if len(self.channels) > CHANNEL_LIMIT:
             raise RecordingError("unexpectedly many channels")
 
+    def _check_seal(self, chunk: Chunk, layout: Layout) -> None:
+        """Compare a chunk's seal with all that was read; the first wrong one makes those after it wrong, too."""
+        if layout.version == 1 or self._digest is None or self.sealed is False:
+            return
+        seal, end = seal_of(chunk, layout), len(chunk.data) - len(chunk.messages[-1].data) - MESSAGE_SIZE
+        self._digest.add(memoryview(chunk.data)[:end])
+        self.sealed = seal is not None and seal.sha256 == self._digest.sha256 and not (self.seal and self.seal.end)
+        self._digest.add(memoryview(chunk.data)[end:])
+        if self.sealed:
+            self.seal = seal
+        else:
+            self.reason = self.reason or f"its digest does not match from byte {self.chunks.offsets[-1]} on: {ALTERED}"
+
     def _end(self, offset: int, right: bool) -> None:
         """Check what follows the data.  Damage there leaves no gap."""
+        if self.sealed and self._digest and not (self.seal and self.seal.end):
+            self.sealed = False
+            self.reason = self.reason or f"its end is not the recorder's: {ALTERED}"
         if not right:
             self._damage("its checksum is wrong")
         elif self.summary is None or offset != self.summary.data_end:

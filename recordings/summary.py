@@ -1,17 +1,37 @@
-"""Summary: what is where, from a file's end, so that opening and seeking need not read the rest."""
+"""What a file says of itself.
 
+Summary: what is where, from its end, so that opening and seeking need not read the rest.
+
+Digest: the SHA-256 by which it vouches for all that it holds.  The last message of every chunk is a seal, with the
+digest of all records in chunks before it and of the metadata, in the order of the file, so an unfinished file is
+covered up to its last chunk.  It shows what was changed, left out or added by somebody who did not recompute it;
+against one who did it proves nothing.
+
+Fingerprints: which functions its bits depend on, as they were where it was made.
+"""
+
+import hashlib
+import math
+import platform
 import struct
+import time
 import zlib
 from array import array
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from io import SEEK_END
-from typing import BinaryIO
+from functools import cache
+from importlib.metadata import version
+from io import SEEK_END, BytesIO
+from typing import Any, BinaryIO
 
+from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
 from mcap.records import Channel, Statistics
 
+from engine.scenes import Scene
 from recordings.errors import RecordingError
-from recordings.format import CLOCK_LIMIT, CLOCK_OFFSET, EVENTS
+from recordings.fields import SCENE_NUMBERS
+from recordings.format import CLOCK_LIMIT, CLOCK_OFFSET, EVENTS, FORMAT_VERSION
 from recordings.framing import CHANNEL_LIMIT, MAGIC, RECORD, SMALL_LIMIT, read_record, record_at
 
 CHUNK_LIMIT = 2_300_000  # a chunk every 0.8 s for three weeks; 58 MB of Chunks
@@ -132,3 +152,92 @@ def find_summary(stream: BinaryIO) -> Summary | None:
         return read_summary(stream, data_end) if len(MAGIC) <= data_end < footer else None
     except RecordingError:
         return None
+
+
+WallClock = Callable[[], int]  # ns since 1970
+
+FUNCTIONS = ("sin", "sqrt")
+"""What the simulation takes from this machine's libraries, besides + - * /, which are the same everywhere."""
+
+
+_MESSAGE = struct.Struct("<BQHIQQ")  # opcode, length; channel, sequence, log_time [ns], publish_time [ns]
+MESSAGE_SIZE = _MESSAGE.size  # bytes of a message's record before its data
+
+
+class Digest:
+    """The SHA-256 of records, in the order of the file."""
+
+    def __init__(self) -> None:
+        self._hash = hashlib.sha256()
+        self._waiting = BytesIO()
+
+    def message(self, channel: int, sequence: int, log_time: int, publish_time: int, data: bytes) -> None:
+        """Add a message's record."""
+        head = _MESSAGE.pack(Opcode.MESSAGE, MESSAGE_SIZE - 9 + len(data), channel, sequence, log_time, publish_time)
+        self._waiting.write(head)
+        self._waiting.write(data)
+
+    def record(self, record: Any) -> None:
+        """Add one of mcap's records."""
+        builder = RecordBuilder()
+        record.write(builder)
+        self._waiting.write(builder.end())  # type: ignore[no-untyped-call]
+
+    def add(self, data: "bytes | memoryview") -> None:
+        """Add records as bytes."""
+        self._hash.update(data)
+
+    @property
+    def sha256(self) -> str:
+        """Of everything so far."""
+        self._hash.update(self._waiting.getbuffer())
+        self._waiting = BytesIO()
+        return self._hash.hexdigest()
+
+
+@cache
+def fingerprint(function: str) -> str:
+    """A checksum of this machine's sin or sqrt from 1e-8 to 1e8, at 4096 places: where it differs, so do runs' bits.
+
+    Another libm, or the same one on another processor, rounds one sine in 1400 the other way.
+    """
+    arguments = ((-1) ** i * 10 ** (i / 256 - 8) * 1.1 for i in range(4096))
+    if function == "sqrt":
+        arguments = (abs(x) for x in arguments)
+    values = map(getattr(math, function), arguments)
+    return hashlib.sha256(struct.pack("<4096d", *values)).hexdigest()[:16]
+
+
+def fingerprints() -> dict[str, str]:
+    """Those of all FUNCTIONS."""
+    return {function: fingerprint(function) for function in FUNCTIONS}
+
+
+def other_functions(recorded: Mapping[str, str]) -> tuple[str, ...]:
+    """Those that this machine computes differently, by their fingerprints.  Format 1 states that of sin only."""
+    here = fingerprints()
+    return tuple(name for name in dict.fromkeys(("sin", *recorded)) if recorded.get(name) != here[name])
+
+
+@cache
+def program_version() -> str:
+    """The version of this program."""
+    return version("pendu-tui")
+
+
+def facts_of(scene: Scene, wall: WallClock | None) -> dict[str, str]:
+    """For people.  Verification needs only the fingerprints, and takes them from the events' channel."""
+    metadata = {
+        "format": str(FORMAT_VERSION),
+        **fingerprints(),
+        "pendu-tui": program_version(),
+        "scene": scene.name,
+        "model": scene.model,
+    }
+    for name in SCENE_NUMBERS:
+        metadata[f"{name}.hex"] = float.hex(float(getattr(scene, name)))
+    if wall is not None:
+        metadata["started"] = time.strftime("%Y-%m-%dT%H:%M:%S%z", time.localtime(wall() / 1e9))
+        metadata["python"] = platform.python_version()
+        metadata["platform"] = f"{platform.system()} {platform.machine()}"
+    return metadata

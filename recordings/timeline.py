@@ -14,16 +14,18 @@ from itertools import compress
 from math import nan
 from typing import Any, TypeVar, get_args, overload
 
-from engine.methods import Cast
+from engine.methods import Method
 from engine.run.lockstep import Sample
+from engine.run.observer import Milestone
 from engine.scenes import Scene
-from recordings.events import Entry, Event, EventKind
+from recordings.events import Entry, Event, EventKind, method_named, name_of, noticed, scene_named
 from recordings.fields import SCENE_NUMBERS
 
 TEXT_LIMIT = 1 << 22  # characters of all the different texts together
 _KINDS: tuple[EventKind, ...] = get_args(EventKind)
 _EQUAL_COST = 1 << 7  # beside the kind
 _NOTHING = -1
+NOT_DONE = ("start", "stop", "noticed")  # by somebody in a run
 T = TypeVar("T")
 
 
@@ -37,7 +39,7 @@ class Run:
     end: float  # s, at its last sample
     steps: int  # at its last sample
     t: float  # s simulated, at its last sample
-    events: int  # besides start and stop
+    events: int  # besides start, stop and what was noticed
 
 
 class _Rows(Sequence[T]):
@@ -64,11 +66,15 @@ class Events(_Rows[tuple[float, Event]]):
         self._steps = array("Q")
         self._t = array("d")
         self._kinds = array("B")
-        self._values = array("d")  # of h or speed
-        self._extras = array("l")  # the number of a mark's text, or of a start's scene
+        self._values = array("d")  # of h, speed or a milestone's energy error
+        self._extras = array("l")  # the number of a mark's text, of a start's scene, or of what a milestone is
         self._scenes = array("d")  # their numbers, one after the other
         self._names = array("l")  # the numbers of the texts of their names and watches
-        self._cast: Cast = ()
+        self._methods: dict[str, int] = {}  # keys, each once; a file has as many as it has channels, at most
+        self._models: dict[str, int] = {}  # likewise
+        self._casts = bytearray()  # the numbers of their models and methods, one after the other
+        self._cast_ends = array("L", [0])
+        self._sorts: dict[tuple[Any, ...], int] = {}  # of milestones, each once
         self._texts: dict[str, int] = {}  # each once
         self._room = TEXT_LIMIT
 
@@ -83,11 +89,18 @@ class Events(_Rows[tuple[float, Event]]):
     def add(self, clock: float, event: Event) -> None:
         """Add the next one."""
         extra, value = _NOTHING, event.speed if event.h is None else event.h
-        if event.scene is not None:
-            extra = len(self._names) // 2
-            self._scenes.extend(getattr(event.scene, name) for name in SCENE_NUMBERS)
-            self._names.extend(map(self._number, (event.scene.name, event.scene.watch)))
-            self._cast = event.scene.cast
+        if (scene := event.scene) is not None:
+            extra = len(self._cast_ends) - 1
+            self._scenes.extend(getattr(scene, name) for name in SCENE_NUMBERS)
+            self._names.extend(map(self._number, (scene.name, scene.watch)))
+            self._casts.append(self._models.setdefault(scene.model, len(self._models)))
+            self._casts.extend(self._methods.setdefault(name_of(method), len(self._methods)) for method in scene.cast)
+            self._cast_ends.append(len(self._casts))
+        elif (milestone := event.milestone) is not None:
+            value = milestone.energy_error
+            extra = self._sorts.setdefault(
+                (milestone.kind, name_of(milestone.method), milestone.verdict), len(self._sorts)
+            )
         elif event.text is not None:
             extra = self._number(event.text)
         self.clocks.append(clock)
@@ -119,11 +132,21 @@ class Events(_Rows[tuple[float, Event]]):
     def made(self, run: int) -> int:
         """How many events a run has besides start and stop."""
         kinds = (_KINDS[self._kinds[at] & 7] for at in self.places(run))
-        return sum(kind not in ("start", "stop") for kind in kinds)
+        return sum(kind not in NOT_DONE for kind in kinds)
 
     def done(self) -> Iterator[float]:
         """The clocks of all but the stops [s]."""
         return (clock for clock, kind in zip(self.clocks, self._kinds, strict=True) if _KINDS[kind & 7] != "stop")
+
+    def start_of(self, run: int) -> Scene | None:
+        """What a run started with."""
+        kinds = ((at, _KINDS[self._kinds[at] & 7]) for at in self.places(run))
+        return next((self._scene(self._extras[at]) for at, kind in kinds if kind == "start"), None)
+
+    def milestones(self, run: int) -> list[tuple[float, Milestone]]:
+        """What the lab noticed of a run, each with its clock [s], in the order in which it noticed."""
+        found = (self._row(at) for at in self.places(run) if _KINDS[self._kinds[at] & 7] == "noticed")
+        return [(clock, event.milestone) for clock, event in found if event.milestone is not None]
 
     def starts(self) -> Iterator[int]:
         """Where the starts are."""
@@ -139,6 +162,10 @@ class Events(_Rows[tuple[float, Event]]):
         return order, array("Q", map(self.runs.__getitem__, order))
 
     @cached_property
+    def _known(self) -> tuple[list[Method], list[str], list[tuple[Any, ...]]]:
+        return [method_named(key) for key in self._methods], list(self._models), list(self._sorts)
+
+    @cached_property
     def _known_texts(self) -> list[str]:
         return list(self._texts)
 
@@ -151,25 +178,31 @@ class Events(_Rows[tuple[float, Event]]):
 
     def _row(self, at: int) -> tuple[float, Event]:
         kind, extra = _KINDS[self._kinds[at] & 7], self._extras[at]
+        clock, run, step, t = self.head(at)
+        if kind == "noticed":
+            what, method, verdict = self._known[2][extra]
+            return clock, noticed(run, Milestone(what, method_named(method), step, t, self._values[at], verdict))
         event = Event(
             kind,
-            self.runs[at],
-            self._steps[at],
-            self._t[at],
+            run,
+            step,
+            t,
             scene=self._scene(extra) if kind == "start" else None,
             h=self._values[at] if kind == "set_h" else None,
             equal_cost=self._kinds[at] >= _EQUAL_COST,
             speed=self._values[at] if kind == "speed" else None,
             text=self._known_texts[extra] if kind == "mark" and extra != _NOTHING else None,
         )
-        return self.clocks[at], event
+        return clock, event
 
     def _scene(self, number: int) -> Scene:
         name, watch = (self._known_texts[text] for text in self._names[2 * number : 2 * number + 2])
         count = len(SCENE_NUMBERS)
         values = self._scenes[count * number : count * (number + 1)]
         numbers: dict[str, Any] = dict(zip(SCENE_NUMBERS, values, strict=True))
-        return Scene(name, watch=watch, cast=self._cast, **numbers)
+        model, *methods = self._casts[self._cast_ends[number] : self._cast_ends[number + 1]]
+        cast = tuple(self._known[0][method] for method in methods)
+        return scene_named(name, watch=watch, model=self._known[1][model], cast=cast, **numbers)
 
 
 class Runs(_Rows[Run]):

@@ -7,23 +7,25 @@ one value of 1400; the tests use one that differs in every second value.  Once t
 a thousandth of a radian, as happens in chaos, that method is no longer compared.
 """
 
-import math
-import struct
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from engine.run.compiled import tiered
-from engine.run.lockstep import Lockstep, Reading, Sample
+from engine.run.lockstep import Lockstep, Sample
 from engine.run.stepping import Stepping
 from engine.scenes import SceneError
 from recordings.errors import RecordingError, named
-from recordings.events import Event
-from recordings.fields import EXTREMES, NUMBERS, VALUES, numbers_of
-from recordings.format import sin_fingerprint
+from recordings.events import Event, unknown_in
+from recordings.fields import EXTREMES, VALUES, distance, same_bits, ulps
+from recordings.headless import MOST_STEPS, StepBudget
 from recordings.library import open_file
-from recordings.scan import MOST_STEPS, Gap, Scan, ShowProgress, StepBudget
+from recordings.scan import Gap, Scan, ShowProgress
+from recordings.summary import other_functions
+
+Only = Collection[str] | None
+"""Keys of the methods that are compared; None: all."""
 
 TOLERANCE = 1e-11
 LOST = 1e-3  # rad, or rad/s
@@ -62,14 +64,23 @@ class Verification:
     reason: str | None  # why not, a clause
     runs: int
     samples: int
-    same_sin: bool
+    other_functions: tuple[str, ...]  # that this machine computes differently
     identical: bool  # every sample, to the last bit, or within the tolerance where sin differs; and no damage
+    sealed: bool | None  # whether the digest of all that is in it is right; None: it has none
+    sha256: str | None  # the last right digest
     max_difference: float  # of any number, in its unit, within tolerance or not
     first_difference: Difference | None
 
+    @property
+    def same_sin(self) -> bool:
+        """Whether this machine's sine is the recording's."""
+        return "sin" not in self.other_functions
 
-def verify(path: Path, progress: ShowProgress | None = None, max_steps: int = MOST_STEPS) -> Verification:
-    """Verify a recording up to where it is first damaged.
+
+def verify(
+    path: Path, progress: ShowProgress | None = None, max_steps: int = MOST_STEPS, only: Only = None
+) -> Verification:
+    """Verify a recording up to where it is first damaged; `only`: compare the methods of these keys.
 
     Raises RecordingError if it is not a recording, is inconsistent, has no samples, or claims more than `max_steps`
     steps: the number is in the file's hands, and the time that they take is not.
@@ -78,20 +89,22 @@ def verify(path: Path, progress: ShowProgress | None = None, max_steps: int = MO
         scan = Scan(stream, progress)
         budget = StepBudget(max_steps)
         runs = samples = 0
-        same_sin = True
+        others: tuple[str, ...] = ()
         max_difference = 0.0
         first: Difference | None = None
         rerun: Rerun | None = None
         for piece in scan:
             if isinstance(piece, Gap):
                 break
-            same_sin = piece.layout.sin == sin_fingerprint()
+            others = other_functions(piece.layout.functions)
             budget.show = scan.progress_within(piece)
-            for _, (_, value) in piece.layout.entries(piece.chunk.messages):
-                if isinstance(value, Event) and value.kind == "start":
+            for _, (_, value) in scan.entries(piece):
+                if isinstance(value, Event) and value.scene is not None:
                     if rerun is not None and value.run <= rerun.run:
                         raise RecordingError("its runs are not in order")
-                    rerun = Rerun(value, exact=same_sin, budget=budget)
+                    if unknown := unknown_in(value.scene, only):
+                        raise RecordingError(f"it cannot be verified: this version does not know {unknown}")
+                    rerun = Rerun(value, exact=not others, budget=budget, only=only)
                     runs += 1
                 if rerun is None or value.run != rerun.run:
                     raise RecordingError(f"data of run {value.run} lies outside that run")
@@ -110,8 +123,10 @@ def verify(path: Path, progress: ShowProgress | None = None, max_steps: int = MO
             reason=scan.reason,
             runs=runs,
             samples=samples,
-            same_sin=same_sin,
+            other_functions=others,
             identical=first is None and not scan.damaged,
+            sealed=scan.sealed,
+            sha256=scan.seal.sha256 if scan.seal else None,
             max_difference=max_difference,
             first_difference=first,
         )
@@ -123,21 +138,18 @@ class Rerun:
     `max_difference`: the largest so far of any number, within tolerance or not.
     """
 
-    def __init__(
-        self,
-        start: Event,
-        exact: bool = True,
-        budget: StepBudget | None = None,
-    ) -> None:
+    def __init__(self, start: Event, exact: bool = True, budget: StepBudget | None = None, only: Only = None) -> None:
         if start.scene is None or start.step != 0:
             raise RecordingError(f"run {start.run} does not begin at its start")
         scene, self.run = start.scene, start.run
         off = replace(scene, theta=scene.theta * (1 - TOLERANCE), omega=scene.omega * (1 - TOLERANCE))
         self._locksteps = [Lockstep(each, self.run, tiered) for each in ([scene] if exact else [scene, off])]
-        self._exact, self._budget = exact, budget
+        self._exact, self._budget, self._only = exact, budget, only
         self._changes: list[Event] = []  # that no sample has come after yet
         self._allowed: dict[tuple[str, str], float] = defaultdict(float)
         self._cast, self._methods = scene.cast, [method.key for method in scene.cast]
+        if only is not None and not set(only) & set(self._methods):
+            raise RecordingError(f"run {self.run} has none of the methods {', '.join(only)}")
         self._sampled = -1
         self._reached = 0  # the step of the last change
         self.max_difference = 0.0
@@ -156,9 +168,7 @@ class Rerun:
 
     def reach(self, step: int) -> list[Sample]:
         """The run's sample at this step; if not `exact`, also that of the run with the changed start."""
-        if step <= self._sampled:
-            raise RecordingError(f"the steps of run {self.run} are not in order")
-        if step < self._reached:
+        if step <= self._sampled or step < self._reached:
             raise RecordingError(f"the steps of run {self.run} are not in order")
         if self._budget is not None:
             self._budget.spend(self.run, step, step - self._locksteps[0].step)
@@ -199,11 +209,13 @@ class Rerun:
             self.max_difference = max(self.max_difference, distance(recorded.t, computed.t))
             yield Difference(self.run, recorded.step, recorded.t, "", "t", recorded.t, computed.t)
         for method, was, now in zip(self._methods, recorded.readings, computed.readings, strict=True):
+            if self._only is not None and method not in self._only:
+                continue
             lost = max(self._allowed[method, "theta"], self._allowed[method, "omega"]) > LOST
             for field in VALUES:
                 a, b = getattr(was, field), getattr(now, field)
                 if field in EXTREMES and a == was.energy_error:
-                    continue  # such an extreme claims nothing: see format.without_extremes
+                    continue  # such an extreme claims nothing: see fields.without_extremes
                 self.max_difference = max(self.max_difference, distance(a, b))
                 if self._exact:
                     equal = a == b and not ulps(a, b)
@@ -217,27 +229,3 @@ class Rerun:
             for field in VALUES:
                 apart = distance(getattr(a, field), getattr(b, field))
                 self._allowed[method, field] = max(self._allowed[method, field], apart)
-
-
-_pack = struct.Struct(f"<{len(NUMBERS)}d").pack
-
-
-def same_bits(a: Reading, b: Reading) -> bool:
-    """Whether two readings have the same bits, quickly.  (0.0 == -0.0, hence the second half.)"""
-    return a == b and _pack(*numbers_of(a)) == _pack(*numbers_of(b))
-
-
-def distance(a: float | None, b: float | None) -> float:
-    """How far apart two numbers are; infinite if only one is there."""
-    return 0.0 if a == b else math.inf if a is None or b is None else abs(a - b)
-
-
-def ulps(a: float | None, b: float | None) -> int | None:
-    """How many doubles lie between them, and one; 1 for 0.0 and -0.0; None if one is missing."""
-    return None if a is None or b is None else abs(_ordinal(a) - _ordinal(b))
-
-
-def _ordinal(value: float) -> int:
-    """The position of a double among all doubles in order; -0.0 comes just before 0.0."""
-    bits = int.from_bytes(struct.pack(">d", value), "big", signed=True)
-    return bits if bits >= 0 else -(bits & (1 << 63) - 1) - 1

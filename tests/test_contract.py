@@ -20,6 +20,7 @@ COMMANDS = {
         "accuracy", "--time", "2", "--h-values", "0.1:0.01:2", "--cost", "seconds", "--budget", "1e3", "--json",
     ],
     "stability": ["stability", "--steps", "30", "--z-values", "0.5,2.5", "--theta-values", "1,2", "--json"],
+    "stability --scene linear": ["stability", "--scene", "linear", "--json"],
     "stability --map": ["stability", "--steps", "9", "--z-values", "0.5,2.5", "--theta-values", "1", "--map", "--json"],
     "run": ["run", "--time", "2", "--json"],
     "run of a method that diverges": ["run", "--h", "2", "--length", "0.1", "--time", "4000", "--json"],
@@ -36,13 +37,14 @@ COMMANDS = {
     "keys": ["keys", "--json"],
     "scenes": ["scenes", "--json"],
     "methods": ["methods", "--json"],
+    "methods --method": ["methods", "--methods", "mine", "--method", "mine.py:mine", "--json"],
     "doctor": ["doctor", "--json"],
 }  # fmt: skip
 
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch):
-    """A folder with a whole recording and one that was cut, which is the library, too."""
+    """A folder with a whole recording, one that was cut, and a method; it has a library, too."""
     whole = record(tmp_path / "whole.mcap", two_runs())
     (tmp_path / "cut.mcap").write_bytes(whole.read_bytes()[:-700])
     rows = [f"{n},{10 + (-1) ** n}\n" for n in range(200)]
@@ -53,6 +55,10 @@ def folder(tmp_path, monkeypatch):
     monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path / "library"))
     (tmp_path / "library").mkdir()
     (tmp_path / "library" / "one.mcap").write_bytes(whole.read_bytes())
+    (tmp_path / "mine.py").write_text(
+        "def mine(force, phase, h):\n    theta, omega = phase\n    while True:\n"
+        "        theta, omega = theta + h * omega, omega + h * force(theta)\n        yield theta, omega\n"
+    )
 
 
 def kinds(value: Any, path: str = "") -> dict[str, set[str]]:
@@ -96,6 +102,10 @@ def test_the_schema_is_that_of_the_command(name):
         (5, ["judge", "energies.csv", "--time", "t", "--energy", "E", "--junit", "absent/judge.xml"]),
         (2, ["run", "--time", "0"]),
         (2, ["run", "--time", "2", "--fail-if", "rk5.max_energy_error > 0"]),
+        (0, ["run", "--time", "2", "--methods", "rk4", "--method", "mine.py:mine"]),
+        (2, ["run", "--time", "2", "--methods", "rk5"]),
+        (2, ["run", "--time", "2", "--method", "mine.py:other"]),
+        (3, ["run", "--time", "2", "--method", "absent.py:mine"]),
         (0, ["diff", "whole.mcap", "whole.mcap"]),
         (1, ["diff", "whole.mcap", "other.mcap"]),
         (2, ["diff", "whole.mcap"]),

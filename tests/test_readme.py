@@ -11,7 +11,6 @@ from pathlib import Path
 
 import pytest
 
-from engine.methods import METHODS
 from engine.run.lockstep import Lockstep
 from engine.run.stepping import Stepping
 from engine.scenes import DEFAULT_SCENE
@@ -158,30 +157,38 @@ def test_every_command_is_in_the_list():
     assert f"| command | does |\n|---|---|\n{rows}" in README
 
 
-def test_a_method_is_added_in_two_steps_as_described(tmp_path):
+def test_a_method_of_ones_own_is_measured_and_put_on_stage_as_described(shell, tmp_path):
+    (tmp_path / "mine.py").write_text(block_with("python", "def position_verlet"), encoding="utf-8")
+    commands = re.findall(r"`(pendu-tui [^`]*--method mine[^`]*)`", README)
+    told, on_stage = (shell(command) for command in commands)
+    (words,) = (line.split() for line in told.splitlines() if line.startswith("position_verlet"))
+    assert words[1:-2] == ["-", words[2], "1", "yes", "yes", "-", "2.000"]
+    assert float(words[2]) == pytest.approx(2, abs=0.01)
+    assert re.search(r"Position verlet +bounded", on_stage)
+    beside = shell(f"{commands[1]} --methods rk4")
+    assert re.findall(r"^(\w+(?: \w+)?)  +(?:bounded|loses|grows)", beside, re.MULTILINE) == ["RK4", "Position verlet"]
+
+
+def test_a_method_is_added_to_the_project_as_described(tmp_path):
     for package in ("engine", "recordings", "tui"):
         shutil.copytree(ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("__pycache__"))
-    methods = tmp_path / "engine" / "methods.py"
-    source = methods.read_text(encoding="utf-8")
-    step, entry = block_with("python", "def position_verlet"), block_with("python", "Method(")
-    source = source.replace("\n\n@dataclass", f"\n\n{step}\n\n@dataclass", 1)
-    source = re.sub(r"(?ms)(^METHODS: .*?)^\)", lambda match: f"{match[1]}{entry})", source)
-    methods.write_text(source, encoding="utf-8")
+    family = tmp_path / "engine" / "methods" / "verlet.py"
+    function, entry = block_with("python", "def position_verlet"), block_with("python", "Method(")
+    source, of_family, members = family.read_text(encoding="utf-8").partition("FAMILY = (")
+    family.write_text(f"{source}{function}\n\n{entry}\n{of_family}POSITION_VERLET, {members}", encoding="utf-8")
     program = [sys.executable, "-P", "-c", "import sys; from tui.cli.dispatch import main; sys.exit(main())"]
     environment = {**os.environ, "PYTHONPATH": str(tmp_path)}
     for arguments, word in [
         (["methods"], "position_verlet"),
-        (["run", "--time", "60", "--record", "five.mcap"], "Position Verlet   bounded"),
-        (["verify", "five.mcap", "golden"], "6 recordings, 6 identical"),
-        (["snapshot", "--time", "1", "-o", "five.svg"], ""),
+        (["run", "--time", "60", "--methods", "position,rk4", "--record", "two.mcap"], "Position Verlet  bounded"),
+        (["verify", "two.mcap", "golden"], "6 recordings, 6 identical"),
     ]:
         done = subprocess.run(
             [*program, *arguments], cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
         )
         assert (done.returncode, done.stderr) == (0, "")
         assert word in done.stdout
-    assert "Position" in (tmp_path / "five.svg").read_text(encoding="utf-8")
-    claims = [str(ROOT / "tests" / "engine" / "test_methods.py"), "-k", "position_verlet"]
+    claims = [str(ROOT / "tests" / "engine" / "methods" / "test_claims.py"), "-k", "position_verlet"]
     pytest_alone = [sys.executable, "-P", "-m", "pytest", "-c", os.devnull, "--rootdir", ".", "-p", "no:cacheprovider"]
     done = subprocess.run(
         [*pytest_alone, *claims], cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
@@ -218,7 +225,7 @@ def test_with_time_reversed_verlet_comes_back_and_symplectic_euler_does_not():
         lockstep.advance(200)
     missed = {
         method.key: abs(reading.theta - DEFAULT_SCENE.theta)
-        for method, reading in zip(METHODS, lockstep.sample().readings, strict=True)
+        for method, reading in zip(DEFAULT_SCENE.cast, lockstep.sample().readings, strict=True)
     }
     assert missed["velocity_verlet"] < 1e-12
     assert missed["symplectic_euler"] > 1e-3

@@ -8,7 +8,8 @@ NumPy arrays, complex numbers, mpmath numbers and under Numba.  The families: `e
 from slow, and `learned` knows the pendulum from the measurements behind `learned_numbers`.
 
 To add a method, write its function, its entry and its place in FAMILY in one of these files.  Every field of an
-entry is a claim, and tests/engine/methods measure each of them.
+entry is a claim, and tests/engine/methods hold it against what `measure` finds.  A user's `own` method comes from the
+text of a file; `examine` says whether it is one, and loads it.
 """
 
 import copyreg

@@ -52,8 +52,8 @@ def energy_of(w0_squared: float, sin: Sine = math.sin) -> Energy:
 
     def pendulum_energy(phase: Phase) -> Any:
         theta, omega = phase
-        half = sin(theta / 2)
-        return omega * omega / 2 + 2 * w0_squared * half * half
+        half = sin(theta * 0.5)
+        return omega * omega * 0.5 + 2 * w0_squared * half * half
 
     return pendulum_energy
 

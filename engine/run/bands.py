@@ -59,14 +59,14 @@ class Bands:
         """The last part of the bins."""
         return self.bins[-max(1, int(len(self.bins) * share)) :]
 
-    def line(self) -> tuple[float, float]:
-        """Slope per step of the least-squares line through the middles, and its standard deviation.
+    def line(self, bins: list[Bin] | None = None) -> tuple[float, float]:
+        """Slope per step of the least-squares line through the middles of all bins, or these; its standard deviation.
 
         A residual is taken to be correlated with the next one, which leaves n (1 - r)/(1 + r) of n values that
         count: Santer et al., J. Geophys. Res. 105 (2000) 7337.
         """
-        n = len(self.bins)
-        steps, values = [bin_.step for bin_ in self.bins], [bin_.middle for bin_ in self.bins]
+        bins = bins or self.bins
+        n, steps, values = len(bins), [bin_.step for bin_ in bins], [bin_.middle for bin_ in bins]
         mean_step, mean = sum(steps) / n, sum(values) / n
         spread = sum((step - mean_step) ** 2 for step in steps)
         slope = sum((step - mean_step) * (value - mean) for step, value in zip(steps, values, strict=True)) / spread

@@ -13,6 +13,7 @@ from importlib.util import find_spec
 from typing import Any
 
 from engine.methods import Method
+from engine.methods.own import OwnMethod
 from engine.models.model import Model, Phase
 from engine.run import loops
 from engine.run.loops import Advanced, Loops, plain
@@ -31,11 +32,12 @@ def compiled(method: Method, model: Model) -> Loops:
     """The method's loops on this model, compiled; its parameters become constants.  Raises ImportError without Numba.
 
     They release the interpreter's lock while they run.  Where Numba's sine is not Python's, which
-    depends on the platform's libraries, bits would differ: there the plain loops are returned,
-    as for a method that is not general and a model that is not plain.
+    depends on the platform's libraries, bits would differ: there the plain loops are returned, and for a user's own
+    method, which may hold anything, for one that is not general, and on a model that is not plain.
     """
     numba: Any = import_module("numba")
-    if not method.general or not model.plain or not _same_sine(numba):
+    general = method.general and model.plain and not isinstance(method, OwnMethod)
+    if not general or not _same_sine(numba):
         return plain(method, model)
     inner = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)  # never called by Python: compiles twice as fast
     phases, force, energy = inner(method.phases), inner(model.force()), inner(model.energy())

@@ -1,6 +1,6 @@
 """What is known of a run up to now: the verdict on each method, and what happened when.
 
-Nothing here is recorded: it follows from the samples, so a replay shows what the lab showed.
+It follows from the samples.  A recording holds what the lab noticed, because a later version may judge otherwise.
 """
 
 import math
@@ -75,16 +75,17 @@ class RunObserver:
         else:
             self._before, self.seen = None, step - 1
 
-    def add(self, sample: Sample, change: SteppingChange | None = None) -> None:
+    def add(self, sample: Sample, change: SteppingChange | None = None) -> list[Milestone]:
         """Take in a sample and the last change of the stepping before it; what lies before the last is known already.
 
-        Without a change, the run has stepped alike since its start.
+        Without a change, the run has stepped alike since its start.  Returns the milestones on the way.
         """
         if sample.step <= self.seen:
-            return
+            return []
         change = change or self._start
         if self.seen <= change.step:
             self.judge_anew(change.step)
+        news: list[Milestone] = []
         before, self._before, self.seen = self._before, sample, sample.step
         if before is None:
             self._begin = sample
@@ -96,17 +97,21 @@ class RunObserver:
             for since, error, verdict in judging.follow(sample.step - self._begin.step, reading):
                 if reading.diverged_at is None:
                     t = self._begin.t + since * change.stepping.h
-                    self._note(Milestone("verdict", method, self._begin.step + since, t, error, verdict))
+                    news.append(Milestone("verdict", method, self._begin.step + since, t, error, verdict))
             if reading.diverged_at is not None and self._is_new("failed", method):
                 error = reading.energy_error
-                self._note(Milestone("failed", method, sample.step, reading.diverged_at, error))
+                news.append(Milestone("failed", method, sample.step, reading.diverged_at, error))
             if (
                 before is not None
                 and self._is_new("over the top", method)
                 and self._is_over(reading.theta)
                 and not self._is_over(before.readings[index].theta)
             ):
-                self._note(self._crossing(index, before, sample, change.stepping))
+                news.append(self._crossing(index, before, sample, change.stepping))
+        for milestone in news:
+            self._known.add((milestone.kind, milestone.method))
+            insort(self._milestones, milestone, key=_step)
+        return news
 
     def _begun(self, stepping: Stepping) -> list[Judging]:
         """A judging of each method from the sample on at which this stepping begins."""
@@ -149,10 +154,6 @@ class RunObserver:
     def _is_new(self, kind: str, method: Method) -> bool:
         """Whether this has not happened to a method before."""
         return (kind, method) not in self._known
-
-    def _note(self, milestone: Milestone) -> None:
-        self._known.add((milestone.kind, milestone.method))
-        insort(self._milestones, milestone, key=_step)
 
     def _crossing(self, index: int, before: Sample, sample: Sample, stepping: Stepping) -> Milestone:
         """Where between two samples a method goes over the top.

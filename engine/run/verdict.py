@@ -24,20 +24,20 @@ The last three take 4096 steps or more, and 64 periods.
 """
 
 import math
-from dataclasses import dataclass
 from statistics import median
-from typing import Literal, NamedTuple
 
 from engine.methods import Method
 from engine.models.model import Model, Phase
 from engine.run.bands import FLOOR, MOST_BINS, Bands, hull, rising, steady
+from engine.run.judgement import Judgement as Judgement
+from engine.run.judgement import Look as Look
+from engine.run.judgement import Verdict as Verdict
 from engine.run.tangent import Stretching, conserved_ellipse
-
-Verdict = Literal["too early", "bounded", "loses", "grows", "chaotic", "caught", "wanders"]
 
 LOOKS = 8  # a period
 LEAST_PERIODS = 8  # for `bounded`
 LEAST_BINS = 4
+RECENT = 0.5  # of the bins: where the slope that is told is measured
 LEAST_STEPS = 16  # in a bin: beyond h·w0 = 0.4 a swing has fewer steps, and they show its band badly
 QUIET = 0.25  # h·w0 of a symplectic method: below, chaos is thinner than exp(-pi²/0.25), which is rounding
 LONG = 4096  # steps that show an orbit to be regular where nothing else does
@@ -51,27 +51,6 @@ WANDER = 1e-9  # as far as rounding was seen to carry an energy error, in rotati
 AT_REST = -1 + 1e-9  # relative energy error: nothing is left
 THROWN = 1.5  # h·w0: beyond, a method that is not symplectic may be thrown far, and back
 SMALL = 0.7  # rad: swings to which the ellipse is applied
-
-
-@dataclass(frozen=True, slots=True)
-class Judgement:
-    """What is known of an energy error so far; no slope before there are four bins."""
-
-    verdict: Verdict = "too early"
-    slope: float | None = None  # mean change of the relative energy error [1/s]
-    uncertainty: float | None = None  # standard deviation of the slope [1/s]
-    periods: float = 0.0  # how many periods this rests on
-    lyapunov: float | None = None  # 1/s; given where the verdict rests on it
-
-
-class Look(NamedTuple):
-    """What a Judge is shown of a method."""
-
-    theta: float  # rad
-    omega: float  # rad/s
-    error: float  # relative, of the energy
-    low: float  # the smallest and the largest since the look before
-    high: float
 
 
 def stride(period: float, h: float) -> int:
@@ -145,18 +124,19 @@ class Judge:
     def _judge(self) -> None:
         flat = self._method.symplectic and self._is_conserved()
         bands = self._modified if flat and len(self._modified.bins) >= LEAST_BINS else self._energy
-        slope, uncertainty = (abs(1 / self._h) * value for value in bands.line())
+        rate, spread = bands.line()
+        whole = rate / abs(self._h), spread / abs(self._h)
+        recent = bands.recent(RECENT) if len(bands.bins) >= MOST_BINS / 2 else bands.bins
+        slope, uncertainty = (abs(1 / self._h) * value for value in bands.line(recent))
         periods = self._steps * abs(self._h) / self._period
-        if self._method.symplectic:
-            verdict = self._symplectic(flat, periods)
-        else:
-            verdict = self._other(slope, uncertainty, periods)
+        verdict = self._symplectic(flat, periods) if self._method.symplectic else self._other(whole, periods)
+        seconds = (recent[-1].step - recent[0].step) * abs(self._h)
         finite = math.isfinite(slope) and math.isfinite(uncertainty)
         lyapunov = None
         if verdict in ("chaotic", "wanders") and self._neighbours.steps:
             lyapunov = self._neighbours.log / self._neighbours.steps / abs(self._h)
         self.judgement = Judgement(
-            verdict, slope if finite else None, uncertainty if finite else None, periods, lyapunov
+            verdict, slope if finite else None, uncertainty if finite else None, periods, lyapunov, seconds
         )
 
     def _is_conserved(self) -> bool:
@@ -182,8 +162,9 @@ class Judge:
             return "grows" if self._has_left() and self._energy.low > 1 else "bounded"
         return "too early"
 
-    def _other(self, slope: float, uncertainty: float, periods: float) -> Verdict:
+    def _other(self, line: tuple[float, float], periods: float) -> Verdict:
         assert self._first is not None
+        slope, uncertainty = line
         bands, verdict, left = self._energy, self.judgement.verdict, self._has_left()
         if hull(bands.recent(0.25))[1] < AT_REST:
             return "loses"

@@ -27,6 +27,13 @@ _FIRST_LOOK = (
         watch="Nearly linear: a step gains explicit Euler z² of its energy, costs RK4 z⁶/72.",
     ),
     Scene(
+        "linear",
+        length=_UNIT_W0,
+        h=0.5,
+        model="linear",
+        watch="Linear, so theory is exact: a step gains explicit Euler 25 % of its energy.",
+    ),
+    Scene(
         "large-swing",
         theta=2.5,
         watch="A swing of 143° takes 1.64 small ones; explicit Euler never ends its first.",

@@ -7,20 +7,24 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine.methods import USUAL_CAST, Cast
+from engine.run.compiled import available
 from engine.stability.outcomes import CELL, UNKNOWN, Cells, Floats, outcomes
 
 STRIP = 2048
 """Swings a method in a strip: enough that NumPy's calls cost little, few enough that they stay in the cache."""
 
+COMPILED_FROM = 100_000_000  # steps of a method: in NumPy they take as long as importing and compiling
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Grid:
-    """What to try.  A strip of a grid is a grid."""
+    """What to try.  A strip of a grid is a grid, and is computed in the same way."""
 
     theta: Floats  # rad, amplitudes between 0 and pi
     z: Floats  # h·w0, above 0
     steps: int
     methods: Cast = USUAL_CAST
+    fast: bool | None = None  # compiled by Numba, the same sin in other bits; None: where it is installed and pays
 
     @property
     def shape(self) -> tuple[int, int, int]:
@@ -30,8 +34,15 @@ class Grid:
     def cells(self) -> Cells:
         """The outcome of every swing."""
         z, theta = (axis.ravel() for axis in np.meshgrid(self.z, self.theta, indexing="ij"))
-        each = [outcomes(m, theta, z, self.steps).reshape(len(self.z), -1) for m in self.methods]
+        each = [outcomes(m, theta, z, self.steps, self.compiled).reshape(len(self.z), -1) for m in self.methods]
         return np.stack(each, axis=1)
+
+    @property
+    def compiled(self) -> bool:
+        """Whether it is computed by loops that Numba has compiled."""
+        if self.fast is None:
+            return len(self.theta) * len(self.z) * self.steps >= COMPILED_FROM and available()
+        return self.fast
 
     def unknown(self) -> Cells:
         """Cells of which nothing is known yet."""
@@ -39,13 +50,15 @@ class Grid:
 
     def strips(self) -> list["Grid"]:
         """The grid cut along z.  However it is cut, the cells are the same to the last bit."""
+        fast = self.compiled
         width = max(1, STRIP // len(self.theta))
-        return [replace(self, z=self.z[start : start + width]) for start in range(0, len(self.z), width)]
+        return [replace(self, z=self.z[start : start + width], fast=fast) for start in range(0, len(self.z), width)]
 
     def compute(self, executor: Executor | None = None) -> Iterator[Cells]:
         """The cells of strip after strip, z ascending, from the executor's workers or from here.
 
-        The cells depend on `sin` and so on processor and libm: workers of one kind give one picture.
+        The cells depend on `sin` and so on processor and libm, and on whether Numba is there: workers of one kind
+        give one picture, the one that is computed here.
         """
         return (executor.map if executor else map)(Grid.cells, self.strips())
 
@@ -62,11 +75,14 @@ class Piece:
 
 
 def pieces(grid: Grid, passes: Sequence[int], width: int = 10) -> Iterator[Piece]:
-    """The map in pieces of `width` z and one method: all of it with few steps a swing, then with more."""
+    """The map in pieces of `width` z and one method: all of it with few steps a swing, then with more.
+
+    In NumPy, unless the grid says otherwise: to compile would hold up whoever watches.
+    """
     places = [(slice(z, z + width), m) for z in range(0, len(grid.z), width) for m in range(len(grid.methods))]
     for steps in passes:
         for done, (z, m) in enumerate(places, 1):
-            part = replace(grid, z=grid.z[z], methods=grid.methods[m : m + 1], steps=steps)
+            part = replace(grid, z=grid.z[z], methods=grid.methods[m : m + 1], steps=steps, fast=bool(grid.fast))
             yield Piece(z, m, part.cells()[:, 0], steps, done / len(places))
 
 

@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engine.methods import Method
-from engine.models.model import Number
 from engine.models.pendulum import Pendulum
+from engine.run.ensemble import Floats as Floats
+from engine.run.ensemble import Watched, compiled, plain
 from engine.stability.chaos import is_chaotic
 from engine.stability.linear import energy_range, widest
 
@@ -37,7 +38,6 @@ UNKNOWN = 255  # the fate of a cell that was not computed
 CELL = np.dtype([("steps", "<i4"), ("error", "<f8"), ("fate", "u1")])
 """Steps survived; largest relative energy error |E - E0|/E0 up to the step that lost the swing; index into FATES."""
 
-Floats = NDArray[np.float64]
 Cells = NDArray[Any]  # of CELL
 
 
@@ -46,51 +46,46 @@ def is_lost(cells: Cells) -> NDArray[np.bool_]:
     return ~np.isin(cells["fate"], (*HELD, UNKNOWN))
 
 
-def outcomes(method: Method, theta: Floats, z: Floats, steps: int) -> Cells:
-    """What becomes of each of many swings within `steps` steps.
+def outcomes(method: Method, theta: Floats, z: Floats, steps: int, fast: bool = False) -> Cells:
+    """What becomes of each of many swings within `steps` steps; `fast`: compiled by Numba.
 
     theta [rad], between 0 and pi, and z are one-dimensional and of one length; the answer is a CELL
     for each.  A swing that is lost leaves the ensemble at once.  No cell depends on the others.
     """
-    force, energy = Pendulum(1.0).force(np.sin), Pendulum(1.0).energy(np.sin)
-    h: Number = z
+    model = Pendulum(1.0)
+    watch = (compiled if fast else plain)(method, model).watch
     distinct, where = np.unique(z, return_inverse=True)
     lowest, highest = np.array([energy_range(method, value) for value in distinct.tolist()]).T
-    phase: tuple[Floats, Floats] = (theta, np.zeros(len(theta)))
-    start: Floats = energy(phase)
-    floor = (1 - BAND) * lowest[where] * start
-    ceiling = (1 + BAND) * highest[where] * start
     reach = np.array([widest(method, value) for value in distinct.tolist()])[where] * theta
-    worst, amplitude = np.zeros(len(theta)), theta.copy()
+    h, phase = z, (theta, np.zeros(len(theta)))
+    start: Floats = model.energy(np.sin)(phase)
+    up, down = (((1 + BAND) * highest[where] - 1) * start, (1 - (1 - BAND) * lowest[where]) * start)
+    band = np.full(len(theta), math.inf) if method.symplectic else np.minimum(up, down)
+    watched = Watched(start, band, np.zeros(len(theta)), np.zeros(len(theta)), theta.copy())
     index: NDArray[Any] = np.arange(len(theta))
     cells = np.zeros(len(theta), CELL)
     cells["steps"] = steps
-    phases = method.phases(force, phase, h)
-    for step in range(steps):
-        phase = next(phases)
-        value, width = energy(phase), np.abs(phase[0])
-        np.maximum(worst, np.abs(value - start), out=worst)
-        np.maximum(amplitude, width, out=amplitude)
-        over, above = width > math.pi, value > ceiling
-        lost = over if method.symplectic else over | above | (value < floor)
+    done = 0
+    while done < steps and len(index):
+        taken, phase = watch(phase, h, watched, steps - done)
+        done += taken
+        over, above = np.abs(phase[0]) > math.pi, watched.off > up
+        lost = over if method.symplectic else over | above | (watched.off < -down)
         if lost.any():
             gone = index[lost]
-            cells["steps"][gone] = step
-            cells["error"][gone] = worst[lost] / start[lost]
+            cells["steps"][gone] = done - 1
+            cells["error"][gone] = (watched.worst / watched.start)[lost]
             cells["fate"][gone] = np.where(over, OVER_THE_TOP, np.where(above, GROWS, LOSES))[lost]
             kept = ~lost
-            phase = (phase[0][kept], phase[1][kept])
-            index, h, start, floor, ceiling = (a[kept] for a in (index, h, start, floor, ceiling))
-            worst, amplitude = worst[kept], amplitude[kept]
-            if not len(index):
-                break
-            phases = method.phases(force, phase, h)
-    cells["error"][index] = worst / start
+            index, h, up, down = (each[kept] for each in (index, h, up, down))
+            phase, watched = (phase[0][kept], phase[1][kept]), Watched(*(each[kept] for each in watched))
+    cells["error"][index] = watched.worst / watched.start
     if method.symplectic and len(index):
-        wobbling = index[(amplitude > WOBBLE * reach[index]) | (z[index] > method.linear_limit)]
-        beyond = z[wobbling] > method.linear_limit
-        chaotic = is_chaotic(method, theta[wobbling], z[wobbling], min(steps, CHAOS_STEPS))
-        cells["fate"][wobbling] = np.where(chaotic, CHAOTIC, np.where(beyond, CAUGHT, WOBBLES))
+        wobbling = index[(watched.width > WOBBLE * reach[index]) | (z[index] > method.linear_limit)]
+        if len(wobbling):
+            beyond = z[wobbling] > method.linear_limit
+            chaotic = is_chaotic(method, theta[wobbling], z[wobbling], min(steps, CHAOS_STEPS))
+            cells["fate"][wobbling] = np.where(chaotic, CHAOTIC, np.where(beyond, CAUGHT, WOBBLES))
     return cells
 
 

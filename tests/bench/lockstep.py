@@ -14,7 +14,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from engine.methods import METHODS, Method
+from engine.methods import USUAL_CAST, Method
 from engine.run.lockstep import Lockstep
 from engine.run.loops import plain
 from engine.scenes import DEFAULT_SCENE
@@ -88,7 +88,7 @@ def c_rate(library: ctypes.CDLL | None, method: Method, loop: str) -> float | No
     def run(steps: int) -> float:
         return float(function(scene.w0_squared, scene.theta, scene.omega, scene.h, steps, 1e300))
 
-    assert run(1000) == plain(method).travel(scene.w0_squared, (scene.theta, scene.omega), scene.h, 1000)[0]
+    assert run(1000) == plain(method, scene.equations).travel((scene.theta, scene.omega), scene.h, 1000)[0]
     return rate(lambda: run(20 * STEPS), 20 * STEPS)
 
 
@@ -99,11 +99,11 @@ def main() -> None:
     methods = {}
     with tempfile.TemporaryDirectory() as folder:
         library = compiled(folder)
-        for method in METHODS:
-            travel, advance = plain(method)
+        for method in USUAL_CAST:
+            travel, advance = plain(method, scene.equations)
             ours = {
-                "without_energies": rate(lambda: travel(scene.w0_squared, start, scene.h, STEPS), STEPS),  # noqa: B023
-                "with_energies": rate(lambda: advance(scene.w0_squared, start, scene.h, STEPS, 1e300), STEPS),  # noqa: B023
+                "without_energies": rate(lambda: travel(start, scene.h, STEPS), STEPS),  # noqa: B023
+                "with_energies": rate(lambda: advance(start, scene.h, STEPS, 1e300), STEPS),  # noqa: B023
             }
             c = {name: c_rate(library, method, loop) for name, loop in zip(ours, ("travel", "advance"), strict=True)}
             ratios = {name: c_speed and ours[name] / c_speed for name, c_speed in c.items()}

@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from engine.methods import METHODS
+from engine.methods import USUAL_CAST
 from engine.run.lockstep import Lockstep
 from engine.scenes import DEFAULT_SCENE
 from tui.drawing.canvas import Canvas, Picture
@@ -26,7 +26,7 @@ REACH = {  # times a plain loop in the same run, as milliseconds differ from mac
 }
 FRAMES = 20_000
 FUZZED = 3000
-COUNT = len(METHODS)
+COUNT = len(USUAL_CAST)
 
 
 def least(work: Callable[[], object], repeats: int = 30) -> float:

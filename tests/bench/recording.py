@@ -11,7 +11,6 @@ from pathlib import Path
 from statistics import median, quantiles
 from tempfile import TemporaryDirectory
 
-from engine.methods import METHODS
 from engine.run.lockstep import Lockstep
 from engine.scenes import DEFAULT_SCENE
 from recordings.events import Event
@@ -26,7 +25,7 @@ SEEKS = 200
 
 def start() -> Event:
     """The start of the default scene."""
-    return Event("start", 1, 0, 0.0, scene=DEFAULT_SCENE, methods=tuple(method.key for method in METHODS))
+    return Event("start", 1, 0, 0.0, scene=DEFAULT_SCENE)
 
 
 def seconds_a_frame(folder: Path) -> float:

@@ -16,7 +16,7 @@ from pathlib import Path
 import numba
 import numpy as np
 
-from engine.methods import METHODS, Method
+from engine.methods import USUAL_CAST, Method
 from tests.truths import ALLOWED, FILE, STARTS, Z, scene_at
 
 WINDOWS = [1 << power for power in range(4, 20)] + [3 << 18, 1 << 20]  # steps at their ends
@@ -107,7 +107,7 @@ def main() -> None:
     """Run the grid and write the file, a line for each method and start."""
     lines = []
     with ThreadPoolExecutor() as executor:
-        for method in METHODS:
+        for method in USUAL_CAST:
             run = runner(method)
 
             def cell(start: str, z: float, method: Method = method, run: Callable[..., None] = run) -> str:

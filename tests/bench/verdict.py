@@ -11,7 +11,7 @@ import math
 import sys
 import time
 
-from engine.methods import METHODS
+from engine.methods import USUAL_CAST
 from engine.run.compiled import compiled
 from engine.run.verdict import Judge, Look
 from engine.scenes import Scene
@@ -21,7 +21,7 @@ from tests.truths import is_true, scene_at, truths, verdicts, watch
 def microseconds_per_look(z: float) -> float:
     """What a look costs, once the bins have begun to merge [µs]."""
     scene = Scene(h=z / Scene().w0)
-    judge = Judge(METHODS[2], scene.w0_squared, 1.0, scene.h, 2.0)
+    judge = Judge(USUAL_CAST[2], scene.w0_squared, 1.0, scene.h, 2.0)
     best = math.inf
     for k in range(8):
         began = time.perf_counter()
@@ -33,7 +33,7 @@ def microseconds_per_look(z: float) -> float:
 
 def main() -> None:
     """Judge every cell and print what went wrong."""
-    keys = sys.argv[1:] or [method.key for method in METHODS]
+    keys = sys.argv[1:] or [method.key for method in USUAL_CAST]
     wrong, undecided, periods, steps, cells = [], [], [], [], 0
     for method, start, z, letter in truths():
         if method.key not in keys:

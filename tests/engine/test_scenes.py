@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import pytest
 from hypothesis import given
@@ -109,6 +110,18 @@ def test_gentle_the_textbooks_formulas_hold() -> None:
     assert first[EXPLICIT].energy_error == pytest.approx(z**2, rel=0.01)
     assert last[RK4].energy_error / samples[-1].step == pytest.approx(-(z**6) / 72, rel=0.02)
     assert worst(samples, VERLET) == pytest.approx(z**2 / 4, rel=0.02)
+
+
+def test_linear_theory_is_exact_at_any_size() -> None:
+    scene, samples = SCENES["linear"], watch("linear", 20)
+    z = scene.z
+    assert z == 0.5
+    for before, after in pairwise(samples):
+        ratios = [now.energy / then.energy for then, now in zip(before.readings, after.readings, strict=True)]
+        assert ratios[EXPLICIT] == pytest.approx(1 + z**2, rel=1e-14)  # 25 %
+        assert ratios[RK4] == pytest.approx(1 - z**6 / 72 + z**8 / 576, rel=1e-14)
+    assert worst(samples, VERLET) == pytest.approx(z**2 / 4, rel=0.02)  # it swings between 1 - z²/4 and 1
+    assert worst(samples, SYMPLECTIC) == pytest.approx(1 / (1 - z / 2) - 1, rel=0.02)  # 1/(1 + z/2) and 1/(1 - z/2)
 
 
 def test_large_swing_is_slow_and_explicit_euler_never_finishes_its_first() -> None:

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 
-from engine.methods import USUAL_CAST
+from engine.methods import USUAL_CAST, VELOCITY_VERLET
 from engine.run.lockstep import Lockstep, Sample
 from engine.run.stepping import Stepping
 from engine.scenes import Scene
@@ -74,8 +74,7 @@ def record(path: Path, entries: list[Entry], wall=None) -> Path:
 
 def tiny(path: Path) -> Path:
     """As small as a recording gets: one method, three samples, two chunks and one for the stop."""
-    verlet = USUAL_CAST[2]
-    scene = replace(SCENE, cast=(verlet,))
+    scene = replace(SCENE, cast=(VELOCITY_VERLET,))
     lockstep = Lockstep(scene)
     entries = [Entry(0.0, start(scene=scene)), Entry(0.0, lockstep.sample())]
     for clock in (0.5, 1.0):

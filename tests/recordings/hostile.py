@@ -5,6 +5,7 @@ python -m tests.recordings.hostile FOLDER
 
 import hashlib
 import json
+import random
 import sys
 import zlib
 from collections import Counter
@@ -19,16 +20,20 @@ from mcap.opcode import Opcode
 from mcap.records import Channel, ChunkIndex, DataEnd, Header, Schema, Statistics
 
 from engine.run.lockstep import Lockstep, Sample
-from recordings.events import Event
-from recordings.format import CLOCK_OFFSET, EVENTS, encode_event, encode_readings, topic
-from recordings.framing import MAGIC, MESSAGE, RECORD, RECORD_LIMIT, ZSTD
+from engine.run.observer import Milestone
+from recordings.events import Event, Seal, method_named, noticed
+from recordings.format import CAST_LIMIT, CLOCK_OFFSET, EVENTS, SEALS, encode_event, encode_readings, encode_seal, topic
+from recordings.framing import CHANNEL_LIMIT, MAGIC, MESSAGE, RECORD, RECORD_LIMIT, ZSTD
+from recordings.summary import Digest, fingerprints
 from tests.recordings.examples import METHOD_KEYS, SCENE, start
 
 Message = tuple[int, float, bytes]
 """Channel, clock [s], data."""
 
-EVENT_CHANNEL, FOREIGN = 1, 99
+EVENT_CHANNEL, SEAL_CHANNEL, FOREIGN = 1, 2, 99
+SEAL_ROOM = 200  # bytes
 WIDE = "字" * 130
+MANY = tuple(f"method_{n}" for n in range(CHANNEL_LIMIT - 2))
 YEARS = 9.4e8  # s, 30 years
 
 
@@ -43,7 +48,7 @@ def event(value: Event, clock: float = 0.0) -> list[Message]:
 
 
 def sample(value: Sample, clock: float = 0.0) -> list[Message]:
-    return [(EVENT_CHANNEL + 1 + place, clock, data) for place, data in enumerate(encode_readings(value))]
+    return [(SEAL_CHANNEL + 1 + place, clock, data) for place, data in enumerate(encode_readings(value))]
 
 
 def first_sample(run: int = 1) -> Sample:
@@ -60,7 +65,7 @@ def packed(entries: Iterable[list[Message]]) -> Iterator[list[Message]]:
     size, chunk = 0, []
     for messages in entries:
         more = sum(RECORD.size + MESSAGE.size + len(data) for _, _, data in messages)
-        if size + more > RECORD_LIMIT:
+        if size + more > RECORD_LIMIT - SEAL_ROOM:
             yield chunk
             size, chunk = 0, []
         size += more
@@ -69,24 +74,29 @@ def packed(entries: Iterable[list[Message]]) -> Iterator[list[Message]]:
 
 
 class File:
-    """Writes a finished recording of ready chunks, every checksum right."""
+    """Writes a finished recording of ready chunks, every checksum and digest right."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, methods: Iterable[str] = METHOD_KEYS) -> None:
         self._stream = path.open("wb")
+        self._digest = Digest()
         self._crc = 0
         self._count: Counter[int] = Counter()
         self._indexes: list[ChunkIndex] = []
         channel = partial(Channel, message_encoding="json", schema_id=1)
-        facts = {"format": "1", "sin": "0"}
-        topics = [EVENTS, *map(topic, METHOD_KEYS)]
+        facts = {"format": "2", **fingerprints()}
+        topics = [EVENTS, SEALS, *map(topic, methods)]
         self._channels = [channel(id=n, topic=name, metadata=facts) for n, name in enumerate(topics, EVENT_CHANNEL)]
         self._schema = Schema(data=b'{"type": "object"}', encoding="jsonschema", id=1, name="x")
         self._write(MAGIC)
         self._add(Header(profile="pendu", library="forger"), self._schema, *self._channels)
 
-    def chunk(self, messages: list[Message], times: int = 1) -> None:
+    def chunk(self, messages: list[Message], times: int = 1, end: bool = False) -> None:
         """Add a chunk of messages, or of the same ones many times."""
         data = b"".join(message(*each) for each in messages) * times
+        self._digest.add(data)
+        seal = message(SEAL_CHANNEL, messages[-1][1], encode_seal(Seal(0, 0, self._digest.sha256, end)))
+        self._digest.add(seal)
+        data += seal
         compressed = zstandard.compress(data)
         (_, first, _), (_, last, _) = messages[0], messages[-1]
         start, end = (CLOCK_OFFSET + round(clock * 1e9) for clock in (first, last))
@@ -96,7 +106,9 @@ class File:
         )
         content = head + ZSTD + len(compressed).to_bytes(8, "little") + compressed
         found = Counter(channel for channel, _, _ in messages)
-        self._count += Counter({channel: number * times for channel, number in found.items()})
+        self._count += Counter({channel: number * times for channel, number in found.items()} | {SEAL_CHANNEL: 1})
+        found[SEAL_CHANNEL] = 1
+        self._clock = messages[-1][1]
         self._indexes.append(
             ChunkIndex(
                 chunk_length=RECORD.size + len(content),
@@ -113,6 +125,7 @@ class File:
         self._write(RECORD.pack(Opcode.CHUNK, len(content)) + content)
 
     def done(self) -> None:
+        self.chunk(event(Event("stop", 1, 0, 0.0), self._clock), end=True)
         self._add(DataEnd(data_section_crc=self._crc))
         begin, self._crc = self._stream.tell(), 0
         statistics = Statistics(
@@ -147,11 +160,11 @@ Write = Callable[[Path, float], None]
 """Writes a file, or so large a share of it."""
 
 
-def of(entries: Callable[[int], Iterator[list[Message]]], count: int) -> Write:
+def of(entries: Callable[[int], Iterator[list[Message]]], count: int, methods: Iterable[str] = METHOD_KEYS) -> Write:
     """A file of so many entries, in chunks as large as can be."""
 
     def write(path: Path, share: float = 1.0) -> None:
-        file = File(path)
+        file = File(path, methods)
         for chunk in packed(entries(round(count * share))):
             file.chunk(chunk)
         file.done()
@@ -198,6 +211,22 @@ def changes(count: int) -> Iterator[list[Message]]:
         yield event(Event("set_h", run, 0, 0.0, h=0.05 + 1e-9 * number), number * 1e-3)
 
 
+def casts(count: int) -> Iterator[list[Message]]:
+    """Runs of many methods that this version does not know, no two in the same order."""
+    cast, chance = [method_named(key) for key in MANY], random.Random(1)
+    for run in range(1, count + 1):
+        yield event(start(run, replace(SCENE, cast=tuple(chance.sample(cast, CAST_LIMIT)))))
+
+
+def milestones(count: int) -> Iterator[list[Message]]:
+    """One run, of which much was noticed."""
+    yield event(start())
+    yield sample(first_sample())
+    for number in range(count):
+        said = Milestone("verdict", SCENE.cast[number % 4], number, number * 0.1, 1e-9 * number, "grows")
+        yield event(noticed(1, said), number * 1e-3)
+
+
 def far(_: int, step: int) -> Iterator[list[Message]]:
     """A run whose second sample claims to be many steps later."""
     yield event(start())
@@ -229,6 +258,8 @@ FILES: dict[str, Write] = {
     "50 000 runs with samples": of(partial(starts, samples=True), 50_000),
     "99 000 marks": of(marks, 99_000),
     "50 000 changes of h": of(changes, 50_000),
+    "99 000 casts": of(casts, 99_000, MANY),
+    "99 000 milestones": of(milestones, 99_000),
     "step 10^9": of(partial(far, step=10**9), 1),
     "step 10^10": of(partial(far, step=10**10), 1),
     "30 years": of(late, 2_000),

@@ -7,10 +7,11 @@ import os
 import random
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
+from engine.methods import USUAL_CAST
 from engine.run.lockstep import Sample
-from engine.run.stepping import Stepping
 from recordings.live_recorder import LiveRecorder
 from tests.recordings.examples import SCENE
 from tui.playback.live import Live
@@ -21,8 +22,10 @@ KEYS = (
     *8 * [lambda live: live.step(1)],
     lambda live: live.step(10),
     lambda live: live.step(-3),
-    lambda live: live.set_stepping(Stepping(0.02)),
-    lambda live: live.set_stepping(Stepping(-0.05)),
+    lambda live: live.set_stepping(replace(live.stepping, h=0.02)),
+    lambda live: live.set_stepping(replace(live.stepping, h=-0.05)),
+    lambda live: live.start(replace(live.scene, cast=tuple(random.sample(USUAL_CAST, 3)), model="pendulum")),
+    lambda live: live.start(replace(live.scene, model="linear")),
     lambda live: live.mark("here"),
     lambda live: live.restart(),
 )

@@ -11,7 +11,7 @@ import pytest
 from engine.run.lockstep import Sample
 from recordings.errors import RecordingError
 from recordings.events import Event
-from recordings.format import without_extremes
+from recordings.fields import without_extremes
 from recordings.recording import Recording
 from recordings.recover import recover
 from recordings.scan import Scan

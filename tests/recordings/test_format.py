@@ -3,27 +3,36 @@
 import json
 import math
 from dataclasses import fields, replace
+from typing import get_args
 
 import jsonschema
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from engine.methods import METHODS
+from engine.models import MODELS
 from engine.run.lockstep import Reading, Sample
-from engine.scenes import LIMITS, Scene
+from engine.run.observer import Milestone
+from engine.run.verdict import Verdict
+from engine.scenes import LIMITS
 from recordings.errors import TEXT_LIMIT, RecordingError, printable
-from recordings.events import Event
-from recordings.fields import EVENT_SCHEMA, NUMBERS, SAMPLE_SCHEMA, VALUES
+from recordings.events import Event, Seal, method_named, noticed, scene_named, unknown_in
+from recordings.fields import EVENT_SCHEMA, NUMBERS, SEAL_SCHEMA, VALUES, sample_schema, without_extremes
 from recordings.format import (
     decode_event,
     decode_reading,
+    decode_seal,
     encode_event,
     encode_readings,
-    sin_fingerprint,
-    without_extremes,
+    encode_seal,
+    keys_of,
+    topic,
 )
+from recordings.summary import FUNCTIONS, fingerprint
 from tests.recordings.examples import SCENE, start
 
+SAMPLE_SCHEMA = sample_schema("pendulum")
 finite = st.floats(allow_nan=False, allow_infinity=False)
 counts = st.integers(0, 2**53 - 1)
 readings = st.builds(
@@ -40,9 +49,13 @@ readings = st.builds(
 samples = st.builds(Sample, run=counts, step=counts, t=finite, readings=st.tuples(readings, readings))
 letters = st.characters(categories=("L", "M", "N", "P", "S"), include_characters=" ")
 texts = st.text(letters, max_size=TEXT_LIMIT).filter(str.isprintable)
+keys = st.from_regex(r"[a-z_][a-z0-9_]{0,20}", fullmatch=True)
+methods = st.sampled_from(METHODS) | keys.map(method_named)
 scenes = st.builds(
-    Scene,
+    scene_named,
     name=texts,
+    model=st.sampled_from([*MODELS]) | keys,
+    cast=st.lists(methods, min_size=1, max_size=6, unique_by=lambda method: method.key).map(tuple),
     watch=texts,
     theta=st.floats(*LIMITS["theta"]),
     omega=st.floats(*LIMITS["omega"]),
@@ -50,12 +63,16 @@ scenes = st.builds(
     gravity=st.floats(0.1, 10),
     h=st.floats(1e-6, 1),
 )
+milestones = st.builds(
+    Milestone, st.sampled_from(["over the top", "failed"]), methods, counts, finite, finite
+) | st.builds(Milestone, st.just("verdict"), methods, counts, finite, finite, st.sampled_from(get_args(Verdict)))
 events = st.one_of(
     st.builds(Event, st.just("start"), counts, counts, finite, scene=scenes),
     st.builds(Event, st.just("set_h"), counts, counts, finite, h=finite, equal_cost=st.booleans()),
     st.builds(Event, st.just("speed"), counts, counts, finite, speed=finite),
     st.builds(Event, st.just("mark"), counts, counts, finite, text=st.none() | texts.filter(bool)),
     st.builds(Event, st.sampled_from(["pause", "resume", "stop"]), counts, counts, finite),
+    st.builds(noticed, counts, milestones),
 )
 
 
@@ -82,7 +99,7 @@ def test_every_event_reads_back_the_same(event):
     jsonschema.validate(json.loads(message), EVENT_SCHEMA)
 
 
-@pytest.mark.parametrize("schema", [SAMPLE_SCHEMA, EVENT_SCHEMA])
+@pytest.mark.parametrize("schema", [SAMPLE_SCHEMA, EVENT_SCHEMA, SEAL_SCHEMA])
 def test_a_schema_is_as_simple_as_the_simplest_viewer_needs(schema):
     jsonschema.Draft202012Validator.check_schema(schema)
     assert schema["type"] == "object"
@@ -162,8 +179,12 @@ START = json.loads(encode_event(start()))
         {"scene": 3},
         {"methods": []},
         {"methods": "rk4"},
-        {"methods": ["rk5"]},
+        {"methods": ["rk 4"]},
+        {"methods": ["rk4/"]},
+        {"methods": ["r" * 65]},
         {"methods": [["rk4"]]},
+        {"model": 1},
+        {"model": "a/b"},
         {"methods": ["rk4", "rk4"]},
     ],
 )
@@ -186,13 +207,77 @@ def test_a_long_text_of_a_file_is_cut():
     assert printable("x" * 200) == "x" * 200
 
 
-def test_the_fingerprint_of_sin_is_the_same_each_time_and_differs_where_one_value_does(monkeypatch):
-    here = sin_fingerprint()
-    sin_fingerprint.cache_clear()
-    assert sin_fingerprint() == here
-    sin_fingerprint.cache_clear()
-    sine, calls = math.sin, iter(range(10_000))
-    monkeypatch.setattr(math, "sin", lambda x: math.nextafter(sine(x), 2) if next(calls) == 1234 else sine(x))
-    assert sin_fingerprint() != here
+NOTICED = json.loads(encode_event(noticed(1, Milestone("verdict", METHODS[0], 7, 0.7, 0.1, "grows"))))
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"milestone": "under the top"},
+        {"milestone": ["failed"]},
+        {"method": None},
+        {"method": "\x1b[2J"},
+        {"verdict": "explodes"},
+        {"verdict": {}},
+        {"energy_error": None},
+    ],
+)
+def test_an_impossible_milestone_is_refused(wrong):
+    assert decode_event(json.dumps(NOTICED).encode()).milestone.verdict == "grows"
+    with pytest.raises(RecordingError):
+        decode_event(json.dumps(NOTICED | wrong).encode())
+
+
+def test_a_start_of_format_1_is_of_the_pendulum():
+    assert "model" in START
+    without = {name: value for name, value in START.items() if name != "model"}
+    assert decode_event(json.dumps(without).encode()) == start()
+
+
+@pytest.mark.parametrize("unknown", [{"methods": ["rk4", "rk5"]}, {"model": "kepler"}])
+def test_what_this_version_does_not_know_has_a_name_and_no_numbers(unknown):
+    scene = decode_event(json.dumps(START | unknown).encode()).scene
+    assert unknown_in(scene) == ("the method rk5" if "methods" in unknown else "the model kepler")
+    assert unknown_in(SCENE) is None
+    assert scene.fields()["methods"] == (unknown.get("methods") or START["methods"])
+    theta, omega = scene.cast[-1].step(scene.equations.force(), (1.0, 0.0), 0.1)
+    assert math.isnan(theta)
+    assert math.isnan(omega)
+
+
+@given(keys, keys)
+def test_a_topic_names_a_method_and_a_model(method, model):
+    assert keys_of(topic(method, model)) == (model, method)
+    assert keys_of(topic(method)) == ("pendulum", method)
+
+
+@pytest.mark.parametrize(
+    "name", ["/pendu/events", "/pendu/seals", "/camera/rk4", "/pendu", "/pendu/", "/pendu/a/b/c", "/pendu/rk 4", ""]
+)
+def test_other_topics_are_not_of_a_method(name):
+    assert keys_of(name) is None
+
+
+@given(st.builds(Seal, counts, counts, st.from_regex(r"[0-9a-f]{64}", fullmatch=True), st.booleans()))
+def test_a_seal_reads_back_the_same(seal):
+    message = encode_seal(seal)
+    assert decode_seal(message) == seal
+    jsonschema.validate(json.loads(message), SEAL_SCHEMA)
+
+
+@pytest.mark.parametrize("function", FUNCTIONS)
+def test_a_fingerprint_is_the_same_each_time_and_differs_where_one_value_does(monkeypatch, function):
+    here = fingerprint(function)
+    fingerprint.cache_clear()
+    assert fingerprint(function) == here
+    fingerprint.cache_clear()
+    right, calls = getattr(math, function), iter(range(10_000))
+
+    def wrong(x):
+        value = right(x)
+        return math.nextafter(value, 2) if next(calls) == 1234 else value
+
+    monkeypatch.setattr(math, function, wrong)
+    assert fingerprint(function) != here
     monkeypatch.undo()
-    sin_fingerprint.cache_clear()
+    fingerprint.cache_clear()

@@ -170,7 +170,7 @@ def test_a_file_of_another_program_is_recognized(tmp_path):
         ({"format": "\x1b[2J"}, "or its format version is missing"),
         ({"format": "0x1"}, "or its format version is missing"),
         ({"format": "9" * 5000}, "or its format version is missing"),
-        ({"format": "2"}, "has format 2"),
+        ({"format": "3"}, "has format 3"),
     ],
 )
 def test_an_unknown_format_is_refused(tmp_path, facts, why):

@@ -194,7 +194,7 @@ from pathlib import Path
 from tests.recordings.test_live_recorder import Lab
 lab = Lab(Path(sys.argv[1]))
 resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, resource.RLIM_INFINITY))
-lab.run(20.0)
+lab.run(8.0)
 print(lab.recorder.failed)
 resource.setrlimit(resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
 lab.run(10.0)

@@ -74,7 +74,8 @@ def test_every_message_is_valid_against_its_schema_and_found_through_the_index(t
         count = 0
         for schema, channel, message in reader.iter_messages():
             assert schema.encoding == "jsonschema"
-            assert schema.name == ("pendu.Event" if channel.topic == "/pendu/events" else "pendu.Sample")
+            names = {"/pendu/events": "pendu.Event", "/pendu/seals": "pendu.Seal"}
+            assert schema.name == names.get(channel.topic, "pendu.Sample")
             jsonschema.validate(json.loads(message.data), json.loads(schema.data))
             count += 1
         assert count == reader.get_summary().statistics.message_count
@@ -129,7 +130,7 @@ def test_metadata_describe_the_machine_in_live_recordings_only(tmp_path):
     live = metadata(record(tmp_path / "live.mcap", two_runs(), wall=lambda: 1_700_000_000_000_000_000))
     headless = metadata(record(tmp_path / "headless.mcap", two_runs()))
     assert float.fromhex(headless["theta.hex"]) == SCENE.theta
-    assert headless["format"] == "1"
+    assert headless["format"] == "2"
     assert set(live) - set(headless) == {"started", "python", "platform"}
     assert live["started"].startswith("2023-11-1")
 
@@ -356,4 +357,4 @@ def test_all_methods_are_topics(tmp_path):
     path = record(tmp_path / "a.mcap", two_runs())
     with path.open("rb") as file:
         topics = {channel.topic for channel in make_reader(file).get_summary().channels.values()}
-    assert topics == {"/pendu/events", *(f"/pendu/{method}" for method in METHOD_KEYS)}
+    assert topics == {"/pendu/events", "/pendu/seals", *(f"/pendu/{method}" for method in METHOD_KEYS)}

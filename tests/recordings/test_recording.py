@@ -66,7 +66,7 @@ def test_the_facts_of_a_recording_are_known_at_opening(recording):
     assert recording.length == 4.0
     assert recording.samples == 10
     assert recording.methods == METHOD_KEYS
-    assert recording.version == 1
+    assert recording.version == 2
     assert recording.bytes == recording.path.stat().st_size
     assert recording.metadata["scene"] == "test"
 
@@ -202,9 +202,9 @@ def test_a_run_whose_start_is_lost_is_not_shown(path, tmp_path):
 
 @pytest.mark.parametrize("check", [False, True])
 def test_a_newer_format_is_refused_in_a_sentence(tmp_path, monkeypatch, check):
-    monkeypatch.setattr("recordings.recorder.FORMAT_VERSION", 2)
+    monkeypatch.setattr("recordings.summary.FORMAT_VERSION", 3)
     path = tiny(tmp_path / "newer.mcap")
-    with pytest.raises(RecordingError, match="has format 2, this pendu-tui reads formats up to 1; install a newer"):
+    with pytest.raises(RecordingError, match="has format 3, this pendu-tui reads formats up to 2; install a newer"):
         Recording.open(path, check)
 
 

@@ -1,6 +1,7 @@
 """Recover: what is intact becomes a complete recording, and losses are counted."""
 
 import json
+from dataclasses import replace
 from itertools import pairwise
 
 import pytest
@@ -72,8 +73,10 @@ def test_a_whole_recording_is_copied_message_by_message(tmp_path, out):
     assert not recovery.damaged
 
     def messages(path):
-        with path.open("rb") as stream:
-            found = [message for message in StreamReader(stream).records if isinstance(message, Message)]
+        with Recording.open(path) as recording, path.open("rb") as stream:
+            seals = recording._layout.seals  # a copy has its own
+            records = [record for record in StreamReader(stream).records if isinstance(record, Message)]
+            found = [message for message in records if message.channel_id != seals]
         return [(message.log_time, message.sequence, message.data) for message in found]
 
     assert messages(out) == messages(path)
@@ -201,7 +204,7 @@ def test_an_interrupted_recovery_leaves_nothing_behind(tmp_path, out):
 
 def test_the_fingerprint_of_sin_is_the_recordings_not_this_machines(tmp_path, out, monkeypatch):
     with monkeypatch.context() as elsewhere:
-        elsewhere.setattr("recordings.recorder.sin_fingerprint", lambda: "another")
+        elsewhere.setattr("recordings.summary.fingerprints", lambda: {"sin": "another"})
         path = record(tmp_path / "a.mcap", two_runs())
     recover(path, out)
     assert not verify(out).same_sin
@@ -329,3 +332,32 @@ def test_a_leftover_is_not_lost_if_the_disk_is_full(tmp_path, monkeypatch):
         with pytest.raises(OSError, match="No space left"):
             rescue(part)
     assert [path.name for path in tmp_path.iterdir()] == ["a.mcap.part"]
+
+
+@pytest.mark.parametrize("lost", [0, 1])
+def test_runs_after_a_lost_start_are_saved_though_the_lost_one_had_their_methods_first(tmp_path, out, lost):
+    scenes = [
+        SCENE,
+        replace(SCENE, cast=SCENE.cast[:2], model="linear"),
+        replace(SCENE, cast=SCENE.cast[1::-1], model="linear"),
+    ]
+    begins = []
+    with Recorder(tmp_path / "a.mcap") as recorder:
+        for run, scene in enumerate(scenes, 1):
+            recorder.flush()
+            begins.append(recorder.bytes)
+            recorder.event(start(run, scene), 10.0 * run)
+            lockstep = Lockstep(scene, run)
+            for step in range(30):
+                recorder.sample(lockstep.sample(), 10.0 * run + step / 10)
+                lockstep.advance(1)
+        recorder.flush()
+        data = bytearray(recorder.part.read_bytes())
+    at = data.index(b"\x04\x00\x00\x00zstd", begins[lost])
+    data[at + 60] ^= 0xFF
+    (tmp_path / "cut.mcap").write_bytes(data)
+    recovery = recover(tmp_path / "cut.mcap", out)
+    assert (recovery.samples_kept, recovery.samples_lost) == (60, 30)
+    with Recording.open(out) as recording:
+        assert [run.number for run in recording.runs] == ([2, 3] if lost == 0 else [1, 3])
+    assert verify(out).identical

@@ -9,11 +9,13 @@ from hypothesis import strategies as st
 
 from engine.run import loops
 from engine.run.lockstep import Lockstep, Sample
+from engine.run.observer import RunObserver
 from engine.scenes import SCENES
 from recordings.errors import RecordingError
 from recordings.events import Entry, Event
 from recordings.headless import simulate
 from recordings.recorder import Recorder
+from recordings.summary import fingerprints
 from recordings.verify import TOLERANCE, Difference, verify
 from tests.recordings.examples import SCENE, record, start, tiny, two_runs
 
@@ -138,6 +140,11 @@ def test_an_impossible_recording_is_refused_in_a_sentence(tmp_path, entries, why
     assert str(caught.value).startswith(str(path))
 
 
+def of_another_machine(monkeypatch):
+    """From here on this machine's sin has another fingerprint."""
+    monkeypatch.setattr("recordings.summary.fingerprints", lambda: fingerprints() | {"sin": "another"})
+
+
 def foreign_loops(monkeypatch, every):
     """The methods' loops with another libm's sin: every so many values, it is rounded the other way."""
     calls = 0
@@ -154,7 +161,7 @@ def foreign_loops(monkeypatch, every):
 
         return loops.plain(method, model)._replace(advance=advance)
 
-    monkeypatch.setattr("recordings.recorder.sin_fingerprint", lambda: "another")
+    of_another_machine(monkeypatch)
     return loops_of
 
 
@@ -163,32 +170,36 @@ def test_a_recording_from_a_machine_with_another_sin_verifies_within_the_toleran
     path = tmp_path / "a.mcap"
     with monkeypatch.context() as elsewhere, Recorder(path, wall=None) as recorder:
         foreign = foreign_loops(elsewhere, every=2)  # much worse than any libm
-        for _ in simulate(SCENES[scene], 1500 * SCENES[scene].h, recorder, sample_every=5, loops=foreign):
+        time, observer = 1500 * SCENES[scene].h, RunObserver(SCENES[scene])
+        for _ in simulate(SCENES[scene], time, recorder, sample_every=5, loops=foreign, observer=observer):
             pass
     verification = verify(path)
     assert not verification.same_sin
     assert verification.identical
-    monkeypatch.setattr("recordings.verify.sin_fingerprint", lambda: "another")
-    assert not verify(path).identical  # or it was no other sin
+    of_another_machine(monkeypatch)
+    assert verify(path).identical == (SCENES[scene].model == "linear")  # or it was no other sin; linear needs none
 
 
 def test_a_difference_beyond_the_tolerance_is_found_even_if_sin_differs(tmp_path, monkeypatch):
     entries = two_runs()
     right = reading_of(entries, 7, 2).theta
-    monkeypatch.setattr("recordings.recorder.sin_fingerprint", lambda: "another")
     near = right * (1 + TOLERANCE / 2)
-    verification = verify(record(tmp_path / "a.mcap", altered(entries, 7, 2, theta=near)))
+    outside = altered(entries, 7, 2, theta=right * (1 + 1e3 * TOLERANCE))
+    with monkeypatch.context() as elsewhere:
+        of_another_machine(elsewhere)
+        record(tmp_path / "a.mcap", altered(entries, 7, 2, theta=near))
+        record(tmp_path / "b.mcap", outside)
+    verification = verify(tmp_path / "a.mcap")
     assert verification.identical
     assert verification.max_difference == abs(near - right)
-    outside = altered(entries, 7, 2, theta=right * (1 + 1e3 * TOLERANCE))
-    difference = verify(record(tmp_path / "b.mcap", outside)).first_difference
+    difference = verify(tmp_path / "b.mcap").first_difference
     assert (difference.method, difference.field, difference.computed) == ("velocity_verlet", "theta", right)
 
 
 def test_another_formula_is_found_even_if_sin_differs(tmp_path, monkeypatch):
     path = tmp_path / "a.mcap"
-    monkeypatch.setattr("recordings.recorder.sin_fingerprint", lambda: "another")
-    with Recorder(path, wall=None) as recorder:
+    with monkeypatch.context() as elsewhere, Recorder(path, wall=None) as recorder:
+        of_another_machine(elsewhere)
         for sample in simulate(SCENES["drift"], 2.0):
             readings = tuple(replace(reading, theta=reading.theta * (1 + 1e-9)) for reading in sample.readings)
             if sample.step == 0:

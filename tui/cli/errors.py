@@ -31,11 +31,12 @@ def explained(error: BaseException) -> UserError:
         return error
     if isinstance(error, KeyboardInterrupt) or isinstance(error.__context__, KeyboardInterrupt):
         return UserError("interrupted.", Exit.INTERRUPTED)  # the second: a library's error about it
-    from engine.scenes import SceneError  # here, because --help and --version need neither
+    from engine.methods.own import OwnMethodError  # here, because --help and --version need none of them
+    from engine.scenes import SceneError
     from recordings.errors import RecordingError
 
     match error:
-        case SceneError():
+        case SceneError() | OwnMethodError():
             return UserError(str(error), Exit.USAGE)
         case RecordingError():
             return UserError(str(error), Exit.INPUT_UNREADABLE)

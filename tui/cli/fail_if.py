@@ -17,7 +17,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any, get_args
 
-from engine.methods import METHODS
+from engine.methods import USUAL_CAST, Cast
 from engine.run.verdict import Verdict
 from recordings.fields import NUMBERS
 from tui.cli.errors import UserError
@@ -41,8 +41,8 @@ _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", re.IGNORECASE | re.A
 _EXAMPLE = "velocity_verlet.max_energy_error > 1e-2"
 
 
-def parse(text: str, fields: Sequence[str] = ()) -> Gate:
-    """The gate that `text` states.  Raises UserError for anything else.
+def parse(text: str, fields: Sequence[str] = (), cast: Cast = USUAL_CAST) -> Gate:
+    """The gate that `text` states of the methods of a cast.  Raises UserError for anything else.
 
     With `fields`, comparisons name one of these, or `verdict`, and no method; their values stand under the key "".
     """
@@ -56,18 +56,19 @@ def parse(text: str, fields: Sequence[str] = ()) -> Gate:
         raise _no_comparison(source, fields) from None
     if "#" in source:  # a comment would hide what follows
         raise _no_comparison(source, fields)
-    return _gate(node, source, fields)
+    return _gate(node, source, fields, [method.key for method in cast])
 
 
-def _gate(node: ast.expr, source: str, fields: Sequence[str]) -> Gate:
+def _gate(node: ast.expr, source: str, fields: Sequence[str], methods: Sequence[str]) -> Gate:
     match node:
         case ast.BoolOp(op, parts):
-            join, gates = all if isinstance(op, ast.And) else any, [_gate(part, source, fields) for part in parts]
+            join = all if isinstance(op, ast.And) else any
+            gates = [_gate(part, source, fields, methods) for part in parts]
             return lambda values: join(gate(values) for gate in gates)
         case ast.Compare(ast.Attribute(ast.Name(method), field), [sign], [value]) if (
             not fields and type(sign) in _SIGNS
         ):
-            method = _known("method", method, [method.key for method in METHODS])
+            method = _known("method", method, methods)
             field = _known("field", field, (*FIELDS, "verdict"))
             return partial(_holds, method, field, _SIGNS[type(sign)], _value(field, sign, value, source))
         case ast.Compare(ast.Name(field), [sign], [value]) if fields and _is_sign(sign):

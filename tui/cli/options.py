@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from itertools import pairwise
 from typing import Any, NoReturn
 
-from engine.scenes import DEFAULT_SCENE, LIMITS, SCENES, Scene
+from engine.scenes import LIMITS
 from recordings.library import golden_names
 from tui.cli.errors import UserError
 from tui.cli.output import warn
@@ -122,32 +122,3 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     """The end of a sentence about a word that is not known."""
     near = difflib.get_close_matches(word, known, n=1)
     return f": did you mean {near[0]}?" if near else ""
-
-
-def add_scene_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options that determine a scene; `scene_of` reads them."""
-    group = parser.add_argument_group("scene", "options override the values of the scene")
-    group.add_argument(
-        "--scene",
-        metavar="NAME",
-        choices=Suggestions(SCENES),
-        default=DEFAULT_SCENE.name,
-        help="see pendu-tui scenes (%(default)s)",
-    )
-    for name, metavar, read, meaning in (
-        ("theta", "RAD|DEGdeg", start_angle, "start angle from straight down, in rad, or in degrees (115deg)"),
-        ("omega", "RAD_S", angle, "start angular velocity in rad/s, or in degrees per second (30deg)"),
-        ("length", "M", number, "length in m"),
-        ("gravity", "M_S2", number, "gravity in m/s²"),
-        ("h", "S", number, "step size in s"),
-    ):
-        group.add_argument(f"--{name}", metavar=metavar, type=read, help=meaning)
-
-
-def scene_of(options: argparse.Namespace) -> Scene:
-    """The scene that the options describe.  Raises UserError for an unknown name, SceneError for bad numbers."""
-    if options.scene not in SCENES:
-        hint = did_you_mean(options.scene, SCENES) or "; pendu-tui scenes lists them."
-        raise UserError(f"there is no scene {options.scene!r}{hint}")
-    given = {name: getattr(options, name) for name in (*LIMITS, "h")}
-    return SCENES[options.scene].altered(**{name: value for name, value in given.items() if value is not None})

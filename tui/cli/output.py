@@ -55,7 +55,8 @@ def fields_of(value: object, *names: str) -> dict[str, Any]:
 def scene_line(scene: Scene, *more: str) -> str:
     """The scene's name and numbers, and `more` of its attributes."""
     numbers = fields_of(scene, *LIMITS, *more)
-    return f"{scene.name}: {', '.join(f'{name} {value:g}' for name, value in numbers.items())} (SI units)"
+    model = "" if scene.model == "pendulum" else f" ({scene.equations.equation})"
+    return f"{scene.name}{model}: {', '.join(f'{name} {value:g}' for name, value in numbers.items())} (SI units)"
 
 
 def print_table(align: str, headers: Sequence[str], rows: Iterable[Iterable[str]]) -> None:

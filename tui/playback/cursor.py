@@ -32,11 +32,14 @@ class ReplayCursor:
     def __init__(self, recording: "Recording") -> None:
         self.recording = recording
         self.clock = 0.0  # s, on the recording clock: where the sample is
-        self._changes = {run.number: [SteppingChange(0, 0.0, Stepping(run.scene.h))] for run in recording.runs}
+        self._changes = {
+            run.number: [SteppingChange(0, 0.0, Stepping(run.scene.h, cast=run.scene.cast))] for run in recording.runs
+        }
         self._clocks = {run.number: [-math.inf] for run in recording.runs}  # s, of those changes
         for clock, event in recording.events:
             if event.h is not None and event.run in self._changes:
-                change = SteppingChange(event.step, event.t, Stepping(event.h, event.equal_cost))
+                cast = self._changes[event.run][0].stepping.cast
+                change = SteppingChange(event.step, event.t, Stepping(event.h, event.equal_cost, cast))
                 self._changes[event.run].append(change)
                 self._clocks[event.run].append(clock)
         self._filling: Iterator[float] | None = None

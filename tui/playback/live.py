@@ -7,10 +7,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from engine.run.lockstep import Sample
+from engine.run.observer import Milestone
 from engine.run.rewindable import RewindableRun
 from engine.run.stepping import Stepping, SteppingChange
 from engine.scenes import Scene
-from recordings.events import Event, EventKind
+from recordings.events import Event, EventKind, noticed
 from tui.playback.compiler import patient
 from tui.playback.playhead import Pace, Playhead
 from tui.playback.so_far import RunSoFar
@@ -180,16 +181,22 @@ class Live(Source):
 
     def _take_sample(self) -> Sample:
         sample = self._run.sample()
-        self._so_far.add(sample)
+        news = self._so_far.add(sample)
         if self.recorder is not None and sample.step >= self._run.furthest:
             self.recorder.sample(sample, self._recorded.position)
+        self._note_milestones(news)
         return sample
 
     def _note_start(self) -> None:
-        """The start of the run, and the changes of its step size where it goes on from another's past."""
+        """The start of the run; where it goes on from another's past, its changes of the step size and milestones."""
         self._note(Event("start", self._run.run, 0, 0.0, scene=self.scene))
         for step, t, stepping in self._run.changes[1:]:
             self._note(Event("set_h", self._run.run, step, t, h=stepping.h, equal_cost=stepping.equal_cost))
+        self._note_milestones(self._so_far.observer.milestones(self._run.step))
+
+    def _note_milestones(self, milestones: Sequence[Milestone]) -> None:
+        for milestone in milestones:
+            self._note(noticed(self._run.run, milestone))
 
     def _note_here(self, kind: EventKind, **what: Any) -> None:
         self._note(Event(kind, self._run.run, self._run.step, self._run.t, **what))

@@ -8,7 +8,9 @@ from operator import attrgetter
 from typing import TYPE_CHECKING
 
 from engine.run.lockstep import Sample
-from engine.run.stepping import Stepping
+from engine.run.observer import Milestone
+from engine.run.stepping import Stepping, change_before
+from engine.run.verdict import Judgement
 from recordings.events import Event
 from tui.playback.cursor import ReplayCursor
 from tui.playback.live import Live
@@ -42,8 +44,10 @@ class Replay(Source):
         self._clock = clock
         self._cursor = ReplayCursor(recording)
         self._filled = False  # all of the past read, and all milestones found
-        self._search = self._cursor.milestone_times()
+        self._said = recording.version > 1  # it holds what the lab noticed
+        self._search = iter(()) if self._said else self._cursor.milestone_times()
         self._milestone_times: list[float] = []  # s, on the recording clock, as far as known by now
+        self._milestones: tuple[int, list[Milestone]] = 0, []  # of the run of this number, in its order
         self._events: list[Event] = []  # as many as there were behind the playhead:
         self._events_done = 0
         self._mark_events: list[Event] = []
@@ -77,6 +81,32 @@ class Replay(Source):
             recent = self.recording.events[max(0, done - EVENTS_SHOWN) : done]
             self._events_done, self._events = done, [event for _, event in recent]
         return self._events
+
+    @property
+    def milestones(self) -> Sequence[Milestone]:
+        """What the lab noticed; a recording of format 1 does not say, and it follows from the samples."""
+        if not self._said:
+            return super().milestones
+        number = self.run.number
+        if self._milestones[0] != number:
+            found = (milestone for _, milestone in self.recording.events.milestones(number))
+            self._milestones = number, sorted(found, key=attrgetter("step"))
+        known = self._milestones[1]
+        done = bisect_right(known, self.sample.step, key=attrgetter("step"))
+        return known[max(0, done - EVENTS_SHOWN) : done]
+
+    @property
+    def judgements(self) -> Sequence[Judgement]:
+        """The verdicts that the lab gave; the trends follow from the samples."""
+        computed = super().judgements
+        if not self._said:
+            return computed
+        since = change_before(self.changes, self.sample.step).step
+        said = {each.method: each.verdict for each in self.milestones if each.kind == "verdict" and each.step > since}
+        return [
+            judgement if reading.diverged_at is not None else replace(judgement, verdict=said.get(method, "too early"))
+            for method, judgement, reading in zip(self.scene.cast, computed, self.sample.readings, strict=True)
+        ]
 
     @property
     def later_marks(self) -> Sequence[Event]:
@@ -159,7 +189,7 @@ class Replay(Source):
         """The events, marks and milestones known by now, on the recording clock [s]."""
         known = len(list(self.marks)), len(self._milestone_times)
         if known != self._ticks_known:
-            done = (clock for clock, event in self.recording.events if event.kind != "stop")
+            done = self.recording.events.done()
             marked = (mark.clock for mark in self.marks)
             self._ticks_known, self._ticks = known, sorted({*done, *marked, *self._milestone_times})
         return self._ticks

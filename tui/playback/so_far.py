@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from engine.run.lockstep import Sample
-from engine.run.observer import RunObserver
+from engine.run.observer import Milestone, RunObserver
 from engine.run.stepping import SteppingChange, change_before
 from engine.scenes import Scene
 from tui.playback.history import ErrorHistory
@@ -21,10 +21,14 @@ class RunSoFar:
         self.history = ErrorHistory(self.observer)
         self._latest: Sample | None = None
 
-    def add(self, sample: Sample) -> None:
-        """Add a sample; an earlier one takes back what came after it, except from the verdicts."""
+    def add(self, sample: Sample) -> list[Milestone]:
+        """Add a sample; an earlier one takes back what came after it, except from the verdicts.
+
+        Returns the milestones on the way to it.
+        """
         change = change_before(self.changes, sample.step)
-        self.observer.add(sample, change)
+        news = self.observer.add(sample, change)
         modified = self.observer.modified_energy_errors(self._latest, sample, change)
         self.history.add(sample, self.observer.exact.at(sample.t), modified)
         self.sample = self._latest = sample
+        return news

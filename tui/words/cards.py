@@ -24,6 +24,7 @@ def method_card(method: Method) -> str:
             "symplectic": "yes: conserves phase-space area" if method.symplectic else "no: phase-space area changes",
             "reversible": "yes: run backwards, it returns to its start" if method.reversible else "no",
             "stable": limit,
+            "note": method.note,
             "used in": method.used,
             "reference": method.reference,
         },

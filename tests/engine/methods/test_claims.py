@@ -11,20 +11,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods import EXPLICIT_EULER, GENERAL, METHODS, RK4, Method
+from engine.methods import EXPLICIT_EULER, GENERAL, METHODS, RK4, Method, measure
 from engine.models.model import Force, Phase
 from engine.models.pendulum import Pendulum, acceleration
-from engine.run.loops import plain
 from engine.run.tangent import jacobian
 from engine.scenes import Scene
 
 W0_SQUARED = 9.81
-RATIOS = (50, 71, 100, 141, 200)
-STEPS_FOR_ORDER = {  # in half a period; below them the next powers of h lead, above them rounding does
-    "forest_ruth": (64, 91, 128, 181, 256),
-    "blanes_moan_4": (64, 80, 96, 112, 128),
-    "blanes_moan_6": (12, 14, 17, 20, 24),
-}
 each_method = pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
 
 
@@ -34,25 +27,10 @@ def travel(method: Method, force: Force, phase: Phase, h: float, n: int) -> Phas
     return phase
 
 
-def largest_theta_error(method: Method, scene: Scene, time: float, n: int) -> float:
-    exact, phase, worst = scene.exact(), (scene.theta, scene.omega), 0.0
-    loops = plain(method, scene.equations)
-    for k in range(1, n + 1):
-        phase = loops.travel(phase, time / n, 1)
-        worst = max(worst, abs(phase[0] - exact.at(k * time / n).theta))
-    return worst
-
-
 @each_method
 @pytest.mark.parametrize("start", [(1.0, 0.0), (2.5, 0.5), (0.5, 8.0)])
 def test_the_error_falls_with_the_claimed_power_of_h(method: Method, start: tuple[float, float]) -> None:
-    """Over half a period: later, what RK4 loses in energy adds a power of its own, and it reads 5 to 6.6."""
-    scene = Scene(theta=start[0], omega=start[1])
-    half = scene.exact().period / 2
-    steps = STEPS_FOR_ORDER.get(method.key) or [int(n * {1: 80, 2: 8, 4: 1}[method.order]) for n in RATIOS]
-    errors = [largest_theta_error(method, scene, half, n) for n in steps]
-    slope = np.polyfit(np.log(steps), np.log(errors), 1)[0]
-    assert -slope == pytest.approx(method.order, abs=0.1)  # the next power of h is still felt at 50 steps
+    assert measure.order(method.phases, start) == pytest.approx(method.order, abs=0.1)  # the next power of h is felt
 
 
 @each_method
@@ -101,18 +79,10 @@ def test_rk4_loses_area_with_the_sixth_power_of_h() -> None:
     assert math.log2(lost[1] / lost[0]) == pytest.approx(6, abs=0.1)  # z⁸ is 0.4 % of z⁶
 
 
-def out_and_back(method: Method, start: Phase, h: float, n: int) -> float:
-    """How far from its start a swing ends that turns round after n steps and takes n more [rad]."""
-    force = acceleration(W0_SQUARED)
-    theta, omega = travel(method, force, start, h, n)
-    theta, omega = travel(method, force, (theta, -omega), h, n)
-    return max(abs(theta - start[0]), abs(-omega - start[1]))
-
-
 @each_method
 @pytest.mark.parametrize("start", [(2.0, 0.3), (0.5, 2.0), (0.3, 8.0)])
 def test_there_and_back_it_meets_its_start_where_claimed(method: Method, start: Phase) -> None:
-    miss = out_and_back(method, start, 0.05, 200)  # 10 s
+    miss = measure.out_and_back(method.phases, start, 0.05, 200)  # 10 s
     # Rounding returns as 1e-13; the best of the others is RK4, which misses by more than 1e-6.
     assert (miss < 1e-12) == method.reversible
     assert method.reversible or miss > 1e-6

@@ -159,12 +159,12 @@ def test_the_uncertainty_is_honest(memory: float, least: int) -> None:
     """The true slope lies within two uncertainties in about 95 % of 200 noisy lines.
 
     It takes noise that lasts over several bins (autocorrelation 0.6 from bin to bin) for what it is, too,
-    as well as 40 bins can tell; with the formula for independent residuals, 60 % would lie there.
+    as well as 31 bins can tell; with the formula for independent residuals, 60 % would lie there.
     """
     hits = 0
     for seed in range(200):
         noise, slow, errors = random.Random(seed), 0.0, []
-        for step in range(16 * 40):
+        for step in range(16 * 31):
             if step % 16 == 0:
                 slow = memory * slow + noise.gauss(0, 0.1 if memory else 0.0)
             errors.append(1e-3 * step * 0.1 + slow + noise.gauss(0, 0.1 * (1 - memory)))

@@ -1,13 +1,17 @@
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from engine.methods import GENERAL, USUAL_CAST, Cast
+from engine.run.compiled import available
 from engine.stability import grid as stability_map
-from engine.stability.grid import Grid, default_grid
+from engine.stability.grid import Grid, default_grid, pieces
 from engine.stability.outcomes import HOLDS, UNKNOWN, outcomes
 
+needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed")
+each_way = pytest.mark.parametrize("fast", [False, pytest.param(True, marks=needs_numba)], ids=["numpy", "numba"])
 GRID = Grid(theta=np.linspace(0.1, 3.1, 7), z=np.linspace(0.1, 3, 13), steps=200)
 
 
@@ -19,19 +23,45 @@ def test_cells_lie_by_z_method_and_amplitude() -> None:
     assert 0 < (cells["fate"] == HOLDS).sum() < cells.size
 
 
+@each_way
 @pytest.mark.parametrize("strip", [1, 7, 8, 20, 50, 10_000])
-def test_the_picture_is_the_same_bit_for_bit_however_it_is_split(strip: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_picture_is_the_same_bit_for_bit_however_it_is_split(
+    strip: int, fast: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(stability_map, "STRIP", strip)
-    strips = list(GRID.compute())
+    grid = replace(GRID, fast=fast)
+    strips = list(grid.compute())
     assert len(strips) == -(-13 // max(1, strip // 7))
-    assert np.concatenate(strips).tobytes() == GRID.cells().tobytes()
+    assert np.concatenate(strips).tobytes() == grid.cells().tobytes()
 
 
+@needs_numba
+def test_a_large_map_is_compiled_wherever_its_strips_are_computed_and_a_small_one_is_not() -> None:
+    for grid, fast in ((default_grid(), True), (GRID, False), (replace(GRID, fast=True), True)):
+        assert {strip.compiled for strip in grid.strips()} == {fast} == {grid.compiled}
+
+
+def test_a_map_that_somebody_watches_is_not_compiled() -> None:
+    piece = next(pieces(default_grid(), [50]))
+    plain = replace(default_grid(), z=default_grid().z[piece.z], methods=USUAL_CAST[:1], steps=50, fast=False)
+    assert piece.cells.tobytes() == plain.cells()[:, 0].tobytes()
+
+
+@needs_numba
+def test_compiled_or_not_a_map_has_the_same_fates_and_errors_but_for_rounding() -> None:
+    regular = replace(GRID, z=GRID.z[:5])
+    one, other = (replace(regular, fast=fast).cells() for fast in (False, True))
+    assert np.array_equal(one[["fate", "steps"]], other[["fate", "steps"]])
+    assert one["error"] == pytest.approx(other["error"], rel=1e-9)
+
+
+@each_way
 @pytest.mark.parametrize("pool", [ThreadPoolExecutor, ProcessPoolExecutor])
-def test_any_executor_gives_the_same_picture(pool: type[Executor], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_any_executor_gives_the_same_picture(pool: type[Executor], fast: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(stability_map, "STRIP", 20)
+    grid = replace(GRID, fast=fast, methods=USUAL_CAST[2:])
     with pool(2) as executor:  # type: ignore[call-arg]
-        assert np.concatenate(list(GRID.compute(executor))).tobytes() == GRID.cells().tobytes()
+        assert np.concatenate(list(grid.compute(executor))).tobytes() == grid.cells().tobytes()
 
 
 def test_a_dask_cluster_gives_the_same_picture(monkeypatch: pytest.MonkeyPatch) -> None:

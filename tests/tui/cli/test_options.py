@@ -6,7 +6,8 @@ from hypothesis import strategies as st
 
 from engine.scenes import DEFAULT_SCENE, SCENES, Scene, SceneError
 from tui.cli.errors import UserError
-from tui.cli.options import Parser, add_scene_options, angle, scene_of
+from tui.cli.options import Parser, angle
+from tui.cli.scene import add_scene_options, scene_of
 
 
 def scene_from(*arguments: str) -> Scene:

@@ -2,6 +2,7 @@
 
 import csv
 import io
+import math
 from itertools import islice
 
 import jsonschema
@@ -249,3 +250,28 @@ def test_ctrl_c_keeps_what_is_done(monkeypatch):
     jsonschema.validate(told.json, SCHEMA)
     assert told.json["interrupted"]
     assert (len(told.json["points"]), told.json["recommendation"]) == (5, None)
+
+
+def test_the_linear_oscillator_is_compared_with_its_cosine():
+    command = ("accuracy", "--scene", "linear", "--time", "6", "--h-values", "0.1:0.01:3")
+    answer = pendu(*command, "--target", "1e-4", "--json").json
+    assert answer["scene"]["model"] == "linear"
+    for order in answer["orders"]:
+        assert order["measured"] == pytest.approx(order["claimed"], abs=0.05)
+    assert answer["recommendation"]["method"] == "rk4"
+    (verlet,) = (p for p in answer["points"] if p["method"] == "velocity_verlet" and p["steps"] == 60)
+    w = 2 / verlet["h"] * math.asin(verlet["h"] / 2)  # Verlet's own frequency: from rest it is cos w t
+    apart = max(abs(math.cos(w * n * verlet["h"]) - math.cos(n * verlet["h"])) for n in range(61))
+    assert verlet["theta_error"] == pytest.approx(apart, rel=1e-10)
+    assert "theta'' = -w0² theta" in pendu(*command).out
+
+
+def test_seconds_of_ones_own_method_are_compared_without_numba(tmp_path):
+    (tmp_path / "mine.py").write_text(
+        "def mine(force, phase, h):\n    theta, omega = phase\n    while True:\n"
+        "        theta, omega = theta + h * omega, omega + h * force(theta)\n        yield theta, omega\n"
+    )
+    own = ("--method", f"{tmp_path}/mine.py:mine", "--methods", "mine,explicit_euler", "--cost", "seconds")
+    points = pendu("accuracy", "--time", "2", "--h-values", "0.01:0.001:2", *own, "--json").json["points"]
+    mine, euler = (sum(p["seconds"] for p in points if p["method"] == key) for key in ("mine", "explicit_euler"))
+    assert euler < mine < 8 * euler  # the guard's share; compiled, Euler would be some 25 times as fast

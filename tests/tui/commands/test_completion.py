@@ -38,6 +38,9 @@ CASES = [  # what is typed before the tab, and what it offers: just that, or tha
     ("pendu-tui recordings ", {"list", "prune"}),
     ("pendu-tui serve --at-m", {"--at-most"}),
     ("pendu-tui completion ", set(SHELLS)),
+    ("pendu-tui run --methods rk", {"rk4"}),
+    ("pendu-tui replay drift --methods velocity_v", {"velocity_verlet"}),
+    ("pendu-tui methods --method ", {"swing.mcap"}),
     ("pendu-tui accuracy --h-values 0.1:0.01:3 --err", {"--error"}),
 ]
 
@@ -128,10 +131,20 @@ def read_until(terminal, words):
         read += os.read(terminal, 1 << 16).decode(errors="replace")
 
 
+@needs("bash")
+def test_bash_completes_the_last_of_several_methods(script):
+    ask = 'source "$1"; _pendu_tui_methods rk4,symp'
+    done = subprocess.run(["bash", "-c", ask, "bash", script("bash")], capture_output=True, text=True, check=True)
+    assert done.stdout == "rk4,symplectic_euler\n"
+
+
+COMPLETED = {"NAME", "KEY,KEY", "FILE.py FUNCTION[,letter=m]", "FILE", "OUT", "EXPR", "FILE.svg", "FILE.npz"}
+
+
 def test_every_option_with_a_choice_or_a_file_can_be_completed():
     for command in whole_parser()._subparsers._group_actions[0].choices.values():
         for action in command._actions:
-            if action.metavar in ("NAME", "FILE", "OUT", "EXPR", "FILE.svg", "FILE.npz"):
+            if action.metavar in COMPLETED:
                 assert action.choices or action.complete, (command.prog, action.dest)
 
 

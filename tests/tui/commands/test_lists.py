@@ -1,5 +1,3 @@
-import dataclasses
-
 import pytest
 
 from engine.methods import METHODS
@@ -19,7 +17,7 @@ def test_scenes_lists_every_scene_with_what_to_watch():
 def test_scenes_as_json_hold_everything_that_determines_a_run():
     answer = pendu("scenes", "--json").json
     assert answer["schema"] == "pendu.scenes/1"
-    assert answer["scenes"] == [dataclasses.asdict(scene) for scene in SCENES.values()]
+    assert answer["scenes"] == [scene.fields() for scene in SCENES.values()]
 
 
 def test_methods_lists_every_method_its_claims_and_what_is_measured():
@@ -38,6 +36,9 @@ def test_methods_as_json_repeat_the_engine_and_what_is_measured_agrees():
         for claim in ("key", "label", "order", "force_evaluations", "symplectic", "reversible", "linear_limit"):
             assert told[claim] == getattr(method, claim)
         assert told["measured_order"] == pytest.approx(method.order, abs=0.1)  # as the engine's own tests
+        assert told["measured_symplectic"] == method.symplectic
+        assert told["measured_reversible"] == method.reversible
+        assert told["measured_force_evaluations"] == method.force_evaluations
         assert told["measured_linear_limit"] == pytest.approx(method.linear_limit, abs=1e-9)  # it is bisected so far
 
 

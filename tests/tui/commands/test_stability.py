@@ -226,3 +226,23 @@ def test_the_map_has_a_line_for_each_of_its_rows_when_it_is_piped():
     assert max(map(len, lines)) <= 120
     titles = [line for line in lines if "1 e Explicit Euler" in line or "4 r RK4" in line]
     assert len(titles) == 2
+
+
+def test_of_the_linear_oscillator_there_are_the_lines_of_theory_and_a_sentence():
+    out = pendu("stability", "--scene", "linear").out
+    for method in USUAL_CAST:
+        (line,) = (line for line in out.splitlines() if line.startswith(method.label))
+        limit = f"{method.linear_limit:.9f}" if method.linear_limit else "none"
+        assert line.split()[-3:-1] == [limit, limit]
+    assert "the linear oscillator itself: these limits hold at every amplitude" in out
+    assert "Pendulum:" not in out
+    answer = pendu("stability", "--scene", "linear", "--json").json
+    assert (answer["pendulum"], answer["map"]) == ([], None)
+    assert [row["limit_z"] for row in answer["linear"]] == pytest.approx([m.linear_limit for m in USUAL_CAST], abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    "words", [("--map",), ("--csv",), ("-o", "map.npz"), ("--theta-values", "1"), ("--z-values", "1")], ids=" ".join
+)
+def test_what_is_only_about_a_pendulum_says_so_of_the_linear_oscillator(words):
+    assert pendu("stability", "--scene", "linear", *words).refused(2, f"{words[0]} is about a pendulum", "leave out")

@@ -151,3 +151,14 @@ def test_an_unknown_name_does_not_keep_the_others_from_being_verified(tmp_path):
     missing, there = pendu("verify", "no/such.mcap", path, "--json").json["files"]
     assert (missing["file"], missing["identical"], there["identical"]) == ("no/such.mcap", False, True)
     assert "There is no recording 'no/such.mcap'" in missing["reason"]
+
+
+def test_only_the_methods_asked_for_are_compared(tmp_path):
+    path = record(tmp_path / "ours.mcap", altered())  # one number of velocity Verlet
+    assert pendu("verify", path).code == 1
+    assert pendu("verify", path, "--methods", "rk4,verlet").code == 1
+    assert pendu("verify", path, "--methods", "rk4,s").code == 0
+    assert pendu("verify", path, "--methods", "rk5").refused(2, "did you mean rk4?")
+    assert pendu("run", "--time", "2", "--methods", "rk4", "--record", tmp_path / "alone.mcap").code == 0
+    assert pendu("verify", tmp_path / "alone.mcap", "--methods", "rk4").code == 0
+    assert pendu("verify", tmp_path / "alone.mcap", "--methods", "s,v").refused(3, "run 1 has none of the methods sym")

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from engine.methods import METHODS
+from engine.methods import USUAL_CAST
 from engine.models.model import State
 from engine.models.pendulum import energy
 from engine.run.lockstep import Lockstep, Reading, Sample
@@ -28,7 +28,7 @@ def sample(step, error=0.0, *, low=None, high=None, t=None, run=1, theta=0.0):
         energy_error_low=error if low is None else low,
         energy_error_high=error if high is None else high,
     )
-    return Sample(run, step, 0.1 * step if t is None else t, (reading,) * len(METHODS))
+    return Sample(run, step, 0.1 * step if t is None else t, (reading,) * len(USUAL_CAST))
 
 
 def filled(samples, capacity=CAPACITY):

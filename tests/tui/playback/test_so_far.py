@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from engine.methods import METHODS
+from engine.methods import USUAL_CAST
 from engine.run.rewindable import RewindableRun
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene
@@ -19,7 +19,7 @@ from tui.playback.replay import Replay
 from tui.playback.so_far import RunSoFar
 
 DRIFT = SCENES["drift"]
-INDEX = {method.key: i for i, method in enumerate(METHODS)}
+INDEX = {method.key: i for i, method in enumerate(USUAL_CAST)}
 
 
 def run(scene: Scene, *stretches: tuple[int, float], equal_cost: bool = False) -> ErrorHistory:

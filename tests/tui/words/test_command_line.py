@@ -13,7 +13,7 @@ from recordings.library import GOLDEN
 from recordings.live_recorder import LiveRecorder
 from recordings.recording import Recording
 from tui.cli.dispatch import command_of
-from tui.cli.options import scene_of
+from tui.cli.scene import scene_of
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay

@@ -2,6 +2,7 @@
 
 import pytest
 
+from engine.methods import RK4
 from engine.run.observer import Milestone
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES
@@ -68,7 +69,7 @@ def test_where_there_are_several_runs_each_event_has_the_number_of_its_own():
 
 
 def test_over_the_top_with_almost_the_energy_of_the_start_the_excess_is_told():
-    milestone = Milestone("over the top", 3, 10, 0.5, 0.0034)
+    milestone = Milestone("over the top", RK4, 10, 0.5, 0.0034)
     assert milestone_text(milestone) == "RK4 over the top, +0.34 %"
 
 

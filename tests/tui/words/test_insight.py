@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from engine.methods import METHODS
+from engine.methods import USUAL_CAST
 from engine.run.lockstep import Lockstep
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES
@@ -93,7 +93,7 @@ def test_a_forecast_comes_true_in_a_long_run(name, h, seconds):
     live = after(SCENES[name].altered(h=h), seconds)
     ahead = forecast(live, RK4)
     assert ahead is not None
-    band = live.sample.readings[METHODS.index(ahead.other)].max_energy_error
+    band = live.sample.readings[USUAL_CAST.index(ahead.other)].max_energy_error
     assert abs(live.sample.readings[RK4].energy_error) < band
     lockstep = Lockstep(SCENES[name].altered(h=h))
     while (sample := lockstep.sample()).readings[RK4].max_energy_error <= band:
@@ -135,7 +135,7 @@ def test_bounded_methods_are_named_with_the_time_behind_the_verdict():
     text = staying(live)
     seconds = float(re.search(r"no trend over (\d+) s", text)[1])
     assert 40 - live.exact.period - 1 < seconds <= 40
-    assert [name for name in map(short_name, METHODS) if name in text] == ["Symplectic Euler", "Verlet"]
+    assert [name for name in map(short_name, USUAL_CAST) if name in text] == ["Symplectic Euler", "Verlet"]
     assert staying(after(SCENES["drift"], 5)) == ""
 
 
@@ -211,6 +211,6 @@ def test_ratios_have_two_digits(ratio, text):
 
 
 def test_names_are_short_where_they_stay_different():
-    names = [short_name(method) for method in METHODS]
+    names = [short_name(method) for method in USUAL_CAST]
     assert names == ["Explicit Euler", "Symplectic Euler", "Verlet", "RK4"]
-    assert len(set(names)) == len(METHODS)
+    assert len(set(names)) == len(USUAL_CAST)

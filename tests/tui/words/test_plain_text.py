@@ -2,7 +2,7 @@
 
 import re
 
-from engine.methods import METHODS
+from engine.methods import USUAL_CAST
 from engine.scenes import SCENES
 from recordings.library import GOLDEN
 from recordings.recording import Recording
@@ -69,7 +69,7 @@ def test_what_happened_is_explained_within_a_second():
 def test_the_numbers_are_those_of_the_sample():
     live = lab()
     told = re.findall(r"([A-Z][A-Za-z4 ]+) ([-+][\d.e+-]+\d)", said(live, 5.01)[-1].partition("errors ")[2])
-    for (name, number), method, reading in zip(told, METHODS, live.sample.readings, strict=True):
+    for (name, number), method, reading in zip(told, USUAL_CAST, live.sample.readings, strict=True):
         assert method.label.endswith(name)
         assert float(number) == float(f"{reading.energy_error:+.2g}")
 

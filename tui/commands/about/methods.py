@@ -1,17 +1,21 @@
-"""List the methods with their claimed properties, and with order and limit as measured now."""
+"""List the methods with their claimed properties, and as measured now; your own method is measured only."""
 
 import argparse
 import math
 from collections.abc import Iterator
 from typing import Any
 
+from engine.methods import METHODS, Cast, Method
 from engine.scenes import DEFAULT_SCENE
+from tui.cli.cast import add_cast_options, cast_of
 from tui.cli.errors import Exit
 from tui.cli.output import fields_of, print_table, write_json
 
 EXAMPLES = """\
 examples:
   pendu-tui methods
+  pendu-tui methods --methods rk4,verlet
+  pendu-tui methods --method mine.py:my_step
   pendu-tui methods --json | jq '.methods[] | select(.symplectic) | .key'
 """
 
@@ -22,13 +26,14 @@ CLAIMS = (
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
+    add_cast_options(parser, "all")
     parser.add_argument("--json", action="store_true", help="one JSON object")
 
 
 def run(options: argparse.Namespace) -> int:
     from engine.run.compiled import COMPILED_FROM, available
 
-    methods = _measured()
+    methods = _measured(cast_of(options, METHODS, most=None))
     if options.json:
         write_json("methods", {"methods": methods, "compiled": available()})
         return Exit.FINE
@@ -47,19 +52,43 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _row(method: dict[str, Any]) -> Iterator[str]:
-    yield from (method["key"], str(method["order"]), f"{method['measured_order']:.3f}")
-    yield str(method["force_evaluations"])
-    yield from ("yes" if method[claim] else "no" for claim in ("symplectic", "reversible"))
-    yield from (f"{z:.3f}" if z else "none" for z in (method["linear_limit"], method["measured_linear_limit"]))
-    yield ", ".join(method["other_names"])
+    own = method["order"] is None
+    yield from (method["key"], "-" if own else str(method["order"]))
+    yield "none" if method["measured_order"] is None else f"{method['measured_order']:.3f}"
+    yield f"{method['measured_force_evaluations']:g}"
+    yield from ("yes" if method[f"measured_{claim}"] else "no" for claim in ("symplectic", "reversible"))
+    limits = method["linear_limit"], method["measured_linear_limit"]
+    yield from ("-" if z is None else f"{z:.3f}" if z else "none" for z in limits)
+    yield ", ".join(method["other_names"] or ["your own"] * own)
 
 
-def _measured() -> list[dict[str, Any]]:
-    """The methods with the order that their errors show on the default scene, and their limit by bisection."""
+def _measured(cast: Cast) -> list[dict[str, Any]]:
+    """The methods with the order that their errors show on the default scene, and what else is measured."""
     from engine.accuracy.study import orders
+
+    measured_orders = orders(DEFAULT_SCENE.with_cast(cast), math.inf)
+    return [_claims(method) | _properties(method, order) for method, order in measured_orders]
+
+
+def _claims(method: Method) -> dict[str, Any]:
+    """What is claimed; of a user's own method nothing is."""
+    from engine.methods.own import OwnMethod
+
+    claims = fields_of(method, *CLAIMS)
+    if isinstance(method, OwnMethod):
+        claims |= dict.fromkeys(set(CLAIMS) - {"key", "label", "letter", "other_names"})
+    return claims
+
+
+def _properties(method: Method, order: float | None) -> dict[str, Any]:
+    from engine.methods import measure
+    from engine.methods.own import OwnMethod
     from engine.stability.linear import linear_limit
 
-    return [
-        fields_of(method, *CLAIMS) | {"measured_order": order, "measured_linear_limit": linear_limit(method)}
-        for method, order in orders(DEFAULT_SCENE, math.inf)
-    ]
+    return {
+        "measured_order": order,
+        "measured_linear_limit": method.linear_limit if isinstance(method, OwnMethod) else linear_limit(method),
+        "measured_symplectic": measure.is_symplectic(method.phases),
+        "measured_reversible": measure.is_reversible(method.phases),
+        "measured_force_evaluations": measure.evaluations(method.phases)[0],
+    }

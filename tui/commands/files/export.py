@@ -75,7 +75,7 @@ def _rows(recording: "Recording", show: Callable[[int, int], None]) -> "Iterator
 
     samples = ((clock, value) for clock, value in recording.entries() if isinstance(value, Sample))
     for count, (clock, sample) in enumerate(samples, 1):
-        yield from rows(clock, sample, recording.methods)
+        yield from rows(clock, sample, recording.methods_of(sample.run))
         if count % 1000 == 0:
             show(count, recording.samples)
 

@@ -51,10 +51,20 @@ def _fields(recording: "Recording", size: int) -> dict[str, Any]:
             for run in recording.runs
         ),
         **fields_of(recording, "methods", "samples"),
+        "sha256": recording.seal.sha256 if recording.seal else None,
+        "digest_matches": recording.sealed,
         "seconds": recording.length,
         "bytes": size,
         "metadata": recording.metadata,
     }
+
+
+def _digest(recording: "Recording") -> str:
+    """The SHA-256 of all that is in it, as far as it goes."""
+    if recording.sealed is None:
+        return "none" if recording.version > 1 else "none: format 1 had none"
+    end = "" if recording.seal and recording.seal.end else ", up to its last intact chunk"
+    return f"sha256 {recording.seal.sha256}{end}" if recording.sealed and recording.seal else "does not match"
 
 
 def _print(recording: "Recording", size: int) -> None:
@@ -65,6 +75,7 @@ def _print(recording: "Recording", size: int) -> None:
         "length": seconds(recording.length),
         "size": f"{file_size(size)}, {recording.samples} samples",
         "methods": ", ".join(recording.methods),
+        "digest": _digest(recording),
         **{name: value for name, value in recording.metadata.items() if not name.endswith(".hex")},
     }
     print_table("ll", ("", ""), facts.items())

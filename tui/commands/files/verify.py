@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from recordings.errors import RecordingError, printable
 from recordings.library import PART
+from tui.cli.cast import add_cast_options, cast_of, own_methods
 from tui.cli.errors import Exit
 from tui.cli.options import add_recording, count
 from tui.cli.output import fields_of, progress, warn, write_json
@@ -20,8 +21,11 @@ examples:
   pendu-tui verify latest
   pendu-tui verify tests/recordings/ crossover.mcap
   pendu-tui verify golden
+  pendu-tui verify crossover.mcap --methods rk4
 
 A folder means all recordings below it; golden means the bundled ones.
+A recording holds a SHA-256 of all that is in it, which shows what was changed, added or left out later. It proves
+nothing against somebody who recomputes it.
 Exit 0: all are identical; 1: at least one differs or is incomplete (a .part may be); 3: one cannot be read.
 """
 
@@ -30,6 +34,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_recording(
         parser, "files", nargs="+", help="a file, a folder, latest, or a name such as drift", offered=["golden"]
     )
+    add_cast_options(parser, "all of a recording's")
     parser.add_argument(
         "--max-steps",
         metavar="N",
@@ -42,7 +47,13 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     results: list[tuple[Path, Verification | RecordingError]] = []
-    for path, result in (verified for name in options.files for verified in _verified(name, options.max_steps)):
+    own = own_methods(options)
+    if own:
+        from recordings.events import remember
+
+        remember(own)
+    only = None if options.methods is None else [method.key for method in cast_of(options, ())]
+    for path, result in (verified for name in options.files for verified in _verified(name, options.max_steps, only)):
         results.append((path, result))
         if options.json:
             continue
@@ -64,10 +75,12 @@ def _passes(result: "Verification | RecordingError") -> bool:
     """Whether nothing differs and, except in a .part, nothing is missing."""
     if isinstance(result, RecordingError):
         return False
-    return result.identical and (result.complete or result.file.suffix == PART)
+    return result.identical and result.sealed is not False and (result.complete or result.file.suffix == PART)
 
 
-def _verified(name: str, max_steps: int) -> "Iterator[tuple[Path, Verification | RecordingError]]":
+def _verified(
+    name: str, max_steps: int, only: list[str] | None
+) -> "Iterator[tuple[Path, Verification | RecordingError]]":
     """Verify the recordings that a name on the command line stands for, the unreadable ones notwithstanding."""
     from recordings import library
     from recordings.verify import verify
@@ -84,7 +97,7 @@ def _verified(name: str, max_steps: int) -> "Iterator[tuple[Path, Verification |
         result: Verification | RecordingError
         try:
             with progress(printable(file.name)) as show:
-                result = verify(file, show, max_steps)
+                result = verify(file, show, max_steps, only)
         except RecordingError as error:
             result = error
         yield file, result
@@ -94,14 +107,21 @@ def _sentence(result: "Verification") -> str:
     name = printable(str(result.file))
     size = f"{result.samples} samples in {result.runs} run{'s' * (result.runs != 1)}"
     end = "" if result.complete else f"; {result.reason}"
-    sin = "" if result.same_sin else "; within tolerance only: this machine's sin() differs"
+    others = " and ".join(f"{name}()" for name in result.other_functions)
+    notes = f"; within tolerance only: this machine has another {others}" if others else ""
+    notes += "; it has no digest" if result.sealed is None else ""
+    first = result.first_difference
+    where = "" if first is None else f"\n{_where(first)}"
+    if result.sealed is False:
+        numbers = "identical" if first is None else "different"
+        return f"altered     {name}: {size}; {result.reason}; its numbers are {numbers}{notes}{where}"
     if result.identical and not _passes(result):
-        return f"unfinished  {name}: {size}{end}; identical as far as it goes{sin}"
+        return f"unfinished  {name}: {size}{end}; identical as far as it goes{notes}"
     if result.identical:
-        return f"identical   {name}: {size}{end}{sin}"
-    if result.first_difference is None:
+        return f"identical   {name}: {size}{end}{notes}"
+    if first is None:
         return f"damaged     {name}: {size} before it; {result.reason}"
-    return f"different   {name}: {size}{end}{sin}\n{_where(result.first_difference)}"
+    return f"different   {name}: {size}{end}{notes}{where}"
 
 
 def _where(difference: "Difference") -> str:
@@ -117,11 +137,13 @@ def _where(difference: "Difference") -> str:
 def _fields(path: Path, result: "Verification | RecordingError") -> dict[str, Any]:
     if isinstance(result, RecordingError):
         nothing: dict[str, Any] = {"complete": False, "runs": 0, "samples": 0, "same_sin": None, "identical": False}
-        return {"file": str(path), **nothing, "max_difference": None, "first_difference": None, "reason": str(result)}
+        nothing |= dict.fromkeys(("other_functions", "sha256", "digest_matches", "max_difference", "first_difference"))
+        return {"file": str(path), **nothing, "reason": str(result)}
     first = result.first_difference
     return {
         "file": str(path),
-        **fields_of(result, "complete", "runs", "samples", "same_sin", "identical"),
+        **fields_of(result, "complete", "runs", "samples", "same_sin", "identical", "other_functions", "sha256"),
+        "digest_matches": result.sealed,
         "max_difference": result.max_difference if math.isfinite(result.max_difference) else None,
         "first_difference": None if first is None else _difference_fields(first),
         "reason": result.reason,

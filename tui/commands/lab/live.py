@@ -4,13 +4,16 @@ import argparse
 import gc
 from pathlib import Path
 
-from tui.cli.options import add_file, add_scene_options, positive, scene_of
+from tui.cli.options import add_file, positive
+from tui.cli.scene import add_scene_options, scene_of
 from tui.terminal.options import add_terminal_options
 
 EXAMPLES = """\
 examples:
   pendu-tui
   pendu-tui live --scene crossover
+  pendu-tui live --methods rk4,verlet
+  pendu-tui live --method mine.py:my_step
   pendu-tui live --theta 170deg --h 0.02 --record swing.mcap
   pendu-tui live --present
   pendu-tui live --plain --no-record

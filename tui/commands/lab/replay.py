@@ -1,7 +1,10 @@
 """A recording on the lab's screen: pause, step, seek, loop, play backwards, continue live from any moment."""
 
 import argparse
+from dataclasses import replace
 
+from engine.methods import METHODS
+from tui.cli.cast import add_cast_options, cast_of, own_methods
 from tui.cli.errors import UserError
 from tui.cli.options import add_recording, number, positive
 from tui.terminal.options import add_terminal_options
@@ -10,6 +13,7 @@ EXAMPLES = """\
 examples:
   pendu-tui replay latest
   pendu-tui replay drift
+  pendu-tui replay drift --methods rk4,verlet
   pendu-tui replay swing.mcap --start-at 12 --speed 0.5 --loop
 """
 
@@ -19,6 +23,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--start-at", metavar="S", type=number, default=0.0, help="start S seconds into the recording (%(default)g)"
     )
+    add_cast_options(parser, "all of the recording's")
     parser.add_argument("--speed", metavar="X", type=positive, default=1.0, help="playback speed (%(default)g)")
     parser.add_argument("--loop", action="store_true", help="loop")
     parser.add_argument("--paused", action="store_true", help="start paused")
@@ -27,11 +32,14 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
+    from recordings.events import remember
     from recordings.library import resolve
     from tui.screens import launch
     from tui.terminal.check import check_terminal
 
     path = resolve(options.file)
+    remember(own_methods(options))
+    only = None if options.methods is None else cast_of(options, ())
     if not options.plain:
         check_terminal()
     replay = launch.open_replay(path)
@@ -43,4 +51,8 @@ def run(options: argparse.Namespace) -> int:
     replay.pause(options.paused)
     if options.plain:
         return launch.print_sentences(replay)
-    return launch.show(launch.replay_screen(replay, options.no_record), options)
+    screen = launch.replay_screen(replay, options.no_record)
+    if only is not None:
+        hidden = {method.key for method in (*METHODS, *replay.scene.cast) if method not in only}
+        screen.shown = replace(screen.shown, hidden=frozenset(hidden))
+    return launch.show(screen, options)

@@ -6,7 +6,8 @@ from pathlib import Path
 
 from tui.cli.errors import Exit
 from tui.cli.files import whole_file
-from tui.cli.options import add_file, add_scene_options, number, scene_of
+from tui.cli.options import add_file, number
+from tui.cli.scene import add_scene_options, scene_of
 from tui.terminal.options import add_picture_options, cells, terminal_options_of
 
 EXAMPLES = """\

@@ -5,11 +5,13 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from engine.methods.own import OwnMethod
 from engine.scenes import Scene, check_h
 from tui.cli.errors import Exit, UserError
 from tui.cli.files import text_file
-from tui.cli.options import add_file, add_scene_options, count, positive, scene_of
+from tui.cli.options import add_file, count, positive
 from tui.cli.output import progress, warn
+from tui.cli.scene import add_scene_options, scene_of
 
 if TYPE_CHECKING:
     from engine.accuracy.recommend import Attempt
@@ -19,6 +21,7 @@ EXAMPLES = """\
 examples:
   pendu-tui accuracy
   pendu-tui accuracy --target 1e-6 --time 100
+  pendu-tui accuracy --methods rk4,verlet
   pendu-tui accuracy --budget 2e4 --theta 150deg
   pendu-tui accuracy --target 1e-3 --error energy --time 10,100,1000
   pendu-tui accuracy --cost seconds --h-values 0.1:0.001:8
@@ -56,7 +59,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--cost",
         choices=("evaluations", "seconds"),
         default="evaluations",
-        help="force evaluations, or measured seconds (%(default)s)",
+        help="force evaluations, or measured seconds, which are without Numba where a method is your own (%(default)s)",
     )
     parser.add_argument(
         "--target", metavar="ERROR", type=positive, help="find the cheapest method and h for this error"
@@ -111,7 +114,8 @@ def run(options: argparse.Namespace) -> int:
     file = None if options.csv in (None, "-") else Path(options.csv)
     with text_file(file, options.force) as out:
         try:
-            _fill(found, times, rungs, not options.no_compiled and available())
+            fair = options.cost == "evaluations" or not any(isinstance(method, OwnMethod) for method in scene.cast)
+            _fill(found, times, rungs, fair and not options.no_compiled and available())
         except KeyboardInterrupt:
             if file and not found.points:
                 raise
@@ -137,13 +141,13 @@ def _fill(found: "Findings", times: list[float], rungs: list[int], fast: bool) -
     from engine.run import compiled, loops
     from tui.commands.studies.reports.accuracy import Advice
 
-    study = Study(found.scene, found.time, compiled.tiered if fast else loops.plain)
+    study, cast = Study(found.scene, found.time, compiled.tiered if fast else loops.plain), found.scene.cast
     with progress("measuring") as show:
         for point in study.points(rungs):
             if found.cost == "seconds":
                 point = timed(point, found.scene, time.perf_counter, compiled.compiled if fast else loops.plain)
             found.points.append(point)
-            show(sum(point.steps for point in found.points), len(found.scene.cast) * sum(rungs))
+            show(sum(point.steps for point in found.points), len(cast) * sum(rungs))
     found.orders += orders(found.scene, found.time, study.loops)
     if not (found.target or found.budget):
         return
@@ -158,7 +162,7 @@ def _fill(found: "Findings", times: list[float], rungs: list[int], fast: bool) -
             attempts: list[Attempt] = []
             for attempt in search:
                 attempts.append(attempt)
-                show(len(found.scene.cast) * len(found.advice) + len(attempts), len(found.scene.cast) * len(times))
+                show(len(cast) * len(found.advice) + len(attempts), len(cast) * len(times))
             best = cheapest(attempts) if found.target else most_accurate(attempts, found.kind)
             found.advice.append(Advice(duration, attempts, best))
 

@@ -54,7 +54,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    gate = None if options.fail_if is None else parse(options.fail_if, FIELDS)
+    gate = None if options.fail_if is None else parse(options.fail_if, fields=FIELDS)
     with _input(options.file) as lines:
         columns = read_columns(lines, options.time, options.energy)
     if not columns.times:

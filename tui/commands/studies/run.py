@@ -13,8 +13,9 @@ from engine.scenes import Scene
 from tui.cli.errors import Exit, UserError
 from tui.cli.fail_if import FIELDS, parse
 from tui.cli.files import check_free, stop_requests
-from tui.cli.options import Suggestions, add_file, add_scene_options, count, positive, scene_of
+from tui.cli.options import Suggestions, add_file, count, positive
 from tui.cli.output import fields_of, print_table, progress, scene_line, warn, write_json
+from tui.cli.scene import add_scene_options, scene_of
 from tui.words.numbers import file_size
 
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ EXAMPLES = """\
 examples:
   pendu-tui run --time 100
   pendu-tui run --scene crossover --time 100 --record crossover.mcap
+  pendu-tui run --time 60 --methods rk4,verlet --method mine.py:my_step,letter=m
   pendu-tui run --theta 170deg --time 60 --json | jq '.methods[] | {method, verdict}'
   pendu-tui run --time 60 --fail-if 'velocity_verlet.max_energy_error > 1e-2 or rk4.drift_per_second < -1e-5'
   pendu-tui run --time 600 --fail-if 'velocity_verlet.verdict != bounded'
@@ -57,7 +59,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     scene = scene_of(options)
-    gate = None if options.fail_if is None else parse(options.fail_if)
+    gate = None if options.fail_if is None else parse(options.fail_if, cast=scene.cast)
     from recordings.headless import SAMPLE_EVERY, steps_for
 
     if options.time > LONGEST:
@@ -73,7 +75,7 @@ def run(options: argparse.Namespace) -> int:
     began = time.perf_counter()
     sample, observer, stopped = _simulate(scene, options, steps, every)
     wall_seconds = time.perf_counter() - began
-    rows = _rows(sample, observer)
+    rows = _rows(scene, sample, observer)
     if options.json:
         fields = {"scene": scene.fields(), "time": sample.t, "steps": sample.step, "wall_seconds": wall_seconds}
         write_json("run", {**fields, "methods": rows})
@@ -111,21 +113,20 @@ def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int)
     fitting = loops.plain if options.no_compiled else partial(compiled.tiered, ahead=steps)
     observer = RunObserver(scene, fitting)
     with stop_requests() as stopped, progress(f"{steps:,} steps") as show, recorder as recording:
-        for sample in simulate(scene, options.time, recording, every, loops=fitting):
-            observer.add(sample)
+        for sample in simulate(scene, options.time, recording, every, loops=fitting, observer=observer):
             show(sample.step, steps)
             if stopped() and sample.step < steps:
                 return sample, observer, True
     return sample, observer, False
 
 
-def _rows(sample: "Sample", observer: "RunObserver") -> list[dict[str, Any]]:
+def _rows(scene: Scene, sample: "Sample", observer: "RunObserver") -> list[dict[str, Any]]:
     """The results by method, as in --json.  A method that diverged has no theta to compare."""
     from recordings.fields import NUMBERS
 
     exact = observer.exact.at(sample.t).theta
     rows = []
-    for method, reading, judgement in zip(observer.scene.cast, sample.readings, observer.judgements, strict=True):
+    for method, reading, judgement in zip(scene.cast, sample.readings, observer.judgements, strict=True):
         end = reading.diverged_at
         rows.append(
             {
@@ -134,7 +135,7 @@ def _rows(sample: "Sample", observer: "RunObserver") -> list[dict[str, Any]]:
                 "theta_error": abs(reading.theta - exact) if end is None else None,
                 "drift_per_second": judgement.slope,
                 "verdict": judgement.verdict,
-                "force_evaluations": method.evaluations(sample.step if end is None else round(end / observer.scene.h)),
+                "force_evaluations": method.evaluations(sample.step if end is None else round(end / scene.h)),
                 "diverged_at": end,
             }
         )

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 from engine.scenes import Z_LIMITS
 from tui.cli.errors import Exit, UserError
-from tui.cli.options import add_file, add_scene_options, angle, count, number, scene_of
+from tui.cli.options import add_file, angle, count, number
 from tui.cli.output import progress
+from tui.cli.scene import add_scene_options, scene_of
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -22,6 +23,8 @@ EXAMPLES = """\
 examples:
   pendu-tui stability
   pendu-tui stability --theta 120deg --h 0.3
+  pendu-tui stability --scene linear
+  pendu-tui stability --method mine.py:my_step
   pendu-tui stability --map --workers 4
   pendu-tui stability --json | jq '.pendulum[] | select(.method == "velocity_verlet")'
   pendu-tui stability --z-values 0.005:3:600 --theta-values 1deg:179deg:300 --workers 8 -o map.npz
@@ -78,6 +81,13 @@ def values(element: Callable[[str], float]) -> Callable[[str], list[float]]:
 
 def run(options: argparse.Namespace) -> int:
     scene = scene_of(options)
+    asked = {"--map": options.map, "--csv": options.csv, "-o": options.file}
+    asked |= {"--theta-values": options.theta_values, "--z-values": options.z_values}
+    if scene.model == "linear" and (given := [name for name, value in asked.items() if value]):
+        raise UserError(
+            f"{given[0]} is about a pendulum, and this scene is the linear oscillator, whose limit is the same at every"
+            f" amplitude; leave out {given[0]}, or choose another --scene."
+        )
     _check("amplitude", options.theta_values, 0, math.pi)
     if len(options.theta_values or ()) > MOST_ROWS and not options.file:
         raise UserError(

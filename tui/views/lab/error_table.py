@@ -51,7 +51,7 @@ COLUMNS = (
     Column(
         6, ("largest", 7), ("largest", 8), lambda line, width: scientific(line.reading.max_energy_error, width, 1, "-")
     ),
-    Column(5, ("per s", 8), ("trend per s", 11), lambda line, width: scientific(line.judgement.slope, width)),
+    Column(5, ("per s", 8), ("trend per s", 11), lambda line, width: scientific(line.judgement.trend, width)),
     Column(8, ("verdict", 9), ("verdict", 9), lambda line, width: verdict(line).rjust(width)),
     Column(3, ("th.err", 7), ("theta error", 11), lambda line, width: scientific(theta_error(line), width, 1, "-")),
     Column(1, ("f", 1), ("evals/step", 10), lambda line, width: str(line.method.force_evaluations).rjust(width)),

@@ -8,7 +8,7 @@ import pytest
 from textual.pilot import Pilot
 
 from engine.accuracy.study import Study, ladder
-from engine.methods import METHODS
+from engine.methods import USUAL_CAST
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene
 from recordings.library import resolve
@@ -59,7 +59,7 @@ async def accuracy_view(
 async def test_the_points_fill_in_and_are_the_engines():
     async with accuracy_view() as (_, pane, _live):
         for point in Study(SCENES["drift"], 5.0).points(RUNGS):
-            found = pane.points[METHODS.index(point.method), point.steps]
+            found = pane.points[USUAL_CAST.index(point.method), point.steps]
             assert (found.theta_error, found.energy_error) == (point.theta_error, point.energy_error)
         assert "energy error, the largest of all steps" in pane.text
         assert all(pane.text.count(letter) for letter in "esvr")
@@ -124,7 +124,7 @@ async def test_another_h_moves_the_mark_and_another_start_the_points():
         await complete(pilot, pane)
         assert (
             pane.points[VERLET, RUNGS[0]].theta_error
-            == Study(SCENES["large-swing"], 5.0).run(METHODS[VERLET], RUNGS[0]).theta_error
+            == Study(SCENES["large-swing"], 5.0).run(USUAL_CAST[VERLET], RUNGS[0]).theta_error
         )
 
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from engine.methods import METHODS
+from engine.methods import USUAL_CAST
 from engine.scenes import SCENES
 from tui.drawing.palette import EXACT, FAINT
 from tui.views.phase.picture import PhasePoint, phase_picture
@@ -55,7 +55,7 @@ def test_a_point_is_drawn_where_its_state_is_with_its_letter_beside_it(theta, om
 
 
 def test_methods_at_one_place_are_told_apart_by_their_letters():
-    points = [PhasePoint(1.0, 2.0, i, method.letter) for i, method in enumerate(METHODS)]
+    points = [PhasePoint(1.0, 2.0, i, method.letter) for i, method in enumerate(USUAL_CAST)]
     picture = phase_picture(PORTRAIT, points)
     for point in points:
         rows, columns = np.nonzero(picture.owners == point.owner)

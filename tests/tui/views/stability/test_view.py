@@ -19,7 +19,7 @@ from tui.screens.replay import ReplayScreen
 from tui.screens.status_line import StatusLine
 from tui.views.stability.pane import StabilityPane
 
-VERLET, RK4 = 2, 3  # in METHODS
+VERLET, RK4 = 2, 3  # in USUAL_CAST
 
 
 def is_complete(pane: StabilityPane) -> bool:

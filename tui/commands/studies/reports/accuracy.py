@@ -10,6 +10,7 @@ from rich.text import Text
 from engine.accuracy.recommend import Attempt
 from engine.accuracy.study import REASONS, ErrorKind, Order, Point
 from engine.methods import Method
+from engine.methods.own import OwnMethod
 from engine.scenes import Scene
 from tui.cli.output import console, fields_of, print_picture, print_table, scene_line, write_csv, write_json
 from tui.drawing.palette import PALETTES
@@ -73,7 +74,7 @@ def print_json(found: Findings) -> None:
             "error": found.kind,
             "points": [_point_fields(point, found.kind) for point in found.points],
             "orders": [
-                {"method": o.method.key, "claimed": o.method.order, "measured": o.measured} for o in found.orders
+                {"method": o.method.key, "claimed": _claimed(o.method), "measured": o.measured} for o in found.orders
             ],
             "recommendation": durations[-1] if durations else None,
             "durations": durations,
@@ -99,13 +100,18 @@ def _print_points(found: Findings) -> None:
     if found.orders:
         measured = ("-" if order.measured is None else f"{order.measured:.2f}" for order in found.orders)
         rows.append(("order", "", "measured", *measured))
-        rows.append(("", "", "claimed", *(str(order.method.order) for order in found.orders)))
+        rows.append(("", "", "claimed", *(str(_claimed(order.method) or "-") for order in found.orders)))
     names = (f"{method.label} ({method.force_evaluations}/step)" for method in cast)
     print_table("rrr" + "r" * len(cast), ("h [s]", "z = h·w0", "steps", *names), rows)
     flaws = {flaw for point in found.points if (flaw := point.flaw(found.kind))}
     for mark in sorted({MARKS[flaw] for flaw in flaws}):
         print(f"{mark} {'; '.join(REASONS[flaw] for flaw in flaws if MARKS[flaw] == mark)}")
     print("order measured on the theta error over at most one period; n/step: force evaluations")
+
+
+def _claimed(method: Method) -> int | None:
+    """The claimed order; nothing is claimed of a user's own method."""
+    return None if isinstance(method, OwnMethod) else method.order
 
 
 def _cell(found: Findings, rung: Sequence[Point], method: Method) -> str:

@@ -12,6 +12,8 @@ import numpy as np
 from numpy.lib import format as npy
 from rich.text import Text
 
+from engine.methods import Method
+from engine.methods.own import OwnMethod
 from engine.scenes import Scene
 from engine.stability.grid import Grid
 from engine.stability.linear import amplification, linear_limit
@@ -30,6 +32,10 @@ CELL_FIELDS = ("fate", "steps_survived", "max_energy_error")
 def print_text(study: StabilityStudy, with_map: bool) -> int:
     """Print the tables and, if asked for, the map, in colour where the terminal has colours."""
     _print_linear(study.scene)
+    if _is_linear(study.scene):
+        print("\nThis scene is the linear oscillator itself: these limits hold at every amplitude.")
+        print("Swings are lost at other steps by a pendulum only: pendu-tui stability --scene drift")
+        return Exit.FINE
     rows, whole = study.table()
     _print_pendulum(rows, study)
     if not with_map or not whole:
@@ -46,7 +52,7 @@ def print_text(study: StabilityStudy, with_map: bool) -> int:
 def print_json(study: StabilityStudy, with_map: bool) -> int:
     """Print one object: linear, pendulum and, if asked for, map."""
     scene = study.scene
-    rows, whole = study.table()
+    rows, whole = _table(study)
     fields = {
         "scene": scene.fields(),
         "z": scene.z,
@@ -55,8 +61,7 @@ def print_json(study: StabilityStudy, with_map: bool) -> int:
         "linear": [
             {
                 "method": method.key,
-                "limit_z": linear_limit(method),
-                "theory_z": method.linear_limit,
+                **dict(zip(("limit_z", "theory_z"), _limits(method), strict=True)),
                 "amplification": amplification(method, scene.z),
             }
             for method in scene.cast
@@ -137,18 +142,32 @@ def _ended(whole: bool, kept: str = "swings already found lost are kept") -> int
     return Exit.INTERRUPTED
 
 
-def _print_linear(scene: Scene) -> None:
-    def limit(z: float) -> str:
-        return f"{z:.9f}" if z else "none"
+def _is_linear(scene: Scene) -> bool:
+    """Whether there is nothing but linear theory to say: no top to go over, no chaos, no amplitude that matters."""
+    return scene.model == "linear"
 
+
+def _table(study: StabilityStudy) -> tuple[list[Row], bool]:
+    return ([], True) if _is_linear(study.scene) else study.table()
+
+
+def _limits(method: Method) -> tuple[float | None, float | None]:
+    """The largest stable z as measured, and in theory; a user's own method has no theory."""
+    if isinstance(method, OwnMethod):
+        return method.linear_limit, None
+    return linear_limit(method), method.linear_limit
+
+
+def _print_linear(scene: Scene) -> None:
+    def limit(z: float | None) -> str:
+        return "-" if z is None else f"{z:.9f}" if z else "none"
+
+    z = scene.z
     print("Linear oscillator: spectral radius of one step; stable up to z = h·w0")
     print_table(
         "lrrr",
-        ("method", "stable to z, measured", "theory", f"spectral radius at z = {scene.z:.4g}"),
-        (
-            (m.label, limit(linear_limit(m)), limit(m.linear_limit or 0.0), f"{amplification(m, scene.z):.9f}")
-            for m in scene.cast
-        ),
+        ("method", "stable to z, measured", "theory", f"spectral radius at z = {z:.4g}"),
+        ((m.label, *map(limit, _limits(m)), f"{amplification(m, z):.9f}") for m in scene.cast),
     )
 
 

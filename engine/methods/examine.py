@@ -1,0 +1,91 @@
+"""Whether a user's function is a method at all: what must be so of any that the lab, its charts and files can use."""
+
+import math
+from itertools import islice
+from typing import Any, cast
+
+import numpy as np
+
+from engine.methods.measure import PENDULUM, START, after, evaluations, measured
+from engine.methods.method import Phases
+from engine.methods.own import LONGEST_SOURCE, OwnMethod, OwnMethodError, own_method, own_phases
+from engine.models.model import Phase
+
+H = 0.05  # s
+STEPS = 6
+SAME = 1e-9  # relative; what rounding leaves is far smaller, what a wrong kind of number does far larger
+
+
+def load(source: str, key: str, letter: str, file: str) -> OwnMethod:
+    """A user's method, examined and measured.  Raises OwnMethodError, whose text is a sentence for the user."""
+    if len(source) > LONGEST_SOURCE:
+        raise OwnMethodError(f"{file} has {len(source):,} characters; use a file of at most {LONGEST_SOURCE:,}.")
+    phases = own_phases(source, key, file)
+    try:
+        _examine(phases, f"{file}: {key}")
+        found = measured(phases)
+    except (ValueError, ArithmeticError) as error:  # overflow is none of the method's errors, but here it is
+        raise OwnMethodError(f"{file}: {key} overflows on an ordinary swing ({error}).") from None
+    return own_method(source, key, letter, file, found)
+
+
+def _examine(phases: Phases, who: str) -> None:
+    force = PENDULUM.force()
+    path = _path(phases, START)
+    if not all(math.isfinite(value) for phase in path for value in phase):
+        raise OwnMethodError(f"{who} does not stay finite for {STEPS} steps of an ordinary swing.")
+    if _path(phases, START) != path:
+        raise OwnMethodError(f"{who} gives other numbers when it is run again; a method must give the same bits.")
+    middle = after(phases, force, START, H, STEPS // 2)
+    if after(phases, force, middle, H, STEPS - STEPS // 2) != path[-1]:
+        raise OwnMethodError(
+            f"{who} keeps more than theta and omega from step to step: {STEPS} steps differ from two times"
+            f" {STEPS // 2}; a run is cut anywhere, so start from theta and omega alone."
+        )
+    if not evaluations(phases)[0] > 0:
+        raise OwnMethodError(f"{who} never evaluates the force.")
+    for kind, examined in (("NumPy arrays", _examine_arrays), ("complex numbers", _examine_complexes)):
+        try:
+            same = examined(phases, path, who)
+        except OwnMethodError as error:
+            raise OwnMethodError(f"{str(error).rstrip('.')}; this was with {kind}, which stability needs.") from None
+        if not same:
+            raise OwnMethodError(
+                f"{who} gives other numbers for {kind} than for floats; use only +, -, * and / on theta and omega."
+            )
+
+
+def _path(phases: Phases, start: Phase) -> list[Phase]:
+    return list(islice(phases(PENDULUM.force(), start, H), STEPS))
+
+
+def _examine_arrays(phases: Phases, path: list[Phase], who: str) -> bool:
+    """Whether arrays are carried as floats are."""
+    start, h = tuple(np.full(3, value) for value in START), np.full(3, H)
+    given = [each.copy() for each in (*start, h)]
+    found: list[Any] = []
+    copies: list[Any] = []
+    for phase in islice(phases(PENDULUM.force(np.sin), (start[0], start[1]), cast(float, h)), STEPS):
+        found += phase
+        copies += [each.copy() for each in phase]
+    pairs = zip((*start, h, *found), (*given, *copies), strict=True)
+    if not all(np.array_equal(now, then) for now, then in pairs):
+        raise OwnMethodError(f"{who} changes an array in place; write theta = theta + x instead of theta += x.")
+    return np.allclose([each[0] for each in found], np.ravel(path), rtol=SAME, atol=SAME)
+
+
+def _examine_complexes(phases: Phases, path: list[Phase], who: str) -> bool:
+    """Whether real parts are what floats are, and imaginary parts the derivative."""
+    force = PENDULUM.force(np.sin)
+    for along in ((1.0, 0.0), (0.0, 1.0)):
+
+        def ends(nudge: complex, along: Phase = along) -> Any:
+            start = START[0] + nudge * along[0], START[1] + nudge * along[1]
+            return np.array(after(phases, force, start, H, STEPS))
+
+        displaced, slope = ends(1e-100j), (ends(1e-6) - ends(-1e-6)) / 2e-6
+        if not np.allclose(displaced.real, path[-1], rtol=SAME, atol=SAME):
+            return False
+        if not np.allclose(displaced.imag / 1e-100, slope, rtol=1e-4, atol=1e-4):
+            return False
+    return True

@@ -1,0 +1,152 @@
+"""The properties of a method as measured: order, cost, symplectic or not, reversible or not, linear limit.
+
+On the pendulum with w0² = 9.81 s⁻², unless it says linear.  The tests hold the claims of METHODS against these; of a
+user's own method there is nothing else to say.
+"""
+
+import cmath
+import math
+from itertools import islice
+from statistics import linear_regression
+from typing import Any, NamedTuple
+
+from engine.methods.method import Phases
+from engine.models.model import Force, Phase
+from engine.models.pendulum import Pendulum
+
+PENDULUM = Pendulum(9.81)
+START = (1.0, 0.3)
+LARGE_H = 0.2  # s: what a high order does to area and time shows at large steps
+WIDEST_Z, RUNGS = 16, 2048  # z is looked at up to here, in steps of 1/2048: two thirds of the narrowest gap, BM6's
+NO_LIMIT_BELOW = 0.1  # z up to which some unstable methods grow by less than rounding
+ROUNDING = 1e-12
+RETURNED = 1e-11  # rad; rounding of 100 steps of a dozen forces
+FLOOR = 1e-14  # rad a step; smaller errors are rounding
+FITTED_BELOW = 0.1  # rad; larger errors are not yet proportional to a power of h
+
+
+class Measured(NamedTuple):
+    """What was measured of a method."""
+
+    order: float | None  # over half a period; None: its errors do not fall like a power of h
+    force_evaluations: float  # a step, on average over many
+    more_at_the_start: int  # force evaluations
+    symplectic: bool
+    reversible: bool
+    linear_limit: float  # z, at most WIDEST_Z; 0: none
+
+
+def measured(phases: Phases) -> Measured:
+    """All of it.  Raises what the method raises."""
+    each, more = evaluations(phases)
+    return Measured(order(phases), each, more, is_symplectic(phases), is_reversible(phases), linear_limit(phases))
+
+
+def after(phases: Phases, force: Force, phase: Phase, h: Any, steps: int) -> Phase:
+    """The phase after some steps."""
+    return next(islice(phases(force, phase, h), steps - 1, None))
+
+
+def order(phases: Phases, start: Phase = START) -> float | None:
+    """The slope of log theta error over log h, over half a period from a swing's or a spin's start.
+
+    Later, what a method loses in energy adds a power of its own, and RK4 reads 5 to 6.6.
+    """
+    exact, force = PENDULUM.exact(*start), PENDULUM.force()
+    half = (exact.period or 1.0) / 2
+    found: list[tuple[float, float]] = []
+    for power in range(2, 25):
+        steps = round(2 ** (power / 2))
+        largest = 0.0
+        for step, phase in enumerate(islice(phases(force, start, half / steps), steps), 1):
+            largest = max(largest, abs(phase[0] - exact.at(step * half / steps).theta))
+            if not largest < FITTED_BELOW:  # nan, too
+                break
+        if largest <= FLOOR * steps:
+            break
+        if largest < FITTED_BELOW:
+            found.append((math.log(half / steps), math.log(largest)))
+    if len(found) < 3:
+        return None
+    slope = linear_regression(*zip(*found[-6:], strict=True)).slope
+    return slope if slope > 0.5 else None
+
+
+def evaluations(phases: Phases, steps: int = 50) -> tuple[float, int]:
+    """Force evaluations of a step, on average, and how many more a run has at its start."""
+    count, sine = 0, PENDULUM.force()
+
+    def counted(theta: Any) -> Any:
+        nonlocal count
+        count += 1
+        return sine(theta)
+
+    counts = []
+    for n in (steps, 2 * steps):
+        count = 0
+        after(phases, counted, START, 0.05, n)
+        counts.append(count)
+    each = (counts[1] - counts[0]) / steps
+    return each, round(counts[0] - steps * each)
+
+
+def determinant(phases: Phases, phase: Phase, h: float) -> float:
+    """Of the derivative of one step, by complex step (engine.run.tangent): area after it over area before."""
+    tiny, force = 1e-100, PENDULUM.force(cmath.sin)
+    theta, omega = phase
+    a, c = after(phases, force, (theta + 1j * tiny, complex(omega)), h, 1)
+    b, d = after(phases, force, (complex(theta), omega + 1j * tiny), h, 1)
+    (a, b), (c, d) = ((value.imag / tiny for value in row) for row in ((a, b), (c, d)))
+    return float(a * d - b * c)
+
+
+def is_symplectic(phases: Phases) -> bool:
+    """Whether a step keeps area wherever it starts."""
+    starts = [(theta, omega) for theta in (-2.0, 0.0, 1.0, 3.0) for omega in (-4.0, 0.0, 3.0)]
+    return all(abs(determinant(phases, start, LARGE_H) - 1) < ROUNDING for start in starts)
+
+
+def is_reversible(phases: Phases) -> bool:
+    """Whether a swing that turns round after 10 s, and takes as long again, meets its start."""
+    return all(out_and_back(phases, start, LARGE_H, 50) < RETURNED for start in ((2.0, 0.3), (0.5, 2.0), (0.3, 8.0)))
+
+
+def out_and_back(phases: Phases, start: Phase, h: float, steps: int) -> float:
+    """How far from its start a swing ends that turns round after some steps and takes as many more [rad, rad/s]."""
+    force = PENDULUM.force()
+    theta, omega = after(phases, force, start, h, steps)
+    theta, omega = after(phases, force, (theta, -omega), h, steps)
+    return float(max(abs(theta - start[0]), abs(-omega - start[1])))
+
+
+def linear_limit(phases: Phases) -> float:
+    """The first z beyond which small swings grow, to 1e-9; 0 where no step is small enough, at most WIDEST_Z.
+
+    Looked for upwards, as high-order methods are stable again beyond it, in islands.
+    """
+    if not _is_stable(phases, NO_LIMIT_BELOW):
+        return 0.0
+    rungs = range(int(NO_LIMIT_BELOW * RUNGS), WIDEST_Z * RUNGS)
+    first = next((rung for rung in rungs if not _is_stable(phases, rung / RUNGS)), None)
+    if first is None:
+        return WIDEST_Z
+    stable, unstable = (first - 1) / RUNGS, first / RUNGS
+    while unstable - stable > 1e-10:
+        middle = (stable + unstable) / 2
+        if _is_stable(phases, middle):
+            stable = middle
+        else:
+            unstable = middle
+    return stable
+
+
+def _is_stable(phases: Phases, z: float) -> bool:
+    """Jury's conditions: both multipliers of a linear step lie in the closed unit disc, but for rounding."""
+    a, c = after(phases, _spring, (1.0, 0.0), z, 1)
+    b, d = after(phases, _spring, (0.0, 1.0), z, 1)
+    area = a * d - b * c
+    return bool(area <= 1 + ROUNDING and abs(a + d) <= 1 + area + ROUNDING)
+
+
+def _spring(theta: Any) -> Any:
+    return -theta

@@ -1,0 +1,180 @@
+"""A user's own method: a generator function from the text of a file, measured, and guarded while it runs.
+
+Nothing is claimed of it: what the lab needs to know of a method is measured when the text is loaded.  Its code is
+executed as any Python is.  It goes to another process as its text, and is compiled again there.
+"""
+
+import copyreg
+import hashlib
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from functools import cache
+from numbers import Complex, Real
+from typing import Any
+
+from engine.methods.measure import Measured
+from engine.methods.method import Method, Phases
+from engine.models.model import Force, Phase
+
+LONGEST_SOURCE = 30_000  # characters, some ten pages; recordings keep the text
+
+
+class OwnMethodError(Exception):
+    """What is wrong with a user's method; its text is a sentence for the user."""
+
+
+@dataclass(frozen=True, slots=True)
+class OwnMethod(Method):
+    """A user's method.  The fields that are claims of other methods are what was measured of it."""
+
+    measured: Measured = field(kw_only=True)
+    source: str = field(kw_only=True)  # the whole text of the file
+    file: str = field(kw_only=True)  # its name, for sentences
+
+    @property
+    def sha256(self) -> str:
+        """Of the source in UTF-8, in hexadecimal."""
+        return hashlib.sha256(self.source.encode()).hexdigest()
+
+
+@cache
+def own_method(source: str, key: str, letter: str, file: str, measured: Measured) -> OwnMethod:
+    """The method of a text that has been measured; one text gives one method in a process."""
+    phases = own_phases(source, key, file)
+    name = key.replace("_", " ").strip()
+    return OwnMethod(
+        key=key,
+        label=name[:1].upper() + name[1:],
+        letter=letter,
+        phases=phases,
+        formula=(phases.__doc__ or "").strip().partition("\n")[0],
+        order=max(1, round(measured.order or 1)),
+        force_evaluations=max(1, math.ceil(measured.force_evaluations)),
+        first_same_as_last=measured.more_at_the_start > 0,
+        symplectic=measured.symplectic,
+        reversible=measured.reversible,
+        linear_limit=measured.linear_limit,
+        other_names=(),
+        reference=f"{file}:{key}",
+        used="",
+        measured=measured,
+        source=source,
+        file=file,
+    )
+
+
+# To another process it goes as its text: a function that was executed has no module to be found in.
+copyreg.pickle(OwnMethod, lambda own: (own_method, (own.source, own.key, own.letter, own.file, own.measured)))
+
+
+@cache
+def own_phases(source: str, name: str, file: str) -> Phases:
+    """The generator function of this name in a text, guarded.  Raises OwnMethodError."""
+    namespace: dict[str, Any] = {"__name__": "own_method", "__file__": file, "print": _no_print}
+    try:
+        exec(compile(source, file, "exec", dont_inherit=True), namespace)
+    except SyntaxError as error:
+        raise OwnMethodError(f"{file}, line {error.lineno or 1}: {error.msg}.") from None
+    except (Exception, SystemExit) as error:
+        raise OwnMethodError(_sentence(error, source, file, file)) from None
+    function = namespace.get(name)
+    if not callable(function) or isinstance(function, type):
+        functions = [key for key, value in namespace.items() if callable(value) and key != "print" and key[:1] != "_"]
+        there = f"; it has {', '.join(functions[:6])}" if functions else ""
+        raise OwnMethodError(f"{file} has no function {name!r}{there}.")
+    return _guarded(function, name, source, file)
+
+
+class _PrintedError(Exception):
+    """A method has printed."""
+
+
+def _no_print(*values: object, file: Any = None, **settings: Any) -> None:
+    if file is None:
+        raise _PrintedError
+    print(*values, file=file, **settings)
+
+
+def _guarded(function: Callable[..., Any], name: str, source: str, file: str) -> Phases:
+    """The method, which raises OwnMethodError where it does anything but yield phases; overflow passes."""
+    code = getattr(function, "__code__", None)
+    where = f"{file}, line {code.co_firstlineno}" if code else file
+
+    def phases(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
+        kinds = type(phase[0]), type(phase[1])
+        plain = kinds == (float, float)
+        try:
+            following = function(force, phase, h)
+            if not hasattr(following, "__next__"):
+                raise OwnMethodError(f"{where}: {name} returns {_short(following)}; {_FORM}.")
+            for found in following:
+                if plain and type(found) is tuple and len(found) == 2 and type(found[0]) is type(found[1]) is float:
+                    yield found
+                else:
+                    yield _phase(found, phase, f"{where}: {name}")
+        except (Exception, SystemExit) as error:
+            if isinstance(error, OwnMethodError | OverflowError) or _is_of_force(error, force):
+                raise
+            raise OwnMethodError(_sentence(error, source, file, where)) from None
+        raise OwnMethodError(f"{where}: {name} ends while the run goes on; {_FORM}.")
+
+    phases.__doc__, phases.__name__ = function.__doc__, name
+    return phases
+
+
+_FORM = "write `while True:` with the formulas and `yield theta, omega`"
+
+
+def _phase(found: Any, start: Phase, who: str) -> Phase:
+    """What was yielded as a phase of the same kind of numbers as the start."""
+    try:
+        theta, omega = (_number(value, like) for value, like in zip(found, start, strict=True))
+    except (TypeError, ValueError):
+        raise OwnMethodError(f"{who} yields {_short(found)}; {_FORM}.") from None
+    return theta, omega
+
+
+def _number(value: Any, like: Any) -> Any:
+    kinds: tuple[tuple[Any, Any], ...] = ((Real, float), (Complex, complex))
+    for kind, make in kinds:
+        if isinstance(like, kind) and not hasattr(value, "shape"):
+            if not isinstance(value, kind):
+                raise TypeError
+            return make(value)
+    if getattr(value, "shape", ()) != getattr(like, "shape", ()):
+        raise TypeError
+    return value
+
+
+def _short(value: object) -> str:
+    try:
+        text = " ".join(repr(value).split())
+    except Exception:  # the user's __repr__
+        text = f"a {type(value).__name__}"
+    return text if len(text) <= 40 else f"a {type(value).__name__}"
+
+
+def _is_of_force(error: BaseException, force: Force) -> bool:
+    """Whether the force had no answer, as the sine of infinity has none: the numbers have ended, not the method."""
+    if not isinstance(error, ValueError | ArithmeticError):
+        return False
+    return any(frame.f_code is getattr(force, "__code__", None) for frame, _ in _frames(error))
+
+
+def _frames(error: BaseException) -> Iterator[tuple[Any, int]]:
+    trace = error.__traceback__
+    while trace:
+        yield trace.tb_frame, trace.tb_lineno
+        trace = trace.tb_next
+
+
+def _sentence(error: BaseException, source: str, file: str, where: str) -> str:
+    """What happened, with the last line of the file on the way to it, or `where` if there is none."""
+    lines = [line for frame, line in _frames(error) if frame.f_code.co_filename == file]
+    if lines:
+        where = f"{file}, line {lines[-1]}: `{source.splitlines()[lines[-1] - 1].strip()[:60]}`"
+    if isinstance(error, _PrintedError):
+        return f"{where} prints, but stdout is for results; use print(..., file=sys.stderr)."
+    what = " ".join(str(error).split())[:200]
+    return f"{where} raises {type(error).__name__}{': ' + what if what else ''}."

@@ -1,0 +1,147 @@
+"""Many swings at once: a method's phases on arrays, in NumPy or compiled by Numba from the same generator.
+
+Compiled they take a sine of their own, which the compiler turns into instructions for many numbers together.  Its last
+bits are not NumPy's, so a picture made with it is the same on one machine however it is cut and whoever computes
+it, but not the same as without Numba.
+"""
+
+import math
+from collections.abc import Callable, Iterator
+from functools import cache
+from importlib import import_module
+from itertools import islice
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engine.methods import Method
+from engine.models.model import Model, Phase
+
+Floats = NDArray[np.float64]
+Arrays = tuple[Floats, Floats]  # theta [rad] and omega [rad/s], a swing each
+
+
+class Watched(NamedTuple):
+    """What is watched of an ensemble while it swings; energies in s⁻², angles in rad."""
+
+    start: Floats  # energies at the start
+    band: Floats  # how far energies may be from there
+    off: Floats  # energies, less the start's, after the last step
+    worst: Floats  # largest |off| so far
+    width: Floats  # largest |theta| so far
+
+
+class Ensembles(NamedTuple):
+    """One method's loops on one model.  All arrays are one-dimensional and of one length."""
+
+    watch: Callable[[Arrays, Floats, Watched, int], tuple[int, Arrays]]
+    """(phase, h, watched, n) -> steps done and phase there: n, or as many as until an energy leaves its band or a
+    swing passes the top.  Changes off, worst and width."""
+    record: Callable[[Arrays, float, Floats, int], None]
+    """(phase, h, points, every): fill points[k] with theta and omega after (k + 1)·every steps of h [s]."""
+
+
+def section(
+    method: Method, model: Model, phase: Arrays, h: float, points: int, every: int = 1, fast: bool = False
+) -> Floats:
+    """Theta and omega of many starts after each `every` steps of h [s], so many points long: (points, 2, starts).
+
+    With a step that divides a period these are the points of a stroboscopic map.  `fast`: compiled by Numba.
+    """
+    found = np.empty((points, 2, len(phase[0])))
+    (compiled if fast else plain)(method, model).record(phase, h, found, every)
+    return found
+
+
+def sine(x: Any) -> Any:
+    """sin x to 4e-16 for |x| < 3e6, with + and * only, so that many are computed together.
+
+    x is brought to within pi/2 by a multiple of pi, in three parts of which the first two have 20 bits to spare (Cody &
+    Waite, Software Manual for the Elementary Functions, 1980); then a Taylor polynomial.
+    """
+    turns = (x * (1 / math.pi) + _ROUND) - _ROUND
+    r = ((x - turns * _PI_1) - turns * _PI_2) - turns * _PI_3
+    s = r * r
+    p = _C13 + s * (_C15 + s * (_C17 + s * (_C19 + s * _C21)))
+    p = r + r * s * (_C3 + s * (_C5 + s * (_C7 + s * (_C9 + s * (_C11 + s * p)))))
+    half = turns * 0.5
+    odd = half - ((half + _ROUND) - _ROUND)  # 0, or 1/2 either way
+    return p * (1 - 8 * odd * odd)
+
+
+_ROUND = 6755399441055744.0  # 1.5·2^52: added and taken away, it rounds to a whole number
+_PI_1, _PI_2, _PI_3 = 3.14159265346825122833, 1.215420101260793195e-10, 4.0445324974223329116e-21
+_C3, _C5, _C7, _C9, _C11, _C13, _C15, _C17, _C19, _C21 = ((-1) ** k / math.factorial(2 * k + 1) for k in range(1, 11))
+
+
+@cache
+def plain(method: Method, model: Model) -> Ensembles:
+    """The loops in NumPy."""
+    phases, force, energy = method.phases, model.force(np.sin), model.energy(np.sin)
+
+    def watch(phase: Arrays, h: Floats, watched: Watched, n: int) -> tuple[int, Arrays]:
+        start, band, off, worst, width = watched
+        size, done, bounded = np.empty_like(off), 0, np.isfinite(band).any()
+        for phase in islice(phases(force, phase, h), n):  # type: ignore[arg-type] # noqa: B020
+            done += 1
+            np.subtract(energy(phase), start, out=off)
+            np.maximum(worst, np.abs(off, out=size), out=worst)
+            outside = bounded and (size > band).any()
+            np.maximum(width, np.abs(phase[0], out=size), out=width)
+            if outside or size.max() > math.pi:
+                break
+        return done, phase
+
+    def record(phase: Arrays, h: float, points: Floats, every: int) -> None:
+        _record(phases(force, phase, h), points, every)
+
+    return Ensembles(watch, record)
+
+
+@cache
+def compiled(method: Method, model: Model) -> Ensembles:
+    """The loops with steps and what is watched compiled, which takes a second.  Raises ImportError without Numba."""
+    numba: Any = import_module("numba")
+    inner = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)  # never called by Python: compiles twice as fast
+    phases, force, energy = numba.njit(method.phases), inner(model.force(numba.vectorize(sine))), model.energy
+    look = numba.njit(_looking(inner(energy(inner(sine)))))
+
+    # The loop over phases is Python's: in compiled code Numba 0.68 never frees what a generator yields.  What the
+    # generator itself holds when it is given up, a few arrays, is not freed either.
+    def watch(phase: Arrays, h: Floats, watched: Watched, n: int) -> tuple[int, Arrays]:
+        for done, (theta, omega) in enumerate(phases(force, phase, h), 1):
+            if look(theta, omega, *watched) > 0 or done == n:
+                break
+        return done, (theta, omega)
+
+    def record(phase: Arrays, h: float, points: Floats, every: int) -> None:
+        _record(phases(force, phase, h), points, every)
+
+    return Ensembles(watch, record)
+
+
+def _looking(energy: Callable[[Phase], Any]) -> Callable[..., int]:
+    def looking(
+        theta: Floats, omega: Floats, start: Floats, band: Floats, off: Floats, worst: Floats, width: Floats
+    ) -> int:
+        """How many swings are over the top or out of their band."""
+        outside = 0
+        for i in range(theta.size):
+            off[i] = energy((theta[i], omega[i])) - start[i]
+            size, wide = abs(off[i]), abs(theta[i])
+            worst[i] = max(size, worst[i])
+            width[i] = max(wide, width[i])
+            outside += (wide > math.pi) | (size > band[i])
+        return outside
+
+    return looking
+
+
+def _record(phases: Iterator[Phase], points: Floats, every: int) -> None:
+    for step, (theta, omega) in enumerate(phases, 1):
+        if step % every == 0:
+            points[step // every - 1, 0] = theta
+            points[step // every - 1, 1] = omega
+            if step == every * len(points):
+                break

@@ -1,0 +1,35 @@
+"""What a Judge is shown of a method, and what it says."""
+
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+Verdict = Literal["too early", "bounded", "loses", "grows", "chaotic", "caught", "wanders"]
+
+
+@dataclass(frozen=True, slots=True)
+class Judgement:
+    """What is known of an energy error so far; no slope before there are four bins."""
+
+    verdict: Verdict = "too early"
+    slope: float | None = None  # recent mean change of the relative energy error [1/s]
+    uncertainty: float | None = None  # standard deviation of the slope [1/s]
+    periods: float = 0.0  # how many periods this rests on
+    lyapunov: float | None = None  # 1/s; given where the verdict rests on it
+    seconds: float = 0.0  # for which the slope was measured
+
+    @property
+    def trend(self) -> float | None:
+        """The slope where it is significant; a bounded error has none."""
+        if self.slope is None or self.uncertainty is None or self.verdict == "bounded":
+            return None
+        return self.slope if abs(self.slope) > 3 * self.uncertainty else None
+
+
+class Look(NamedTuple):
+    """What a Judge is shown of a method."""
+
+    theta: float  # rad
+    omega: float  # rad/s
+    error: float  # relative, of the energy
+    low: float  # the smallest and the largest since the look before
+    high: float

@@ -1,0 +1,189 @@
+"""A user's own method: what it may be, what is said of one that is wrong, and what becomes of it while it runs."""
+
+import hashlib
+import pickle
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from engine.methods import VELOCITY_VERLET
+from engine.methods.examine import load
+from engine.methods.own import LONGEST_SOURCE, OwnMethod, OwnMethodError
+from engine.models.pendulum import Pendulum
+from engine.run.compiled import compiled
+from engine.run.lockstep import Lockstep
+from engine.run.loops import plain
+from engine.scenes import DEFAULT_SCENE, SCENES
+from engine.stability.grid import Grid
+
+VERLET = '''
+def mine(force, phase, h):
+    """Half a kick, a drift, half a kick."""
+    theta, omega = phase
+    a = force(theta)
+    while True:
+        omega_half = omega + h / 2 * a
+        theta = theta + h * omega_half
+        a = force(theta)
+        omega = omega_half + h / 2 * a
+        yield theta, omega
+'''
+EULER = "theta, omega = theta + h * omega, omega + h * force(theta)"
+
+
+def euler(step: str = "", before: str = "pass", yields: str = "theta, omega", above: str = "pass") -> str:
+    """Explicit Euler's text with something more in it; the line `step` is the seventh."""
+    return f"""{above}
+def mine(force, phase, h):
+    theta, omega = phase
+    {before}
+    while True:
+        {EULER}
+        {step or "pass"}
+        yield {yields}
+"""
+
+
+def loaded(source: str, key: str = "mine") -> OwnMethod:
+    return load(source, key, "m", "mine.py")
+
+
+def refusal(source: str, key: str = "mine") -> str:
+    with pytest.raises(OwnMethodError) as refused:
+        loaded(source, key)
+    text = str(refused.value)
+    assert "\n" not in text
+    assert text.startswith("mine.py")
+    assert text.endswith(".")
+    return text
+
+
+def test_verlet_written_again_is_measured_to_be_verlet() -> None:
+    mine, verlet = loaded(VERLET), VELOCITY_VERLET
+    assert mine.order == 2
+    assert mine.measured.order == pytest.approx(2, abs=0.01)
+    assert mine.linear_limit == pytest.approx(2, abs=1e-9)
+    for field in ("force_evaluations", "first_same_as_last", "symplectic", "reversible"):
+        assert getattr(mine, field) == getattr(verlet, field)
+    assert (mine.key, mine.label, mine.letter) == ("mine", "Mine", "m")
+    assert (mine.formula, mine.reference) == ("Half a kick, a drift, half a kick.", "mine.py:mine")
+
+
+def test_its_steps_have_the_bits_of_the_same_method_here() -> None:
+    lockstep = Lockstep(DEFAULT_SCENE.with_cast((loaded(VERLET), VELOCITY_VERLET)))
+    for _ in range(20):
+        lockstep.advance(37)
+        mine, verlet = lockstep.sample().readings
+        assert mine == verlet
+
+
+def test_it_keeps_its_text_and_the_hash_of_it() -> None:
+    mine = loaded(VERLET)
+    assert mine.source == VERLET
+    assert mine.sha256 == hashlib.sha256(VERLET.encode()).hexdigest()
+
+
+def test_a_pickle_of_it_is_the_same_method_in_this_process() -> None:
+    mine = loaded(VERLET)
+    assert pickle.loads(pickle.dumps(mine)) is mine
+
+
+def test_it_goes_to_another_process_as_its_text_and_gives_the_same_bits_there() -> None:
+    grid = Grid(np.array([0.5, 2.0]), np.array([0.3, 1.9]), 50, (loaded(VERLET), VELOCITY_VERLET))
+    with ProcessPoolExecutor(1, get_context("spawn")) as executor:
+        cells = np.concatenate(list(grid.compute(executor)))
+    assert (cells[:, 0] == cells[:, 1]).all()
+    assert (cells == grid.cells()).all()
+
+
+def test_it_is_never_compiled_for_it_may_hold_anything() -> None:
+    pytest.importorskip("numba")
+    mine, model = loaded(VERLET), Pendulum(9.81)
+    assert compiled(mine, model) is plain(mine, model)
+
+
+WRONG = {
+    "a step instead of a generator": (
+        f"def mine(force, phase, h):\n    theta, omega = phase\n    {EULER}\n    return theta, omega",
+        "line 1: mine returns (1.015, ",
+    ),
+    "another signature": ("def mine(phase):\n    yield phase", "line 1 raises TypeError: mine() takes 1 positional"),
+    "one step and no more": (euler("yield theta, omega; return"),
+                             "line 2: mine ends while the run goes on"),
+    "half a phase": (euler(yields="theta"), "line 2: mine yields 1.015;"),
+    "three numbers": (euler(yields="theta, omega, h"), "line 2: mine yields (1.015, -0.11"),
+    "a string": (euler(yields="'ab'"), "line 2: mine yields 'ab';"),
+    "None for a number": (euler(yields="theta, None"), "line 2: mine yields (1.015, None);"),
+    "an exception at once": (euler("1 / 0"), "line 7: `1 / 0` raises ZeroDivisionError: division by zero."),
+    "an exception later": (euler("n = n + 1; assert n < 30", "n = 0"), "line 7: `n = n + 1; assert n < 30` raises A"),
+    "a name that is not there": (euler("omega = omega * gamma"), "line 7: `omega = omega * gamma` raises NameError"),
+    "a square root of less than 0": (euler("__import__('math').sqrt(-1)"), "raises ValueError: math domain error."),
+    "an array changed in place": (
+        "def mine(force, phase, h):\n    theta, omega = phase\n    while True:\n        theta += h * omega\n"
+        "        omega += h * force(theta)\n        yield theta, omega",
+        "mine changes an array in place; write theta = theta + x instead of theta += x",
+    ),
+    "something printed": (euler("print(theta)"), "line 7: `print(theta)` prints, but stdout is for results"),
+    "something printed when loaded": (euler(above="print('hello')"), "line 1: `print('hello')` prints"),
+    "an end of the program": (euler("raise SystemExit"), "line 7: `raise SystemExit` raises SystemExit."),
+    "not a number": (euler("omega = omega * float('nan')"), "mine does not stay finite for 6 steps"),
+    "numbers that overflow": (euler("theta = (theta * 1e200) ** 2"), "mine overflows on an ordinary swing"),
+    "a memory": (
+        euler("omega = omega + h * (force(theta) - a) / 2; a = force(theta)", "a = 0.0"),
+        "mine keeps more than theta and omega from step to step",
+    ),
+    "chance": (
+        euler("theta = theta + __import__('random').random()"), "mine gives other numbers when it is run again"
+    ),
+    "no force": ("def mine(force, phase, h):\n    while True:\n        yield phase", "mine never evaluates the force."),
+    "a comparison": (euler("theta = theta if theta > 0 else theta"), "line 7: `theta = theta if theta > 0"),
+    "a modulus, which no derivative passes": (euler("theta = abs(theta)"), "other numbers for complex numbers"),
+    "no Python": ("def mine(:", "line 1: invalid syntax."),
+    "a zero byte": ("\0", "line 1: source code string cannot contain null bytes."),
+    "an exception when loaded": ("x = 1\ny = x / 0", "line 2: `y = x / 0` raises ZeroDivisionError"),
+    "an import of nothing": ("import nothing_of_this_name", "raises ModuleNotFoundError"),
+    "another name": ("def other(force, phase, h): yield phase", "has no function 'mine'; it has other."),
+    "a class": ("class mine: pass", "has no function 'mine'"),
+    "too much text": ("#" * (LONGEST_SOURCE + 1), "use a file of at most 30,000."),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("wrong", WRONG)
+def test_a_wrong_method_gets_one_sentence_that_says_where(wrong: str) -> None:
+    source, said = WRONG[wrong]
+    assert said in refusal(source)
+
+
+@given(st.text(max_size=40), st.sampled_from(["{}", "def mine(force, phase, h):\n    yield {}"]))
+def test_whatever_the_text_is_there_is_a_sentence(text: str, around: str) -> None:
+    refusal(around.replace("{}", text))
+
+
+def test_whatever_a_wrong_method_shows_of_itself_the_sentence_is_short() -> None:
+    shown = "class Odd:\n    def __repr__(self): raise ValueError\n"
+    assert "yields a Odd;" in refusal(shown + euler(yields="Odd()"))
+    assert len(refusal(euler(f"raise ValueError('{'long ' * 99}\\n')"))) < 400
+
+
+def test_it_may_print_to_stderr_and_yield_a_list_and_whole_numbers(capsys: pytest.CaptureFixture[str]) -> None:
+    assert loaded(euler("print('here', file=__import__('sys').stderr)", yields="[theta, omega]")).order == 1
+    assert "here" in capsys.readouterr().err
+
+
+def test_an_exception_after_a_thousand_steps_is_a_sentence_with_the_line() -> None:
+    late = loaded(euler("n = n + 1; (1,)[n // 20_000]", "n = 0"))
+    with pytest.raises(OwnMethodError, match=r"^mine.py, line 7: .* raises IndexError: tuple index out of range\.$"):
+        Lockstep(DEFAULT_SCENE.with_cast((late,))).advance(30_000)
+
+
+def test_where_its_numbers_end_it_has_diverged_as_any_method_does() -> None:
+    scene = SCENES["linear"].with_cast((loaded(euler()),))
+    lockstep = Lockstep(scene)
+    lockstep.advance(10_000)
+    (reading,) = lockstep.sample().readings
+    assert reading.diverged_at is not None
+    assert np.isfinite(reading.theta)

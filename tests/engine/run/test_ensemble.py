@@ -1,0 +1,98 @@
+"""Many swings at once: NumPy's are single swings to the bit, compiled ones nearly, and none knows of the others."""
+
+import math
+from itertools import islice
+from resource import RUSAGE_SELF, getrusage
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from engine.methods import METHODS, VELOCITY_VERLET, Method
+from engine.models import MODELS
+from engine.models.model import Model
+from engine.models.pendulum import Pendulum
+from engine.run.compiled import available
+from engine.run.ensemble import Watched, compiled, plain, section, sine
+
+needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed")
+each_method = pytest.mark.parametrize("method", METHODS, ids=lambda method: method.key)
+each_way = pytest.mark.parametrize("fast", [False, pytest.param(True, marks=needs_numba)], ids=["numpy", "numba"])
+THETA, OMEGA = np.linspace(-2.0, 2.5, 37), np.linspace(1.5, -1.0, 37)
+PENDULUM = Pendulum(1.0)
+
+
+def watched(model: Model, h: np.ndarray, band: float) -> Watched:
+    start = model.energy(np.sin)((THETA, OMEGA))
+    return Watched(start, np.full(37, band), np.zeros(37), np.zeros(37), np.abs(THETA))
+
+
+@given(st.floats(-1e4, 1e4))
+def test_the_sine_is_right_to_four_ulp_of_one(x: float) -> None:
+    assert sine(x) == pytest.approx(math.sin(x), rel=0, abs=4.5e-16)
+
+
+@each_method
+@pytest.mark.parametrize("model", [MODELS[key](1.0) for key in MODELS], ids=lambda model: model.key)
+def test_in_numpy_each_swing_is_the_one_that_swings_alone(method: Method, model: Model) -> None:
+    points = section(method, model, (THETA, OMEGA), 0.1, 5, every=3)
+    for which in (0, 17, 36):
+        alone = islice(method.phases(model.force(np.sin), (THETA[which], OMEGA[which]), 0.1), 2, None, 3)
+        assert [tuple(point[:, which]) for point in points] == list(islice(alone, 5))
+
+
+@needs_numba
+@each_method
+@pytest.mark.parametrize("model", [MODELS[key](1.0) for key in MODELS], ids=lambda model: model.key)
+def test_compiled_ensembles_are_numpys_but_for_rounding(method: Method, model: Model) -> None:
+    both = [section(method, model, (THETA, OMEGA), 0.1, 20, every=2, fast=fast) for fast in (False, True)]
+    assert both[0] == pytest.approx(both[1], rel=0, abs=1e-13)  # 40 steps' rounding
+
+
+@each_way
+def test_no_swing_depends_on_the_others(fast: bool) -> None:
+    together = section(VELOCITY_VERLET, PENDULUM, (THETA, OMEGA), 0.3, 50, fast=fast)
+    for part in (slice(0, 1), slice(5, 30), slice(30, 37)):
+        alone = section(VELOCITY_VERLET, PENDULUM, (THETA[part], OMEGA[part]), 0.3, 50, fast=fast)
+        assert alone.tobytes() == np.ascontiguousarray(together[:, :, part]).tobytes()
+
+
+@needs_numba
+def test_compiled_steps_are_freed() -> None:
+    """In a compiled loop Numba 0.68 keeps all that a generator yields, which makes 4 pages a step of these."""
+    many, h = (np.full(1024, 0.5), np.zeros(1024)), np.full(1024, 0.1)
+    seen = Watched(many[0], np.full(1024, math.inf), *(np.zeros(1024) for _ in range(3)))
+    watch = compiled(VELOCITY_VERLET, PENDULUM).watch
+    watch(many, h, seen, 1000)
+    before = getrusage(RUSAGE_SELF).ru_minflt
+    watch(many, h, seen, 4000)
+    assert getrusage(RUSAGE_SELF).ru_minflt - before < 4000
+
+
+@each_way
+@each_method
+def test_what_is_watched_is_the_largest_of_each_step(method: Method, fast: bool) -> None:
+    h = np.full(37, 0.2)
+    seen = watched(PENDULUM, h, math.inf)
+    points = section(method, PENDULUM, (THETA, OMEGA), 0.2, 10, fast=fast)
+    done, phase = (compiled if fast else plain)(method, PENDULUM).watch((THETA, OMEGA), h, seen, 10)
+    assert done == 10
+    assert np.array_equal(phase, points[-1])
+    off = PENDULUM.energy(np.sin)((points[:, 0], points[:, 1])) - seen.start
+    assert seen.off == pytest.approx(off[-1], rel=0, abs=1e-14)
+    assert seen.worst == pytest.approx(np.abs(off).max(axis=0), rel=0, abs=1e-14)
+    assert np.array_equal(seen.width, np.maximum(np.abs(THETA), np.abs(points[:, 0]).max(axis=0)))
+
+
+@each_way
+def test_it_stops_at_the_step_that_passes_the_top_or_leaves_the_band(fast: bool) -> None:
+    watch, h = (compiled if fast else plain)(METHODS[0], PENDULUM).watch, np.full(37, 0.2)
+    points = section(METHODS[0], PENDULUM, (THETA, OMEGA), 0.2, 100, fast=fast)
+    over = int(np.flatnonzero((np.abs(points[:, 0]) > math.pi).any(axis=1))[0]) + 1
+    done, _ = watch((THETA, OMEGA), h, watched(PENDULUM, h, math.inf), 1000)
+    assert done == over
+    seen = watched(PENDULUM, h, 0.1)
+    done, _ = watch((THETA, OMEGA), h, seen, 1000)
+    assert 0 < done < over
+    assert (seen.worst > 0.1).any()

@@ -1,0 +1,58 @@
+"""A user's own method in a recording: its text is kept, its hash vouches for it, and nothing of it is ever executed."""
+
+import hashlib
+from pathlib import Path
+
+import pytest
+from mcap.reader import make_reader
+
+from recordings import events
+from tests.tui.command_line import pendu
+
+HEUN = '''
+def heun(force, phase, h):
+    """Heun: the mean of the slopes at the start and at an Euler step."""
+    theta, omega = phase
+    while True:
+        a = force(theta)
+        b = force(theta + h * omega)
+        theta, omega = theta + h / 2 * (2 * omega + h * a), omega + h / 2 * (a + b)
+        yield theta, omega
+'''
+
+
+@pytest.fixture
+def path(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(events, "_own", {})
+    Path("mine.py").write_text(HEUN)
+    made = pendu("run", "--methods", "rk4", "--method", "mine.py:heun", "--time", "20", "--record", "own.mcap")
+    assert made.code == 0
+    return tmp_path / "own.mcap"
+
+
+def test_it_verifies_only_with_the_same_text_given_again(path):
+    pendu("verify", path).refused(3, "heun", "--method FILE.py:heun", "SHA-256")
+    assert pendu("verify", path, "--method", "mine.py:heun").code == 0
+    Path("mine.py").write_text(HEUN + "# another text\n")
+    events._own.clear()
+    pendu("verify", path, "--method", "mine.py:heun").refused(3, "heun", "its file as it was")
+
+
+def test_the_other_methods_verify_without_it(path):
+    assert pendu("verify", path, "--methods", "rk4").code == 0
+
+
+def test_the_recording_keeps_the_text_and_its_hash(path):
+    with path.open("rb") as stream:
+        (own,) = (each.metadata for each in make_reader(stream).iter_metadata() if each.name == "pendu.method")
+    assert own["source"] == HEUN
+    assert own["sha256"] == hashlib.sha256(HEUN.encode()).hexdigest()
+    assert own["method"] == "heun"
+
+
+def test_it_can_be_looked_at_by_those_who_do_not_have_the_text(path):
+    Path("mine.py").unlink()
+    assert "heun" in pendu("info", path).out
+    assert pendu("export", path, "-o", "own.csv").code == 0
+    assert "heun" in Path("own.csv").read_text()

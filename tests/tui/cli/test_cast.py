@@ -1,0 +1,255 @@
+"""The options --methods and --method."""
+
+import os
+import random
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from engine.methods import EXPLICIT_EULER, METHODS, RK4, SYMPLECTIC_EULER, USUAL_CAST, VELOCITY_VERLET, Cast
+from engine.methods.own import OwnMethod
+from engine.run.lockstep import Lockstep
+from engine.scenes import DEFAULT_SCENE, MOST_METHODS, Scene
+from tests.tui.command_line import pendu
+from tui.cli import cast as cast_options
+from tui.cli.errors import Exit, UserError
+from tui.cli.options import Parser
+from tui.cli.scene import add_scene_options, scene_of
+
+MINE = """
+def kick_drift(force, phase, h):
+    theta, omega = phase
+    while True:
+        omega = omega + h * force(theta)
+        theta = theta + h * omega
+        yield theta, omega
+
+def {name}(force, phase, h):
+    theta, omega = phase
+    while True:
+        theta, omega = theta + h * omega, omega + h * force(theta)
+        yield theta, omega
+
+def endless(force, phase, h):
+    while True:
+        try:
+            while True:
+                pass
+        except Exception:
+            pass
+    yield phase
+
+def loud(force, phase, h):
+    import os, sys
+    while True:
+        sys.stdout.write("x")
+        theta, omega = phase
+        phase = theta + h * omega, omega + h * force(theta)
+        yield phase
+"""
+
+
+@pytest.fixture
+def mine(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.py").write_text(MINE.format(name="rk4"))
+    return "mine.py"
+
+
+def scene_from(*arguments: str) -> Scene:
+    parser = Parser(prog="pendu-tui test")
+    add_scene_options(parser)
+    return scene_of(parser.parse_args(list(arguments)))
+
+
+def cast_from(*arguments: str) -> Cast:
+    return scene_from(*arguments).cast
+
+
+def test_without_options_the_cast_is_the_scenes():
+    assert cast_from() == DEFAULT_SCENE.cast == USUAL_CAST
+
+
+@pytest.mark.parametrize(
+    ("text", "cast"),
+    [
+        ("rk4", (RK4,)),
+        ("rk4,explicit_euler", (RK4, EXPLICIT_EULER)),
+        ("s,vel,exp", (SYMPLECTIC_EULER, VELOCITY_VERLET, EXPLICIT_EULER)),
+        ("velocity, rk4", (VELOCITY_VERLET, RK4)),
+    ],
+)
+def test_the_start_of_a_name_is_enough_and_the_order_is_the_one_given(text, cast):
+    assert cast_from("--methods", text) == cast
+
+
+def test_the_start_of_a_later_word_will_do_where_it_is_the_only_one():
+    assert cast_options.find("verlet", USUAL_CAST) is VELOCITY_VERLET
+    with pytest.raises(UserError, match="'euler' may be explicit_euler or symplectic_euler; write more of it"):
+        cast_options.find("euler", USUAL_CAST)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("rk5", "no method 'rk5': did you mean rk4?"),
+        ("nothing", "choose from explicit_euler, symplectic_euler, "),
+        ("rk4,rk4", "rk4 is there twice"),
+        ("velocity,rk4,velocity_verlet", "velocity_verlet is there twice"),
+        ("", "no method ''"),
+        ("rk4,", "no method ''"),
+        ("euler", "may be explicit_euler or symplectic_euler"),
+    ],
+)
+def test_a_wrong_list_is_one_sentence_and_exit_2(text, words):
+    assert pendu("run", "--time", "2", "--methods", text).refused(2, "--methods: ", words)
+
+
+def test_other_methods_take_what_to_watch_with_them():
+    assert scene_from("--methods", "rk4").watch == ""
+    assert scene_from("--methods", "rk4").name == "drift"
+    assert scene_from("--methods", ",".join(m.key for m in USUAL_CAST[::-1])).watch == DEFAULT_SCENE.watch
+
+
+def test_a_method_of_ones_own_comes_last_in_the_scenes_cast(mine):
+    *usual, own = cast_from("--method", f"{mine}:kick_drift")
+    assert tuple(usual) == USUAL_CAST
+    assert isinstance(own, OwnMethod)
+    assert (own.key, own.symplectic, own.source) == ("kick_drift", True, MINE.format(name="rk4"))
+
+
+def test_with_methods_it_stands_where_it_is_named_or_last(mine):
+    for named, keys in (("kick,rk4", ["kick_drift", "rk4"]), ("rk4", ["rk4", "kick_drift"])):
+        assert [method.key for method in cast_from("--method", f"{mine}:kick_drift", "--methods", named)] == keys
+
+
+def test_its_letter_is_the_one_given_or_one_that_is_free(mine):
+    assert cast_from("--method", f"{mine}:kick_drift,letter=x")[-1].letter == "x"
+    free = cast_from("--method", f"{mine}:kick_drift")[-1].letter
+    assert free not in {method.letter for method in METHODS}
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "words"),
+    [
+        ("mine.py", 2, "is not FILE.py:FUNCTION"),
+        ("mine.py:", 2, "is not FILE.py:FUNCTION"),
+        (":kick_drift", 2, "is not FILE.py:FUNCTION"),
+        ("mine.py:kick_drift,x", 2, "is not FILE.py:FUNCTION"),
+        ("mine.py:kick_drift,letter=", 2, "'' is not a letter"),
+        ("mine.py:kick_drift,letter=xy", 2, "'xy' is not a letter"),
+        ("mine.py:kick_drift,letter=r", 2, "r is the letter of rk4"),
+        ("mine.py:rk4", 2, "there is a method rk4 already"),
+        ("mine.py:kick drift", 2, "cannot be a method's name"),
+        ("mine.py:größer", 2, "cannot be a method's name"),
+        (f"mine.py:{'a' * 31}", 2, "cannot be a method's name"),
+        ("mine.py:kick", 2, "mine.py has no function 'kick'; it has kick_drift, rk4"),
+        ("mine.py:loud", 2, "writes to stdout"),
+        ("absent.py:kick_drift", 3, "absent.py cannot be read: No such file"),
+        (".:kick_drift", 3, "cannot be read: Is a directory"),
+    ],
+)
+def test_a_wrong_method_option_is_one_sentence(mine, text, code, words):
+    assert pendu("run", "--time", "2", "--method", text).refused(code, words)
+
+
+def test_a_file_that_is_not_text_is_one_sentence_and_exit_3(mine):
+    Path(mine).write_bytes(b"\xff\xfe")
+    assert pendu("run", "--time", "2", "--method", f"{mine}:rk4x").refused(3, "it is not text in UTF-8")
+
+
+def test_one_that_never_yields_is_given_up(mine, monkeypatch):
+    monkeypatch.setattr(cast_options, "MOST_SECONDS", 0.2)
+    assert pendu("run", "--time", "2", "--method", f"{mine}:endless").refused(2, "more than 0.2 s", "ever yield?")
+
+
+def test_more_than_six_are_too_many_for_a_stage(mine):
+    names = [f"m{n}" for n in range(MOST_METHODS)]
+    Path("six.py").write_text("".join(MINE.format(name=name) for name in names))
+    each = [word for name in names for word in ("--method", f"six.py:{name}")]
+    assert pendu("run", "--time", "2", *each).refused(2, "10 methods are too many for one stage; choose at most 6")
+    rows = pendu("run", "--time", "2", *each, "--methods", "m5,m4,m3,m2,m1,m0", "--json").json["methods"]
+    assert [row["method"] for row in rows] == names[::-1]
+
+
+casts = st.lists(st.sampled_from(METHODS), min_size=1, max_size=6, unique=True).map(tuple)
+
+
+@given(casts)
+@settings(max_examples=30, deadline=None)
+def test_a_run_lists_its_cast_in_order_and_each_method_as_if_it_were_alone(cast):
+    """However the start of each name is cut that is still the only one."""
+    answer = pendu("run", "--time", "3", "--methods", ",".join(method.key for method in cast), "--json").json
+    assert answer["scene"]["methods"] == [row["method"] for row in answer["methods"]] == [m.key for m in cast]
+    for method, row in zip(cast, answer["methods"], strict=True):
+        alone = Lockstep(DEFAULT_SCENE.with_cast((method,)))
+        alone.advance(60)
+        assert row["theta"] == alone.sample().readings[0].theta
+        assert row["force_evaluations"] == method.evaluations(60)
+
+
+@given(casts, st.randoms())
+def test_every_unique_start_of_a_name_finds_it(cast, chance: random.Random):
+    keys = [method.key for method in METHODS]
+    for method in cast:
+        starts = [method.key[:n] for n in range(1, len(method.key) + 1)]
+        only = [start for start in starts if sum(key.startswith(start) for key in keys) == 1]
+        assert cast_options.find(chance.choice(only), METHODS) is method
+
+
+def test_the_gate_knows_the_methods_of_the_cast_and_names_them(mine):
+    gate = ("--fail-if", "kick_drift.max_energy_error > 1")
+    assert pendu("run", "--time", "2", "--method", f"{mine}:kick_drift", *gate).code == Exit.FINE
+    tripped = pendu("run", "--time", "2", "--method", f"{mine}:kick_drift", "--fail-if", "kick_drift.theta < 9")
+    assert tripped.code == Exit.CHECK_FAILED
+    refused = pendu("run", "--time", "2", "--methods", "rk4,s", "--fail-if", "velocity_verlet.theta > 1")
+    assert refused.refused(2, "no method 'velocity_verlet': choose from rk4, symplectic_euler.")
+
+
+def test_ones_own_method_has_null_claims_and_what_is_measured(mine):
+    *_, told = pendu("methods", "--method", f"{mine}:kick_drift", "--json").json["methods"]
+    assert (told["key"], told["label"]) == ("kick_drift", "Kick drift")
+    for claim in ("order", "force_evaluations", "symplectic", "reversible", "linear_limit", "reference", "used"):
+        assert told[claim] is None
+    assert told["measured_order"] == pytest.approx(1, abs=0.05)
+    assert told["measured_linear_limit"] == pytest.approx(2, abs=1e-8)
+    assert (told["measured_symplectic"], told["measured_reversible"]) == (True, False)
+    assert told["measured_force_evaluations"] == 1
+    table = pendu("methods", "--methods", "kick_drift,rk4", "--method", f"{mine}:kick_drift").out.splitlines()
+    assert [line.split()[0] for line in table[1:3]] == ["kick_drift", "rk4"]
+
+
+def test_studies_list_the_cast_and_ones_own_method_in_it(mine):
+    own = ("--method", f"{mine}:kick_drift", "--methods", "rk4")
+    answer = pendu("accuracy", "--time", "2", "--h-values", "0.1:0.01:3", "--target", "1e-2", *own, "--json").json
+    assert [order["method"] for order in answer["orders"]] == ["rk4", "kick_drift"]
+    assert [order["claimed"] for order in answer["orders"]] == [4, None]
+    assert answer["recommendation"]["method"] in ("rk4", "kick_drift")
+    answer = pendu("stability", "--steps", "30", "--z-values", "0.5,2.5", "--theta-values", "1", *own, "--json").json
+    assert [row["method"] for row in answer["pendulum"]] == ["rk4", "kick_drift"]
+    assert [row["theory_z"] for row in answer["linear"]] == [RK4.linear_limit, None]
+
+
+@pytest.mark.skipif((os.cpu_count() or 1) < 2, reason="one processor")
+def test_workers_and_this_process_agree_about_ones_own_method(mine):
+    command = ("stability", "--steps", "30", "--z-values", "0.5,2.5", "--theta-values", "1,2", "--csv")
+    own = ("--method", f"{mine}:kick_drift", "--methods", "kick_drift")
+    assert pendu(*command, *own).out == pendu(*command, *own, "--workers", "2").out
+
+
+@pytest.mark.parametrize("command", ["live", "run", "accuracy", "stability", "methods", "snapshot"])
+def test_the_help_says_whose_rights_the_code_has(command):
+    assert "with your rights" in " ".join(pendu(command, "--help").out.split())
+
+
+def test_a_replay_shows_only_the_methods_asked_for(monkeypatch):
+    screens = []
+    monkeypatch.setattr("tui.terminal.check.check_terminal", lambda: None)
+    monkeypatch.setattr("tui.screens.launch.show", lambda screen, options: screens.append(screen) or 0)
+    for words, places in ((("--methods", "rk4,verlet"), [2, 3]), ((), [0, 1, 2, 3])):
+        assert pendu("replay", "drift", *words).code == 0
+        assert screens[-1].shown.places(USUAL_CAST) == places
+        screens[-1].source.close()
+    assert pendu("replay", "drift", "--methods", "rk5").refused(2, "did you mean rk4?")

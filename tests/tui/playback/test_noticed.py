@@ -1,0 +1,88 @@
+"""What the lab noticed is recorded, and a replay says the same, whatever this version would say."""
+
+from dataclasses import replace
+
+import pytest
+
+from engine.scenes import DEFAULT_SCENE
+from recordings.events import Event
+from recordings.live_recorder import LiveRecorder
+from recordings.recorder import Recorder
+from recordings.recording import Recording
+from recordings.verify import verify
+from tui.playback.live import Live
+from tui.playback.marks import Marks
+from tui.playback.replay import Replay
+
+FRAME = 1 / 30
+
+
+def play(live, seconds, now):
+    """So many seconds of the clock, from `now` on."""
+    for _ in range(round(seconds / FRAME)):
+        now += FRAME
+        live.tick(now)
+    return now
+
+
+@pytest.fixture
+def lab(tmp_path):
+    """A lab that ran for 24 s, and then from 10 s on for 8 s with another step size; and its recording."""
+    live = Live(DEFAULT_SCENE, clock=lambda: 0.0)
+    live.record(LiveRecorder(tmp_path / "lab.mcap", wall=lambda: 1_700_000_000_000_000_000))
+    live.tick(0.0)
+    now = play(live, 24.0, 0.0)
+    first = list(live.milestones)
+    live.step(-(live.sample.step - 200))
+    live.set_stepping(replace(live.stepping, h=0.02))
+    live.pause(False)
+    play(live, 8.0, now)
+    live.close()
+    return live, first, tmp_path / "lab.mcap"
+
+
+def test_a_replay_shows_the_milestones_and_verdicts_of_the_lab(lab):
+    live, first, path = lab
+    assert {milestone.kind for milestone in first} == {"over the top", "verdict"}
+    assert verify(path).identical
+    assert verify(path).sealed
+    with Recording.open(path) as recording:
+        assert [milestone for _, milestone in recording.events.milestones(1)] == first
+        replay = Replay(recording, Marks(path))
+        replay.seek(recording.length)
+        assert replay.run.number == 2
+        assert list(replay.milestones) == list(live.milestones)  # also those of before the first sample of this run
+        assert [each.verdict for each in replay.judgements] == [each.verdict for each in live.judgements]
+        replay.seek(23.9)
+        assert [each for each in first if each.step <= replay.sample.step] == list(replay.milestones)
+        assert "bounded" in [each.verdict for each in replay.judgements]
+        replay.seek(1.0)
+        assert list(replay.milestones) == []
+        assert {each.verdict for each in replay.judgements} == {"too early"}
+
+
+def test_a_replay_jumps_to_what_the_lab_noticed(lab):
+    _, first, path = lab
+    with Recording.open(path) as recording:
+        clocks = [clock for clock, _ in recording.events.milestones(1)]
+        replay = Replay(recording, Marks(path))
+        assert set(clocks) < set(replay.ticks)
+        for clock, milestone in zip(clocks, first, strict=True):
+            assert 0 <= clock - milestone.t <= 1.0  # s: a verdict is given at the next look
+
+
+def test_a_replay_says_what_was_said_and_not_what_would_be_said_today(lab, tmp_path):
+    _, first, path = lab
+    said = next(each for each in first if each.verdict == "bounded")
+    with Recording.open(path) as recording, Recorder(tmp_path / "other.mcap", wall=None) as recorder:
+        for clock, value in recording.entries():
+            if value.run > 1:
+                break
+            if isinstance(value, Event) and value.milestone == said:
+                value = replace(value, milestone=replace(said, verdict="wanders"))
+            recorder.event(value, clock) if isinstance(value, Event) else recorder.sample(value, clock)
+    assert verify(tmp_path / "other.mcap").identical
+    with Recording.open(tmp_path / "other.mcap") as recording:
+        replay = Replay(recording, Marks(path))
+        replay.seek(recording.length)
+        assert replay.judgements[replay.scene.cast.index(said.method)].verdict == "wanders"

@@ -1,0 +1,172 @@
+"""The options --methods and --method: which methods are on stage, the user's own among them."""
+
+import argparse
+import io
+import signal
+import string
+import threading
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, redirect_stdout
+from pathlib import Path
+from types import FrameType
+from typing import TYPE_CHECKING
+
+from engine.methods import METHODS, Cast, Method
+from engine.scenes import MOST_METHODS
+from tui.cli.errors import Exit, UserError
+from tui.cli.options import add_file, did_you_mean
+
+if TYPE_CHECKING:
+    from engine.methods.own import OwnMethod
+
+MOST_SECONDS = 10.0  # of computing, to load and measure a method; a fiftieth is usual
+LONGEST_NAME = 30  # characters of a method's key
+
+KEYS = " ".join(method.key for method in METHODS)
+COMPLETE_KEYS = {  # the last of a list with commas, in the words of each shell, for shtab
+    "bash": "_pendu_tui_methods",
+    "zsh": "_pendu_tui_methods",
+    "fish": f"(__fish_append , {KEYS})",
+    "preamble": {
+        "bash": f"""_pendu_tui_methods() {{
+  local head=""; [[ $1 == *,* ]] && head="${{1%,*}},"
+  compgen -P "$head" -W '{KEYS}' -- "${{1##*,}}"
+}}""",
+        "zsh": f"_pendu_tui_methods() {{ _values -s , method {KEYS}; }}",
+    },
+}
+
+
+def add_cast_options(parser: argparse._ActionsContainer, usual: str = "the scene's", own: bool = True) -> None:
+    """Add the options that choose methods; `cast_of` reads them.  `usual` are those without; `own`: also --method."""
+    parser.add_argument(
+        "--methods",
+        metavar="KEY,KEY",
+        help=f"these methods, 1 to {MOST_METHODS}, in this order (default: {usual}); the start of a name is enough",
+    ).complete = COMPLETE_KEYS  # type: ignore[attr-defined]
+    parser.set_defaults(method=[])
+    if own:
+        add_own_option(parser)
+
+
+def add_own_option(parser: argparse._ActionsContainer) -> None:
+    """Add the option for the user's own methods; `own_methods` reads it."""
+    add_file(
+        parser,
+        "--method",
+        metavar="FILE.py:FUNCTION[,letter=m]",
+        action="append",
+        default=[],
+        help="add your own method: a generator function (force, phase, h) as in the README; the file is run as any"
+        " Python program of yours, with your rights (repeatable)",
+    )
+
+
+def cast_of(options: argparse.Namespace, usual: Cast, most: int | None = MOST_METHODS) -> Cast:
+    """The methods that the options choose; `usual` are those where --methods is not given.
+
+    The user's own that --methods does not name come last.  Raises UserError and OwnMethodError.
+    """
+    own = own_methods(options)
+    cast = usual if options.methods is None else _named(options.methods, (*METHODS, *own))
+    cast = (*cast, *(method for method in own if method not in cast))
+    if most is not None and len(cast) > most:
+        raise UserError(f"{len(cast)} methods are too many for one stage; choose at most {most} with --methods.")
+    return cast
+
+
+def own_methods(options: argparse.Namespace) -> tuple["OwnMethod", ...]:
+    """The user's own methods, in the order given, examined and measured.  Raises UserError and OwnMethodError."""
+    own: list[OwnMethod] = []
+    for text in options.method:
+        own.append(_own(text, own))
+    return tuple(own)
+
+
+def _named(text: str, known: Sequence[Method]) -> Cast:
+    cast: list[Method] = []
+    for name in text.split(","):
+        method = find(name.strip(), known)
+        if method in cast:
+            raise UserError(f"--methods: {method.key} is there twice; name each method once.")
+        cast.append(method)
+    return tuple(cast)
+
+
+def find(name: str, known: Sequence[Method]) -> Method:
+    """The method of a key, of the start of one, or of the start of a word in one.  Raises UserError."""
+    by_key = {method.key: method for method in known}
+    if name in by_key:
+        return by_key[name]
+    for begins in (str.startswith, lambda key, start: f"_{start}" in key):
+        found = [key for key in by_key if name and begins(key, name)]
+        if len(found) == 1:
+            return by_key[found[0]]
+        if found:
+            raise UserError(f"--methods: {name!r} may be {' or '.join(found)}; write more of it.")
+    advice = did_you_mean(name, by_key) or f": choose from {', '.join(by_key)}."
+    raise UserError(f"--methods: there is no method {name!r}{advice}")
+
+
+def _own(text: str, others: Sequence[Method]) -> "OwnMethod":
+    """The method of FILE.py:FUNCTION[,letter=m]."""
+    place, *settings = text.split(",")
+    file, _, key = place.rpartition(":")
+    letter = settings[0].removeprefix("letter=") if settings else ""
+    if not file or not key or len(settings) > 1 or (settings and not settings[0].startswith("letter=")):
+        raise UserError(f"--method: {text!r} is not FILE.py:FUNCTION or FILE.py:FUNCTION,letter=m.")
+    if not (key.isidentifier() and key.isascii() and len(key) <= LONGEST_NAME):
+        raise UserError(
+            f"--method: {key!r} cannot be a method's name; use a function's with at most {LONGEST_NAME} ASCII letters."
+        )
+    taken = {method.letter: method for method in (*METHODS, *others)}
+    if key in {method.key for method in taken.values()}:
+        raise UserError(f"--method: there is a method {key} already; give your function another name.")
+    if settings and not (len(letter) == 1 and letter in string.ascii_letters + string.digits):
+        raise UserError(f"--method: {letter!r} is not a letter; use for example letter=m.")
+    if letter in taken:
+        raise UserError(f"--method: {letter} is the letter of {taken[letter].key}; choose another.")
+    free = [each for each in (*key.lower(), *string.ascii_letters) if each.isalpha() and each not in taken]
+    return _loaded(Path(file), key, letter or free[0])
+
+
+def _loaded(path: Path, key: str, letter: str) -> "OwnMethod":
+    try:
+        source = path.read_text(encoding="utf-8-sig")
+    except (OSError, ValueError) as error:
+        why = error.strerror if isinstance(error, OSError) else "it is not text in UTF-8"
+        raise UserError(f"--method: {path} cannot be read: {why}.", Exit.INPUT_UNREADABLE) from None
+    from engine.methods.examine import load
+
+    with _limited(f"{path}: {key} takes more than {MOST_SECONDS:g} s for a few steps; does it ever yield?"):
+        said = io.StringIO()
+        with redirect_stdout(said):
+            method = load(source, key, letter, str(path))
+    if said.getvalue():
+        raise UserError(f"{path}: {key} writes to stdout, which is for results; write to stderr instead.")
+    return method
+
+
+class _TooLongError(BaseException):
+    """The time is over; not an Exception, which the user's code may catch."""
+
+
+@contextmanager
+def _limited(sentence: str) -> Iterator[None]:
+    """Raise UserError after MOST_SECONDS of computing, where the platform can interrupt it."""
+    if not hasattr(signal, "setitimer") or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        raise _TooLongError
+
+    before = signal.signal(signal.SIGVTALRM, stop)
+    signal.setitimer(signal.ITIMER_VIRTUAL, MOST_SECONDS, 0.1)  # again, should the first be swallowed
+    try:
+        yield
+    except _TooLongError:
+        raise UserError(sentence) from None
+    finally:
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0)
+        signal.signal(signal.SIGVTALRM, before)

@@ -1,0 +1,42 @@
+"""The options that describe a scene: its name, its numbers and its cast."""
+
+import argparse
+
+from engine.scenes import DEFAULT_SCENE, LIMITS, SCENES, Scene
+from tui.cli.cast import add_cast_options, cast_of
+from tui.cli.errors import UserError
+from tui.cli.options import Suggestions, angle, did_you_mean, number, start_angle
+
+
+def add_scene_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options that determine a scene; `scene_of` reads them."""
+    group = parser.add_argument_group("scene", "options override the values of the scene")
+    group.add_argument(
+        "--scene",
+        metavar="NAME",
+        choices=Suggestions(SCENES),
+        default=DEFAULT_SCENE.name,
+        help="see pendu-tui scenes (%(default)s)",
+    )
+    for name, metavar, read, meaning in (
+        ("theta", "RAD|DEGdeg", start_angle, "start angle from straight down, in rad, or in degrees (115deg)"),
+        ("omega", "RAD_S", angle, "start angular velocity in rad/s, or in degrees per second (30deg)"),
+        ("length", "M", number, "length in m"),
+        ("gravity", "M_S2", number, "gravity in m/s²"),
+        ("h", "S", number, "step size in s"),
+    ):
+        group.add_argument(f"--{name}", metavar=metavar, type=read, help=meaning)
+    add_cast_options(group)
+
+
+def scene_of(options: argparse.Namespace) -> Scene:
+    """The scene that the options describe, with its cast.
+
+    Raises UserError for an unknown name, SceneError for bad numbers, OwnMethodError for a method that is none.
+    """
+    if options.scene not in SCENES:
+        hint = did_you_mean(options.scene, SCENES) or "; pendu-tui scenes lists them."
+        raise UserError(f"there is no scene {options.scene!r}{hint}")
+    given = {name: getattr(options, name) for name in (*LIMITS, "h")}
+    scene = SCENES[options.scene].altered(**{name: value for name, value in given.items() if value is not None})
+    return scene.with_cast(cast_of(options, scene.cast))
