@@ -108,6 +108,11 @@ class Scene:
         """h·w0, the only number that linear stability depends on; of a spring h times its frequency."""
         return self.h * self.equations.fastest
 
+    @property
+    def general(self) -> bool:
+        """Whether model and methods take any force and numbers: for maps, areas, and errors against their cost."""
+        return self.equations.plain and all(method.general for method in self.cast)
+
     def fields(self) -> dict[str, Any]:
         """What determines the run and names it, as JSON shows it."""
         others = {"cast"} | set(PARAMETERS) - set(MODELS[self.model].parameters)
