@@ -102,7 +102,7 @@ IMPLICIT_MIDPOINT = Method(
 IMEX_EULER = Method(
     key="imex_euler",
     label="IMEX Euler",
-    letter="x",
+    letter="u",
     phases=imex_euler,
     formula="w' = w + h (fast(z') + slow(z));  z' = z + h w'",
     order=1,

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from engine.methods import METHODS, Cast, Method
+from engine.methods import GENERAL, Cast, Method
 from engine.run.observer import Milestone
 from tui.playback.source import Source
 from tui.words.numbers import about, two_digits
@@ -24,7 +24,8 @@ class Forecast(NamedTuple):
 def short_name(method: Method) -> str:
     """The last word of a method's name if no other name ends with it: "Verlet", but "Symplectic Euler"."""
     last = method.label.split()[-1]
-    return last if sum(each.label.endswith(last) for each in METHODS) == 1 else method.label
+    alone = sum(each.label.endswith(last) for each in GENERAL) == 1
+    return last if alone and method.general else method.label
 
 
 def forecast(source: Source, index: int) -> Forecast | None:
