@@ -40,3 +40,13 @@ def scene_of(options: argparse.Namespace) -> Scene:
     given = {name: getattr(options, name) for name in (*LIMITS, "h")}
     scene = SCENES[options.scene].altered(**{name: value for name, value in given.items() if value is not None})
     return scene.with_cast(cast_of(options, scene.cast))
+
+
+def general_scene_of(options: argparse.Namespace) -> Scene:
+    """The scene that the options describe, if it can be mapped and its errors charted.  Raises UserError as well."""
+    scene = scene_of(options)
+    if not scene.general:
+        others = [method.label for method in scene.cast if not method.general]
+        why = f"not for {', '.join(others)}" if others else f"not for the model {scene.model}"
+        raise UserError(f"this is for methods that take any force, on a pendulum without friction, {why}.")
+    return scene

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from engine.methods import METHODS, Cast, Method
+from engine.methods import GENERAL, Cast, Method
 from engine.run.observer import Milestone
 from engine.scenes import Scene
 from tui.playback.source import Source
@@ -28,7 +28,8 @@ class Forecast(NamedTuple):
 def short_name(method: Method) -> str:
     """The last word of a method's name if no other name ends with it: "Verlet", but "Symplectic Euler"."""
     last = method.label.split()[-1]
-    return last if sum(each.label.endswith(last) for each in METHODS) == 1 else method.label
+    alone = sum(each.label.endswith(last) for each in GENERAL) == 1
+    return last if alone and method.general else method.label
 
 
 def forecast(source: Source, index: int) -> Forecast | None:
@@ -133,7 +134,7 @@ def limit_warning(cast: Cast, zs: Sequence[float]) -> str:
     """
     letters: dict[float, list[str]] = {}
     for method, z in zip(cast, zs, strict=True):
-        if 0 < method.linear_limit < z:
+        if method.linear_limit and method.linear_limit < z:
             letters.setdefault(method.linear_limit, []).append(method.letter)
     each = ", ".join(f"{' '.join(who)} (z > {limit:.3g})" for limit, who in letters.items())
     return f"unstable: {each}" if each else ""

@@ -11,7 +11,7 @@ from tui.cli.errors import Exit, UserError
 from tui.cli.files import text_file
 from tui.cli.options import add_file, count, positive
 from tui.cli.output import progress, warn
-from tui.cli.scene import add_scene_options, scene_of
+from tui.cli.scene import add_scene_options, general_scene_of
 
 if TYPE_CHECKING:
     from engine.accuracy.recommend import Attempt
@@ -97,7 +97,7 @@ def run(options: argparse.Namespace) -> int:
     """Measure, recommend, print.  Ctrl+C keeps what is done."""
     from engine.accuracy.study import usual
 
-    scene = scene_of(options)
+    scene = general_scene_of(options)
     if scene.theta == scene.omega == 0:
         raise UserError("the pendulum hangs at rest, so there is no error to measure; use another --theta or --omega.")
     times = options.time or [usual(scene)[0]]
