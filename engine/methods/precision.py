@@ -115,7 +115,7 @@ VERLET_FLOAT32 = _verlet(
 VERLET_COMPENSATED = _verlet(
     verlet_compensated,
     "verlet_compensated",
-    "Verlet, compensated",
+    "Kahan Verlet",
     "k",
     "each sum keeps what it rounds off for the next",
     keeps=True,
