@@ -105,7 +105,7 @@ def _verlet(phases: Phases, key: str, label: str, letter: str, numbers: str, kee
 VERLET_FLOAT32 = _verlet(
     verlet_float32,
     "verlet_float32",
-    "32-bit Verlet",
+    "Single Verlet",
     "n",
     "all numbers rounded to 32 bits",
     keeps=False,
