@@ -66,7 +66,7 @@ def _halving(richardson: bool, key: str, label: str, letter: str, ends: str, ord
 
 HALVING_VERLET = _halving(False, "halving_verlet", "Step doubling", "h", "the halves count", 2, 8)
 HALVING_RICHARDSON = _halving(
-    True, "halving_richardson", "Doubling, extrapolated", "a", "they are extrapolated to h = 0", 4, 7
+    True, "halving_richardson", "Richardson Verlet", "a", "they are extrapolated to h = 0", 4, 7
 )
 
 FAMILY = (HALVING_VERLET, HALVING_RICHARDSON)

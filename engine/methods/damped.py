@@ -56,7 +56,7 @@ def lagged_verlet(force: Any, phase: Phase, h: float) -> Iterator[Phase]:
 
 LAGGED_VERLET = Method(
     key="lagged_verlet",
-    label="Verlet, lagged",
+    label="Lagged Verlet",
     letter="l",
     phases=lagged_verlet,
     formula="velocity Verlet whose half kicks are h/2 (a - gamma omega), omega from before the kick",

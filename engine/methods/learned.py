@@ -95,7 +95,7 @@ RK4_LEARNED_FIELD = _learned(
 
 RK4_LEARNED_HAMILTONIAN = _learned(
     "rk4_learned_hamiltonian",
-    "Learned Hamiltonian",
+    "Learned H",
     "g",
     learned_hamiltonian(),
     "RK4 on the slopes of H = a sum of 60 tanh(a theta + b omega + c), fitted to 600 measurements",

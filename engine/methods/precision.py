@@ -105,7 +105,7 @@ def _verlet(phases: Phases, key: str, label: str, letter: str, numbers: str, kee
 VERLET_FLOAT32 = _verlet(
     verlet_float32,
     "verlet_float32",
-    "Verlet, 32 bits",
+    "Single Verlet",
     "n",
     "all numbers rounded to 32 bits",
     keeps=False,
@@ -115,7 +115,7 @@ VERLET_FLOAT32 = _verlet(
 VERLET_COMPENSATED = _verlet(
     verlet_compensated,
     "verlet_compensated",
-    "Verlet, compensated",
+    "Kahan Verlet",
     "k",
     "each sum keeps what it rounds off for the next",
     keeps=True,

@@ -61,7 +61,7 @@ INNER = 10
 
 RESPA = Method(
     key="respa",
-    label="r-RESPA",
+    label="RESPA",
     letter="p",
     phases=respa(velocity_verlet, INNER),
     formula=f"w + h/2 slow;  {INNER} steps of velocity Verlet with h/{INNER} and the fast force;  w + h/2 slow",

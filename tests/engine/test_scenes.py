@@ -210,7 +210,7 @@ def test_every_scene_is_in_one_group() -> None:
 
 
 def test_a_scene_takes_only_methods_that_are_for_its_model() -> None:
-    with pytest.raises(SceneError, match=r"^Verlet, 32 bits is not for the model linear; it is for pendulum\.$"):
+    with pytest.raises(SceneError, match=r"^Single Verlet is not for the model linear; it is for pendulum\.$"):
         Scene(model="linear", cast=(method_of("verlet_float32"),))
 
 
