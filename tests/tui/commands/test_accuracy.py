@@ -72,7 +72,7 @@ TABLE = """\
 0.07353      0.23        68                x 6.4e+00                    1.3e-01                   2.8e-02       1.9e-04
 0.02717    0.0851       184                x 1.3e+00                    4.3e-02                   3.8e-03       4.1e-06
    0.01    0.0313       500                  3.4e-01                    1.5e-02                   5.2e-04       7.8e-08
-  order            measured                     1.01                       1.00                      2.00          4.00
+  order            measured                     1.00                       1.00                      2.00          4.00
                     claimed                        1                          1                         2             4
 x {lost}
 order measured on the theta error over at most one period; n/step: force evaluations
@@ -80,7 +80,6 @@ order measured on the theta error over at most one period; n/step: force evaluat
 
 CHART = """\
 theta error [rad], the largest distance from the exact swing
-  1e3┤
      │        x
     1┤        s⠍⠍⡉⡑⡒⡒⠒⠢⠤⠤⠤⢄e⣀⣀⡀
      │        v⡟⡭⡭⢍⣒⣒⠓⠓⠣⠥⠥⠦s⣂⣂⣌⣩⡩⠩⠩⢒⢒⢒⢒e
@@ -92,6 +91,7 @@ theta error [rad], the largest distance from the exact swing
      │                                   ⠈⠐⠩⢒⠢⢄r
 1e-12┤                                       ⠈h⁴
      │
+1e-15┤
      └┬───────────┬────────────┬───────────┬───────────┬────
       10         100          1e3         1e4         1e5
                                            force evaluations
