@@ -62,7 +62,7 @@ class Scene:
     stiffness: float = 0.0  # spring constant over mass [s⁻²], of the model spring
 
     def __post_init__(self) -> None:
-        parameters = MODELS[self.model].parameters
+        parameters = self.parameters
         for field in PARAMETERS:
             if field not in parameters and getattr(self, field):
                 raise SceneError(f"the model {self.model} has no {field}; leave it out, or use a model that has.")
@@ -78,16 +78,20 @@ class Scene:
             )
         check_h(self.h, self.w0)
         for method in self.cast:
-            if self.model not in method.models:
+            if self.model in MODELS and self.model not in method.models:
                 raise SceneError(
                     f"{method.label} is not for the model {self.model}; it is for {' and '.join(method.models)}."
                 )
 
     @property
+    def parameters(self) -> tuple[str, ...]:
+        """The names of those that its model has beside length and gravity."""
+        return MODELS[self.model].parameters
+
+    @property
     def equations(self) -> Model:
         """The model with this scene's parameters."""
-        parameters = MODELS[self.model].parameters
-        return _equations(self.model, self.w0_squared, *(getattr(self, name) for name in parameters))
+        return _equations(self.model, self.w0_squared, *(getattr(self, name) for name in self.parameters))
 
     def exact(self) -> ExactMotion:
         """The exact motion from this scene's start."""
@@ -115,7 +119,7 @@ class Scene:
 
     def fields(self) -> dict[str, Any]:
         """What determines the run and names it, as JSON shows it."""
-        others = {"cast"} | set(PARAMETERS) - set(MODELS[self.model].parameters)
+        others = {"cast"} | set(PARAMETERS) - set(self.parameters)
         named = {field.name: getattr(self, field.name) for field in fields(self) if field.name not in others}
         return named | {"methods": [method.key for method in self.cast]}
 
