@@ -68,18 +68,32 @@ letters = st.characters(categories=("L", "M", "N", "P", "S"), include_characters
 texts = st.text(letters, max_size=TEXT_LIMIT).filter(str.isprintable)
 keys = st.from_regex(r"[a-z_][a-z0-9_]{0,20}", fullmatch=True)
 methods = st.sampled_from(METHODS) | keys.map(method_named)
-scenes = st.builds(
-    scene_named,
-    name=texts,
-    model=st.sampled_from([*MODELS]) | keys,
-    cast=st.lists(methods, min_size=1, max_size=6, unique_by=lambda method: method.key).map(tuple),
-    watch=texts,
-    theta=st.floats(*LIMITS["theta"]),
-    omega=st.floats(*LIMITS["omega"]),
-    length=st.floats(0.1, 10),
-    gravity=st.floats(0.1, 10),
-    h=st.floats(1e-6, 1),
-)
+
+
+def scenes_of(model):
+    suited = st.sampled_from([each for each in METHODS if model not in MODELS or model in each.models])
+    parameters = MODELS[model].parameters if model in MODELS else PARAMETERS
+    return st.builds(
+        scene_named,
+        name=texts,
+        model=st.just(model),
+        cast=st.lists(
+            suited | keys.map(method_named).filter(lambda method: method not in METHODS),
+            min_size=1,
+            max_size=6,
+            unique_by=lambda method: method.key,
+        ).map(tuple),
+        watch=texts,
+        theta=st.floats(*LIMITS["theta"]),
+        omega=st.floats(*LIMITS["omega"]),
+        length=st.floats(0.1, 10),
+        gravity=st.floats(0.1, 10),
+        h=st.floats(1e-6, 1),
+        **{name: st.floats(1.0, 100.0) for name in parameters},
+    )
+
+
+scenes = (st.sampled_from([*MODELS]) | keys).flatmap(scenes_of)
 milestones = st.builds(
     Milestone, st.sampled_from(["over the top", "failed"]), methods, counts, finite, finite
 ) | st.builds(Milestone, st.just("verdict"), methods, counts, finite, finite, st.sampled_from(get_args(Verdict)))
