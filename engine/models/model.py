@@ -71,6 +71,7 @@ class Model(ABC):
     key: ClassVar[str]  # in scenes, recordings and on the command line
     equation: ClassVar[str]  # for people
     turns: ClassVar[bool]  # whether theta + 2 pi is the same place, and it can go over the top
+    in_plane: ClassVar[bool] = False  # a position is a complex number, and theta and omega do not tell the whole phase
     parameters: ClassVar[tuple[str, ...]] = ()  # what a scene says of it beside length and gravity
     plain: ClassVar[bool] = True  # theta'' = force(theta) and no more: compiled, mapped, and its energy is conserved
 

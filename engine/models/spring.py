@@ -28,6 +28,7 @@ class Spring(Model):
     key: ClassVar[str] = "spring"
     equation: ClassVar[str] = "z'' = -k (1 - 1/|z|) z - i w0², z = x + iy"
     turns: ClassVar[bool] = False  # its angle is known from its place only, so it is within ±pi
+    in_plane: ClassVar[bool] = True
     parameters: ClassVar[tuple[str, ...]] = ("stiffness",)
     plain: ClassVar[bool] = False
 
