@@ -28,6 +28,7 @@ class DampedPendulum(Model):
     turns: ClassVar[bool] = True
     parameters: ClassVar[tuple[str, ...]] = ("friction",)
     plain: ClassVar[bool] = False
+    conserved: ClassVar[bool] = False
 
     def force(self, sin: Sine = math.sin) -> Force:
         """Gravity's; its attribute `friction` is gamma [s⁻¹]."""

@@ -75,6 +75,8 @@ class Model(ABC):
     parameters: ClassVar[tuple[str, ...]] = ()  # what a scene says of it beside length and gravity
     plain: ClassVar[bool] = True  # theta'' = force(theta) and no more: compiled, mapped, and its energy is conserved
 
+    conserved: ClassVar[bool] = True  # whether the true motion keeps its energy
+
     w0_squared: float  # the square of the frequency of small swings [s⁻²]
     friction: float = 0.0  # s⁻¹
 
@@ -91,6 +93,10 @@ class Model(ABC):
     def start(self, theta: float, omega: float) -> Phase:
         """The phase that a run from theta [rad] and omega [rad/s] starts with."""
         return theta, omega
+
+    def still(self, theta: float) -> Phase:
+        """The phase of least energy at an angle [rad]: at rest."""
+        return theta, 0.0
 
     def seen(self, phase: Phase) -> State:
         """Angle and angular velocity of a phase."""

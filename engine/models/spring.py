@@ -43,6 +43,10 @@ class Spring(Model):
         down = -1j * cmath.exp(1j * theta)
         return length * down, 1j * length * omega * down
 
+    def still(self, theta: float) -> Phase:
+        """At rest, as long as without a weight."""
+        return -1j * cmath.exp(1j * theta), 0j
+
     def seen(self, phase: Phase) -> State:
         """The swing's angle, within ±pi, and angular velocity: a projection."""
         z, w = phase

@@ -71,6 +71,8 @@ def sentence(method: Method, kind: OrbitKind) -> str:
 def period_sentence(source: Source) -> str:
     """How long a swing takes each method, next to the exact one; empty where nothing can be said."""
     scene, exact = source.scene, source.exact.period
+    if not scene.general:
+        return ""
     taken = [
         (method, numerical_period(method, scene.equations, abs(h), (scene.theta, scene.omega)))
         for method, h in zip(scene.cast, source.stepping.own, strict=True)
