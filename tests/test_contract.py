@@ -19,6 +19,9 @@ COMMANDS = {
     "accuracy --cost seconds --budget": [
         "accuracy", "--time", "2", "--h-values", "0.1:0.01:2", "--cost", "seconds", "--budget", "1e3", "--json",
     ],
+    "accuracy --all": [
+        "accuracy", "--all", "--time", "2", "--h-values", "0.4:0.01:4", "--target", "1e-3", "--json",
+    ],
     "stability": ["stability", "--steps", "30", "--z-values", "0.5,2.5", "--theta-values", "1,2", "--json"],
     "stability --scene linear": ["stability", "--scene", "linear", "--json"],
     "stability --map": ["stability", "--steps", "9", "--z-values", "0.5,2.5", "--theta-values", "1", "--map", "--json"],

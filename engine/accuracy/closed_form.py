@@ -17,14 +17,14 @@ from engine.scenes import Scene
 RUNS = 20  # in a row, as one is short
 
 
-def closed_form_seconds(scene: Scene, time: float, clock: Clock) -> float:
-    """Seconds of the exact motion at COMPARISONS + 1 times, compiled where Numba is.
+def closed_form_seconds(scene: Scene, time: float, clock: Clock, fast: bool = True) -> float:
+    """Seconds of the exact motion at COMPARISONS + 1 times, compiled where Numba is, unless it should not be `fast`.
 
     A floor for runs of some hundred steps and more; it does not depend on the time that is simulated.
     """
     motion, times = scene.exact().at, np.linspace(0, time, COMPARISONS + 1)
     at_all: Callable[[Any, Floats], Any] = at_times
-    if available():
+    if fast and available():
         motion = compiled_motion(motion)
         at_all = import_module("numba").njit(at_times)
     return shortest(lambda: at_all(motion, times), RUNS, clock)[0]

@@ -5,9 +5,8 @@ there.  Taylor's series is set by a tolerance, and is absent without Numba.
 """
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Protocol, TypeVar
 
 import numpy as np
 
@@ -24,6 +23,7 @@ FINER = 10 ** (1 / 8)  # from one tolerance to the next that is tried for a targ
 CONFIRMING = 6
 CONFIRMING_COMPARISONS = 10_000
 ABSENT = "Taylor's series needs Numba, the extra `fast`."
+OTHER_MODEL = "Taylor's series is that of the pendulum, and of no other model."
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,28 +165,3 @@ class TaylorStudy:
         energies = (model.energy(np.sin)((theta, omega)) - reference.start) / reference.scale
         off = np.abs(theta - self._truth(comparisons))
         return (float(np.max(off)), float(np.max(np.abs(energies))), float(off[-1])), steps
-
-
-class Timed(Protocol):
-    """A point of any line on the chart."""
-
-    @property
-    def seconds(self) -> float | None: ...
-    def error(self, kind: ErrorKind) -> float: ...
-    def flaw(self, kind: ErrorKind) -> Flaw | None: ...
-
-
-P = TypeVar("P", bound=Timed)
-
-
-def front(points: Iterable[P], kind: ErrorKind) -> list[P]:
-    """Of timed points those that no other beats in both seconds and error, the quickest first.
-
-    The first one with an error up to a target is the quickest that reaches it.
-    """
-    best: list[P] = []
-    usable = (point for point in points if point.seconds is not None and point.flaw(kind) in (None, "rounding"))
-    for point in sorted(usable, key=lambda point: (point.seconds, point.error(kind))):
-        if not best or point.error(kind) < best[-1].error(kind):
-            best.append(point)
-    return best

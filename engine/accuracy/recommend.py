@@ -16,6 +16,7 @@ MOST_EVALUATIONS = 20_000_000  # of a run; some seconds in plain Python
 TOLERANCE = 0.02  # to which the fewest steps are found
 CONFIRMING_COMPARISONS = 10_000
 CONFIRMING_RUNS = 20  # that are given up after so many
+SECONDS_SLACK = 3.0  # where seconds count: no method's force evaluation takes a third of another's
 IN_VAIN = 2  # doublings of the steps that lower an error no more: then rounding stops it
 REFINED = 1.1  # times the steps must reach the target, too: an error that happens to cross zero is no accuracy
 
@@ -39,15 +40,16 @@ def reach(
     kind: ErrorKind,
     target: float,
     most: int = MOST_EVALUATIONS,
+    slack: float = 1.0,
 ) -> Iterator[Attempt]:
     """For each method, from the highest order down, its cheapest run with an error up to `target`.
 
-    A method is given up where it costs more than `most` evaluations or than one before it.
+    A method is given up where it costs more than `most` evaluations or than `slack` times one before it.
     """
     for method in sorted(study.scene.cast, key=lambda method: -method.order):
         attempt = _cheapest(study, method, kind, target, most)
         if attempt.point and attempt.succeeded:
-            most = min(most, attempt.point.force_evaluations)
+            most = min(most, int(slack * attempt.point.force_evaluations))
         yield attempt
 
 

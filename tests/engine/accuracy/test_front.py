@@ -8,10 +8,8 @@ import numpy as np
 import pytest
 
 from engine.accuracy import front as module
-from engine.accuracy.front import CONFIRMING, FINER, TAYLOR_20, TaylorStudy, front
-from engine.accuracy.study import Flaws, Study, timed
+from engine.accuracy.front import CONFIRMING, FINER, TaylorStudy
 from engine.accuracy.taylor import follow
-from engine.methods import METHODS
 from engine.models.pendulum import energy
 from engine.run.compiled import available
 from engine.scenes import SCENES, Scene
@@ -89,25 +87,6 @@ def test_seconds_are_the_shortest_of_several_runs_with_their_spread(study):
     runs = 20_000 // point.steps
     assert study.timed(point, lambda: next(ticks)) == replace(point, seconds=30.0 / runs, spread=1.0)
     assert next(ticks, None) is None
-
-
-def at(study, error, seconds, flaw=None):
-    return replace(study.run(1e-8), theta_error=error, seconds=seconds, flaws=Flaws(flaw, None, None))
-
-
-def test_on_the_front_is_what_nothing_beats_in_both_time_and_error(study):
-    a, b, c = at(study, 1e-2, 1.0), at(study, 1e-5, 2.0), at(study, 1e-6, 5.0, "rounding")
-    beaten = [at(study, 1e-4, 3.0), at(study, 1e-5, 2.5), at(study, 1e-2, 1.0)]
-    useless = [at(study, 1e-9, 0.5, "lost"), at(study, 1e-9, 0.5, "diverged"), at(study, 1e-9, None)]
-    assert front([c, *beaten, b, *useless, a], "theta") == [a, b, c]
-
-
-def test_points_of_methods_and_of_taylor_share_a_front(study):
-    tick = itertools.count().__next__  # every piece of work takes one second
-    rk4 = timed(Study(SWING, 100.0).run(METHODS[3], 20_000), SWING, tick)
-    ours = replace(study.run(1e-12), seconds=0.5)
-    assert front([rk4, ours], "theta") == [ours]
-    assert ours.method is TAYLOR_20
 
 
 @pytest.mark.parametrize("name", [name for name, scene in SCENES.items() if scene.model == "pendulum"])

@@ -7,7 +7,7 @@ import pytest
 
 from engine.accuracy.recommend import cheapest, most_accurate, reach, spend
 from engine.accuracy.study import Study
-from engine.methods import USUAL_CAST
+from engine.methods import METHODS, USUAL_CAST
 from engine.run import compiled
 from engine.run.lockstep import Lockstep
 from engine.run.loops import plain
@@ -138,3 +138,21 @@ def test_where_every_method_is_lost_nothing_is_recommended():
     attempts = list(spend(Study(SCENES["spin"], 100.0), "theta", 300))
     assert most_accurate(attempts, "theta") is None
     assert all(math.isfinite(attempt.point.theta_error) for attempt in attempts)
+
+
+@pytest.mark.skipif(LOOPS is plain, reason="takes a minute without Numba")
+@pytest.mark.parametrize(("kind", "target"), [("theta", 1e-3), ("theta", 1e-6), ("theta", 1e-9), ("energy", 1e-6)])
+def test_of_all_methods_none_on_a_dense_ladder_is_three_percent_cheaper(kind, target):
+    study = Study(replace(DRIFT, theta=2.0, cast=METHODS), 100.0, LOOPS)
+    cost = cheapest(list(reach(study, kind, target))).force_evaluations
+
+    def robust(method, steps):  # it and what is up to 10 % finer: near a resonance, an error may cross zero
+        return all(
+            study.run(method, math.ceil(steps * finer), 10_000).error(kind) <= target for finer in (1, 1.02, 1.05, 1.1)
+        )
+
+    for method in METHODS:
+        steps = math.ceil(0.5 * cost / method.force_evaluations)
+        while method.evaluations(steps) * 1.03 < cost:
+            assert not robust(method, steps), (method.key, method.evaluations(steps), cost)
+            steps = math.ceil(1.005 * steps)

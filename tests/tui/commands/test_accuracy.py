@@ -8,10 +8,13 @@ from itertools import islice
 import jsonschema
 import pytest
 
+from engine.accuracy.front import ABSENT, OTHER_MODEL
 from engine.accuracy.study import REASONS, Study, ladder
-from engine.methods import USUAL_CAST
+from engine.methods import GENERAL, USUAL_CAST
+from engine.run.compiled import available
 from engine.scenes import SCENES
 from tests.tui.command_line import pendu
+from tui.commands.studies.accuracy import UNFAIR
 from tui.views.accuracy.chart import accuracy_chart
 
 QUICK = ("accuracy", "--time", "5", "--h-values", "0.2:0.01:4")
@@ -28,18 +31,28 @@ def rows(**types):
     return {"type": "array", "items": fields(**types)}
 
 
-METHOD = {"enum": KEYS}
+METHOD = {"enum": [method.key for method in GENERAL]}
+ANY = {"enum": [*METHOD["enum"], "taylor_20", "closed_form"]}
 ADVICE = {
     "time": NUMBER,
     "target": MAYBE,
     "budget": MAYBE,
-    "method": {"enum": [*KEYS, None]},
+    "method": {"enum": [*ANY["enum"], None]},
     "h": MAYBE,
     "force_evaluations": MAYBE,
     "reached": MAYBE,
+    "seconds": MAYBE,
+    "tolerance": MAYBE,
+    "saves_over_rk4": MAYBE,
     "reason": {"type": ["string", "null"]},
     "attempts": rows(
-        method=METHOD, h=MAYBE, force_evaluations=MAYBE, error=MAYBE, why_not={"type": ["string", "null"]}
+        method=ANY,
+        h=MAYBE,
+        force_evaluations=MAYBE,
+        error=MAYBE,
+        seconds=MAYBE,
+        tolerance=MAYBE,
+        why_not={"type": ["string", "null"]},
     ),
 }
 SCHEMA = fields(
@@ -48,18 +61,21 @@ SCHEMA = fields(
     time=NUMBER,
     error={"enum": ["theta", "energy", "final"]},
     points=rows(
-        method=METHOD,
-        h=NUMBER,
-        steps={"type": "integer"},
-        force_evaluations={"type": "integer"},
+        method=ANY,
+        h=MAYBE,
+        steps={"type": ["integer", "null"]},
+        force_evaluations={"type": ["integer", "null"]},
         seconds=MAYBE,
         spread=MAYBE,
-        theta_error=NUMBER,
-        energy_error=NUMBER,
-        final_error=NUMBER,
+        theta_error=MAYBE,
+        energy_error=MAYBE,
+        final_error=MAYBE,
         valid={"type": "boolean"},
         reason={"type": ["string", "null"]},
+        tolerance=MAYBE,
     ),
+    front=rows(error=NUMBER, method=ANY, cost=NUMBER, saves_over_rk4=MAYBE),
+    absent={"type": ["string", "null"]},
     orders=rows(method=METHOD, claimed={"type": "integer"}, measured=MAYBE),
     recommendation={"anyOf": [{"type": "null"}, fields(**ADVICE)]},
     durations=rows(**ADVICE),
@@ -212,6 +228,7 @@ def test_csv_has_a_line_for_each_point_with_all_digits(tmp_path):
         (["--budget", "1.1e9"], ["would take hours", "1e+09"]),
         (["--error", "omega"], ["invalid choice"]),
         (["--json", "--csv"], ["not allowed"]),
+        (["--all", "--methods", "rk4"], ["--all and --methods", "choose one"]),
         (["--gravity", "0"], ["out of range"]),
         (["--theta", "0"], ["at rest", "no error to measure"]),
     ],
@@ -282,3 +299,79 @@ def test_the_growth_of_the_angle_error_is_told_where_it_is_a_power_of_time():
     expected = "the theta error grows as t (Velocity Verlet), as t² (RK4)"
     assert f"at h = 0.02 s, over up to 100 periods, {expected}" in out.splitlines()
     assert "grows as" not in pendu("accuracy", "--h", "0.4", "--time", "2", "--h-values", "0.1:0.05:2").out
+
+
+ALL = ("accuracy", "--all", "--theta", "2", "--time", "20", "--h-values", "0.5:0.01:7")
+needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed")
+
+
+def test_all_methods_are_those_there_are_and_ones_own(tmp_path):
+    (tmp_path / "mine.py").write_text(
+        "def mine(force, phase, h):\n    theta, omega = phase\n    while True:\n"
+        "        theta, omega = theta + h * omega, omega + h * force(theta)\n        yield theta, omega\n"
+    )
+    keys = [method.key for method in GENERAL]
+    assert pendu(*ALL, "--json").json["scene"]["methods"] == keys
+    own = pendu(*ALL, "--method", f"{tmp_path}/mine.py:mine", "--json").json
+    assert own["scene"]["methods"] == [*keys, "mine"]
+
+
+def test_of_all_methods_it_says_who_is_ahead_and_by_which_factor():
+    answer = pendu(*ALL, "--target", "1e-6", "--json").json
+    jsonschema.validate(answer, SCHEMA)
+    best = {place["error"]: place for place in answer["front"]}[1e-6]
+    advice = answer["recommendation"]
+    assert (best["method"], advice["method"]) == ("blanes_moan_6", "blanes_moan_6")
+    alone = pendu(*ALL[:1], *ALL[2:], "--methods", "rk4", "--target", "1e-6", "--json").json["recommendation"]
+    assert advice["saves_over_rk4"] == alone["force_evaluations"] / advice["force_evaluations"] > 4
+    # read off between points a factor of 1.9 in h apart
+    assert best["saves_over_rk4"] == pytest.approx(advice["saves_over_rk4"], rel=0.2)
+    told = pendu(*ALL, "--target", "1e-6").out
+    assert "\nAhead in force evaluations: " in told
+    assert f"BM6 {best['saves_over_rk4']:.2g} at 1e-6" in told
+    assert f"RK4 takes {advice['saves_over_rk4']:.2g} times as many force evaluations, " in told
+
+
+@needs_numba
+def test_over_seconds_all_there_is_includes_the_series_and_the_floor():
+    answer = pendu(*ALL, "--cost", "seconds", "--target", "1e-9", "--json").json
+    jsonschema.validate(answer, SCHEMA)
+    series = [point for point in answer["points"] if point["method"] == "taylor_20"]
+    assert len(series) > 10
+    for point in series:
+        assert (point["h"], point["force_evaluations"]) == (None, None)
+        assert min(point[name] for name in ("steps", "seconds", "tolerance")) > 0
+    (floor,) = (point for point in answer["points"] if point["method"] == "closed_form")
+    assert not floor["valid"]
+    assert 0 < floor["seconds"] < max(point["seconds"] for point in answer["points"])
+    advice = answer["recommendation"]
+    tried = {attempt["method"]: attempt for attempt in answer["recommendation"]["attempts"]}
+    assert advice["method"] == "taylor_20"  # three times as fast as BM6
+    assert advice["seconds"] == min(attempt["seconds"] for attempt in tried.values() if not attempt["why_not"])
+    assert advice["reached"] <= 1e-9
+    told = pendu(*ALL, "--cost", "seconds", "--target", "1e-9").out
+    assert "Over 20 s, theta error up to 1e-09: Taylor, order 20 at a tolerance of " in told
+    assert "; without Numba, in force evaluations: BM" in told
+    assert "Closed form, the floor: " in told
+    assert {"t", "c"} <= {mark for line in told.split("\n") if "│" in line for mark in line}
+
+
+def test_csv_has_the_reference_lines_with_empty_fields():
+    told = pendu(*ALL, "--cost", "seconds", "--csv").out
+    read = list(csv.DictReader(io.StringIO(told)))
+    assert {row["method"] for row in read if not row["h"]} == {"closed_form", *["taylor_20"] * available()}
+
+
+@pytest.mark.parametrize(("more", "words"), [(("--scene", "linear"), OTHER_MODEL), (("--no-compiled",), UNFAIR)])
+def test_where_there_is_no_series_it_says_why(more, words):
+    quick = ("accuracy", "--all", "--cost", "seconds", "--time", "2", "--h-values", "0.1:0.05:2", *more)
+    answer = pendu(*quick, "--json").json
+    assert answer["absent"] == (words if available() or words == OTHER_MODEL else ABSENT)
+    assert "taylor_20" not in {point["method"] for point in answer["points"]}
+    assert answer["absent"] in pendu(*quick).out
+
+
+def test_without_numba_the_series_is_said_to_need_it(monkeypatch):
+    monkeypatch.setattr("engine.run.compiled.available", lambda: False)
+    told = pendu("accuracy", "--all", "--cost", "seconds", "--time", "2", "--h-values", "0.1:0.05:2")
+    assert ABSENT in told.out

@@ -2,9 +2,12 @@
 
 import argparse
 import time
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from engine.methods import GENERAL
 from engine.methods.own import OwnMethod
 from engine.scenes import Scene, check_h
 from tui.cli.errors import Exit, UserError
@@ -14,7 +17,8 @@ from tui.cli.output import progress, warn
 from tui.cli.scene import add_scene_options, general_scene_of
 
 if TYPE_CHECKING:
-    from engine.accuracy.recommend import Attempt
+    from engine.accuracy.advice import Advice
+    from engine.accuracy.study import Study
     from tui.commands.studies.reports.accuracy import Findings
 
 EXAMPLES = """\
@@ -22,12 +26,15 @@ examples:
   pendu-tui accuracy
   pendu-tui accuracy --target 1e-6 --time 100
   pendu-tui accuracy --methods rk4,verlet
+  pendu-tui accuracy --all --cost seconds --target 1e-9
   pendu-tui accuracy --budget 2e4 --theta 150deg
   pendu-tui accuracy --target 1e-3 --error energy --time 10,100,1000
   pendu-tui accuracy --cost seconds --h-values 0.1:0.001:8
   pendu-tui accuracy --json | jq '.points[] | select(.method == "rk4" and .valid)'
 """
 
+ALL_LADDER = (2.4, 0.0015, 14)  # z, as in engine.accuracy.study; BM4 and BM6 are stable up to 3
+UNFAIR = "Taylor's series is compiled by Numba, and these seconds are without it."
 LONGEST = 1e9  # s
 MOST_RUNGS = 1000
 MOST_STEPS = 10**10  # of the finest rung: half an hour, compiled
@@ -36,6 +43,11 @@ MOST_BUDGET = 10**9  # force evaluations of a run; minutes for each method, comp
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_scene_options(parser)
+    parser.add_argument(
+        "--all",
+        action="store_true",
+        help="all methods there are and your own; with --cost seconds also Taylor's series and the closed form",
+    )
     parser.add_argument(
         "--time",
         metavar="S[,S...]",
@@ -97,11 +109,16 @@ def run(options: argparse.Namespace) -> int:
     """Measure, recommend, print.  Ctrl+C keeps what is done."""
     from engine.accuracy.study import usual
 
+    if options.all and options.methods is not None:
+        raise UserError("--all and --methods exclude each other; choose one of them.")
     scene = general_scene_of(options)
+    if options.all:
+        own = (method for method in scene.cast if isinstance(method, OwnMethod))
+        scene = scene.altered(cast=(*GENERAL, *own))
     if scene.theta == scene.omega == 0:
         raise UserError("the pendulum hangs at rest, so there is no error to measure; use another --theta or --omega.")
     times = options.time or [usual(scene)[0]]
-    rungs = _ladder(scene, times[-1], options.h_values)
+    rungs = _ladder(scene, times[-1], options.h_values, options.all)
     budget = None if options.budget is None else int(options.budget)
     if budget is not None and budget > MOST_BUDGET:
         raise UserError(f"--budget {options.budget:g} would take hours; use at most {MOST_BUDGET:g} evaluations.")
@@ -110,7 +127,7 @@ def run(options: argparse.Namespace) -> int:
     from engine.run.compiled import available
     from tui.commands.studies.reports.accuracy import Findings, print_csv, print_json, print_text
 
-    found = Findings(scene, times[-1], options.error, options.cost, options.target, budget)
+    found = Findings(scene, times[-1], options.error, options.cost, options.target, budget, all=options.all)
     file = None if options.csv in (None, "-") else Path(options.csv)
     with text_file(file, options.force) as out:
         try:
@@ -137,10 +154,8 @@ def run(options: argparse.Namespace) -> int:
 def _fill(found: "Findings", times: list[float], rungs: list[int], fast: bool) -> None:
     """Find what was asked for; what is found by an interrupt stays found."""
     from engine.accuracy.growth import growth
-    from engine.accuracy.recommend import MOST_EVALUATIONS, cheapest, most_accurate, reach, spend
     from engine.accuracy.study import Study, orders, timed
     from engine.run import compiled, loops
-    from tui.commands.studies.reports.accuracy import Advice
 
     study, cast = Study(found.scene, found.time, compiled.tiered if fast else loops.plain), found.scene.cast
     with progress("measuring") as show:
@@ -149,31 +164,62 @@ def _fill(found: "Findings", times: list[float], rungs: list[int], fast: bool) -
                 point = timed(point, found.scene, time.perf_counter, compiled.compiled if fast else loops.plain)
             found.points.append(point)
             show(sum(point.steps for point in found.points), len(cast) * sum(rungs))
+    if found.all and found.cost == "seconds":
+        _add_references(found, fast)
     found.orders += orders(found.scene, found.time, study.loops)
     found.growth.update((method.key, growth(found.scene, method)) for method in cast)
     if not (found.target or found.budget):
         return
     with progress("searching") as show:
-        for duration in times:
+        for number, duration in enumerate(times):
             there = study if duration == study.time else Study(found.scene, duration, study.loops)
-            search = (
-                reach(there, found.kind, found.target, found.budget or MOST_EVALUATIONS)
-                if found.target
-                else spend(there, found.kind, found.budget or 0)
-            )
-            attempts: list[Attempt] = []
-            for attempt in search:
-                attempts.append(attempt)
-                show(len(cast) * len(found.advice) + len(attempts), len(cast) * len(times))
-            best = cheapest(attempts) if found.target else most_accurate(attempts, found.kind)
-            found.advice.append(Advice(duration, attempts, best))
+            found.advice.append(_advice(found, there, fast, partial(_show_searched, show, number, len(times))))
 
 
-def _ladder(scene: Scene, time: float, given: tuple[float, float, int] | None) -> list[int]:
-    """The numbers of steps to measure."""
+def _show_searched(show: Callable[[float, float], None], times: int, of: int, share: float) -> None:
+    """Show how much is searched: so many times, and a share of the next."""
+    show(times + share, of)
+
+
+def _add_references(found: "Findings", fast: bool) -> None:
+    """The points of Taylor's series, or why there are none, and the closed form."""
+    from engine.accuracy.closed_form import closed_form_seconds
+    from engine.accuracy.front import ABSENT, OTHER_MODEL, TaylorStudy
+    from engine.run.compiled import available
+
+    found.floor = closed_form_seconds(found.scene, found.time, time.perf_counter, fast)
+    if found.scene.model != "pendulum":
+        found.absent = OTHER_MODEL
+    elif not fast:
+        found.absent = UNFAIR if available() else ABSENT
+    else:
+        series = TaylorStudy(found.scene, found.time)
+        found.taylor += (series.timed(point, time.perf_counter) for point in series.points())
+
+
+def _advice(found: "Findings", study: "Study", fast: bool, show: Callable[[float], None]) -> "Advice":
+    """What is recommended for the time of a study."""
+    from engine.accuracy.advice import beside_rk4, least_error, least_evaluations, least_seconds
+    from engine.run import compiled, loops
+
+    if not found.target:
+        return least_error(study, found.kind, found.budget or 0, show)
+    wish = study, found.kind, found.target, found.budget, show
+    if found.cost == "evaluations":
+        advice = least_evaluations(*wish)
+    else:
+        steps = compiled.compiled if fast else loops.plain
+        series = bool(found.taylor) and not found.budget  # which is one of force evaluations
+        advice = least_seconds(*wish, time.perf_counter, steps, series)
+    return beside_rk4(advice, study, found.kind, found.target) if found.all else advice
+
+
+def _ladder(scene: Scene, time: float, given: tuple[float, float, int] | None, all: bool) -> list[int]:
+    """The numbers of steps to measure; for all methods, from where the most accurate ones begin."""
     from engine.accuracy.study import Z_LADDER, ladder
 
-    largest, smallest, rungs = given or (Z_LADDER[0] / scene.w0, Z_LADDER[1] / scene.w0, Z_LADDER[2])
+    z_max, z_min, count = ALL_LADDER if all else Z_LADDER
+    largest, smallest, rungs = given or (min(z_max / scene.w0, time), z_min / scene.w0, count)
     for h in (largest, smallest):
         check_h(h, scene.w0)
     if given and largest > time:

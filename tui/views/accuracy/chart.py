@@ -1,15 +1,15 @@
 """Points of an accuracy study -> a log-log chart of error over cost."""
 
+import math
 from collections.abc import Sequence
-from typing import Literal
 
+from engine.accuracy.ahead import Cost, cost_of
+from engine.accuracy.front import CLOSED_FORM, TAYLOR_20, TaylorPoint
 from engine.accuracy.study import ErrorKind, Flaw, Point
 from tui.drawing.canvas import Picture
 from tui.drawing.chart import Series, loglog_chart
-from tui.drawing.palette import FRAME
+from tui.drawing.palette import EXACT, FRAME, TEXT
 from tui.drawing.palette import series as series_of
-
-Cost = Literal["evaluations", "seconds"]
 
 MARKS: dict[Flaw, str] = {"lost": "x", "diverged": "x", "rounding": "~"}
 """Of points that do not show how the error depends on h."""
@@ -28,11 +28,6 @@ def power(order: int) -> str:
     return "h" + "".join("⁰¹²³⁴⁵⁶⁷⁸⁹"[int(digit)] for digit in str(order) if order != 1)
 
 
-def cost_of(point: Point, cost: Cost) -> float:
-    """What the run cost; zero where it was not timed."""
-    return point.force_evaluations if cost == "evaluations" else point.seconds or 0.0
-
-
 def accuracy_chart(
     points: Sequence[Point],
     kind: ErrorKind,
@@ -40,8 +35,9 @@ def accuracy_chart(
     width: int,
     height: int,
     marks: Sequence[tuple[str, Point]] = (),
+    beside: Sequence[Series] = (),
 ) -> Picture:
-    """Letters for points, x for useless and ~ for rounding-limited ones, dotted lines for orders, and `marks`."""
+    """Letters for points, x for useless and ~ for rounding-limited ones, dotted lines for orders, `beside`, `marks`."""
 
     def series(some: Sequence[Point], mark: str) -> Series:
         costs, errors = [cost_of(point, cost) for point in some], [point.error(kind) for point in some]
@@ -54,12 +50,29 @@ def accuracy_chart(
     marked = [series([point], mark) for mark, point in marks]
     slopes = [_slope(ours, kind, cost, points) for ours in by_method]
     return loglog_chart(
-        [*(slope for slope in slopes if slope), *lines, *flawed, *marked],
+        [*(slope for slope in slopes if slope), *beside, *lines, *flawed, *marked],
         width,
         height,
         x_label=COST_LABELS[cost],
         y_label=ERROR_LABELS[kind],
     )
+
+
+def references(
+    taylor: Sequence[TaylorPoint], floor: float | None, points: Sequence[Point], kind: ErrorKind
+) -> list[Series]:
+    """What is beside the methods over seconds: the line of Taylor's series, and upright the closed form's floor."""
+
+    def series(some: Sequence[TaylorPoint], mark: str) -> Series:
+        return Series(TEXT, mark, [cost_of(p, "seconds") for p in some], [p.error(kind) for p in some])
+
+    flawed = [series([point], MARKS[flaw]) for point in taylor if (flaw := point.flaw(kind))]
+    lines = [series(taylor, TAYLOR_20.letter), *flawed] if taylor else []
+    known = [*(point.error(kind) for point in points), *(point.error(kind) for point in taylor)]
+    errors = [error for error in known if error and math.isfinite(error)]
+    if floor and errors:
+        lines.append(Series(EXACT, CLOSED_FORM.letter, [floor, floor], [min(errors), max(errors)]))
+    return lines
 
 
 def _slope(ours: Sequence[Point], kind: ErrorKind, cost: Cost, points: Sequence[Point]) -> Series | None:

@@ -7,27 +7,22 @@ from typing import Any, TextIO
 
 from rich.text import Text
 
+from engine.accuracy.advice import Advice
+from engine.accuracy.ahead import Ahead, Cost, ahead
+from engine.accuracy.front import CLOSED_FORM, TAYLOR_20, Reference, TaylorPoint
 from engine.accuracy.growth import PERIODS
-from engine.accuracy.recommend import Attempt
 from engine.accuracy.study import REASONS, ErrorKind, Order, Point
 from engine.methods import Method
 from engine.methods.own import OwnMethod
 from engine.scenes import Scene
 from tui.cli.output import console, fields_of, print_picture, print_table, scene_line, write_csv, write_json
+from tui.commands.studies.reports.front import WORTH_SAYING, factor_words, front_words, length, print_references
 from tui.drawing.palette import PALETTES
-from tui.views.accuracy.chart import ERROR_LABELS, MARKS, Cost, accuracy_chart
+from tui.views.accuracy.chart import ERROR_LABELS, MARKS, accuracy_chart, references
 
 CHART_SIZE = (100, 24)  # columns at most, rows
 _POWERS = {1: "t", 2: "t²"}
-
-
-@dataclass(frozen=True, slots=True)
-class Advice:
-    """What was recommended for one time."""
-
-    time: float  # s
-    attempts: Sequence[Attempt]
-    point: Point | None  # None: no method reaches the target
+TRUTH = "the exact motion, against which errors are taken"
 
 
 @dataclass(slots=True)
@@ -44,7 +39,16 @@ class Findings:
     orders: list[Order] = field(default_factory=list)
     growth: dict[str, float | None] = field(default_factory=dict)  # power of t of the theta error, by method
     advice: list[Advice] = field(default_factory=list)  # one for each time asked for
+    all: bool = False
+    taylor: list[TaylorPoint] = field(default_factory=list)
+    floor: float | None = None  # s, of the closed form
+    absent: str | None = None  # why there is no Taylor series
     interrupted: bool = False
+
+    @property
+    def front(self) -> list[Ahead]:
+        """Who is ahead at each accuracy."""
+        return ahead([*self.points, *self.taylor], self.kind, self.cost)
 
     @property
     def wish(self) -> str:
@@ -57,8 +61,14 @@ def print_text(found: Findings) -> None:
     """Print the table, the chart, and what is recommended."""
     print(f"{scene_line(found.scene)}, over {found.time:g} s\n{ERROR_LABELS[found.kind]}\n")
     _print_points(found)
+    print_references(found.taylor, found.floor, found.absent, found.kind)
     print()
     _print_chart(found)
+    if found.all and found.points:
+        alone = ahead(found.points, found.kind, "evaluations")
+        print(f"\n{front_words(found.front, found.cost, alone)}")
+        if words := factor_words(alone):
+            print(words)
     for advice in found.advice:
         print()
         _print_advice(found, advice)
@@ -75,7 +85,12 @@ def print_json(found: Findings) -> None:
             "scene": found.scene.fields(),
             "time": found.time,
             "error": found.kind,
-            "points": [_point_fields(point, found.kind) for point in found.points],
+            "points": _rows(found),
+            "front": [
+                {"error": a.target, "method": a.method.key, "cost": a.cost, "saves_over_rk4": a.saves}
+                for a in found.front
+            ],
+            "absent": found.absent,
             "orders": [
                 {"method": o.method.key, "claimed": _claimed(o.method), "measured": o.measured} for o in found.orders
             ],
@@ -88,7 +103,7 @@ def print_json(found: Findings) -> None:
 
 def print_csv(found: Findings, out: TextIO) -> None:
     """Write a line for each point."""
-    rows = [_point_fields(point, found.kind) for point in found.points]
+    rows = _rows(found)
     if rows:
         write_csv(out, list(rows[0]), (list(row.values()) for row in rows))
 
@@ -134,21 +149,15 @@ def _cell(found: Findings, rung: Sequence[Point], method: Method) -> str:
     for point in rung:
         if point.method == method:
             flaw = point.flaw(found.kind)
-            seconds = "" if point.seconds is None else f" in {_length(point.seconds)}"
+            seconds = "" if point.seconds is None else f" in {length(point.seconds)}"
             return f"{MARKS[flaw] if flaw else ''} {point.error(found.kind):.1e}{seconds}"
     return ""
 
 
-def _length(seconds: float) -> str:
-    for unit, size in (("µs", 1e-6), ("ms", 1e-3)):
-        if seconds < 999.5 * size:
-            return f"{seconds / size:.3g} {unit}"
-    return f"{seconds:.3g} s"
-
-
 def _print_chart(found: Findings) -> None:
     on, rows, palette = console(CHART_SIZE[0]), CHART_SIZE[1], PALETTES["dark"]
-    chart = accuracy_chart(found.points, found.kind, found.cost, min(on.width, CHART_SIZE[0]), rows)
+    beside = references(found.taylor, found.floor, found.points, found.kind)
+    chart = accuracy_chart(found.points, found.kind, found.cost, min(on.width, CHART_SIZE[0]), rows, beside=beside)
     lines = [Text.assemble(*((text, palette.colour(owner)) for text, owner in chart.row(y))) for y in range(rows)]
     for line in lines:
         line.rstrip()
@@ -160,16 +169,33 @@ def _print_advice(found: Findings, advice: Advice) -> None:
     if point is None:
         print(f"No method reaches the target over {advice.time:g} s: {found.wish}")
     else:
-        print(f"Over {advice.time:g} s, {found.wish}: {point.method.label} at h = {point.h:.5g} s")
-        print(f"{point.force_evaluations} force evaluations, {kind} error {point.error(kind):.2e}, confirmed")
+        seconds = "" if point.seconds is None else f" in {length(point.seconds)}"
+        if isinstance(point, Point):
+            how, cost = f"h = {point.h:.5g} s", f"{point.force_evaluations} force evaluations"
+        else:
+            how, cost = f"a tolerance of {point.tolerance:.3g} rad/s", f"{point.steps} steps"
+        print(f"Over {advice.time:g} s, {found.wish}: {point.method.label} at {how}")
+        print(f"{cost}{seconds}, {kind} error {point.error(kind):.2e}, confirmed")
+        if advice.rk4 and advice.saves and advice.saves >= WORTH_SAYING:
+            print(f"RK4 takes {advice.saves:.2g} times as many force evaluations, {advice.rk4.force_evaluations}")
+    timed = any(attempt.point and attempt.point.seconds is not None for attempt in advice.attempts)
     rows = []
-    for attempt in advice.attempts:
-        tried, note = attempt.point, attempt.why_not or ("recommended" if attempt.point is point else "")
+    tries: list[tuple[str, Point | TaylorPoint | None, str | None]] = [
+        (attempt.method.label, attempt.point, attempt.why_not) for attempt in advice.attempts
+    ]
+    if advice.series:
+        tries.append((TAYLOR_20.label, advice.series.point, advice.series.why_not))
+    for label, tried, why_not in tries:
+        note = why_not or ("recommended" if tried is point else "")
         cells = (
-            (f"{tried.h:.5g}", str(tried.force_evaluations), f"{tried.error(kind):.2e}") if tried else ("-", "-", "-")
+            f"{tried.h:.5g}" if isinstance(tried, Point) else "-",
+            str(tried.force_evaluations) if isinstance(tried, Point) else "-",
+            *([length(tried.seconds) if tried and tried.seconds is not None else "-"] if timed else []),
+            f"{tried.error(kind):.2e}" if tried else "-",
         )
-        rows.append((attempt.method.label, *cells, note))
-    print_table("lrrrl", ("method", "h [s]", "force evaluations", f"{kind} error", ""), rows)
+        rows.append((label, *cells, note))
+    headers = ("method", "h [s]", "force evaluations", *(["seconds"] if timed else []), f"{kind} error", "")
+    print_table("lrr" + "r" * timed + "rl", headers, rows)
 
 
 def winners(advice: Sequence[Advice]) -> str:
@@ -183,33 +209,55 @@ def winners(advice: Sequence[Advice]) -> str:
     return "; ".join(changes) + "." if changes else f"{names[0]} for all these times."
 
 
-def _point_fields(point: Point, kind: ErrorKind) -> dict[str, Any]:
-    numbers = ("h", "steps", "force_evaluations", "seconds", "spread", "theta_error", "energy_error", "final_error")
+NUMBERS = ("h", "steps", "force_evaluations", "seconds", "spread", "theta_error", "energy_error", "final_error")
+
+
+def _rows(found: Findings) -> list[dict[str, Any]]:
+    """The points of all lines, in the fields of JSON and CSV."""
+    points: list[Point | TaylorPoint] = [*found.points, *found.taylor]
+    rows = [_point_fields(point, found.kind) for point in points]
+    if found.floor is not None:
+        nothing = dict.fromkeys(NUMBERS) | {"seconds": found.floor, "valid": False, "reason": TRUTH, "tolerance": None}
+        rows.append({"method": CLOSED_FORM.key, **nothing})
+    return rows
+
+
+def _point_fields(point: Point | TaylorPoint, kind: ErrorKind) -> dict[str, Any]:
     flaw = point.flaw(kind)
-    reason = REASONS[flaw] if flaw else None
-    return {"method": point.method.key, **fields_of(point, *numbers), "valid": flaw is None, "reason": reason}
+    return {
+        "method": point.method.key,
+        **{name: getattr(point, name, None) for name in NUMBERS},
+        "valid": flaw is None,
+        "reason": REASONS[flaw] if flaw else None,
+        "tolerance": getattr(point, "tolerance", None),
+    }
 
 
-def _run_fields(method: Method | None, point: Point | None, kind: ErrorKind, error: str) -> dict[str, Any]:
+def _run_fields(
+    method: Method | Reference | None, point: Point | TaylorPoint | None, kind: ErrorKind, error: str
+) -> dict[str, Any]:
     """A method and its run, whose error is called `error`; None for what there is not."""
     return {
         "method": method and method.key,
-        "h": point and point.h,
-        "force_evaluations": point and point.force_evaluations,
+        **{name: getattr(point, name, None) for name in ("h", "force_evaluations")},
         error: point and point.error(kind),
+        **{name: getattr(point, name, None) for name in ("seconds", "tolerance")},
     }
 
 
 def _advice_fields(found: Findings, advice: Advice) -> dict[str, Any]:
-    point = advice.point
+    point, series = advice.point, advice.series
     attempts = [
         _run_fields(attempt.method, attempt.point, found.kind, "error") | {"why_not": attempt.why_not}
         for attempt in advice.attempts
     ]
+    if series:
+        attempts.append(_run_fields(TAYLOR_20, series.point, found.kind, "error") | {"why_not": series.why_not})
     return {
         "time": advice.time,
         **fields_of(found, "target", "budget"),
         **_run_fields(point.method if point else None, point, found.kind, "reached"),
+        "saves_over_rk4": advice.saves,
         "reason": None if point else "no method gets there",
         "attempts": attempts,
     }
