@@ -294,7 +294,7 @@ def test_seconds_of_ones_own_method_are_compared_without_numba(tmp_path):
     assert euler < mine < 8 * euler  # the guard's share; compiled, Euler would be some 25 times as fast
 
 
-ALL = ("accuracy", "--all", "--theta", "2", "--time", "20", "--h-values", "0.5:0.01:7")
+ALL = ("accuracy", "--all", "--time", "20", "--h-values", "0.5:0.01:7")
 needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed")
 
 
@@ -333,7 +333,7 @@ def test_over_seconds_all_there_is_includes_the_series_and_the_floor():
     assert len(series) > 10
     for point in series:
         assert (point["h"], point["force_evaluations"]) == (None, None)
-        assert point["steps"] > 0 and point["seconds"] > 0 and point["tolerance"] > 0
+        assert min(point["steps"], point["seconds"], point["tolerance"]) > 0
     (floor,) = (point for point in answer["points"] if point["method"] == "closed_form")
     assert not floor["valid"]
     assert 0 < floor["seconds"] < max(point["seconds"] for point in answer["points"])
