@@ -12,6 +12,7 @@ from engine.run.lockstep import Reading, Sample
 from engine.scenes import Scene
 from recordings.errors import RecordingError, printable, printable_items
 from recordings.events import Entry, Seal
+from recordings.fields import in_plane
 from recordings.format import (
     CLOCK_OFFSET,
     EVENTS,
@@ -80,7 +81,7 @@ class Layout:
                     raise RecordingError("a milestone is of a method that the file does not have")
                 yield [message], Entry(clock_of(message), event)
             elif message.channel in self.methods and not only_events:
-                run, step, t, reading = decode_reading(message.data)
+                run, step, t, reading = decode_reading(message.data, in_plane(self.methods[message.channel][0]))
                 if not readings:
                     head = run, step, t
                     if run != run_before:

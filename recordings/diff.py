@@ -11,9 +11,9 @@ from math import isclose
 from typing import Any, NamedTuple
 
 from engine.run.lockstep import Reading, Sample
-from engine.scenes import Scene
+from engine.scenes import PARAMETERS, Scene
 from recordings.events import Event
-from recordings.fields import EXTREMES, VALUES, distance, same_bits, ulps
+from recordings.fields import EXTREMES, VALUES, distance, same_bits, ulps, values_of
 from recordings.recording import Recording
 from recordings.scan import ShowProgress
 from recordings.timeline import NOT_DONE
@@ -123,7 +123,8 @@ def compare(a: Recording, b: Recording, progress: ShowProgress | None = None) ->
 
 def _fields(scene: Scene) -> dict[str, Any]:
     """What a run started with, as numbers and texts."""
-    return scene.fields() | {"methods": ", ".join(method.key for method in scene.cast)}
+    parameters = {name: getattr(scene, name) for name in PARAMETERS}  # 0.0 of models without
+    return scene.fields() | parameters | {"methods": ", ".join(method.key for method in scene.cast)}
 
 
 def _events(a: Recording, b: Recording, run: int) -> Iterator[EventDifference]:
@@ -215,8 +216,7 @@ class _Pairing:
             if other is None or same_bits(one, other):
                 continue
             self._result.errors[key].take(a, one, other)
-            for name in VALUES:
-                x, y = getattr(one, name), getattr(other, name)
+            for name, x, y in zip(VALUES, values_of(one), values_of(other), strict=True):
                 if name in EXTREMES and (self._gap or x == one.energy_error or y == other.energy_error):
                     continue  # it claims nothing, see fields.without_extremes, or they are about different steps
                 if x != y or ulps(x, y):

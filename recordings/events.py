@@ -15,7 +15,7 @@ from engine.methods.own import OwnMethod
 from engine.models import MODELS, Model
 from engine.models.model import Energy, EnergyReference, ExactMotion, Force, Phase, Sine, State
 from engine.run.lockstep import Sample
-from engine.scenes import Scene
+from engine.scenes import PARAMETERS, Scene
 
 if TYPE_CHECKING:
     from engine.run.observer import Milestone
@@ -142,6 +142,7 @@ def _unknown_method(key: str, sha256: str) -> Method:
         other_names=(),
         reference="",
         used="",
+        models=tuple(MODELS),
         sha256=sha256,
     )
 
@@ -174,6 +175,11 @@ class _UnknownModel(Model):
 
 @dataclass(frozen=True, slots=True)
 class _UnknownScene(Scene):
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """Those that were recorded."""
+        return tuple(name for name in PARAMETERS if getattr(self, name))
+
     @property
     def equations(self) -> Model:
         return _UnknownModel(self.w0_squared)

@@ -5,12 +5,14 @@ Messages, their schemas, the columns of a CSV, `verify`, `run --json` and `--fai
 
 import math
 import struct
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 from operator import attrgetter
 from typing import Any, NamedTuple, get_args
 
+from engine.models import MODELS
 from engine.run.lockstep import Reading, Sample
+from engine.scenes import Scene
 from recordings.events import EventKind
 
 
@@ -26,7 +28,7 @@ class Field(NamedTuple):
     @property
     def column(self) -> str:
         """Its name in a table, with the unit."""
-        unit = {"rad/s": "rad_per_s", "s^-2": "per_s2"}.get(self.unit, self.unit)
+        unit = {"rad/s": "rad_per_s", "s^-1": "per_s", "s^-2": "per_s2"}.get(self.unit, self.unit)
         return f"{self.name}_{unit}" if unit else self.name
 
     @property
@@ -52,8 +54,20 @@ READING = (
 )
 """One method in a sample: the attributes of a Reading, in order.  `verify` compares all of them."""
 
+PLANE = (
+    Field("x", about="over the length at rest", required=False),
+    Field("y", about="likewise, upwards from the pivot", required=False),
+    Field("vx", "s^-1", required=False),
+    Field("vy", "s^-1", required=False),
+    Field("spring_energy", about="over that at the start", required=False),
+)
+"""What follows of a model in the plane: position, velocity, and the energy in the spring; all of them or none."""
+
 SCENE_NUMBERS = ("theta", "omega", "length", "gravity", "h")
-"""The attributes of a Scene that are numbers."""
+"""The attributes of a Scene that are numbers, besides its model's parameters."""
+
+PARAMETER = (Field("friction", "s^-1", required=False), Field("stiffness", "s^-2", required=False))
+"""Parameters of models; only in starts, and only of those that have them."""
 
 EVENT = (
     Field("kind", about=" ".join(get_args(EventKind)), type="string"),
@@ -84,24 +98,56 @@ SEAL = (
 )
 """The last message of a chunk."""
 
-VALUES = tuple(field.name for field in READING)
+VALUES = tuple(field.name for field in (*READING, *PLANE))
+IN_PLANE = tuple(field.name for field in PLANE)
 NUMBERS = tuple(field.name for field in READING if field.required)
+PHASE = ("theta", "omega", "x", "y", "vx", "vy")
 EXTREMES = ("energy_error_low", "energy_error_high")
 
-values_of = attrgetter(*VALUES)
-"""The values of a Reading, in the order of VALUES."""
 numbers_of = attrgetter(*NUMBERS)
-"""Those of them that are always there."""
+"""The values of a Reading that are always there."""
+_scalars_of = attrgetter(*(field.name for field in READING))
+_NOWHERE = (None,) * len(PLANE)
+
+
+def values_of(reading: Reading) -> tuple[float | None, ...]:
+    """The values of a Reading, in the order of VALUES; None for those that it does not have."""
+    return *_scalars_of(reading), *_plane_of(reading)
+
+
+def _plane_of(reading: Reading) -> tuple[float | None, ...]:
+    z, w = reading.position, reading.velocity
+    return _NOWHERE if z is None or w is None else (z.real, z.imag, w.real, w.imag, reading.spring_energy)
+
+
+def in_plane(model: str) -> bool:
+    """Whether the readings of a model have a place in the plane."""
+    return model in MODELS and MODELS[model].in_plane
+
+
+def reading_fields(*models: str) -> tuple[Field, ...]:
+    """What the readings of these models have."""
+    return (*READING, *(PLANE if any(map(in_plane, models)) else ()))
+
+
+def numbers_in(scene: Scene) -> dict[str, float]:
+    """The numbers of a scene, with the parameters that its model has."""
+    return {name: float(getattr(scene, name)) for name in (*SCENE_NUMBERS, *scene.parameters)}
 
 
 COLUMNS = ("clock_s", *(field.column for field in MOMENT), "method", *(field.column for field in READING))
 """Of a table of samples: names with their units; energies are per unit m·L²."""
 
 
-def rows(clock: float, sample: Sample, methods: Sequence[str]) -> Iterator[tuple[object, ...]]:
-    """A sample as rows of such a table, one for each method."""
+def columns(*models: str) -> tuple[str, ...]:
+    """Those of a table of these models: in the plane there are some more."""
+    return (*COLUMNS, *(field.column for field in reading_fields(*models)[len(READING) :]))
+
+
+def rows(clock: float, sample: Sample, methods: Sequence[str], width: int) -> Iterator[tuple[object, ...]]:
+    """A sample as rows of such a table with so many columns, one for each method."""
     for method, reading in zip(methods, sample.readings, strict=True):
-        yield clock, sample.run, sample.step, sample.t, method, *values_of(reading)
+        yield (clock, sample.run, sample.step, sample.t, method, *values_of(reading))[:width]
 
 
 def left_out(energy_error: float) -> dict[str, float | None]:
@@ -120,7 +166,12 @@ def schema_of(title: str, about: str, fields: tuple[Field, ...]) -> dict[str, An
     }
 
 
-EVENT_SCHEMA = schema_of("pendu.Event", "What was done before this step of this run.", (*MOMENT, *EVENT))
+def event_schema(parameters: Collection[str] = ()) -> dict[str, Any]:
+    """The schema of the events of a recording that begins with a model of these parameters."""
+    fields = (*MOMENT, *EVENT, *(field for field in PARAMETER if field.name in parameters))
+    return schema_of("pendu.Event", "What was done before this step of this run.", fields)
+
+
 SEAL_SCHEMA = schema_of("pendu.Seal", "What the recording holds so far.", SEAL)
 
 
@@ -128,15 +179,20 @@ def sample_schema(model: str) -> dict[str, Any]:
     """The schema of the samples of a model."""
     title = "pendu.Sample" if model == "pendulum" else f"pendu.Sample.{model}"
     about = f"A method at a step of the model {model}; theta from the downward vertical, energy per m L^2."
-    return schema_of(title, about, (*MOMENT, *READING))
+    return schema_of(title, about, (*MOMENT, *reading_fields(model)))
 
 
 _pack = struct.Struct(f"<{len(NUMBERS)}d").pack
+_pack_plane = struct.Struct(f"<{len(PLANE)}d").pack
 
 
 def same_bits(a: Reading, b: Reading) -> bool:
     """Whether two readings have the same bits, quickly.  (0.0 == -0.0, hence the second half.)"""
-    return a == b and _pack(*numbers_of(a)) == _pack(*numbers_of(b))
+    return (
+        a == b
+        and _pack(*numbers_of(a)) == _pack(*numbers_of(b))
+        and (a.position is None or _pack_plane(*_plane_of(a)) == _pack_plane(*_plane_of(b)))
+    )
 
 
 def distance(a: float | None, b: float | None) -> float:

@@ -13,10 +13,10 @@ from engine.methods import Cast, Method
 from engine.run.lockstep import Reading, Sample
 from engine.run.observer import Milestone
 from engine.run.verdict import Verdict
-from engine.scenes import Scene, SceneError
+from engine.scenes import PARAMETERS, Scene, SceneError
 from recordings.errors import RecordingError, printable
 from recordings.events import Event, Seal, method_named, name_of, noticed, scene_named
-from recordings.fields import NUMBERS, SCENE_NUMBERS, VALUES, left_out, values_of
+from recordings.fields import IN_PLANE, NUMBERS, SCENE_NUMBERS, VALUES, left_out, numbers_in, values_of
 
 FORMAT_VERSION = 2
 PROFILE = "pendu"  # in the file's header
@@ -56,20 +56,19 @@ def _is_key(text: str) -> bool:
 
 
 def encode_readings(sample: Sample) -> list[bytes]:
-    """One message per method, in order, without the values of `left_out`."""
+    """One message per method, in order, without the values of `left_out` and those it does not have."""
     messages = []
     for reading in sample.readings:
         fields = {"run": sample.run, "step": sample.step, "t": sample.t}
-        fields |= zip(VALUES, values_of(reading), strict=True)
-        for name, value in left_out(reading.energy_error).items():
-            if fields[name] == value:
-                del fields[name]
+        values = zip(VALUES, values_of(reading), strict=True)
+        absent = left_out(reading.energy_error)
+        fields |= ((name, value) for name, value in values if value is not None and value != absent.get(name))
         messages.append(_dumps(fields))
     return messages
 
 
-def decode_reading(data: bytes) -> tuple[int, int, float, Reading]:
-    """(run, step, t, reading) of one message."""
+def decode_reading(data: bytes, plane: bool = False) -> tuple[int, int, float, Reading]:
+    """(run, step, t, reading) of one message; `plane`: of a model in the plane."""
     fields = _loads(data)
     values: list[Any] = [fields.get(name) for name in _NUMBERS]
     for value in values:
@@ -78,6 +77,9 @@ def decode_reading(data: bytes) -> tuple[int, int, float, Reading]:
     t, *values = values
     absent = left_out(values[_ENERGY_ERROR])
     values += [_number(fields, name) if name in fields else value for name, value in absent.items()]
+    if plane:
+        x, y, vx, vy, spring_energy = (_number(fields, name) for name in IN_PLANE)
+        values += [complex(x, y), complex(vx, vy), spring_energy]
     return _count(fields, "run"), _count(fields, "step"), t, Reading(*values)
 
 
@@ -87,7 +89,7 @@ def encode_event(event: Event) -> bytes:
     if event.scene is not None:
         fields["scene"] = event.scene.name
         fields |= {"watch": event.scene.watch} if event.scene.watch else {}
-        fields |= {name: float(getattr(event.scene, name)) for name in SCENE_NUMBERS}
+        fields |= numbers_in(event.scene)
         fields["model"] = event.scene.model
         fields["methods"] = [name_of(method) for method in event.scene.cast]
     fields |= {name: value for name in ("h", "speed") if (value := getattr(event, name)) is not None}
@@ -212,7 +214,8 @@ def _key(value: object) -> str:
 
 
 def _scene(fields: dict[str, Any]) -> Scene:
-    numbers: dict[str, Any] = {name: _number(fields, name) for name in SCENE_NUMBERS}
+    parameters = (name for name in PARAMETERS if name in fields)
+    numbers: dict[str, Any] = {name: _number(fields, name) for name in (*SCENE_NUMBERS, *parameters)}
     try:
         texts = {"watch": _text(fields, "watch", ""), "model": _key(fields.get("model", MODEL))}
         return scene_named(_text(fields, "scene"), cast=_cast(fields), **texts, **numbers)

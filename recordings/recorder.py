@@ -20,7 +20,7 @@ from engine.run.lockstep import Sample
 from engine.scenes import Scene
 from recordings.errors import DiskError, NameTakenError, writing
 from recordings.events import Event, Seal
-from recordings.fields import EVENT_SCHEMA, SEAL_SCHEMA, sample_schema, without_extremes
+from recordings.fields import SEAL_SCHEMA, event_schema, sample_schema, without_extremes
 from recordings.format import (
     CLOCK_LIMIT,
     CLOCK_OFFSET,
@@ -187,7 +187,7 @@ class Recorder:
                 self._writer.add_metadata(OWN_METHOD, own)
                 self._digest.record(Metadata(OWN_METHOD, own))
         facts = {name: metadata[name] for name in ("format", *FUNCTIONS) if name in metadata}
-        self._register(EVENTS, EVENT_SCHEMA, facts)
+        self._register(EVENTS, event_schema(scene.parameters), facts)
         self._register(SEALS, SEAL_SCHEMA)
 
     def _declare(self, scene: Scene) -> None:

@@ -30,7 +30,7 @@ from mcap.records import Channel, Statistics
 
 from engine.scenes import Scene
 from recordings.errors import RecordingError
-from recordings.fields import SCENE_NUMBERS
+from recordings.fields import numbers_in
 from recordings.format import CLOCK_LIMIT, CLOCK_OFFSET, EVENTS, FORMAT_VERSION
 from recordings.framing import CHANNEL_LIMIT, MAGIC, RECORD, SMALL_LIMIT, read_record, record_at
 
@@ -234,8 +234,7 @@ def facts_of(scene: Scene, wall: WallClock | None) -> dict[str, str]:
         "scene": scene.name,
         "model": scene.model,
     }
-    for name in SCENE_NUMBERS:
-        metadata[f"{name}.hex"] = float.hex(float(getattr(scene, name)))
+    metadata |= {f"{name}.hex": value.hex() for name, value in numbers_in(scene).items()}
     if wall is not None:
         metadata["started"] = time.strftime("%Y-%m-%dT%H:%M:%S%z", time.localtime(wall() / 1e9))
         metadata["python"] = platform.python_version()

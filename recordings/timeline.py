@@ -17,7 +17,7 @@ from typing import Any, TypeVar, get_args, overload
 from engine.methods import Method
 from engine.run.lockstep import Sample
 from engine.run.observer import Milestone
-from engine.scenes import Scene
+from engine.scenes import PARAMETERS, Scene
 from recordings.events import Entry, Event, EventKind, method_named, name_of, noticed, scene_named
 from recordings.fields import SCENE_NUMBERS
 
@@ -25,6 +25,7 @@ TEXT_LIMIT = 1 << 22  # characters of all the different texts together
 _KINDS: tuple[EventKind, ...] = get_args(EventKind)
 _EQUAL_COST = 1 << 7  # beside the kind
 _NOTHING = -1
+_NUMBERS = (*SCENE_NUMBERS, *PARAMETERS)
 NOT_DONE = ("start", "stop", "noticed")  # by somebody in a run
 T = TypeVar("T")
 
@@ -91,7 +92,7 @@ class Events(_Rows[tuple[float, Event]]):
         extra, value = _NOTHING, event.speed if event.h is None else event.h
         if (scene := event.scene) is not None:
             extra = len(self._cast_ends) - 1
-            self._scenes.extend(getattr(scene, name) for name in SCENE_NUMBERS)
+            self._scenes.extend(getattr(scene, name) for name in _NUMBERS)
             self._names.extend(map(self._number, (scene.name, scene.watch)))
             self._casts.append(self._models.setdefault(scene.model, len(self._models)))
             self._casts.extend(self._methods.setdefault(name_of(method), len(self._methods)) for method in scene.cast)
@@ -197,9 +198,9 @@ class Events(_Rows[tuple[float, Event]]):
 
     def _scene(self, number: int) -> Scene:
         name, watch = (self._known_texts[text] for text in self._names[2 * number : 2 * number + 2])
-        count = len(SCENE_NUMBERS)
+        count = len(_NUMBERS)
         values = self._scenes[count * number : count * (number + 1)]
-        numbers: dict[str, Any] = dict(zip(SCENE_NUMBERS, values, strict=True))
+        numbers: dict[str, Any] = dict(zip(_NUMBERS, values, strict=True))
         model, *methods = self._casts[self._cast_ends[number] : self._cast_ends[number + 1]]
         cast = tuple(self._known[0][method] for method in methods)
         return scene_named(name, watch=watch, model=self._known[1][model], cast=cast, **numbers)

@@ -18,7 +18,7 @@ from engine.run.stepping import Stepping
 from engine.scenes import SceneError
 from recordings.errors import RecordingError, named
 from recordings.events import Event, unknown_in
-from recordings.fields import EXTREMES, VALUES, distance, same_bits, ulps
+from recordings.fields import EXTREMES, PHASE, VALUES, distance, same_bits, ulps, values_of
 from recordings.headless import MOST_STEPS, StepBudget
 from recordings.library import open_file
 from recordings.scan import Gap, Scan, ShowProgress
@@ -211,9 +211,8 @@ class Rerun:
         for method, was, now in zip(self._methods, recorded.readings, computed.readings, strict=True):
             if self._only is not None and method not in self._only:
                 continue
-            lost = max(self._allowed[method, "theta"], self._allowed[method, "omega"]) > LOST
-            for field in VALUES:
-                a, b = getattr(was, field), getattr(now, field)
+            lost = max(self._allowed[method, name] for name in PHASE) > LOST
+            for field, a, b in zip(VALUES, values_of(was), values_of(now), strict=True):
                 if field in EXTREMES and a == was.energy_error:
                     continue  # such an extreme claims nothing: see fields.without_extremes
                 self.max_difference = max(self.max_difference, distance(a, b))
@@ -226,6 +225,6 @@ class Rerun:
 
     def _widen(self, computed: Sample, astray: Sample) -> None:
         for method, a, b in zip(self._methods, computed.readings, astray.readings, strict=True):
-            for field in VALUES:
-                apart = distance(getattr(a, field), getattr(b, field))
+            for field, one, other in zip(VALUES, values_of(a), values_of(b), strict=True):
+                apart = distance(one, other)
                 self._allowed[method, field] = max(self._allowed[method, field], apart)

@@ -181,7 +181,7 @@ def test_a_method_is_added_to_the_project_as_described(tmp_path):
     for arguments, word in [
         (["methods"], "position_verlet"),
         (["run", "--time", "60", "--methods", "position,rk4", "--record", "two.mcap"], "Position Verlet  bounded"),
-        (["verify", "two.mcap", "golden"], "9 recordings, 9 identical"),
+        (["verify", "two.mcap", "golden"], "11 recordings, 11 identical"),
     ]:
         done = subprocess.run(
             [*program, *arguments], cwd=tmp_path, env=environment, capture_output=True, text=True, check=False

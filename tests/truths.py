@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from engine.methods import METHODS, Method
+from engine.methods import GENERAL, Method
 from engine.run.judging import Judging
 from engine.run.lockstep import Lockstep
 from engine.run.loops import LoopsOf
@@ -48,7 +48,7 @@ def scene_at(start: str, z: float) -> Scene:
 
 def truths() -> Iterator[tuple[Method, str, float, str]]:
     """Method, start, h·w0 and the letter of each cell."""
-    by_key = {method.key: method for method in METHODS}
+    by_key = {method.key: method for method in GENERAL}
     for line in FILE.read_text().splitlines():
         key, start, letters = line.split()
         for z, letter in zip(Z, letters, strict=True):

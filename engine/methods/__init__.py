@@ -3,7 +3,9 @@
 `method` says what a method is: a generator function (force, phase, h) -> phases, written as in the book, with only
 + and * on the phase and never `+=`, which would change arrays in place.  It therefore runs unchanged on floats,
 NumPy arrays, complex numbers, mpmath numbers and under Numba.  The families: `euler`, `verlet`, `runge_kutta`, and
-`splitting`, which builds methods from coefficients.
+`splitting`, which builds methods from coefficients.  Others are not as general, and there for one scene each:
+`precision` carries Verlet in other numbers, `adaptive` divides its steps, `damped` adds friction, `stiff` tells fast
+from slow, and `learned` knows the pendulum from the measurements behind `learned_numbers`.
 
 To add a method, write its function, its entry and its place in FAMILY in one of these files.  Every field of an
 entry is a claim, and tests/engine/methods hold it against what `measure` finds.  A user's `own` method comes from the
@@ -12,7 +14,7 @@ text of a file; `examine` says whether it is one, and loads it.
 
 import copyreg
 
-from engine.methods import euler, runge_kutta, splitting, verlet
+from engine.methods import adaptive, damped, euler, learned, precision, runge_kutta, splitting, stiff, verlet
 from engine.methods.euler import EXPLICIT_EULER, SYMPLECTIC_EULER
 from engine.methods.method import Method as Method
 from engine.methods.runge_kutta import RK4
@@ -21,7 +23,10 @@ from engine.methods.verlet import VELOCITY_VERLET
 Cast = tuple[Method, ...]
 """The methods of a run, in order."""
 
-METHODS: Cast = (*euler.FAMILY, *verlet.FAMILY, *runge_kutta.FAMILY, *splitting.FAMILY)
+GENERAL: Cast = (*euler.FAMILY, *verlet.FAMILY, *runge_kutta.FAMILY, *splitting.FAMILY)
+"""The methods for any force and any numbers.  The others belong to a scene that needs them."""
+
+METHODS: Cast = (*GENERAL, *damped.FAMILY, *adaptive.FAMILY, *precision.FAMILY, *stiff.FAMILY, *learned.FAMILY)
 
 USUAL_CAST: Cast = (EXPLICIT_EULER, SYMPLECTIC_EULER, VELOCITY_VERLET, RK4)
 

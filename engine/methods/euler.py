@@ -1,6 +1,7 @@
 """The Euler methods: one force a step, order 1."""
 
 from collections.abc import Iterator
+from typing import Any
 
 from engine.methods.method import Method
 from engine.models.model import Force, Phase
@@ -15,6 +16,17 @@ def explicit_euler(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
     theta, omega = phase
     while True:
         theta, omega = theta + h * omega, omega + h * force(theta)
+        yield theta, omega
+
+
+def explicit_euler_with_friction(force: Any, phase: Phase, h: float) -> Iterator[Phase]:
+    """Explicit Euler where -gamma omega is added to the force; gamma is `force.friction`.
+
+    Small swings gain energy from h = gamma/w0² on.
+    """
+    theta, omega = phase
+    while True:
+        theta, omega = theta + h * omega, omega + h * (force(theta) - force.friction * omega)
         yield theta, omega
 
 
@@ -45,6 +57,8 @@ EXPLICIT_EULER = Method(
     other_names=("forward Euler",),
     reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), I.1.2",
     used="equations with additive noise (Euler-Maruyama): Brian 2 [brian2.readthedocs.io, Numerical integration]",
+    with_friction=explicit_euler_with_friction,
+    models=("pendulum", "linear", "damped"),
 )
 
 SYMPLECTIC_EULER = Method(

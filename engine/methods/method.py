@@ -1,9 +1,9 @@
 """What a method is, and what is claimed of it."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from engine.models.model import Force, Phase
+from engine.models.model import Force, Model, Phase
 from engine.models.modified_energy import ModifiedEnergy
 
 Phases = Callable[[Force, Phase, float], Iterator[Phase]]
@@ -24,17 +24,25 @@ class Method:
     first_same_as_last: bool  # the last force of a step is the next one's first: a run needs one more than its steps
     symplectic: bool  # the step's Jacobian has determinant 1
     reversible: bool  # the step and omega -> -omega undo each other
-    linear_limit: float  # largest z = h·w0 that is stable on the linear oscillator; 0: none
+    linear_limit: float | None  # largest z = h·w0 that is stable on the linear oscillator; 0: none; None: no one number
     other_names: tuple[str, ...]
     reference: str
     used: str  # where, and in brackets who says so
     note: str = ""  # what else to know; also tested
     modified_energy: ModifiedEnergy | None = None  # which it keeps but for O(h⁴); None: none is known, or there is none
+    with_friction: Phases | None = None  # the same where the force has `friction`, if `phases` does not ask for it
+    models: tuple[str, ...] = ("pendulum", "linear")  # keys of those that it is for
+    general: bool = True  # takes any force, and arrays, complex and mpmath numbers too; else there is no map, no area
+    varies: bool = False  # its evaluations depend on where it is; `force_evaluations` is then what is usual
+
+    def on(self, model: Model) -> "Method":
+        """This method as it carries a model."""
+        return replace(self, phases=self.with_friction) if model.friction and self.with_friction else self
 
     def step(self, force: Force, phase: Phase, h: float) -> Phase:
         """The phase after one step of h [s]."""
         return next(self.phases(force, phase, h))
 
     def evaluations(self, steps: int) -> int:
-        """How many times a run of so many steps evaluates the force."""
+        """How many times a run of so many steps evaluates the force; about, where that varies."""
         return steps * self.force_evaluations + self.first_same_as_last

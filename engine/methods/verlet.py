@@ -39,6 +39,7 @@ VELOCITY_VERLET = Method(
     reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), I.1.4",
     used="molecular dynamics: the default of LAMMPS [docs.lammps.org, run_style]",
     modified_energy=velocity_verlet_modified_energy,
+    models=("pendulum", "linear", "spring"),
 )
 
 FAMILY = (VELOCITY_VERLET,)

@@ -1,12 +1,17 @@
 """The models: what is simulated, one a file, and what it is compared with.
 
-`model` says what a model is, and holds the types a method meets.  `pendulum` and `linear` are the models;
+`model` says what a model is, and holds the types a method meets.  `pendulum`, `linear`, `damped` and `spring` are the
+models; the last two have no closed form, and are compared with a `reference`;
 `exact_pendulum` is the pendulum's motion in closed form, the reference of every error in theta; `modified_energy`
 is what symplectic methods conserve instead of the energy.
 """
 
+from engine.models.damped import DampedPendulum
 from engine.models.linear import LinearOscillator
 from engine.models.model import Model as Model
 from engine.models.pendulum import Pendulum
+from engine.models.spring import Spring
 
-MODELS: dict[str, type[Pendulum | LinearOscillator]] = {model.key: model for model in (Pendulum, LinearOscillator)}
+MODELS: dict[str, type[Pendulum | LinearOscillator | DampedPendulum | Spring]] = {
+    model.key: model for model in (Pendulum, LinearOscillator, DampedPendulum, Spring)
+}

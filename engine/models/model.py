@@ -32,9 +32,19 @@ class EnergyReference(NamedTuple):
 
     start: float  # s⁻², the energy at the start
     scale: float  # s⁻², the same, or 2 w0² where that is zero
+    true: Callable[[float], float] | None = None
+    """The true motion's energy [s⁻²] at a time [s], where it is not conserved."""
 
-    def error(self, energy: float) -> float:
-        return (energy - self.start) / self.scale
+    def error(self, energy: float, t: float = 0.0) -> float:
+        """(E - E0)/E0, or where energy is not conserved ln(E/E_true) at this time [s]."""
+        if self.true is None:
+            return (energy - self.start) / self.scale
+        return _log(energy) - _log(self.true(t))
+
+
+def _log(energy: float) -> float:
+    """The logarithm of an energy [s⁻²], finite also where there is none left, or too much for a double."""
+    return math.log(min(max(energy, 1e-300), 1e300))
 
 
 Regime = Literal["libration", "rotation", "separatrix", "equilibrium"]
@@ -48,21 +58,54 @@ class ExactMotion:
     """The state at a time [s], negative times included; theta continues from the start, unwrapped."""
     regime: Regime
     period: float | None = None  # s, per swing or, in rotation, per turn; None: not periodic
+    accuracy: float = 0.0  # rad; theta's largest error in the first minute where there is no closed form
 
 
 class Model(ABC):
-    """Equations of motion theta'' = force(theta): a frozen dataclass of their parameters."""
+    """Equations of motion theta'' = force(theta): a frozen dataclass of their parameters.
+
+    With friction there is a velocity on the right as well, and in the plane a position is a complex number; then the
+    force has attributes for methods that ask for more than its value.
+    """
 
     key: ClassVar[str]  # in scenes, recordings and on the command line
     equation: ClassVar[str]  # for people
     turns: ClassVar[bool]  # whether theta + 2 pi is the same place, and it can go over the top
+    in_plane: ClassVar[bool] = False  # a position is a complex number, and theta and omega do not tell the whole phase
+    parameters: ClassVar[tuple[str, ...]] = ()  # what a scene says of it beside length and gravity
+    plain: ClassVar[bool] = True  # theta'' = force(theta) and no more: compiled, mapped, and its energy is conserved
+
+    conserved: ClassVar[bool] = True  # whether the true motion keeps its energy
 
     w0_squared: float  # the square of the frequency of small swings [s⁻²]
+    friction: float = 0.0  # s⁻¹
 
     @property
     def w0(self) -> float:
         """The frequency of small swings [rad/s]."""
         return math.sqrt(self.w0_squared)
+
+    @property
+    def fastest(self) -> float:
+        """The highest frequency in it [rad/s], the one that limits h."""
+        return self.w0
+
+    def start(self, theta: float, omega: float) -> Phase:
+        """The phase that a run from theta [rad] and omega [rad/s] starts with."""
+        return theta, omega
+
+    def still(self, theta: float) -> Phase:
+        """The phase of least energy at an angle [rad]: at rest."""
+        return theta, 0.0
+
+    def seen(self, phase: Phase) -> State:
+        """Angle and angular velocity of a phase."""
+        theta, omega = phase
+        return State(float(theta), float(omega))  # a method may carry other numbers
+
+    def spring_energy(self, phase: Phase) -> float | None:
+        """The energy in the spring [s⁻²]; None: it has none."""
+        return None
 
     @abstractmethod
     def force(self, sin: Sine = math.sin) -> Force:
@@ -82,5 +125,5 @@ class Model(ABC):
 
     def reference(self, theta: float, omega: float) -> EnergyReference:
         """What the energy errors of a run from theta [rad] and omega [rad/s] are relative to."""
-        start: float = self.energy()((theta, omega))
+        start: float = self.energy()(self.start(theta, omega))
         return EnergyReference(start, start if start > 0 else 2 * self.w0_squared)

@@ -62,6 +62,7 @@ class Neighbourhood:
 
     def _carry(self, carried: _Carried, steps: int, h: float) -> None:
         method, model = carried.method, self._model
+        method = method.on(model)
         phases = method.phases(model.force(), carried.phase, h)
         rings = method.phases(model.force(np.sin), carried.ring, h)
         try:

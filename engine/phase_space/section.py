@@ -25,6 +25,7 @@ Points = tuple[Floats, Floats]  # theta [rad], unwrapped, and omega [rad/s], of 
 SETTLED = 1e-4
 """Where the rotation numbers of the two halves of an orbit differ by a larger part of them, it has none."""
 LARGEST = 12  # denominator of a fraction that counts as small
+PERIODS, FEWEST_STEPS, MOST_STEPS = 30, 2_000, 25_000  # that a period is averaged over
 _CHUNK = 8  # steps between two looks at a displacement
 
 
@@ -129,6 +130,21 @@ def rotation_number(theta: Floats, omega: Floats, w0: float, spins: bool = False
         return None
     rotation, change = _average(turns), _average(turns[:half]) - _average(turns[half:])
     return rotation if abs(change) <= SETTLED * abs(rotation) else None
+
+
+def numerical_period(method: Method, model: Model, h: float, start: Phase) -> float | None:
+    """How long a swing or a turn takes a method [s]: h over the rotation number of its map, on average over many.
+
+    Small swings of velocity Verlet and symplectic Euler take h·pi / asin(h·w0/2).  None where there is no such
+    number, or within MOST_STEPS too few periods.
+    """
+    period = model.exact(*start).period
+    if period is None or (steps := round(PERIODS * period / h)) > MOST_STEPS:
+        return None
+    theta, omega = orbit(method, model, h, start, max(steps, FEWEST_STEPS))
+    spins = model.turns and bool(np.ptp(np.floor(theta / math.tau + 0.5)))
+    rotation = rotation_number(theta, omega, model.w0, spins)
+    return h / abs(rotation) if rotation else None
 
 
 def _average(values: Floats) -> float:

@@ -33,10 +33,11 @@ def compiled(method: Method, model: Model) -> Loops:
 
     They release the interpreter's lock while they run.  Where Numba's sine is not Python's, which
     depends on the platform's libraries, bits would differ: there the plain loops are returned, and for a user's own
-    method, which may hold anything.
+    method, which may hold anything, for one that is not general, and on a model that is not plain.
     """
     numba: Any = import_module("numba")
-    if isinstance(method, OwnMethod) or not _same_sine(numba):
+    general = method.general and model.plain and not isinstance(method, OwnMethod)
+    if not general or not _same_sine(numba):
         return plain(method, model)
     inner = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)  # never called by Python: compiles twice as fast
     phases, force, energy = inner(method.phases), inner(model.force()), inner(model.energy())

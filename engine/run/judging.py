@@ -1,11 +1,12 @@
 """A Judge at work: it is shown a method at fixed steps of a run, whichever samples the run is known by."""
 
 import math
+from dataclasses import replace
 
 from engine.methods import Method
 from engine.models.model import EnergyReference, Model, Phase
 from engine.run.lockstep import Reading
-from engine.run.loops import LoopsOf
+from engine.run.loops import LoopsOf, advance_with_errors
 from engine.run.verdict import Judge, Judgement, Look, Verdict, stride
 
 MOST_STEPS = 20_000
@@ -27,10 +28,15 @@ class Judging:
         parts: int,
         period: float,
         loops: LoopsOf,
+        t: float = 0.0,
     ) -> None:
-        """`h` [s] is the lockstep's step, of which the method takes so many `parts`."""
-        self._h, self._parts, self._reference = h / parts, parts, reference
-        self._judge = Judge(method, model, reference.scale, self._h, period)
+        """`h` [s] is the lockstep's step, of which the method takes so many `parts`; `t` [s] is where it begins."""
+        self._h, self._parts, self._reference, self._t, self._model = h / parts, parts, reference, t, model
+        if not (method.general and model.plain):  # neighbours cannot be followed: it is judged by its energy alone
+            judged = replace(method, symplectic=False, modified_energy=None)
+        else:
+            judged = method
+        self._judge = Judge(judged, model, reference.scale, self._h, period)
         self._advance = loops(method, model).advance
         self._stride = stride(period, h)
         self._step = -1  # of the lockstep, since the first sample; -1: there was none
@@ -44,12 +50,12 @@ class Judging:
 
     def follow(self, step: int, reading: Reading) -> list[tuple[int, float, Verdict]]:
         """Take in the reading so many steps after the first; the verdicts on the way: step, energy error, verdict."""
-        error, phase = reading.energy_error, (reading.theta, reading.omega)
+        error, phase = reading.energy_error, reading.phase
         changes: list[tuple[int, float, Verdict]] = []
         if reading.diverged_at is not None:
             self._judge.fail(step * self._parts)
         elif self._step < 0:
-            self._judge.look(0, Look(*phase, error, error, error))
+            self._judge.look(0, Look(*self._model.seen(phase), error, error, error))
             self._low = self._high = error
         elif not self._is_taken_again(step, changes):
             self._low, self._high = min(self._low, reading.energy_error_low), max(self._high, reading.energy_error_high)
@@ -66,19 +72,20 @@ class Judging:
         at, phase = self._step, self._phase
         for stop in [*range(first, step, self._stride), step]:
             n = (stop - at) * self._parts
-            done, phase, value, low, high = self._advance(phase, self._h, n, math.inf)
-            if done < n:
+            begin = self._t, at * self._parts
+            went = advance_with_errors(self._advance, self._reference, phase, self._h, n, math.inf, begin)
+            if went.done < n:
                 return False
-            self._low = min(self._low, self._reference.error(low))
-            self._high = max(self._high, self._reference.error(high))
+            phase = went.phase
+            self._low, self._high = min(self._low, went.low), max(self._high, went.high)
             if stop % self._stride == 0:
-                self._look(stop, phase, self._reference.error(value), changes)
+                self._look(stop, phase, went.error, changes)
             at = stop
         return True
 
     def _look(self, step: int, phase: Phase, error: float, changes: list[tuple[int, float, Verdict]]) -> None:
         known = self.judgement.verdict
-        self._judge.look(step * self._parts, Look(*phase, error, self._low, self._high))
+        self._judge.look(step * self._parts, Look(*self._model.seen(phase), error, self._low, self._high))
         self._low = self._high = error
         if (verdict := self.judgement.verdict) != known:
             changes.append((step, error, verdict))

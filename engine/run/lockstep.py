@@ -4,7 +4,7 @@ import copy
 from dataclasses import dataclass
 
 from engine.models.model import Phase
-from engine.run.loops import Advance, LoopsOf, plain
+from engine.run.loops import Advance, LoopsOf, advance_with_errors, plain
 from engine.run.stepping import Stepping
 from engine.scenes import Scene, check_h
 
@@ -13,7 +13,8 @@ from engine.scenes import Scene, check_h
 class Reading:
     """One method at one step.  Always finite: a method that diverges stays where it last was finite.
 
-    Energies are per unit m·L² [s⁻²]; energy errors are relative, (E - E0)/E0, or to 2 w0² where E0 = 0.
+    Energies are per unit m·L² [s⁻²]; energy errors are relative, (E - E0)/E0, or to 2 w0² where E0 = 0, or with
+    friction ln(E/E_true).  Of a bob on a spring, theta and omega are the swing's, which do not tell the whole phase.
     """
 
     theta: float  # rad, unwrapped
@@ -24,6 +25,14 @@ class Reading:
     energy_error_low: float  # smallest and largest energy error over the steps since the previous sample,
     energy_error_high: float  # so that a chart of samples loses no extreme
     diverged_at: float | None = None  # s; first time at which the method's numbers were not finite
+    position: complex | None = None  # x + iy over the length at rest, y upwards; only in the plane
+    velocity: complex | None = None  # s⁻¹
+    spring_energy: float | None = None  # over that at the start
+
+    @property
+    def phase(self) -> Phase:
+        """What the method goes on from."""
+        return (self.theta, self.omega) if self.position is None else (self.position, self.velocity)
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,13 +48,13 @@ class Sample:
 class _Track:
     """One method's way through a run."""
 
-    __slots__ = ("advance", "diverged_at", "energy", "high", "low", "parts", "phase", "run_high", "run_low")
+    __slots__ = ("advance", "diverged_at", "energy", "error", "high", "low", "parts", "phase", "run_high", "run_low")
 
     def __init__(self, advance: Advance, scene: Scene, start_energy: float) -> None:
         self.advance = advance
-        self.phase: Phase = (scene.theta, scene.omega)
+        self.phase = scene.equations.start(scene.theta, scene.omega)
         self.energy = start_energy
-        self.low = self.high = self.run_low = self.run_high = start_energy
+        self.error = self.low = self.high = self.run_low = self.run_high = 0.0  # of the energy
         self.diverged_at: float | None = None
         self.parts = 1  # how many steps of its own it takes in one of the lockstep
 
@@ -69,6 +78,7 @@ class Lockstep:
         self.stepping = Stepping(scene.h, cast=scene.cast)
         self._t_base, self._base_step = 0.0, 0
         self._reference = scene.equations.reference(scene.theta, scene.omega)
+        self._spring_start = scene.equations.spring_energy(scene.equations.start(scene.theta, scene.omega)) or 1.0
         self._limit = min(1.0, self._reference.scale) * 1e300  # so that relative errors are finite, too
         self._tracks = [
             _Track(loops(method, scene.equations).advance, scene, self._reference.start) for method in scene.cast
@@ -100,12 +110,13 @@ class Lockstep:
             if track.diverged_at is not None:
                 continue
             h, steps = self.stepping.h / track.parts, n * track.parts
-            done, track.phase, value, low, high = track.advance(track.phase, h, steps, self._limit)
-            if done:
-                track.energy = value
-                track.low, track.high = min(track.low, low), max(track.high, high)
-            if done < steps:
-                track.diverged_at = self._t_base + ((self.step - self._base_step) * track.parts + done + 1) * h
+            begin = self._t_base, (self.step - self._base_step) * track.parts
+            went = advance_with_errors(track.advance, self._reference, track.phase, h, steps, self._limit, begin)
+            if went.done:
+                track.phase, track.energy, track.error = went.phase, went.energy, went.error
+                track.low, track.high = min(track.low, went.low), max(track.high, went.high)
+            if went.done < steps:
+                track.diverged_at = begin[0] + (begin[1] + went.done + 1) * h
         self.step += n
 
     def sample(self) -> Sample:
@@ -114,17 +125,19 @@ class Lockstep:
 
     def _read(self, track: _Track) -> Reading:
         track.run_low, track.run_high = min(track.run_low, track.low), max(track.run_high, track.high)
-        error = self._reference.error
-        theta, omega = track.phase
-        low, high = error(track.low), error(track.high)
-        track.low = track.high = track.energy
+        model, low, high = self.scene.equations, track.low, track.high
+        track.low = track.high = track.error
+        spring = model.spring_energy(track.phase)
+        position, velocity = track.phase if isinstance(track.phase[0], complex) else (None, None)
         return Reading(
-            theta=theta,
-            omega=omega,
+            *model.seen(track.phase),
             energy=track.energy,
-            energy_error=error(track.energy),
-            max_energy_error=max(error(track.run_high), -error(track.run_low)),
+            energy_error=track.error,
+            max_energy_error=max(track.run_high, -track.run_low),
             energy_error_low=low,
             energy_error_high=high,
             diverged_at=track.diverged_at,
+            position=position,
+            velocity=velocity,
+            spring_energy=None if spring is None else spring / self._spring_start,
         )

@@ -5,10 +5,10 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import cache
 from itertools import islice
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from engine.methods import Method
-from engine.models.model import Energy, Model, Phase
+from engine.models.model import Energy, EnergyReference, Model, Phase
 
 Advanced = tuple[int, Phase, float, float, float]
 """Steps done, phase and energy there, lowest and highest energy on the way [s⁻²]."""
@@ -54,7 +54,7 @@ def advance(phases: Iterator[Phase], energy: Energy, phase: Phase, n: int, limit
 @cache
 def plain(method: Method, model: Model) -> Loops:
     """The loops in Python."""
-    phases, force, energy = method.phases, model.force(), model.energy()
+    phases, force, energy = method.on(model).phases, model.force(), model.energy()
 
     def travelling(phase: Phase, h: float, n: int) -> Phase:
         return next(islice(phases(force, phase, h), n - 1, None))
@@ -66,6 +66,61 @@ def plain(method: Method, model: Model) -> Loops:
             return advance(_to_overflow(phases(force, phase, h), energy), energy, phase, n, limit)
 
     return Loops(travelling, advancing)
+
+
+class Errors(NamedTuple):
+    """Like Advanced, with energy errors."""
+
+    done: int
+    phase: Phase
+    energy: float  # s⁻²
+    error: float  # there
+    low: float  # the lowest and the highest on the way
+    high: float
+
+
+def advance_with_errors(
+    advance: Advance, reference: EnergyReference, phase: Phase, h: float, n: int, limit: float, begin: tuple[float, int]
+) -> Errors:
+    """Advance by n >= 1 steps; the first is after `begin`: a time [s] and the number of steps since.
+
+    Where energy is not conserved, it is compared with the true one at each step.
+    """
+    if reference.true is None:
+        done, phase, energy, low, high = advance(phase, h, n, limit)
+        return Errors(done, phase, energy, reference.error(energy), reference.error(low), reference.error(high))
+    energy, error, low, high = math.nan, math.nan, math.inf, -math.inf
+    for k in range(n):
+        done, following, now, _, _ = advance(phase, h, 1, limit)
+        if not done:
+            return Errors(k, phase, energy, error, low, high)
+        phase, energy = following, now
+        error = reference.error(energy, begin[0] + (begin[1] + k + 1) * h)
+        low, high = min(low, error), max(high, error)
+    return Errors(n, phase, energy, error, low, high)
+
+
+def count_evaluations(method: Method, model: Model, phase: Phase, h: float, n: int) -> int:
+    """How often a run of n >= 1 steps evaluates the force, by taking them; where it is fixed, `Method.evaluations`.
+
+    Where the force has a fast part, that counts, and so does solving for it.
+    """
+    count = 0
+
+    def counting(function: Callable[..., Any]) -> Callable[..., Any]:
+        def counted(*arguments: Any) -> Any:
+            nonlocal count
+            count += 1
+            return function(*arguments)
+
+        return counted
+
+    force = model.force()
+    counted = counting(force)
+    for name, value in vars(force).items():
+        setattr(counted, name, counting(value) if name in ("fast", "solve") else value)
+    next(islice(method.on(model).phases(counted, phase, h), n - 1, None))
+    return count
 
 
 OVERFLOW = (ValueError, ArithmeticError)

@@ -117,7 +117,7 @@ class RunObserver:
         """A judging of each method from the sample on at which this stepping begins."""
         scene, reference = self.scene, self.reference
         judgings = [
-            Judging(method, scene.equations, reference, stepping.h, part, self._period, self._loops)
+            Judging(method, scene.equations, reference, stepping.h, part, self._period, self._loops, self._begin.t)
             for method, part in zip(scene.cast, stepping.parts, strict=True)
         ]
         for judging, reading in zip(judgings, self._begin.readings, strict=True):
@@ -141,7 +141,7 @@ class RunObserver:
     def _modified_energies(self, sample: Sample, stepping: Stepping) -> list[float]:
         energies = [
             method.modified_energy(self.scene.equations, (reading.theta, reading.omega), h)
-            if method.modified_energy
+            if method.modified_energy and self.scene.equations.plain
             else math.nan
             for method, reading, h in zip(self.scene.cast, sample.readings, stepping.own, strict=True)
         ]
@@ -167,14 +167,15 @@ class RunObserver:
         if phases and math.isclose(phases[-1][0], found.theta, rel_tol=1e-6):
             for n, phase in enumerate(phases, 1):
                 if self._is_over(phase[0]):
-                    error = self.reference.error(self.scene.equations.energy()(phase))
                     step, t = before.step + math.ceil(n / part), before.t + n * h
+                    error = self.reference.error(self.scene.equations.energy()(phase), t)
                     return Milestone("over the top", method, step, t, error)
         return Milestone("over the top", method, sample.step, sample.t, found.energy_error)
 
     def _phases(self, method: Method, reading: Reading, h: float, steps: int) -> list[Phase]:
         """The phases after so many steps from a reading; none if they end before."""
+        model = self.scene.equations
         try:
-            return list(islice(method.phases(self.scene.equations.force(), (reading.theta, reading.omega), h), steps))
+            return list(islice(method.on(model).phases(model.force(), reading.phase, h), steps))
         except OVERFLOW:
             return []

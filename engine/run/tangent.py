@@ -41,6 +41,7 @@ class Jacobian(NamedTuple):
 def jacobian(method: Method, model: Model, theta: float, omega: float, h: float) -> Jacobian:
     """The step's Jacobian at (theta, omega), exact to rounding."""
     force = model.force(cmath.sin)
+    method = method.on(model)
     _, by_theta = tangent_map(method, force, (theta, omega), (1.0, 0.0), h)
     _, by_omega = tangent_map(method, force, (theta, omega), (0.0, 1.0), h)
     return Jacobian(by_theta[0], by_omega[0], by_theta[1], by_omega[1])
@@ -76,5 +77,7 @@ def conserved_ellipse(method: Method, z: float) -> tuple[float, float, float] | 
 
     ((a, b), (c, d)) is the step's Jacobian at the bottom.  None where that is no ellipse.
     """
+    if not method.symplectic:
+        return None
     a, b, c, d = at_bottom(method, z)
-    return (-c, a - d, b) if method.symplectic and (a - d) ** 2 / 4 + b * c < 0 else None
+    return (-c, a - d, b) if (a - d) ** 2 / 4 + b * c < 0 else None

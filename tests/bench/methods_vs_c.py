@@ -8,7 +8,7 @@ import math
 import tempfile
 from typing import Any
 
-from engine.methods import METHODS, USUAL_CAST, Method
+from engine.methods import GENERAL, USUAL_CAST, Method
 from engine.run.compiled import compiled
 from engine.run.lockstep import Lockstep
 from engine.run.loops import LoopsOf, plain
@@ -73,7 +73,7 @@ def main() -> None:
     report = {
         "bench": "methods_vs_c",
         "methods": loops,
-        "ns_per_force": {method.key: ns_per_force(method) for method in METHODS},
+        "ns_per_force": {method.key: ns_per_force(method) for method in GENERAL},
         "lockstep_of_four": together(),
         "limits": {"compiled_of_c": COMPILED_LIMIT},
         "pass": all(part["pass"] is not False for both in loops.values() for part in both.values()),

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from engine.methods import METHODS
+from engine.methods import GENERAL
 from engine.run.compiled import available
 from engine.stability.grid import STRIP, default_grid
 from engine.stability.outcomes import outcomes
@@ -44,7 +44,7 @@ def kernel(fast: bool, sine: float) -> dict[str, object]:
     """One way's figures."""
     theta, z = np.full(STRIP, 0.5), np.full(STRIP, 1e-3)  # small steps: no swing leaves the ensemble
     first, _ = map_seconds(fast)
-    steps = {m.key: fastest(lambda m=m: outcomes(m, theta, z, STEPS, fast)) / STEPS / STRIP for m in METHODS}
+    steps = {m.key: fastest(lambda m=m: outcomes(m, theta, z, STEPS, fast)) / STEPS / STRIP for m in GENERAL}
     seconds, taken = map_seconds(fast)
     return {
         "ns_per_pendulum_step": {key: value * 1e9 for key, value in steps.items()},

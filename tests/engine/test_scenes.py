@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from engine.methods import method_of
 from engine.run.lockstep import Lockstep, Sample
-from engine.scenes import DEFAULT_SCENE, LIMITS, SCENES, Z_LIMITS, Scene, SceneError, check_h
+from engine.scenes import DEFAULT_SCENE, GROUPS, LIMITS, SCENES, Z_LIMITS, Scene, SceneError, check_h
 
 EXPLICIT, SYMPLECTIC, VERLET, RK4 = range(4)
 
@@ -202,3 +203,121 @@ def test_rk4_limit_above_rk4_gains_energy_until_it_is_caught_at_0_2_rad() -> Non
 def test_the_limit_scenes_stand_on_either_side_of_their_limit(below: str, above: str, limit: float) -> None:
     assert SCENES[below].z < limit < SCENES[above].z
     assert replace(SCENES[below], name="", watch="", h=1.0) == replace(SCENES[above], name="", watch="", h=1.0)
+
+
+def test_every_scene_is_in_one_group() -> None:
+    assert [scene for group in GROUPS.values() for scene in group] == list(SCENES.values())
+
+
+def test_a_scene_takes_only_methods_that_are_for_its_model() -> None:
+    with pytest.raises(SceneError, match=r"^Single Verlet is not for the model linear; it is for pendulum\.$"):
+        Scene(model="linear", cast=(method_of("verlet_float32"),))
+
+
+def test_resonance_verlet_doubles_its_energy_and_comes_back() -> None:
+    scene, samples = SCENES["resonance"], watch("resonance", 1000)
+    errors = [sample.readings[0].energy_error for sample in samples]
+    assert max(errors) == pytest.approx(1.15, abs=0.01)
+    assert max(errors[300:]) == pytest.approx(1.15, abs=0.01)
+    assert min(abs(error) for error in errors[100:]) < 0.01
+    assert scene.exact().period / scene.h == pytest.approx(4.4, abs=0.1)  # exact; Verlet's is 4 steps
+
+
+def test_resonance_golden_neither_an_irrational_part_of_h_nor_a_rational_one_resonates() -> None:
+    scene, golden = SCENES["resonance"], SCENES["resonance-golden"]
+    assert scene.h / golden.h == pytest.approx((1 + math.sqrt(5)) / 2, rel=1e-15)
+    for h in (golden.h, 5 / 8 * scene.h):
+        lockstep = Lockstep(replace(golden, h=h))
+        lockstep.advance(10_000)
+        verlet = lockstep.sample().readings[0]
+        assert -0.21 < verlet.energy_error_low < -0.19  # the wobble of any step, z²/4
+        assert verlet.energy_error_high < 0.001
+
+
+def test_halving_gains_19_percent_a_minute_and_verlet_stays_within_8() -> None:
+    samples = watch("halving", 60)
+    halving, richardson, _, rk4 = samples[-1].readings
+    assert halving.energy_error == pytest.approx(0.19, abs=0.005)
+    assert richardson.energy_error < -0.09
+    assert rk4.energy_error < -0.1
+    assert worst(samples, 2) < 0.08
+    first, _, third, _ = SCENES["halving"].cast
+    assert first.force_evaluations == 8 * third.force_evaluations
+
+
+def test_precision_32_bits_go_over_the_top_at_five_and_a_half_seconds() -> None:
+    scene, samples = SCENES["precision"], watch("precision", 100)
+    exact = scene.exact()
+    assert over_the_top(samples, 0) == pytest.approx(5.5, abs=0.05)
+    assert over_the_top(samples, 1) == over_the_top(samples, 2) == math.inf
+    for sample in samples[::8]:
+        assert abs(sample.readings[1].theta - exact.at(sample.t).theta) < 0.003
+
+
+def test_precision_deep_64_bits_lose_the_angle_at_35_seconds_and_compensated_sums_do_not() -> None:
+    scene, lockstep = SCENES["precision-deep"], Lockstep(SCENES["precision-deep"])
+    exact, worst = scene.exact(), [0.0, 0.0, 0.0]
+    late: float | None = None
+    while lockstep.t < 100:
+        lockstep.advance(16)
+        sample = lockstep.sample()
+        theta = exact.at(sample.t).theta
+        worst = [max(w, abs(r.theta - theta)) for w, r in zip(worst, sample.readings, strict=True)]
+        if worst[1] > 0.1 and late is None:
+            late = sample.t
+    assert late == pytest.approx(35, abs=0.5)
+    assert worst[2] < 3e-4 < 0.1 < worst[1] < worst[0]
+
+
+def test_damped_explicit_euler_gains_energy_against_friction_and_the_others_slow_down() -> None:
+    samples = watch("damped", 60)
+    reference = SCENES["damped"].equations.reference(2.0, 0.0)
+    euler, *others = samples[-1].readings
+    assert euler.energy > reference.start
+    assert abs(euler.theta) > 10 * math.pi
+    for reading in others:
+        assert abs(reading.energy_error) < 0.003  # ln(E/E_true)
+        assert reading.energy < reference.start / 10
+    lagged, conformal, rk4 = (reading.max_energy_error for reading in others)
+    assert rk4 < conformal < lagged
+
+
+def test_stiff_slow_rk4_takes_the_springs_energy_and_imex_euler_all() -> None:
+    verlet, rk4, respa, midpoint, imex = watch("stiff-slow", 30)[-1].readings
+    assert SCENES["stiff-slow"].z == pytest.approx(1)
+    assert rk4.spring_energy is not None
+    assert rk4.spring_energy < 1e-3
+    assert rk4.energy_error == pytest.approx(-2 / 6.5, abs=0.01)  # the swing is left
+    assert imex.energy_error == pytest.approx(-1, abs=0.01)
+    assert max(verlet.max_energy_error, respa.max_energy_error, midpoint.max_energy_error) < 0.1
+
+
+def test_stiff_limit_in_a_quarter_second_verlets_bob_is_gone() -> None:
+    samples = watch("stiff-limit", 0.25)
+    assert SCENES["stiff-limit"].z == pytest.approx(2.5)
+    position = samples[-1].readings[0].position
+    assert position is not None
+    assert abs(position) > 10
+    for reading in samples[-1].readings[2:]:
+        assert reading.position is not None
+        assert abs(reading.position) < 1.05
+
+
+def test_stiff_resonance_respa_resonates_and_the_implicit_midpoint_holds() -> None:
+    samples = watch("stiff-resonance", 30)
+    assert SCENES["stiff-resonance"].h == pytest.approx(math.tau / 50, rel=0.01)
+    last = samples[-1].readings
+    assert last[2].max_energy_error > 10
+    assert last[3].max_energy_error < 0.4
+    late = SCENES["stiff-resonance"].exact()
+    assert max(abs(s.readings[3].theta - late.at(s.t).theta) for s in samples) > 0.5  # yet at the wrong time
+
+
+def test_learned_the_field_loses_60_percent_and_the_hamiltonian_less_than_one() -> None:
+    lockstep = Lockstep(SCENES["learned"])
+    lockstep.advance(5000)
+    sample = lockstep.sample()
+    field, hamiltonian, rk4 = sample.readings
+    assert sample.t == 100
+    assert field.energy_error == pytest.approx(-0.6, abs=0.02)
+    assert rk4.max_energy_error < hamiltonian.max_energy_error < 0.01

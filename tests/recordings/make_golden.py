@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from engine.methods import EXPLICIT_EULER, RK4, SYMPLECTIC_EULER, VELOCITY_VERLET, Cast
 from engine.run.lockstep import Sample
-from engine.scenes import Scene
+from engine.scenes import SCENES, Scene
 from recordings.events import Event
 from recordings.headless import Changes, simulate
 from recordings.library import GOLDEN, SUFFIX
@@ -88,6 +88,23 @@ RECORDINGS = {
         time=4,
         sample_every=2,
         then=((VELOCITY_VERLET, RK4), (RK4, VELOCITY_VERLET, EXPLICIT_EULER, SYMPLECTIC_EULER)),
+    ),
+    "damped": Golden(
+        replace(
+            SCENES["damped"],
+            watch="Friction stops the swing; explicit Euler gains energy against it. Errors are ln(E/E_true).",
+        ),
+        time=20,
+        sample_every=8,
+    ),
+    "stiff-slow": Golden(
+        replace(
+            SCENES["stiff-slow"],
+            watch="A bob on a stiff spring, h·omega = 1: RK4 takes the energy out of the spring, IMEX Euler all of it.",
+        ),
+        time=6,
+        sample_every=8,
+        changes=[(200, 0.01)],
     ),
 }
 FORMAT_1 = ("drift", "changes-of-h", "reversed-time", "near-separatrix", "spin")

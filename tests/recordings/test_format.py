@@ -15,10 +15,10 @@ from engine.models import MODELS
 from engine.run.lockstep import Reading, Sample
 from engine.run.observer import Milestone
 from engine.run.verdict import Verdict
-from engine.scenes import LIMITS
+from engine.scenes import LIMITS, PARAMETERS
 from recordings.errors import TEXT_LIMIT, RecordingError, printable
 from recordings.events import Event, Seal, method_named, noticed, scene_named, unknown_in
-from recordings.fields import EVENT_SCHEMA, NUMBERS, SEAL_SCHEMA, VALUES, sample_schema, without_extremes
+from recordings.fields import IN_PLANE, SEAL_SCHEMA, VALUES, event_schema, sample_schema, values_of, without_extremes
 from recordings.format import (
     decode_event,
     decode_reading,
@@ -32,7 +32,8 @@ from recordings.format import (
 from recordings.summary import FUNCTIONS, fingerprint
 from tests.recordings.examples import SCENE, start
 
-SAMPLE_SCHEMA = sample_schema("pendulum")
+SAMPLE_SCHEMA, PLANE_SCHEMA = sample_schema("pendulum"), sample_schema("spring")
+EVENT_SCHEMA = event_schema(PARAMETERS)
 finite = st.floats(allow_nan=False, allow_infinity=False)
 counts = st.integers(0, 2**53 - 1)
 readings = st.builds(
@@ -46,23 +47,53 @@ readings = st.builds(
     energy_error_high=finite,
     diverged_at=st.none() | finite,
 )
-samples = st.builds(Sample, run=counts, step=counts, t=finite, readings=st.tuples(readings, readings))
+places = st.builds(complex, finite, finite)
+readings_in_plane = st.builds(
+    lambda reading, *plane: replace(
+        reading, **dict(zip(("position", "velocity", "spring_energy"), plane, strict=True))
+    ),
+    readings,
+    places,
+    places,
+    finite,
+)
+samples = st.builds(
+    Sample,
+    run=counts,
+    step=counts,
+    t=finite,
+    readings=st.tuples(readings, readings) | st.tuples(readings_in_plane, readings_in_plane),
+)
 letters = st.characters(categories=("L", "M", "N", "P", "S"), include_characters=" ")
 texts = st.text(letters, max_size=TEXT_LIMIT).filter(str.isprintable)
 keys = st.from_regex(r"[a-z_][a-z0-9_]{0,20}", fullmatch=True)
 methods = st.sampled_from(METHODS) | keys.map(method_named)
-scenes = st.builds(
-    scene_named,
-    name=texts,
-    model=st.sampled_from([*MODELS]) | keys,
-    cast=st.lists(methods, min_size=1, max_size=6, unique_by=lambda method: method.key).map(tuple),
-    watch=texts,
-    theta=st.floats(*LIMITS["theta"]),
-    omega=st.floats(*LIMITS["omega"]),
-    length=st.floats(0.1, 10),
-    gravity=st.floats(0.1, 10),
-    h=st.floats(1e-6, 1),
-)
+
+
+def scenes_of(model):
+    suited = st.sampled_from([each for each in METHODS if model not in MODELS or model in each.models])
+    parameters = MODELS[model].parameters if model in MODELS else PARAMETERS
+    return st.builds(
+        scene_named,
+        name=texts,
+        model=st.just(model),
+        cast=st.lists(
+            suited | keys.map(method_named).filter(lambda method: method not in METHODS),
+            min_size=1,
+            max_size=6,
+            unique_by=lambda method: method.key,
+        ).map(tuple),
+        watch=texts,
+        theta=st.floats(*LIMITS["theta"]),
+        omega=st.floats(*LIMITS["omega"]),
+        length=st.floats(0.1, 10),
+        gravity=st.floats(0.1, 10),
+        h=st.floats(1e-6, 1),
+        **{name: st.floats(1.0, 100.0) for name in parameters},
+    )
+
+
+scenes = (st.sampled_from([*MODELS]) | keys).flatmap(scenes_of)
 milestones = st.builds(
     Milestone, st.sampled_from(["over the top", "failed"]), methods, counts, finite, finite
 ) | st.builds(Milestone, st.just("verdict"), methods, counts, finite, finite, st.sampled_from(get_args(Verdict)))
@@ -77,19 +108,23 @@ events = st.one_of(
 
 
 def test_the_table_of_fields_has_every_value_of_a_reading_in_its_order():
-    assert tuple(field.name for field in fields(Reading)) == VALUES
+    names = [field.name for field in fields(Reading)]
+    assert [*VALUES[: -len(IN_PLANE)], "position", "velocity", "spring_energy"] == names
+    reading = Reading(0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8 + 9j, 10 + 11j, 12.0)
+    assert values_of(reading) == tuple(map(float, range(len(VALUES))))
 
 
 @given(samples)
 def test_every_finite_double_of_a_sample_reads_back_with_the_same_bits(sample):
     messages = encode_readings(sample)
     for message, reading in zip(messages, sample.readings, strict=True):
-        run, step, t, again = decode_reading(message)
+        plane = reading.position is not None
+        run, step, t, again = decode_reading(message, plane)
         assert (run, step, t) == (sample.run, sample.step, sample.t)
         assert again == reading
-        for name in NUMBERS:  # -0.0 == 0.0, but their hex differs
-            assert float.hex(getattr(again, name)) == float.hex(getattr(reading, name))
-        jsonschema.validate(json.loads(message), SAMPLE_SCHEMA)
+        assert repr(values_of(again)) == repr(values_of(reading))  # -0.0 == 0.0, but their texts differ
+        jsonschema.validate(json.loads(message), PLANE_SCHEMA if plane else SAMPLE_SCHEMA)
+        assert set(IN_PLANE) & set(json.loads(message)) == (set(IN_PLANE) if plane else set())
 
 
 @given(events)
@@ -99,7 +134,7 @@ def test_every_event_reads_back_the_same(event):
     jsonschema.validate(json.loads(message), EVENT_SCHEMA)
 
 
-@pytest.mark.parametrize("schema", [SAMPLE_SCHEMA, EVENT_SCHEMA, SEAL_SCHEMA])
+@pytest.mark.parametrize("schema", [SAMPLE_SCHEMA, PLANE_SCHEMA, event_schema(), EVENT_SCHEMA, SEAL_SCHEMA])
 def test_a_schema_is_as_simple_as_the_simplest_viewer_needs(schema):
     jsonschema.Draft202012Validator.check_schema(schema)
     assert schema["type"] == "object"

@@ -94,16 +94,20 @@ def _named(text: str, known: Sequence[Method]) -> Cast:
 
 
 def find(name: str, known: Sequence[Method], option: str = "--methods") -> Method:
-    """The method of a key, of the start of one, or of the start of a word in one.  Raises UserError for the option."""
+    """The method of a key, of the start of one, or of the start of a word in one, general methods first.
+
+    Raises UserError for the option.
+    """
     by_key = {method.key: method for method in known}
     if name in by_key:
         return by_key[name]
-    for begins in (str.startswith, lambda key, start: f"_{start}" in key):
-        found = [key for key in by_key if name and begins(key, name)]
-        if len(found) == 1:
-            return by_key[found[0]]
-        if found:
-            raise UserError(f"{option}: {name!r} may be {' or '.join(found)}; write more of it.")
+    for keys in ([key for key, method in by_key.items() if method.general], list(by_key)):
+        for begins in (str.startswith, lambda key, start: f"_{start}" in key):
+            found = [key for key in keys if name and begins(key, name)]
+            if len(found) == 1:
+                return by_key[found[0]]
+            if found:
+                raise UserError(f"{option}: {name!r} may be {' or '.join(found)}; write more of it.")
     advice = did_you_mean(name, by_key) or f": choose from {', '.join(by_key)}."
     raise UserError(f"{option}: there is no method {name!r}{advice}")
 

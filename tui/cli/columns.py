@@ -103,7 +103,7 @@ def _fields(line: str, delimiter: str | None, most: int = -1) -> list[str]:
         return [text.strip().strip('"') for text in texts]
     if delimiter is None:
         return [a or b for a, b in re.findall(r'"([^"]*)"|(\S+)', line)]
-    return [text.strip() for text in next(csv.reader([line.strip("\r\n")], delimiter=delimiter), [])]
+    return [text.strip() for text in next(csv.reader([line.replace("\r", " ").strip()], delimiter=delimiter), [])]
 
 
 def _header(lines: Iterator[str], names: Sequence[str]) -> tuple[Iterator[str], str | None, tuple[int, ...]]:

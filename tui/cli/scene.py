@@ -2,7 +2,7 @@
 
 import argparse
 
-from engine.scenes import DEFAULT_SCENE, LIMITS, SCENES, Scene
+from engine.scenes import DEFAULT_SCENE, LIMITS, PARAMETERS, SCENES, Scene
 from tui.cli.cast import add_cast_options, cast_of
 from tui.cli.errors import UserError
 from tui.cli.options import Suggestions, angle, did_you_mean, number, start_angle
@@ -23,6 +23,8 @@ def add_scene_options(parser: argparse.ArgumentParser) -> None:
         ("omega", "RAD_S", angle, "start angular velocity in rad/s, or in degrees per second (30deg)"),
         ("length", "M", number, "length in m"),
         ("gravity", "M_S2", number, "gravity in m/s²"),
+        ("friction", "PER_S", number, "friction in 1/s, of the scene damped"),
+        ("stiffness", "PER_S2", number, "spring constant over mass in 1/s², of the stiff scenes"),
         ("h", "S", number, "step size in s"),
     ):
         group.add_argument(f"--{name}", metavar=metavar, type=read, help=meaning)
@@ -37,6 +39,16 @@ def scene_of(options: argparse.Namespace) -> Scene:
     if options.scene not in SCENES:
         hint = did_you_mean(options.scene, SCENES) or "; pendu-tui scenes lists them."
         raise UserError(f"there is no scene {options.scene!r}{hint}")
-    given = {name: getattr(options, name) for name in (*LIMITS, "h")}
+    given = {name: getattr(options, name) for name in (*LIMITS, *PARAMETERS, "h")}
     scene = SCENES[options.scene].altered(**{name: value for name, value in given.items() if value is not None})
     return scene.with_cast(cast_of(options, scene.cast))
+
+
+def general_scene_of(options: argparse.Namespace) -> Scene:
+    """The scene that the options describe, if it can be mapped and its errors charted.  Raises UserError as well."""
+    scene = scene_of(options)
+    if not scene.general:
+        others = [method.label for method in scene.cast if not method.general]
+        why = f"not for {', '.join(others)}" if others else f"not for the model {scene.model}"
+        raise UserError(f"this is for methods that take any force, on a pendulum without friction, {why}.")
+    return scene

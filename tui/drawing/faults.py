@@ -5,12 +5,16 @@ from dataclasses import dataclass
 from textual.message import Message
 from textual.message_pump import MessagePump
 
+from engine.methods.own import OwnMethodError
+
 LOG = "faults.log"
 """Where the app writes what failed, next to the recordings."""
 
 
 def sentence(error: BaseException) -> str:
-    """What failed, for people."""
+    """What failed, for people: of a user's own method just that."""
+    if isinstance(error, OwnMethodError):
+        return f"{error} The run stands still; p starts another."
     what = f"{type(error).__name__}: {error}".strip(": ")
     return f"An error in this program ({what}); the lab goes on, and {LOG} next to the recordings has the details."
 

@@ -70,7 +70,7 @@ class ErrorHistory:
         if self._levels is None:
             from tui.playback.levels import Levels
 
-            self._levels = Levels(self._repeats, self._reference, self._methods, self._capacity)
+            self._levels = Levels(self._repeats, self._reference[:2], self._methods, self._capacity)
         for sample, x, exact, modified in self._waiting:
             states = [State(reading.theta, reading.omega) for reading in sample.readings]
             theta_errors = [theta - exact.theta for theta, _ in states]

@@ -23,9 +23,12 @@ from tui.words.events import event_lines, numbered
 
 def show_description(screen: SourceScreen) -> None:
     """Describe in words what runs and what is on screen."""
+    from tui.words.orbit import period_sentence  # with NumPy
+
     panes = [str(pane.border_title) for pane in screen.query("*") if pane.border_title and pane.is_on_screen]
     shown = f"On screen: {VIEWS[screen.view].title}; {'; '.join(panes)}."
-    screen.app.push_screen(TextScreen("In words", "\n".join([*description(screen.source), shown])))
+    lines = [*description(screen.source), period_sentence(screen.source), shown]
+    screen.app.push_screen(TextScreen("In words", "\n".join(filter(None, lines))))
 
 
 def show_events(screen: SourceScreen) -> None:

@@ -102,8 +102,8 @@ OVERLAYS = (
 )
 """Only listed: Textual binds them."""
 
-ALWAYS = ("F2", "F3", "F4", "F5", "space", "?")
-HINTS = ("+", "]", "f", "M", "i", "p", "q", "u", ">", *"ewyXO", "right", "home", "end", "L", *"rbnmdEsv")
+ALWAYS = ("F2", "F3", "F4", "F5", "space", "?", "q")
+HINTS = ("+", "]", "f", "M", "i", "p", "u", ">", *"ewyXO", "right", "home", "end", "L", *"rbnmdEsv")
 """The keys on the key line, the most important first: those that do not fit are left out."""
 CHARTS = frozenset("ewyO")
 """Keys of what only the lab's view shows."""

@@ -4,14 +4,18 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from engine.methods import METHODS, Cast, Method
+from engine.methods import GENERAL, Cast, Method
 from engine.run.observer import Milestone
+from engine.scenes import Scene
 from tui.playback.source import Source
 from tui.words.numbers import about, two_digits
 
 LARGEST_BAND = 0.2
 """Of the energy: a larger loss changes the rate of loss itself."""
 LONGEST = 1000 * 86400.0  # s; nobody waits longer
+MOSTLY = 0.5  # of the energy: beyond, what is lost is told, and not how fast
+STEADY = 0.05
+"""Relative change of the period, up to which a rate of loss per second is taken to stay."""
 
 
 class Forecast(NamedTuple):
@@ -24,14 +28,16 @@ class Forecast(NamedTuple):
 def short_name(method: Method) -> str:
     """The last word of a method's name if no other name ends with it: "Verlet", but "Symplectic Euler"."""
     last = method.label.split()[-1]
-    return last if sum(each.label.endswith(last) for each in METHODS) == 1 else method.label
+    alone = sum(each.label.endswith(last) for each in GENERAL) == 1
+    return last if alone and method.general else method.label
 
 
 def forecast(source: Source, index: int) -> Forecast | None:
     """When a method's steady loss of energy will take its error past the smallest maximum that it is still below.
 
     None unless the slope is known to a tenth; after a change of the step size, because the run's maxima
-    then belong to another step size; and if the maximum is too large or the time too long.
+    then belong to another step size; where the period hangs on the energy, and the rate of loss with it; and if
+    the maximum is too large or the time too long.
     """
     judgement, error = source.judgements[index], source.sample.readings[index].energy_error
     slope, uncertainty = judgement.slope, judgement.uncertainty
@@ -40,10 +46,22 @@ def forecast(source: Source, index: int) -> Forecast | None:
     if any(event.kind == "set_h" and event.run == source.sample.run for event in source.events):
         return None
     band, other = next((each for each in _bands(source) if each[0] > abs(error)), (math.inf, 0))
-    if band > LARGEST_BAND:
+    if band > LARGEST_BAND or not _is_steady(source.scene, band):
         return None
     seconds = (band - math.copysign(error, error * slope)) / abs(slope)
     return Forecast(seconds, source.scene.cast[other]) if seconds < LONGEST else None
+
+
+def _is_steady(scene: Scene, lost: float) -> bool:
+    """Whether the period stays nearly what it is while this share of the energy is lost."""
+    model = scene.equations
+    if not model.turns:
+        return True
+    energy = (1 - lost) * model.energy()((scene.theta, scene.omega))
+    share = energy / (2 * model.w0_squared)
+    there = model.exact(2 * math.asin(math.sqrt(share)), 0.0) if share < 1 else model.exact(0.0, math.sqrt(2 * energy))
+    before, after = scene.exact().period, there.period
+    return before is not None and after is not None and abs(after / before - 1) < STEADY
 
 
 def _bands(source: Source) -> list[tuple[float, int]]:
@@ -82,7 +100,10 @@ def staying(source: Source) -> str:
 
 def leaving(source: Source, index: int) -> str:
     """The sentence on a method that gains or loses energy; "" if that is not known."""
-    judgement = source.judgements[index]
+    judgement, lost = source.judgements[index], -source.sample.readings[index].energy_error
+    if judgement.verdict == "loses" and lost > MOSTLY:
+        share = "all" if lost > 1 - 1e-6 else f"{100 * lost:.4g} %"
+        return f"{short_name(source.scene.cast[index])} has lost {share} of its energy."
     slope = {"grows": 1, "loses": -1}.get(judgement.verdict, 0) * (judgement.slope or 0)
     if slope <= 0:
         return ""
@@ -113,7 +134,7 @@ def limit_warning(cast: Cast, zs: Sequence[float]) -> str:
     """
     letters: dict[float, list[str]] = {}
     for method, z in zip(cast, zs, strict=True):
-        if 0 < method.linear_limit < z:
+        if method.linear_limit and method.linear_limit < z:
             letters.setdefault(method.linear_limit, []).append(method.letter)
     each = ", ".join(f"{' '.join(who)} (z > {limit:.3g})" for limit, who in letters.items())
     return f"unstable: {each}" if each else ""

@@ -4,8 +4,9 @@ import math
 from collections.abc import Sequence
 
 from engine.methods import Method
-from engine.phase_space.section import OrbitKind
+from engine.phase_space.section import OrbitKind, numerical_period
 from tui.drawing.palette import FRAME, TEXT, mark, series
+from tui.playback.source import Source
 
 HEADS = ("orbit", "turns a step", "steps a turn", "nearest", "Lyapunov number")
 WIDTHS = (18, 14, 14, 9, 17)  # columns, two of them blank
@@ -65,6 +66,20 @@ def sentence(method: Method, kind: OrbitKind) -> str:
     if what.startswith("spirals"):
         return f"It {what}: no rotation number, for it changes on the way."
     return f"Undecided in {kind.steps} steps: regular so far, but without one rotation number."
+
+
+def period_sentence(source: Source) -> str:
+    """How long a swing takes each method, next to the exact one; empty where nothing can be said."""
+    scene, exact = source.scene, source.exact.period
+    if not scene.general:
+        return ""
+    taken = [
+        (method, numerical_period(method, scene.equations, abs(h), (scene.theta, scene.omega)))
+        for method, h in zip(scene.cast, source.stepping.own, strict=True)
+    ]
+    if exact is None or not (said := [f"{method.label} {period:.6g} s" for method, period in taken if period]):
+        return ""
+    return f"From this start and with this step, a period takes {', '.join(said)}; the exact one is {exact:.6g} s."
 
 
 def kind_rows(known: Sequence[tuple[int, Method, OrbitKind]], width: int) -> list[_Row]:

@@ -4,13 +4,13 @@ from collections.abc import Iterator
 
 import pytest
 
-from engine.methods import METHODS, Method, measure
+from engine.methods import GENERAL, Method, measure
 from engine.methods.measure import Measured, measured
 from engine.methods.method import Phases
 from engine.models.model import Force, Phase
 
 
-@pytest.mark.parametrize("method", METHODS, ids=lambda method: method.key)
+@pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
 def test_what_is_measured_is_what_is_claimed(method: Method) -> None:
     found = measured(method.phases)
     assert found.order == pytest.approx(method.order, abs=0.1)

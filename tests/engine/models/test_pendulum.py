@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from engine.models.model import EnergyReference
 from engine.models.pendulum import Pendulum, acceleration, energy, separatrix_energy, separatrix_margin
 from engine.scenes import Scene
 
@@ -52,5 +53,5 @@ def test_the_margin_keeps_its_digits_where_the_energy_has_lost_them() -> None:
 
 
 def test_errors_are_relative_to_the_start_or_where_that_has_no_energy_to_the_separatrix() -> None:
-    assert Pendulum(9.81).reference(0.0, 2.0) == (2.0, 2.0)
-    assert Pendulum(9.81).reference(0.0, 0.0) == (0.0, separatrix_energy(9.81))
+    assert Pendulum(9.81).reference(0.0, 2.0) == EnergyReference(2.0, 2.0)
+    assert Pendulum(9.81).reference(0.0, 0.0) == EnergyReference(0.0, separatrix_energy(9.81))

@@ -14,6 +14,7 @@ from engine.phase_space.section import (
     iterate,
     kind_of,
     nearest_fraction,
+    numerical_period,
     orbit,
     pieces,
     rotation_number,
@@ -173,3 +174,31 @@ def test_few_steps_tell_nothing_and_fail_nowhere(steps):
 )
 def test_the_nearest_fraction_is_a_small_one(rotation, fraction):
     assert nearest_fraction(rotation) == Fraction(*fraction)
+
+
+@pytest.mark.parametrize("method", [SYMPLECTIC, VERLET], ids=lambda method: method.key)
+@pytest.mark.parametrize("z", [0.1, 0.5, 1.5])
+def test_small_swings_take_the_period_of_theory(method, z):
+    model, h = Pendulum(4.0), z / 2.0
+    assert numerical_period(method, model, h, (1e-4, 0.0)) == pytest.approx(h * math.pi / math.asin(z / 2), rel=1e-6)
+
+
+@pytest.mark.parametrize("start", [(1.0, 0.0), (2.5, 0.0), (0.0, 3.0)])
+def test_with_small_steps_a_period_is_nearly_the_exact_one(start):
+    exact = UNIT.exact(*start).period
+    assert numerical_period(RK4, UNIT, 0.02, start) == pytest.approx(exact, rel=1e-6)
+    assert numerical_period(VERLET, UNIT, 0.02, start) == pytest.approx(exact, rel=2e-4)
+    assert numerical_period(VERLET, UNIT, 0.02, start) != pytest.approx(exact, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("method", "h", "start"),
+    [
+        (EXPLICIT, 0.1, (1.0, 0.0)),  # another one in each swing
+        (VERLET, 0.1, (0.0, 0.0)),
+        (VERLET, 1e-5, (1.0, 0.0)),  # too many steps
+        (VERLET, 1.1, (2.3, 0.0)),  # chaotic
+    ],
+)
+def test_where_there_is_no_period_none_is_given(method, h, start):
+    assert numerical_period(method, UNIT, h, start) is None

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods import METHODS, VELOCITY_VERLET, Method
+from engine.methods import GENERAL, VELOCITY_VERLET, Method
 from engine.models import MODELS
 from engine.models.model import Model
 from engine.models.pendulum import Pendulum
@@ -17,7 +17,7 @@ from engine.run.compiled import available
 from engine.run.ensemble import Watched, compiled, plain, section, sine
 
 needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed")
-each_method = pytest.mark.parametrize("method", METHODS, ids=lambda method: method.key)
+each_method = pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
 each_way = pytest.mark.parametrize("fast", [False, pytest.param(True, marks=needs_numba)], ids=["numpy", "numba"])
 THETA, OMEGA = np.linspace(-2.0, 2.5, 37), np.linspace(1.5, -1.0, 37)
 PENDULUM = Pendulum(1.0)
@@ -87,8 +87,8 @@ def test_what_is_watched_is_the_largest_of_each_step(method: Method, fast: bool)
 
 @each_way
 def test_it_stops_at_the_step_that_passes_the_top_or_leaves_the_band(fast: bool) -> None:
-    watch, h = (compiled if fast else plain)(METHODS[0], PENDULUM).watch, np.full(37, 0.2)
-    points = section(METHODS[0], PENDULUM, (THETA, OMEGA), 0.2, 100, fast=fast)
+    watch, h = (compiled if fast else plain)(GENERAL[0], PENDULUM).watch, np.full(37, 0.2)
+    points = section(GENERAL[0], PENDULUM, (THETA, OMEGA), 0.2, 100, fast=fast)
     over = int(np.flatnonzero((np.abs(points[:, 0]) > math.pi).any(axis=1))[0]) + 1
     done, _ = watch((THETA, OMEGA), h, watched(PENDULUM, h, math.inf), 1000)
     assert done == over

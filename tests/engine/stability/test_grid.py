@@ -4,7 +4,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engine.methods import METHODS, USUAL_CAST, Cast
+from engine.methods import GENERAL, USUAL_CAST, Cast
 from engine.run.compiled import available
 from engine.stability import grid as stability_map
 from engine.stability.grid import Grid, default_grid, pieces
@@ -18,7 +18,7 @@ GRID = Grid(theta=np.linspace(0.1, 3.1, 7), z=np.linspace(0.1, 3, 13), steps=200
 def test_cells_lie_by_z_method_and_amplitude() -> None:
     cells = GRID.cells()
     assert cells.shape == GRID.shape == (13, 4, 7)
-    alone = outcomes(METHODS[2], GRID.theta[5:6], GRID.z[4:5], 200)
+    alone = outcomes(GENERAL[2], GRID.theta[5:6], GRID.z[4:5], 200)
     assert cells[4, 2, 5] == alone[0]
     assert 0 < (cells["fate"] == HOLDS).sum() < cells.size
 
@@ -80,7 +80,7 @@ def test_what_is_not_computed_is_not_known() -> None:
     assert (GRID.unknown()["fate"] == UNKNOWN).all()
 
 
-@pytest.mark.parametrize("cast", [USUAL_CAST, METHODS])
+@pytest.mark.parametrize("cast", [USUAL_CAST, GENERAL])
 def test_the_default_grid_reaches_beyond_every_limit(cast: Cast) -> None:
     grid = default_grid(cast)
     assert grid.shape == (200, len(cast), 100)

@@ -6,11 +6,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods import METHODS, USUAL_CAST, Method
+from engine.methods import GENERAL, USUAL_CAST, Method
 from engine.models.model import Number
 from engine.stability.linear import amplification, energy_range, is_stable, linear_limit
 
-BY_KEY = {method.key: method for method in METHODS}
+BY_KEY = {method.key: method for method in GENERAL}
 
 
 def on_the_unit_circle_below_two(z: float) -> float:
@@ -25,7 +25,7 @@ FORMULAS = {
 }
 
 
-@pytest.fixture(params=METHODS, ids=lambda method: method.key)
+@pytest.fixture(params=GENERAL, ids=lambda method: method.key)
 def method(request: pytest.FixtureRequest) -> Method:
     found: Method = request.param
     return found
@@ -54,7 +54,7 @@ def test_below_the_limit_every_step_is_stable_and_above_it_none(z: Fraction) -> 
 
 @given(share=st.floats(0, 1 - 1e-8))  # nearer to the edge it is a matter of rounding
 def test_below_the_first_edge_a_method_with_rounded_coefficients_is_stable_too(share: float) -> None:
-    for method in METHODS:
+    for method in GENERAL:
         assert is_stable(method, share * method.linear_limit)
 
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods import EXPLICIT_EULER, METHODS, RK4, USUAL_CAST, VELOCITY_VERLET, Method
+from engine.methods import EXPLICIT_EULER, GENERAL, RK4, USUAL_CAST, VELOCITY_VERLET, Method
 from engine.models.model import Phase
 from engine.models.pendulum import acceleration, energy
 from engine.stability.linear import energy_range
@@ -23,7 +23,7 @@ from engine.stability.outcomes import (
     outcomes,
 )
 
-BY_KEY = {method.key: method for method in METHODS}
+BY_KEY = {method.key: method for method in GENERAL}
 FORCE = acceleration(1.0)
 
 
@@ -47,7 +47,7 @@ def failure_of(
 
 
 @given(
-    st.sampled_from(METHODS),
+    st.sampled_from(GENERAL),
     st.lists(st.tuples(st.floats(0.01, 3.14), st.floats(0.01, 3.5)), min_size=1, max_size=30),
     st.integers(1, 60),
 )
@@ -84,7 +84,7 @@ def test_each_swing_of_an_ensemble_is_what_a_plain_loop_says(
 
 def test_a_swing_knows_nothing_of_the_others() -> None:
     theta, z = (axis.ravel() for axis in np.meshgrid(np.linspace(0.1, 3.1, 9), np.linspace(0.1, 3, 11)))
-    for method in METHODS:
+    for method in GENERAL:
         together = outcomes(method, theta, z, 300)
         alone = np.concatenate([outcomes(method, theta[i : i + 1], z[i : i + 1], 300) for i in range(len(z))])
         assert np.array_equal(together, alone)

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from engine.methods import EXPLICIT_EULER, METHODS, RK4, SYMPLECTIC_EULER, USUAL_CAST, VELOCITY_VERLET, Cast
+from engine.methods import EXPLICIT_EULER, GENERAL, METHODS, RK4, SYMPLECTIC_EULER, USUAL_CAST, VELOCITY_VERLET, Cast
 from engine.methods.own import OwnMethod
 from engine.run.lockstep import Lockstep
 from engine.scenes import DEFAULT_SCENE, MOST_METHODS, Scene
@@ -174,7 +174,7 @@ def test_more_than_six_are_too_many_for_a_stage(mine):
     assert [row["method"] for row in rows] == names[::-1]
 
 
-casts = st.lists(st.sampled_from(METHODS), min_size=1, max_size=6, unique=True).map(tuple)
+casts = st.lists(st.sampled_from(GENERAL), min_size=1, max_size=6, unique=True).map(tuple)
 
 
 @given(casts)
@@ -192,11 +192,18 @@ def test_a_run_lists_its_cast_in_order_and_each_method_as_if_it_were_alone(cast)
 
 @given(casts, st.randoms())
 def test_every_unique_start_of_a_name_finds_it(cast, chance: random.Random):
-    keys = [method.key for method in METHODS]
+    keys = [method.key for method in GENERAL]
     for method in cast:
         starts = [method.key[:n] for n in range(1, len(method.key) + 1)]
         only = [start for start in starts if sum(key.startswith(start) for key in keys) == 1]
         assert cast_options.find(chance.choice(only), METHODS) is method
+
+
+@pytest.mark.parametrize(
+    ("name", "key"), [("verlet", "velocity_verlet"), ("verlet_c", "verlet_compensated"), ("l", "lagged_verlet")]
+)
+def test_a_name_is_looked_for_among_the_general_methods_first(name, key):
+    assert cast_options.find(name, METHODS).key == key
 
 
 def test_the_gate_knows_the_methods_of_the_cast_and_names_them(mine):
@@ -239,7 +246,7 @@ def test_workers_and_this_process_agree_about_ones_own_method(mine):
     assert pendu(*command, *own).out == pendu(*command, *own, "--workers", "2").out
 
 
-@pytest.mark.parametrize("command", ["live", "run", "accuracy", "stability", "methods", "snapshot"])
+@pytest.mark.parametrize("command", ["live", "run", "accuracy", "stability", "section", "methods", "snapshot"])
 def test_the_help_says_whose_rights_the_code_has(command):
     assert "with your rights" in " ".join(pendu(command, "--help").out.split())
 

@@ -5,6 +5,7 @@ from engine.run.compiled import available
 from engine.scenes import SCENES
 from tests.tui.command_line import pendu
 from tui.cli.output import print_table
+from tui.commands.about.methods import MEASURED
 
 
 def test_scenes_lists_every_scene_with_what_to_watch():
@@ -25,7 +26,8 @@ def test_methods_lists_every_method_its_claims_and_what_is_measured():
     for method in METHODS:
         (words,) = (line.split() for line in lines if line.startswith(f"{method.key} "))
         assert str(method.order) in words
-        assert (f"{method.linear_limit:.3f}" if method.linear_limit else "none") in words
+        limit = method.linear_limit
+        assert ("-" if limit is None else f"{limit:.3f}" if limit else "none") in words
 
 
 def test_methods_as_json_repeat_the_engine_and_what_is_measured_agrees():
@@ -35,6 +37,9 @@ def test_methods_as_json_repeat_the_engine_and_what_is_measured_agrees():
     for told, method in zip(answer["methods"], METHODS, strict=True):
         for claim in ("key", "label", "order", "force_evaluations", "symplectic", "reversible", "linear_limit"):
             assert told[claim] == getattr(method, claim)
+        if not method.general:
+            assert {told[name] for name in MEASURED} == {None}
+            continue
         assert told["measured_order"] == pytest.approx(method.order, abs=0.1)  # as the engine's own tests
         assert told["measured_symplectic"] == method.symplectic
         assert told["measured_reversible"] == method.reversible

@@ -191,7 +191,7 @@ def still(emulator: Emulator) -> list[str]:
 
     def whole(lines: list[str]) -> bool:
         panes = [line for line in lines if line.startswith("╭") and line.endswith("╮")]
-        return "paused" in lines[0] and bool(panes) and "Quit" in lines[-1]
+        return "paused" in lines[0] and bool(panes) and "Help" in lines[-1]
 
     return standing_part(emulator.wait_until(whole))
 

@@ -110,6 +110,16 @@ def test_the_default_scene_s_forecast_is_about_half_an_hour():
     )
 
 
+def test_there_is_no_forecast_where_the_period_hangs_on_the_energy():
+    live = after(SCENES["near-separatrix"], 200)
+    assert live.judgements[RK4].verdict == "loses"
+    assert forecast(live, RK4) is None  # a straight line would be a third too late
+
+
+def test_what_is_nearly_all_lost_is_told_as_a_share_and_not_as_a_rate():
+    assert leaving(after(SCENES["verlet-limit"], 127), RK4) == "RK4 has lost all of its energy."
+
+
 def test_there_is_no_forecast_where_it_would_be_a_guess():
     assert forecast(after(SCENES["drift"], 5), RK4) is None  # too early for a verdict
     assert forecast(after(SCENES["drift"], 40), EXPLICIT) is None  # grows ever faster

@@ -24,6 +24,11 @@ CLAIMS = (
     *("other_names", "reference", "used"),
 )
 
+MEASURED = (
+    *("measured_order", "measured_linear_limit", "measured_symplectic", "measured_reversible"),
+    "measured_force_evaluations",
+)
+
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_cast_options(parser, "all")
@@ -52,11 +57,13 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _row(method: dict[str, Any]) -> Iterator[str]:
-    own = method["order"] is None
+    own, order, forces = method["order"] is None, method["measured_order"], method["measured_force_evaluations"]
+    measured = forces is not None
     yield from (method["key"], "-" if own else str(method["order"]))
-    yield "none" if method["measured_order"] is None else f"{method['measured_order']:.3f}"
-    yield f"{method['measured_force_evaluations']:g}"
-    yield from ("yes" if method[f"measured_{claim}"] else "no" for claim in ("symplectic", "reversible"))
+    yield "-" if not measured else "none" if order is None else f"{order:.3f}"
+    yield f"{forces if measured else method['force_evaluations']:g}"
+    claims = (f"measured_{claim}" if measured else claim for claim in ("symplectic", "reversible"))
+    yield from ("yes" if method[claim] else "no" for claim in claims)
     limits = method["linear_limit"], method["measured_linear_limit"]
     yield from ("-" if z is None else f"{z:.3f}" if z else "none" for z in limits)
     yield ", ".join(method["other_names"] or ["your own"] * own)
@@ -66,8 +73,9 @@ def _measured(cast: Cast) -> list[dict[str, Any]]:
     """The methods with the order that their errors show on the default scene, and what else is measured."""
     from engine.accuracy.study import orders
 
-    measured_orders = orders(DEFAULT_SCENE.with_cast(cast), math.inf)
-    return [_claims(method) | _properties(method, order) for method, order in measured_orders]
+    general = tuple(method for method in cast if method.general)
+    measured_orders = dict(orders(DEFAULT_SCENE.with_cast(general), math.inf))
+    return [_claims(method) | _properties(method, measured_orders.get(method)) for method in cast]
 
 
 def _claims(method: Method) -> dict[str, Any]:
@@ -85,6 +93,8 @@ def _properties(method: Method, order: float | None) -> dict[str, Any]:
     from engine.methods.own import OwnMethod
     from engine.stability.linear import linear_limit
 
+    if not method.general:  # it is for a scene of its own, and measured there by the tests
+        return dict.fromkeys(MEASURED)
     return {
         "measured_order": order,
         "measured_linear_limit": method.linear_limit if isinstance(method, OwnMethod) else linear_limit(method),

@@ -59,9 +59,10 @@ def run(options: argparse.Namespace) -> int:
         text_file(options.output, options.force) as out,
     ):
         if options.format == "csv":
-            from recordings.fields import COLUMNS
+            from recordings.fields import columns
 
-            write_csv(out, COLUMNS, _rows(recording, show))
+            head = columns(*recording.models)
+            write_csv(out, head, _rows(recording, len(head), show))
         else:
             _film(recording, options, out, show)
         if recording.reason:
@@ -69,13 +70,13 @@ def run(options: argparse.Namespace) -> int:
     return Exit.FINE
 
 
-def _rows(recording: "Recording", show: Callable[[int, int], None]) -> "Iterator[tuple[object, ...]]":
+def _rows(recording: "Recording", width: int, show: Callable[[int, int], None]) -> "Iterator[tuple[object, ...]]":
     from engine.run.lockstep import Sample
     from recordings.fields import rows
 
     samples = ((clock, value) for clock, value in recording.entries() if isinstance(value, Sample))
     for count, (clock, sample) in enumerate(samples, 1):
-        yield from rows(clock, sample, recording.methods_of(sample.run))
+        yield from rows(clock, sample, recording.methods_of(sample.run), width)
         if count % 1000 == 0:
             show(count, recording.samples)
 

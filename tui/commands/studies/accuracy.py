@@ -14,7 +14,7 @@ from tui.cli.errors import Exit, UserError
 from tui.cli.files import text_file
 from tui.cli.options import add_file, count, positive
 from tui.cli.output import progress, warn
-from tui.cli.scene import add_scene_options, scene_of
+from tui.cli.scene import add_scene_options, general_scene_of
 
 if TYPE_CHECKING:
     from engine.accuracy.advice import Advice
@@ -111,10 +111,10 @@ def run(options: argparse.Namespace) -> int:
 
     if options.all and options.methods is not None:
         raise UserError("--all and --methods exclude each other; choose one of them.")
-    scene = scene_of(options)
+    scene = general_scene_of(options)
     if options.all:
         own = (method for method in scene.cast if method not in METHODS and isinstance(method, OwnMethod))
-        scene = scene.altered(cast=(*METHODS, *own))
+        scene = scene.altered(cast=(*(method for method in METHODS if method.general), *own))
     if scene.theta == scene.omega == 0:
         raise UserError("the pendulum hangs at rest, so there is no error to measure; use another --theta or --omega.")
     times = options.time or [usual(scene)[0]]
@@ -153,6 +153,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _fill(found: "Findings", times: list[float], rungs: list[int], fast: bool) -> None:
     """Find what was asked for; what is found by an interrupt stays found."""
+    from engine.accuracy.growth import growth
     from engine.accuracy.study import Study, orders, timed
     from engine.run import compiled, loops
 
@@ -166,6 +167,7 @@ def _fill(found: "Findings", times: list[float], rungs: list[int], fast: bool) -
     if found.all and found.cost == "seconds":
         _add_references(found, fast)
     found.orders += orders(found.scene, found.time, study.loops)
+    found.growth.update((method.key, growth(found.scene, method)) for method in cast)
     if not (found.target or found.budget):
         return
     with progress("searching") as show:

@@ -152,8 +152,8 @@ def _print(
 
     forms = {"energy_error": "+.2e", "max_energy_error": ".2e", "drift_per_second": "+.1e", "theta_error": ".2e"}
     table = []
-    for method, row in zip(scene.cast, rows, strict=True):
-        end = row["diverged_at"]
+    for method, row, judgement in zip(scene.cast, rows, observer.judgements, strict=True):
+        end, row = row["diverged_at"], row | {"drift_per_second": judgement.trend}
         numbers = ("-" if row[name] is None else format(row[name], form) for name, form in forms.items())
         verdict = row["verdict"] if end is None else f"diverged at {end:g} s"
         table.append((method.label, verdict, *numbers, str(row["force_evaluations"])))

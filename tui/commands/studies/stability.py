@@ -14,7 +14,7 @@ from engine.scenes import Z_LIMITS
 from tui.cli.errors import Exit, UserError
 from tui.cli.options import add_file, angle, count, number
 from tui.cli.output import progress
-from tui.cli.scene import add_scene_options, scene_of
+from tui.cli.scene import add_scene_options, general_scene_of
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -80,7 +80,7 @@ def values(element: Callable[[str], float]) -> Callable[[str], list[float]]:
 
 
 def run(options: argparse.Namespace) -> int:
-    scene = scene_of(options)
+    scene = general_scene_of(options)
     asked = {"--map": options.map, "--csv": options.csv, "-o": options.file}
     asked |= {"--theta-values": options.theta_values, "--z-values": options.z_values}
     if scene.model == "linear" and (given := [name for name, value in asked.items() if value]):

@@ -17,6 +17,7 @@ from tui.views.accuracy.chart import accuracy_chart, power
 from tui.views.keys import Key, bindings
 from tui.views.messages import StepSizeChosen
 from tui.views.view import Chooser
+from tui.words.scope import left_out
 
 WORDS = 2  # lines
 MOST_STEPS = 2_000_000  # of a run for the mark at the present h: some seconds
@@ -51,7 +52,7 @@ class AccuracyPane(Chooser[int]):
     def begin(self, time: float, rungs: Sequence[int]) -> None:
         """Start over: points of other step counts, methods or pendulums are to come."""
         self.border_subtitle = f"{LEGEND} {', '.join(map(power, sorted({method.order for method in self.cast})))}"
-        self.time, self.rungs, self.points, self.cursor = time, list(rungs), {}, None
+        self.time, self.rungs, self.points, self.cursor, self.here = time, list(rungs), {}, None, ()
 
     def add(self, point: Point) -> None:
         """Take in a point; it is drawn with one of the next samples."""
@@ -72,6 +73,8 @@ class AccuracyPane(Chooser[int]):
     @property
     def settled(self) -> bool:
         """Whether everything is there and drawn."""
+        if self.source is not None and not self.source.scene.general:
+            return True
         wanted = [(index, steps) for index, steps in enumerate(self.here) if 1 < steps <= MOST_STEPS]
         known = bool(self.rungs) and not self.missing and all(place in self.points for place in wanted)
         return known and self._drawn == self._state
@@ -89,6 +92,10 @@ class AccuracyPane(Chooser[int]):
 
     def paint(self, source: Source, sample: Sample) -> None:
         """Build a chart of what is new in a thread, unless one is being built; the next sample asks again."""
+        if why := left_out(source.scene, "The accuracy chart"):
+            self.border_title, self.border_subtitle, self._drawn = "Accuracy", "", None
+            self.show([[(f" {line}", TEXT)] for line in wrap(why, max(self.room.width - 2, 1))])
+            return
         if self._drawn != self._state and not self._building:
             self._building = True
             self.run_worker(self._build(), group="chart", exit_on_error=False)

@@ -35,13 +35,18 @@ class AccuracyView(View):
         if self.source is None or not self.display or not self.query(AccuracyPane):
             return
         pane, scene = self.query_one(AccuracyPane), self.source.scene
+        if not scene.general:
+            if self._start is not None:
+                self._start = None
+                self.workers.cancel_node(self)
+                pane.begin(0.0, ())
+            return
         start = (scene.theta, scene.omega, scene.equations, scene.cast)
         if start != self._start:
             self._start = start
             self.workers.cancel_node(self)
             pane.begin(*usual(scene))
             self._compute(scene, pane.time, pane.rungs, "ladder")
-            pane.here = ()
         here = tuple(max(1, round(pane.time / abs(h))) for h in self.source.stepping.own)
         if here != pane.here:
             pane.here = here

@@ -17,9 +17,14 @@ def reach(scene: Scene, stepping: Stepping, sample: Sample, shown: Sequence[int]
     A method that is unstable at its h will need all the room: it gets it at once.  Largest errors only
     grow during a run, so the pendulums never jump back and forth.
     """
+    fastest = scene.equations.fastest
     each = [(scene.cast[place], stepping.own[place], sample.readings[place]) for place in shown]
-    if any(abs(h) * scene.w0 > method.linear_limit or now.diverged_at is not None for method, h, now in each):
+    if any(now.diverged_at is not None for _, _, now in each):
         return math.pi
-    energy, reference = scene.equations.energy(), scene.equations.reference(scene.theta, scene.omega)
+    limits = [(abs(h) * fastest, method.linear_limit) for method, h, _ in each]
+    if any(limit is not None and z > limit for z, limit in limits):
+        return math.pi
+    model = scene.equations
+    energy, reference = model.energy(), model.reference(scene.theta, scene.omega)
     largest = max([0.0, *(now.max_energy_error for _, _, now in each)])
-    return next((angle for angle in REACHES if reference.error(energy((angle, 0.0))) > largest), math.pi)
+    return next((angle for angle in REACHES if reference.error(energy(model.still(angle))) > largest), math.pi)

@@ -12,8 +12,14 @@ from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.words.motion import energy_share, motion_text, regime
 from tui.words.numbers import scientific
+from tui.words.scope import ring_left_out
 
 _NAME, _CELL = 22, 14
+_NOT_CURVES = {
+    "spring": "a projection: angle and angular velocity of the swing",
+    "damped": "curves of equal energy, which friction makes it cross inwards",
+}
+"""What the portrait of a model is whose motion does not follow the curves."""
 
 
 def fact_rows(
@@ -21,7 +27,12 @@ def fact_rows(
 ) -> list[list[Span]]:
     """A line about the ring, the heads, and a row for each method; the first columns that fit."""
     exact, fit = source.exact.at(source.sample.t), max((width - _NAME) // _CELL, 0)
-    heads = ("ln area ratio", "area/area0", "theta error", "dE/E0")[:fit]
+    heads = (
+        "ln area ratio",
+        "area/area0",
+        "theta error",
+        "dE/E0" if source.scene.equations.conserved else "ln E/Etrue",
+    )[:fit]
     rows: list[list[Span]] = [
         [(_ring_text(source, neighbours)[:width], TEXT)],
         [(" " * _NAME + "".join(head.rjust(_CELL) for head in heads), QUIET)],
@@ -40,10 +51,15 @@ def fact_rows(
 
 
 def _ring_text(source: Source, neighbours: Neighbours | None) -> str:
+    if why := ring_left_out(source.scene):
+        return f" {why}"
     if neighbours is None:
         return " Press g to draw a ring of neighbouring starts and measure its area."
     behind = source.sample.step - neighbours.step
     text = f" Ring of neighbouring starts, radius {neighbours.radius:g} rad"
+    if friction := source.scene.friction:
+        left = math.exp(-friction * neighbours.step * source.scene.h)
+        text = f"{text}; friction leaves exp(-gamma t) = {left:.9f} of any area"
     return f"{text}: {behind} steps behind" if behind else f"{text} (g: larger, G: smaller)"
 
 
@@ -53,16 +69,22 @@ def captioned(plot: Picture, scene: Scene, exact: ExactMotion, aim: State | None
 
 
 def _caption(scene: Scene, exact: ExactMotion, aim: State | None, width: int) -> Picture:
-    motion = motion_text(scene, exact)
+    motion = _NOT_CURVES.get(scene.model) or motion_text(scene, exact)
     line = Canvas(width, 1).picture()
     if aim is None:
         line.write(0, 0, motion, QUIET)
         return line
     room = width - len(motion) - 2
-    line.write(0, 0, place_text(scene.w0, *aim, room if room >= 60 else width), TEXT)
+    line.write(0, 0, _place(scene, *aim, room if room >= 60 else width), TEXT)
     if room >= 60:
         line.write(0, width - len(motion), motion, QUIET)
     return line
+
+
+def _place(scene: Scene, theta: float, omega: float, width: int) -> str:
+    if scene.model == "pendulum":
+        return place_text(scene.w0, theta, omega, width)
+    return f"theta {theta:.15g} rad  omega {omega:.15g} rad/s"[:width]
 
 
 def place_text(w0: float, theta: float, omega: float, width: int) -> str:

@@ -16,6 +16,7 @@ from tui.views.keys import Key, arrows, bindings
 from tui.views.messages import Asked, SceneChosen
 from tui.views.phase.viewport import Viewport
 from tui.views.view import Chooser
+from tui.words.scope import has_ring
 
 if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
     from engine.phase_space.area import Neighbourhood, Neighbours
@@ -93,11 +94,10 @@ class PhasePane(Chooser[State]):
     @property
     def viewport(self) -> Viewport:
         assert self.source is not None
-        columns, rows = self.cells
         if self.zoomed is not None:
-            self.zoomed = self.zoomed.resized(columns, rows)
+            self.zoomed = self.zoomed.resized(*self.cells)
             return self.zoomed
-        self._whole = Viewport.portrait(columns, rows, self.source.scene, self.wrap).steadied(self._whole)
+        self._whole = Viewport.portrait(*self.cells, self.source.scene, self.wrap).steadied(self._whole)
         return self._whole
 
     @property
@@ -115,7 +115,7 @@ class PhasePane(Chooser[State]):
 
     def _follow(self, source: Source, sample: Sample) -> None:
         """Let the ring keep up; where it has not, go on without waiting for the next sample."""
-        if self.radius is not None:
+        if self.radius is not None and has_ring(source.scene):
             from engine.phase_space.area import Neighbours
 
             self.neighbours = self.neighbours or Neighbours(self.radius)

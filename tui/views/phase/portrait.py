@@ -57,6 +57,7 @@ class Portrait:
 
     viewport: Viewport
     w0: float
+    model: str  # its key
     margin: NDArray[np.float64]  # (dots down, dots right), at the dots' centres
     curves: Dots
     separatrix: Dots
@@ -66,33 +67,54 @@ class Portrait:
 
     @classmethod
     @lru_cache(maxsize=2)  # for the lab's pane and the view's
-    def of(cls, viewport: Viewport, w0: float) -> "Portrait":
-        """Draw the portrait of all pendulums with natural frequency w0 [rad/s]."""
+    def of(cls, viewport: Viewport, w0: float, model: str = "pendulum") -> "Portrait":
+        """Draw the portrait of all pendulums with natural frequency w0 [rad/s], or of another model.
+
+        Of the linear oscillator it has ellipses, with friction curves that the motion crosses, and of a bob in the
+        plane, whose phase space has four dimensions, none.
+        """
         x, y = np.arange(2 * viewport.columns) + 0.5, np.arange(4 * viewport.rows) + 0.5
         omega = viewport.omega_at(y)[:, None]
-        field = separatrix_margin(w0, viewport.theta_at(x), omega, np.cos)
-        curves, separatrix = _border(_level(field)), _border(field < 0, heavy=True)
-        words = _words(viewport, curves, separatrix, field, omega)
+        field = _field(model, w0, viewport.theta_at(x), omega)
+        curves, separatrix = _border(_level(field)), np.zeros(field.shape, np.bool_)
+        if model == "pendulum":
+            separatrix = _border(field < 0, heavy=True)
+            words = _words(viewport, curves, separatrix, field, omega)
+        else:
+            words = tuple(axes(viewport))
         shown = _dots(curves), _dots(separatrix)
         ground = Canvas(viewport.columns, viewport.rows)
         ground.points(*shown[0], FRAME)
         ground.points(*shown[1], TEXT)
-        return cls(viewport, w0, field, *shown, ground, words, Letters.of(words))
+        return cls(viewport, w0, model, field, *shown, ground, words, Letters.of(words))
 
     def orbit(self, theta: float, omega: float) -> Dots:
-        """The exact orbit through a state."""
-        value = separatrix_margin(self.w0, theta, omega, np.cos)
+        """The exact orbit through a state, where it is a curve of equal energy."""
+        if self.model not in ("pendulum", "linear"):
+            return np.zeros(0, np.intp), np.zeros(0, np.intp)
+        value = _field(self.model, self.w0, theta, omega)
         curve = _border(self.margin < value)
-        if value < 0:  # the same energy belongs to two orbits, one for each sense of rotation
+        if (
+            value < 0 and self.model == "pendulum"
+        ):  # the same energy belongs to two orbits, one for each sense of rotation
             rows = self.viewport.omega_at(np.arange(len(curve)) + 0.5)
             curve &= (rows > 0)[:, None] if omega > 0 else (rows < 0)[:, None]
         return _dots(curve)
 
 
+def _field(model: str, w0: float, theta: Any, omega: Any) -> Any:
+    """What is equal along a curve: 1 - E/E_separatrix, or of the linear oscillator less than 0, too."""
+    if model == "spring":
+        return 0 * (theta + omega)
+    if model == "linear":
+        return -(theta * theta + omega * omega / w0**2) / 4
+    return separatrix_margin(w0, theta, omega, np.cos)
+
+
 def _level(field: NDArray[np.float64]) -> NDArray[np.int64]:
     """The band of energy of each dot: evenly spaced in amplitude, for rotations in their smallest omega."""
     spacing = np.where(field > 0, np.arcsin(np.sqrt(np.clip(field, 0, 1))), -np.sqrt(np.maximum(-field, 0)))
-    step = nice(float(spacing.max() - spacing.min()) / _CURVES)
+    step = nice(float(spacing.max() - spacing.min()) / _CURVES or 1.0)
     return np.floor(spacing / step).astype(np.int64)
 
 

@@ -33,7 +33,7 @@ class Section:
     def __init__(self, viewport: Viewport, model: Model, method: Method) -> None:
         self.viewport, self.method = viewport, method
         self._ground = Canvas(viewport.columns, viewport.rows)
-        if model.turns:
+        if model.key == "pendulum":
             self._ground.points(*Portrait.of(viewport, model.w0).separatrix, FRAME)
         self._near = np.zeros((4 * viewport.rows + 2 * GAP, 2 * viewport.columns + 2 * GAP), np.bool_)
         self._axes = Letters.of(tuple(axes(viewport)))

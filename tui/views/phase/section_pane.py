@@ -16,6 +16,7 @@ from tui.views.keys import Key, bindings
 from tui.views.phase.pane import KEYS as PORTRAIT_KEYS
 from tui.views.phase.pane import PhasePane
 from tui.views.phase.viewport import Viewport
+from tui.words.scope import left_out
 
 if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
     from engine.phase_space.section import OrbitKind, Points
@@ -82,6 +83,10 @@ class SectionPane(PhasePane):
         self.draw()
 
     def paint(self, source: Source, sample: Sample) -> None:
+        if self.shows_section and (why := left_out(source.scene, "A method's own map")):
+            self.notify(why, severity="warning")
+            self.shows_section = False
+            return
         if not self.shows_section or (method := self.described) is None:
             super().paint(source, sample)
             return

@@ -28,7 +28,7 @@ class Viewport:
 
     @classmethod
     def portrait(cls, columns: int, rows: int, scene: Scene, wrap: bool = True) -> "Viewport":
-        """-pi to pi, unwrapped -3 pi to 3 pi, and all three regimes.
+        """-pi to pi, unwrapped -3 pi to 3 pi, and all three regimes; only the angle of what turns is ever wrapped.
 
         It reaches up to 1.3 times the fastest of the separatrix and of the scene's own orbit.
         """
@@ -40,7 +40,7 @@ class Viewport:
             0.0,
             theta_per_dot=(1 if wrap else 3) * math.pi / (columns - 0.5),  # half a dot, or rounding loses points at pi
             omega_per_dot=1.3 * fastest / max(2 * rows - 2, 2),
-            wrap=wrap,
+            wrap=wrap and scene.equations.turns,
         )
 
     @property

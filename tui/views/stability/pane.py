@@ -18,6 +18,7 @@ from tui.views.messages import SceneChosen
 from tui.views.stability.picture import MARGIN, Segments, legend, panel, place_at, side_by_side, title
 from tui.views.stability.words import note, verdict
 from tui.views.view import Chooser
+from tui.words.scope import left_out
 
 WORDS = 2  # lines
 SOME = 6  # rows of what was computed that are sent with a sample: a key waits for what is on its way
@@ -61,6 +62,8 @@ class StabilityPane(Chooser[tuple[int, int]]):
     @property
     def settled(self) -> bool:
         """Whether the map is complete, and shown if there is room."""
+        if self.source is not None and not self.source.scene.general:
+            return True
         return self.complete and not (self.drawable and (self._is_filled or not self._is_shown))
 
     def fill(self, z: slice, method: int, cells: Cells) -> None:
@@ -84,6 +87,11 @@ class StabilityPane(Chooser[tuple[int, int]]):
 
     def paint(self, source: Source, sample: Sample) -> None:
         """Show at once what the user has changed, and a few rows at a time what has been computed."""
+        if why := left_out(source.scene, "The map of stability"):
+            self._panels, self._drawn_for, self.cursor = {}, None, None
+            lines = textwrap.wrap(why, max(self.room.width - 2, 1))
+            self.show([[(f" {line}", NOBODY)] for line in lines])
+            return
         columns, rows = self.panel_size()
         if columns <= 2 * MARGIN or self.grid.methods != self.cast:
             return
@@ -175,6 +183,8 @@ class StabilityPane(Chooser[tuple[int, int]]):
 
     def _under(self, event: events.MouseEvent) -> tuple[int, int] | None:
         """The place under the pointer; its method is the one described from now on."""
+        if self.grid.methods != self.cast:
+            return None
         columns, rows = self.panel_size()
         x, y = event.get_content_offset_capture(self)
         across, column = divmod(x, columns + 2)

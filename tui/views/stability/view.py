@@ -37,10 +37,14 @@ class StabilityView(View):
         if self.source is None or not self.display or not self.query(StabilityPane):
             return
         pane, cast = self.query_one(StabilityPane), self.source.scene.cast
+        if not self.source.scene.general:
+            cast = ()
+            pane.border_title = "Stability"
         if cast != pane.grid.methods:
             self.workers.cancel_node(self)
             pane.begin(_grid(cast))
-            self.run_worker(self._fill(pane), exclusive=True, exit_on_error=False)
+            if cast:
+                self.run_worker(self._fill(pane), exclusive=True, exit_on_error=False)
 
     async def _fill(self, pane: StabilityPane) -> None:
         """Compute the map, and show how far it is in tenths: with a new title, Textual sends all of the pane again."""

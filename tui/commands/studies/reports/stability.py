@@ -151,7 +151,7 @@ def _table(study: StabilityStudy) -> tuple[list[Row], bool]:
     return ([], True) if _is_linear(study.scene) else study.table()
 
 
-def _limits(method: Method) -> tuple[float, float | None]:
+def _limits(method: Method) -> tuple[float | None, float | None]:
     """The largest stable z as measured, and in theory; a user's own method has no theory."""
     if isinstance(method, OwnMethod):
         return method.linear_limit, None

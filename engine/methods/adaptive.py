@@ -1,0 +1,72 @@
+"""Step size control: a step is divided until it looks accurate enough.
+
+Where a step is divided depends on where it is, and back from its end it may be divided otherwise: neither symplectic
+nor reversible, whatever the method inside.  Hairer, Lubich & Wanner (2006), VIII.1.
+"""
+
+import math
+from collections.abc import Iterator
+
+from engine.methods.method import Method, Phases
+from engine.methods.verlet import velocity_verlet
+from engine.models.model import Force, Phase
+
+MOST_HALVINGS = 10  # of a step: where nothing looks accurate, as at 1e9 rad/s, it ends with 1024 parts
+TOLERANCE = 0.1  # rad and rad/s, of a step
+
+
+def halving(phases: Phases, tolerance: float, richardson: bool = False) -> Phases:
+    """The method with step doubling: where one step and two halves differ by more than the tolerance, h is halved.
+
+    The two halves are what counts, or with `richardson` their extrapolation for a method of order 2, which is of
+    order 4.  Nothing is kept from step to step, so each begins with h again.  The difference is
+    hypot(theta, omega), in rad and rad/s.
+    """
+
+    def step(force: Force, phase: Phase, h: float, halvings: int) -> Phase:
+        whole = next(phases(force, phase, h))
+        halves = next(phases(force, next(phases(force, phase, h / 2)), h / 2))
+        theta, omega = halves[0] - whole[0], halves[1] - whole[1]
+        if halvings and math.hypot(theta, omega) > tolerance:
+            return step(force, step(force, phase, h / 2, halvings - 1), h / 2, halvings - 1)
+        return (halves[0] + theta / 3, halves[1] + omega / 3) if richardson else halves
+
+    def halved(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
+        """Steps divided in halves as often as they need it."""
+        while True:
+            phase = step(force, phase, h, MOST_HALVINGS)
+            yield phase
+
+    return halved
+
+
+def _halving(richardson: bool, key: str, label: str, letter: str, ends: str, order: int, evaluations: int) -> Method:
+    return Method(
+        key=key,
+        label=label,
+        letter=letter,
+        phases=halving(velocity_verlet, TOLERANCE, richardson),
+        formula=f"a step of velocity Verlet, and two halves: if they differ by more than {TOLERANCE}, halve h; {ends}",
+        order=order,
+        force_evaluations=evaluations,
+        first_same_as_last=False,
+        symplectic=False,
+        reversible=False,
+        linear_limit=None,
+        other_names=("adaptive Verlet",),
+        reference="Press et al., Numerical Recipes, 2nd edition (1992), 16.2",
+        used="",
+        note="Its force evaluations are those of a minute of scene halving, on average; six for a step that is not "
+        "divided, and of this order it is as long as none is.",
+        models=("pendulum", "linear"),
+        general=False,
+        varies=True,
+    )
+
+
+HALVING_VERLET = _halving(False, "halving_verlet", "Step doubling", "h", "the halves count", 2, 8)
+HALVING_RICHARDSON = _halving(
+    True, "halving_richardson", "Richardson Verlet", "a", "they are extrapolated to h = 0", 4, 7
+)
+
+FAMILY = (HALVING_VERLET, HALVING_RICHARDSON)

@@ -1,0 +1,122 @@
+"""Methods for two time scales: the force says what is fast, what is slow, and solves for its fast part.
+
+They ask the force for `fast`, `slow` and `solve(b, c)`, the solution of z = b + c fast(z); `slow` is a constant here.
+"""
+
+from collections.abc import Iterator
+from itertools import islice
+from typing import Any
+
+from engine.methods.method import Method, Phases
+from engine.methods.verlet import velocity_verlet
+from engine.models.model import Phase
+
+
+def respa(inner: Phases, n: int) -> Phases:
+    """r-RESPA, or the impulse method: half a kick of the slow force, n inner steps with the fast one, half a kick.
+
+    Tuckerman, Berne & Martyna, J. Chem. Phys. 97 (1992) 1990.
+    """
+
+    def impulse(force: Any, phase: Phase, h: float) -> Iterator[Phase]:
+        """Half a slow kick, n fast steps, half a slow kick."""
+        z, w = phase
+        slow = force.slow(z)
+        while True:
+            w = w + h / 2 * slow
+            z, w = next(islice(inner(force.fast, (z, w), h / n), n - 1, None))
+            slow = force.slow(z)
+            w = w + h / 2 * slow
+            yield z, w
+
+    return impulse
+
+
+def implicit_midpoint(force: Any, phase: Phase, h: float) -> Iterator[Phase]:
+    """The implicit midpoint rule: z' = z + h (w + w')/2, w' = w + h a((z + z')/2), solved for the middle.
+
+    Order 2, symplectic and reversible, stable at any h.  Hairer, Lubich & Wanner (2006), II.1.1 and VI.4.
+    """
+    z, w = phase
+    while True:
+        middle = force.solve(z + h / 2 * w + h * h / 4 * force.slow(z), h * h / 4)
+        z, w = 2 * middle - z, 4 * (middle - z) / h - w
+        yield z, w
+
+
+def imex_euler(force: Any, phase: Phase, h: float) -> Iterator[Phase]:
+    """Implicit-explicit Euler: the fast force at the end of the step, the slow one at its start.
+
+    Order 1, stable at any h because it damps whatever it does not resolve, and what it does.
+    Ascher, Ruuth & Spiteri, Appl. Numer. Math. 25 (1997) 151.
+    """
+    z, w = phase
+    while True:
+        following = force.solve(z + h * (w + h * force.slow(z)), h * h)
+        z, w = following, (following - z) / h
+        yield z, w
+
+
+INNER = 10
+
+RESPA = Method(
+    key="respa",
+    label="RESPA",
+    letter="p",
+    phases=respa(velocity_verlet, INNER),
+    formula=f"w + h/2 slow;  {INNER} steps of velocity Verlet with h/{INNER} and the fast force;  w + h/2 slow",
+    order=2,
+    force_evaluations=INNER + 1,
+    first_same_as_last=False,
+    symplectic=True,
+    reversible=True,
+    linear_limit=None,
+    other_names=("impulse method", "IVI"),
+    reference="Tuckerman, Berne & Martyna, J. Chem. Phys. 97 (1992) 1990",
+    used="molecular dynamics: LAMMPS, run_style respa, OpenMM, MTSIntegrator [docs.openmm.org, MTSIntegrator]",
+    note="Its kicks resonate where h is a period of the fast motion, or several. Counted are evaluations of its force.",
+    models=("spring",),
+    general=False,
+)
+
+IMPLICIT_MIDPOINT = Method(
+    key="implicit_midpoint",
+    label="Implicit midpoint",
+    letter="i",
+    phases=implicit_midpoint,
+    formula="z' = z + h (w + w')/2;  w' = w + h a((z + z')/2)",
+    order=2,
+    force_evaluations=1,
+    first_same_as_last=False,
+    symplectic=True,
+    reversible=True,
+    linear_limit=None,
+    other_names=("Gauss method of order 2",),
+    reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), II.1.1",
+    used="",
+    note="Small vibrations are stable at any h, with a phase that is wrong where h is long. Counted are its solutions.",
+    models=("spring",),
+    general=False,
+)
+
+IMEX_EULER = Method(
+    key="imex_euler",
+    label="IMEX Euler",
+    letter="u",
+    phases=imex_euler,
+    formula="w' = w + h (fast(z') + slow(z));  z' = z + h w'",
+    order=1,
+    force_evaluations=1,
+    first_same_as_last=False,
+    symplectic=False,
+    reversible=False,
+    linear_limit=None,
+    other_names=("implicit-explicit Euler",),
+    reference="Ascher, Ruuth & Spiteri, Appl. Numer. Math. 25 (1997) 151",
+    used="",
+    note="Stable at any h; it takes the energy out of the spring within a period, and then out of the swing.",
+    models=("spring",),
+    general=False,
+)
+
+FAMILY = (RESPA, IMPLICIT_MIDPOINT, IMEX_EULER)

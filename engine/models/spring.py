@@ -1,0 +1,122 @@
+"""A bob on a stiff spring in the plane: a swing, and a vibration that is some ten times as fast.
+
+A position is a complex number x + iy in units of the spring's length at rest, y upwards and the pivot at 0:
+z'' = -k (1 - 1/|z|) z - i w0².  So every method that has only + and * on the phase runs on it unchanged.
+"""
+
+import cmath
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, ClassVar
+
+from engine.models.model import Energy, ExactMotion, Force, Model, Phase, Sine, State
+from engine.models.reference import Reference
+
+STRETCH = 0.04  # of its length, beyond equilibrium: how far the spring is stretched at a start
+STEP = 0.1  # of the reference, times the spring's frequency
+ACCURACY = 1e-10  # rad
+
+
+@dataclass(frozen=True)
+class Spring(Model):
+    """z'' = -k (1 - 1/|z|) z - i w0²."""
+
+    w0_squared: float  # g/L [s⁻²], L being the length at rest
+    stiffness: float  # k, the spring constant over the mass [s⁻²]
+
+    key: ClassVar[str] = "spring"
+    equation: ClassVar[str] = "z'' = -k (1 - 1/|z|) z - i w0², z = x + iy"
+    turns: ClassVar[bool] = False  # its angle is known from its place only, so it is within ±pi
+    in_plane: ClassVar[bool] = True
+    parameters: ClassVar[tuple[str, ...]] = ("stiffness",)
+    plain: ClassVar[bool] = False
+
+    @property
+    def fastest(self) -> float:
+        """The spring's frequency sqrt(k)."""
+        return max(self.w0, math.sqrt(self.stiffness))
+
+    def start(self, theta: float, omega: float) -> Phase:
+        """Stretched, and with no speed along the rod."""
+        length = 1 + STRETCH + (self.w0_squared * math.cos(theta) + omega * omega) / self.stiffness
+        down = -1j * cmath.exp(1j * theta)
+        return length * down, 1j * length * omega * down
+
+    def still(self, theta: float) -> Phase:
+        """At rest, as long as without a weight."""
+        return -1j * cmath.exp(1j * theta), 0j
+
+    def seen(self, phase: Phase) -> State:
+        """The swing's angle, within ±pi, and angular velocity: a projection."""
+        z, w = phase
+        return State(cmath.phase(1j * z), (z.conjugate() * w).imag / (abs(z) ** 2 or 1.0))
+
+    def force(self, sin: Sine = math.sin) -> Force:
+        """The force on a position, as all methods ask for it, and for those that tell fast from slow its attributes.
+
+        `fast` is the spring's, `slow` gravity's, and `solve(b, c)` is the solution of z = b + c fast(z), which is
+        b (|b| + c k)/((1 + c k) |b|).
+        """
+        k, gravity = self.stiffness, -1j * self.w0_squared
+
+        def spring_force(z: Any) -> Any:
+            return -k * (1 - 1 / abs(z)) * z + gravity
+
+        def fast(z: Any) -> Any:
+            return -k * (1 - 1 / abs(z)) * z
+
+        def slow(z: Any) -> Any:
+            return gravity
+
+        def solve(b: Any, c: float) -> Any:
+            length = abs(b)
+            return b * ((length + c * k) / ((1 + c * k) * length))
+
+        force: Any = spring_force
+        force.fast, force.slow, force.solve = fast, slow, solve
+        return spring_force
+
+    def slope(self, theta: float) -> float:
+        """Of the swing, as if the rod were rigid."""
+        return -self.w0_squared * math.cos(theta)
+
+    def energy(self, sin: Sine = math.sin) -> Energy:
+        """|w|²/2 + w0² (y + 1) + k/2 (|z| - 1)² [s⁻²]."""
+        k, gravity = self.stiffness, self.w0_squared
+
+        def total_energy(phase: Phase) -> Any:
+            z, w = phase
+            stretch = abs(z) - 1
+            return (w.real * w.real + w.imag * w.imag) / 2 + gravity * (z.imag + 1) + k / 2 * stretch * stretch
+
+        return total_energy
+
+    def spring_energy(self, phase: Phase) -> float:
+        """vr²/2 + k/2 (r - r_eq)² [s⁻²]: r_eq is where gravity and the swing would hold the spring at rest.
+
+        The true motion keeps it within ±2 % where the spring is fast: an adiabatic invariant.
+        """
+        z, w = phase
+        length = abs(z) or 1.0
+        along = z / length
+        radial, across = (w * along.conjugate()).real, (w * along.conjugate()).imag
+        held = 1 + (-self.w0_squared * along.imag + across * across / length) / self.stiffness
+        return radial * radial / 2 + self.stiffness / 2 * (length - held) * (length - held)  # type: ignore[no-any-return]
+
+    def exact(self, theta: float, omega: float) -> ExactMotion:
+        """By the reference, as the swing's angle and angular velocity."""
+
+        def at(t: float) -> State:
+            return self.seen(self.place(theta, omega, t))
+
+        return ExactMotion(at, "libration", accuracy=ACCURACY)
+
+    def place(self, theta: float, omega: float, t: float) -> Phase:
+        """Position and velocity in the plane at a time [s], by the reference."""
+        return _reference(self, theta, omega).at(t)
+
+
+@lru_cache(maxsize=16)
+def _reference(model: Spring, theta: float, omega: float) -> Reference:
+    return Reference(model.force(), model.start(theta, omega), STEP / model.fastest)

@@ -1,0 +1,14 @@
+"""Scenes: `scene` says what one is, everything that determines a run; `listed` are those worth watching."""
+
+from engine.scenes.listed import DEFAULT_SCENE as DEFAULT_SCENE
+from engine.scenes.listed import GROUPS as GROUPS
+from engine.scenes.listed import LEFT_OUT as LEFT_OUT
+from engine.scenes.listed import SCENES as SCENES
+from engine.scenes.scene import LIMITS as LIMITS
+from engine.scenes.scene import MOST_METHODS as MOST_METHODS
+from engine.scenes.scene import PARAMETERS as PARAMETERS
+from engine.scenes.scene import UNITS as UNITS
+from engine.scenes.scene import Z_LIMITS as Z_LIMITS
+from engine.scenes.scene import Scene as Scene
+from engine.scenes.scene import SceneError as SceneError
+from engine.scenes.scene import check_h as check_h

@@ -1,0 +1,49 @@
+"""With which power of time the angle's error grows."""
+
+import pytest
+
+from engine.accuracy.growth import duration, growth
+from engine.methods import USUAL_CAST
+from engine.scenes import SCENES, Scene
+
+EXPLICIT, SYMPLECTIC, VERLET, RK4 = USUAL_CAST
+
+
+@pytest.mark.parametrize(
+    ("scene", "method", "power"),
+    [
+        (Scene(h=0.02), VERLET, 1),
+        (Scene(), VERLET, 1),
+        (Scene(theta=2.0, h=0.01), VERLET, 1),
+        (SCENES["spin"].altered(h=0.01), VERLET, 1),
+        (Scene(theta=2.0, h=0.02), RK4, 2),
+        (Scene(theta=2.5, h=0.02), RK4, 2),
+        (Scene(theta=0.01), RK4, 1),  # where the period does not hang on the energy
+        (SCENES["linear"].altered(h=0.05), RK4, 1),
+        (SCENES["linear"].altered(h=0.05), VERLET, 1),
+    ],
+    ids=lambda value: str(getattr(value, "key", "")),
+)
+def test_the_error_of_a_symplectic_method_grows_as_t_and_that_of_rk4_as_t_squared(scene, method, power):
+    assert growth(scene, method) == pytest.approx(power, abs=0.15)
+
+
+@pytest.mark.parametrize(
+    ("scene", "method"),
+    [
+        (Scene(), EXPLICIT),  # the error is more than a turn by then
+        (Scene(h=0.3), VERLET),  # and too large after few swings
+        (Scene(h=0.02), SYMPLECTIC),  # a wobble, and what grows as t
+        (Scene(theta=0.0), VERLET),  # at rest
+        (Scene(h=1e-5), VERLET),  # too many steps
+        (SCENES["linear"].altered(h=1.9), RK4),  # longer than a fourth of the period
+    ],
+    ids=lambda value: str(getattr(value, "key", "")),
+)
+def test_where_there_is_no_power_of_t_none_is_given(scene, method):
+    assert growth(scene, method) is None
+
+
+def test_it_takes_a_hundred_periods():
+    scene = Scene()
+    assert duration(scene) == pytest.approx(100 * scene.exact().period)

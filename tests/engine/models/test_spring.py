@@ -1,0 +1,86 @@
+"""A bob on a stiff spring: where it starts, what it keeps, and the reference."""
+
+import cmath
+import math
+
+import mpmath as mp
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from engine.models.reference import Reference
+from engine.models.spring import ACCURACY, STEP, Spring
+from engine.scenes import Scene, SceneError
+
+SPRING = Spring(9.81, 2500.0)
+places = st.builds(complex, st.floats(-2, 2), st.floats(-2, 2)).filter(lambda z: abs(z) > 1e-3)
+
+
+def test_at_the_start_the_spring_is_stretched_by_4_percent_more_than_gravity_does() -> None:
+    z, w = SPRING.start(1.0, 0.0)
+    assert z == pytest.approx(0.8769138657516443 - 0.5630599180095599j, abs=1e-15)
+    assert w == 0
+    assert SPRING.spring_energy((z, w)) == pytest.approx(2500 / 2 * 0.04**2)
+    assert SPRING.reference(1.0, 0.0).start == pytest.approx(6.5040, abs=1e-4)
+
+
+@given(theta=st.floats(-3.1, 3.1), omega=st.floats(-5, 5))
+def test_a_start_is_seen_at_its_angle_and_angular_velocity(theta: float, omega: float) -> None:
+    assert SPRING.seen(SPRING.start(theta, omega)) == pytest.approx((theta, omega), abs=1e-14)
+
+
+@given(z=places)
+def test_the_force_is_minus_the_slope_of_the_energy(z: complex) -> None:
+    def energy(x: mp.mpf, y: mp.mpf) -> mp.mpf:
+        return mp.mpf("9.81") * (y + 1) + 1250 * (mp.hypot(x, y) - 1) ** 2
+
+    with mp.workdps(40):
+        x, y = mp.mpf(z.real), mp.mpf(z.imag)
+        slope = complex(mp.diff(energy, (x, y), (1, 0)), mp.diff(energy, (x, y), (0, 1)))
+        assert SPRING.energy()((z, 0j)) == pytest.approx(float(energy(x, y)), rel=1e-12)
+    assert SPRING.force()(z) == pytest.approx(-slope, rel=1e-12, abs=1e-9)
+
+
+@given(z=places)
+def test_the_force_is_the_sum_of_its_fast_and_its_slow_part(z: complex) -> None:
+    force = SPRING.force()
+    assert force.fast(z) + force.slow(z) == force(z)  # type: ignore[attr-defined]
+
+
+@given(b=places, c=st.floats(1e-8, 1e3))
+def test_solve_finds_where_the_fast_force_leads_from_b(b: complex, c: float) -> None:
+    force = SPRING.force()
+    z = force.solve(b, c)  # type: ignore[attr-defined]
+    rounding = 1e-15 * (1 + 2500 * c)  # of the force times c
+    assert z == pytest.approx(b + c * force.fast(z), abs=10 * rounding)  # type: ignore[attr-defined]
+
+
+def test_the_reference_is_as_accurate_as_it_says_and_keeps_the_energy() -> None:
+    finer = Reference(SPRING.force(), SPRING.start(1.0, 0.0), STEP / 2 / SPRING.fastest)
+    exact, energy = SPRING.exact(1.0, 0.0), SPRING.energy()
+    for t in (1.0, 10.0, 30.0, 60.0):
+        assert abs(exact.at(t).theta - SPRING.seen(finer.at(t)).theta) < ACCURACY / 2
+        assert energy(SPRING.place(1.0, 0.0, t)) == pytest.approx(SPRING.reference(1.0, 0.0).start, rel=1e-11)
+
+
+def test_the_true_motion_keeps_the_energy_of_the_spring_within_two_percent_or_so() -> None:
+    energies = [SPRING.spring_energy(SPRING.place(1.0, 0.0, n / 50)) for n in range(1500)]  # half a minute
+    assert 1.97 < min(energies) < 1.98
+    assert 2.04 < max(energies) < 2.05
+
+
+def test_its_fastest_frequency_is_the_springs() -> None:
+    scene = Scene(model="spring", stiffness=2500.0, h=0.02, cast=())
+    assert scene.z == pytest.approx(1.0)
+    period = math.tau / 50
+    z, w = SPRING.place(0.0, 0.0, period)  # hanging down it only vibrates, gravity does not change how fast
+    assert z == pytest.approx(SPRING.start(0.0, 0.0)[0], abs=1e-10)
+    assert abs(w) < 1e-8
+    assert cmath.phase(1j * z) == pytest.approx(0)
+
+
+def test_stiffness_is_for_the_model_that_has_it_and_more_than_nothing() -> None:
+    with pytest.raises(SceneError, match=r"^the model linear has no stiffness; "):
+        Scene(model="linear", stiffness=1.0)
+    with pytest.raises(SceneError, match=r"^stiffness = 0 s⁻² is out of range; use 1 to 1e\+18 s⁻²\.$"):
+        Scene(model="spring", cast=())

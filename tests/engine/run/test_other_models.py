@@ -1,0 +1,141 @@
+"""Lockstep, observer and judging on scenes whose model or methods are not as general as the pendulum's."""
+
+import math
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from engine.methods import METHODS
+from engine.models import MODELS
+from engine.run.compiled import available, compiled
+from engine.run.lockstep import Lockstep, Reading, Sample
+from engine.run.loops import plain
+from engine.run.observer import RunObserver
+from engine.run.stepping import Stepping, SteppingChange
+from engine.scenes import SCENES, Scene, SceneError
+
+NAMES = [n for n, s in SCENES.items() if not (s.equations.plain and all(method.general for method in s.cast))]
+each_scene = pytest.mark.parametrize("scene", [SCENES[name] for name in NAMES], ids=NAMES)
+PARAMETERS = {"friction": 0.1, "stiffness": 100.0}
+
+
+def without_extremes(sample: Sample) -> list[Reading]:
+    return [replace(reading, energy_error_low=0.0, energy_error_high=0.0) for reading in sample.readings]
+
+
+def verdicts(scene: Scene, steps: int, every: int) -> list[tuple[int, str, str]]:
+    observer, lockstep = RunObserver(scene), Lockstep(scene)
+    observer.add(lockstep.sample())
+    for _ in range(steps // every):
+        lockstep.advance(every)
+        observer.add(lockstep.sample())
+    return [(m.step, m.method.key, m.verdict) for m in observer.milestones(steps) if m.kind == "verdict"]
+
+
+@each_scene
+@given(cuts=st.lists(st.integers(1, 30), min_size=1, max_size=6))
+def test_the_same_bits_however_the_steps_are_cut(scene: Scene, cuts: list[int]) -> None:
+    alone, watched = Lockstep(scene), Lockstep(scene)
+    for n in cuts:
+        watched.advance(n)
+        watched.sample()
+        watched = watched.copy()
+    alone.advance(sum(cuts))
+    assert without_extremes(watched.sample()) == without_extremes(alone.sample())
+
+
+@each_scene
+def test_readings_are_floats_and_finite_and_tell_of_a_spring_only_where_there_is_one(scene: Scene) -> None:
+    lockstep = Lockstep(scene)
+    for n in (0, 1, 1000):
+        lockstep.advance(n)
+        for reading in lockstep.sample().readings:
+            assert {type(reading.theta), type(reading.omega), type(reading.energy)} == {float}
+            assert math.isfinite(reading.theta + reading.omega + reading.energy_error)
+            spring = scene.model == "spring"
+            assert (reading.position is not None) == (reading.spring_energy is not None) == spring
+            assert reading.phase == ((reading.position, reading.velocity) if spring else (reading.theta, reading.omega))
+
+
+@each_scene
+def test_verdicts_do_not_depend_on_how_often_somebody_looks(scene: Scene) -> None:
+    if scene.name.startswith("precision"):
+        scene = scene.with_cast(scene.cast[:2])  # a sample does not tell what a compensated sum keeps
+    steps = 14 * round(20 / scene.h / 14)
+    assert verdicts(scene, steps, 1) == verdicts(scene, steps, 14)
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("damped", {"explicit_euler": "grows"}),
+        ("stiff-slow", {"rk4": "loses", "imex_euler": "loses"}),
+        ("halving", {"halving_verlet": "grows", "halving_richardson": "loses", "velocity_verlet": "bounded"}),
+    ],
+)
+def test_the_verdicts_say_what_the_scenes_show(name: str, expected: dict[str, str]) -> None:
+    last = {key: verdict for _, key, verdict in verdicts(SCENES[name], round(300 / SCENES[name].h), 50)}
+    assert last.items() >= expected.items()
+
+
+@each_scene
+def test_there_is_no_modified_energy_but_on_plain_models(scene: Scene) -> None:
+    observer, lockstep = RunObserver(scene), Lockstep(scene)
+    before = lockstep.sample()
+    lockstep.advance(10)
+    change = SteppingChange(0, 0.0, lockstep.stepping)
+    errors = observer.modified_energy_errors(before, lockstep.sample(), change)
+    expected = [bool(method.modified_energy) and scene.equations.plain for method in scene.cast]
+    assert [not math.isnan(error) for error in errors] == expected
+
+
+@pytest.mark.skipif(not available(), reason="Numba is not installed")
+@each_scene
+def test_where_numba_would_not_give_the_same_bits_the_plain_loops_are_used(scene: Scene) -> None:
+    for method in scene.cast:
+        general = method.general and scene.equations.plain
+        assert (compiled(method, scene.equations) is plain(method, scene.equations)) == (not general)
+
+
+@each_scene
+def test_backwards_and_at_equal_cost_there_are_still_numbers(scene: Scene) -> None:
+    lockstep = Lockstep(scene)
+    lockstep.set_stepping(Stepping(scene.h, True, scene.cast))
+    lockstep.advance(20)
+    lockstep.set_stepping(lockstep.stepping.reversed())
+    lockstep.advance(200)
+    assert all(math.isfinite(reading.energy_error) for reading in lockstep.sample().readings)
+
+
+@given(
+    model=st.sampled_from(sorted(MODELS)),
+    theta=st.floats(-1e9, 1e9),
+    omega=st.floats(-1e9, 1e9),
+    friction=st.floats(0, 100),
+    stiffness=st.floats(1, 1e18),
+    h=st.floats(1e-8, 300),
+)
+def test_whatever_is_within_the_limits_neither_crashes_nor_ends_in_nan(
+    model: str, theta: float, omega: float, friction: float, stiffness: float, h: float
+) -> None:
+    given_values = {"friction": friction, "stiffness": stiffness}
+    own = {name: given_values[name] for name in MODELS[model].parameters}
+    cast = tuple(method for method in METHODS if model in method.models)
+    h = min(h, 1.0) if model == "damped" else h  # the reference takes steps of 0.5 ms where friction is 100
+    lockstep = Lockstep(Scene(theta=theta, omega=omega, h=h, model=model, cast=cast, **own))
+    lockstep.advance(3)
+    for reading in lockstep.sample().readings:
+        assert math.isfinite(reading.theta + reading.omega + reading.energy + reading.energy_error)
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_a_model_refuses_a_method_that_is_not_for_it(model: str) -> None:
+    own = {name: PARAMETERS[name] for name in MODELS[model].parameters}
+    for method in METHODS:
+        if model in method.models:
+            assert Scene(model=model, cast=(method,), **own).cast == (method,)
+        else:
+            with pytest.raises(SceneError, match=f"is not for the model {model}"):
+                Scene(model=model, cast=(method,), **own)

@@ -1,0 +1,119 @@
+"""Recordings of other models and other methods than the plain pendulum's: whole, identical, exported, replayed."""
+
+import csv
+import json
+from dataclasses import replace
+
+import jsonschema
+import pytest
+from mcap.reader import make_reader
+
+from engine.run.lockstep import Sample
+from engine.scenes import SCENES
+from recordings.diff import compare
+from recordings.errors import RecordingError
+from recordings.events import Entry
+from recordings.fields import IN_PLANE
+from recordings.format import decode_event, decode_reading, encode_event, encode_readings
+from recordings.headless import simulate
+from recordings.recorder import Recorder
+from recordings.recording import Recording
+from recordings.recover import recover
+from recordings.verify import verify
+from tests.recordings.examples import record, start
+from tests.recordings.test_verify import of_another_machine
+from tests.tui.command_line import pendu
+from tui.playback.marks import Marks
+from tui.playback.replay import Replay
+
+SPECIAL = sorted(name for name, scene in SCENES.items() if not scene.general)
+SPRING, DAMPED = SCENES["stiff-slow"], SCENES["damped"]
+
+
+def made(path, scene, time=3.0, change=lambda sample: sample):
+    """The samples that are recorded in this file."""
+    samples = [change(sample) for sample in simulate(scene, time)]
+    record(path, [Entry(0.0, start(scene=scene)), *(Entry(sample.t, sample) for sample in samples)])
+    return samples
+
+
+@pytest.mark.parametrize("name", SPECIAL)
+def test_a_run_is_recorded_verified_exported_and_replayed(tmp_path, name):
+    path, scene = tmp_path / "a.mcap", SCENES[name]
+    changes = [(40, scene.h / 2)]
+    with Recorder(path, wall=None) as recorder:
+        samples = list(simulate(scene, 100 * scene.h, recorder, changes=changes))
+    assert verify(path).identical
+    with Recording.open(path, check=True) as recording:
+        assert recording.runs[0].scene == scene
+        assert [value for _, value in recording.entries() if isinstance(value, Sample)] == samples
+        replay = Replay(recording, Marks(path), clock=lambda: 0.0)
+        assert replay.scene == scene
+        replay.seek(recording.length)
+        assert replay.sample.readings == samples[-1].readings
+    assert pendu("export", path, "-o", tmp_path / "a.csv").code == 0
+    rows = list(csv.DictReader((tmp_path / "a.csv").open()))
+    assert [float(row["theta_rad"]) for row in rows] == [each.theta for sample in samples for each in sample.readings]
+    info = pendu("info", path, "--json").json
+    assert info["runs"][0]["scene"] == scene.fields()
+    recover(path, tmp_path / "copy.mcap")
+    assert verify(tmp_path / "copy.mcap").identical
+    with path.open("rb") as stream:
+        for schema, _, message in make_reader(stream).iter_messages():
+            jsonschema.validate(json.loads(message.data), json.loads(schema.data))
+
+
+def test_a_bob_in_the_plane_has_its_whole_phase_in_the_table(tmp_path):
+    samples = made(tmp_path / "a.mcap", SPRING)
+    pendu("export", tmp_path / "a.mcap", "-o", tmp_path / "a.csv")
+    rows = list(csv.DictReader((tmp_path / "a.csv").open()))
+    for row, reading in zip(rows, (each for sample in samples for each in sample.readings), strict=True):
+        assert complex(float(row["x"]), float(row["y"])) == reading.position
+        assert complex(float(row["vx_per_s"]), float(row["vy_per_s"])) == reading.velocity
+        assert float(row["spring_energy"]) == reading.spring_energy
+
+
+@pytest.mark.parametrize("factor", [1 + 1e-15, 1 + 1e-7])
+@pytest.mark.parametrize("field", ["position", "velocity", "spring_energy"])
+def test_a_change_in_the_plane_is_found_by_verify_and_diff(tmp_path, monkeypatch, field, factor):
+    def change(sample):
+        if sample.step != 50:
+            return sample
+        first, *others = sample.readings
+        return replace(sample, readings=(replace(first, **{field: getattr(first, field) * factor}), *others))
+
+    made(tmp_path / "a.mcap", SPRING)
+    made(tmp_path / "b.mcap", SPRING, change=change)
+    found = verify(tmp_path / "b.mcap").first_difference
+    assert (found.step, found.method) == (50, "velocity_verlet")
+    assert found.field in IN_PLANE
+    with Recording.open(tmp_path / "a.mcap") as a, Recording.open(tmp_path / "b.mcap") as b:
+        difference = compare(a, b).first
+    assert (difference.step, difference.field) == (50, found.field)
+    of_another_machine(monkeypatch)  # then within the tolerance
+    assert verify(tmp_path / "b.mcap").identical == (factor < 1 + 1e-10)
+
+
+@pytest.mark.parametrize("scene", [SPRING, DAMPED], ids=["spring", "damped"])
+def test_a_start_has_the_parameters_of_its_model_and_no_others(scene):
+    fields = json.loads(encode_event(start(scene=scene)))
+    assert {"friction", "stiffness"} & set(fields) == set(scene.parameters)
+    assert decode_event(json.dumps(fields).encode()).scene == scene
+    for wrong in ({scene.parameters[0]: -1.0}, {"friction": 0.1, "stiffness": 9.0}, {scene.parameters[0]: None}):
+        with pytest.raises(RecordingError):
+            decode_event(json.dumps(fields | wrong).encode())
+
+
+@pytest.mark.parametrize("name", IN_PLANE)
+def test_a_reading_in_the_plane_without_its_whole_phase_is_refused(name):
+    fields = json.loads(encode_readings(next(simulate(SPRING, 1.0)))[0])
+    del fields[name]
+    with pytest.raises(RecordingError, match=name):
+        decode_reading(json.dumps(fields).encode(), plane=True)
+
+
+def test_other_parameters_are_a_difference_of_the_scenes(tmp_path):
+    made(tmp_path / "a.mcap", DAMPED)
+    made(tmp_path / "b.mcap", replace(DAMPED, friction=0.1))
+    with Recording.open(tmp_path / "a.mcap") as a, Recording.open(tmp_path / "b.mcap") as b:
+        assert [(each.field, each.a, each.b) for each in compare(a, b).scenes] == [("friction", 0.05, 0.1)]

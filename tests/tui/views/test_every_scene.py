@@ -1,0 +1,74 @@
+"""Every scene runs in every view: no fault, no number that is none, and a sentence in place of what it cannot have."""
+
+import re
+
+import pytest
+
+from engine.scenes import SCENES
+from tests.tui.harness import key_of, lab
+from tui.views.accuracy.pane import AccuracyPane
+from tui.views.phase.section_pane import SectionPane
+from tui.views.stability.pane import StabilityPane
+from tui.views.view import Pane
+
+SPECIAL = [name for name, scene in SCENES.items() if not scene.general]
+
+
+def words(theatre):
+    return "\n".join(pane.text for pane in theatre.stage.query(Pane) if pane.drawable)
+
+
+@pytest.mark.parametrize("name", SCENES)
+async def test_every_scene_runs_in_every_view(name):
+    async with lab(SCENES[name]) as theatre:
+        for view in ("lab", "phase", "accuracy", "stability"):
+            await theatre.press(key_of(view))
+            await theatre.run(3 if view == "lab" else 0.5)
+            assert not re.search(r"\b(nan|inf)\b", words(theatre))
+
+
+@pytest.mark.parametrize("name", SPECIAL)
+@pytest.mark.parametrize(
+    ("view", "pane", "what"),
+    [("accuracy", AccuracyPane, "The accuracy chart"), ("stability", StabilityPane, "The map of stability")],
+)
+async def test_what_a_scene_cannot_have_says_why(name, view, pane, what):
+    async with lab(SCENES[name]) as theatre:
+        await theatre.press(key_of(view))
+        await theatre.run(0.2)
+        said = " ".join(theatre.text(pane).split())
+        assert said == f"{what} is for methods that take any force, on a pendulum without friction."
+        await theatre.press("right", "enter", "tab", "escape")
+        assert theatre.source.scene == SCENES[name]
+
+
+async def test_its_own_map_is_left_out_with_a_word():
+    async with lab(SCENES["stiff-slow"]) as theatre:
+        await theatre.press(key_of("phase"), "x")
+        await theatre.run(0.2)
+        assert not theatre.stage.query_one("#phase SectionPane", SectionPane).shows_section
+        assert [note.message for note in theatre.app._notifications] == [
+            "A method's own map is for methods that take any force, on a pendulum without friction."
+        ]
+
+
+async def test_back_at_a_pendulum_chart_and_map_are_computed():
+    async with lab(SCENES["stiff-slow"]) as theatre:
+        for view, pane in (("accuracy", AccuracyPane), ("stability", StabilityPane)):
+            theatre.source.start(SCENES["stiff-slow"])
+            await theatre.press(key_of(view))
+            await theatre.run(0.2)
+            theatre.source.start(SCENES["gentle"])
+            await theatre.run(0.5)
+            assert "take any force" not in theatre.text(pane)
+            if view == "accuracy":
+                assert theatre.stage.query_one(pane).rungs
+
+
+async def test_only_the_pendulum_has_regimes_and_a_separatrix():
+    for name in ("stiff-slow", "damped", "linear"):
+        async with lab(SCENES[name]) as theatre:
+            await theatre.press(key_of("phase"))
+            await theatre.run(0.5)
+            plot = theatre.text(SectionPane)
+            assert not re.search("rotation|separatrix", plot)
