@@ -143,7 +143,7 @@ def test_where_every_method_is_lost_nothing_is_recommended():
 @pytest.mark.skipif(LOOPS is plain, reason="takes a minute without Numba")
 @pytest.mark.parametrize(("kind", "target"), [("theta", 1e-3), ("theta", 1e-6), ("theta", 1e-9), ("energy", 1e-6)])
 def test_of_all_methods_none_on_a_dense_ladder_is_three_percent_cheaper(kind, target):
-    study = Study(replace(DRIFT, theta=2.0, cast=METHODS), 100.0, LOOPS)
+    study = Study(replace(DRIFT, cast=tuple(m for m in METHODS if m.general)), 20.0, LOOPS)
     cost = cheapest(list(reach(study, kind, target))).force_evaluations
 
     def robust(method, steps):  # it and what is up to 10 % finer: near a resonance, an error may cross zero
@@ -151,8 +151,8 @@ def test_of_all_methods_none_on_a_dense_ladder_is_three_percent_cheaper(kind, ta
             study.run(method, math.ceil(steps * finer), 10_000).error(kind) <= target for finer in (1, 1.02, 1.05, 1.1)
         )
 
-    for method in METHODS:
-        steps = math.ceil(0.5 * cost / method.force_evaluations)
+    for method in study.scene.cast:
+        steps = math.ceil(0.6 * cost / method.force_evaluations)
         while method.evaluations(steps) * 1.03 < cost:
             assert not robust(method, steps), (method.key, method.evaluations(steps), cost)
-            steps = math.ceil(1.005 * steps)
+            steps = math.ceil(1.01 * steps)

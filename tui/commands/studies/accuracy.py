@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from engine.methods import GENERAL
+from engine.methods import METHODS
 from engine.methods.own import OwnMethod
 from engine.scenes import Scene, check_h
 from tui.cli.errors import Exit, UserError
@@ -113,8 +113,8 @@ def run(options: argparse.Namespace) -> int:
         raise UserError("--all and --methods exclude each other; choose one of them.")
     scene = general_scene_of(options)
     if options.all:
-        own = (method for method in scene.cast if isinstance(method, OwnMethod))
-        scene = scene.altered(cast=(*GENERAL, *own))
+        own = (method for method in scene.cast if method not in METHODS and isinstance(method, OwnMethod))
+        scene = scene.altered(cast=(*(method for method in METHODS if method.general), *own))
     if scene.theta == scene.omega == 0:
         raise UserError("the pendulum hangs at rest, so there is no error to measure; use another --theta or --omega.")
     times = options.time or [usual(scene)[0]]

@@ -50,7 +50,7 @@ def accuracy_chart(
     marked = [series([point], mark) for mark, point in marks]
     slopes = [_slope(ours, kind, cost, points) for ours in by_method]
     return loglog_chart(
-        [*(slope for slope in slopes if slope), *beside, *lines, *flawed, *marked],
+        [*(slope for slope in slopes if slope), *lines, *flawed, *beside, *marked],
         width,
         height,
         x_label=COST_LABELS[cost],

@@ -9,20 +9,26 @@ from rich.text import Text
 
 from engine.accuracy.advice import Advice
 from engine.accuracy.ahead import Ahead, Cost, ahead
-from engine.accuracy.front import CLOSED_FORM, TAYLOR_20, Reference, TaylorPoint
+from engine.accuracy.front import TAYLOR_20, Reference, TaylorPoint
 from engine.accuracy.growth import PERIODS
 from engine.accuracy.study import REASONS, ErrorKind, Order, Point
 from engine.methods import Method
 from engine.methods.own import OwnMethod
 from engine.scenes import Scene
 from tui.cli.output import console, fields_of, print_picture, print_table, scene_line, write_csv, write_json
-from tui.commands.studies.reports.front import WORTH_SAYING, factor_words, front_words, length, print_references
+from tui.commands.studies.reports.front import (
+    WORTH_SAYING,
+    factor_words,
+    front_words,
+    length,
+    print_references,
+    rows_of,
+)
 from tui.drawing.palette import PALETTES
 from tui.views.accuracy.chart import ERROR_LABELS, MARKS, accuracy_chart, references
 
 CHART_SIZE = (100, 24)  # columns at most, rows
 _POWERS = {1: "t", 2: "t²"}
-TRUTH = "the exact motion, against which errors are taken"
 
 
 @dataclass(slots=True)
@@ -85,7 +91,7 @@ def print_json(found: Findings) -> None:
             "scene": found.scene.fields(),
             "time": found.time,
             "error": found.kind,
-            "points": _rows(found),
+            "points": rows_of(found.points, found.taylor, found.floor, found.kind),
             "front": [
                 {"error": a.target, "method": a.method.key, "cost": a.cost, "saves_over_rk4": a.saves}
                 for a in found.front
@@ -103,7 +109,7 @@ def print_json(found: Findings) -> None:
 
 def print_csv(found: Findings, out: TextIO) -> None:
     """Write a line for each point."""
-    rows = _rows(found)
+    rows = rows_of(found.points, found.taylor, found.floor, found.kind)
     if rows:
         write_csv(out, list(rows[0]), (list(row.values()) for row in rows))
 
@@ -207,30 +213,6 @@ def winners(advice: Sequence[Advice]) -> str:
         if before != after
     ]
     return "; ".join(changes) + "." if changes else f"{names[0]} for all these times."
-
-
-NUMBERS = ("h", "steps", "force_evaluations", "seconds", "spread", "theta_error", "energy_error", "final_error")
-
-
-def _rows(found: Findings) -> list[dict[str, Any]]:
-    """The points of all lines, in the fields of JSON and CSV."""
-    points: list[Point | TaylorPoint] = [*found.points, *found.taylor]
-    rows = [_point_fields(point, found.kind) for point in points]
-    if found.floor is not None:
-        nothing = dict.fromkeys(NUMBERS) | {"seconds": found.floor, "valid": False, "reason": TRUTH, "tolerance": None}
-        rows.append({"method": CLOSED_FORM.key, **nothing})
-    return rows
-
-
-def _point_fields(point: Point | TaylorPoint, kind: ErrorKind) -> dict[str, Any]:
-    flaw = point.flaw(kind)
-    return {
-        "method": point.method.key,
-        **{name: getattr(point, name, None) for name in NUMBERS},
-        "valid": flaw is None,
-        "reason": REASONS[flaw] if flaw else None,
-        "tolerance": getattr(point, "tolerance", None),
-    }
 
 
 def _run_fields(

@@ -2,14 +2,17 @@
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 from engine.accuracy.ahead import Ahead, Cost, ranges
 from engine.accuracy.front import CLOSED_FORM, TAYLOR_20, TaylorPoint
-from engine.accuracy.study import ErrorKind
+from engine.accuracy.study import REASONS, ErrorKind, Point
 from engine.methods.runge_kutta import RK4
 from tui.cli.output import print_table
 from tui.views.accuracy.chart import MARKS
 
+TRUTH = "the exact motion, against which errors are taken"
+NUMBERS = ("h", "steps", "force_evaluations", "seconds", "spread", "theta_error", "energy_error", "final_error")
 WORTH_SAYING = 1.2  # times fewer force evaluations
 
 
@@ -67,3 +70,26 @@ def _span(first: float, last: float) -> str:
 
 def _power(target: float) -> str:
     return f"1e{round(math.log10(target))}"
+
+
+def rows_of(
+    points: Sequence[Point], taylor: Sequence[TaylorPoint], floor: float | None, kind: ErrorKind
+) -> list[dict[str, Any]]:
+    """The points of all lines, in the fields of JSON and CSV."""
+    runs: list[Point | TaylorPoint] = [*points, *taylor]
+    rows = [_point_fields(point, kind) for point in runs]
+    if floor is not None:
+        nothing = dict.fromkeys(NUMBERS) | {"seconds": floor, "valid": False, "reason": TRUTH, "tolerance": None}
+        rows.append({"method": CLOSED_FORM.key, **nothing})
+    return rows
+
+
+def _point_fields(point: Point | TaylorPoint, kind: ErrorKind) -> dict[str, Any]:
+    flaw = point.flaw(kind)
+    return {
+        "method": point.method.key,
+        **{name: getattr(point, name, None) for name in NUMBERS},
+        "valid": flaw is None,
+        "reason": REASONS[flaw] if flaw else None,
+        "tolerance": getattr(point, "tolerance", None),
+    }
