@@ -106,6 +106,11 @@ class CellWidget(Guarded, Widget):
     def on_hide(self) -> None:
         self._visible = False
 
+    def wake(self) -> None:
+        """Draw again, if on screen: Textual does not always say so of what was hidden with what is around it."""
+        if self.is_on_screen:
+            self.on_show()
+
     def show(self, rows: Sequence[Row], at_once: int | None = None) -> bool:
         """Show these rows, or so many of those that changed; whether that was all."""
         changed = [y for y, (old, new) in enumerate(zip_longest(self._rows, rows)) if old != new]

@@ -31,8 +31,7 @@ from tui.views.keys import Key, bindings
 from tui.views.messages import Asked, MethodChosen
 from tui.views.view import Box, View
 
-READ, BUILT = 10, 5
-"""How often a second numbers that people read are updated, and charts, which take time to build."""
+READ, BUILT = 10, 5  # updates a second: of numbers that people read, and of charts, which take time to build
 
 STALL = 1.0  # s; a longer gap between frames does not count as time: Ctrl+Z, a computer asleep, a dead line
 UNDOS = 30  # changes; each may hold a run
@@ -223,10 +222,11 @@ class SourceScreen(Guarded, Screen[None]):
         views = self.query_one("#views")
         if not views.query(f"#{name}"):
             await views.mount(self._create(name))
-        for view in views.children:
-            view.display = view.id == name
-        self.view = name
-        self.query_one(KeyLine).keys = hinted(self.KEYS, name, self.query_one(f"#{name}", View).KEYS)
+        for each in views.children:
+            each.display = each.id == name
+        self.view, view = name, self.query_one(f"#{name}", View)
+        self.query_one(KeyLine).keys = hinted(self.KEYS, name, view.KEYS)
+        self.call_after_refresh(view.wake)
         self.show_now()
 
     def action_help(self) -> None:

@@ -65,6 +65,11 @@ class View(Box):
             for pane in self.query(Pane):
                 pane.border_subtitle = Content(sentence(error))
 
+    def wake(self) -> None:
+        """Draw what is on screen again: the view was hidden."""
+        for pane in self.query(Pane):
+            pane.wake()
+
     def _begin(self) -> None:
         self._moving += self._late
         self.watch_sample()
