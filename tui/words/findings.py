@@ -77,11 +77,14 @@ def endings(source: Source) -> dict[int, Milestone]:
     return {index(each.method): each for each in sorted(found, key=lambda each: each.kind == "failed")}
 
 
-def ending(milestone: Milestone) -> str:
+def ending(milestone: Milestone, conserved: bool = True) -> str:
     """The sentence on a method that failed, or that went over the top, where the exact pendulum never gets."""
     name = milestone.method.label
     if milestone.kind == "failed":
         return f"{name} failed at {milestone.t:.4g} s: its energy error is no longer finite."
+    if not conserved:
+        ratio = two_digits(math.exp(min(milestone.energy_error, 700.0)))
+        return f"{name} went over the top at {milestone.t:.3g} s with {ratio} times the true energy."
     ratio = two_digits(1 + milestone.energy_error)
     return f"{name} went over the top at {milestone.t:.3g} s with {ratio} times its initial energy."
 
@@ -101,14 +104,16 @@ def staying(source: Source) -> str:
 def leaving(source: Source, index: int) -> str:
     """The sentence on a method that gains or loses energy; "" if that is not known."""
     judgement, lost = source.judgements[index], -source.sample.readings[index].energy_error
-    if judgement.verdict == "loses" and lost > MOSTLY:
+    conserved = source.scene.equations.conserved
+    if conserved and judgement.verdict == "loses" and lost > MOSTLY:
         share = "all" if lost > 1 - 1e-6 else f"{100 * lost:.4g} %"
         return f"{short_name(source.scene.cast[index])} has lost {share} of its energy."
     slope = {"grows": 1, "loses": -1}.get(judgement.verdict, 0) * (judgement.slope or 0)
     if slope <= 0:
         return ""
     verb = "gains" if judgement.verdict == "grows" else "loses"
-    what = f"{short_name(source.scene.cast[index])} {verb} {two_digits(100 * slope)} % of E0/s"
+    unit = "% of E0/s" if conserved else "% of the true energy a second"
+    what = f"{short_name(source.scene.cast[index])} {verb} {two_digits(100 * slope)} {unit}"
     if ahead := forecast(source, index):
         other = short_name(ahead.other)
         return f"{what}; its error will pass {other}'s in about {about(ahead.seconds)}."

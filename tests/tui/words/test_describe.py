@@ -4,7 +4,6 @@ import re
 
 import pytest
 
-from engine.methods import USUAL_CAST
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES
 from tests.tui.harness import after, lab
@@ -32,7 +31,7 @@ def test_every_method_has_a_sentence_at_any_time_of_any_scene():
     for scene in SCENES.values():
         live = Live(scene, clock=lambda: 0.0)
         for _ in range(6):
-            for index, method in enumerate(USUAL_CAST):
+            for index, method in enumerate(scene.cast):
                 sentence = method_sentence(live, index)
                 assert re.fullmatch(r"[A-Z].*\.", sentence)
                 assert method.label.split()[-1] in sentence
