@@ -10,6 +10,7 @@ EXAMPLES = """\
 examples:
   pendu-tui scenes
   pendu-tui --scene crossover
+  pendu-tui --scene mine.toml
   pendu-tui scenes --json | jq -r '.scenes[].name'
 """
 
