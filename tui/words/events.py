@@ -81,8 +81,8 @@ def milestone_text(milestone: Milestone, conserved: bool = True) -> str:
     """What a method does."""
     name = short_name(milestone.method)
     if milestone.kind == "over the top":
-        unit = "E0" if conserved else "E_true"
+        unit = "E0" if conserved else "E(t)"
         error = milestone.energy_error if conserved else math.expm1(min(milestone.energy_error, 700.0))
-        energy = f"{two_digits(1 + error)} {unit}" if abs(error) >= 0.1 else f"{100 * error:+.2g} %"
+        energy = f"{two_digits(1 + error)} {unit}" if not 1e-4 < abs(error) < 0.1 else f"{100 * error:+.2g} %"
         return f"{name} over the top, {energy}"
     return f"{name} {'failed' if milestone.kind == 'failed' else VERDICTS[milestone.verdict]}"

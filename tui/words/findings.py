@@ -13,6 +13,7 @@ from tui.words.numbers import about, two_digits
 LARGEST_BAND = 0.2
 """Of the energy: a larger loss changes the rate of loss itself."""
 LONGEST = 1000 * 86400.0  # s; nobody waits longer
+LINE = 80  # characters of a sentence, which has one line of the screen
 MOSTLY = 0.5  # of the energy: beyond, what is lost is told, and not how fast
 STEADY = 0.05
 """Relative change of the period, up to which a rate of loss per second is taken to stay."""
@@ -120,7 +121,8 @@ def leaving(source: Source, index: int) -> str:
     error, bands = abs(source.sample.readings[index].energy_error), _bands(source)
     if bands and error > bands[0][0] > 0:
         ratio, other = two_digits(error / bands[0][0]), short_name(source.scene.cast[bands[0][1]])
-        return f"{what}; its error is {ratio} times {other}'s maximum."
+        if len(more := f"{what}; its error is {ratio} times {other}'s maximum.") <= LINE:
+            return more
     return f"{what}."
 
 
@@ -129,7 +131,8 @@ def so_far(source: Source) -> str:
     errors = sorted((reading.max_energy_error, index) for index, reading in enumerate(source.sample.readings))
     (least, nearest), (most, furthest) = errors[0], errors[-1]
     near, far = short_name(source.scene.cast[nearest]), short_name(source.scene.cast[furthest])
-    return f"Energy errors so far: {least:.2g} ({near}) to {most:.2g} ({far})."
+    text = f"Energy errors so far: {least:.2g} ({near}) to {most:.2g} ({far})."
+    return text if len(text) <= LINE else text.replace("Energy errors so far", "Energy errors")
 
 
 def limit_warning(cast: Cast, zs: Sequence[float]) -> str:
