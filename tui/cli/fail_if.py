@@ -23,7 +23,15 @@ from recordings.fields import NUMBERS
 from tui.cli.errors import UserError
 from tui.cli.options import did_you_mean
 
-FIELDS = (*NUMBERS, "theta_error", "drift_per_second", "force_evaluations", "diverged_at")
+FIELDS = (
+    *NUMBERS,
+    "log_energy_error",
+    "spring_energy",
+    "theta_error",
+    "drift_per_second",
+    "force_evaluations",
+    "diverged_at",
+)
 """The fields of `run --json` that are numbers."""
 
 Values = Mapping[str, Mapping[str, float | str | None]]  # method key -> field -> value

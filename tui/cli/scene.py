@@ -1,6 +1,7 @@
 """The options that describe a scene: its name, its numbers and its cast."""
 
 import argparse
+from pathlib import Path
 
 from engine.scenes import DEFAULT_SCENE, LIMITS, PARAMETERS, SCENES, Scene
 from tui.cli.cast import add_cast_options, cast_of
@@ -13,10 +14,10 @@ def add_scene_options(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group("scene", "options override the values of the scene")
     group.add_argument(
         "--scene",
-        metavar="NAME",
+        metavar="NAME|FILE.toml",
         choices=Suggestions(SCENES),
         default=DEFAULT_SCENE.name,
-        help="see pendu-tui scenes (%(default)s)",
+        help="see pendu-tui scenes (%(default)s), or a file with the fields of scenes --json",
     )
     for name, metavar, read, meaning in (
         ("theta", "RAD|DEGdeg", start_angle, "start angle from straight down, in rad, or in degrees (115deg)"),
@@ -36,11 +37,17 @@ def scene_of(options: argparse.Namespace) -> Scene:
 
     Raises UserError for an unknown name, SceneError for bad numbers, OwnMethodError for a method that is none.
     """
+    given = {name: getattr(options, name) for name in (*LIMITS, *PARAMETERS, "h")}
+    changes = {name: value for name, value in given.items() if value is not None}
+    if options.scene.endswith(".toml"):
+        from tui.cli.scene_file import read_scene
+
+        scene = read_scene(Path(options.scene)).altered(**changes)
+        return scene.with_cast(cast_of(options, scene.cast))
     if options.scene not in SCENES:
         hint = did_you_mean(options.scene, SCENES) or "; pendu-tui scenes lists them."
         raise UserError(f"there is no scene {options.scene!r}{hint}")
-    given = {name: getattr(options, name) for name in (*LIMITS, *PARAMETERS, "h")}
-    scene = SCENES[options.scene].altered(**{name: value for name, value in given.items() if value is not None})
+    scene = SCENES[options.scene].altered(**changes)
     return scene.with_cast(cast_of(options, scene.cast))
 
 

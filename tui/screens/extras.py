@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from engine.methods import METHODS, method_of
-from engine.scenes import SCENES
+from engine.scenes import GROUPS
 from recordings import library
 from tui.cli.errors import explained
 from tui.drawing.palette import PALETTES
@@ -97,7 +97,12 @@ def palette_entries(keys: Iterable[Key], live: bool, recordings: Iterable[Path])
     entry = PaletteEntry
     return [
         *(entry(f"{key.does} ({key.shown})", key.group, key.action) for key in keys if _is_offered(key)),
-        *(entry(f"scene {name}", scene.watch, f"start_scene({name!r})") for name, scene in SCENES.items() if live),
+        *(
+            entry(f"scene {scene.name}", f"{group}: {scene.watch}", f"start_scene({scene.name!r})")
+            for group, scenes in GROUPS.items()
+            for scene in scenes
+            if live
+        ),
         *(entry(f"method {method.label}", "details", f"app.extra('card', {method.key!r})") for method in METHODS),
         *(entry(f"theme {name}", "", f"app.use_theme({name!r})") for name in PALETTES),
         entry("toggle projector mode", "large numbers, thick lines", "app.present"),

@@ -44,14 +44,14 @@ def coarse(value: float) -> str:
 def status_row(source: Source, width: int, frames: int | None = None) -> Row:
     """The line, as far as there is room; `frames` a second where the machine is too slow for more."""
     scene, playhead, pace, recording = source.scene, source.playhead, source.pace, source.recording_status
-    z, live, named = abs(source.stepping.h) * scene.w0, source.kind == "LIVE", bool(scene.watch)
-    warning = limit_warning(source.scene.cast, [abs(h) * scene.w0 for h in source.stepping.own])
+    z, live, named = abs(source.stepping.h) * scene.equations.fastest, source.kind == "LIVE", bool(scene.watch)
+    warning = limit_warning(source.scene.cast, [abs(h) * scene.equations.fastest for h in source.stepping.own])
     parts = [
         _Part(12, "paused " if playhead.paused else "backwards" if source.stepping.h < 0 else "running"),
         _Part(7, speed_text(playhead.speed)),
         _Part(11, f"t {seconds(source.sample.t)}"),
         _Part(11, f"h {source.stepping.h:.4g} s{' equal cost' if source.stepping.equal_cost else ''}"),
-        _Part(10, f"z {z:.3g}", WARN if warning else TEXT),
+        _Part(10, f"{'h·omega_s' if scene.model == 'spring' else 'z'} {z:.3g}", WARN if warning else TEXT),
         *([_Part(9, warning, WARN)] if warning else []),
         _Part(6 if named else 3, f"scene {scene.name}" if named else f"{scene.name} scene", QUIET),
         _Part(4 if named else 6, f"{math.degrees(scene.theta):.4g}° {scene.omega:.4g} rad/s"),

@@ -35,14 +35,16 @@ def step_text(source: Source) -> str:
     """The current step: "0.2 s, z = 0.626; at equal cost, the cheaper methods split it; time runs backwards"."""
     parts = "; at equal cost, the cheaper methods split it" if source.stepping.equal_cost else ""
     backwards = "; time runs backwards" if source.stepping.h < 0 else ""
-    return f"{abs(source.stepping.h):.4g} s, z = {abs(source.stepping.h) * source.scene.w0:.3g}{parts}{backwards}"
+    name = "h·omega_s" if source.scene.model == "spring" else "z"
+    z = abs(source.stepping.h) * source.scene.equations.fastest
+    return f"{abs(source.stepping.h):.4g} s, {name} = {z:.3g}{parts}{backwards}"
 
 
 def method_sentence(source: Source, index: int) -> str:
     """Whether a method failed or went over the top; if not, its verdict or its error so far."""
     method, reading = source.scene.cast[index], source.sample.readings[index]
     if milestone := endings(source).get(index):
-        return ending(milestone)
+        return ending(milestone, source.scene.equations.conserved)
     if source.judgements[index].verdict == "bounded":
         return f"{method.label} stays bounded: its largest energy error is {reading.max_energy_error:.2g}."
     return leaving(source, index) or (

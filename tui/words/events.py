@@ -42,7 +42,10 @@ def event_lines(source: Source) -> list[EventLine]:
     Pauses and speeds are not listed: they change no number.
     """
     run = source.sample.run
-    milestones = [EventLine(run, m.step, m.t, milestone_text(m), "milestone", m.method) for m in source.milestones]
+    conserved = source.scene.equations.conserved
+    milestones = [
+        EventLine(run, m.step, m.t, milestone_text(m, conserved), "milestone", m.method) for m in source.milestones
+    ]
     return sorted([*_inputs(source), *milestones], key=lambda line: line[:2])  # stable: inputs first
 
 
@@ -74,11 +77,12 @@ def change_text(event: Event) -> str:
     return f"{backwards}h {abs(event.h):.4g} s{equal}"
 
 
-def milestone_text(milestone: Milestone) -> str:
+def milestone_text(milestone: Milestone, conserved: bool = True) -> str:
     """What a method does."""
     name = short_name(milestone.method)
     if milestone.kind == "over the top":
-        error = milestone.energy_error
-        energy = f"{two_digits(1 + error)} E0" if abs(error) >= 0.1 else f"{100 * error:+.2g} %"
+        unit = "E0" if conserved else "E(t)"
+        error = milestone.energy_error if conserved else math.expm1(min(milestone.energy_error, 700.0))
+        energy = f"{two_digits(1 + error)} {unit}" if not 1e-4 < abs(error) < 0.1 else f"{100 * error:+.2g} %"
         return f"{name} over the top, {energy}"
     return f"{name} {'failed' if milestone.kind == 'failed' else VERDICTS[milestone.verdict]}"

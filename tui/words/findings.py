@@ -13,6 +13,7 @@ from tui.words.numbers import about, two_digits
 LARGEST_BAND = 0.2
 """Of the energy: a larger loss changes the rate of loss itself."""
 LONGEST = 1000 * 86400.0  # s; nobody waits longer
+LINE = 80  # characters of a sentence, which has one line of the screen
 MOSTLY = 0.5  # of the energy: beyond, what is lost is told, and not how fast
 STEADY = 0.05
 """Relative change of the period, up to which a rate of loss per second is taken to stay."""
@@ -77,11 +78,14 @@ def endings(source: Source) -> dict[int, Milestone]:
     return {index(each.method): each for each in sorted(found, key=lambda each: each.kind == "failed")}
 
 
-def ending(milestone: Milestone) -> str:
+def ending(milestone: Milestone, conserved: bool = True) -> str:
     """The sentence on a method that failed, or that went over the top, where the exact pendulum never gets."""
     name = milestone.method.label
     if milestone.kind == "failed":
         return f"{name} failed at {milestone.t:.4g} s: its energy error is no longer finite."
+    if not conserved:
+        ratio = two_digits(math.exp(min(milestone.energy_error, 700.0)))
+        return f"{name} went over the top at {milestone.t:.3g} s with {ratio} times the true energy."
     ratio = two_digits(1 + milestone.energy_error)
     return f"{name} went over the top at {milestone.t:.3g} s with {ratio} times its initial energy."
 
@@ -101,21 +105,24 @@ def staying(source: Source) -> str:
 def leaving(source: Source, index: int) -> str:
     """The sentence on a method that gains or loses energy; "" if that is not known."""
     judgement, lost = source.judgements[index], -source.sample.readings[index].energy_error
-    if judgement.verdict == "loses" and lost > MOSTLY:
+    conserved = source.scene.equations.conserved
+    if conserved and judgement.verdict == "loses" and lost > MOSTLY:
         share = "all" if lost > 1 - 1e-6 else f"{100 * lost:.4g} %"
         return f"{short_name(source.scene.cast[index])} has lost {share} of its energy."
     slope = {"grows": 1, "loses": -1}.get(judgement.verdict, 0) * (judgement.slope or 0)
     if slope <= 0:
         return ""
     verb = "gains" if judgement.verdict == "grows" else "loses"
-    what = f"{short_name(source.scene.cast[index])} {verb} {two_digits(100 * slope)} % of E0/s"
+    unit = "% of E0/s" if conserved else "% of the true energy a second"
+    what = f"{short_name(source.scene.cast[index])} {verb} {two_digits(100 * slope)} {unit}"
     if ahead := forecast(source, index):
         other = short_name(ahead.other)
         return f"{what}; its error will pass {other}'s in about {about(ahead.seconds)}."
     error, bands = abs(source.sample.readings[index].energy_error), _bands(source)
     if bands and error > bands[0][0] > 0:
         ratio, other = two_digits(error / bands[0][0]), short_name(source.scene.cast[bands[0][1]])
-        return f"{what}; its error is {ratio} times {other}'s maximum."
+        if len(more := f"{what}; its error is {ratio} times {other}'s maximum.") <= LINE:
+            return more
     return f"{what}."
 
 
@@ -124,7 +131,8 @@ def so_far(source: Source) -> str:
     errors = sorted((reading.max_energy_error, index) for index, reading in enumerate(source.sample.readings))
     (least, nearest), (most, furthest) = errors[0], errors[-1]
     near, far = short_name(source.scene.cast[nearest]), short_name(source.scene.cast[furthest])
-    return f"Energy errors so far: {least:.2g} ({near}) to {most:.2g} ({far})."
+    text = f"Energy errors so far: {least:.2g} ({near}) to {most:.2g} ({far})."
+    return text if len(text) <= LINE else text.replace("Energy errors so far", "Energy errors")
 
 
 def limit_warning(cast: Cast, zs: Sequence[float]) -> str:

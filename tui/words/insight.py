@@ -60,7 +60,7 @@ def _news(source: Source, seconds: float) -> str:
 
 def _sentence(source: Source, milestone: Milestone) -> str:
     if milestone.kind != "verdict":
-        return ending(milestone)
+        return ending(milestone, source.scene.equations.conserved)
     index = source.scene.cast.index(milestone.method)
     return staying(source) if milestone.verdict == "bounded" else leaving(source, index)
 
@@ -70,7 +70,9 @@ def lasting(source: Source) -> list[str]:
     ended = endings(source)
     ends = sorted(ended.values(), key=lambda each: (each.kind != "failed", each.step))
     moves = [leaving(source, index) for index in range(len(source.scene.cast)) if index not in ended]
-    known = list(filter(None, [*map(ending, ends), staying(source), *moves]))
+    known = list(
+        filter(None, [*(ending(each, source.scene.equations.conserved) for each in ends), staying(source), *moves])
+    )
     return [*known, *filter(None, [_watch(source)])] if known else [so_far(source)]
 
 

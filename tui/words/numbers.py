@@ -86,3 +86,8 @@ def file_size(count: int) -> str:
 def percent(share: float) -> str:
     """A share of 1 as "62 %"."""
     return f"{100 * share:.0f} %" if math.isfinite(share) else "-"
+
+
+def z_name(model: str) -> str:
+    """What a scene's z is: of a bob on a spring the step times the spring's frequency."""
+    return "h·omega_s" if model == "spring" else "z = h·w0"

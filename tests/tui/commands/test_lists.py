@@ -2,7 +2,7 @@ import pytest
 
 from engine.methods import METHODS
 from engine.run.compiled import available
-from engine.scenes import SCENES
+from engine.scenes import GROUPS, LEFT_OUT, SCENES
 from tests.tui.command_line import pendu
 from tui.cli.output import print_table
 from tui.commands.about.methods import MEASURED
@@ -54,3 +54,12 @@ def test_text_from_a_file_does_not_steer_the_terminal(capsys):
     assert "\u202e" not in out
     assert "[bold]big[/bold]" in out
     assert out.count("\n") == 2
+
+
+def test_scenes_come_in_groups_and_what_is_left_out_is_said():
+    lines = pendu("scenes").out.splitlines()
+    names = [line.split("  ")[0].strip().casefold() for line in lines]
+    for group, scenes in GROUPS.items():
+        at = names.index(group)
+        assert names[at + 1 : at + 1 + len(scenes)] == [scene.name for scene in scenes]
+    assert lines[-1] == LEFT_OUT

@@ -180,3 +180,27 @@ def test_a_method_that_went_over_the_top_is_named_with_its_time():
     text = pendu("run", "--time", 10).out
     assert "Explicit Euler went over the top at 7.15 s" in text
     assert text.count("over the top") == 1
+
+
+def test_a_bob_on_a_spring_has_the_energy_in_its_spring_and_nothing_else_has():
+    rows = {
+        row["method"]: row for row in pendu("run", "--scene", "stiff-slow", "--time", "5", "--json").json["methods"]
+    }
+    assert rows["imex_euler"]["spring_energy"] < 1e-4 < rows["rk4"]["spring_energy"] < 0.1
+    assert rows["implicit_midpoint"]["spring_energy"] == pytest.approx(1, abs=0.1)
+    assert {row["log_energy_error"] for row in rows.values()} == {None}
+    others = pendu("run", "--time", "1", "--json").json["methods"]
+    assert {(row["spring_energy"], row["log_energy_error"]) for row in others} == {(None, None)}
+
+
+def test_with_friction_errors_are_logarithms_to_the_true_energy_and_said_to_be():
+    rows = pendu("run", "--scene", "damped", "--time", "5", "--json").json["methods"]
+    assert rows[0]["log_energy_error"] > 0.3 > abs(rows[3]["log_energy_error"])
+    assert {row["spring_energy"] for row in rows} == {None}
+    text = pendu("run", "--scene", "damped", "--time", "5").out
+    assert "ln(E/E_true)" in text
+    assert "energy error" not in text
+
+
+def test_the_step_of_a_stiff_scene_is_told_by_the_frequency_of_its_spring():
+    assert "h·omega_s = 1\n" in pendu("run", "--scene", "stiff-slow", "--time", "1").out

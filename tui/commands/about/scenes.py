@@ -1,9 +1,8 @@
 """List the scenes: start values, step size, and what to watch."""
 
 import argparse
-import math
 
-from engine.scenes import SCENES
+from engine.scenes import GROUPS, LEFT_OUT, SCENES
 from tui.cli.errors import Exit
 from tui.cli.output import print_table, write_json
 
@@ -11,6 +10,7 @@ EXAMPLES = """\
 examples:
   pendu-tui scenes
   pendu-tui --scene crossover
+  pendu-tui --scene mine.toml
   pendu-tui scenes --json | jq -r '.scenes[].name'
 """
 
@@ -23,12 +23,11 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         write_json("scenes", {"scenes": [scene.fields() for scene in SCENES.values()]})
         return Exit.FINE
-    print_table(
-        "lrrrrl",
-        ("scene", "theta [deg]", "omega [rad/s]", "h [s]", "z = h·w0", "what to watch"),
-        (
-            (s.name, f"{math.degrees(s.theta):.5g}", f"{s.omega:g}", f"{s.h:g}", f"{s.z:.3f}", s.watch)
-            for s in SCENES.values()
-        ),
-    )
+    print_table("lrl", ("scene", "h·w", "what to watch"), [row for group in GROUPS for row in _rows(group)])
+    print(f"\n{LEFT_OUT}")
     return Exit.FINE
+
+
+def _rows(group: str) -> list[tuple[str, str, str]]:
+    """The group's name, and a row for each of its scenes; h·w is the step times the highest frequency."""
+    return [("", "", ""), (group.upper(), "", ""), *((s.name, f"{s.z:.3g}", s.watch) for s in GROUPS[group])]

@@ -16,7 +16,7 @@ from tui.cli.files import check_free, stop_requests
 from tui.cli.options import Suggestions, add_file, count, positive
 from tui.cli.output import fields_of, print_table, progress, scene_line, warn, write_json
 from tui.cli.scene import add_scene_options, scene_of
-from tui.words.numbers import file_size
+from tui.words.numbers import file_size, z_name
 
 if TYPE_CHECKING:
     from engine.run.lockstep import Sample
@@ -132,6 +132,8 @@ def _rows(scene: Scene, sample: "Sample", observer: "RunObserver") -> list[dict[
             {
                 "method": method.key,
                 **fields_of(reading, *NUMBERS),
+                "log_energy_error": None if scene.equations.conserved else reading.energy_error,
+                "spring_energy": reading.spring_energy,
                 "theta_error": abs(reading.theta - exact) if end is None else None,
                 "drift_per_second": judgement.slope,
                 "verdict": judgement.verdict,
@@ -145,20 +147,23 @@ def _rows(scene: Scene, sample: "Sample", observer: "RunObserver") -> list[dict[
 def _print(
     scene: Scene, sample: "Sample", wall_seconds: float, rows: list[dict[str, Any]], observer: "RunObserver"
 ) -> None:
-    print(f"{scene_line(scene, 'h')}, z = h·w0 = {scene.z:.4g}")
+    print(f"{scene_line(scene, 'h')}, {z_name(scene.model)} = {scene.z:.4g}")
     pace = f", {sample.step / wall_seconds / 1e6:.3g} million a second" if wall_seconds > 1 else ""
     print(f"{sample.step} steps to t = {sample.t:g} s in {wall_seconds:.2f} s{pace}\n")
     from tui.words.findings import ending
 
-    forms = {"energy_error": "+.2e", "max_energy_error": ".2e", "drift_per_second": "+.1e", "theta_error": ".2e"}
+    forms = {"spring_energy": ".4g"} if scene.model == "spring" else {}
+    forms |= {"energy_error": "+.2e", "max_energy_error": ".2e", "drift_per_second": "+.1e", "theta_error": ".2e"}
     table = []
     for method, row, judgement in zip(scene.cast, rows, observer.judgements, strict=True):
         end, row = row["diverged_at"], row | {"drift_per_second": judgement.trend}
         numbers = ("-" if row[name] is None else format(row[name], form) for name, form in forms.items())
         verdict = row["verdict"] if end is None else f"diverged at {end:g} s"
         table.append((method.label, verdict, *numbers, str(row["force_evaluations"])))
-    headers = ("energy error", "largest", "per second", "theta error [rad]", "force evaluations")
-    print_table("llrrrrr", ("method", "verdict", *headers), table)
+    error = "energy error" if scene.equations.conserved else "ln(E/E_true)"
+    spring = ("in the spring",) if scene.model == "spring" else ()
+    headers = (*spring, error, "largest", "per second", "theta error [rad]", "force evaluations")
+    print_table("ll" + "r" * len(headers), ("method", "verdict", *headers), table)
     for top in observer.milestones(sample.step):
         if top.kind == "over the top":
-            print(ending(top))
+            print(ending(top, scene.equations.conserved))

@@ -65,8 +65,16 @@ COLUMNS = (
     Column(3, ("th.err", 7), ("theta error", 11), lambda line, width: scientific(theta_error(line), width, 1, "-")),
     Column(1, ("f", 1), ("evals/step", 10), lambda line, width: str(line.method.force_evaluations).rjust(width)),
 )
+SPRING = (
+    Column(8, ("length", 6), ("length", 7), lambda line, width: f"{abs(line.reading.position or 0):.3g}".rjust(width)),
+    Column(
+        8, ("spring", 7), ("spring E", 8), lambda line, width: f"{line.reading.spring_energy or 0:.3g}".rjust(width)
+    ),
+)
+"""Of a bob on a spring: its length over that at rest, and the energy in it over that at the start."""
 NAME = 20  # columns of the longest name and its mark
 MOST_GAP = 3
+_LOGARITHM = {"dE/E0": "ln E/Et", "dE/E0 now": "ln E/Etr"}  # to the true energy
 
 
 def share(line: TableLine, value: float, width: int, sign: str = "+") -> str:
@@ -112,15 +120,29 @@ def table(
     h: Sequence[float],
     shown: Shown,
     width: int,
+    conserved: bool = True,
 ) -> list[Row]:
     """The table's rows, its head first; each method's own step size where they differ."""
-    columns = chosen(COLUMNS[len(set(h)) == 1 :], width - NAME)
+    every = COLUMNS[len(set(h)) == 1 :]
+    if any(reading.position is not None for reading in sample.readings):
+        every = (*every[:-1], *SPRING, every[-1])
+    columns = chosen(every, width - NAME)
     spare = width - NAME - sum(size + 1 for _, size, _ in columns)
     gap = " " * (1 + min(spare // max(len(columns), 1), MOST_GAP))
-    rows: list[Row] = [[("method".ljust(NAME), QUIET), *((gap + head.rjust(size), QUIET) for head, size, _ in columns)]]
+    rows: list[Row] = [
+        [
+            ("method".ljust(NAME), QUIET),
+            *(
+                (gap + (head if conserved else _LOGARITHM.get(head, head)).rjust(size), QUIET)
+                for head, size, _ in columns
+            ),
+        ]
+    ]
     for place in shown.places(cast):
         method = cast[place]
-        line = TableLine(method, sample.readings[place], judgements[place], exact, h[place], shown.percent)
+        line = TableLine(
+            method, sample.readings[place], judgements[place], exact, h[place], shown.percent and conserved
+        )
         failed = line.reading.diverged_at is not None
         name = f"{mark(place, method)} {method.label}"[:NAME].ljust(NAME)
         rows.append([(name, series(method))])
@@ -138,7 +160,16 @@ class ErrorTable(Pane):
 
     def paint(self, source: Source, sample: Sample) -> None:
         exact, h = source.exact.at(sample.t), source.stepping.own
-        rows = table(self.cast, sample, source.judgements, exact, h, self.shown, self.room.width)
+        rows = table(
+            self.cast,
+            sample,
+            source.judgements,
+            exact,
+            h,
+            self.shown,
+            self.room.width,
+            source.scene.equations.conserved,
+        )
         if len(rows) != self._rows_shown:
             self._rows_shown = len(rows)
             self.styles.height = len(rows)  # hidden methods leave no gap

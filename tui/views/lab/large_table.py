@@ -15,7 +15,7 @@ from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.views.lab.error_table import verdict_of
 from tui.views.view import Pane
-from tui.words.numbers import relative
+from tui.words.numbers import relative, scientific
 
 DIGITS = 8  # of an energy error
 HEIGHT = 3  # rows of large digits
@@ -29,7 +29,9 @@ def large(text: str) -> list[str]:
     return [" ".join(segment.text.ljust(3) for segment in row) for row in zip(*digits, strict=True)]
 
 
-def large_rows(cast: Cast, sample: Sample, judgements: Sequence[Judgement], shown: Shown, width: int) -> list[Row]:
+def large_rows(
+    cast: Cast, sample: Sample, judgements: Sequence[Judgement], shown: Shown, width: int, conserved: bool = True
+) -> list[Row]:
     """A name, a verdict and a large energy error for each method, in as few lines as fit."""
     places = shown.places(cast)
     lines = math.ceil(len(places) / max(width // CELL, 1))
@@ -38,7 +40,7 @@ def large_rows(cast: Cast, sample: Sample, judgements: Sequence[Judgement], show
     for first in range(0, len(places), max(across, 1)):
         room = width // across
         cells = [
-            _cell(place, cast[place], sample.readings[place], judgements[place], room)
+            _cell(place, cast[place], sample.readings[place], judgements[place], room, conserved)
             for place in places[first : first + across]
         ]
         rows += [[cell[y] for cell in cells] for y in range(HEIGHT + 1)]
@@ -53,9 +55,13 @@ def labelled(value: float) -> tuple[str, str]:
     return text, "E0" if text.startswith("x") else "dE/E0"
 
 
-def _cell(place: int, method: Method, reading: Reading, judgement: Judgement, width: int) -> list[tuple[str, int]]:
+def _cell(
+    place: int, method: Method, reading: Reading, judgement: Judgement, width: int, conserved: bool
+) -> list[tuple[str, int]]:
     verdict = verdict_of(reading, judgement)
     number, what = labelled(reading.energy_error)
+    if not conserved:
+        number, what = scientific(reading.energy_error, DIGITS, 1).strip(), "ln E/Etrue"
     *upper, last = large(number)
     lines = [f" {mark(place, method)} {method.label}: {verdict}", *(f" {row}" for row in upper), f" {last} {what}"]
     return [(line.ljust(width), series(method)) for line in lines]
@@ -74,6 +80,8 @@ class LargeTable(Pane):
 
     def paint(self, source: Source, sample: Sample) -> None:
         self._changed = source.playhead.seen
-        rows = large_rows(self.cast, sample, source.judgements, self.shown, self.room.width)
+        rows = large_rows(
+            self.cast, sample, source.judgements, self.shown, self.room.width, source.scene.equations.conserved
+        )
         self.styles.height = len(rows)
         self.show(rows)

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import cos, pi, sin
 
+from engine.models.spring import Spring
 from engine.run.lockstep import Sample
 from tui.drawing.palette import EXACT, FRAME, faint, mark, series
 from tui.drawing.sketch import Sketch
@@ -17,6 +18,7 @@ from tui.views.messages import MethodChosen
 from tui.views.view import Pane
 
 TOP = 4  # dots between the edge and a pivot at the top
+STRETCHED, LONGEST = 1.1, 4.0  # rods of a spring, over that at rest: what there is room for, and what is drawn
 TRAIL = 15  # samples, half a second at 30 frames a second
 
 
@@ -29,6 +31,7 @@ class Bob:
     trail: Sequence[float] = ()  # rad; where it was, drawn faintly
     letter: str = ""  # written next to it, so that colour is not alone
     ghost: bool = False  # the exact swing: dotted and hollow
+    length: float = 1.0  # of the rod, over that at rest
     diverged: bool = False  # its numbers ended here: crossed out
 
 
@@ -47,11 +50,14 @@ def pendulum_sketch(columns: int, rows: int, bobs: Sequence[Bob], reach: float =
     room_for_letters = 4 if any(bob.letter for bob in bobs) else 0
     length = max(room - bob_radius - room_for_letters, 1.0)  # of the rod, in dots
 
+    if any(bob.length != 1 for bob in bobs):
+        length /= STRETCHED
     for bob in bobs:
         sketch.points([(x0 + length * sin(theta), y0 + length * cos(theta)) for theta in bob.trail], faint(bob.owner))
     for bob in bobs:
         right, down = sin(bob.theta), cos(bob.theta)
-        x, y = x0 + length * right, y0 + length * down
+        rod = length * min(bob.length, LONGEST)
+        x, y = x0 + rod * right, y0 + rod * down
         sketch.line(x0, y0, x, y, bob.owner, dotted=bob.ghost or bob.diverged)
         if bob.diverged:
             size = bob_radius + 1
@@ -92,10 +98,10 @@ class Pendulum(Pane):
         if self._place is not None and self._place >= len(self.cast):
             return
         self._retitle()
-        length = TRAIL if self.shown.trails else 0
+        length = TRAIL if self.shown.trails and sample.readings[0].position is None else 0  # a rod has had many lengths
         bobs = []
         if self.shown.exact or self._place is None:
-            bobs.append(Bob(source.exact.at(sample.t).theta, EXACT, ghost=True))
+            bobs.append(_exact(source, sample.t))
         for place in self.places if self._place is None else [self._place]:
             reading, method = sample.readings[place], self.cast[place]
             bobs.append(
@@ -103,8 +109,16 @@ class Pendulum(Pane):
                     reading.theta,
                     series(method),
                     trail=source.history.thetas(place, length),
+                    length=1.0 if reading.position is None else abs(reading.position),
                     letter=method.letter if self._place is None else "",
                     diverged=reading.diverged_at is not None,
                 )
             )
         self.show_sketch(pendulum_sketch(*self.room, bobs, reach(source.scene, source.stepping, sample, self.places)))
+
+
+def _exact(source: Source, t: float) -> Bob:
+    """The exact motion at a time [s]."""
+    scene, model = source.scene, source.scene.equations
+    length = abs(model.place(scene.theta, scene.omega, t)[0]) if isinstance(model, Spring) else 1.0
+    return Bob(source.exact.at(t).theta, EXACT, ghost=True, length=length)

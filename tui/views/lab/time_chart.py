@@ -22,6 +22,8 @@ NAMES: dict[Quantity, tuple[str, str]] = {
     "energy": ("energy per m L² [1/s²]", "energy [1/s²]"),
 }
 """Of the quantity itself, and of its magnitude for a logarithmic chart."""
+LOGARITHM = ("ln(E/E_true)", "|ln(E/E_true)|")
+"""The energy error where the true motion does not keep its energy."""
 
 
 def modified_energy_of(cast: Cast) -> str:
@@ -30,9 +32,9 @@ def modified_energy_of(cast: Cast) -> str:
     return "" if len(known) == len(cast) else f"shadow energy is known for {' and '.join(known) or 'none'} only"
 
 
-def title(shown: Shown, exact: ExactMotion) -> str:
+def title(shown: Shown, exact: ExactMotion, conserved: bool = True) -> str:
     """What the chart shows, and for how long back."""
-    name, magnitude = NAMES[shown.quantity]
+    name, magnitude = NAMES[shown.quantity] if conserved or shown.quantity != "energy_error" else LOGARITHM
     span = "all" if shown.seconds is None else about(shown.seconds)
     if not shown.log:
         return f"{name}, {span}"
@@ -74,7 +76,7 @@ class TimeChart(Pane):
 
     def paint(self, source: Source, sample: Sample) -> None:
         self._wanted.set()
-        text = title(self._look, source.exact)
+        text = title(self._look, source.exact, source.scene.equations.conserved)
         if text != self._title:  # setting it paints all of the pane
             self._title = text
             self.border_title = Content(text)  # as markup, units in brackets would be gone

@@ -12,7 +12,7 @@ from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.words.motion import energy_share, motion_text, regime
 from tui.words.numbers import scientific
-from tui.words.scope import ring_left_out
+from tui.words.scope import has_ring, ring_left_out
 
 _NAME, _CELL = 22, 14
 _NOT_CURVES = {
@@ -27,12 +27,8 @@ def fact_rows(
 ) -> list[list[Span]]:
     """A line about the ring, the heads, and a row for each method; the first columns that fit."""
     exact, fit = source.exact.at(source.sample.t), max((width - _NAME) // _CELL, 0)
-    heads = (
-        "ln area ratio",
-        "area/area0",
-        "theta error",
-        "dE/E0" if source.scene.equations.conserved else "ln E/Etrue",
-    )[:fit]
+    error = "dE/E0" if source.scene.equations.conserved else "ln E/Etrue"
+    heads = ("ln area ratio", "area/area0", "theta error", error)[:fit]
     rows: list[list[Span]] = [
         [(_ring_text(source, neighbours)[:width], TEXT)],
         [(" " * _NAME + "".join(head.rjust(_CELL) for head in heads), QUIET)],
@@ -41,7 +37,7 @@ def fact_rows(
         method = source.scene.cast[index]
         reading = source.sample.readings[index]
         cells = (
-            *(("-", "-") if ring is None else area_text(ring.area_ratios[index])),
+            *(("-", "-") if ring is None or not has_ring(source.scene) else area_text(ring.area_ratios[index])),
             scientific(reading.theta - exact.theta, _CELL, 3),
             scientific(reading.energy_error, _CELL, 3),
         )

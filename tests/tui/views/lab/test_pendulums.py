@@ -81,3 +81,12 @@ def test_trails_are_faint_and_bobs_lie_in_front_of_them():
 def test_any_angle_fits_any_pane(theta, columns, rows):
     drawn = picture(columns, rows, Bob(theta, 0, trail=[theta, math.nan], letter="e"), Bob(theta, 1, diverged=True))
     assert drawn.characters.shape == (rows, columns)
+
+
+def test_a_bob_on_a_spring_is_as_far_from_the_pivot_as_its_rod_is_long():
+    def lowest(length):
+        sketch = pendulum_sketch(40, 20, [Bob(0.0, 2, length=length)])
+        return max(cell // sketch.columns for cell in sketch.cells)
+
+    assert lowest(0.5) < lowest(0.9) < lowest(1.08)
+    assert lowest(1e300) <= 20

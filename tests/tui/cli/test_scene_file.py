@@ -1,0 +1,44 @@
+"""--scene FILE.toml: the fields of scenes --json, and errors that name line and field."""
+
+import pytest
+
+from engine.scenes import SCENES
+from tests.tui.command_line import pendu
+
+
+def written(path, fields):
+    path.write_text("\n".join(f"{name} = {value!r}" for name, value in fields.items()), encoding="utf-8")
+    return str(path)
+
+
+@pytest.mark.parametrize("name", ["drift", "stiff-slow", "damped", "linear"])
+def test_the_fields_of_a_listed_scene_give_the_same_run(tmp_path, name):
+    file = written(tmp_path / "mine.toml", SCENES[name].fields())
+    own = pendu("run", "--scene", file, "--time", "1", "--json").json
+    listed = pendu("run", "--scene", name, "--time", "1", "--json").json
+    assert (own["scene"], own["methods"]) == (listed["scene"], listed["methods"])
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("h = 0.1\nthetta = 1", "line 2: there is no field thetta: did you mean theta?"),
+        ("h = 0.1\n\nlength = 'long'", "line 3: length is not a number"),
+        ("h = -1", "line 1: h = -1 s is not a usable step"),
+        ("model = 'cubic'", "line 1: model is not one of pendulum"),
+        ("theta = 1\nmethods = ['rk5']", "line 2: "),
+        ("theta = 1\nfriction = 0.1", "line 2: the model pendulum has no friction"),
+        ("theta = = 1", "is not TOML: Invalid value (at line 1"),
+    ],
+)
+def test_what_is_wrong_is_told_with_line_and_field(tmp_path, text, said):
+    (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
+    answer = pendu("run", "--scene", str(tmp_path / "mine.toml"), "--time", "1")
+    assert answer.code == 3
+    assert said in answer.err
+
+
+def test_a_file_that_is_not_there_is_said():
+    answer = pendu("run", "--scene", "none.toml", "--time", "1")
+    assert answer.code == 3
+    assert "cannot read none.toml" in answer.err

@@ -1,0 +1,76 @@
+"""A scene of the user's own from a TOML file, with the fields that `scenes --json` prints."""
+
+import re
+import tomllib
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+from engine.methods import METHODS
+from engine.models import MODELS
+from engine.scenes import Scene, SceneError
+from recordings.errors import printable
+from tui.cli.cast import find
+from tui.cli.errors import Exit, UserError
+from tui.cli.options import did_you_mean
+
+TEXTS = ("name", "watch", "model")
+FIELDS = (*(field.name for field in fields(Scene) if field.name != "cast"), "methods")
+LARGEST = 100_000  # bytes
+
+
+def read_scene(path: Path) -> Scene:
+    """The scene in a file.  Raises UserError with line and field."""
+    try:
+        raw = path.read_bytes()[:LARGEST]
+        text = raw.decode()
+        given = tomllib.loads(text)
+    except OSError as error:
+        raise UserError(f"cannot read {path}: {error.strerror}.", Exit.INPUT_UNREADABLE) from None
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
+        raise UserError(f"{path} is not TOML: {printable(str(error), 200)}.", Exit.INPUT_UNREADABLE) from None
+    values: dict[str, Any] = {"name": path.stem}
+    for name, value in given.items():
+        try:
+            values["cast" if name == "methods" else name] = _value(name, value)
+        except UserError as error:
+            raise UserError(f"{path}, line {_line(text, name)}: {error}", Exit.INPUT_UNREADABLE) from None
+    try:
+        return Scene(**values)
+    except SceneError as error:
+        named = next((name for name in given if re.search(rf"\b{re.escape(name)}\b", str(error))), None)
+        where = "" if named is None else f", line {_line(text, named)}"
+        raise UserError(f"{path}{where}: {error}", Exit.INPUT_UNREADABLE) from None
+
+
+def _value(name: str, value: Any) -> Any:
+    """A field's value, as a Scene takes it."""
+    if name not in FIELDS:
+        raise UserError(f"there is no field {printable(name, 40)}{did_you_mean(name, FIELDS) or _known()}")
+    if name == "methods":
+        if not isinstance(value, list) or not value or not all(isinstance(key, str) for key in value):
+            raise UserError('methods is not a list of names; use for example ["velocity_verlet", "rk4"].')
+        if len(set(value)) < len(value):
+            raise UserError("methods has a name twice; name each method once.")
+        return tuple(find(key, METHODS) for key in value)
+    if name in TEXTS:
+        if not isinstance(value, str) or (name == "model" and value not in MODELS):
+            allowed = f"one of {', '.join(MODELS)}" if name == "model" else "a text"
+            raise UserError(f"{name} is not {allowed}.")
+        return printable(value, 200)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise UserError(f"{name} is not a number; use for example {name} = 1.0.")
+    try:
+        return float(value)
+    except OverflowError:
+        raise UserError(f"{name} is out of range; use a number of ordinary size.") from None
+
+
+def _known() -> str:
+    return f"; choose from {', '.join(FIELDS)}."
+
+
+def _line(text: str, name: str) -> int:
+    """The line that a field is on, from 1."""
+    lines = text.splitlines()
+    return next((n for n, line in enumerate(lines, 1) if re.match(rf"\s*[\"'\[]*{re.escape(name)}\b", line)), 1)
