@@ -125,7 +125,8 @@ def _no_comparison(text: str, fields: Sequence[str]) -> UserError:
 def _known(what: str, name: str, names: Sequence[str]) -> str:
     if name in names:
         return name
-    advice = did_you_mean(name, names) or f": choose from {', '.join(names)}."
+    longer = next((f": did you mean {each}?" for each in names if f"_{name}" in each), "")
+    advice = did_you_mean(name, names) or longer or f": choose from {', '.join(names)}."
     raise _refusal(f"There is no {what} {_quoted(name)}{advice}")
 
 

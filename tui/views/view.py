@@ -136,8 +136,9 @@ class Chooser(Pane, Generic[Place], can_focus=True):
 
     @property
     def index(self) -> int:
-        """The place in the cast of the method that is described."""
-        return next((place for place, method in enumerate(self.cast) if method.key == self._described), 0)
+        """The place in the cast of the method that is described, one of those that are shown if there are any."""
+        shown = self.places or range(len(self.cast))
+        return next((place for place in shown if self.cast[place].key == self._described), shown[0] if shown else 0)
 
     def describe(self, place: int) -> None:
         """Describe another method."""

@@ -29,10 +29,10 @@ def scientific(value: float | None, width: int, digits: int = 1, sign: str = "+"
 
 
 def relative(value: float | None, width: int, sign: str = "+") -> str:
-    """An error relative to 1: from 1 % on as "-4.2 %", with a sign from 100 % on as what becomes of 1, "x6.7"."""
+    """An error relative to 1: from 1 % on as "-4.2 %" or "+633 %"."""
     if value is None or not math.isfinite(value) or abs(value) < 0.01:
         return scientific(value, width, 1, sign)
-    whole = f"x{two_digits(1 + value)}" if value >= 1 and sign == "+" else f"{100 * value:{sign}.0f} %"
+    whole = f"{100 * value:{sign}.0f} %"
     fine = whole if abs(value) >= 1 else f"{100 * value:{sign}.1f} %"
     return next((text.rjust(width) for text in (fine, whole) if len(text) <= width), scientific(value, width, 1, sign))
 

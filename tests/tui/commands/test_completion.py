@@ -39,7 +39,7 @@ CASES = [  # what is typed before the tab, and what it offers: just that, or tha
     ("pendu-tui recordings ", {"list", "prune"}),
     ("pendu-tui serve --at-m", {"--at-most"}),
     ("pendu-tui completion ", set(SHELLS)),
-    ("pendu-tui run --methods rk", {"rk4"}),
+    ("pendu-tui run --methods forest", {"forest_ruth"}),
     ("pendu-tui replay drift --methods velocity_v", {"velocity_verlet"}),
     ("pendu-tui methods --method ", {"swing.mcap"}),
     ("pendu-tui accuracy --h-values 0.1:0.01:3 --err", {"--error"}),
