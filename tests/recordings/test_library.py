@@ -79,7 +79,7 @@ def test_a_name_is_a_file_or_the_latest_or_one_of_the_library_or_a_bundled_one(f
     [
         ("latest", "No recordings in .*library yet"),
         ("drfit", "did you mean drift?"),
-        ("/no/such.mcap", "choose a file, or one of latest, changes-of-h, drift"),
+        ("/no/such.mcap", "choose a file, or one of latest, changes-of-h, damped, drift"),
         ("../../etc/passwd.mcap", "choose a file"),
         ("\x1b[2J", "There is no recording '�"),
     ],

@@ -6,7 +6,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from engine.methods import METHODS, USUAL_CAST, method_of
+from engine.methods import GENERAL, USUAL_CAST, method_of
 from engine.models.linear import LinearOscillator
 from engine.models.pendulum import Pendulum
 from engine.phase_space.section import (
@@ -29,7 +29,7 @@ def kind(method, theta: float, z: float, steps: int = 4000, omega: float = 0.0) 
     return kind_of(method, UNIT, z, orbit(method, UNIT, z, (theta, omega), steps))
 
 
-@pytest.mark.parametrize("method", METHODS, ids=lambda method: method.key)
+@pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
 def test_the_section_is_direct_iteration_bit_for_bit(method):
     model, h, starts = Pendulum(9.81), 0.3, spread(7, (-math.pi, math.pi), (-6.0, 6.0))
     theta, omega = iterate(method, model, h, starts, 40)
@@ -40,7 +40,7 @@ def test_the_section_is_direct_iteration_bit_for_bit(method):
         phase = method.step(force, phase, h)
 
 
-@pytest.mark.parametrize("method", METHODS, ids=lambda method: method.key)
+@pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
 def test_an_orbit_is_direct_iteration_in_plain_floats_bit_for_bit(method):
     model = Pendulum(9.81)
     theta, omega = orbit(method, model, 0.1, (2.0, 0.5), 100)

@@ -33,6 +33,11 @@ class PhaseView(View):
         """Where there is little room, leave all of it to the portrait."""
         self.query_one("#facts").display = self.size.height >= ROOMY
 
+    def wake(self) -> None:
+        super().wake()
+        self.query_one("#facts", CellWidget).wake()
+        self._write_facts()
+
     def watch_sample_10hz(self) -> None:
         """Follow h, too: another one brings no other sample."""
         for pane in self.query(SectionPane):
