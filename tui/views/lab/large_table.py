@@ -48,11 +48,11 @@ def large_rows(
 
 
 def labelled(value: float) -> tuple[str, str]:
-    """The number that is shown large, and what it is: "+3.3", "% dE/E0"; "x6.7", "E0"."""
+    """The number that is shown large, and what it is: "+3.3", "% dE/E0"."""
     text = relative(value, DIGITS).strip()
     if text.endswith("%"):
         return text[:-2], "% dE/E0"
-    return text, "E0" if text.startswith("x") else "dE/E0"
+    return text, "dE/E0"
 
 
 def _cell(

@@ -44,7 +44,7 @@ async def test_presented_the_table_is_large_and_lines_are_thick(columns, lines):
         assert table.size.height == len(rows) == lines * (HEIGHT + 1)
         assert rows[0].startswith(" 1 e Explicit Euler: + grows")
         told = [labelled(each.energy_error) for each in theatre.source.sample.readings]
-        assert [what for _, what in told] == ["E0", "% dE/E0", "dE/E0", "dE/E0"]
+        assert [what for _, what in told] == ["% dE/E0", "% dE/E0", "dE/E0", "dE/E0"]
         numbers = [large(number) for number, _ in told]
         assert rows[1][: CELL - 1].rstrip() == f" {numbers[0][0]}".rstrip()
         assert rows[-1].endswith(f"{numbers[3][2]} dE/E0")
