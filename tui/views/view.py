@@ -1,5 +1,6 @@
 """What views are made of: a View fills the screen between status line and key line with Panes; some are Choosers."""
 
+from collections.abc import Callable, Coroutine
 from typing import ClassVar, Generic, TypeVar
 
 from textual.containers import Container
@@ -57,6 +58,10 @@ class View(Box):
     def on_mount(self) -> None:
         self.watch_sample()
         self.call_after_refresh(self._begin)
+
+    def compute(self, work: Callable[[], Coroutine[None, None, None]], group: str = "default") -> Worker[None]:
+        """Do this in place of the group's earlier work.  It is a function: what is replaced may not have begun yet."""
+        return self.run_worker(work, group=group, exclusive=True, exit_on_error=False)
 
     def on_worker_state_changed(self, event: Worker.StateChanged) -> None:
         """Say at the panes why nothing more is computed."""

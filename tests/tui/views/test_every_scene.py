@@ -11,6 +11,8 @@ from tui.views.phase.section_pane import SectionPane
 from tui.views.stability.pane import StabilityPane
 from tui.views.view import Pane
 
+pytestmark = pytest.mark.other_process  # what is computed is left again at once
+
 SPECIAL = [name for name, scene in SCENES.items() if not scene.general]
 
 

@@ -1,6 +1,7 @@
 """AccuracyView: cost against accuracy for the pendulum on screen; the chart fills in as it is computed."""
 
 from collections.abc import Sequence
+from functools import partial
 
 from textual.app import ComposeResult
 
@@ -46,16 +47,16 @@ class AccuracyView(View):
             self._start = start
             self.workers.cancel_node(self)
             pane.begin(*usual(scene))
-            self._compute(scene, pane.time, pane.rungs, "ladder")
+            self._measure(scene, pane.time, pane.rungs, "ladder")
         here = tuple(max(1, round(pane.time / abs(h))) for h in self.source.stepping.own)
         if here != pane.here:
             pane.here = here
             known = {*pane.rungs, *(steps for _, steps in pane.points)}
             if wanted := [steps for steps in sorted(set(here) - known) if 1 < steps <= MOST_STEPS]:
-                self._compute(scene, pane.time, wanted, "here")
+                self._measure(scene, pane.time, wanted, "here")
 
-    def _compute(self, scene: Scene, time: float, rungs: Sequence[int], group: str) -> None:
-        self.run_worker(self._add_points(scene, time, rungs), group=group, exclusive=True, exit_on_error=False)
+    def _measure(self, scene: Scene, time: float, rungs: Sequence[int], group: str) -> None:
+        self.compute(partial(self._add_points, scene, time, rungs), group)
 
     async def _add_points(self, scene: Scene, time: float, rungs: Sequence[int]) -> None:
         async for point in computed(measured, scene, time, rungs):

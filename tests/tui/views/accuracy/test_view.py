@@ -56,6 +56,7 @@ async def accuracy_view(
         yield pilot, pane, live
 
 
+@pytest.mark.other_process
 async def test_the_points_fill_in_and_are_the_engines():
     async with accuracy_view() as (_, pane, _live):
         for point in Study(SCENES["drift"], 5.0).points(RUNGS):
