@@ -461,7 +461,7 @@ def test_any_record_raises_only_our_error(tmp_path_factory, opcode, content, cut
 def test_a_hostile_file_is_quick_and_small(tmp_path, name):
     """A part of what tests/bench/hostile.py has; processor time, because others may use the machine."""
     path = tmp_path / "hostile.mcap"
-    FILES[name](path, 0.03)
+    FILES[name](path, 0.01)
 
     def last_run():
         with Recording.open(path, check=True) as recording:
@@ -482,6 +482,6 @@ def test_a_hostile_file_is_quick_and_small(tmp_path, name):
         tracemalloc.start()
         with suppress(RecordingError):
             attempt()
-        assert time.process_time() - began < 5
+        assert time.process_time() - began < 2  # s; limits that grow with the file are the bench's
         assert tracemalloc.get_traced_memory()[1] < 50e6
         tracemalloc.stop()
