@@ -117,9 +117,12 @@ class Pane(CellWidget):
         return self.source is not None and self.source.kind == "LIVE"
 
     def draw(self) -> None:
-        if self.source is not None and self.sample is not None and self.drawable:
+        source, sample = self.source, self.sample
+        if source is not None and sample is not None and self.drawable:
+            if sample.run != source.sample.run:  # another run has just begun, maybe with other methods
+                return
             try:
-                self.paint(self.source, self.sample)
+                self.paint(source, sample)
             except Exception as error:
                 self.fail(error)
 
