@@ -134,7 +134,7 @@ def _rows(scene: Scene, sample: "Sample", observer: "RunObserver") -> list[dict[
                 **fields_of(reading, *NUMBERS),
                 "log_energy_error": None if scene.equations.conserved else reading.energy_error,
                 "spring_energy": reading.spring_energy,
-                "theta_error": abs(reading.theta - exact) if end is None else None,
+                "theta_error": abs(scene.equations.theta_error(reading.theta, exact)) if end is None else None,
                 "drift_per_second": judgement.slope,
                 "verdict": judgement.verdict,
                 "force_evaluations": method.evaluations(sample.step if end is None else round(end / scene.h)),
