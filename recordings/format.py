@@ -11,7 +11,7 @@ from typing import Any, NoReturn, get_args
 
 from engine.methods import Cast, Method
 from engine.run.lockstep import Reading, Sample
-from engine.run.observer import Milestone
+from engine.run.observer import Milestone, MilestoneKind
 from engine.run.verdict import Verdict
 from engine.scenes import PARAMETERS, Scene, SceneError
 from recordings.errors import RecordingError, printable
@@ -31,7 +31,7 @@ STEP_LIMIT = 1 << 53
 CAST_LIMIT = 32  # methods of a run
 KEY_LIMIT = 64  # characters of a method's or a model's key
 MODEL = "pendulum"  # where none is named, as in format 1
-MILESTONES = ("over the top", "failed", "verdict")
+MILESTONES = get_args(MilestoneKind)
 VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 
 _NUMBERS = ("t", *NUMBERS)
@@ -98,12 +98,10 @@ def encode_event(event: Event) -> bytes:
     if event.equal_cost:
         fields["equal_cost"] = True
     if (milestone := event.milestone) is not None:
-        fields |= {
-            "milestone": milestone.kind,
-            "method": name_of(milestone.method),
-            "energy_error": milestone.energy_error,
-        }
+        fields |= {"milestone": milestone.kind, "method": name_of(milestone.method)}
+        fields["energy_error"] = milestone.energy_error
         fields |= {"verdict": milestone.verdict} if milestone.kind == "verdict" else {}
+        fields |= {"other": name_of(milestone.other)} if milestone.other else {}
     return _dumps(fields)
 
 
@@ -241,10 +239,11 @@ def _method(name: str) -> Method:
 
 def _milestone(fields: dict[str, Any], step: int, t: float) -> Milestone:
     return Milestone(
-        kind=_one_of(fields, "milestone", MILESTONES),
+        kind=(kind := _one_of(fields, "milestone", MILESTONES)),
         method=_method(_text(fields, "method")),
         step=step,
         t=t,
         energy_error=_number(fields, "energy_error"),
         verdict=_one_of(fields, "verdict", VERDICTS, "too early"),
+        other=_method(_text(fields, "other")) if kind == "errors cross" else None,
     )

@@ -73,7 +73,7 @@ def _bands(source: Source) -> list[tuple[float, int]]:
 
 def endings(source: Source) -> dict[int, Milestone]:
     """The methods, by index, that failed or went over the top: their verdict no longer matters."""
-    found = [each for each in source.milestones if each.kind != "verdict"]
+    found = [each for each in source.milestones if each.kind in ("over the top", "failed")]
     index = source.scene.cast.index
     return {index(each.method): each for each in sorted(found, key=lambda each: each.kind == "failed")}
 
@@ -88,6 +88,13 @@ def ending(milestone: Milestone, conserved: bool = True) -> str:
         return f"{name} went over the top at {milestone.t:.3g} s with {ratio} times the true energy."
     ratio = two_digits(1 + milestone.energy_error)
     return f"{name} went over the top at {milestone.t:.3g} s with {ratio} times its initial energy."
+
+
+def passing(milestone: Milestone, other: Method) -> str:
+    """The sentence on a method whose error has passed that of a bounded one."""
+    what = f"{short_name(milestone.method)}'s error passed {short_name(other)}'s at {milestone.t:.4g} s"
+    more = f"{what}: smaller at first, it kept growing."
+    return more if len(more) <= LINE else f"{what}."
 
 
 def staying(source: Source) -> str:
