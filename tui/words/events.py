@@ -17,7 +17,7 @@ VERDICTS: dict[Verdict, str] = {
     "loses": "loses energy",
     "grows": "gains energy",
     "chaotic": "turns chaotic",
-    "caught": "stops gaining energy",
+    "caught": "is caught",
     "wanders": "wanders",
 }
 
