@@ -8,12 +8,12 @@ Reading checks every field; anything that is not written here raises RecordingEr
 import json
 import math
 from functools import lru_cache
-from typing import Any, NoReturn
+from typing import Any, NoReturn, get_args
 
 from engine.methods import Cast, Method
 from engine.run.judgement import VERDICTS
 from engine.run.lockstep import Reading, Sample
-from engine.run.observer import Milestone
+from engine.run.observer import Milestone, MilestoneKind
 from engine.scenes import MOST_METHODS, PARAMETERS, Scene, SceneError
 from recordings.errors import RecordingError, printable
 from recordings.events import Event, Seal, method_named, name_of, noticed, scene_named
@@ -31,7 +31,7 @@ MESSAGE_LIMIT = 1 << 16  # bytes; ours stay below 1 kB
 STEP_LIMIT = 1 << 53
 KEY_LIMIT = 64  # characters of a method's or a model's key
 MODEL = "pendulum"  # where none is named, as in format 1
-MILESTONES = ("over the top", "failed", "verdict")
+MILESTONES = get_args(MilestoneKind)
 
 _NUMBERS = ("t", *NUMBERS)
 _ENERGY_ERROR = NUMBERS.index("energy_error")
@@ -97,12 +97,10 @@ def encode_event(event: Event) -> bytes:
     if event.equal_cost:
         fields["equal_cost"] = True
     if (milestone := event.milestone) is not None:
-        fields |= {
-            "milestone": milestone.kind,
-            "method": name_of(milestone.method),
-            "energy_error": milestone.energy_error,
-        }
+        fields |= {"milestone": milestone.kind, "method": name_of(milestone.method)}
+        fields["energy_error"] = milestone.energy_error
         fields |= {"verdict": milestone.verdict} if milestone.kind == "verdict" else {}
+        fields |= {"other": name_of(milestone.other)} if milestone.other else {}
     return _dumps(fields)
 
 
@@ -241,10 +239,11 @@ def _method(name: str) -> Method:
 
 def _milestone(fields: dict[str, Any], step: int, t: float) -> Milestone:
     return Milestone(
-        kind=_one_of(fields, "milestone", MILESTONES),
+        kind=(kind := _one_of(fields, "milestone", MILESTONES)),
         method=_method(_text(fields, "method")),
         step=step,
         t=t,
         energy_error=_number(fields, "energy_error"),
         verdict=_one_of(fields, "verdict", VERDICTS, "too early"),
+        other=_method(_text(fields, "other")) if kind == "errors cross" else None,
     )
