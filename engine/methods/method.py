@@ -21,13 +21,13 @@ class Method:
     formula: str
     order: int  # global order on the nonlinear pendulum, over at most one period
     force_evaluations: int  # a step
-    first_same_as_last: bool  # the last force of a step is the next one's first: a run needs one more than its steps
-    symplectic: bool  # the step's Jacobian has determinant 1
-    reversible: bool  # the step and omega -> -omega undo each other
-    linear_limit: float | None  # largest z = h·w0 that is stable on the linear oscillator; 0: none; None: no one number
-    other_names: tuple[str, ...]
     reference: str
     used: str  # where, and in brackets who says so
+    first_same_as_last: bool = False  # the last force of a step is the next one's first: a run needs one more
+    symplectic: bool = False  # the step's Jacobian has determinant 1
+    reversible: bool = False  # the step and omega -> -omega undo each other
+    linear_limit: float | None = None  # largest stable z = h·w0 on the linear oscillator; 0: none; None: no one number
+    other_names: tuple[str, ...] = ()
     note: str = ""  # what else to know; also tested
     modified_energy: ModifiedEnergy | None = None  # which it keeps but for O(h⁴); None: none is known, or there is none
     with_friction: Phases | None = None  # the same where the force has `friction`, if `phases` does not ask for it

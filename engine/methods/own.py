@@ -55,7 +55,6 @@ def own_method(source: str, key: str, letter: str, file: str, measured: Measured
         symplectic=measured.symplectic,
         reversible=measured.reversible,
         linear_limit=measured.linear_limit,
-        other_names=(),
         reference=f"{file}:{key}",
         used="",
         measured=measured,

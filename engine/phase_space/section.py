@@ -153,14 +153,14 @@ def _average(values: Floats) -> float:
     return float(weights @ values / weights.sum())
 
 
-def nearest_fraction(rotation: float, largest: int = LARGEST) -> Fraction:
-    """The fraction nearest to a rotation number [turns a step] with a denominator up to `largest`.
+def nearest_fraction(rotation: float) -> Fraction:
+    """The fraction nearest to a rotation number [turns a step] with a denominator up to LARGEST.
 
-    Below 1/largest it is one over the nearest number of whole steps a turn.
+    Below 1/LARGEST it is one over the nearest number of whole steps a turn.
     """
-    if 0 < rotation < 1 / largest:
+    if 0 < rotation < 1 / LARGEST:
         return Fraction(1, round(1 / rotation)) if rotation > 1e-9 else Fraction(0)
-    return Fraction(rotation).limit_denominator(largest)
+    return Fraction(rotation).limit_denominator(LARGEST)
 
 
 def _is_island(points: Points, w0: float, rotation: float, fraction: Fraction, spins: bool) -> bool:

@@ -1,12 +1,12 @@
 """Many swings at once: a method's phases on arrays, in NumPy or compiled by Numba from the same generator.
 
-Compiled they take a sine of their own, which the compiler turns into instructions for many numbers together.  Its last
-bits are not NumPy's, so a picture made with it is the same on one machine however it is cut and whoever computes
-it, but not the same as without Numba.
+The compiled loop has its own sine, which the compiler turns into instructions for many numbers together.  Its last
+bits are not NumPy's: a picture made with it does not depend on how it is cut or on the process that computes it, but
+differs from the one made without Numba.
 """
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import cache
 from importlib import import_module
 from itertools import islice
@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engine.methods import Method
-from engine.models.model import Model, Phase
+from engine.models.model import Model
 
 Floats = NDArray[np.float64]
 Arrays = tuple[Floats, Floats]  # theta [rad] and omega [rad/s], a swing each
@@ -32,26 +32,9 @@ class Watched(NamedTuple):
     width: Floats  # largest |theta| so far
 
 
-class Ensembles(NamedTuple):
-    """One method's loops on one model.  All arrays are one-dimensional and of one length."""
-
-    watch: Callable[[Arrays, Floats, Watched, int], tuple[int, Arrays]]
-    """(phase, h, watched, n) -> steps done and phase there: n, or as many as until an energy leaves its band or a
-    swing passes the top.  Changes off, worst and width."""
-    record: Callable[[Arrays, float, Floats, int], None]
-    """(phase, h, points, every): fill points[k] with theta and omega after (k + 1)·every steps of h [s]."""
-
-
-def section(
-    method: Method, model: Model, phase: Arrays, h: float, points: int, every: int = 1, fast: bool = False
-) -> Floats:
-    """Theta and omega of many starts after each `every` steps of h [s], so many points long: (points, 2, starts).
-
-    With a step that divides a period these are the points of a stroboscopic map.  `fast`: compiled by Numba.
-    """
-    found = np.empty((points, 2, len(phase[0])))
-    (compiled if fast else plain)(method, model).record(phase, h, found, every)
-    return found
+Watch = Callable[[Arrays, Floats, Watched, int], tuple[int, Arrays]]
+"""(phase, h, watched, n) -> steps done and phase there: n, or as many as until an energy leaves its band or a swing
+passes the top.  Changes off, worst and width.  All arrays are one-dimensional and of one length."""
 
 
 def sine(x: Any) -> Any:
@@ -76,8 +59,8 @@ _C3, _C5, _C7, _C9, _C11, _C13, _C15, _C17, _C19, _C21 = ((-1) ** k / math.facto
 
 
 @cache
-def plain(method: Method, model: Model) -> Ensembles:
-    """The loops in NumPy."""
+def plain(method: Method, model: Model) -> Watch:
+    """The loop in NumPy."""
     phases, force, energy = method.phases, model.force(np.sin), model.energy(np.sin)
 
     def watch(phase: Arrays, h: Floats, watched: Watched, n: int) -> tuple[int, Arrays]:
@@ -93,36 +76,19 @@ def plain(method: Method, model: Model) -> Ensembles:
                 break
         return done, phase
 
-    def record(phase: Arrays, h: float, points: Floats, every: int) -> None:
-        _record(phases(force, phase, h), points, every)
-
-    return Ensembles(watch, record)
+    return watch
 
 
 @cache
-def compiled(method: Method, model: Model) -> Ensembles:
-    """The loops with steps and what is watched compiled, which takes a second.  Raises ImportError without Numba."""
+def compiled(method: Method, model: Model) -> Watch:
+    """The loop with the steps and what is watched compiled, which takes a second.  Raises ImportError without Numba."""
     numba: Any = import_module("numba")
     inner = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)  # never called by Python: compiles twice as fast
-    phases, force, energy = numba.njit(method.phases), inner(model.force(numba.vectorize(sine))), model.energy
-    look = numba.njit(_looking(inner(energy(inner(sine)))))
+    phases, force = numba.njit(method.phases), inner(model.force(numba.vectorize(sine)))
+    energy = inner(model.energy(inner(sine)))
 
-    # The loop over phases is Python's: in compiled code Numba 0.68 never frees what a generator yields.  What the
-    # generator itself holds when it is given up, a few arrays, is not freed either.
-    def watch(phase: Arrays, h: Floats, watched: Watched, n: int) -> tuple[int, Arrays]:
-        for done, (theta, omega) in enumerate(phases(force, phase, h), 1):
-            if look(theta, omega, *watched) > 0 or done == n:
-                break
-        return done, (theta, omega)
-
-    def record(phase: Arrays, h: float, points: Floats, every: int) -> None:
-        _record(phases(force, phase, h), points, every)
-
-    return Ensembles(watch, record)
-
-
-def _looking(energy: Callable[[Phase], Any]) -> Callable[..., int]:
-    def looking(
+    @numba.njit  # type: ignore[untyped-decorator]
+    def look(
         theta: Floats, omega: Floats, start: Floats, band: Floats, off: Floats, worst: Floats, width: Floats
     ) -> int:
         """How many swings are over the top or out of their band."""
@@ -135,13 +101,12 @@ def _looking(energy: Callable[[Phase], Any]) -> Callable[..., int]:
             outside += (wide > math.pi) | (size > band[i])
         return outside
 
-    return looking
-
-
-def _record(phases: Iterator[Phase], points: Floats, every: int) -> None:
-    for step, (theta, omega) in enumerate(phases, 1):
-        if step % every == 0:
-            points[step // every - 1, 0] = theta
-            points[step // every - 1, 1] = omega
-            if step == every * len(points):
+    # The loop over phases is Python's: in compiled code Numba 0.68 never frees what a generator yields.  What the
+    # generator itself holds when it is given up, a few arrays, is not freed either.
+    def watch(phase: Arrays, h: Floats, watched: Watched, n: int) -> tuple[int, Arrays]:
+        for done, (theta, omega) in enumerate(phases(force, phase, h), 1):
+            if look(theta, omega, *watched) > 0 or done == n:
                 break
+        return done, (theta, omega)
+
+    return watch

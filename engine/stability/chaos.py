@@ -22,7 +22,8 @@ def parting(method: Method, theta: Any, omega: Any, z: Any, steps: int) -> Any:
     """ln of how far two neighbouring starts have parted after so many steps, with w0 = 1; for numbers or arrays.
 
     The displacement is brought back to length 1 after each step: Benettin et al., Meccanica 15 (1980) 9.  On
-    regular orbits it grows in proportion to the steps, on chaotic ones exponentially.
+    regular orbits it grows in proportion to the steps, on chaotic ones exponentially.  Divided by the steps the
+    logarithm tends to the largest Lyapunov exponent; for K >= 10 that is ln(K/2): Chirikov, Phys. Rep. 52 (1979) 263.
     """
     force = Pendulum(1.0).force(np.sin)
     along, across, total = 1.0 + 0.0 * theta, 0.0 * theta, 0.0 * theta
@@ -31,15 +32,6 @@ def parting(method: Method, theta: Any, omega: Any, z: Any, steps: int) -> Any:
         growth = np.hypot(along, across)
         along, across, total = along / growth, across / growth, total + np.log(growth)
     return total
-
-
-def lyapunov(method: Method, theta: float, omega: float, z: float, steps: int) -> float:
-    """Largest Lyapunov exponent per step, with w0 = 1: mean growth of ln |a small displacement| along an orbit.
-
-    Regular orbits tend to 0 as ln(steps)/steps, chaotic ones to a positive number; for K >= 10 that
-    is ln(K/2): Chirikov, Phys. Rep. 52 (1979) 263.
-    """
-    return float(parting(method, theta, omega, z, steps)) / steps
 
 
 def is_chaotic(method: Method, theta: Any, z: Any, steps: int = 10_000) -> Any:

@@ -7,7 +7,7 @@ import cmath
 import math
 from fractions import Fraction
 from numbers import Rational
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -66,27 +66,27 @@ def linear_limit(method: Method) -> float:
     return float(below)
 
 
-def energy_range(method: Method, z: float) -> tuple[float, float]:
-    """Lowest and highest energy, over the start's, that a linear swing from rest is taken to by this step.
+class Wobble(NamedTuple):
+    """How far a bounded linear swing from rest goes, over its start."""
+
+    lowest: float  # energy
+    highest: float
+    widest: float  # |theta|
+
+
+def wobble(method: Method, z: float) -> Wobble:
+    """The lowest and highest energy and the largest amplitude that this step takes a linear swing from rest to.
 
     A symplectic step keeps a quadratic form, not the energy: the swing stays on the ellipse
     -c theta² + (a - d) theta omega + b omega² = -c theta0², where ((a, b), (c, d)) is its Jacobian at
-    w0 = 1.  The half axes, squared, are the extremes: (1 - z²/4, 1) for velocity Verlet, for symplectic
-    Euler (1/(1 + z/2), 1/(1 - z/2)).  Explicit Euler and RK4 do not wobble: (1, 1).  Beyond the limit of a
-    symplectic step there is no ellipse, and (0, 1) is what velocity Verlet's has become there.
-    """
-    a, b, c, d = at_bottom(method, z)
-    if (a - d) ** 2 / 4 + b * c >= 0:
-        return 0.0, 1.0
-    mean, spread = (b - c) / 2, math.hypot((b + c) / 2, (a - d) / 2)
-    return -c / (mean + spread), -c / (mean - spread)
-
-
-def widest(method: Method, z: float) -> float:
-    """How wide, over its start, a linear swing from rest may go with this step: the reach of its ellipse.
-
-    1 for velocity Verlet, 1/sqrt(1 - z²/4) for symplectic Euler, and 1 where there is no ellipse.
+    w0 = 1.  The half axes, squared, are the extremes of the energy: (1 - z²/4, 1) for velocity Verlet, for symplectic
+    Euler (1/(1 + z/2), 1/(1 - z/2)).  Explicit Euler and RK4 do not wobble: (1, 1).  The reach of the ellipse is 1 for
+    velocity Verlet, 1/sqrt(1 - z²/4) for symplectic Euler.  Beyond the limit of a symplectic step there is no
+    ellipse, and (0, 1, 1) is what velocity Verlet's has become there.
     """
     a, b, c, d = at_bottom(method, z)
     skew = (a - d) ** 2 / 4 + b * c
-    return math.sqrt(b * c / skew) if skew < 0 else 1.0
+    if skew >= 0:
+        return Wobble(0.0, 1.0, 1.0)
+    mean, spread = (b - c) / 2, math.hypot((b + c) / 2, (a - d) / 2)
+    return Wobble(-c / (mean + spread), -c / (mean - spread), math.sqrt(b * c / skew))

@@ -17,7 +17,7 @@ from engine.models.pendulum import Pendulum
 from engine.run.ensemble import Floats as Floats
 from engine.run.ensemble import Watched, compiled, plain
 from engine.stability.chaos import is_chaotic
-from engine.stability.linear import energy_range, widest
+from engine.stability.linear import wobble
 
 BAND = 0.5
 """How far, as a fraction, energy may go above the highest and below the lowest that the method's own
@@ -53,13 +53,13 @@ def outcomes(method: Method, theta: Floats, z: Floats, steps: int, fast: bool = 
     for each.  A swing that is lost leaves the ensemble at once.  No cell depends on the others.
     """
     model = Pendulum(1.0)
-    watch = (compiled if fast else plain)(method, model).watch
+    watch = (compiled if fast else plain)(method, model)
     distinct, where = np.unique(z, return_inverse=True)
-    lowest, highest = np.array([energy_range(method, value) for value in distinct.tolist()]).T
-    reach = np.array([widest(method, value) for value in distinct.tolist()])[where] * theta
+    lowest, highest, widest = np.array([wobble(method, value) for value in distinct.tolist()]).T[:, where]
+    reach = widest * theta
     h, phase = z, (theta, np.zeros(len(theta)))
     start: Floats = model.energy(np.sin)(phase)
-    up, down = (((1 + BAND) * highest[where] - 1) * start, (1 - (1 - BAND) * lowest[where]) * start)
+    up, down = ((1 + BAND) * highest - 1) * start, (1 - (1 - BAND) * lowest) * start
     band = np.full(len(theta), math.inf) if method.symplectic else np.minimum(up, down)
     watched = Watched(start, band, np.zeros(len(theta)), np.zeros(len(theta)), theta.copy())
     index: NDArray[Any] = np.arange(len(theta))

@@ -21,7 +21,7 @@ from recordings.library import free_path, in_use, part_of
 from recordings.recorder import FLUSH_EVERY, Recorder
 from recordings.recording import Recording
 from recordings.verify import verify
-from tests.recordings.examples import METHOD_KEYS, SCENE, record, start, tiny, two_runs
+from tests.recordings.examples import METHOD_KEYS, SCENE, record, start, tiny, two_runs, with_changes
 
 FRAME = 1 / 30
 
@@ -113,8 +113,7 @@ def test_live_messages_carry_the_wall_clock_and_headless_ones_simulated_time(tmp
 def test_the_same_headless_run_gives_the_same_bytes(tmp_path):
     def run(name):
         with Recorder(tmp_path / name, wall=None) as recorder:
-            for _ in simulate(SCENE, 5.0, recorder, changes=[(20, -0.05)]):
-                pass
+            list(with_changes(SCENE, 5.0, recorder, [(20, -0.05)]))
         return (tmp_path / name).read_bytes()
 
     assert run("a.mcap") == run("b.mcap")

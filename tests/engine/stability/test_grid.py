@@ -68,8 +68,8 @@ def test_a_dask_cluster_gives_the_same_picture(monkeypatch: pytest.MonkeyPatch) 
     distributed = pytest.importorskip("distributed")
     monkeypatch.setattr(stability_map, "STRIP", 20)
     with (
-        distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, host="127.0.0.1", dashboard_address=None
+        distributed.LocalCluster(  # in threads, which start quickly; what goes to a process is tested above
+            n_workers=2, threads_per_worker=1, processes=False, dashboard_address=None
         ) as cluster,
         distributed.Client(cluster) as client,
     ):
