@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import cache
 from itertools import islice
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from engine.methods import Method
 from engine.models.model import Energy, EnergyReference, Model, Phase
@@ -98,6 +98,29 @@ def advance_with_errors(
         error = reference.error(energy, begin[0] + (begin[1] + k + 1) * h)
         low, high = min(low, error), max(high, error)
     return Errors(n, phase, energy, error, low, high)
+
+
+def count_evaluations(method: Method, model: Model, phase: Phase, h: float, n: int) -> int:
+    """How often a run of n >= 1 steps evaluates the force, by taking them; `Method.evaluations` where that is fixed.
+
+    If the force has a fast part, the evaluations of that part count, and the times it is solved for.
+    """
+    count = 0
+
+    def counting(function: Callable[..., Any]) -> Callable[..., Any]:
+        def counted(*arguments: Any) -> Any:
+            nonlocal count
+            count += 1
+            return function(*arguments)
+
+        return counted
+
+    force = model.force()
+    counted = counting(force)
+    for name, value in vars(force).items():
+        setattr(counted, name, counting(value) if name in ("fast", "solve") else value)
+    next(islice(method.on(model).phases(counted, phase, h), n - 1, None))
+    return count
 
 
 OVERFLOW = (ValueError, ArithmeticError)

@@ -11,9 +11,8 @@ from engine.methods import VELOCITY_VERLET, Method
 from engine.methods.adaptive import HALVING_RICHARDSON, HALVING_VERLET, MOST_HALVINGS, halving
 from engine.methods.verlet import velocity_verlet
 from engine.models.pendulum import Pendulum
-from engine.run.loops import plain
+from engine.run.loops import count_evaluations, plain
 from engine.scenes import SCENES, Scene
-from tests.engine.counting import count_evaluations
 
 PENDULUM = Pendulum(9.81)
 FORCE = PENDULUM.force()

@@ -10,10 +10,9 @@ from engine.methods import EXPLICIT_EULER, RK4, SYMPLECTIC_EULER, VELOCITY_VERLE
 from engine.methods.damped import CONFORMAL_VERLET, LAGGED_VERLET, damped
 from engine.methods.splitting import BLANES_MOAN_6
 from engine.models.damped import DampedPendulum
-from engine.run.loops import plain
+from engine.run.loops import count_evaluations, plain
 from engine.run.tangent import jacobian
 from engine.scenes import Scene, SceneError
-from tests.engine.counting import count_evaluations
 
 CAST = (EXPLICIT_EULER, LAGGED_VERLET, CONFORMAL_VERLET, RK4)
 each_method = pytest.mark.parametrize("method", CAST, ids=lambda m: m.key)

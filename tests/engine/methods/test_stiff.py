@@ -10,9 +10,8 @@ from engine.methods import METHODS, RK4, VELOCITY_VERLET, Method
 from engine.methods.stiff import IMEX_EULER, IMPLICIT_MIDPOINT, RESPA, respa
 from engine.methods.verlet import velocity_verlet
 from engine.models.spring import Spring
-from engine.run.loops import plain
+from engine.run.loops import count_evaluations, plain
 from engine.scenes import Scene
-from tests.engine.counting import count_evaluations
 
 SPRING = Spring(9.81, 2500.0)
 SOFT = Spring(9.81, 100.0)
