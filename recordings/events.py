@@ -1,4 +1,4 @@
-"""Event: what was done in the lab, and what it noticed.  Entry: a sample or an event, with its time in the recording.
+"""Event: an action in the lab, or a milestone.  Entry: a sample or an event, with its time in the recording.
 
 A recording may name methods and models that this version does not know.  Stand-ins for them play as they were
 recorded: nothing is computed of them, so they cannot be verified.

@@ -1,4 +1,4 @@
-"""Library: where recordings live, and who is using them; list, find, name and prune them.
+"""Library: the folder of recordings, their locks; list, find, name and prune them.
 
 A writer holds an exclusive lock on a recording, a reader a shared one.  A lock ends with its process, however that
 ends, so a leftover differs from a recording in progress.  Only POSIX has such locks; elsewhere nothing is locked.

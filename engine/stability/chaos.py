@@ -1,4 +1,4 @@
-"""Chaos in a method's own map: at large steps a pendulum, which cannot be chaotic, is given motion that is.
+"""Chaos in a method's own map: the pendulum is not chaotic, but at large steps its numerical motion is.
 
 Symplectic Euler on the pendulum is the Chirikov standard map with K = z²; velocity Verlet is the same map,
 seen half a kick earlier.  Up to Greene's threshold invariant curves fence the chaotic orbits in; above
@@ -35,7 +35,7 @@ def parting(method: Method, theta: Any, omega: Any, z: Any, steps: int) -> Any:
 
 
 def is_chaotic(method: Method, theta: Any, z: Any, steps: int = 10_000) -> Any:
-    """Whether swings from rest at theta [rad] are chaotic, judged from `steps` steps: theta and z are arrays, or not.
+    """Whether swings from rest at theta [rad] are chaotic, judged from `steps` steps; for numbers or arrays.
 
     Over a million steps regular orbits part by at most e^14, chaotic ones by e^28 within some thousand.  From
     beside upright the exact swing alone parts neighbours by 1/cos²(theta/2), which counts as none.

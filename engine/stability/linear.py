@@ -34,8 +34,8 @@ def is_stable(method: Method, z: Number) -> Any:
     """Whether neither multiplier of the step is larger than 1, for one z or an array of them.
 
     Both lie in the closed unit disc if det <= 1 and |trace| <= 1 + det (Jury's conditions).  A step has only
-    + and * on the phase, so where its coefficients are rational a Fraction goes through it exactly, and no
-    tolerance has to tell |multiplier| = 1, where symplectic methods live, from growth.  Floats are given one.
+    + and * on the phase, so if its coefficients are rational a Fraction goes through it exactly, and |multiplier| = 1,
+    the case of symplectic methods, needs no tolerance.  Floats are given one.
     """
     a, c = method.step(_spring, (1, 0), z)
     b, d = method.step(_spring, (0, 1), z)

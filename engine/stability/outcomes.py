@@ -23,8 +23,8 @@ BAND = 0.5
 """How far, as a fraction, energy may go above the highest and below the lowest that the method's own
 bounded wobble on the linear oscillator takes it to (engine.stability.linear.wobble)."""
 
-WOBBLE = 1.1  # times as wide as the linear oscillator: what swings wider is held with a larger wobble
-CHAOS_STEPS = 2000  # for which the neighbours of a swing that wobbles are followed
+WOBBLE = 1.1  # times as wide as the linear oscillator: a swing that is wider counts as wobbling
+CHAOS_STEPS = 2000  # for which neighbours of a wobbling swing are followed
 
 FATES = ("holds", "over the top", "grows", "loses", "holds, wobbling", "caught", "chaotic")
 """What becomes of a swing: it swings as wide as it should; |theta| passes pi; its energy leaves the band upwards or
@@ -42,7 +42,7 @@ Cells = NDArray[Any]  # of CELL
 
 
 def is_lost(cells: Cells) -> NDArray[np.bool_]:
-    """Which swings a method loses; not those of which nothing is known."""
+    """Which swings a method loses; UNKNOWN cells do not count."""
     return ~np.isin(cells["fate"], (*HELD, UNKNOWN))
 
 
