@@ -93,7 +93,7 @@ class Spring(Model):
     def spring_energy(self, phase: Phase) -> float:
         """vr²/2 + k/2 (r - r_eq)² [s⁻²]: r_eq is where gravity and the swing would hold the spring at rest.
 
-        The true motion keeps it within ±2 % where the spring is fast: an adiabatic invariant.
+        The true motion keeps it within 2.5 % at k = 2500 s⁻²: an adiabatic invariant.
         """
         z, w = phase
         length = abs(z) or 1.0

@@ -5,10 +5,10 @@ how often the screen is drawn.
 
 A symplectic method can neither gain nor lose for good: its orbit is regular, and then its energy error stays
 within a band, or chaotic.
-- `bounded`: the orbit is known to be regular or fenced in.  Up to h·w0 = 0.25 chaos is thinner than rounding; up to
-  0.9, and beyond where the modified energy hardly moves or small swings stay on their ellipse, it lies only beside
-  upright: then 8 periods are enough.  Elsewhere, near resonances and upright, it takes 4096 steps in which
-  neighbouring starts have parted no faster than in proportion to time.
+- `bounded`: the orbit is known to be regular or fenced in.  Up to h·w0 = 0.25 chaos is thinner than rounding
+  (Gelfreich & Lazutkin, Russ. Math. Surv. 56 (2001) 499); up to 0.9, and beyond where the modified energy hardly
+  moves or small swings stay on their ellipse, it lies only beside upright: then 8 periods are enough.  Elsewhere,
+  near resonances and upright, it takes 4096 steps in which neighbouring starts part at most in proportion to time.
 - `chaotic`: neighbouring starts part exponentially; the Lyapunov number says how fast.
 - `wanders`: and h·omega has moved by more than 2 pi, so there is no fence: the energy diffuses.
 

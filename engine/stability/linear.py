@@ -33,9 +33,9 @@ def amplification(method: Method, z: float) -> float:
 def is_stable(method: Method, z: Number) -> Any:
     """Whether neither multiplier of the step is larger than 1, for one z or an array of them.
 
-    Both lie in the closed unit disc if det <= 1 and |trace| <= 1 + det (Jury's conditions).  A step has only
-    + and * on the phase, so if its coefficients are rational a Fraction goes through it exactly, and |multiplier| = 1,
-    the case of symplectic methods, needs no tolerance.  Floats are given one.
+    Both lie in the closed unit disc if det <= 1 and |trace| <= 1 + det: Jury, Theory and Application of the
+    z-Transform Method (1964).  A step has only + and * on the phase, so if its coefficients are rational a Fraction
+    goes through it exactly, and |multiplier| = 1, the case of symplectic methods, needs no tolerance.  Floats get one.
     """
     a, c = method.step(_spring, (1, 0), z)
     b, d = method.step(_spring, (0, 1), z)

@@ -46,11 +46,11 @@ def test_the_recording_clock_goes_forward_while_simulated_time_runs_backwards(tm
     assert verify(tmp_path / "a.mcap").identical
 
 
-def test_an_hour_of_a_headless_run_has_few_chunks(tmp_path):
+def test_a_long_headless_run_has_few_chunks(tmp_path):
     with Recorder(tmp_path / "a.mcap", wall=None) as recorder:
-        samples = sum(1 for _ in simulate(SCENE, 3600.0, recorder, sample_every=10))
+        samples = sum(1 for _ in simulate(SCENE, 600.0, recorder, sample_every=2))
     with Recording.open(tmp_path / "a.mcap") as recording:
-        assert recording.samples == samples == 3601
+        assert recording.samples == samples == 3001
         assert len(recording._chunks) < 50  # of 128 kB; readers refuse more than 250 000
     recover(tmp_path / "a.mcap", tmp_path / "copy.mcap")
     with Recording.open(tmp_path / "copy.mcap") as recording:

@@ -104,7 +104,7 @@ def test_the_closed_form_solves_the_equation_of_motion_itself() -> None:
         (0.0, 0.0, "equilibrium"),
     ],
 )
-def test_the_regime_is_told(theta: float, omega: float, regime: str) -> None:
+def test_each_start_has_its_regime(theta: float, omega: float, regime: str) -> None:
     assert Scene(theta=theta, omega=omega).exact().regime == regime
 
 

@@ -79,7 +79,7 @@ def test_compiled_steps_are_freed() -> None:
 
 @each_way
 @each_method
-def test_what_is_watched_is_the_largest_of_each_step(method: Method, fast: bool) -> None:
+def test_a_watched_ensemble_keeps_the_largest_error_and_angle(method: Method, fast: bool) -> None:
     seen, points = watched(PENDULUM), path(method, PENDULUM, 0.1, 10, fast)
     done, phase = (compiled if fast else plain)(method, PENDULUM)((THETA, OMEGA), np.full(37, 0.1), seen, 10)
     assert done == 10
