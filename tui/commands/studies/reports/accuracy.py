@@ -10,10 +10,8 @@ from rich.text import Text
 from engine.accuracy.advice import Advice
 from engine.accuracy.ahead import Ahead, Cost, ahead
 from engine.accuracy.front import TAYLOR_20, Reference, TaylorPoint
-from engine.accuracy.growth import PERIODS
 from engine.accuracy.study import REASONS, ErrorKind, Order, Point
 from engine.methods import Method
-from engine.methods.own import OwnMethod
 from engine.scenes import Scene
 from tui.cli.output import console, fields_of, print_picture, print_table, scene_line, write_csv, write_json
 from tui.commands.studies.reports.front import (
@@ -24,11 +22,11 @@ from tui.commands.studies.reports.front import (
     print_references,
     rows_of,
 )
+from tui.commands.studies.reports.orders import claimed, growth_text, order_remarks
 from tui.drawing.palette import PALETTES
 from tui.views.accuracy.chart import ERROR_LABELS, MARKS, accuracy_chart, references
 
 CHART_SIZE = (100, 24)  # columns at most, rows
-_POWERS = {1: "t", 2: "t²"}
 
 
 @dataclass(slots=True)
@@ -98,7 +96,7 @@ def print_json(found: Findings) -> None:
             ],
             "absent": found.absent,
             "orders": [
-                {"method": o.method.key, "claimed": _claimed(o.method), "measured": o.measured} for o in found.orders
+                {"method": o.method.key, "claimed": claimed(o.method), "measured": o.measured} for o in found.orders
             ],
             "recommendation": durations[-1] if durations else None,
             "durations": durations,
@@ -124,31 +122,16 @@ def _print_points(found: Findings) -> None:
     if found.orders:
         measured = ("-" if order.measured is None else f"{order.measured:.2f}" for order in found.orders)
         rows.append(("order", "", "measured", *measured))
-        rows.append(("", "", "claimed", *(str(_claimed(order.method) or "-") for order in found.orders)))
+        rows.append(("", "", "claimed", *(str(claimed(order.method) or "-") for order in found.orders)))
     names = (f"{method.label} ({method.force_evaluations}/step)" for method in cast)
     print_table("rrr" + "r" * len(cast), ("h [s]", "z = h·w0", "steps", *names), rows)
     flaws = {flaw for point in found.points if (flaw := point.flaw(found.kind))}
     for mark in sorted({MARKS[flaw] for flaw in flaws}):
         print(f"{mark} {'; '.join(REASONS[flaw] for flaw in flaws if MARKS[flaw] == mark)}")
     print("order measured on the theta error over at most one period; n/step: force evaluations")
-    if said := growth_text(found):
-        print(said)
-
-
-def growth_text(found: Findings) -> str:
-    """With which power of t the theta error grows at the scene's h, where it follows one."""
-    powers = {m.label: round(power) for m in found.scene.cast if (power := found.growth.get(m.key)) is not None}
-    each = [
-        f"{_POWERS.get(power, f't^{power}')} ({', '.join(label for label in powers if powers[label] == power)})"
-        for power in sorted(set(powers.values()))
-    ]
-    over = f"at h = {found.scene.h:g} s, over up to {PERIODS} periods"
-    return f"{over}, the theta error grows as {', as '.join(each)}" if each else ""
-
-
-def _claimed(method: Method) -> int | None:
-    """The claimed order; nothing is claimed of a user's own method."""
-    return None if isinstance(method, OwnMethod) else method.order
+    for said in (*order_remarks(found.scene, found.orders), growth_text(found.scene, found.growth)):
+        if said:
+            print(said)
 
 
 def _cell(found: Findings, rung: Sequence[Point], method: Method) -> str:

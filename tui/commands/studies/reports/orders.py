@@ -1,0 +1,44 @@
+"""What `accuracy` says of powers: of h, where a measured order is not the claimed one, and of t."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+
+from engine.accuracy.growth import PERIODS
+from engine.accuracy.study import Order
+from engine.methods import Method
+from engine.methods.euler import SYMPLECTIC_EULER
+from engine.methods.own import OwnMethod
+from engine.scenes import Scene
+
+APART = 0.25  # of two orders: further apart, it is said why
+_POWERS = {1: "t", 2: "t²"}
+
+
+def claimed(method: Method) -> int | None:
+    """The claimed order; nothing is claimed of a user's own method."""
+    return None if isinstance(method, OwnMethod) else method.order
+
+
+def order_remarks(scene: Scene, orders: Sequence[Order]) -> Iterator[str]:
+    """Why a measured order is not the claimed one."""
+    for method, measured in orders:
+        order = claimed(method)
+        if measured is None or order is None or abs(measured - order) < APART:
+            continue
+        why = "over these h its errors follow no one power"
+        if method == SYMPLECTIC_EULER and math.remainder(scene.theta, math.pi) == 0:
+            why = "from theta = 0 its angles are velocity Verlet's"
+        elif not method.symplectic and round(measured) == order + 1:
+            why = f"beside upright the phase hangs on the energy, which it loses as h^{measured:.0f}"
+        yield f"{method.label} reads {measured:.2f}, not {order}: {why}"
+
+
+def growth_text(scene: Scene, growth: Mapping[str, float | None]) -> str:
+    """With which power of t the theta error grows at the scene's h, where it follows one."""
+    powers = {m.label: round(power) for m in scene.cast if (power := growth.get(m.key)) is not None}
+    each = [
+        f"{_POWERS.get(power, f't^{power}')} ({', '.join(label for label in powers if powers[label] == power)})"
+        for power in sorted(set(powers.values()))
+    ]
+    over = f"at h = {scene.h:g} s, over up to {PERIODS} periods"
+    return f"{over}, the theta error grows as {', as '.join(each)}" if each else ""
