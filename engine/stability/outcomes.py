@@ -28,8 +28,8 @@ CHAOS_STEPS = 2000  # for which the neighbours of a swing that wobbles are follo
 
 FATES = ("holds", "over the top", "grows", "loses", "holds, wobbling", "caught", "chaotic")
 """What becomes of a swing: it swings as wide as it should; |theta| passes pi; its energy leaves the band upwards or
-downwards; it stays, with a larger wobble; an orbit of period two holds it, beyond a symplectic method's linear
-limit; neighbouring swings part exponentially."""
+downwards; it stays, with a larger wobble; it stays beyond a symplectic method's linear limit, as around the two places
+between which velocity Verlet then jumps; neighbouring swings part exponentially."""
 
 HOLDS, OVER_THE_TOP, GROWS, LOSES, WOBBLES, CAUGHT, CHAOTIC = range(len(FATES))
 HELD = (HOLDS, WOBBLES, CAUGHT)

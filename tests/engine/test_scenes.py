@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from engine.methods import method_of
 from engine.run.lockstep import Lockstep, Sample
 from engine.run.observer import RunObserver
+from engine.run.stepping import Stepping
 from engine.scenes import DEFAULT_SCENE, GROUPS, LIMITS, SCENES, Z_LIMITS, Scene, SceneError, check_h
 
 EXPLICIT, SYMPLECTIC, VERLET, RK4 = range(4)
@@ -143,6 +144,19 @@ def test_crossover_rk4_starts_far_ahead_of_verlet_and_falls_behind_after_half_a_
     assert all(behind[behind.index(True) :])
     early = [sample for sample in samples if sample.t < 2.2]  # a swing
     assert worst(early, RK4) < worst(early, VERLET) / 10
+
+
+@pytest.mark.parametrize(
+    ("name", "seconds", "least", "most"),
+    [("crossover", 60, 0, 1e-13), ("crossover", 600, 0, 1e-11), ("chaos-fenced", 200, 0.1, 100)],
+)
+def test_turned_round_verlet_comes_back_but_not_in_chaos(name: str, seconds: float, least: float, most: float) -> None:
+    scene, lockstep = SCENES[name], Lockstep(SCENES[name])
+    lockstep.advance(steps := round(seconds / scene.h))
+    lockstep.set_stepping(Stepping(-scene.h))
+    lockstep.advance(steps)
+    verlet = lockstep.sample().readings[VERLET]
+    assert least <= math.hypot(verlet.theta - scene.theta, verlet.omega / scene.w0) < most
 
 
 def test_near_separatrix_the_best_energy_does_not_mean_the_right_time() -> None:

@@ -44,10 +44,12 @@ def method_card(method: Method) -> str:
         {
             "also called": ", ".join(method.other_names),
             "formula": method.formula,
-            "order": f"{method.order}: over one swing, halving h divides the error by {2**method.order}",
+            "order": f"{method.order}: as a rule, over one swing half of h divides the error by {2**method.order}",
             "costs": f"{method.force_evaluations} force evaluation{'s' * (method.force_evaluations > 1)} per step",
             "symplectic": "yes: conserves phase-space area" if method.symplectic else "no: phase-space area changes",
-            "reversible": "yes: run backwards, it returns to its start" if method.reversible else "no",
+            "reversible": "yes: run backwards, it returns to its start, but for rounding"
+            if method.reversible
+            else "no",
             "stable": limit,
             "note": method.note,
             "used in": method.used,

@@ -3,7 +3,7 @@
 import math
 
 from tui.playback.source import Source
-from tui.words.findings import ending, endings, leaving
+from tui.words.findings import astray, ending, endings, leaving
 from tui.words.numbers import about, seconds
 
 
@@ -44,7 +44,8 @@ def method_sentence(source: Source, index: int) -> str:
     """Whether a method failed or went over the top; if not, its verdict or its error so far."""
     method, reading = source.scene.cast[index], source.sample.readings[index]
     if milestone := endings(source).get(index):
-        return ending(milestone, source.scene.equations.conserved)
+        said = ending(milestone, source.scene.equations.conserved)
+        return f"{said} {astray(method.label, source.judgements[index], reading.energy_error)}".strip()
     if source.judgements[index].verdict == "bounded":
         return f"{method.label} stays bounded: its largest energy error is {reading.max_energy_error:.2g}."
     known = source.judgements[index].verdict

@@ -1,3 +1,4 @@
+import math
 import os
 import signal
 import subprocess
@@ -16,6 +17,7 @@ from recordings.verify import verify
 from tests.tui.command_line import pendu
 from tui.cli.fail_if import FIELDS
 from tui.commands.studies.run import SAMPLE_BYTES
+from tui.words.numbers import about
 
 
 def test_json_has_the_fields_of_the_design_and_the_numbers_of_the_engine():
@@ -25,9 +27,18 @@ def test_json_has_the_fields_of_the_design_and_the_numbers_of_the_engine():
     lockstep = Lockstep(DEFAULT_SCENE)
     lockstep.advance(200)
     for told, method, reading in zip(answer["methods"], USUAL_CAST, lockstep.sample().readings, strict=True):
-        assert told.keys() == {"method", "verdict", *FIELDS}
+        assert told.keys() == {"method", "verdict", "lyapunov_per_second", *FIELDS}
         assert told["method"] == method.key
         assert (told["theta"], told["max_energy_error"]) == (reading.theta, reading.max_energy_error)
+
+
+def test_chaos_is_told_with_its_lyapunov_number():
+    chaos = ("run", "--theta", "0.3", "--h", "0.654514", "--time", 200)
+    symplectic = pendu(*chaos, "--json").json["methods"][1]
+    assert symplectic["verdict"] == "chaotic"
+    assert 0.01 < symplectic["lyapunov_per_second"] * 0.654514 < 2
+    seconds = about(math.log(10) / symplectic["lyapunov_per_second"])
+    assert f"Symplectic Euler is chaotic: two close starts part tenfold every {seconds}.\n" in pendu(*chaos).out
 
 
 def test_the_table_shows_which_method_gains_conserves_and_loses_energy():

@@ -26,7 +26,7 @@ def test_a_method_card_has_every_claim(method):
     card = words(method_card(method))
     for claim in (method.label, *method.other_names, method.formula, method.reference, method.used):
         assert words(claim) in card
-    assert f"order {method.order}: over one swing, halving h divides the error by {2**method.order}" in card
+    assert f"order {method.order}: as a rule, over one swing half of h divides the error by {2**method.order}" in card
     assert f"costs {method.force_evaluations} force evaluation" in card
     assert ("symplectic yes" in card, "reversible yes" in card) == (method.symplectic, method.reversible)
     assert (f"stable up to z = h w0 = {method.linear_limit:.4g}" if method.linear_limit else "stable at no h") in card

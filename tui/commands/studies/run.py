@@ -137,6 +137,7 @@ def _rows(scene: Scene, sample: "Sample", observer: "RunObserver") -> list[dict[
                 "theta_error": None if math.isnan(off) or end is not None else abs(off),
                 "drift_per_second": judgement.slope,
                 "verdict": judgement.verdict,
+                "lyapunov_per_second": judgement.lyapunov,
                 "force_evaluations": method.evaluations(sample.step if end is None else round(end / scene.h)),
                 "diverged_at": end,
             }
@@ -150,7 +151,7 @@ def _print(
     print(f"{scene_line(scene, 'h')}, {z_name(scene.model)} = {scene.z:.4g}")
     pace = f", {sample.step / wall_seconds / 1e6:.3g} million a second" if wall_seconds > 1 else ""
     print(f"{sample.step} steps to t = {sample.t:g} s in {wall_seconds:.2f} s{pace}\n")
-    from tui.words.findings import ending, passing
+    from tui.words.findings import astray, ending, passing
 
     forms = {"spring_energy": ".4g"} if scene.model == "spring" else {}
     forms |= {"energy_error": "+.2e", "max_energy_error": ".2e", "drift_per_second": "+.1e", "theta_error": ".2e"}
@@ -169,3 +170,6 @@ def _print(
             print(passing(each, each.other))
         elif each.kind == "over the top":
             print(ending(each, scene.equations.conserved))
+    for method, judgement in zip(scene.cast, observer.judgements, strict=True):
+        if judgement.lyapunov:
+            print(astray(method.label, judgement, 0.0))
