@@ -2,10 +2,12 @@
 
 import math
 import textwrap
+from collections.abc import Mapping
 
 from engine.methods import Method
-from engine.scenes import Scene
+from engine.scenes import UNITS, Scene
 from tui.words.motion import motion_text
+from tui.words.numbers import z_name
 
 WIDTH = 72  # characters; of 80 columns, frame and scroll bar take the rest
 _HEAD = 14
@@ -37,6 +39,8 @@ def glossary() -> str:
 def method_card(method: Method) -> str:
     """A method's properties; every line is a tested claim."""
     limit = f"up to z = h w0 = {method.linear_limit:.4g} (small swings)" if method.linear_limit else "at no h"
+    if method.linear_limit is None:
+        limit = ""  # there is no one number
     return _card(
         f"{method.letter}  {method.label}",
         {
@@ -62,16 +66,18 @@ def scene_card(scene: Scene, now: str = "") -> str:
             "watch": scene.watch,
             "start": f"theta {math.degrees(scene.theta):.5g}°, omega {scene.omega:.5g} rad/s",
             "pendulum": f"length {scene.length:.5g} m, gravity {scene.gravity:.5g} m/s², w0 = {scene.w0:.4g} 1/s",
-            "step": f"h = {scene.h:.5g} s, z = h w0 = {scene.z:.4g}",
+            **{name: f"{getattr(scene, name):.5g} {UNITS[name]}" for name in scene.parameters},
+            "step": f"h = {scene.h:.5g} s, {z_name(scene.model)} = {scene.z:.4g}",
             "now": now,
             "motion": motion_text(scene, scene.exact()),
         },
     )
 
 
-def _card(title: str, lines: dict[str, str]) -> str:
+def _card(title: str, lines: Mapping[str, str | None]) -> str:
+    after = " " * (_HEAD + 2)
     paragraphs = [
-        textwrap.fill(text, WIDTH, initial_indent=f"  {head:<{_HEAD}}", subsequent_indent=" " * (_HEAD + 2))
+        textwrap.fill(text, WIDTH, initial_indent=f"  {head:<{_HEAD}}", subsequent_indent=after, break_on_hyphens=False)
         for head, text in lines.items()
         if text
     ]
