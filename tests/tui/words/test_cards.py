@@ -13,7 +13,7 @@ from tui.views.accuracy import pane as accuracy
 from tui.views.phase import pane as phase
 from tui.views.phase.pane import PhasePane
 from tui.views.stability import pane as stability
-from tui.words.cards import WIDTH, glossary, method_card, scene_card
+from tui.words.cards import OFTEN_SAID, WIDTH, glossary, method_card, scene_card
 
 
 def words(card: str) -> str:
@@ -97,3 +97,12 @@ def test_the_glossary_explains_every_sign_of_a_verdict_that_ends_well_or_badly()
     for words in ("h ", "z ", "dE/E0", "E/Es", "= bounded", "+ grows", "- loses", "! chaotic", "too early", "colours"):
         assert f"\n  {words}" in glossary()
     assert max(map(len, glossary().splitlines())) <= WIDTH
+
+
+def test_what_is_often_said_stands_on_the_cards_of_scenes_and_where_there_is_no_closed_form_the_reference():
+    assert set(OFTEN_SAID) <= set(SCENES)
+    for name, scene in SCENES.items():
+        card = words(scene_card(scene))
+        assert ("often said" in card) == (name in OFTEN_SAID)
+        assert ("right to 1e-10 rad" in card) == (scene.model in ("damped", "spring"))
+        assert all(len(line) <= WIDTH for line in scene_card(scene).splitlines())
