@@ -66,7 +66,7 @@ OFTEN_SAID = {
     "far from the resonance that counts.",
     "stiff-slow": "IMEX Euler is stable at any h. True, but it stops the swing as well as the spring.",
     "stiff-resonance": "With impulses h follows the slow motion. But not where it comes near the spring's period.",
-    "learned": "A learned Hamiltonian conserves energy. It conserves the learned one; the true one is off by a percent.",
+    "learned": "A learned Hamiltonian conserves energy. It conserves the learned one; the true one errs by a percent.",
 }
 """What is often said, and what of it is true, by scene; measured in tests/engine/methods and test_scenes."""
 

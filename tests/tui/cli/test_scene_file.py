@@ -22,6 +22,13 @@ def test_the_fields_of_a_listed_scene_give_the_same_run(tmp_path, name):
     assert (own["scene"], own["methods"]) == (listed["scene"], listed["methods"])
 
 
+@pytest.mark.parametrize("name", ["drift", "stiff-slow", "damped", "linear"])
+def test_without_methods_it_has_those_that_are_for_its_model(tmp_path, name):
+    fields = {key: value for key, value in SCENES[name].fields().items() if key != "methods"}
+    written(tmp_path / "mine.toml", fields)
+    assert read_scene(tmp_path / "mine.toml").cast == SCENES[name].cast
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [
