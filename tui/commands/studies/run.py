@@ -159,7 +159,7 @@ def _print(
     print(f"{scene_line(scene, 'h')}, {z_name(scene.model)} = {scene.z:.4g}")
     pace = f", {sample.step / wall_seconds / 1e6:.3g} million a second" if wall_seconds > 1 else ""
     print(f"{sample.step} steps to t = {sample.t:g} s in {wall_seconds:.2f} s{pace}\n")
-    from tui.words.findings import ending
+    from tui.words.findings import ending, passing
 
     forms = {"spring_energy": ".4g"} if scene.model == "spring" else {}
     forms |= {"energy_error": "+.2e", "max_energy_error": ".2e", "drift_per_second": "+.1e", "theta_error": ".2e"}
@@ -173,6 +173,8 @@ def _print(
     spring = ("in the spring",) if scene.model == "spring" else ()
     headers = (*spring, error, "largest", "per second", "theta error [rad]", "force evaluations")
     print_table("ll" + "r" * len(headers), ("method", "verdict", *headers), table)
-    for top in observer.milestones(sample.step):
-        if top.kind == "over the top":
-            print(ending(top, scene.equations.conserved))
+    for each in observer.milestones(sample.step):
+        if each.other:
+            print(passing(each, each.other))
+        elif each.kind == "over the top":
+            print(ending(each, scene.equations.conserved))
