@@ -137,7 +137,7 @@ def _unknown_method(key: str, sha256: str) -> Method:
         force_evaluations=1,
         linear_limit=0.0,
         reference="",
-        used="",
+        used=None,
         models=tuple(MODELS),
         sha256=sha256,
     )

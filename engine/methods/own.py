@@ -56,7 +56,7 @@ def own_method(source: str, key: str, letter: str, file: str, measured: Measured
         reversible=measured.reversible,
         linear_limit=measured.linear_limit,
         reference=f"{file}:{key}",
-        used="",
+        used=None,
         measured=measured,
         source=source,
         file=file,

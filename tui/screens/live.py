@@ -27,11 +27,17 @@ class LiveScreen(Touring):
         assert isinstance(self.source, Live)
         return self.source
 
-    def start(self, scene: Scene) -> None:
-        """Start a new run; `u` goes back to the one before, where it was."""
-        back = self.live.way_back()
+    def start(self, scene: Scene, speed: float | None = None) -> None:
+        """Start a new run, perhaps at another speed; `u` goes back to the one before, where it was."""
+        back, before = self.live.way_back(), self.live.playhead.speed
+
+        def undo() -> None:
+            self.live.set_speed(before)
+            self._do(back)
+
         if self._do(lambda: self.live.start(scene)):
-            self.remember(lambda: self._do(back))
+            self.live.set_speed(speed or before)
+            self.remember(undo)
 
     def set_stepping(self, stepping: Stepping) -> None:
         """Change the step size from here on."""
@@ -76,10 +82,10 @@ class LiveScreen(Touring):
         """Start the next scene, or the previous one if direction is -1."""
         names, name = list(SCENES), self.live.scene.name
         at = names.index(name) + direction if name in SCENES else min(direction, 0)
-        self.start(SCENES[names[at % len(names)]])
+        self.action_start_scene(names[at % len(names)])
 
     def action_start_scene(self, name: str) -> None:
-        self.start(SCENES[name])
+        self.start(SCENES[name], SCENES[name].speed)
 
     def action_start_values(self) -> None:
         from tui.screens.dialogs.start_form import StartForm  # Textual's input field is imported when it is needed
@@ -93,11 +99,13 @@ class LiveScreen(Touring):
     def action_methods(self) -> None:
         from tui.screens.dialogs.cast_form import CastForm
 
+        scene = self.live.scene.altered(h=self.live.stepping.smallest)  # by the answer, another may be on
+
         def chosen(cast: Cast | None) -> None:
             if cast:
-                self.start(self.live.scene.altered(h=self.live.stepping.smallest).with_cast(cast))
+                self.start(scene.with_cast(cast))
 
-        self.app.push_screen(CastForm(self.live.scene.cast), chosen)
+        self.app.push_screen(CastForm(scene.cast), chosen)
 
     def action_mark(self) -> None:
         text = ALREADY if self.live.is_marked else f"Mark at {self.live.sample.t:.2f} s"

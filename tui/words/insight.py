@@ -8,7 +8,7 @@ from engine.run.observer import Milestone
 from engine.scenes import Scene
 from recordings.events import Event, EventKind
 from tui.playback.source import Source
-from tui.words.findings import ending, endings, leaving, passing, so_far, staying
+from tui.words.findings import astray, ending, endings, leaving, passing, short_name, so_far, staying
 
 WATCH = 8.0  # s of the clock at the beginning of a run, for the scene's own sentence
 FRESH = 6.0  # s of the clock for which a milestone is news
@@ -71,7 +71,11 @@ def lasting(source: Source) -> list[str]:
     """All that is known of the run, the most important first; at least one sentence."""
     ended = endings(source)
     ends = sorted(ended.values(), key=lambda each: (each.kind != "failed", each.step))
-    moves = [leaving(source, index) for index in range(len(source.scene.cast)) if index not in ended]
+    every = zip(source.scene.cast, source.judgements, source.sample.readings, strict=True)
+    moves = [
+        leaving(source, index) if index not in ended else astray(short_name(method), judgement, reading.energy_error)
+        for index, (method, judgement, reading) in enumerate(every)
+    ]
     known = list(
         filter(None, [*(ending(each, source.scene.equations.conserved) for each in ends), staying(source), *moves])
     )
