@@ -63,7 +63,7 @@ def test_every_phase_of_32_bits_is_a_double_that_32_bits_hold() -> None:
 
 
 @pytest.mark.parametrize(("method", "rounding"), [(VERLET_FLOAT32, 1e-4), (VERLET_COMPENSATED, 1e-12)])
-def test_in_mid_swing_the_numbers_do_not_matter(method: Method, rounding: float) -> None:
+def test_in_mid_swing_the_kind_of_numbers_does_not_matter(method: Method, rounding: float) -> None:
     """Verlet's own error, 2e-2 after 10 s, hides them."""
     ends = [plain(each, PENDULUM).travel((2.0, 0.0), 0.02, 500) for each in (method, VELOCITY_VERLET)]
     assert ends[0] == pytest.approx(ends[1], abs=rounding)

@@ -19,7 +19,7 @@ DRIFT = SCENES["drift"]
 
 
 def watched(scene: Scene, seconds: float, every: int = 1, equal_cost: bool = False) -> RunObserver:
-    """A witness that has seen one sample in `every` steps."""
+    """An observer of a run, with a sample every so many steps."""
     observer, lockstep = RunObserver(scene), Lockstep(scene)
     lockstep.set_stepping(Stepping(scene.h, equal_cost).with_smallest(scene.h))
     change = SteppingChange(0, 0.0, lockstep.stepping)
