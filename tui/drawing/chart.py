@@ -7,7 +7,7 @@ numbers inside them.  It has one figure per process, hence the lock.
 import re
 import threading
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -22,12 +22,12 @@ from tui.drawing.axes import (
     log_axis,
     log_start,
     log_time_axis,
-    log_x_axis,
     per_column,
     time_axis,
     time_span,
 )
 from tui.drawing.canvas import Canvas, Picture
+from tui.drawing.loglog import ROOM, LogLog, Series, logs, row_at
 from tui.drawing.palette import FRAME, NOBODY, TEXT
 from tui.drawing.palette import series as series_of
 from tui.playback.levels import Window
@@ -38,21 +38,9 @@ TOP = 1e6  # larger magnitudes are drawn here, so that a failing method leaves r
 FEW = 0.05  # of the columns of an error, which may lie below the axis
 LABEL = 5  # columns of a label of decades
 SMALLEST = (20, 5)  # columns, rows
-_ROOM = 4  # columns for the letters at the right end
 _FIRST_COLOUR = 32  # owners are passed through plotext as colours of the 256-colour palette, from this one
 
 _lock = threading.Lock()
-
-
-@dataclass(frozen=True, slots=True)
-class Series:
-    """Points with marks, joined by lines; or a dotted reference line with its mark at the end."""
-
-    owner: int
-    mark: str  # a letter; a few for a reference
-    x: Floats | Sequence[float]  # (n,)
-    y: Floats | Sequence[float]  # (n,); in what is plotted, x and y are in characters from the lower left corner
-    dotted: bool = False
 
 
 def time_chart(
@@ -79,20 +67,20 @@ def time_chart(
     low, high = (np.clip(side[quantity][:, places], -TOP, TOP) for side in (window.low, window.high))
     note = " run" if window.turned else ""
     if log:
-        columns = width - 1 - _ROOM - LABEL
+        columns = width - 1 - ROOM - LABEL
         high = np.log10(np.maximum(np.fmax(abs(low), abs(high)), FLOOR))
         low, x_axis = _magnitudes(window, high, seconds, columns, note)
         high, y_axis = low, _log_y_axis(low, rows)
     else:
         y_axis = _linear_y_axis(low, high, rows)
-        columns = width - 1 - _ROOM - y_axis.label_width
+        columns = width - 1 - ROOM - y_axis.label_width
         start, end = time_span(window.x, seconds, columns)
         low, high = per_column(window.x, low, high, start, end, columns)
         x_axis = time_axis(start, end, columns, note)
     heights = [(rows * y_axis.share(side)).T for side in (low, high)]
     curves = [_outline(cast[place], *each) for place, *each in zip(places, *heights, strict=True)]
     picture = _plot(curves, x_axis, y_axis, width, height)
-    _write_letters(picture, curves, rows, width - columns - _ROOM)
+    _write_letters(picture, curves, rows, width - columns - ROOM)
     return picture
 
 
@@ -130,14 +118,9 @@ def loglog_chart(series: Sequence[Series], width: int, height: int, *, x_label: 
     """
     if width < SMALLEST[0] or height < SMALLEST[1] + 2:
         return _too_small(width, height, SMALLEST[0], SMALLEST[1] + 2)
-    rows = height - 4
-    points = [_logs(one) for one in series]
-    marked = [some for one, some in zip(series, points, strict=True) if not one.dotted and len(some)]
-    corners = np.concatenate(marked or [np.array([(0.0, -4.0), (1.0, 0.0)])])
-    (left, bottom), (right, top) = corners.min(axis=0), corners.max(axis=0)
-    y_axis = log_axis(bottom, top, rows)
-    columns = width - 1 - _ROOM - y_axis.label_width
-    x_axis = log_x_axis(left, right, columns)
+    axes = LogLog.fitting(series, width, height)
+    x_axis, y_axis, columns, rows = axes.x_axis, axes.y_axis, axes.columns, axes.rows
+    points = [logs(one) for one in series]
     curves = []
     for one, (x, y) in zip(series, (some.T for some in points), strict=True):
         if one.dotted and len(x):
@@ -152,16 +135,9 @@ def loglog_chart(series: Sequence[Series], width: int, height: int, *, x_label: 
     picture.write(height - 1, 0, x_label.rjust(width), TEXT)
     for curve in curves:
         for column, row in list(zip(curve.x, curve.y, strict=True))[-1 if curve.dotted else 0 :]:
-            at = min(width - columns - _ROOM + int(column), width - len(curve.mark))
-            picture.write(1 + _row(row, rows), at, curve.mark, curve.owner)
+            at = min(axes.left + int(column), width - len(curve.mark))
+            picture.write(1 + row_at(row, rows), at, curve.mark, curve.owner)
     return picture
-
-
-def _logs(series: Series) -> Floats:
-    """log10 of the finite positive points, (n, 2), sorted by x."""
-    points = np.stack([np.asarray(series.x, np.float64), np.asarray(series.y, np.float64)], axis=1)
-    points = points[(np.isfinite(points) & (points > 0)).all(axis=1)]
-    return np.log10(points[np.argsort(points[:, 0], kind="stable")])
 
 
 def _outline(method: Method, low: Floats, high: Floats) -> Series:
@@ -187,7 +163,7 @@ def _plot(curves: Sequence[Series], x_axis: Axis, y_axis: Axis, width: int, heig
         figure.plot_size(width, height)
         figure.axes(False)
         figure.axes(True, pixel=_FIRST_COLOUR + FRAME, axis=["x", "y"], side=0)
-        for name, axis, size, used in (("x", x_axis, columns, columns - _ROOM), ("y", y_axis, rows, rows)):
+        for name, axis, size, used in (("x", x_axis, columns, columns - ROOM), ("y", y_axis, rows, rows)):
             ruler = figure.ruler(name, 0)
             ruler.alignment(lim="edge")
             ruler.lim(0, size)
@@ -230,17 +206,12 @@ def _write_letters(picture: Picture, curves: Sequence[Series], rows: int, left: 
     for curve in curves:
         if not len(curve.x):
             continue
-        column, row = left + int(curve.x[-1]) + 1, _row(curve.y[-1], rows)
-        places = [(row + down, column + right) for down in (0, 1, -1) for right in range(_ROOM)]
+        column, row = left + int(curve.x[-1]) + 1, row_at(curve.y[-1], rows)
+        places = [(row + down, column + right) for down in (0, 1, -1) for right in range(ROOM)]
         place = next((place for place in places if 0 <= place[0] < rows and place not in taken), None)
         if place:
             taken.add(place)
             picture.write(*place, curve.mark, curve.owner)
-
-
-def _row(height: float, rows: int) -> int:
-    """The row of characters, from the top, at a height above the lower edge."""
-    return min(max(rows - 1 - int(height), 0), rows - 1)
 
 
 def _too_small(width: int, height: int, columns: int, rows: int) -> Picture:

@@ -127,14 +127,14 @@ def _rows(scene: Scene, sample: "Sample", observer: "RunObserver") -> list[dict[
     exact = observer.exact.at(sample.t).theta
     rows = []
     for method, reading, judgement in zip(scene.cast, sample.readings, observer.judgements, strict=True):
-        end = reading.diverged_at
+        end, off = reading.diverged_at, scene.equations.theta_error(reading.theta, exact)
         rows.append(
             {
                 "method": method.key,
                 **fields_of(reading, *NUMBERS),
                 "log_energy_error": None if scene.equations.conserved else reading.energy_error,
                 "spring_energy": reading.spring_energy,
-                "theta_error": abs(reading.theta - exact) if end is None else None,
+                "theta_error": None if math.isnan(off) or end is not None else abs(off),
                 "drift_per_second": judgement.slope,
                 "verdict": judgement.verdict,
                 "lyapunov_per_second": judgement.lyapunov,

@@ -20,6 +20,7 @@ NAMES: dict[Quantity, tuple[str, str]] = {
     "theta_error": ("theta - exact theta [rad]", "theta error [rad]"),
     "shadow_error": ("shadow energy error", "|shadow error|"),
     "energy": ("energy per m L² [1/s²]", "energy [1/s²]"),
+    "spring_energy": ("energy in the spring, 1 at the start", "spring energy (1 at start)"),
 }
 """Of the quantity itself, and of its magnitude for a logarithmic chart."""
 LOGARITHM = ("ln(E/E_true)", "|ln(E/E_true)|")
@@ -38,7 +39,7 @@ def title(shown: Shown, exact: ExactMotion, conserved: bool = True) -> str:
     span = "all" if shown.seconds is None else about(shown.seconds)
     if not shown.log:
         return f"{name}, {span}"
-    each = {"libration": " per half swing", "rotation": " per turn"}.get(exact.regime, "")
+    each = {"libration": " per half swing", "rotation": " per turn"}.get(exact.regime, "") if exact.period else ""
     return f"max {magnitude}{each}, {span}"
 
 
@@ -58,10 +59,9 @@ class TimeChart(Pane):
         """Whether the chart shows the newest data."""
         return not (self._building or self._wanted.is_set())
 
-    @property
-    def _look(self) -> Shown:
+    def _look(self, source: Source) -> Shown:
         """What to show of the source here."""
-        return replace(self.shown, quantity=self.shown.quantity_ahead(self._ahead))
+        return replace(self.shown, quantity=self.shown.quantity_ahead(self._ahead, source.scene))
 
     def on_click(self) -> None:
         """Show the next quantity."""
@@ -76,11 +76,12 @@ class TimeChart(Pane):
 
     def paint(self, source: Source, sample: Sample) -> None:
         self._wanted.set()
-        text = title(self._look, source.exact, source.scene.equations.conserved)
+        look = self._look(source)
+        text = title(look, source.exact, source.scene.equations.conserved)
         if text != self._title:  # setting it paints all of the pane
             self._title = text
             self.border_title = Content(text)  # as markup, units in brackets would be gone
-            unknown = modified_energy_of(self.cast) if self._look.quantity == "shadow_error" else ""
+            unknown = modified_energy_of(self.cast) if look.quantity == "shadow_error" else ""
             self.border_subtitle = unknown or "e: quantity, w: window, y: log"
 
     async def _build_on_demand(self) -> None:
@@ -92,7 +93,7 @@ class TimeChart(Pane):
             if self.source is None or not self.drawable:
                 continue
             self._building = True
-            shown, (width, height) = self._look, self.room
+            shown, (width, height) = self._look(self.source), self.room
             build = partial(time_chart, log=shown.log, seconds=shown.seconds, shown=self.places)
             window = self.source.history.window(shown.seconds)
             try:

@@ -38,6 +38,7 @@ async def stability_view(
         yield pilot, pane, live
 
 
+@pytest.mark.other_process
 async def test_the_map_fills_in_and_is_the_engines(monkeypatch: pytest.MonkeyPatch):
     async with stability_view(monkeypatch) as (_, pane, _live):
         assert (pane.cells["fate"] != UNKNOWN).all()
