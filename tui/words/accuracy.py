@@ -1,21 +1,15 @@
-"""Which method is the cheapest at each accuracy, with which powers errors go, and why, in words."""
+"""Which method is the cheapest at each accuracy, and how errors grow with time, in words."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 from engine.accuracy.front import Cheapest, Cost, ranges
 from engine.accuracy.growth import PERIODS, Growth
 from engine.accuracy.references import TAYLOR_20
-from engine.accuracy.study import Order
-from engine.methods import Method
-from engine.methods.euler import SYMPLECTIC_EULER
-from engine.methods.own import OwnMethod
 from engine.methods.runge_kutta import RK4
-from engine.scenes import Scene
 
 COSTS: dict[Cost, str] = {"evaluations": "force evaluations", "seconds": "seconds"}
 WORTH_SAYING = 1.2  # times fewer force evaluations
-APART = 0.25  # of two orders: further apart, it is said why
 
 
 def length(seconds: float) -> str:
@@ -50,25 +44,6 @@ def growth_words(found: Sequence[Growth]) -> str:
     """The measured powers of t with which theta errors grow; empty where none follows one."""
     named = [growth.name for growth in found if growth.power is not None]
     return f"over up to {PERIODS} periods, the theta error grows as: {', '.join(named)}" if named else ""
-
-
-def claimed(method: Method) -> int | None:
-    """The claimed order; nothing is claimed of a user's own method."""
-    return None if isinstance(method, OwnMethod) else method.order
-
-
-def order_remarks(scene: Scene, orders: Sequence[Order]) -> Iterator[str]:
-    """Why a measured order is not the claimed one."""
-    for method, measured in orders:
-        order = claimed(method)
-        if measured is None or order is None or abs(measured - order) < APART:
-            continue
-        why = "over these h its errors follow no one power"
-        if method == SYMPLECTIC_EULER and math.remainder(scene.theta, math.pi) == 0:
-            why = "from theta = 0 its angles are velocity Verlet's"
-        elif not method.symplectic and round(measured) == order + 1:
-            why = f"beside upright the phase hangs on the energy, which it loses as h^{measured:.0f}"
-        yield f"{method.label} reads {measured:.2f}, not {order}: {why}"
 
 
 def _spans(found: Sequence[Cheapest]) -> str:

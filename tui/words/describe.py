@@ -2,16 +2,18 @@
 
 import math
 
+from engine.methods import Cast
 from tui.playback.source import Source
 from tui.words.findings import astray, ending, endings, leaving
 from tui.words.numbers import about, seconds
 
 
-def description(source: Source) -> list[str]:
-    """The run, each method and the recording, one sentence each."""
+def description(source: Source, only: Cast | None = None) -> list[str]:
+    """The run, each method, or `only` these, and the recording, one sentence each."""
+    shown = [index for index, method in enumerate(source.scene.cast) if only is None or method in only]
     return [
         *_run(source),
-        *(method_sentence(source, index) for index in range(len(source.scene.cast))),
+        *(method_sentence(source, index) for index in shown),
         _recording(source),
     ]
 

@@ -15,8 +15,8 @@ from engine.methods import METHODS, USUAL_CAST
 from engine.run.compiled import available, tiered
 from engine.scenes import SCENES
 from tests.tui.command_line import pendu
+from tui.commands.studies.reports.orders import order_remarks
 from tui.views.accuracy.chart import accuracy_chart, accuracy_series
-from tui.words.accuracy import order_remarks
 
 QUICK = ("accuracy", "--time", "5", "--h-values", "0.2:0.01:4")
 KEYS = [method.key for method in USUAL_CAST]

@@ -9,8 +9,10 @@ from pathlib import Path
 import pytest
 
 from engine.methods import USUAL_CAST
+from engine.methods.adaptive import HALVING_VERLET
 from engine.run.compiled import available
 from engine.run.lockstep import Lockstep
+from engine.run.loops import count_evaluations
 from engine.scenes import DEFAULT_SCENE, SCENES
 from recordings.recording import Recording
 from recordings.verify import verify
@@ -66,6 +68,16 @@ def test_extreme_but_legal_starts_neither_crash_nor_print_nan(start):
     out = pendu("run", *start, "--time", "2000").out
     assert "nan" not in out.replace("nance", "")
     assert "inf" not in out
+
+
+def test_evaluations_that_vary_are_counted():
+    rows = {row["method"]: row for row in pendu("run", "--scene", "halving", "--time", "20", "--json").json["methods"]}
+    scene = SCENES["halving"]
+    start = scene.theta, scene.omega
+    for method in scene.cast:
+        counted = count_evaluations(method, scene.equations, start, scene.h, 100)
+        assert rows[method.key]["force_evaluations"] == counted
+    assert rows["halving_verlet"]["force_evaluations"] != HALVING_VERLET.evaluations(100)
 
 
 def test_a_diverged_method_is_reported_with_its_time():

@@ -75,7 +75,7 @@ def run(options: argparse.Namespace) -> int:
     began = time.perf_counter()
     sample, observer, stopped = _simulate(scene, options, steps, every)
     wall_seconds = time.perf_counter() - began
-    rows = _rows(scene, sample, observer)
+    rows = _rows(scene, sample, observer, stopped)
     if options.json:
         fields = {"scene": scene.fields(), "time": sample.t, "steps": sample.step, "wall_seconds": wall_seconds}
         write_json("run", {**fields, "methods": rows})
@@ -120,14 +120,23 @@ def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int)
     return sample, observer, False
 
 
-def _rows(scene: Scene, sample: "Sample", observer: "RunObserver") -> list[dict[str, Any]]:
-    """The results by method, as in --json.  A method that diverged has no theta to compare."""
+def _rows(scene: Scene, sample: "Sample", observer: "RunObserver", stopped: bool) -> list[dict[str, Any]]:
+    """The results by method, as in --json.  A method that diverged has no theta to compare.
+
+    Where evaluations vary they are counted, by running again, unless somebody waits for the end.
+    """
+    from engine.run.loops import count_evaluations
     from recordings.fields import NUMBERS
 
     exact = observer.exact.at(sample.t).theta
     rows = []
     for method, reading, judgement in zip(scene.cast, sample.readings, observer.judgements, strict=True):
         end, off = reading.diverged_at, scene.equations.theta_error(reading.theta, exact)
+        steps = sample.step if end is None else round(end / scene.h)
+        evaluations = method.evaluations(steps)
+        if method.varies and end is None and steps and not stopped:
+            start = scene.equations.start(scene.theta, scene.omega)
+            evaluations = count_evaluations(method, scene.equations, start, scene.h, steps)
         rows.append(
             {
                 "method": method.key,
@@ -138,7 +147,7 @@ def _rows(scene: Scene, sample: "Sample", observer: "RunObserver") -> list[dict[
                 "drift_per_second": judgement.slope,
                 "verdict": judgement.verdict,
                 "lyapunov_per_second": judgement.lyapunov,
-                "force_evaluations": method.evaluations(sample.step if end is None else round(end / scene.h)),
+                "force_evaluations": evaluations,
                 "diverged_at": end,
             }
         )

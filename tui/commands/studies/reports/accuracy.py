@@ -15,10 +15,11 @@ from engine.accuracy.study import REASONS, ErrorKind, Order, Point
 from engine.methods import Method
 from engine.scenes import Scene
 from tui.cli.output import console, fields_of, print_picture, print_table, scene_line, write_csv, write_json
+from tui.commands.studies.reports.orders import claimed, order_remarks
 from tui.commands.studies.reports.references import print_references, rows_of
 from tui.drawing.palette import PALETTES
 from tui.views.accuracy.chart import ERROR_LABELS, MARKS, accuracy_chart, accuracy_series
-from tui.words.accuracy import WORTH_SAYING, claimed, factor_words, front_words, growth_words, length, order_remarks
+from tui.words.accuracy import WORTH_SAYING, factor_words, front_words, growth_words, length
 
 CHART_SIZE = (100, 24)  # columns at most, rows
 
