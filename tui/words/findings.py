@@ -121,7 +121,7 @@ def astray(name: str, judgement: Judgement, error: float) -> str:
         case "wanders":
             return f"{name} wanders: its energy goes up and down, without a trend and in no band."
         case "caught":
-            return f"{name} is caught: its energy error stays in a band, now {error:+.2g}."
+            return f"{name} is caught: its energy error stays in a band, now {error:+.3g}."
     return ""
 
 
