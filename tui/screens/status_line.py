@@ -13,7 +13,7 @@ from tui.drawing.palette import QUIET, TEXT, WARN
 from tui.playback.source import Source
 from tui.views.view import Pane
 from tui.words.findings import limit_warning
-from tui.words.numbers import file_size, percent, seconds, two_digits
+from tui.words.numbers import factor, file_size, percent, seconds, two_digits
 
 SLOW = 1.0  # s of the clock from step to step: without a word, the lab would seem to stand still
 BADGE = -10
@@ -29,11 +29,7 @@ class _Part(NamedTuple):
 def speed_text(speed: float) -> str:
     """As "1×", "1/8×", "1024×", "-2×"."""
     sign, size = "-" if speed < 0 else "", abs(speed)
-    return f"{sign}{_factor(size)}×" if size >= 1 else f"{sign}1/{_factor(1 / size)}×"
-
-
-def _factor(value: float) -> str:
-    return f"{value:.0f}" if 1e3 <= value < 1e9 else f"{value:.4g}"
+    return f"{sign}{factor(size)}×" if size >= 1 else f"{sign}1/{factor(1 / size)}×"
 
 
 def coarse(value: float) -> str:

@@ -88,6 +88,11 @@ def percent(share: float) -> str:
     return f"{100 * share:.0f} %" if math.isfinite(share) else "-"
 
 
+def factor(value: float) -> str:
+    """A factor in full: "4", "262144", "0.125"."""
+    return f"{value:.0f}" if 1e3 <= abs(value) < 1e9 else f"{value:.4g}"
+
+
 def z_name(model: str) -> str:
     """What a scene's z is: of a bob on a spring the step times the spring's frequency."""
     return "h·omega_s" if model == "spring" else "z = h·w0"

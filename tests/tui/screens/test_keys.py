@@ -13,10 +13,12 @@ from tui.playback.live import Live
 from tui.playback.shown import QUANTITIES, WINDOWS
 from tui.screens.dialogs.start_form import StartForm
 from tui.screens.dialogs.text import TextScreen, help_text
+from tui.screens.extras import go_to
 from tui.screens.keys import COMMON, LIVE
 from tui.screens.live import LiveScreen
 from tui.screens.status_line import StatusLine
 from tui.views.lab.error_table import ErrorTable
+from tui.views.lab.event_list import EventList
 from tui.views.lab.time_chart import TimeChart
 from tui.views.lab.view import LabView
 
@@ -172,6 +174,26 @@ async def test_a_click_on_a_row_or_a_pendulum_shows_that_method_alone_and_anothe
             await theatre.pilot.click(ErrorTable, offset=(5, 1))
             await theatre.run(0.1)
             assert theatre.stage.shown.places(USUAL_CAST) == [0, 1, 2, 3]
+
+
+async def test_a_click_on_an_event_goes_there_and_brackets_go_from_one_to_the_next():
+    async with lab() as theatre:
+        await theatre.run(12)
+        first, over, *_ = [milestone.step for milestone in theatre.source.milestones]
+        listed = theatre.stage.query_one(EventList)
+        row = next(at for at, line in enumerate(listed.text.splitlines()) if "over the top" in line)
+        await theatre.pilot.click(listed, offset=(8, row + 1))
+        await theatre.pilot.pause()
+        assert theatre.source.sample.step == first
+        assert theatre.source.playhead.paused
+        await theatre.press("]")
+        assert theatre.source.sample.step == over
+        await theatre.press("[", "[")
+        assert theatre.source.sample.step == 0
+        await theatre.press("r")
+        go_to(theatre.stage, (1, first))
+        await theatre.pilot.pause()
+        assert "run 1" in [each.message for each in theatre.app._notifications][-1]
 
 
 async def test_capital_o_puts_all_pendulums_on_one_pivot():

@@ -1,5 +1,7 @@
 """EventList: what was done and what happened, the newest last."""
 
+from textual import events
+
 from engine.run.lockstep import Sample
 from tui.drawing.palette import QUIET, TEXT, series
 from tui.playback.source import Source
@@ -19,12 +21,19 @@ class EventList(Pane):
     def __init__(self) -> None:
         super().__init__()
         self.border_title = "Events (E)"
+        self._listed: list[EventLine] = []
 
     def paint(self, source: Source, sample: Sample) -> None:
         lines = event_lines(source)
-        texts = numbered(lines)
-        self.show([[(text, owner_of(line))] for line, text in [*zip(lines, texts, strict=True)][-self.room.height :]])
+        last = [*zip(lines, numbered(lines), strict=True)][-self.room.height :]
+        self._listed = [line for line, _ in last]
+        self.show([[(text, owner_of(line))] for line, text in last])
 
-    def on_click(self) -> None:
-        """List them all."""
-        self.post_message(Asked("app.extra('events')"))
+    def on_click(self, event: events.Click) -> None:
+        """Go to an event, or list them all."""
+        offset = event.get_content_offset(self)
+        if offset is not None and offset.y < len(self._listed):
+            line = self._listed[offset.y]
+            self.post_message(Asked(f"app.extra('go_to', {line[:2]})"))
+        else:
+            self.post_message(Asked("app.extra('events')"))
