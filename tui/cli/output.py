@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -52,11 +53,14 @@ def fields_of(value: object, *names: str) -> dict[str, Any]:
     return {name: getattr(value, name) for name in names}
 
 
-def scene_line(scene: Scene, *more: str) -> str:
+def scene_line(scene: Scene, *more: str, degrees: bool = False) -> str:
     """The scene's name and numbers, and `more` of its attributes."""
     numbers = fields_of(scene, *LIMITS, *more)
+    if degrees:
+        numbers |= {name: math.degrees(numbers[name]) for name in ("theta", "omega")}
+    units = "SI units, degrees" if degrees else "SI units"
     model = "" if scene.model == "pendulum" else f" ({scene.equations.equation})"
-    return f"{scene.name}{model}: {', '.join(f'{name} {value:g}' for name, value in numbers.items())} (SI units)"
+    return f"{scene.name}{model}: {', '.join(f'{name} {value:g}' for name, value in numbers.items())} ({units})"
 
 
 def print_table(align: str, headers: Sequence[str], rows: Iterable[Iterable[str]]) -> None:

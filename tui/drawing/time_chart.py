@@ -1,5 +1,6 @@
 """A quantity of all methods over time, as a chart that can be read out at each column."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
@@ -85,6 +86,7 @@ def time_chart(
     seconds: float | None = None,
     shown: Sequence[int] | None = None,
     ghost: tuple[Window, Cast] | None = None,
+    degrees: bool = False,
 ) -> TimePlot:
     """A quantity of a cast over the last `seconds`, or over the whole run; `shown`: only those at these places.
 
@@ -97,11 +99,12 @@ def time_chart(
     if width < SMALLEST[0] or height < SMALLEST[1]:
         return TimePlot(too_small(width, height, *SMALLEST))
     places, rows = list(range(len(cast)) if shown is None else shown), height - 2
-    parts = [_part(window, cast, quantity, places)]
+    scale = 180 / math.pi if degrees else 1.0
+    parts = [_part(window, cast, quantity, places, scale)]
     if ghost is not None:
         keys = {cast[place].key for place in places}
         behind = [place for place, method in enumerate(ghost[1]) if method.key in keys]
-        parts.append(_part(*ghost, quantity, behind, is_ghost=True))
+        parts.append(_part(*ghost, quantity, behind, scale, is_ghost=True))
     note = " run" if window.turned else ""
     late = log and seconds is None and time_span(window.x, seconds, 1)[1] > LONG
     if log:
@@ -138,8 +141,10 @@ def time_chart(
     return TimePlot(picture, places, left, (10.0**middles if late else middles).tolist(), values)
 
 
-def _part(window: Window, cast: Cast, quantity: Quantity, places: Sequence[int], is_ghost: bool = False) -> _Part:
-    low, high = (np.clip(side[quantity][:, places], -TOP, TOP) for side in (window.low, window.high))
+def _part(
+    window: Window, cast: Cast, quantity: Quantity, places: Sequence[int], scale: float, is_ghost: bool = False
+) -> _Part:
+    low, high = (np.clip(scale * side[quantity][:, places], -TOP, TOP) for side in (window.low, window.high))
     owners = [series_of(cast[place]) for place in places]
     if is_ghost:
         return _Part(window, [faint(owner) for owner in owners], [""] * len(owners), low, high)

@@ -87,7 +87,7 @@ class SourceScreen(Guarded, Screen[None]):
         return cast(Host, self.app)
 
     def compose(self) -> ComposeResult:
-        yield StatusLine().data_bind(SourceScreen.source, sample=SourceScreen.sample_10hz)
+        yield StatusLine().data_bind(SourceScreen.source, SourceScreen.shown, sample=SourceScreen.sample_10hz)
         with Box(id="views"):
             yield self._create(self.view)
         yield TooSmall()

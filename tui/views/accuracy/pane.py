@@ -21,7 +21,7 @@ from tui.words.scope import left_out
 
 WORDS = 2  # lines
 MOST_STEPS = 2_000_000  # of a run for the mark at the present h: some seconds
-HERE, CURSOR = "X", "O"
+HERE, CURSOR = "@", "O"
 LEGEND = f"{HERE} current h  x useless  ~ rounding limit  dotted: slopes"
 
 _GROUP = "accuracy"

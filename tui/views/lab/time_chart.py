@@ -16,7 +16,7 @@ from tui.playback.shown import Quantity, Shown
 from tui.playback.source import Source
 from tui.views.messages import Asked
 from tui.views.view import Pane
-from tui.words.numbers import about, relative, seconds
+from tui.words.numbers import about, in_unit, relative, seconds
 
 if TYPE_CHECKING:
     from tui.drawing.time_chart import Reading, TimePlot
@@ -42,6 +42,7 @@ def title(shown: Shown, exact: ExactMotion, conserved: bool = True) -> str:
     """What the chart shows, and for how long back."""
     name, magnitude = NAMES[shown.quantity] if conserved or shown.quantity != "energy_error" else LOGARITHM
     span = "all" if shown.seconds is None else about(shown.seconds)
+    name, magnitude = in_unit(name, shown.degrees), in_unit(magnitude, shown.degrees)
     if not shown.log:
         return f"{name}, {span}"
     each = {"libration": " per half swing", "rotation": " per turn"}.get(exact.regime, "")
@@ -151,7 +152,14 @@ class TimeChart(Pane):
             self._building = True
             shown, (width, height), ghost = self._look, self.room, self.source.ghost
             behind = None if ghost is None else (ghost.window(self.sample.t, shown.seconds), ghost.scene.cast)
-            build = partial(time_chart, log=shown.log, seconds=shown.seconds, shown=self.places, ghost=behind)
+            build = partial(
+                time_chart,
+                log=shown.log,
+                seconds=shown.seconds,
+                shown=self.places,
+                ghost=behind,
+                degrees=shown.degrees and shown.quantity == "theta_error",
+            )
             window = self.source.history.window(shown.seconds)
             try:
                 plot = await asyncio.to_thread(build, window, self.cast, shown.quantity, width, height)

@@ -64,13 +64,13 @@ async def test_the_points_fill_in_and_are_the_engines():
         assert "energy error, the largest of all steps" in pane.text
         assert all(pane.text.count(letter) for letter in "esvr")
         assert pane.border_title == "Accuracy over 5 s: energy error vs. force evaluations"
-        assert pane.border_subtitle == "X current h  x useless  ~ rounding limit  dotted: slopes h, h², h⁴"
-        assert set(MARKS.values()) | {HERE} == {"X", "x", "~"}
+        assert pane.border_subtitle == "@ current h  x useless  ~ rounding limit  dotted: slopes h, h², h⁴"
+        assert set(MARKS.values()) | {HERE} == {"@", "x", "~"}
 
 
 async def test_the_current_h_is_marked_and_described():
     async with accuracy_view() as (pilot, pane, _live):
-        assert pane.text.count("X") == 4
+        assert pane.text.count("@") == 4
         assert said(pane) == "Velocity Verlet at h 0.05 s: energy error 5.7e-03 for 101 force evaluations; current h"
         await pilot.press("tab")
         await complete(pilot, pane)
@@ -157,7 +157,7 @@ async def test_an_h_that_is_too_large_or_too_small_has_no_mark():
     async with accuracy_view() as (pilot, pane, live):
         for h in (20.0, 1e-7):
             live.set_stepping(Stepping(h))
-            await until(pilot, lambda: pane.settled and "X" not in pane.text)
+            await until(pilot, lambda: pane.settled and "@" not in pane.text)
             assert said(pane) == "the current h is not on this chart: it is too large or too small"
 
 
