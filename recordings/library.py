@@ -104,6 +104,11 @@ def leftovers(where: Path | None = None) -> list[Path]:
     return [path for path in _files(where or folder(), SUFFIX + PART) if not in_use(path)]
 
 
+def being_made(where: Path | None = None) -> list[Path]:
+    """Recordings that a lab is writing now."""
+    return [path for path in _files(where or folder(), SUFFIX + PART) if in_use(path)]
+
+
 def to_prune(items: Sequence[Item], keep: int | None = None, size: int | None = None) -> list[Item]:
     """What to delete so that only the `keep` newest are left, with at most `size` bytes in all."""
     newest_first = sorted(items, key=lambda item: item.modified, reverse=True)

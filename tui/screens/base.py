@@ -92,7 +92,7 @@ class SourceScreen(Guarded, Screen[None]):
             yield self._create(self.view)
         yield TooSmall()
         yield from self.more()
-        yield InsightLine().data_bind(SourceScreen.source, sample=SourceScreen.sample_10hz)
+        yield InsightLine().data_bind(SourceScreen.source, SourceScreen.shown, sample=SourceScreen.sample_10hz)
         yield KeyLine(hinted(self.KEYS))
 
     def more(self) -> Iterable[Widget]:
