@@ -77,7 +77,7 @@ def resolve(name: str, where: Path | None = None) -> Path:
     if name == "latest":
         items = listing(where)
         if not items:
-            raise RecordingError(f"No recordings in {printable(str(where))} yet; start pendu-tui to make one.")
+            raise RecordingError(f"no recordings in {printable(str(where))} yet; start pendu-tui to make one.")
         return items[0].path
     golden = golden_names()
     if name in golden:
@@ -91,7 +91,7 @@ def resolve(name: str, where: Path | None = None) -> Path:
     advice = (
         f"did you mean {printable(close[0])}?" if close else f"choose a file, or one of latest, {', '.join(golden)}."
     )
-    raise RecordingError(f"There is no recording {printable(name)!r}: {advice}")
+    raise RecordingError(f"there is no recording {printable(name)!r}: {advice}")
 
 
 def golden_names() -> list[str]:

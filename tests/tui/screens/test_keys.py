@@ -77,6 +77,23 @@ async def test_the_run_r_restarts_plus_and_minus_change_h_b_reverses_p_and_capit
         assert names[-1] in theatre.text(StatusLine)
 
 
+async def test_time_that_runs_backwards_pauses_at_0_and_keeps_what_each_method_misses_its_start_by():
+    async with lab() as theatre:
+        await theatre.run(1)
+        await theatre.press("b")
+        for _ in range(40):
+            theatre.now += 1 / 30
+            theatre.stage.frame()
+        assert theatre.source.sample.t == pytest.approx(0, abs=1e-9)
+        assert theatre.source.playhead.paused
+        (mark,) = [event for event in theatre.source.events if event.kind == "mark"]
+        assert mark.text.startswith("Back at t = 0. Missed the start by e ")
+        await theatre.press("space")
+        theatre.now += 0.5
+        theatre.stage.frame()
+        assert theatre.source.sample.t < -0.3
+
+
 async def test_settings_are_undone_one_after_the_other():
     async with lab() as theatre:
         await theatre.run(1)

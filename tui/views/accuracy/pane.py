@@ -22,7 +22,7 @@ from tui.words.scope import left_out
 WORDS = 2  # lines
 MOST_STEPS = 2_000_000  # of a run for the mark at the present h: some seconds
 HERE, CURSOR = "@", "O"
-LEGEND = f"{HERE} current h  x useless  ~ rounding limit  dotted: slopes"
+LEGEND = f"{HERE} current h  x useless  ~ rounding  dotted:"
 
 _GROUP = "accuracy"
 KEYS = (
@@ -93,7 +93,7 @@ class AccuracyPane(Chooser[int]):
     def paint(self, source: Source, sample: Sample) -> None:
         """Build a chart of what is new in a thread, unless one is being built; the next sample asks again."""
         if why := left_out(source.scene, "The accuracy chart"):
-            self.border_title, self.border_subtitle, self._drawn = "Accuracy", "", None
+            self.border_title, self.border_subtitle, self._drawn = "Accuracy (F4)", "", None
             self.show([[(f" {line}", TEXT)] for line in wrap(why, max(self.room.width - 2, 1))])
             return
         if self._drawn != self._state and not self._building:
@@ -117,8 +117,8 @@ class AccuracyPane(Chooser[int]):
         chart = partial(accuracy_chart, points, kind, "evaluations", width, max(height - WORDS, 1), marks=marks)
         picture = await asyncio.to_thread(chart)
         rows = [picture.row(y) for y in range(len(picture.characters))]
-        state_text = f", computing: {self.missing} points left" if self.missing else ""
-        self.border_title = f"Accuracy over {self.time:g} s: {kind} error vs. force evaluations{state_text}"
+        state_text = f", {self.missing} points left" if self.missing else ""
+        self.border_title = f"Accuracy (F4) over {self.time:g} s: {kind} error{state_text}"
         said = wrap(self._words(), max(width - 2, 1), max_lines=WORDS, placeholder=" …")
         self.show([*rows, *([(f" {line}", TEXT)] for line in said)])
         self._drawn, self._building = state, False

@@ -8,6 +8,7 @@ from tui.playback.source import Source
 from tui.views.messages import Asked
 from tui.views.view import Pane
 from tui.words.events import EventLine, event_lines, numbered
+from tui.words.findings import short_name
 
 
 def owner_of(line: EventLine) -> int:
@@ -27,7 +28,13 @@ class EventList(Pane):
         lines = event_lines(source)
         last = [*zip(lines, numbered(lines), strict=True)][-self.room.height :]
         self._listed = [line for line, _ in last]
-        self.show([[(text, owner_of(line))] for line, text in last])
+        self.show([[(self._fitted(text, line), owner_of(line))] for line, text in last])
+
+    def _fitted(self, text: str, line: EventLine) -> str:
+        """A milestone's text; where it is too long, the method goes by its letter."""
+        if line.method is None or len(text) <= self.room.width:
+            return text
+        return text.replace(short_name(line.method), line.method.letter, 1)
 
     def on_click(self, event: events.Click) -> None:
         """Go to an event, or list them all."""

@@ -63,8 +63,8 @@ async def test_the_points_fill_in_and_are_the_engines():
             assert (found.theta_error, found.energy_error) == (point.theta_error, point.energy_error)
         assert "energy error, the largest of all steps" in pane.text
         assert all(pane.text.count(letter) for letter in "esvr")
-        assert pane.border_title == "Accuracy over 5 s: energy error vs. force evaluations"
-        assert pane.border_subtitle == "@ current h  x useless  ~ rounding limit  dotted: slopes h, h², h⁴"
+        assert pane.border_title == "Accuracy (F4) over 5 s: energy error"
+        assert pane.border_subtitle == "@ current h  x useless  ~ rounding  dotted: h, h², h⁴"
         assert set(MARKS.values()) | {HERE} == {"@", "x", "~"}
 
 
