@@ -8,7 +8,7 @@ from engine.run.observer import Milestone
 from engine.scenes import Scene
 from recordings.events import Event, EventKind
 from tui.playback.source import Source
-from tui.words.findings import ending, endings, leaving, so_far, staying
+from tui.words.findings import ending, endings, leaving, short_name, so_far, staying
 
 WATCH = 8.0  # s of the clock at the beginning of a run, for the scene's own sentence
 FRESH = 6.0  # s of the clock for which a milestone is news
@@ -81,9 +81,10 @@ def lasting(source: Source, hidden: Collection[str] = ()) -> list[str]:
 
 
 def _watch(source: Source, hidden: Collection[str]) -> str:
-    """The scene's own sentence, which holds for its own step size only, and speaks of all its methods."""
-    hides = any(method.key in hidden for method in source.scene.cast)
-    return source.scene.watch if source.stepping.h == source.scene.h and not hides else ""
+    """The scene's own sentence, which holds for its own step size only; "" where it names a hidden method."""
+    scene = source.scene
+    named = any(method.key in hidden and short_name(method) in scene.watch for method in scene.cast)
+    return scene.watch if source.stepping.h == scene.h and not named else ""
 
 
 def return_text(scene: Scene, sample: Sample) -> str:

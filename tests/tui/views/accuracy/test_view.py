@@ -133,7 +133,7 @@ async def test_the_charts_quantity_chooses_the_error_and_hidden_methods_are_not_
         await pilot.press("e", "1")
         await complete(pilot, pane)
         assert "theta error" in pane.text
-        assert "theta error vs." in str(pane.border_title)
+        assert "theta error" in str(pane.border_title)
         chart = pane.text.split("\n", 1)[1].rsplit("force evaluations", 2)[0]
         assert "v" in chart
         assert not {"x", "~"} & set(chart.replace("1e", ""))  # explicit Euler alone is lost
