@@ -9,6 +9,7 @@ from mcap.opcode import Opcode
 from mcap.records import Channel, Metadata
 
 from engine.run.lockstep import Reading, Sample
+from engine.run.observer import Milestone
 from engine.scenes import Scene
 from recordings.errors import RecordingError, printable, printable_items
 from recordings.events import Entry, Seal
@@ -61,6 +62,10 @@ class Layout:
         except KeyError as error:
             raise RecordingError("a run has other methods than the file") from error
 
+    def _has_methods_of(self, milestone: Milestone) -> bool:
+        known = {key for _, key in self.channels}
+        return milestone.method.key in known and (milestone.other is None or milestone.other.key in known)
+
     def entries(
         self, messages: Iterable[Message], start_of: StartOf, only_events: bool = False
     ) -> Iterator[tuple[list[Message], Entry]]:
@@ -77,7 +82,7 @@ class Layout:
                 event = decode_event(message.data)
                 if event.scene is not None:
                     run_before, expected = event.run, self.channels_of(event.scene)
-                elif event.milestone and not any(event.milestone.method.key == key for _, key in self.methods.values()):
+                elif event.milestone and not self._has_methods_of(event.milestone):
                     raise RecordingError("a milestone is of a method that the file does not have")
                 yield [message], Entry(clock_of(message), event)
             elif message.channel in self.methods and not only_events:

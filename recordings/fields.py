@@ -83,9 +83,10 @@ EVENT = (
     Field("methods", type="array", required=False),
     Field("speed", about="times real time", required=False),
     Field("text", type="string", required=False),
-    Field("milestone", about="over the top, failed or verdict", type="string", required=False),
+    Field("milestone", about="over the top, failed, verdict or errors cross", type="string", required=False),
     Field("method", about="of the milestone", type="string", required=False),
     Field("verdict", type="string", required=False),
+    Field("other", about="of errors that cross, the method that was passed", type="string", required=False),
     Field("energy_error", about="(E - E0) / E0", required=False),
 )
 """An event: its kind, and what that kind needs."""

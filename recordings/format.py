@@ -7,13 +7,14 @@ Reading checks every field; anything that is not written here raises RecordingEr
 
 import json
 import math
+from functools import lru_cache
 from typing import Any, NoReturn, get_args
 
 from engine.methods import Cast, Method
+from engine.run.judgement import VERDICTS
 from engine.run.lockstep import Reading, Sample
-from engine.run.observer import Milestone
-from engine.run.verdict import Verdict
-from engine.scenes import PARAMETERS, Scene, SceneError
+from engine.run.observer import Milestone, MilestoneKind
+from engine.scenes import MOST_METHODS, PARAMETERS, Scene, SceneError
 from recordings.errors import RecordingError, printable
 from recordings.events import Event, Seal, method_named, name_of, noticed, scene_named
 from recordings.fields import IN_PLANE, NUMBERS, SCENE_NUMBERS, VALUES, left_out, numbers_in, values_of
@@ -28,11 +29,9 @@ CLOCK_OFFSET = 1_000_000_000  # ns: the clock's zero in log_time; several reader
 CLOCK_LIMIT = 1e9  # s, 30 years
 MESSAGE_LIMIT = 1 << 16  # bytes; ours stay below 1 kB
 STEP_LIMIT = 1 << 53
-CAST_LIMIT = 32  # methods of a run
 KEY_LIMIT = 64  # characters of a method's or a model's key
 MODEL = "pendulum"  # where none is named, as in format 1
-MILESTONES = ("over the top", "failed", "verdict")
-VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
+MILESTONES = get_args(MilestoneKind)
 
 _NUMBERS = ("t", *NUMBERS)
 _ENERGY_ERROR = NUMBERS.index("energy_error")
@@ -98,12 +97,10 @@ def encode_event(event: Event) -> bytes:
     if event.equal_cost:
         fields["equal_cost"] = True
     if (milestone := event.milestone) is not None:
-        fields |= {
-            "milestone": milestone.kind,
-            "method": name_of(milestone.method),
-            "energy_error": milestone.energy_error,
-        }
+        fields |= {"milestone": milestone.kind, "method": name_of(milestone.method)}
+        fields["energy_error"] = milestone.energy_error
         fields |= {"verdict": milestone.verdict} if milestone.kind == "verdict" else {}
+        fields |= {"other": name_of(milestone.other)} if milestone.other else {}
     return _dumps(fields)
 
 
@@ -225,14 +222,15 @@ def _scene(fields: dict[str, Any]) -> Scene:
 
 def _cast(fields: dict[str, Any]) -> Cast:
     keys = fields.get("methods")
-    if type(keys) is not list or not 0 < len(keys) <= CAST_LIMIT:
-        raise RecordingError("a start names no methods, or unexpectedly many")
+    if type(keys) is not list or not 0 < len(keys) <= MOST_METHODS:
+        raise RecordingError(f"a start names no methods, or more than {MOST_METHODS}")
     cast = tuple(_method(key) if type(key) is str else _method(_key(key)) for key in keys)
     if len({method.key for method in cast}) < len(cast):
         raise RecordingError("a start names a method twice")
     return cast
 
 
+@lru_cache(64)
 def _method(name: str) -> Method:
     """The method of a key, or of a key, @ and the hash of a user's text."""
     key, at, sha256 = name.partition("@")
@@ -241,10 +239,11 @@ def _method(name: str) -> Method:
 
 def _milestone(fields: dict[str, Any], step: int, t: float) -> Milestone:
     return Milestone(
-        kind=_one_of(fields, "milestone", MILESTONES),
+        kind=(kind := _one_of(fields, "milestone", MILESTONES)),
         method=_method(_text(fields, "method")),
         step=step,
         t=t,
         energy_error=_number(fields, "energy_error"),
         verdict=_one_of(fields, "verdict", VERDICTS, "too early"),
+        other=_method(_text(fields, "other")) if kind == "errors cross" else None,
     )

@@ -99,9 +99,9 @@ class Events(_Rows[tuple[float, Event]]):
             self._cast_ends.append(len(self._casts))
         elif (milestone := event.milestone) is not None:
             value = milestone.energy_error
-            extra = self._sorts.setdefault(
-                (milestone.kind, name_of(milestone.method), milestone.verdict), len(self._sorts)
-            )
+            other = milestone.other and name_of(milestone.other)
+            sort = milestone.kind, name_of(milestone.method), milestone.verdict, other
+            extra = self._sorts.setdefault(sort, len(self._sorts))
         elif event.text is not None:
             extra = self._number(event.text)
         self.clocks.append(clock)
@@ -181,8 +181,9 @@ class Events(_Rows[tuple[float, Event]]):
         kind, extra = _KINDS[self._kinds[at] & 7], self._extras[at]
         clock, run, step, t = self.head(at)
         if kind == "noticed":
-            what, method, verdict = self._known[2][extra]
-            return clock, noticed(run, Milestone(what, method_named(method), step, t, self._values[at], verdict))
+            what, name, verdict, other = self._known[2][extra]
+            method, passed = method_named(name), other and method_named(other)
+            return clock, noticed(run, Milestone(what, method, step, t, self._values[at], verdict, passed))
         event = Event(
             kind,
             run,

@@ -70,8 +70,8 @@ def verdicts(method: Method, scene: Scene, loops: LoopsOf, steps: int) -> Course
     every = stride(period, scene.h)
     while lockstep.step < steps:
         lockstep.advance(every)
-        for step, _, verdict in judging.follow(lockstep.step, lockstep.sample().readings[0]):
-            given.append((verdict, step, step * scene.h / period))
+        looks = judging.follow(lockstep.step, lockstep.sample().readings[0])
+        given += [(each.verdict, each.step, each.step * scene.h / period) for each in looks if each.news]
     return given
 
 

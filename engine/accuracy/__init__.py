@@ -1,8 +1,10 @@
 """Speed against accuracy.
 
-`study` measures errors and costs over a ladder of step sizes; `rounding` is the floor below which none helps;
-`recommend` searches for the cheapest step size that reaches a target, and for the most accurate within a budget.
-`growth` tells with which power of time the angle's error grows.  Beside the methods, where cost is seconds
-(`timing`), is what has no step size: `front` has a ladder of tolerances for the motion by its `taylor` series,
-`closed_form` the floor.  `ahead` says who is the cheapest at each accuracy, and `advice` what to take for one.
+`study` measures each method's errors and costs over a ladder of step sizes; `rounding` estimates the errors that
+rounding leaves however small the step.  `front` finds the cheapest method at each accuracy.  `recommend` searches for
+the cheapest step size that reaches a target, and for the most accurate one within a budget; `advice` makes one
+recommendation of that.  `growth` fits the power of time with which the error in theta grows.
+
+`references` measures two solutions that have no step size, and can be compared in seconds only (`timing`): the
+`taylor` series of the motion, at a ladder of tolerances, and its `closed_form`.
 """

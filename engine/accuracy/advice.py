@@ -1,9 +1,8 @@
-"""What is recommended for one time: of the methods alone, or of all there is, by force evaluations or by seconds."""
+"""The recommendation for one simulated time, by force evaluations or by seconds."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from engine.accuracy.front import Reached, TaylorPoint, TaylorStudy
 from engine.accuracy.recommend import (
     MOST_EVALUATIONS,
     SECONDS_SLACK,
@@ -13,6 +12,7 @@ from engine.accuracy.recommend import (
     reach,
     spend,
 )
+from engine.accuracy.references import AnyPoint, Reached, TaylorStudy
 from engine.accuracy.study import Clock, ErrorKind, Point, Study, timed
 from engine.methods.runge_kutta import RK4
 from engine.run.loops import LoopsOf, plain
@@ -20,13 +20,13 @@ from engine.run.loops import LoopsOf, plain
 
 @dataclass(frozen=True, slots=True)
 class Advice:
-    """What was recommended for one time."""
+    """The recommendation for one simulated time, and what was tried for it."""
 
     time: float  # s
     attempts: Sequence[Attempt]
-    point: Point | TaylorPoint | None  # None: nothing reaches the target
-    series: Reached | None = None  # how far Taylor's series got; None: it was not asked
-    rk4: Point | None = None  # what RK4 needs for the same; None: it was not asked, or does not get there
+    point: AnyPoint | None  # None: nothing reaches the target
+    series: Reached | None = None  # what Taylor's series reached; None: not tried
+    rk4: Point | None = None  # RK4's cheapest run within the same error; None: not tried, or there is none
 
     @property
     def saves(self) -> float | None:
@@ -37,7 +37,7 @@ class Advice:
 
 
 def least_error(study: Study, kind: ErrorKind, budget: int, show: Callable[[float], None]) -> Advice:
-    """The most accurate within a budget of force evaluations; `show` hears which share of the methods is done."""
+    """The most accurate run within a budget of force evaluations; `show` is given the share of methods tried."""
     attempts: list[Attempt] = []
     for attempt in spend(study, kind, budget):
         attempts.append(attempt)
@@ -66,7 +66,7 @@ def least_seconds(
     loops: LoopsOf = plain,
     series: bool = False,
 ) -> Advice:
-    """What reaches a target in the shortest time by a clock, run by these loops; `series`: also by Taylor's."""
+    """The fastest run that reaches a target, timed by `clock` with these loops; `series`: try Taylor's series, too."""
     attempts: list[Attempt] = []
     for attempt in reach(study, kind, target, budget or MOST_EVALUATIONS, SECONDS_SLACK):
         if attempt.point and attempt.succeeded:
@@ -79,14 +79,14 @@ def least_seconds(
         reached = taylor.reach(kind, target)
         if reached.point:
             reached = replace(reached, point=taylor.timed(reached.point, clock))
-    points: list[Point | TaylorPoint] = [each.point for each in attempts if each.point and each.succeeded]
+    points: list[AnyPoint] = [each.point for each in attempts if each.point and each.succeeded]
     if reached and reached.point:
         points.append(reached.point)
     best = min(points, key=lambda point: point.seconds or 0.0, default=None)
     return Advice(study.time, attempts, best, reached)
 
 
-def beside_rk4(advice: Advice, study: Study, kind: ErrorKind, target: float) -> Advice:
-    """The same with what RK4 needs for the target, be it ever so much more."""
+def with_saving_over_rk4(advice: Advice, study: Study, kind: ErrorKind, target: float) -> Advice:
+    """The advice with RK4's cheapest run for the target, however many force evaluations that takes."""
     alone = Study(study.scene.altered(cast=(RK4,)), study.time, study.loops)
     return replace(advice, rk4=cheapest(list(reach(alone, kind, target))))

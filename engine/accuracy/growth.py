@@ -1,8 +1,11 @@
-"""How fast the angle's error grows with time: the power of t, where it follows one.
+"""How fast the error in theta grows with time, and the power of t that it follows, if it follows one.
 
 A symplectic method's phase error grows as t, that of a method whose energy drifts as t²: Hairer, Lubich & Wanner,
 Geometric Numerical Integration (2006), X.3.
 """
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -17,6 +20,21 @@ STRAIGHT, WHOLE = 0.05, 0.15  # largest departure of ln error from the line, and
 _LOOKS = 30  # in each period
 
 
+@dataclass(frozen=True, slots=True)
+class Growth:
+    """The error in theta of one method along a run."""
+
+    method: Method
+    times: list[float]  # s, the middle of each period
+    errors: list[float]  # rad, the largest |error| in each, as long as it is below LARGEST
+    power: float | None  # slope of ln error over ln t; None: no single power of t
+
+    @property
+    def name(self) -> str:
+        """The method and its power of t, if there is one, for people."""
+        return self.method.label if self.power is None else f"{self.method.label} t^{self.power:.2f}"
+
+
 def duration(scene: Scene) -> float | None:
     """For how long the error is followed [s]; None where the motion is not periodic or takes too many steps."""
     period = scene.exact().period
@@ -25,26 +43,36 @@ def duration(scene: Scene) -> float | None:
     return PERIODS * period
 
 
-def growth(scene: Scene, method: Method) -> float | None:
-    """The slope of ln |theta error| over ln t, of the largest error in each period; None: no one power."""
+def growth(scene: Scene, method: Method) -> Growth:
+    """The largest error in theta of each period, of PERIODS at most, and the power of t that fits them."""
     exact, time = scene.exact(), duration(scene)
     if time is None or exact.period is None:
-        return None
+        return Growth(method, [], [], None)
     steps, width = round(time / scene.h), exact.period / scene.h
     theta, _ = orbit(method, scene.equations, scene.h, (scene.theta, scene.omega), steps)
-    if len(theta) <= steps:
-        return None
-    errors = []
+    errors: list[float] = []
     for number in range(1, PERIODS + 1):
         looks = np.linspace((number - 1) * width, min(number * width, steps), _LOOKS).astype(int).tolist()
+        if looks[-1] >= len(theta):  # the numbers have overflowed
+            break
         errors.append(max(abs(float(theta[k]) - exact.at(k * scene.h).theta) for k in looks))
         if errors[-1] >= LARGEST:
             errors.pop()
             break
+    times = [(number + 0.5) * exact.period for number in range(len(errors))]
+    return Growth(method, times, errors, _power(times, errors))
+
+
+def growths(scene: Scene, own: Sequence[float]) -> Iterator[Growth]:
+    """The growth of each method of the cast at its own h [s]; for another process, which has only the arguments."""
+    return (growth(scene.altered(h=abs(h)), method) for method, h in zip(scene.cast, own, strict=True))
+
+
+def _power(times: Sequence[float], errors: Sequence[float]) -> float | None:
     first = len(errors) * 3 // 10
     if len(errors) < FEWEST or min(errors) <= 0:
         return None
-    x, y = np.log(np.arange(first, len(errors)) + 0.5), np.log(errors[first:])
+    x, y = np.log(times[first:]), np.log(errors[first:])
     slope, start = np.polyfit(x, y, 1)
     is_power = np.abs(y - slope * x - start).max() < STRAIGHT and abs(slope - round(slope)) < WHOLE
     return float(slope) if is_power else None

@@ -14,8 +14,9 @@ from typing import Literal, NamedTuple
 from engine.accuracy.rounding import rounding_floor
 from engine.accuracy.timing import Clock as Clock
 from engine.accuracy.timing import shortest
-from engine.methods import Method
-from engine.run.compiled import tiered
+from engine.methods import Cast, Method
+from engine.methods.own import OwnMethod
+from engine.run.compiled import available, compiled, tiered
 from engine.run.lockstep import Lockstep
 from engine.run.loops import LoopsOf, plain
 from engine.scenes import Z_LIMITS, Scene
@@ -25,6 +26,7 @@ COMPARISONS = 400  # with the exact swing in a run: at least so many, or at ever
 TIMED_STEPS = 20_000  # at least, in each of them
 SWINGS = 10
 Z_LADDER = (0.6, 0.0015, 12)  # from about ten steps a small swing to four thousand
+ALL_LADDER = (2.4, 0.0015, 14)  # for BM4 and BM6, too, which are stable up to 3
 ORDER_STEPS = tuple(2**power for power in range(4, 15))
 ORDER_COMPARISONS = ORDER_STEPS[0]
 FITTED_BELOW = 0.1  # rad; larger errors are not yet proportional to a power of h
@@ -159,16 +161,26 @@ def ladder(time: float, h_max: float, h_min: float, count: int) -> list[int]:
     return sorted({max(1, round(time / (h_max * ratio**rung))) for rung in range(count)})
 
 
-def usual(scene: Scene) -> tuple[float, list[int]]:
-    """A time [s] and a ladder for a scene of which nothing else is asked: ten small swings, 20 s for 1 m."""
+def usual(scene: Scene, all: bool = False) -> tuple[float, list[int]]:
+    """A time [s], ten small swings (20 s for 1 m), and a ladder for the usual cast, or for `all` methods."""
     time = float(f"{SWINGS * math.tau / scene.w0:.2g}")
-    largest, smallest, rungs = Z_LADDER
+    largest, smallest, rungs = ALL_LADDER if all else Z_LADDER
     return time, ladder(time, largest / scene.w0, smallest / scene.w0, rungs)
 
 
-def measured(scene: Scene, time: float, rungs: Sequence[int]) -> Iterator[Point]:
-    """A point for every number of steps and every method; for another process, which has only the arguments."""
-    return Study(scene, time, tiered).points(rungs)
+def compilable(cast: Cast) -> bool:
+    """Whether all these methods can be timed compiled by Numba: a user's own cannot, and then none is, to be fair."""
+    return available() and not any(isinstance(method, OwnMethod) for method in cast)
+
+
+def measured(scene: Scene, time: float, rungs: Sequence[int], clock: Clock | None = None) -> Iterator[Point]:
+    """A point for every number of steps and every method, with its seconds where there is a clock.
+
+    For another process, which has only the arguments.
+    """
+    points = Study(scene, time, tiered).points(rungs)
+    loops = compiled if compilable(scene.cast) else plain
+    return points if clock is None else (timed(point, scene, clock, loops) for point in points)
 
 
 def orders(scene: Scene, time: float, loops: LoopsOf = plain) -> list[Order]:

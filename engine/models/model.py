@@ -103,6 +103,10 @@ class Model(ABC):
         theta, omega = phase
         return State(float(theta), float(omega))  # a method may carry other numbers
 
+    def theta_error(self, theta: float, exact: float) -> float:
+        """theta - exact theta [rad]; where theta is known within ±pi only, the shorter way round."""
+        return math.remainder(theta - exact, math.tau) if self.in_plane else theta - exact
+
     def spring_energy(self, phase: Phase) -> float | None:
         """The energy in the spring [s⁻²]; None: it has none."""
         return None

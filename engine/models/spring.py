@@ -16,6 +16,7 @@ from engine.models.reference import Reference
 STRETCH = 0.04  # of its length, beyond equilibrium: how far the spring is stretched at a start
 STEP = 0.1  # of the reference, times the spring's frequency
 ACCURACY = 1e-10  # rad
+STIFFEST = 320  # times the swing's frequency; a faster spring would take the reference more time than it saves
 
 
 @dataclass(frozen=True)
@@ -105,7 +106,7 @@ class Spring(Model):
         return radial * radial / 2 + self.stiffness / 2 * (length - held) * (length - held)  # type: ignore[no-any-return]
 
     def exact(self, theta: float, omega: float) -> ExactMotion:
-        """By the reference, as the swing's angle and angular velocity."""
+        """By the reference, as the swing's angle and angular velocity; nan where the spring is too fast for it."""
 
         def at(t: float) -> State:
             return self.seen(self.place(theta, omega, t))
@@ -113,7 +114,9 @@ class Spring(Model):
         return ExactMotion(at, "libration", accuracy=ACCURACY)
 
     def place(self, theta: float, omega: float, t: float) -> Phase:
-        """Position and velocity in the plane at a time [s], by the reference."""
+        """Position and velocity in the plane at a time [s], by the reference; nan where the spring is too fast."""
+        if self.fastest > STIFFEST * self.w0:
+            return complex(math.nan, math.nan), complex(math.nan, math.nan)
         return _reference(self, theta, omega).at(t)
 
 

@@ -1,9 +1,10 @@
 """What a Judge is shown of a method, and what it says."""
 
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, get_args
 
 Verdict = Literal["too early", "bounded", "loses", "grows", "chaotic", "caught", "wanders"]
+VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from typing import NamedTuple
 
 from engine.methods import Method
 from engine.models.model import EnergyReference, Model, Phase
@@ -11,6 +12,16 @@ from engine.run.verdict import Judge, Judgement, Look, Verdict, stride
 
 MOST_STEPS = 20_000
 """Steps between two samples that are taken again, 20 ms at worst; after more, the sample itself is looked at."""
+
+
+class Seen(NamedTuple):
+    """What a look at a method found."""
+
+    step: int  # of the lockstep, since the first sample
+    error: float  # relative, of the energy
+    peak: float  # largest size of the error at any step since the first sample
+    verdict: Verdict
+    news: bool  # the verdict is given with this look
 
 
 class Judging:
@@ -41,30 +52,30 @@ class Judging:
         self._stride = stride(period, h)
         self._step = -1  # of the lockstep, since the first sample; -1: there was none
         self._phase: Phase = (0.0, 0.0)
-        self._low = self._high = 0.0  # relative energy errors since the last look
+        self._low = self._high = self._peak = 0.0  # relative energy errors since the last look; largest of all
 
     @property
     def judgement(self) -> Judgement:
         """What is known by now."""
         return self._judge.judgement
 
-    def follow(self, step: int, reading: Reading) -> list[tuple[int, float, Verdict]]:
-        """Take in the reading so many steps after the first; the verdicts on the way: step, energy error, verdict."""
+    def follow(self, step: int, reading: Reading) -> list[Seen]:
+        """Take in the reading so many steps after the first; what the looks on the way found."""
         error, phase = reading.energy_error, reading.phase
-        changes: list[tuple[int, float, Verdict]] = []
+        seen: list[Seen] = []
         if reading.diverged_at is not None:
             self._judge.fail(step * self._parts)
         elif self._step < 0:
             self._judge.look(0, Look(*self._model.seen(phase), error, error, error))
             self._low = self._high = error
-        elif not self._is_taken_again(step, changes):
+        elif not self._is_taken_again(step, seen):
             self._low, self._high = min(self._low, reading.energy_error_low), max(self._high, reading.energy_error_high)
             if step // self._stride > self._step // self._stride:
-                self._look(step, phase, error, changes)
+                self._look(step, phase, error, seen)
         self._step, self._phase = step, phase
-        return changes
+        return seen
 
-    def _is_taken_again(self, step: int, changes: list[tuple[int, float, Verdict]]) -> bool:
+    def _is_taken_again(self, step: int, seen: list[Seen]) -> bool:
         """Whether there were looks before this step, and the steps to them, and on, could be taken again."""
         first = (self._step // self._stride + 1) * self._stride
         if first >= step or step - self._step > MOST_STEPS:
@@ -79,13 +90,14 @@ class Judging:
             phase = went.phase
             self._low, self._high = min(self._low, went.low), max(self._high, went.high)
             if stop % self._stride == 0:
-                self._look(stop, phase, went.error, changes)
+                self._look(stop, phase, went.error, seen)
             at = stop
         return True
 
-    def _look(self, step: int, phase: Phase, error: float, changes: list[tuple[int, float, Verdict]]) -> None:
+    def _look(self, step: int, phase: Phase, error: float, seen: list[Seen]) -> None:
         known = self.judgement.verdict
         self._judge.look(step * self._parts, Look(*self._model.seen(phase), error, self._low, self._high))
+        self._peak = max(self._peak, -self._low, self._high)
         self._low = self._high = error
-        if (verdict := self.judgement.verdict) != known:
-            changes.append((step, error, verdict))
+        verdict = self.judgement.verdict
+        seen.append(Seen(step, error, self._peak, verdict, verdict != known))

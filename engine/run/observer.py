@@ -5,31 +5,36 @@ It follows from the samples.  A recording holds what the lab noticed, because a 
 
 import math
 from bisect import bisect_right, insort
+from collections import defaultdict
 from dataclasses import dataclass
 from itertools import islice
 from operator import attrgetter
-from typing import Literal
+from typing import Any, Literal
 
 from engine.methods import Method
 from engine.models.model import Phase
-from engine.run.judging import MOST_STEPS, Judging
+from engine.run.crossing import Crossings
+from engine.run.judging import MOST_STEPS, Judging, Seen
 from engine.run.lockstep import Reading, Sample
 from engine.run.loops import OVERFLOW, LoopsOf, plain
 from engine.run.stepping import Stepping, SteppingChange
 from engine.run.verdict import Judgement, Verdict
 from engine.scenes import Scene
 
+MilestoneKind = Literal["over the top", "failed", "verdict", "errors cross"]
+
 
 @dataclass(frozen=True, slots=True)
 class Milestone:
-    """Something that a method did: it went over the top, its numbers ended, or it earned a verdict."""
+    """What a method did: it went over the top, its numbers ended, it earned a verdict, its error passed another's."""
 
-    kind: Literal["over the top", "failed", "verdict"]
+    kind: MilestoneKind
     method: Method
     step: int
     t: float  # s, simulated
     energy_error: float  # relative, at this step
     verdict: Verdict = "too early"
+    other: Method | None = None  # whose error this one's has passed for good
 
 
 _step = attrgetter("step")
@@ -70,6 +75,7 @@ class RunObserver:
         self._known = {(each.kind, each.method) for each in self._milestones}
         self._modified_starts = {at: starts for at, starts in self._modified_starts.items() if at < step}
         self._judgings: list[Judging] = []
+        self._crossings = Crossings()
         if self._before is not None and self._before.step == step:
             self._begin = self._before
         else:
@@ -90,14 +96,15 @@ class RunObserver:
         if before is None:
             self._begin = sample
         if not self._judgings:
-            self._judgings = self._begun(change.stepping)
+            self._judgings, self._h = self._begun(change.stepping), change.stepping.h
+        looks: defaultdict[int, dict[int, Seen]] = defaultdict(dict)  # by step, at what is seen of each method
         for index, (method, judging, reading) in enumerate(
             zip(self.scene.cast, self._judgings, sample.readings, strict=True)
         ):
-            for since, error, verdict in judging.follow(sample.step - self._begin.step, reading):
-                if reading.diverged_at is None:
-                    t = self._begin.t + since * change.stepping.h
-                    news.append(Milestone("verdict", method, self._begin.step + since, t, error, verdict))
+            for seen in judging.follow(sample.step - self._begin.step, reading):
+                looks[seen.step][index] = seen
+                if seen.news and reading.diverged_at is None:
+                    news.append(self._seen("verdict", method, seen, verdict=seen.verdict))
             if reading.diverged_at is not None and self._is_new("failed", method):
                 error = reading.energy_error
                 news.append(Milestone("failed", method, sample.step, reading.diverged_at, error))
@@ -108,10 +115,19 @@ class RunObserver:
                 and not self._is_over(before.readings[index].theta)
             ):
                 news.append(self._crossing(index, before, sample, change.stepping))
+        for step in sorted(looks):
+            for index, other in self._crossings.add(looks[step]):
+                method, passed = self.scene.cast[index], self.scene.cast[other]
+                news.append(self._seen("errors cross", method, looks[step][index], other=passed))
         for milestone in news:
             self._known.add((milestone.kind, milestone.method))
             insort(self._milestones, milestone, key=_step)
         return news
+
+    def _seen(self, kind: MilestoneKind, method: Method, seen: Seen, **what: Any) -> Milestone:
+        """The milestone of a look."""
+        t = self._begin.t + seen.step * self._h
+        return Milestone(kind, method, self._begin.step + seen.step, t, seen.error, **what)
 
     def _begun(self, stepping: Stepping) -> list[Judging]:
         """A judging of each method from the sample on at which this stepping begins."""

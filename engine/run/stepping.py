@@ -40,8 +40,9 @@ class Stepping:
         return min(map(abs, self.own))
 
     def with_own(self, method: Method, h: float) -> Self:
-        """With |h| [s] as this method's own step size, in the same direction."""
-        return replace(self, h=math.copysign(h * self.parts[self.cast.index(method)], self.h))
+        """With |h| [s] as this method's own step size, in the same direction; or as h, if it is not in the cast."""
+        parts = self.parts[self.cast.index(method)] if method in self.cast else 1
+        return replace(self, h=math.copysign(h * parts, self.h))
 
     def next(self, up: bool) -> Self:
         """With the smallest own step size at the next rung of 1, 2, 5, 10, …, or at the one before."""

@@ -56,6 +56,12 @@ _FIRST_LOOK = (
 
 _STABILITY = (
     Scene(
+        "euler-caught",
+        length=0.1,
+        h=0.06,
+        watch="Explicit Euler does not gain for ever: half a turn a step holds it near 32 E0.",
+    ),
+    Scene(
         "verlet-limit",
         theta=0.1,
         length=_UNIT_W0,

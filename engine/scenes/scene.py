@@ -19,6 +19,7 @@ PARAMETERS = {  # of models that have them, likewise; of others they are 0
     "friction": (0.0, 100.0),
     "stiffness": (1.0, 1e18),
 }
+MOST_DAMPED = 100  # friction over w0: what is more than that creeps, and its reference takes too many steps
 UNITS = {
     "theta": "rad",
     "omega": "rad/s",
@@ -68,6 +69,8 @@ class Scene:
                 raise SceneError(f"the model {self.model} has no {field}; leave it out, or use a model that has.")
         for field, (low, high) in (LIMITS | {name: PARAMETERS[name] for name in parameters}).items():
             value = getattr(self, field)
+            if field == "friction":
+                high = min(high, MOST_DAMPED * self.w0)
             if not low <= value <= high:  # also refuses nan
                 raise SceneError(
                     f"{field} = {value:g} {UNITS[field]} is out of range; use {low:g} to {high:g} {UNITS[field]}."

@@ -101,12 +101,13 @@ class Failure:
 def first_failure(z: Floats, cells: Cells, within: int | None = None) -> Failure | None:
     """The first failure of a swing on an ascending ladder of z; None if it is held on all of it.
 
-    `cells` are the outcomes on the ladder.  `within`: in so many steps, which shows how the limit moves with them.
+    `cells` are the outcomes on the ladder.  `within`: in so many steps, which shows how the limit moves
+    with them; an orbit is chaotic however many steps of it are taken.
     There is no bisection: above the first failure there are windows of z where the swing is held again.
     """
     lost = is_lost(cells)
     if within is not None:
-        lost &= cells["steps"] < within
+        lost &= (cells["steps"] < within) | (cells["fate"] == CHAOTIC)
     if not lost.any():
         return None
     first = int(np.argmax(lost))

@@ -24,6 +24,10 @@ LADDER = np.geomspace(1e-3, 3.2, 812)
 """The z that a failure is looked for at: a rung every 1 %, to beyond every method's linear limit."""
 
 
+EARLY = 0.1
+"""Of the steps: the limit within these shows whether it still moves with the steps."""
+
+
 @dataclass(frozen=True, slots=True)
 class Row:
     """One method and one amplitude."""
@@ -31,6 +35,7 @@ class Row:
     method: Method
     theta: float  # rad
     failure: Failure | None  # None: holds on the whole ladder
+    early: Failure | None  # the same within an EARLY share of the steps
     here: Any  # the CELL at the scene's z; its fate is UNKNOWN if Ctrl+C came before
 
 
@@ -54,6 +59,11 @@ class StabilityStudy:
     executor: Executor | None = None
     progress: Callable[[], AbstractContextManager[Show]] = lambda: nullcontext(lambda done, total: None)
 
+    @property
+    def early(self) -> int:
+        """How many steps the EARLY limit rests on."""
+        return max(1, round(EARLY * self.steps))
+
     def table(self) -> tuple[list[Row], bool]:
         """First failures on the ladder, to which the scene's own z is added as a rung; and whether that is all.
 
@@ -66,12 +76,14 @@ class StabilityStudy:
         )
         at, here = int(np.searchsorted(grid.z, z)), replace(grid, z=grid.z[:1]).unknown()[0]
         failures: dict[tuple[int, int], Failure | None] = {}
+        early: dict[tuple[int, int], Failure | None] = {}
         done = 0
         try:
             for strip in self.computed(grid):
                 for m, t in np.argwhere(is_lost(strip).any(axis=0)).tolist():
                     if (m, t) not in failures:
                         failures[m, t] = first_failure(grid.z[done:], strip[:, m, t])
+                    early[m, t] = early.get((m, t)) or first_failure(grid.z[done:], strip[:, m, t], self.early)
                 if done <= at < done + len(strip):
                     here = strip[at - done]
                 done += len(strip)
@@ -79,7 +91,7 @@ class StabilityStudy:
             pass
         whole = done == len(grid.z)
         rows = [
-            Row(method, theta, failures.get((m, t)), here[m, t])
+            Row(method, theta, failures.get((m, t)), early.get((m, t)), here[m, t])
             for m, method in enumerate(grid.methods)
             for t, theta in enumerate(thetas)
             if whole or (m, t) in failures

@@ -67,8 +67,9 @@ def ended(task: tuple[str, int]) -> dict[str, int]:
         return {
             f"{way}_{'in_time' if lab.now - began < PATIENCE / 2 else 'late'}": 1,
             f"{way}_exit_{code}": 1,
-            "recordings": len(left),
+            "recordings": sum(path.suffix == ".mcap" for path in left),
             "recordings_that_verify": sum(path.suffix == ".mcap" and verify(path).identical for path in left),
+            **Counter(f"left_{path.name}" for path in left if path.suffix != ".mcap"),
         }
 
 

@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from itertools import pairwise
+from statistics import fmean
 
 import pytest
 from hypothesis import given
@@ -10,6 +11,7 @@ from hypothesis import strategies as st
 
 from engine.methods import method_of
 from engine.run.lockstep import Lockstep, Sample
+from engine.run.observer import RunObserver
 from engine.scenes import DEFAULT_SCENE, GROUPS, LIMITS, SCENES, Z_LIMITS, Scene, SceneError, check_h
 
 EXPLICIT, SYMPLECTIC, VERLET, RK4 = range(4)
@@ -164,6 +166,27 @@ def test_spin_symplectic_euler_and_verlet_show_the_same_angle_a_turn_a_second() 
     assert abs(last[SYMPLECTIC].omega - last[VERLET].omega) > 1e-3
     assert SCENES["spin"].exact().period == pytest.approx(1, abs=0.02)
     assert [round(reading.theta / math.tau) for reading in last] == [94, 61, 61, 61]
+
+
+def test_euler_caught_half_a_turn_a_step_holds_explicit_euler_near_32_times_its_energy() -> None:
+    scene, lockstep = SCENES["euler-caught"], Lockstep(SCENES["euler-caught"])
+    observer, steps, energies = RunObserver(scene), [], []
+    while lockstep.t < 250:
+        observer.add(lockstep.sample())
+        lockstep.advance(1)
+        euler = lockstep.sample().readings[EXPLICIT]
+        steps.append(euler.omega * scene.h / math.pi)
+        energies.append(1 + euler.energy_error)
+    begin, late = round(15 / scene.h), round(60 / scene.h)  # it is seen within half a minute
+    assert max(steps[: round(2 / scene.h)]) < 0.7
+    assert min(steps[begin:]) > 0.85
+    assert min(energies[begin:]) > 25  # it wobbles
+    assert max(energies[begin:]) < 41
+    assert fmean(energies[begin : 2 * begin]) == pytest.approx(32, abs=1)
+    assert fmean(steps[late:]) == pytest.approx(1, abs=0.01)
+    turning = (math.pi / scene.h) ** 2 / 2 + scene.w0_squared  # as much above the pivot as below
+    assert fmean(energies[late:]) == pytest.approx(turning / scene.equations.energy()((1.0, 0.0)), rel=0.01)
+    assert observer.judgements[EXPLICIT].verdict == "caught"
 
 
 def test_verlet_limit_verlet_loses_98_percent_and_has_it_back_every_11_steps() -> None:

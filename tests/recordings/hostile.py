@@ -21,8 +21,9 @@ from mcap.records import Channel, ChunkIndex, DataEnd, Header, Schema, Statistic
 
 from engine.run.lockstep import Lockstep, Sample
 from engine.run.observer import Milestone
+from engine.scenes import MOST_METHODS
 from recordings.events import Event, Seal, method_named, noticed
-from recordings.format import CAST_LIMIT, CLOCK_OFFSET, EVENTS, SEALS, encode_event, encode_readings, encode_seal, topic
+from recordings.format import CLOCK_OFFSET, EVENTS, SEALS, encode_event, encode_readings, encode_seal, topic
 from recordings.framing import CHANNEL_LIMIT, MAGIC, MESSAGE, RECORD, RECORD_LIMIT, ZSTD
 from recordings.summary import Digest, fingerprints
 from tests.recordings.examples import METHOD_KEYS, SCENE, start
@@ -215,7 +216,7 @@ def casts(count: int) -> Iterator[list[Message]]:
     """Runs of many methods that this version does not know, no two in the same order."""
     cast, chance = [method_named(key) for key in MANY], random.Random(1)
     for run in range(1, count + 1):
-        yield event(start(run, replace(SCENE, cast=tuple(chance.sample(cast, CAST_LIMIT)))))
+        yield event(start(run, replace(SCENE, cast=tuple(chance.sample(cast, MOST_METHODS)))))
 
 
 def milestones(count: int) -> Iterator[list[Message]]:

@@ -97,6 +97,7 @@ scenes = (st.sampled_from([*MODELS]) | keys).flatmap(scenes_of)
 milestones = st.builds(
     Milestone, st.sampled_from(["over the top", "failed"]), methods, counts, finite, finite
 ) | st.builds(Milestone, st.just("verdict"), methods, counts, finite, finite, st.sampled_from(get_args(Verdict)))
+milestones |= st.builds(Milestone, st.just("errors cross"), methods, counts, finite, finite, other=methods)
 events = st.one_of(
     st.builds(Event, st.just("start"), counts, counts, finite, scene=scenes),
     st.builds(Event, st.just("set_h"), counts, counts, finite, h=finite, equal_cost=st.booleans()),

@@ -1,7 +1,8 @@
+import asyncio
 import difflib
 import html
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import AsyncIterator, Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -23,6 +24,20 @@ def faults(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[BaseException]]:
     yield found
     if found:
         raise found[0]
+
+
+async def computed_here(function: Callable[..., Iterator[object]], *arguments: object) -> AsyncIterator[object]:
+    """As tui.views.background.computed, in a thread: another process takes seconds to import everything again."""
+    items = function(*arguments)
+    while (found := await asyncio.to_thread(next, items, None)) is not None:
+        yield found
+
+
+@pytest.fixture(autouse=True)
+def _views_compute_here(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    if request.node.get_closest_marker("other_process") is None:
+        for view in ("accuracy", "phase", "stability"):
+            monkeypatch.setattr(f"tui.views.{view}.view.computed", computed_here)
 
 
 @pytest.fixture

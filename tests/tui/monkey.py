@@ -195,7 +195,7 @@ def small_studies(library: Path) -> Iterator[None]:
         for name, value in (
             ("accuracy.view.computed", computed_here),
             ("stability.view.computed", computed_here),
-            ("accuracy.view.usual", lambda scene: (5.0, few)),
+            ("accuracy.view.usual", lambda scene, all: (5.0, few)),
             ("stability.view.PASSES", (2, 6)),
         ):
             stack.enter_context(patch(f"tui.views.{name}", value))

@@ -9,6 +9,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 from tui.cli.errors import Exit, UserError, explained
+from tui.cli.files import repeat_swallowed_interrupts
 
 if TYPE_CHECKING:
     from tui.cli.options import Parser
@@ -74,6 +75,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without θ shows a ?, not a traceback
+    if arguments is None:
+        repeat_swallowed_interrupts()
     try:
         code = _dispatch(list(sys.argv[1:] if arguments is None else arguments))
         sys.stdout.flush()

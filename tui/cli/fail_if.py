@@ -15,10 +15,10 @@ import re
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from typing import Any, get_args
+from typing import Any
 
 from engine.methods import USUAL_CAST, Cast
-from engine.run.verdict import Verdict
+from engine.run.judgement import VERDICTS
 from recordings.fields import NUMBERS
 from tui.cli.errors import UserError
 from tui.cli.options import did_you_mean
@@ -55,7 +55,7 @@ def parse(text: str, fields: Sequence[str] = (), cast: Cast = USUAL_CAST) -> Gat
     With `fields`, comparisons name one of these, or `verdict`, and no method; their values stand under the key "".
     """
     source = " ".join(text.split())
-    for verdict in get_args(Verdict):
+    for verdict in VERDICTS:
         source = source.replace(verdict, verdict.replace(" ", "_"))
     try:
         with warnings.catch_warnings(action="ignore"):  # of what is odd but legal, such as `1or`
@@ -107,7 +107,7 @@ def _value(field: str, sign: ast.cmpop, node: ast.expr, source: str) -> float | 
             raise _refusal("Verdicts have no order: compare them with == or !=.")
         if text == "drifts":
             raise _refusal("The verdict 'drifts' is now called loses.")
-        return _known("verdict", text.replace("_", " "), get_args(Verdict))
+        return _known("verdict", text.replace("_", " "), VERDICTS)
     if quoted or not _NUMBER.fullmatch(text) or not math.isfinite(number := float(text)):
         raise _refusal(f"{_quoted(text)} is not a finite number; use for example 0.05 or 1e-2.")
     return number

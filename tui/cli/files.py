@@ -5,6 +5,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
+from threading import Timer
 from types import FrameType
 from typing import TextIO
 
@@ -57,6 +58,19 @@ def check_free(path: Path, force: bool) -> None:
 def interruptible() -> AbstractContextManager[None]:
     """Let SIGTERM and SIGHUP interrupt the block as Ctrl+C does, so that it cleans up."""
     return _signals_to(signal.default_int_handler)
+
+
+def repeat_swallowed_interrupts() -> None:
+    """Send Ctrl+C again where a destructor or a callback of Numba's compiler swallowed it, as Python lets them."""
+    report = sys.unraisablehook
+
+    def hook(swallowed: "sys.UnraisableHookArgs") -> None:
+        if issubclass(swallowed.exc_type, KeyboardInterrupt):
+            Timer(0.05, signal.raise_signal, [signal.SIGINT]).start()  # s; by then the callback has returned
+        else:
+            report(swallowed)
+
+    sys.unraisablehook = hook
 
 
 @contextmanager

@@ -7,31 +7,20 @@ numbers inside them.  It has one figure per process, hence the lock.
 import re
 import threading
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from tui.drawing.axes import Axis, Floats, log_axis, log_x_axis
+from tui.drawing.axes import Axis
 from tui.drawing.canvas import Canvas, Picture
+from tui.drawing.loglog import ROOM, LogLog, Series, logs, row_at
 from tui.drawing.palette import FRAME, NOBODY, TEXT
 
 SMALLEST = (20, 5)  # columns, rows
-ROOM = 4  # columns for the letters at the right end
 _BLANKS = (ord(" "), 0x2800)
 _FIRST_COLOUR = 32  # owners are passed through plotext as colours of the 256-colour palette, from this one
 
 _lock = threading.Lock()
-
-
-@dataclass(frozen=True, slots=True)
-class Series:
-    """Points with marks, joined by lines; or a dotted reference line with its mark at the end."""
-
-    owner: int
-    mark: str  # a letter; a few for a reference
-    x: Floats | Sequence[float]  # (n,)
-    y: Floats | Sequence[float]  # (n,); in what is plotted, x and y are in characters from the lower left corner
-    dotted: bool = False
 
 
 def loglog_chart(series: Sequence[Series], width: int, height: int, *, x_label: str, y_label: str) -> Picture:
@@ -41,14 +30,9 @@ def loglog_chart(series: Sequence[Series], width: int, height: int, *, x_label: 
     """
     if width < SMALLEST[0] or height < SMALLEST[1] + 2:
         return too_small(width, height, SMALLEST[0], SMALLEST[1] + 2)
-    rows = height - 4
-    points = [_logs(one) for one in series]
-    marked = [some for one, some in zip(series, points, strict=True) if not one.dotted and len(some)]
-    corners = np.concatenate(marked or [np.array([(0.0, -4.0), (1.0, 0.0)])])
-    (left, bottom), (right, top) = corners.min(axis=0), corners.max(axis=0)
-    y_axis = log_axis(bottom, top, rows)
-    columns = width - 1 - ROOM - y_axis.label_width
-    x_axis = log_x_axis(left, right, columns)
+    axes = LogLog.fitting(series, width, height)
+    x_axis, y_axis, columns, rows = axes.x_axis, axes.y_axis, axes.columns, axes.rows
+    points = [logs(one) for one in series]
     curves = []
     for one, (x, y) in zip(series, (some.T for some in points), strict=True):
         if one.dotted and len(x):
@@ -63,18 +47,11 @@ def loglog_chart(series: Sequence[Series], width: int, height: int, *, x_label: 
     picture.write(height - 1, 0, x_label.rjust(width), TEXT)
     for curve in sorted(curves, key=lambda curve: curve.dotted):  # the references' marks where there is room
         for column, height in list(zip(curve.x, curve.y, strict=True))[-1 if curve.dotted else 0 :]:
-            at, row = min(width - columns - ROOM + int(column), width - len(curve.mark)), 1 + row_at(height, rows)
+            at, row = min(axes.left + int(column), width - len(curve.mark)), 1 + row_at(height, rows)
             around = [(row + down, at + right) for down in (0, -1, 1) for right in range(1, -8, -1)]
             near = around if curve.dotted else []
             picture.write(*first_free(picture, near, len(curve.mark), 1, rows + 1, (row, at)), curve.mark, curve.owner)
     return picture
-
-
-def _logs(series: Series) -> Floats:
-    """log10 of the finite positive points, (n, 2), sorted by x."""
-    points = np.stack([np.asarray(series.x, np.float64), np.asarray(series.y, np.float64)], axis=1)
-    points = points[(np.isfinite(points) & (points > 0)).all(axis=1)]
-    return np.log10(points[np.argsort(points[:, 0], kind="stable")])
 
 
 def plot(curves: Sequence[Series], x_axis: Axis, y_axis: Axis, width: int, height: int) -> Picture:
@@ -142,11 +119,6 @@ def first_free(
         if inside and np.isin(picture.characters[row, column : column + length], _BLANKS).all():
             return row, column
     return otherwise
-
-
-def row_at(height: float, rows: int) -> int:
-    """The row of characters, from the top, at a height above the lower edge."""
-    return min(max(rows - 1 - int(height), 0), rows - 1)
 
 
 def too_small(width: int, height: int, columns: int, rows: int) -> Picture:

@@ -24,7 +24,8 @@ from tui.drawing.axes import (
     time_span,
 )
 from tui.drawing.canvas import Picture
-from tui.drawing.chart import ROOM, SMALLEST, Series, first_free, plot, row_at, too_small
+from tui.drawing.chart import SMALLEST, first_free, plot, too_small
+from tui.drawing.loglog import ROOM, Series, row_at
 from tui.drawing.palette import TEXT, faint
 from tui.drawing.palette import series as series_of
 from tui.playback.levels import Window

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from engine.models.model import State
 from engine.run.lockstep import Sample
 from engine.run.observer import RunObserver
+from tui.playback.shown import Quantity
 
 if TYPE_CHECKING:
     from tui.playback.levels import Floats, Levels, Window  # NumPy can wait for the first paint
@@ -30,6 +31,11 @@ class ErrorHistory:
 
     def __init__(self, observer: RunObserver, capacity: int = 2048) -> None:
         exact, self._reference, self._methods = observer.exact, observer.reference, len(observer.scene.cast)
+        model = observer.scene.equations
+        self._others: list[Quantity] = [] if model.conserved else ["energy"]
+        if model.in_plane:
+            self._others.append("spring_energy")
+        self._theta_error = model.theta_error
         self._repeats = (exact.period or 0.0) / (2 if exact.regime == "libration" else 1)
         self._capacity = capacity
         self._run = 0
@@ -70,12 +76,13 @@ class ErrorHistory:
         if self._levels is None:
             from tui.playback.levels import Levels
 
-            self._levels = Levels(self._repeats, self._reference[:2], self._methods, self._capacity)
+            self._levels = Levels(self._repeats, self._reference[:2], self._others, self._methods, self._capacity)
         for sample, x, exact, modified in self._waiting:
             states = [State(reading.theta, reading.omega) for reading in sample.readings]
-            theta_errors = [theta - exact.theta for theta, _ in states]
+            theta_errors = [self._theta_error(theta, exact.theta) for theta, _ in states]
+            others = [[getattr(reading, name) for reading in sample.readings] for name in self._others]
             low, high = (
-                (errors, theta_errors, modified or [math.nan] * len(states))
+                (errors, theta_errors, modified or [math.nan] * len(states), *others)
                 for errors in zip(
                     *((reading.energy_error_low, reading.energy_error_high) for reading in sample.readings), strict=True
                 )

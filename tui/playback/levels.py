@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from engine.models.model import State
 from tui.playback.shown import Quantity
 
-STORED: tuple[Quantity, ...] = ("energy_error", "theta_error", "shadow_error")  # the energy follows from its error
+STORED: tuple[Quantity, ...] = ("energy_error", "theta_error", "shadow_error")  # of every model
 
 Floats = NDArray[np.float64]
 
@@ -42,8 +42,8 @@ class Window:
 class Level:
     """A ring of rows, numbered from the run's start on; it holds [first, count)."""
 
-    def __init__(self, methods: int, capacity: int) -> None:
-        shape = (capacity, len(STORED), methods)
+    def __init__(self, stored: int, methods: int, capacity: int) -> None:
+        shape = (capacity, stored, methods)
         self.capacity = capacity
         self.first = self.count = 0
         self.steps = np.zeros(capacity, np.int64)  # at the end of the row
@@ -82,12 +82,17 @@ class Level:
 
 
 class Levels:
-    """The rows of one run; times that errors repeat after and what energies are relative to are the run's, too."""
+    """The rows of one run; times that errors repeat after and what energies are relative to are the run's, too.
 
-    def __init__(self, repeats: float, reference: tuple[float, float], methods: int, capacity: int) -> None:
+    Rows hold what is STORED and what else the run's model has.  Where energy is conserved, it follows from its error.
+    """
+
+    def __init__(
+        self, repeats: float, reference: tuple[float, float], others: Sequence[Quantity], methods: int, capacity: int
+    ) -> None:
         self._repeats, self._reference = repeats, reference
-        self._methods = methods
-        self.levels = [Level(methods, capacity)]
+        self._stored, self._methods = (*STORED, *others), methods
+        self.levels = [Level(len(self._stored), methods, capacity)]
         self._states = np.zeros((capacity, methods + 1, 2))  # next to level 0; the exact motion comes last
 
     def append(
@@ -107,7 +112,7 @@ class Levels:
             coarser.append_pairs(level, level.count - 2)
         last = self.levels[-1]
         if last.count == last.capacity:
-            self.levels.append(Level(self._methods, last.capacity))
+            self.levels.append(Level(len(self._stored), self._methods, last.capacity))
             self.levels[-1].append_pairs(last, 0)
 
     def rewind(self, step: int) -> None:
@@ -157,9 +162,9 @@ class Levels:
         )
 
     def _quantities(self, rows: Floats) -> dict[Quantity, Floats]:
-        stored: dict[Quantity, Floats] = {quantity: rows[:, i] for i, quantity in enumerate(STORED)}
+        stored: dict[Quantity, Floats] = {quantity: rows[:, i] for i, quantity in enumerate(self._stored)}
         start, scale = self._reference
-        return {**stored, "energy": start + scale * stored["energy_error"]}
+        return {"energy": start + scale * stored["energy_error"], **stored}
 
     @staticmethod
     def _reaches(level: Level, start: float) -> bool:

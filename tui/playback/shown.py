@@ -4,12 +4,21 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal, get_args
 
 from engine.methods import Cast
+from engine.scenes import Scene
 
-Quantity = Literal["energy_error", "theta_error", "shadow_error", "energy"]
+Quantity = Literal["energy_error", "theta_error", "shadow_error", "energy", "spring_energy"]
 QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
 
 WINDOWS: tuple[float | None, ...] = (None, 20.0, 60.0, 300.0, 1800.0, 5.0)
 """How much of the past the chart shows [s]; None: the whole run."""
+
+
+def quantities(scene: Scene) -> tuple[Quantity, ...]:
+    """What a chart can show of a scene: only some models and methods have a modified energy, only some a spring."""
+    model = scene.equations
+    missing = {"shadow_error"} - {"shadow_error" for method in scene.cast if method.modified_energy and model.plain}
+    missing |= set() if model.in_plane else {"spring_energy"}
+    return tuple(quantity for quantity in QUANTITIES if quantity not in missing)
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,12 +62,14 @@ class Shown:
             return replace(self.alone(alone[0], cast), turn=alone[0] + 1)
         return self.alone(self.turn % len(cast), cast)
 
-    def quantity_ahead(self, ahead: int) -> Quantity:
-        """The quantity, or one of those after it."""
-        return QUANTITIES[(QUANTITIES.index(self.quantity) + ahead) % len(QUANTITIES)]
+    def quantity_ahead(self, ahead: int, scene: Scene) -> Quantity:
+        """The quantity, or one of those after it, of those that a scene has."""
+        known = quantities(scene)
+        at = known.index(self.quantity) if self.quantity in known else 0
+        return known[(at + ahead) % len(known)]
 
-    def next_quantity(self) -> "Shown":
-        return replace(self, quantity=self.quantity_ahead(1))
+    def next_quantity(self, scene: Scene) -> "Shown":
+        return replace(self, quantity=self.quantity_ahead(1, scene))
 
     def zoomed(self, nearer: bool, length: float) -> "Shown":
         """With the next shorter or longer of the chart's windows into a run of so many seconds."""

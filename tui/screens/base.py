@@ -198,7 +198,7 @@ class SourceScreen(Guarded, Screen[None]):
         self.change_shown(self.shown.alone(message.place, self.source.scene.cast))
 
     def action_quantity(self) -> None:
-        self.change_shown(self.shown.next_quantity())
+        self.change_shown(self.shown.next_quantity(self.source.scene))
 
     def action_window(self, direction: int) -> None:
         self.change_shown(self.shown.next_window(direction > 0))

@@ -71,7 +71,7 @@ def copy_command(screen: SourceScreen) -> None:
     """Copy the command that shows this again, and show it: not every terminal has a clipboard."""
     text = command(screen.source)
     screen.app.copy_to_clipboard(text)
-    missing = "" if reproduces(screen.source) else " (the scene only: the change of h is not recorded)"
+    missing = "" if reproduces(screen.source) else " (the start only: h changed later, which only a recording holds)"
     screen.notify(f"Copied: {text}{missing}", markup=False, timeout=15)
 
 

@@ -106,11 +106,13 @@ class LiveScreen(Touring):
     def action_methods(self) -> None:
         from tui.screens.dialogs.cast_form import CastForm
 
+        scene = self.live.scene.altered(h=self.live.stepping.smallest)  # by the answer, another may be on
+
         def chosen(cast: Cast | None) -> None:
             if cast:
-                self.start(self.live.scene.altered(h=self.live.stepping.smallest).with_cast(cast))
+                self.start(scene.with_cast(cast))
 
-        self.app.push_screen(CastForm(self.live.scene.cast), chosen)
+        self.app.push_screen(CastForm(scene.cast), chosen)
 
     def action_mark(self) -> None:
         text = ALREADY if self.live.is_marked else f"Mark at {self.live.sample.t:.2f} s"

@@ -1,5 +1,6 @@
 """What views are made of: a View fills the screen between status line and key line with Panes; some are Choosers."""
 
+from collections.abc import Callable, Coroutine
 from typing import ClassVar, Generic, TypeVar
 
 from textual.containers import Container
@@ -58,6 +59,10 @@ class View(Box):
         self.watch_sample()
         self.call_after_refresh(self._begin)
 
+    def compute(self, work: Callable[[], Coroutine[None, None, None]], group: str = "default") -> Worker[None]:
+        """Do this in place of the group's earlier work.  It is a function: what is replaced may not have begun yet."""
+        return self.run_worker(work, group=group, exclusive=True, exit_on_error=False)
+
     def on_worker_state_changed(self, event: Worker.StateChanged) -> None:
         """Say at the panes why nothing more is computed."""
         if (error := event.worker.error) is not None and event.state is WorkerState.ERROR:
@@ -112,9 +117,12 @@ class Pane(CellWidget):
         return self.source is not None and self.source.kind == "LIVE"
 
     def draw(self) -> None:
-        if self.source is not None and self.sample is not None and self.drawable:
+        source, sample = self.source, self.sample
+        if source is not None and sample is not None and self.drawable:
+            if sample.run != source.sample.run:  # another run has just begun, maybe with other methods
+                return
             try:
-                self.paint(self.source, self.sample)
+                self.paint(source, sample)
             except Exception as error:
                 self.fail(error)
 

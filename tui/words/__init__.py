@@ -5,6 +5,7 @@ method's own map a start lies; `numbers` writes the numbers.
 From these, `insight` picks the one sentence of the moment, `events` makes the list of what happened, `undone` says
 what an undo took back, `describe` puts the whole state into sentences, and `plain_text` prints it all where there is
 no screen.  `cards` describes methods and scenes, `command_line` gives the command that shows a moment again, and
-`recovered` reports recordings that were left unfinished.  `scope` says which scenes have no map, no ring and no chart
-of cost, and why.  `tour` has the steps of the tour, and says them.
+`recovered` reports recordings that were left unfinished.  `accuracy` says which method is the cheapest at each
+accuracy, and how errors grow; `scope` which scenes have no map, no ring and no chart of cost, and why.  `tour` has
+the steps of the tour, and says them.
 """

@@ -1,33 +1,47 @@
 """The shell command that brings back what is on the screen."""
 
 import shlex
+from dataclasses import replace
 
-from engine.scenes import DEFAULT_SCENE, LIMITS, SCENES, Scene
+from engine.methods.own import OwnMethod
+from engine.scenes import LIMITS, SCENES, Scene
 from tui.playback.live import Live
 from tui.playback.replay import Replay
 from tui.playback.source import Source
 
 
 def command(source: Source) -> str:
-    """For a lab, its scene; for a replay, or once the step size has changed, this moment of the recording.
+    """For a lab, its start; for a replay, or once the step size has changed on the way, this moment of the recording.
 
-    A lab that changed its step size and does not record can only be started again from its scene.
+    A lab that changed its step size on the way and does not record can only be started again.
     """
     if isinstance(source, Replay):
         return _moment(str(source.recording.path), source.playhead.position)
-    if _changed(source) and isinstance(source, Live) and source.recorder is not None:
+    scene = source.scene
+    start = _start_h(source)
+    if start is None and isinstance(source, Live) and source.recorder is not None and not source.recorder.failed:
         return _moment(str(source.recorder.path), source.recorder.seconds)
-    speed = () if source.playhead.speed == 1 else ("--speed", f"{source.playhead.speed:g}")
-    return shlex.join(["pendu-tui", "live", *scene_arguments(source.scene), *speed])
+    if start is not None and start != scene.h:
+        scene = scene.altered(h=start)
+    first = [change.stepping for change in source.changes if change.step == 0][-1]
+    equal_cost = ["--equal-cost"] if first.equal_cost else []
+    speed = [] if source.playhead.speed == 1 else ["--speed", f"{source.playhead.speed:g}"]
+    return shlex.join(["pendu-tui", "live", *scene_arguments(scene), *equal_cost, *speed])
 
 
 def reproduces(source: Source) -> bool:
-    """Whether the command brings back all: not a change of the step size that no file holds."""
-    return isinstance(source, Replay) or not _changed(source) or source.recording_status is not None
+    """Whether the command brings back all: not a change of the step size on the way that no file holds."""
+    status = source.recording_status
+    return isinstance(source, Replay) or _start_h(source) is not None or (status is not None and not status.failed)
 
 
-def _changed(source: Source) -> bool:
-    return any(event.kind == "set_h" and event.run == source.sample.run for event in source.events)
+def _start_h(source: Source) -> float | None:
+    """The h [s] of a scene that steps like this from its start on; None if it has not stepped alike since then."""
+    if any(0 < change.step <= source.sample.step for change in source.changes):
+        return None
+    stepping = source.stepping
+    candidates = source.scene.h, stepping.smallest  # a scene's h is positive: time does not run back from its start
+    return next((h for h in candidates if replace(stepping, h=1.0).with_smallest(h) == stepping), None)
 
 
 def _moment(file: str, position: float) -> str:
@@ -35,9 +49,17 @@ def _moment(file: str, position: float) -> str:
 
 
 def scene_arguments(scene: Scene) -> list[str]:
-    """The options that reproduce a scene to the last bit."""
-    if SCENES.get(scene.name) == scene:
-        return ["--scene", scene.name]
-    changes = {name: getattr(scene, name) for name in (*LIMITS, "h")}
-    changes = {name: value for name, value in changes.items() if value != getattr(DEFAULT_SCENE, name)}
-    return [part for name, value in changes.items() for part in (f"--{name}", repr(value))]
+    """The options that reproduce a scene to the last bit, a user's own methods from their files."""
+    base = SCENES.get(scene.name)
+    if base is None or base.model != scene.model:
+        base = next(each for each in SCENES.values() if each.model == scene.model)
+    arguments = ["--scene", base.name]
+    for name in (*LIMITS, "h", *scene.parameters):
+        if (value := getattr(scene, name)) != getattr(base, name):
+            arguments += [f"--{name}", repr(value)]
+    if scene.cast != base.cast:
+        arguments += ["--methods", ",".join(method.key for method in scene.cast)]
+    for method in scene.cast:
+        if isinstance(method, OwnMethod):
+            arguments += ["--method", f"{method.file}:{method.key},letter={method.letter}"]
+    return arguments

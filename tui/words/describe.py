@@ -47,9 +47,9 @@ def method_sentence(source: Source, index: int) -> str:
         return ending(milestone, source.scene.equations.conserved)
     if source.judgements[index].verdict == "bounded":
         return f"{method.label} stays bounded: its largest energy error is {reading.max_energy_error:.2g}."
-    return leaving(source, index) or (
-        f"{method.label} has an energy error of {reading.energy_error:+.2g}; it is too early for a verdict."
-    )
+    known = source.judgements[index].verdict
+    verdict = "it is too early for a verdict" if known == "too early" else f"verdict: {known}"
+    return leaving(source, index) or f"{method.label} has an energy error of {reading.energy_error:+.2g}; {verdict}."
 
 
 def _recording(source: Source) -> str:

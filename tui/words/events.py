@@ -17,7 +17,7 @@ VERDICTS: dict[Verdict, str] = {
     "loses": "loses energy",
     "grows": "gains energy",
     "chaotic": "turns chaotic",
-    "caught": "stops gaining energy",
+    "caught": "is caught",
     "wanders": "wanders",
 }
 
@@ -84,4 +84,7 @@ def milestone_text(milestone: Milestone, conserved: bool = True) -> str:
         error = milestone.energy_error if conserved else math.expm1(min(milestone.energy_error, 700.0))
         energy = f"{two_digits(1 + error)} {unit}" if not 1e-4 < abs(error) < 0.1 else f"{100 * error:+.2g} %"
         return f"{name} over the top, {energy}"
+    if milestone.other:
+        other = short_name(milestone.other)
+        return f"{name}'s error {'passes' if len(name + other) < 22 else '>'} {other}'s"
     return f"{name} {'failed' if milestone.kind == 'failed' else VERDICTS[milestone.verdict]}"

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from engine.methods import GENERAL, Cast, Method
 from engine.run.observer import Milestone
+from engine.run.verdict import Judgement
 from engine.scenes import Scene
 from tui.playback.source import Source
 from tui.words.numbers import about, two_digits
@@ -73,7 +74,7 @@ def _bands(source: Source) -> list[tuple[float, int]]:
 
 def endings(source: Source) -> dict[int, Milestone]:
     """The methods, by index, that failed or went over the top: their verdict no longer matters."""
-    found = [each for each in source.milestones if each.kind != "verdict"]
+    found = [each for each in source.milestones if each.kind in ("over the top", "failed")]
     index = source.scene.cast.index
     return {index(each.method): each for each in sorted(found, key=lambda each: each.kind == "failed")}
 
@@ -90,6 +91,13 @@ def ending(milestone: Milestone, conserved: bool = True) -> str:
     return f"{name} went over the top at {milestone.t:.3g} s with {ratio} times its initial energy."
 
 
+def passing(milestone: Milestone, other: Method) -> str:
+    """The sentence on a method whose error has passed that of a bounded one."""
+    what = f"{short_name(milestone.method)}'s error passed {short_name(other)}'s at {milestone.t:.4g} s"
+    more = f"{what}: smaller at first, it kept growing."
+    return more if len(more) <= LINE else f"{what}."
+
+
 def staying(source: Source, hidden: Collection[str] = ()) -> str:
     """The sentence on the bounded methods but for the hidden ones; "" if there are none yet."""
     judged = zip(source.scene.cast, source.judgements, strict=True)
@@ -103,25 +111,40 @@ def staying(source: Source, hidden: Collection[str] = ()) -> str:
     return f"{who} bounded; no trend over {about(seconds)}."
 
 
+def astray(name: str, judgement: Judgement, error: float) -> str:
+    """The sentence on a method that is chaotic, wanders or is caught; "" for others."""
+    match judgement.verdict:
+        case "chaotic" if judgement.lyapunov:
+            return f"{name} is chaotic: two close starts part tenfold every {about(math.log(10) / judgement.lyapunov)}."
+        case "chaotic":
+            return f"{name} is chaotic: two close starts part exponentially."
+        case "wanders":
+            return f"{name} wanders: its energy goes up and down, without a trend and in no band."
+        case "caught":
+            return f"{name} is caught: its energy error stays in a band, now {error:+.2g}."
+    return ""
+
+
 def leaving(source: Source, index: int) -> str:
-    """The sentence on a method that gains or loses energy; "" if that is not known."""
-    judgement, lost = source.judgements[index], -source.sample.readings[index].energy_error
+    """The sentence on a method that is not bounded; "" if that is not known."""
+    method, judgement = source.scene.cast[index], source.judgements[index]
+    name, error = short_name(method), source.sample.readings[index].energy_error
     conserved = source.scene.equations.conserved
-    if conserved and judgement.verdict == "loses" and lost > MOSTLY:
-        share = "all" if lost > 1 - 1e-6 else f"{100 * lost:.4g} %"
-        return f"{short_name(source.scene.cast[index])} has lost {share} of its energy."
-    slope = {"grows": 1, "loses": -1}.get(judgement.verdict, 0) * (judgement.slope or 0)
+    if text := astray(name, judgement, error):
+        return text
+    if conserved and judgement.verdict == "loses" and -error > MOSTLY:
+        share = "all" if -error > 1 - 1e-6 else f"{-100 * error:.4g} %"
+        return f"{name} has lost {share} of its energy."
+    slope = {"grows": 1, "loses": -1}.get(judgement.verdict, 0) * (judgement.trend or 0)
     if slope <= 0:
         return ""
-    verb = "gains" if judgement.verdict == "grows" else "loses"
     unit = "% of E0/s" if conserved else "% of the true energy a second"
-    what = f"{short_name(source.scene.cast[index])} {verb} {two_digits(100 * slope)} {unit}"
+    what = f"{name} {'gains' if judgement.verdict == 'grows' else 'loses'} {two_digits(100 * slope)} {unit}"
     if ahead := forecast(source, index):
-        other = short_name(ahead.other)
-        return f"{what}; its error will pass {other}'s in about {about(ahead.seconds)}."
-    error, bands = abs(source.sample.readings[index].energy_error), _bands(source)
-    if bands and error > bands[0][0] > 0:
-        ratio, other = two_digits(error / bands[0][0]), short_name(source.scene.cast[bands[0][1]])
+        return f"{what}; its error will pass {short_name(ahead.other)}'s in about {about(ahead.seconds)}."
+    bands = _bands(source)
+    if bands and abs(error) > bands[0][0] > 0:
+        ratio, other = two_digits(abs(error) / bands[0][0]), short_name(source.scene.cast[bands[0][1]])
         if len(more := f"{what}; its error is {ratio} times {other}'s maximum.") <= LINE:
             return more
     return f"{what}."

@@ -8,7 +8,7 @@ from engine.run.observer import Milestone
 from engine.scenes import Scene
 from recordings.events import Event, EventKind
 from tui.playback.source import Source
-from tui.words.findings import ending, endings, leaving, short_name, so_far, staying
+from tui.words.findings import ending, endings, leaving, passing, short_name, so_far, staying
 
 WATCH = 8.0  # s of the clock at the beginning of a run, for the scene's own sentence
 FRESH = 6.0  # s of the clock for which a milestone is news
@@ -54,8 +54,8 @@ def insight(source: Source, hidden: Collection[str] = ()) -> str:
 
 
 def _news(source: Source, seconds: float, hidden: Collection[str]) -> str:
-    """The newest milestone of the last simulated seconds; failures first, then over the top, then verdicts."""
-    kinds = ("verdict", "over the top", "failed")
+    """The newest milestone of the last simulated seconds; failures first, over the top, errors that cross, verdicts."""
+    kinds = ("verdict", "errors cross", "over the top", "failed")
     since = source.sample.step - seconds / abs(source.stepping.h)
     recent = [each for each in source.milestones if each.step > since and each.method.key not in hidden]
     newest = sorted(recent, key=lambda each: (kinds.index(each.kind), each.step))
@@ -63,6 +63,8 @@ def _news(source: Source, seconds: float, hidden: Collection[str]) -> str:
 
 
 def _sentence(source: Source, milestone: Milestone, hidden: Collection[str]) -> str:
+    if milestone.other:
+        return passing(milestone, milestone.other)
     if milestone.kind != "verdict":
         return ending(milestone, source.scene.equations.conserved)
     index = source.scene.cast.index(milestone.method)

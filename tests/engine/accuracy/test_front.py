@@ -1,98 +1,64 @@
-"""The lines beside the methods: Taylor's series at a ladder of tolerances, and who is ahead."""
+"""The cheapest method at each accuracy, interpolated between made-up points."""
 
-import itertools
-import math
-from dataclasses import replace
-
-import numpy as np
 import pytest
 
-from engine.accuracy import front as module
-from engine.accuracy.front import CONFIRMING, FINER, TaylorStudy
-from engine.accuracy.taylor import follow
-from engine.models.pendulum import energy
-from engine.run.compiled import available
-from engine.scenes import SCENES, Scene
+from engine.accuracy.front import cost_at, front, ranges
+from engine.accuracy.references import TAYLOR_20, TaylorPoint
+from engine.accuracy.study import Flaws, Point
+from engine.methods import method_of
 
-pytestmark = pytest.mark.skipif(not available(), reason="Numba is not installed")
-SWING = Scene(theta=2.0)
+RK4, BM6 = method_of("rk4"), method_of("blanes_moan_6")
 
 
-@pytest.fixture(scope="module")
-def study():
-    return TaylorStudy(SWING, 100.0)
+def at(method, steps, error, seconds=None, flaw=None):
+    return Point(method, 10.0, steps, error, error, error, Flaws(flaw, flaw, flaw), seconds)
 
 
-def test_the_errors_of_a_point_are_the_largest_of_those_compared(study):
-    point = study.run(1e-8, comparisons=1000)
-    times = np.linspace(0, 100, 1001)
-    states, steps = follow(9.81, 2.0, 0.0, times, 1e-8)
-    exact, start = SWING.exact(), energy(9.81, 2.0, 0.0)
-    off = [abs(theta - exact.at(float(t)).theta) for t, (theta, _) in zip(times, states, strict=True)]
-    assert (point.steps, point.theta_error, point.final_error) == (steps, max(off), off[-1])
-    off = [abs(energy(9.81, *map(float, state)) - start) / start for state in states]
-    # NumPy's sine is a bit off Python's here and there
-    assert point.energy_error == pytest.approx(max(off), abs=1e-15)
-    assert point.flaws == (None, None, None)
+def series(steps, error, seconds):
+    return TaylorPoint(10.0, 1e-9, steps, error, error, error, Flaws(None, None, None), seconds)
 
 
-def test_a_tighter_tolerance_costs_steps_and_buys_accuracy_down_to_rounding(study):
-    points = list(study.points())
-    for loose, tight in itertools.pairwise(points):
-        assert loose.tolerance > tight.tolerance
-    assert points[0].flaws.theta == "lost"
-    assert points[-1].flaws[:2] == ("rounding", "rounding")
-    good = [point for point in points if point.flaws.theta is None and point.theta_error > 1e-11]  # below, some round
-    assert len(good) >= 8
-    for loose, tight in itertools.pairwise(good):
-        assert loose.steps < tight.steps
-        assert loose.theta_error > tight.theta_error
-    assert good[-1].theta_error < 1e-9
+LINES = [at(RK4, 10**n, 10.0 ** (4 - 4 * n), 1e-4 * 10**n) for n in range(1, 5)] + [
+    at(BM6, 10**n, 10.0 ** (2 - 6 * n + 4), 3e-4 * 10**n) for n in range(1, 4)
+]
 
 
-@pytest.mark.parametrize("kind", ["theta", "energy", "final"])
-@pytest.mark.parametrize("target", [1e-3, 1e-6, 1e-9, 1e-12])
-def test_a_recommended_tolerance_reaches_its_target_and_so_do_finer_ones(study, kind, target):
-    point = study.reach(kind, target).point
-    for finer in range(CONFIRMING + 1):
-        assert study.run(point.tolerance * FINER**-finer, 10_000).error(kind) <= target
-    # and it is the loosest: of all that are looser, a few above it do not
-    looser = [study.run(point.tolerance * FINER**step, 10_000).error(kind) for step in range(1, CONFIRMING + 2)]
-    assert max(looser) > target
+@pytest.mark.parametrize("target", [1e-1, 1e-5, 1e-9, 3e-7])
+def test_between_two_points_the_cost_follows_the_slope(target):
+    steps = 10 * target ** -(1 / 4)  # the line of RK4 above
+    assert cost_at(LINES[:4], "theta", "evaluations", target) == pytest.approx(4 * steps)
+    assert cost_at(LINES[:4][::-1], "theta", "seconds", target) == pytest.approx(1e-4 * steps)
 
 
-def test_where_rounding_is_in_the_way_it_says_so(study):
-    reached = study.reach("theta", 1e-15)
-    assert reached.point is None
-    assert reached.why_not.startswith("rounding stops it at ")
-    assert 1e-14 < float(reached.why_not.split()[-1]) < 1e-11
+def test_what_no_point_reaches_has_no_cost():
+    assert cost_at(LINES[:4], "theta", "evaluations", 1e-13) is None
 
 
-def test_a_loose_target_is_met_by_the_loosest_tolerance():
-    study = TaylorStudy(SCENES["gentle"], 1.0)
-    assert study.reach("theta", 1.0).point.steps == 1
+def test_a_useless_point_reaches_nothing():
+    lost = [at(RK4, 10, 1e-5, flaw="lost"), at(RK4, 20, 1e-3), at(RK4, 40, 1e-7, flaw="rounding")]
+    assert cost_at(lost, "theta", "evaluations", 1e-4) > 4 * 20
+    assert cost_at(lost, "theta", "evaluations", 1e-7) == 4 * 40
 
 
-def test_what_takes_too_many_steps_is_given_up(monkeypatch):
-    monkeypatch.setattr("engine.accuracy.taylor.MOST_STEPS", 300)
-    monkeypatch.setattr(module, "MOST_STEPS", 300)
-    study = TaylorStudy(SWING, 100.0)
-    assert [point.steps < 300 for point in study.points()] == [True] * 5
-    assert study.reach("theta", 1e-9) == (module.Reached(None, "more than 300 steps"))
+def test_the_order_decides_which_method_is_cheapest_and_by_which_factor():
+    found = front(LINES, "theta", "evaluations")
+    assert [round(cut.target, 15) for cut in found] == [pytest.approx(10.0**-n) for n in range(1, 13)]
+    for one in found:
+        rk4, bm6 = 40 * one.target ** -(1 / 4), 11 * 10 * one.target ** -(1 / 6)
+        assert one.method is (RK4 if rk4 < bm6 else BM6)
+        assert one.cost == pytest.approx(min(rk4, bm6), rel=0.01)  # BM6 has one more in all
+        assert one.saves == pytest.approx(rk4 / one.cost, rel=1e-6)
+    assert [(method, len(some)) for method, some in ranges(found)] == [(RK4, 5), (BM6, 7)]
 
 
-def test_seconds_are_the_shortest_of_several_runs_with_their_spread(study):
-    ticks = itertools.chain.from_iterable((0.0, length) for length in (50.0, 30.0, 40.0, 60.0, 35.0))
-    point = study.run(1e-8)
-    runs = 20_000 // point.steps
-    assert study.timed(point, lambda: next(ticks)) == replace(point, seconds=30.0 / runs, spread=1.0)
-    assert next(ticks, None) is None
+def test_a_series_counts_seconds_and_no_evaluations():
+    taylor = [series(10, 1.0, 5e-3), series(40, 1e-13, 6e-3)]
+    assert {one.method for one in front([*LINES, *taylor], "theta", "seconds")} == {RK4, TAYLOR_20}
+    assert TAYLOR_20 not in {one.method for one in front([*LINES, *taylor], "theta", "evaluations")}
+    assert all(one.saves is None for one in front([*LINES, *taylor], "theta", "seconds") if one.method is TAYLOR_20)
 
 
-@pytest.mark.parametrize("name", [name for name, scene in SCENES.items() if scene.model == "pendulum"])
-def test_every_scene_has_a_line_down_to_rounding(name):
-    scene = SCENES[name]
-    points = list(TaylorStudy(scene, 20 / scene.w0).points())
-    assert len(points) == module.RUNGS
-    assert all(math.isfinite(point.error(kind)) for point in points for kind in ("theta", "energy", "final"))
-    assert "rounding" in {point.flaws.energy for point in points}
+def test_an_error_that_the_coarsest_run_reaches_is_left_out():
+    fine = [at(RK4, 10, 1e-4), at(RK4, 100, 1e-8)]
+    assert [one.target for one in front(fine, "theta", "evaluations")] == pytest.approx([1e-5, 1e-6, 1e-7, 1e-8])
+    assert ranges([]) == []

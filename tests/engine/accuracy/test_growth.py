@@ -1,9 +1,10 @@
-"""With which power of time the angle's error grows."""
+"""How the error in theta grows with time."""
 
 import pytest
 
-from engine.accuracy.growth import duration, growth
+from engine.accuracy.growth import duration, growth, growths
 from engine.methods import USUAL_CAST
+from engine.phase_space.section import orbit
 from engine.scenes import SCENES, Scene
 
 EXPLICIT, SYMPLECTIC, VERLET, RK4 = USUAL_CAST
@@ -25,7 +26,9 @@ EXPLICIT, SYMPLECTIC, VERLET, RK4 = USUAL_CAST
     ids=lambda value: str(getattr(value, "key", "")),
 )
 def test_the_error_of_a_symplectic_method_grows_as_t_and_that_of_rk4_as_t_squared(scene, method, power):
-    assert growth(scene, method) == pytest.approx(power, abs=0.15)
+    found = growth(scene, method)
+    assert found.power == pytest.approx(power, abs=0.15)
+    assert found.name == f"{method.label} t^{found.power:.2f}"
 
 
 @pytest.mark.parametrize(
@@ -41,7 +44,18 @@ def test_the_error_of_a_symplectic_method_grows_as_t_and_that_of_rk4_as_t_square
     ids=lambda value: str(getattr(value, "key", "")),
 )
 def test_where_there_is_no_power_of_t_none_is_given(scene, method):
-    assert growth(scene, method) is None
+    assert growth(scene, method).power is None
+
+
+def test_the_errors_of_each_period_are_those_of_the_run():
+    scene = Scene(theta=2.0, h=0.02)
+    (found,) = growths(scene.altered(h=1.0, cast=(VERLET,)), (-0.02,))  # backwards in time errors are the same
+    exact, (theta, _) = scene.exact(), orbit(VERLET, scene.equations, 0.02, (2.0, 0.0), 6000)
+    off = [abs(float(theta[k]) - exact.at(0.02 * k).theta) for k in range(6001)]
+    for at in (0, 5, 20):
+        assert found.times[at] == pytest.approx((at + 0.5) * exact.period)
+        period = slice(int(at * exact.period / 0.02), int((at + 1) * exact.period / 0.02))
+        assert 0.9 * max(off[period]) < found.errors[at] <= max(off[period.start : period.stop + 2])
 
 
 def test_it_takes_a_hundred_periods():

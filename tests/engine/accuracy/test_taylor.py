@@ -93,6 +93,6 @@ def test_a_run_of_too_many_steps_is_given_up(monkeypatch):
 
 
 def test_the_module_does_not_import_numba():
-    work = "import sys; import engine.accuracy.front; print('numba' in sys.modules)"
+    work = "import sys; import engine.accuracy.references; print('numba' in sys.modules)"
     told = subprocess.run([sys.executable, "-c", work], check=True, capture_output=True, text=True)
     assert told.stdout == "False\n"

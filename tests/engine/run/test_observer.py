@@ -8,6 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from engine.methods import USUAL_CAST
+from engine.run.crossing import Crossings
+from engine.run.judging import Seen
 from engine.run.lockstep import Lockstep, Sample
 from engine.run.observer import Milestone, RunObserver
 from engine.run.stepping import Stepping, SteppingChange
@@ -126,6 +128,30 @@ def test_verdicts_happen_when_they_are_given():
         ("velocity_verlet", "bounded"),
         ("rk4", "loses"),
     }
+
+
+@pytest.mark.parametrize("every", [1, 7, 400])
+def test_rk4s_error_passes_verlets_once_and_at_the_same_step_however_often_one_looks(every):
+    observer = watched(SCENES["crossover"], 120, every)
+    (passing,) = [each for each in observer.milestones(600) if each.kind == "errors cross"]
+    assert (passing.method.key, passing.other.key, passing.step) == ("rk4", "velocity_verlet", 167)
+    assert passing.t == pytest.approx(33.4)
+    assert {"rk4", "velocity_verlet"} <= set(told(observer, "verdict", 167))  # it is known that this is for good
+
+
+def test_errors_cross_where_one_that_leaves_passes_one_that_is_bounded_after_it_was_below():
+    bounded = Seen(0, 0.0, 0.3, "bounded", news=False)
+    for others, passed in [
+        ([("loses", 0.2), ("loses", 0.3), ("loses", 0.4), ("loses", 0.2), ("loses", 0.4)], [2]),  # once
+        ([("grows", 0.2), ("grows", 0.4)], [1]),
+        ([("loses", 0.4), ("loses", 0.5)], []),  # it was never below
+        ([("too early", 0.2), ("loses", 0.4)], []),  # nor was it known to leave then
+        ([("bounded", 0.2), ("bounded", 0.4)], []),
+        ([("loses", 0.2), ("caught", 0.4)], []),
+    ]:
+        crossings = Crossings()
+        found = [crossings.add({0: bounded, 1: Seen(0, 0.0, peak, verdict, False)}) for verdict, peak in others]
+        assert found == [[(1, 0)] if look in passed else [] for look in range(len(others))]
 
 
 def test_a_method_fails_once_at_the_time_at_which_its_numbers_ended():

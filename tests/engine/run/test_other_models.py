@@ -139,3 +139,9 @@ def test_a_model_refuses_a_method_that_is_not_for_it(model: str) -> None:
         else:
             with pytest.raises(SceneError, match=f"is not for the model {model}"):
                 Scene(model=model, cast=(method,), **own)
+
+
+def test_a_bob_that_is_gone_gains_energy_within_half_a_second_and_not_too_early_to_say() -> None:
+    found = verdicts(SCENES["stiff-limit"], 20, 1)
+    assert ("velocity_verlet", "grows") in [(key, verdict) for step, key, verdict in found if step <= 10]
+    assert {key for _, key, verdict in found if verdict == "grows"} == {"velocity_verlet"}

@@ -1,5 +1,6 @@
 """What a command writes is there whole or not at all, and nothing is overwritten but by force."""
 
+import ctypes
 import os
 import signal
 import subprocess
@@ -11,7 +12,7 @@ import pytest
 
 from tests.tui.command_line import pendu
 from tui.cli.errors import UserError
-from tui.cli.files import whole_file
+from tui.cli.files import repeat_swallowed_interrupts, whole_file
 
 WRITERS = {
     "export": ("export", "drift", "-o"),
@@ -68,6 +69,19 @@ def test_a_signal_to_end_leaves_nothing_half_written(tmp_path, number):
     assert signal.getsignal(number) is before
 
 
+def test_an_interrupt_that_a_callback_swallows_comes_again(monkeypatch):
+    monkeypatch.setattr(sys, "unraisablehook", sys.unraisablehook)
+    repeat_swallowed_interrupts()
+    swallowing = ctypes.CFUNCTYPE(None)(lambda: signal.raise_signal(signal.SIGINT))
+
+    def wait():
+        swallowing()
+        time.sleep(5)
+
+    with pytest.raises(KeyboardInterrupt):
+        wait()
+
+
 def test_force_does_not_replace_a_folder(tmp_path):
     with pytest.raises(UserError, match="already exists"), whole_file(tmp_path, force=True):
         raise AssertionError
@@ -105,7 +119,7 @@ def test_a_command_stopped_by_a_signal_leaves_no_part_behind(tmp_path, command, 
     file.write_text("older")
     run = [sys.executable, "-c", "import sys; from tui.cli.dispatch import main; sys.exit(main())", *command, str(file)]
     with subprocess.Popen([*run, "--force"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        while not file.with_name("file.part").exists():
+        while process.poll() is None and not file.with_name("file.part").exists():
             time.sleep(0.01)
         time.sleep(0.2)  # s; libraries are still being imported before that, and may make an error of their own of it
         process.send_signal(number)

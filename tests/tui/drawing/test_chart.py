@@ -11,7 +11,8 @@ from hypothesis.extra.numpy import arrays
 from engine.methods import USUAL_CAST
 from tests.tui.drawing.test_canvas import dots
 from tui.drawing.axes import held, per_column, time_span
-from tui.drawing.chart import SMALLEST, Series, loglog_chart
+from tui.drawing.chart import SMALLEST, loglog_chart
+from tui.drawing.loglog import Series
 from tui.drawing.palette import EXACT, FAINT, FRAME, NOBODY, TEXT
 from tui.drawing.time_chart import CROSSING, time_chart
 from tui.playback.levels import Window

@@ -13,7 +13,7 @@ from engine.run.observer import RunObserver
 from engine.scenes import DEFAULT_SCENE, SCENES
 from tui.drawing.palette import EXACT
 from tui.playback.history import ErrorHistory
-from tui.playback.shown import QUANTITIES
+from tui.playback.shown import quantities
 
 CAPACITY = 8  # small, so that few samples reach many levels
 
@@ -165,9 +165,9 @@ def test_theta_errors_are_taken_against_the_exact_swing_and_unknown_without_it()
     assert np.isnan(history.window().low["theta_error"][1, 0])
 
 
-@settings(max_examples=20)
+@settings(max_examples=30)
 @given(st.sampled_from(sorted(SCENES)), st.integers(1, 5))
-def test_energies_are_those_of_the_readings(name, stride):
+def test_energies_are_those_of_the_readings_also_where_friction_takes_them_and_in_a_spring(name, stride):
     scene = SCENES[name]
     lockstep, history = Lockstep(scene), ErrorHistory(RunObserver(scene))
     history.add(lockstep.sample())
@@ -182,6 +182,8 @@ def test_energies_are_those_of_the_readings(name, stride):
             abs(low), abs(high), energy(scene.w0_squared, scene.theta, scene.omega)
         )  # there and back
         assert low - tolerance <= reading.energy <= high + tolerance
+        if reading.spring_energy is not None:
+            assert window.high["spring_energy"][-1, index] == reading.spring_energy
 
 
 def test_trails_are_the_last_states_of_methods_and_of_the_exact_swing():
@@ -195,9 +197,19 @@ def test_trails_are_the_last_states_of_methods_and_of_the_exact_swing():
     assert len(history.trail(0, 100)[0]) == CAPACITY
 
 
+def test_an_angle_in_the_plane_is_off_by_half_a_turn_at_most():
+    scene = SCENES["stiff-slow"]
+    history = ErrorHistory(RunObserver(scene))
+    reading = Reading(3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, None, 1j, 0j, 1.0)
+    history.add(Sample(1, 0, 0.0, (reading,) * len(scene.cast)), State(-3.0, 0.0))
+    assert history.window().low["theta_error"][0, 0] == pytest.approx(6 - math.tau)
+
+
 def test_an_empty_history_has_empty_windows_and_trails():
     history = ErrorHistory(RunObserver(DEFAULT_SCENE))
     assert history.trail(0, 5)[0].size == 0
     assert all(
-        history.window(seconds).low[quantity].shape == (0, 4) for quantity in QUANTITIES for seconds in (None, 5.0)
+        history.window(seconds).low[quantity].shape == (0, 4)
+        for quantity in quantities(DEFAULT_SCENE)
+        for seconds in (None, 5.0)
     )

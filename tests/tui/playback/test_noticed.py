@@ -4,8 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-from engine.scenes import DEFAULT_SCENE
+from engine.scenes import DEFAULT_SCENE, SCENES
 from recordings.events import Event
+from recordings.headless import simulate
 from recordings.live_recorder import LiveRecorder
 from recordings.recorder import Recorder
 from recordings.recording import Recording
@@ -86,3 +87,22 @@ def test_a_replay_says_what_was_said_and_not_what_would_be_said_today(lab, tmp_p
         replay = Replay(recording, Marks(path))
         replay.seek(recording.length)
         assert replay.judgements[replay.scene.cast.index(said.method)].verdict == "wanders"
+
+
+def test_errors_that_cross_are_recorded_and_a_stop_of_the_replay(tmp_path):
+    path, scene = tmp_path / "crossover.mcap", SCENES["crossover"]
+    with Recorder(path, wall=None) as recorder:
+        for _ in simulate(scene, 40, recorder):
+            pass
+    with Recording.open(path) as recording:
+        (crossing,) = [each for _, each in recording.events.milestones(1) if each.kind == "errors cross"]
+        replay = Replay(recording, Marks(path))
+        replay.seek(33.0)
+        assert crossing not in replay.milestones
+        replay.seek_event(1)
+        assert replay.sample.step == crossing.step == 167
+        assert crossing in replay.milestones
+    live = Live(scene, clock=lambda: 0.0)
+    live.tick(0.0)
+    play(live, 40, 0.0)
+    assert crossing in live.milestones

@@ -102,7 +102,7 @@ async def test_an_accuracy_chart_that_cannot_be_built_says_so(faults, monkeypatc
             yield none
 
     monkeypatch.setattr("tui.views.accuracy.view.computed", nothing)
-    monkeypatch.setattr("tui.views.accuracy.pane.accuracy_chart", broken)
+    monkeypatch.setattr("tui.views.accuracy.pane.charted", broken)
     async with lab() as theatre:
         await theatre.press("f4")
         await theatre.run(1.0)

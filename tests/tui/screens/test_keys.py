@@ -240,6 +240,23 @@ async def test_the_form_takes_radians_and_degrees_and_starts_with_enter():
         assert (scene.length, scene.gravity, theatre.source.sample.step) == (1.0, 9.81, 0)
 
 
+async def test_the_form_has_the_parameters_of_the_model_with_units_and_limits():
+    async with lab(SCENES["stiff-slow"]) as theatre:
+        await theatre.press("i")
+        form = theatre.app.screen
+        assert [field.id for field in form.query("Input")] == ["theta", "omega", "h", "length", "gravity", "stiffness"]
+        assert "s⁻², 1 to 1e+18" in [str(label.render()) for label in form.query(".unit")]
+        form.query_one("#stiffness").value = "0.5"
+        await theatre.pilot.pause()
+        assert "out of range" in str(form.query_one("#verdict").render())
+        form.query_one("#stiffness").value = "400"
+        await theatre.pilot.pause()
+        assert str(form.query_one("#verdict").render()).endswith("h·omega_s = 0.4")
+        await theatre.press("enter")
+        await theatre.pilot.pause()
+        assert theatre.source.scene == SCENES["stiff-slow"].altered(stiffness=400.0)
+
+
 async def test_the_form_says_what_is_wrong_as_it_is_typed_and_does_not_start_that():
     async with lab() as theatre:
         await theatre.press("i")

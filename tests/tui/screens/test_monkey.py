@@ -35,7 +35,9 @@ from tui.screens.base import SourceScreen
 from tui.screens.live import LiveScreen
 from tui.screens.replay import ReplayScreen
 
-PRESSES, WILD = 2500, 600
+pytestmark = pytest.mark.other_process  # what is computed is left again at once
+
+PRESSES, WILD = 1000, 300
 SEED = int(os.environ.get("PENDU_MONKEY", "1"))
 
 

@@ -5,6 +5,7 @@ import inspect
 import pkgutil
 import textwrap
 from collections.abc import Iterator
+from functools import cache
 from importlib import import_module
 
 import pytest
@@ -32,6 +33,7 @@ def below(kind: type) -> Iterator[type]:
 OURS = sorted({each for each in below(MessagePump) if each.__module__.startswith("tui.")}, key=lambda each: str(each))
 
 
+@cache
 def written(kind: type) -> set[str]:
     """The private names that a class's text defines in its body or assigns on self."""
     (body,) = ast.parse(textwrap.dedent(inspect.getsource(kind))).body

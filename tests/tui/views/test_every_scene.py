@@ -4,12 +4,15 @@ import re
 
 import pytest
 
+from engine.methods import USUAL_CAST
 from engine.scenes import SCENES
 from tests.tui.harness import key_of, lab
 from tui.views.accuracy.pane import AccuracyPane
 from tui.views.phase.section_pane import SectionPane
 from tui.views.stability.pane import StabilityPane
 from tui.views.view import Pane
+
+pytestmark = pytest.mark.other_process  # what is computed is left again at once
 
 SPECIAL = [name for name, scene in SCENES.items() if not scene.general]
 
@@ -72,3 +75,12 @@ async def test_only_the_pendulum_has_regimes_and_a_separatrix():
             await theatre.run(0.5)
             plot = theatre.text(SectionPane)
             assert not re.search("rotation|separatrix", plot)
+
+
+async def test_a_pane_that_is_drawn_before_the_first_sample_of_a_larger_cast_waits_for_it():
+    async with lab(SCENES["gentle"].with_cast(USUAL_CAST[:1])) as theatre:
+        theatre.source.start(SCENES["gentle"])
+        for pane in theatre.stage.query(Pane):
+            pane.draw()  # where a pane fails, so does the test
+        await theatre.run(0.5)
+        assert "RK4" in words(theatre)

@@ -1,19 +1,22 @@
 """The command that is copied gives the same run, to the bit."""
 
 import shlex
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from engine.methods import METHODS
 from engine.run.stepping import Stepping
-from engine.scenes import LIMITS, SCENES, Scene
+from engine.scenes import LIMITS, SCENES
 from recordings.library import GOLDEN
 from recordings.live_recorder import LiveRecorder
 from recordings.recording import Recording
 from tui.cli.dispatch import command_of
 from tui.cli.scene import scene_of
+from tui.commands.lab.live import lab_of
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
@@ -34,16 +37,67 @@ def test_a_listed_scene_is_given_by_name(scene):
     assert scene_of(options_of(text)) == scene
 
 
-@given(
-    theta=st.floats(*LIMITS["theta"]),
-    omega=st.floats(-1e3, 1e3),
-    length=st.floats(0.01, 100),
-    h=st.floats(1e-3, 0.1),
+numbers = st.fixed_dictionaries(
+    {},
+    optional={
+        "theta": st.floats(*LIMITS["theta"]),
+        "omega": st.floats(-1e3, 1e3),
+        "length": st.floats(0.5, 100),
+        "h": st.floats(1e-3, 0.1),
+    },
 )
-def test_other_scenes_are_reproduced_to_the_last_bit(theta, omega, length, h):
-    scene = Scene(theta=theta, omega=omega, length=length, h=h)
-    again = scene_of(options_of(command(Live(scene))))
-    assert (again.theta, again.omega, again.length, again.gravity, again.h) == (theta, omega, length, scene.gravity, h)
+
+
+@settings(max_examples=50)
+@given(
+    scene=st.sampled_from(list(SCENES.values())),
+    changes=numbers,
+    equal_cost=st.booleans(),
+    speed=st.floats(0.1, 9),
+    parameter=st.floats(1, 50),
+    methods=st.randoms(use_true_random=False),
+)
+def test_any_start_is_reproduced_to_the_last_bit(scene, changes, equal_cost, speed, parameter, methods):
+    changes |= dict.fromkeys(scene.parameters, parameter)
+    known = [method for method in METHODS if scene.model in method.models]
+    scene = scene.altered(**changes).with_cast(tuple(methods.sample(known, min(len(known), methods.randint(1, 6)))))
+    before = Live(scene, float(f"{speed:g}"))
+    if equal_cost:
+        before.set_stepping(before.stepping.toggled())
+    options = options_of(command(before))
+    after = lab_of(scene_of(options), options)
+    assert replace(after.scene, name=scene.name, watch=scene.watch) == scene
+    assert (after.stepping, after.playhead.speed) == (before.stepping, before.playhead.speed)
+    assert reproduces(before)
+
+
+@pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
+def test_a_scene_with_another_cast_keeps_its_name_and_what_to_watch(scene):
+    other = scene.with_cast(scene.cast[::-1])
+    assert scene_of(options_of(command(Live(other)))) == other
+
+
+def test_a_step_changed_before_the_first_one_is_part_of_the_start_but_time_that_runs_back_is_not():
+    live = Live(SCENES["drift"])
+    live.set_stepping(Stepping(0.1))
+    assert options_of(command(live)).h == 0.1
+    live.set_stepping(Stepping(-0.1))
+    assert not reproduces(live)
+
+
+def test_a_method_of_ones_own_is_loaded_again_from_its_file(tmp_path):
+    file = tmp_path / "my methods.py"
+    file.write_text("""
+def mine(force, phase, h):
+    theta, omega = phase
+    while True:
+        omega = omega + h * force(theta)
+        theta = theta + h * omega
+        yield theta, omega
+""")
+    given = options_of(f"pendu-tui live --method '{file}:mine,letter=q' --methods mine,rk4")
+    scene = scene_of(given)
+    assert scene_of(options_of(command(Live(scene)))) == scene
 
 
 def test_the_speed_is_kept():
@@ -72,11 +126,13 @@ def test_the_command_of_a_replay_starts_where_it_stands():
     replay.close()
 
 
-def test_a_changed_step_that_no_file_holds_is_not_reproduced(tmp_path):
+def test_a_later_change_of_the_step_that_no_file_holds_is_not_reproduced(tmp_path):
     live = Live(SCENES["drift"])
     assert reproduces(live)
+    live.step(3)
     live.set_stepping(Stepping(0.1))
     assert not reproduces(live)
+    assert command(live) == "pendu-tui live --scene drift"
     live.record(LiveRecorder(tmp_path / "run.mcap"))
     assert reproduces(live)
     live.close()

@@ -18,6 +18,7 @@ from tui.screens.app import PenduApp
 from tui.screens.live import LiveScreen
 from tui.views.lab.event_list import EventList
 from tui.words.events import event_lines, milestone_text, numbered
+from tui.words.insight import insight
 
 DRIFT = SCENES["drift"]
 
@@ -74,6 +75,12 @@ def test_where_there_are_several_runs_each_event_has_the_number_of_its_own():
 def test_over_the_top_with_almost_the_energy_of_the_start_the_excess_is_told():
     milestone = Milestone("over the top", USUAL_CAST[3], 10, 0.5, 0.0034)
     assert milestone_text(milestone) == "RK4 over the top, +0.34 %"
+
+
+def test_an_error_that_passes_anothers_is_listed_and_is_the_news_of_the_moment():
+    live = after(SCENES["crossover"], 36)
+    assert "  33.40 RK4's error passes Verlet's" in map(str, event_lines(live))
+    assert insight(live) == "RK4's error passed Verlet's at 33.4 s: smaller at first, it kept growing."
 
 
 def test_every_verdict_has_words():

@@ -7,11 +7,12 @@ import pytest
 from engine.methods import USUAL_CAST
 from engine.run.lockstep import Lockstep
 from engine.run.stepping import Stepping
+from engine.run.verdict import Judgement
 from engine.scenes import SCENES
 from tests.tui.harness import FPS, Lab, after
 from tui.playback.live import Live
 from tui.words.events import event_lines
-from tui.words.findings import ending, forecast, leaving, short_name, so_far, staying
+from tui.words.findings import astray, ending, forecast, leaving, short_name, so_far, staying
 from tui.words.insight import FRESH, RESTING, TURN, WATCH, insight, lasting
 from tui.words.numbers import about, two_digits
 
@@ -114,6 +115,20 @@ def test_there_is_no_forecast_where_the_period_hangs_on_the_energy():
     live = after(SCENES["near-separatrix"], 200)
     assert live.judgements[RK4].verdict == "loses"
     assert forecast(live, RK4) is None  # a straight line would be a third too late
+
+
+@pytest.mark.parametrize(
+    ("judgement", "text"),
+    [
+        (Judgement("chaotic", lyapunov=0.2), "RK4 is chaotic: two close starts part tenfold every 12 s."),
+        (Judgement("chaotic"), "RK4 is chaotic: two close starts part exponentially."),
+        (Judgement("wanders"), "RK4 wanders: its energy goes up and down, without a trend and in no band."),
+        (Judgement("caught"), "RK4 is caught: its energy error stays in a band, now +29."),
+        (Judgement("loses", -1e-3, 1e-4), ""),
+    ],
+)
+def test_what_neither_stays_nor_leaves_has_a_sentence(judgement, text):
+    assert astray("RK4", judgement, 29.0) == text
 
 
 def test_what_is_nearly_all_lost_is_told_as_a_share_and_not_as_a_rate():

@@ -3,10 +3,15 @@
 import argparse
 import gc
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from engine.scenes import Scene
 from tui.cli.options import add_file, add_recording, positive
 from tui.cli.scene import add_scene_options, scene_of
 from tui.terminal.options import add_terminal_options
+
+if TYPE_CHECKING:
+    from tui.playback.live import Live
 
 EXAMPLES = """\
 examples:
@@ -16,6 +21,7 @@ examples:
   pendu-tui live --method mine.py:my_step
   pendu-tui live --theta 170deg --h 0.02 --record swing.mcap
   pendu-tui live --ghost swing.mcap --h 0.05
+  pendu-tui live --scene crossover --equal-cost
   pendu-tui live --present
   pendu-tui live --plain --no-record
 """
@@ -24,12 +30,27 @@ examples:
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_scene_options(parser)
     parser.add_argument("--speed", metavar="X", type=positive, default=1.0, help="multiple of real time (%(default)g)")
+    parser.add_argument(
+        "--equal-cost",
+        action="store_true",
+        help="all methods need as many force evaluations: the cheaper take smaller steps",
+    )
     recording = parser.add_mutually_exclusive_group()
     add_file(recording, "--record", metavar="FILE", type=Path, help="record to FILE instead of the data folder")
     recording.add_argument("--no-record", action="store_true", help="do not record")
     ghost = "lay a recording under the lab, dimmed; without --scene the lab starts as it did"
     add_recording(parser, "--ghost", help=ghost, metavar="FILE|latest|NAME")
     add_terminal_options(parser)
+
+
+def lab_of(scene: Scene, options: argparse.Namespace) -> "Live":
+    """The lab of a scene that the other options describe.  Raises SceneError for a step too large at equal cost."""
+    from tui.playback.live import Live
+
+    live = Live(scene, options.speed)
+    if options.equal_cost:
+        live.set_stepping(live.stepping.toggled())
+    return live
 
 
 def run(options: argparse.Namespace) -> int:
@@ -48,9 +69,7 @@ def run(options: argparse.Namespace) -> int:
     path = None if options.no_record else launch.recording_path(options.record)
     notices = [] if path is None else launch.recover_leftovers(path.parent)
     or_next = options.record is None
-    from tui.playback.live import Live
-
-    live = Live(scene, options.speed)
+    live = lab_of(scene, options)
     live.laid_under = ghost
     if options.plain:
         launch.start_recording(live, path, or_next)

@@ -7,8 +7,6 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from engine.methods import METHODS
-from engine.methods.own import OwnMethod
 from engine.scenes import Scene, check_h
 from tui.cli.errors import Exit, UserError
 from tui.cli.files import text_file
@@ -33,8 +31,6 @@ examples:
   pendu-tui accuracy --json | jq '.points[] | select(.method == "rk4" and .valid)'
 """
 
-ALL_LADDER = (2.4, 0.0015, 14)  # z, as in engine.accuracy.study; BM4 and BM6 are stable up to 3
-UNFAIR = "Taylor's series is compiled by Numba, and these seconds are without it."
 LONGEST = 1e9  # s
 MOST_RUNGS = 1000
 MOST_STEPS = 10**10  # of the finest rung: half an hour, compiled
@@ -107,14 +103,14 @@ def h_values(text: str) -> tuple[float, float, int]:
 
 def run(options: argparse.Namespace) -> int:
     """Measure, recommend, print.  Ctrl+C keeps what is done."""
-    from engine.accuracy.study import usual
+    from engine.accuracy.references import with_all_methods
+    from engine.accuracy.study import compilable, usual
 
     if options.all and options.methods is not None:
         raise UserError("--all and --methods exclude each other; choose one of them.")
     scene = general_scene_of(options)
     if options.all:
-        own = (method for method in scene.cast if method not in METHODS and isinstance(method, OwnMethod))
-        scene = scene.altered(cast=(*(method for method in METHODS if method.general), *own))
+        scene = with_all_methods(scene)
     if scene.theta == scene.omega == 0:
         raise UserError("the pendulum hangs at rest, so there is no error to measure; use another --theta or --omega.")
     times = options.time or [usual(scene)[0]]
@@ -131,8 +127,8 @@ def run(options: argparse.Namespace) -> int:
     file = None if options.csv in (None, "-") else Path(options.csv)
     with text_file(file, options.force) as out:
         try:
-            fair = options.cost == "evaluations" or not any(isinstance(method, OwnMethod) for method in scene.cast)
-            _fill(found, times, rungs, fair and not options.no_compiled and available())
+            fast = available() if options.cost == "evaluations" else compilable(scene.cast)
+            _fill(found, times, rungs, fast and not options.no_compiled)
         except KeyboardInterrupt:
             if file and not found.points:
                 raise
@@ -154,6 +150,7 @@ def run(options: argparse.Namespace) -> int:
 def _fill(found: "Findings", times: list[float], rungs: list[int], fast: bool) -> None:
     """Find what was asked for; what is found by an interrupt stays found."""
     from engine.accuracy.growth import growth
+    from engine.accuracy.references import references
     from engine.accuracy.study import Study, orders, timed
     from engine.run import compiled, loops
 
@@ -165,9 +162,9 @@ def _fill(found: "Findings", times: list[float], rungs: list[int], fast: bool) -
             found.points.append(point)
             show(sum(point.steps for point in found.points), len(cast) * sum(rungs))
     if found.all and found.cost == "seconds":
-        _add_references(found, fast)
+        found.references = references(found.scene, found.time, time.perf_counter, fast)
     found.orders += orders(found.scene, found.time, study.loops)
-    found.growth.update((method.key, growth(found.scene, method)) for method in cast)
+    found.growth += (growth(found.scene, method) for method in cast)
     if not (found.target or found.budget):
         return
     with progress("searching") as show:
@@ -181,25 +178,9 @@ def _show_searched(show: Callable[[float, float], None], times: int, of: int, sh
     show(times + share, of)
 
 
-def _add_references(found: "Findings", fast: bool) -> None:
-    """The points of Taylor's series, or why there are none, and the closed form."""
-    from engine.accuracy.closed_form import closed_form_seconds
-    from engine.accuracy.front import ABSENT, OTHER_MODEL, TaylorStudy
-    from engine.run.compiled import available
-
-    found.floor = closed_form_seconds(found.scene, found.time, time.perf_counter, fast)
-    if found.scene.model != "pendulum":
-        found.absent = OTHER_MODEL
-    elif not fast:
-        found.absent = UNFAIR if available() else ABSENT
-    else:
-        series = TaylorStudy(found.scene, found.time)
-        found.taylor += (series.timed(point, time.perf_counter) for point in series.points())
-
-
 def _advice(found: "Findings", study: "Study", fast: bool, show: Callable[[float], None]) -> "Advice":
     """What is recommended for the time of a study."""
-    from engine.accuracy.advice import beside_rk4, least_error, least_evaluations, least_seconds
+    from engine.accuracy.advice import least_error, least_evaluations, least_seconds, with_saving_over_rk4
     from engine.run import compiled, loops
 
     if not found.target:
@@ -209,14 +190,16 @@ def _advice(found: "Findings", study: "Study", fast: bool, show: Callable[[float
         advice = least_evaluations(*wish)
     else:
         steps = compiled.compiled if fast else loops.plain
-        series = bool(found.taylor) and not found.budget  # which is one of force evaluations
+        series = (
+            bool(found.references and found.references.taylor) and not found.budget
+        )  # which is one of force evaluations
         advice = least_seconds(*wish, time.perf_counter, steps, series)
-    return beside_rk4(advice, study, found.kind, found.target) if found.all else advice
+    return with_saving_over_rk4(advice, study, found.kind, found.target) if found.all else advice
 
 
 def _ladder(scene: Scene, time: float, given: tuple[float, float, int] | None, all: bool) -> list[int]:
     """The numbers of steps to measure; for all methods, from where the most accurate ones begin."""
-    from engine.accuracy.study import Z_LADDER, ladder
+    from engine.accuracy.study import ALL_LADDER, Z_LADDER, ladder
 
     z_max, z_min, count = ALL_LADDER if all else Z_LADDER
     largest, smallest, rungs = given or (min(z_max / scene.w0, time), z_min / scene.w0, count)

@@ -128,14 +128,14 @@ def _rows(scene: Scene, sample: "Sample", observer: "RunObserver") -> list[dict[
     exact = observer.exact.at(sample.t).theta
     rows = []
     for method, reading, judgement in zip(scene.cast, sample.readings, observer.judgements, strict=True):
-        end = reading.diverged_at
+        end, off = reading.diverged_at, scene.equations.theta_error(reading.theta, exact)
         rows.append(
             {
                 "method": method.key,
                 **fields_of(reading, *NUMBERS),
                 "log_energy_error": None if scene.equations.conserved else reading.energy_error,
                 "spring_energy": reading.spring_energy,
-                "theta_error": abs(reading.theta - exact) if end is None else None,
+                "theta_error": None if math.isnan(off) or end is not None else abs(off),
                 "drift_per_second": judgement.slope,
                 "verdict": judgement.verdict,
                 "force_evaluations": method.evaluations(sample.step if end is None else round(end / scene.h)),
@@ -156,7 +156,7 @@ def _print(
     print(f"{scene_line(scene, 'h', degrees=degrees)}, {z_name(scene.model)} = {scene.z:.4g}")
     pace = f", {sample.step / wall_seconds / 1e6:.3g} million a second" if wall_seconds > 1 else ""
     print(f"{sample.step} steps to t = {sample.t:g} s in {wall_seconds:.2f} s{pace}\n")
-    from tui.words.findings import ending
+    from tui.words.findings import ending, passing
 
     forms = {"spring_energy": ".4g"} if scene.model == "spring" else {}
     forms |= {"energy_error": "+.2e", "max_energy_error": ".2e", "drift_per_second": "+.1e", "theta_error": ".2e"}
@@ -173,6 +173,8 @@ def _print(
     theta = f"theta error [{'deg' if degrees else 'rad'}]"
     headers = (*spring, error, "largest", "per second", theta, "force evaluations")
     print_table("ll" + "r" * len(headers), ("method", "verdict", *headers), table)
-    for top in observer.milestones(sample.step):
-        if top.kind == "over the top":
-            print(ending(top, scene.equations.conserved))
+    for each in observer.milestones(sample.step):
+        if each.other:
+            print(passing(each, each.other))
+        elif each.kind == "over the top":
+            print(ending(each, scene.equations.conserved))

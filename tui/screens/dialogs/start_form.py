@@ -10,9 +10,10 @@ from textual.binding import Binding, BindingType
 from textual.containers import Container, Horizontal
 from textual.widgets import Input, Label
 
-from engine.scenes import Scene
+from engine.scenes import PARAMETERS, UNITS, Scene
 from tui.cli.options import angle, number
 from tui.screens.dialogs.modal import Modal
+from tui.words.numbers import z_name
 
 FIELDS: dict[str, tuple[str, Callable[[str], float]]] = {
     "theta": ("rad, or 115deg", angle),
@@ -20,7 +21,9 @@ FIELDS: dict[str, tuple[str, Callable[[str], float]]] = {
     "h": ("s, the step size", number),
     "length": ("m", number),
     "gravity": ("m/s²", number),
+    **{name: (f"{UNITS[name]}, {low:g} to {high:g}", number) for name, (low, high) in PARAMETERS.items()},
 }
+"""What may be typed in, and how it is read; of PARAMETERS those that the scene's model has."""
 
 
 def scene_from(texts: dict[str, str], before: Scene) -> Scene:
@@ -47,12 +50,14 @@ class StartForm(Modal[Scene | None]):
         super().__init__()
         self._before = scene
         self._scene: Scene | None = scene
+        self._fields = [name for name in FIELDS if name not in PARAMETERS or name in scene.parameters]
 
     def compose(self) -> ComposeResult:
         with Container(id="form") as form:
             form.border_title = "Start values"
             form.border_subtitle = "Enter starts, Esc cancels"
-            for name, (unit, _) in FIELDS.items():
+            for name in self._fields:
+                unit, _ = FIELDS[name]
                 with Horizontal():
                     yield Label(name)
                     yield Input(f"{getattr(self._before, name)!r}", id=name, compact=True, select_on_focus=True)
@@ -62,7 +67,7 @@ class StartForm(Modal[Scene | None]):
     @on(Input.Changed)
     def check(self) -> None:
         """Show what is wrong with the values, or w0 and z."""
-        texts = {name: self.query_one(f"#{name}", Input).value for name in FIELDS}
+        texts = {name: self.query_one(f"#{name}", Input).value for name in self._fields}
         verdict = self.query_one("#verdict", Label)
         try:
             self._scene = scene_from(texts, self._before)
@@ -84,4 +89,4 @@ class StartForm(Modal[Scene | None]):
 
     def _summary(self) -> str:
         scene = self._scene
-        return "" if scene is None else f"w0 = {scene.w0:.4g} 1/s, z = h w0 = {scene.z:.3g}"
+        return "" if scene is None else f"w0 = {scene.w0:.4g} 1/s, {z_name(scene.model)} = {scene.z:.3g}"

@@ -1,15 +1,18 @@
-"""Points of an accuracy study -> a log-log chart of error over cost."""
+"""Points of an accuracy study -> log-log charts: of error over cost, and of error over time."""
 
 import math
 from collections.abc import Sequence
 
-from engine.accuracy.ahead import Cost, cost_of
-from engine.accuracy.front import CLOSED_FORM, TAYLOR_20, TaylorPoint
+from engine.accuracy.front import Cost, cost_of
+from engine.accuracy.growth import Growth
+from engine.accuracy.references import CLOSED_FORM, TAYLOR_20, AnyPoint, References
 from engine.accuracy.study import ErrorKind, Flaw, Point
 from tui.drawing.canvas import Picture
-from tui.drawing.chart import Series, loglog_chart
+from tui.drawing.chart import SMALLEST, loglog_chart
+from tui.drawing.loglog import LogLog, Series
 from tui.drawing.palette import EXACT, FRAME, TEXT
 from tui.drawing.palette import series as series_of
+from tui.words.accuracy import COSTS
 
 MARKS: dict[Flaw, str] = {"lost": "x", "diverged": "x", "rounding": "~"}
 """Of points that do not show how the error depends on h."""
@@ -19,60 +22,91 @@ ERROR_LABELS: dict[ErrorKind, str] = {
     "energy": "energy error, the largest of all steps, relative",
     "final": "theta error at the end [rad]",
 }
-COST_LABELS: dict[Cost, str] = {"evaluations": "force evaluations", "seconds": "seconds"}
+Placed = tuple[tuple[int, int], AnyPoint]
+"""Column and row of a point on the chart."""
+REACH = 6  # columns, or half as many rows, within which the pointer finds a point
 BESIDE = 0.2  # of a method's errors: where the dotted line of its order runs
+MARKED = 12  # points of an error over time that get a letter
 
 
-def power(order: int) -> str:
-    """h to the power of an order."""
-    return "h" + "".join("⁰¹²³⁴⁵⁶⁷⁸⁹"[int(digit)] for digit in str(order) if order != 1)
+def raised(base: str, power: int) -> str:
+    """A letter to a power."""
+    return base + "".join("⁰¹²³⁴⁵⁶⁷⁸⁹"[int(digit)] for digit in str(power) if power != 1)
 
 
-def accuracy_chart(
+def accuracy_chart(series: Sequence[Series], kind: ErrorKind, cost: Cost, width: int, height: int) -> Picture:
+    """The lines of `accuracy_series` on their axes."""
+    return loglog_chart(series, width, height, x_label=COSTS[cost], y_label=ERROR_LABELS[kind])
+
+
+def charted(
+    series: Sequence[Series], points: Sequence[AnyPoint], kind: ErrorKind, cost: Cost, width: int, height: int
+) -> tuple[Picture, list[Placed]]:
+    """The chart of these series, and where points are on it."""
+    picture = accuracy_chart(series, kind, cost, width, height)
+    if width < SMALLEST[0] or height < SMALLEST[1] + 2:
+        return picture, []
+    axes = LogLog.fitting(series, width, height)
+    drawn = [p for p in points if cost_of(p, cost) and 0 < p.error(kind) < math.inf]
+    return picture, [(axes.cell(cost_of(p, cost), p.error(kind)), p) for p in drawn]
+
+
+def nearest(cells: Sequence[Placed], x: int, y: int) -> AnyPoint | None:
+    """The point nearest to a cell, if there is one within REACH."""
+
+    def distance(cell: tuple[int, int]) -> int:
+        return (cell[0] - x) ** 2 + (2 * (cell[1] - y)) ** 2
+
+    cell, point = min(cells, key=lambda found: distance(found[0]), default=((0, 0), None))
+    return point if distance(cell) <= REACH**2 else None
+
+
+def accuracy_series(
     points: Sequence[Point],
     kind: ErrorKind,
     cost: Cost,
-    width: int,
-    height: int,
     marks: Sequence[tuple[str, Point]] = (),
-    beside: Sequence[Series] = (),
-) -> Picture:
-    """Letters for points, x for useless and ~ for rounding-limited ones, dotted lines for orders, `beside`, `marks`."""
+    references: References | None = None,
+) -> list[Series]:
+    """Letters for points, x for useless and ~ for rounding-limited ones, dotted lines for orders, and `marks`.
 
-    def series(some: Sequence[Point], mark: str) -> Series:
-        costs, errors = [cost_of(point, cost) for point in some], [point.error(kind) for point in some]
-        return Series(series_of(some[0].method), mark, costs, errors)
+    The reference lines are Taylor's series and, upright, what the closed form takes.
+    """
+
+    def series(owner: int, some: Sequence[AnyPoint], mark: str) -> Series:
+        return Series(owner, mark, [cost_of(p, cost) for p in some], [p.error(kind) for p in some])
 
     methods = dict.fromkeys(point.method for point in points)
     by_method = [[point for point in points if point.method == method] for method in methods]
-    lines = [series(ours, ours[0].method.letter) for ours in by_method]
-    flawed = [series([point], MARKS[flaw]) for point in points if (flaw := point.flaw(kind))]
-    marked = [series([point], mark) for mark, point in marks]
     slopes = [_slope(ours, kind, cost, points) for ours in by_method]
-    return loglog_chart(
-        [*(slope for slope in slopes if slope), *lines, *flawed, *beside, *marked],
-        width,
-        height,
-        x_label=COST_LABELS[cost],
-        y_label=ERROR_LABELS[kind],
-    )
+    found = [slope for slope in slopes if slope]
+    found += (series(series_of(ours[0].method), ours, ours[0].method.letter) for ours in by_method)
+    found += (series(series_of(p.method), [p], MARKS[flaw]) for p in points if (flaw := p.flaw(kind)))
+    if references:
+        taylor = references.taylor
+        found += [series(TEXT, taylor, TAYLOR_20.letter)] if taylor else []
+        found += (series(TEXT, [p], MARKS[flaw]) for p in taylor if (flaw := p.flaw(kind)))
+        every: list[AnyPoint] = [*points, *taylor]
+        errors = [error for p in every if (error := p.error(kind)) and math.isfinite(error)]
+        ends = [min(errors), max(errors)] if errors else []
+        found.append(Series(EXACT, CLOSED_FORM.letter, [references.floor] * len(ends), ends))
+    return [*found, *(series(series_of(point.method), [point], mark) for mark, point in marks)]
 
 
-def references(
-    taylor: Sequence[TaylorPoint], floor: float | None, points: Sequence[Point], kind: ErrorKind
-) -> list[Series]:
-    """What is beside the methods over seconds: the line of Taylor's series, and upright the closed form's floor."""
-
-    def series(some: Sequence[TaylorPoint], mark: str) -> Series:
-        return Series(TEXT, mark, [cost_of(p, "seconds") for p in some], [p.error(kind) for p in some])
-
-    flawed = [series([point], MARKS[flaw]) for point in taylor if (flaw := point.flaw(kind))]
-    lines = [series(taylor, TAYLOR_20.letter), *flawed] if taylor else []
-    known = [*(point.error(kind) for point in points), *(point.error(kind) for point in taylor)]
-    errors = [error for error in known if error and math.isfinite(error)]
-    if floor and errors:
-        lines.append(Series(EXACT, CLOSED_FORM.letter, [floor, floor], [min(errors), max(errors)]))
-    return lines
+def growth_chart(found: Sequence[Growth], width: int, height: int) -> Picture:
+    """Letters for errors in theta along a run, and dotted lines of the powers of t that they follow."""
+    lines: list[Series] = []
+    slopes: dict[int, Series] = {}
+    for growth in found:
+        owner, times, errors = series_of(growth.method), growth.times, growth.errors
+        some = sorted({round(len(times) ** (n / MARKED)) - 1 for n in range(MARKED + 1)}) if times else []
+        lines.append(Series(owner, growth.method.letter, [times[n] for n in some], [errors[n] for n in some]))
+        if growth.power is not None:
+            power, ends = round(growth.power), [times[0], times[-1]]
+            slope = [BESIDE * errors[-1] * (t / times[-1]) ** power for t in ends]
+            slopes.setdefault(power, Series(FRAME, raised("t", power), ends, slope, dotted=True))
+    label = "theta error [rad], the largest of each period"
+    return loglog_chart([*slopes.values(), *lines], width, height, x_label="time [s]", y_label=label)
 
 
 def _slope(ours: Sequence[Point], kind: ErrorKind, cost: Cost, points: Sequence[Point]) -> Series | None:
@@ -85,4 +119,4 @@ def _slope(ours: Sequence[Point], kind: ErrorKind, cost: Cost, points: Sequence[
     costs = [cost_of(point, cost) for point in points]
     ends = [min(costs), max(costs)]
     errors = [BESIDE * anchor.error(kind) * (end / cost_of(anchor, cost)) ** -order for end in ends]
-    return Series(FRAME, power(order), ends, errors, dotted=True)
+    return Series(FRAME, raised("h", order), ends, errors, dotted=True)

@@ -1,17 +1,21 @@
-"""AccuracyView: cost against accuracy for the pendulum on screen; the chart fills in as it is computed."""
+"""AccuracyView: error over cost and over time for the pendulum on screen; the charts fill in as they are computed."""
 
-from collections.abc import Sequence
+import time
+from collections.abc import Callable, Iterator
+from functools import partial
 
 from textual.app import ComposeResult
 
-from engine.accuracy.study import measured, usual
-from engine.scenes import Scene
+from engine.accuracy.growth import Growth, growths
+from engine.accuracy.references import References, measured_front, with_all_methods
+from engine.accuracy.study import Point, measured, usual
 from tui.views.accuracy.pane import KEYS, MOST_STEPS, AccuracyPane
 from tui.views.background import computed
 from tui.views.view import View
 
+Found = Iterator[Point | References | Growth]
 Start = tuple[object, ...]
-"""theta, omega, the model and the cast: what the chart depends on."""
+"""theta, omega, the model and the methods: what the chart over cost depends on."""
 
 
 class AccuracyView(View):
@@ -22,13 +26,16 @@ class AccuracyView(View):
     def __init__(self, id: str) -> None:
         super().__init__(id=id)
         self._start: Start | None = None
+        self._grown: object = None  # what the errors over time are for
 
     def compose(self) -> ComposeResult:
         yield AccuracyPane().data_bind(View.source, View.shown, sample=View.sample_10hz)
 
     def on_mount(self) -> None:
-        self.query_one(AccuracyPane).focus()
         self.watch_sample_10hz()
+
+    def on_show(self) -> None:
+        self.query_one(AccuracyPane).focus()
 
     def watch_sample_10hz(self) -> None:
         """Compute what is missing for the run on screen, if the view is shown."""
@@ -41,22 +48,27 @@ class AccuracyView(View):
                 self.workers.cancel_node(self)
                 pane.begin(0.0, ())
             return
-        start = (scene.theta, scene.omega, scene.equations, scene.cast)
+        own, every = self.source.stepping.own, with_all_methods(scene) if pane.all else scene
+        clock = (time.perf_counter,) if pane.all else ()
+        start = (scene.theta, scene.omega, scene.equations, every.cast, pane.all)
         if start != self._start:
-            self._start = start
+            self._start, self._grown = start, None
             self.workers.cancel_node(self)
-            pane.begin(*usual(scene))
-            self._compute(scene, pane.time, pane.rungs, "ladder")
-        here = tuple(max(1, round(pane.time / abs(h))) for h in self.source.stepping.own)
+            pane.begin(*usual(scene, pane.all))
+            self._begin_work("ladder", measured_front if pane.all else measured, every, pane.time, pane.rungs, *clock)
+        here = tuple(max(1, round(pane.time / abs(h))) for h in own)
         if here != pane.here:
             pane.here = here
             known = {*pane.rungs, *(steps for _, steps in pane.points)}
             if wanted := [steps for steps in sorted(set(here) - known) if 1 < steps <= MOST_STEPS]:
-                self._compute(scene, pane.time, wanted, "here")
+                self._begin_work("here", measured, scene, pane.time, wanted, *clock)
+        if pane.over_time and self._grown != (start, own):
+            self._grown, pane.growths = (start, own), []
+            self._begin_work("growth", growths, scene, own)
 
-    def _compute(self, scene: Scene, time: float, rungs: Sequence[int], group: str) -> None:
-        self.run_worker(self._add_points(scene, time, rungs), group=group, exclusive=True, exit_on_error=False)
+    def _begin_work(self, group: str, function: Callable[..., Found], *arguments: object) -> None:
+        self.compute(partial(self._fill, function, *arguments), group)
 
-    async def _add_points(self, scene: Scene, time: float, rungs: Sequence[int]) -> None:
-        async for point in computed(measured, scene, time, rungs):
-            self.query_one(AccuracyPane).add(point)
+    async def _fill(self, function: Callable[..., Found], *arguments: object) -> None:
+        async for found in computed(function, *arguments):
+            self.query_one(AccuracyPane).add(found)

@@ -1,5 +1,6 @@
 """ErrorTable: each method's state and energy error now, and the verdict on its error so far."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -88,7 +89,9 @@ def share(line: TableLine, value: float, width: int, sign: str = "+") -> str:
 
 def theta_error(line: TableLine) -> float:
     """|theta - exact theta|."""
-    return measured(abs(line.reading.theta - line.exact.theta), line.degrees)
+    error = line.reading.theta - line.exact.theta
+    error = error if line.reading.position is None else math.remainder(error, math.tau)
+    return measured(abs(error), line.degrees)
 
 
 SIGNS = {"bounded": "=", "grows": "+", "loses": "-", "caught": "=", "chaotic": "!", "wanders": "~", "failed": "!"}

@@ -6,7 +6,7 @@ the middle, since explicit Euler goes over the top; where no method can, it is a
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import cos, pi, sin
+from math import cos, isfinite, pi, sin
 
 from textual.content import Content
 
@@ -107,7 +107,7 @@ class Pendulum(Pane):
         length = TRAIL if self.shown.trails and sample.readings[0].position is None else 0  # a rod has had many lengths
         bobs = []
         if self.shown.exact or self._place is None:
-            bobs.append(_exact(source, sample.t))
+            bobs += _exact(source, sample.t)
         places = self.places if self._place is None else [self._place]
         ghost = source.ghost
         rods = {} if ghost is None else ghost.rods(sample.t)
@@ -132,8 +132,9 @@ class Pendulum(Pane):
         self.show_sketch(pendulum_sketch(*self.room, bobs, widest))
 
 
-def _exact(source: Source, t: float) -> Bob:
-    """The exact motion at a time [s]."""
+def _exact(source: Source, t: float) -> list[Bob]:
+    """The exact motion at a time [s], where it is known."""
     scene, model = source.scene, source.scene.equations
     length = abs(model.place(scene.theta, scene.omega, t)[0]) if isinstance(model, Spring) else 1.0
-    return Bob(source.exact.at(t).theta, EXACT, ghost=True, length=length)
+    theta = source.exact.at(t).theta
+    return [Bob(theta, EXACT, ghost=True, length=length)] if isfinite(theta) else []

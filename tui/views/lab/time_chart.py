@@ -26,6 +26,7 @@ NAMES: dict[Quantity, tuple[str, str]] = {
     "theta_error": ("theta - exact theta [rad]", "theta error [rad]"),
     "shadow_error": ("shadow energy error", "|shadow error|"),
     "energy": ("energy per m L² [1/s²]", "energy [1/s²]"),
+    "spring_energy": ("energy in the spring, 1 at the start", "spring energy (1 at start)"),
 }
 """Of the quantity itself, and of its magnitude for a logarithmic chart."""
 LOGARITHM = ("ln(E/E_true)", "|ln(E/E_true)|")
@@ -45,7 +46,7 @@ def title(shown: Shown, exact: ExactMotion, conserved: bool = True) -> str:
     name, magnitude = in_unit(name, shown.degrees), in_unit(magnitude, shown.degrees)
     if not shown.log:
         return f"{name}, {span}"
-    each = {"libration": " per half swing", "rotation": " per turn"}.get(exact.regime, "")
+    each = {"libration": " per half swing", "rotation": " per turn"}.get(exact.regime, "") if exact.period else ""
     return f"max {magnitude}{each}, {span}"
 
 
@@ -84,10 +85,9 @@ class TimeChart(Pane):
         """Whether the chart shows the newest data."""
         return not (self._building or self._wanted.is_set())
 
-    @property
-    def _look(self) -> Shown:
+    def _look(self, source: Source) -> Shown:
         """What to show of the source here."""
-        return replace(self.shown, quantity=self.shown.quantity_ahead(self._ahead))
+        return replace(self.shown, quantity=self.shown.quantity_ahead(self._ahead, source.scene))
 
     def on_click(self) -> None:
         """Show the next quantity."""
@@ -127,7 +127,7 @@ class TimeChart(Pane):
         """Say in the title what is shown, and below what is under the pointer, or how to change it."""
         if (source := self.source) is None:
             return
-        look, plot, room = self._look, self._plot, self.room.width - 6
+        look, plot, room = self._look(source), self._plot, self.room.width - 6
         above = title(look, source.exact, source.scene.equations.conserved)
         reading = plot.at(self._pointer) if plot is not None and self._pointer is not None else None
         if plot is not None and reading is not None:
@@ -150,7 +150,7 @@ class TimeChart(Pane):
             if self.source is None or self.sample is None or not self.drawable:
                 continue
             self._building = True
-            shown, (width, height), ghost = self._look, self.room, self.source.ghost
+            shown, (width, height), ghost = self._look(self.source), self.room, self.source.ghost
             behind = None if ghost is None else (ghost.window(self.sample.t, shown.seconds), ghost.scene.cast)
             build = partial(
                 time_chart,

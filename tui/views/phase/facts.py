@@ -38,7 +38,9 @@ def fact_rows(
         reading = source.sample.readings[index]
         cells = (
             *(("-", "-") if ring is None or not has_ring(source.scene) else area_text(ring.area_ratios[index])),
-            scientific(measured(reading.theta - exact.theta, shown.degrees), _CELL, 3),
+            scientific(
+                measured(source.scene.equations.theta_error(reading.theta, exact.theta), shown.degrees), _CELL, 3
+            ),
             scientific(reading.energy_error, _CELL, 3),
         )
         name = f" {mark(index, method)} {method.label}".ljust(_NAME)

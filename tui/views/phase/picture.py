@@ -1,5 +1,6 @@
 """Points in phase space, with trails and rings -> a picture on the theoretical portrait."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -50,7 +51,8 @@ def source_picture(
 def method_points(source: Source, sample: Sample, shown: Shown, ring: Neighbourhood | None) -> list[PhasePoint]:
     """The points that are to be shown of a sample, the exact one first."""
     length = TRAIL if shown.trails else 0
-    points = [PhasePoint(*source.exact.at(sample.t), EXACT, "x")] if shown.exact else []
+    exact = source.exact.at(sample.t)
+    points = [PhasePoint(*exact, EXACT, "x")] if shown.exact and math.isfinite(exact.theta) else []
     for index in shown.places(source.scene.cast):
         method = source.scene.cast[index]
         reading, trail = sample.readings[index], source.history.trail(index, length)

@@ -1,6 +1,7 @@
 """PhaseView: phase space over the whole screen, with a table of what the methods do to area, or of their orbits."""
 
 import asyncio
+from functools import partial
 
 from textual.app import ComposeResult
 
@@ -53,7 +54,7 @@ class PhaseView(View):
         pane = self.query_one(SectionPane)
         self.workers.cancel_node(self)
         if pane.wanted is not None:
-            self.run_worker(self._fill(pane, pane.wanted), exclusive=True, exit_on_error=False)
+            self.compute(partial(self._fill, pane, pane.wanted))
         self._write_facts()
 
     async def _fill(self, pane: SectionPane, wanted: Wanted) -> None:

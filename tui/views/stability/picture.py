@@ -32,7 +32,7 @@ Segments = list[Segment]
 
 
 def scores(cells: Cells, steps: int) -> Scores:
-    """A score per swing: -1 not computed; 0 to 1 lost, early to late; 1 to 2 stable, energy error large to small.
+    """A score per swing: -1 not computed; 0 to 1 lost, early to late; 1 to 2 held, energy error large to small.
 
     Both parts are logarithmic, in steps survived and in the largest energy error.
     """
@@ -140,7 +140,7 @@ def worst(values: Scores, columns: int, rows: int) -> Scores:
 
 
 def colour(score: float, method: Method, palette: Palette) -> str:
-    """Stable: the method's colour, brighter for a smaller energy error.  Lost: the warning colour, darker if sooner."""
+    """Held: the method's colour, brighter for a smaller energy error.  Lost: the warning colour, darker if sooner."""
     if score < 0:
         return palette.background
     if score < 1:
@@ -149,7 +149,7 @@ def colour(score: float, method: Method, palette: Palette) -> str:
 
 
 def character(score: float, steps: int) -> str:
-    """The same without colour: # + - stable, by energy error; lost within 10 steps: a dot, after 10^n steps: n."""
+    """The same without colour: # + - held, by energy error; lost within 10 steps: a dot, after 10^n steps: n."""
     if score < 0:
         return " "
     if score < 1:
@@ -164,14 +164,14 @@ def legend(steps: int, palette: Palette | None, columns: int = 80) -> list[Segme
     lines = [Segment(f"{limit} linear limit   {threshold} global chaos above   ")]
     orbit = [Segment(f"{catching} stable 2-cycle   y: amplitude [deg]")]
     if palette is None:
-        held = [Segment("stable: error <1e-4 #  <0.1 +  above -   ")]
+        held = [Segment("held: error <1e-4 #  <0.1 +  above -   ")]
         lost = [Segment("lost: at step <10 .  <100 1  <1000 2")]
     else:
         held, lost = (
             [Segment("█", Style(color=colour(low + 0.999 * part / 7, EXAMPLE, palette))) for part in range(8)]
             for low in (1.0, 0.0)
         )
-        held = [Segment("stable, energy error 1 "), *held, Segment(" 1e-12   ")]
+        held = [Segment("held, energy error 1 "), *held, Segment(" 1e-12   ")]
         lost = [Segment("lost at step 1 "), *lost, Segment(f" {steps}")]
     return [held + lost, lines + orbit] if columns >= 80 else [held, lost, lines, orbit]
 

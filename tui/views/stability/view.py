@@ -1,6 +1,7 @@
 """StabilityView: where each method becomes unstable; the map fills in as it is computed."""
 
 import math
+from functools import partial
 
 import numpy as np
 from textual.app import ComposeResult
@@ -44,7 +45,7 @@ class StabilityView(View):
             self.workers.cancel_node(self)
             pane.begin(_grid(cast))
             if cast:
-                self.run_worker(self._fill(pane), exclusive=True, exit_on_error=False)
+                self.compute(partial(self._fill, pane))
 
     async def _fill(self, pane: StabilityPane) -> None:
         """Compute the map, and show how far it is in tenths: with a new title, Textual sends all of the pane again."""

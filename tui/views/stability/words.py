@@ -6,15 +6,23 @@ from typing import Any
 import numpy as np
 
 from engine.methods import Method
-from engine.stability.outcomes import FATES, HELD, UNKNOWN, Cells, Floats, is_lost
+from engine.stability.outcomes import CHAOTIC, FATES, HELD, UNKNOWN, Cells, Floats, is_lost
+
+_SAID = {"holds": "held", "holds, wobbling": "held, larger wobble", "caught": "caught, period 2"}
+
+
+def said(cell: Any) -> str:
+    """The fate of a swing, as people say it."""
+    return _SAID.get(FATES[cell["fate"]], FATES[cell["fate"]])
 
 
 def note(cell: Any) -> str:
     """The outcome of a swing in a few words."""
     if cell["fate"] == UNKNOWN:
         return "…"
-    fate = _said(cell)
-    return f"{fate}, step {cell['steps'] + 1}" if is_lost(cell) else f"{fate}, {cell['error']:.0e}"
+    if cell["fate"] == CHAOTIC:
+        return said(cell)
+    return f"{said(cell)}, step {cell['steps'] + 1}" if is_lost(cell) else f"{said(cell)}, {cell['error']:.0e}"
 
 
 def verdict(method: Method, theta: float, zs: Floats, cells: Cells, at: int, w0: float) -> str:
@@ -23,18 +31,15 @@ def verdict(method: Method, theta: float, zs: Floats, cells: Cells, at: int, w0:
     place = f"{method.label} at h {zs[at] / w0:.3g} s, {math.degrees(theta):.3g} deg:"
     if cell["fate"] == UNKNOWN:
         return f"{place} not computed yet"
-    holds, fate = not is_lost(cell), _said(cell)
+    holds, fate = not is_lost(cell), said(cell)
     other = np.flatnonzero(np.isin(cells["fate"], HELD) != holds)
     if not len(other):
-        cliff = "; stable at every h on this map" if holds else "; lost at every h on this map"
+        cliff = "; held at every h on this map" if holds else "; lost at every h on this map"
     else:
         nearest = zs[other[np.abs(other - at).argmin()]] / w0
-        cliff = f"; lost at h {nearest:.3g} s" if holds else f"; stable at h {nearest:.3g} s"
+        cliff = f"; lost at h {nearest:.3g} s" if holds else f"; held at h {nearest:.3g} s"
     if holds:
         return f"{place} {fate}, energy error {cell['error']:.1e}{cliff}"
+    if cell["fate"] == CHAOTIC:
+        return f"{place} {fate}{cliff}"
     return f"{place} lost at step {cell['steps'] + 1}, {fate}{cliff}"
-
-
-def _said(cell: Any) -> str:
-    """The fate of a swing; "holds" is said of methods, "stable" of swings."""
-    return FATES[cell["fate"]].replace("holds", "stable")

@@ -1,14 +1,19 @@
 """F4: speed against accuracy for the pendulum on screen."""
 
 import math
-from collections.abc import AsyncIterator
+import re
+from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import asynccontextmanager
+from dataclasses import replace
+from typing import Any
 
 import pytest
 from textual.pilot import Pilot
 
-from engine.accuracy.study import Study, ladder
-from engine.methods import USUAL_CAST
+from engine.accuracy.front import front
+from engine.accuracy.references import References, TaylorPoint
+from engine.accuracy.study import Flaws, Point, Study, ladder
+from engine.methods import METHODS, USUAL_CAST
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene
 from recordings.library import resolve
@@ -21,6 +26,7 @@ from tui.screens.live import LiveScreen
 from tui.screens.replay import ReplayScreen
 from tui.views.accuracy.chart import MARKS
 from tui.views.accuracy.pane import HERE, AccuracyPane
+from tui.words.accuracy import COSTS, front_words
 
 RUNGS = ladder(5.0, 0.2, 0.01, 4)
 VERLET = 2
@@ -28,12 +34,17 @@ VERLET = 2
 
 @pytest.fixture(autouse=True)
 def _few_points(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tui.views.accuracy.view.usual", lambda scene: (5.0, RUNGS))
+    monkeypatch.setattr("tui.views.accuracy.view.usual", lambda scene, all: (5.0, RUNGS))
+
+
+def words(pane: AccuracyPane) -> str:
+    """All that is below the chart, on one line."""
+    return " ".join(pane.text.rsplit(f" {COSTS[pane.cost]}\n", 1)[1].split())
 
 
 def said(pane: AccuracyPane) -> str:
-    """The words below the chart, on one line."""
-    return " ".join(pane.text.rsplit("force evaluations\n", 1)[1].split())
+    """What is said of a point."""
+    return words(pane).partition(" Cheapest")[0]
 
 
 def is_complete(pane: AccuracyPane) -> bool:
@@ -56,6 +67,7 @@ async def accuracy_view(
         yield pilot, pane, live
 
 
+@pytest.mark.other_process
 async def test_the_points_fill_in_and_are_the_engines():
     async with accuracy_view() as (_, pane, _live):
         for point in Study(SCENES["drift"], 5.0).points(RUNGS):
@@ -130,13 +142,96 @@ async def test_another_h_moves_the_mark_and_another_start_the_points():
 
 async def test_the_charts_quantity_chooses_the_error_and_hidden_methods_are_not_drawn():
     async with accuracy_view() as (pilot, pane, _live):
-        await pilot.press("e", "1")
-        await complete(pilot, pane)
+        await pilot.press("f2", "e", "f4", "1")
+        await until(pilot, lambda: is_complete(pane) and "theta error" in str(pane.border_title))
         assert "theta error" in pane.text
         assert "theta error" in str(pane.border_title)
         chart = pane.text.split("\n", 1)[1].rsplit("force evaluations", 2)[0]
         assert "v" in chart
         assert not {"x", "~"} & set(chart.replace("1e", ""))  # explicit Euler alone is lost
+
+
+async def test_it_says_which_method_is_the_cheapest_at_each_accuracy():
+    async with accuracy_view() as (_, pane, _live):
+        points = [point for (_, steps), point in pane.points.items() if steps in RUNGS]
+        found = front(points, "energy", "evaluations")
+        assert {one.method.key for one in found} == {"velocity_verlet", "rk4"}
+        assert words(pane).endswith(front_words(found, "evaluations", ()))
+
+
+async def test_the_pointer_reads_a_point_out_and_a_click_uses_its_h():
+    async with accuracy_view() as (pilot, pane, live):
+        point = pane.points[3, RUNGS[2]]
+        ((column, row),) = (cell for cell, placed in pane._cells if placed is point)
+        assert pane.text.splitlines()[row][column] == "r"
+        at = (column + 1, row + 1)  # the frame
+        await pilot.hover(pane, (at[0] + 1, at[1]))
+        assert said(pane) == (
+            f"RK4 at h {point.h:.4g} s: energy error {point.energy_error:.1e} for {point.force_evaluations}"
+            " force evaluations; click: use this h"
+        )
+        await pilot.click(pane, at)
+        await complete(pilot, pane)
+        assert (live.stepping.h, pane.index) == (point.h, 3)
+        await pilot.hover(pane, (70, 2))
+        assert pane.pointer is None  # far from any point
+        await pilot.press("u")
+        assert live.stepping.h == 0.05
+
+
+async def test_over_time_the_slopes_are_measured_and_said():
+    async with accuracy_view(SCENES["drift"].altered(theta=2.0, h=0.02)) as (pilot, pane, _live):
+        await pilot.press("e")
+        await until(pilot, lambda: pane.over_time and pane.settled)
+        powers = re.search(
+            r"grows as: Velocity Verlet t\^(\S+), RK4 t\^(\S+) No single power", " ".join(pane.text.split())
+        )
+        assert powers
+        assert [float(power) for power in powers.groups()] == pytest.approx([1, 2], abs=0.1)
+        assert all(word in pane.text for word in ("t²", "time [s]", "theta error [rad]"))
+        await pilot.press("e")
+        await until(pilot, lambda: "theta error" in str(pane.border_title))
+        await pilot.press("e")
+        await until(pilot, lambda: "energy error" in str(pane.border_title))
+
+
+async def test_all_methods_and_the_reference_lines_are_charted_over_seconds(monkeypatch):
+    async def here(function, *arguments):
+        for found in function(*arguments):
+            yield found
+
+    def run(tolerance: float, seconds: float) -> TaylorPoint:
+        return TaylorPoint(5.0, tolerance, 50, *[100 * tolerance] * 3, Flaws(None, None, None), seconds)
+
+    def points(scene: Scene, time: float, rungs: list[int], *_clock: Callable[[], float]) -> Iterator[Point]:
+        return (replace(p, seconds=1e-7 * p.force_evaluations) for p in Study(scene, time).points(rungs))
+
+    def lines(*arguments: Any) -> Iterator[Point | References]:
+        yield from points(*arguments)
+        yield References(2e-5, [run(1e-3, 4e-6), run(1e-12, 6e-6)], "No more.")
+
+    async with accuracy_view() as (pilot, pane, live):
+        monkeypatch.setattr("tui.views.accuracy.view.computed", here)
+        monkeypatch.setattr("tui.views.accuracy.view.measured", points)
+        monkeypatch.setattr("tui.views.accuracy.view.measured_front", lines)
+        await pilot.press("asterisk")
+        await until(pilot, lambda: pane.all and is_complete(pane))
+        assert [method.key for method in pane.cast] == [method.key for method in METHODS if method.general]
+        assert pane.border_title == "Accuracy (F4) over 5 s: energy error"
+        assert all(f"{letter}" in pane.text for letter in "fbmtc")
+        assert "Cheapest in seconds: Taylor, order 20 from 1e-9 to 1e-10, BM6 from 1e-11" in words(pane)
+        assert "without Numba, in force evaluations: " in words(pane)
+        ((column, row),) = (
+            cell for cell, placed in pane._cells if isinstance(placed, TaylorPoint) and placed.seconds == 6e-6
+        )
+        await pilot.hover(pane, (column + 1, row + 1))
+        assert said(pane) == "Taylor, order 20 at a tolerance of 1e-12 rad/s: energy error 1.0e-10 for 50 steps in 6 µs"
+        await pilot.press(*["tab"] * 3, "left")
+        assert pane.cast[pane.index].key == "blanes_moan_4"
+        await pilot.press("enter", "asterisk")
+        await complete(pilot, pane)
+        assert live.stepping.h == 5.0 / RUNGS[0]
+        assert pane.cast == USUAL_CAST
 
 
 async def test_the_cursor_stays_on_the_ladder_and_esc_leaves_it():

@@ -2,20 +2,39 @@
 
 from itertools import product
 
+import pytest
 from textual.events import MouseScrollUp
 
 from engine.scenes import SCENES
 from tests.tui.harness import lab
-from tui.playback.shown import QUANTITIES, WINDOWS, Shown
+from tui.playback.shown import WINDOWS, Shown, quantities
 from tui.views.lab.time_chart import TimeChart, title
 
 
-def test_a_title_says_what_the_chart_shows_and_fits_above_the_narrowest_chart():
-    for quantity, log, seconds, scene in product(QUANTITIES, (True, False), WINDOWS, ("drift", "spin")):
-        text = title(Shown(quantity=quantity, log=log, seconds=seconds), SCENES[scene].exact())
+@pytest.mark.parametrize("name", SCENES)
+def test_a_title_says_what_the_chart_shows_with_its_unit_and_fits_above_the_narrowest_chart(name):
+    scene = SCENES[name]
+    exact, model = scene.exact(), scene.equations
+    for quantity, log, seconds in product(quantities(scene), (True, False), WINDOWS):
+        text = title(Shown(quantity=quantity, log=log, seconds=seconds), exact, model.conserved)
         assert len(text) + 6 <= 52  # of 80 columns the pendulums have 28; two corners, two lines, two spaces
-        assert ("per half swing" in text) == (log and scene == "drift")
-        assert ("per turn" in text) == (log and scene == "spin")
+        cycle = {"libration": "per half swing", "rotation": "per turn"}[exact.regime] if log and exact.period else "per"
+        assert cycle in text or cycle == "per"
+        unit = {"theta_error": "[rad]", "energy": "[1/s²]"}.get(quantity, "")
+        assert unit in text
+        assert unit or any(ratio in text for ratio in ("dE/E0", "ln(E/E_true)", "shadow", "1 at"))
+
+
+def test_a_chart_goes_through_what_a_scene_has_and_no_more():
+    spring, drift = SCENES["stiff-slow"], SCENES["drift"]
+    assert quantities(spring) == ("energy_error", "theta_error", "energy", "spring_energy")
+    assert quantities(drift) == ("energy_error", "theta_error", "shadow_error", "energy")
+    shown = Shown()
+    for _ in range(3):
+        shown = shown.next_quantity(spring)
+    assert shown.quantity == "spring_energy"
+    assert shown.next_quantity(spring) == Shown()
+    assert shown.quantity_ahead(0, drift) == "energy_error"  # what the next scene lacks is not shown
 
 
 async def test_the_pointer_reads_the_chart_out_and_the_wheel_takes_another_window():

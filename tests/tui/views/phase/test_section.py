@@ -105,6 +105,7 @@ async def test_x_shows_the_own_map_of_velocity_verlet_and_the_portrait_again(siz
         assert "E/Es" in pane.text
 
 
+@pytest.mark.other_process
 async def test_the_section_is_the_engines():
     async with lab(SCENE, size=(100, 30)) as theatre:
         pane = await section_of(theatre, "x")

@@ -38,12 +38,13 @@ async def stability_view(
         yield pilot, pane, live
 
 
+@pytest.mark.other_process
 async def test_the_map_fills_in_and_is_the_engines(monkeypatch: pytest.MonkeyPatch):
     async with stability_view(monkeypatch) as (_, pane, _live):
         assert (pane.cells["fate"] != UNKNOWN).all()
         sixty = type(pane.grid)(pane.grid.theta[:5], pane.grid.z[30:35], 60)
         assert np.array_equal(pane.cells[30:35, :, :5], sixty.cells())
-        for line in ("1 e Explicit Euler  grows", "2 s stable", "4 r RK4  stable", "h 0.479"):
+        for line in ("1 e Explicit Euler  grows", "2 s Symplectic Euler  held", "4 r RK4  held", "h 0.479"):
             assert line in pane.text
 
 
@@ -52,7 +53,7 @@ async def test_it_says_what_becomes_of_the_swing_on_screen(monkeypatch: pytest.M
         z, theta = pane.here(VERLET)
         assert (z, theta) == (live.scene.z, 1.0)
         assert pane.text.count("@") == 4
-        assert "Velocity Verlet at h 0.0539 s, 58.1 deg: stable" in pane.text
+        assert "Velocity Verlet at h 0.0539 s, 58.1 deg: held" in pane.text
 
 
 async def test_at_equal_cost_each_method_is_where_its_own_step_is(monkeypatch: pytest.MonkeyPatch):
@@ -173,7 +174,7 @@ async def test_a_replay_says_what_becomes_of_its_swing_and_keeps_its_arrows(monk
     replay.pause(True)
     screen = ReplayScreen(replay, lambda live: LiveScreen(live))
     async with view_of(screen, "f5", StabilityPane, is_complete, (80, 30)) as (pilot, pane):
-        assert "Velocity Verlet at h 0.0539 s, 58.1 deg: stable" in pane.text
+        assert "Velocity Verlet at h 0.0539 s, 58.1 deg: held" in pane.text
         await pilot.press("right")
         assert replay.playhead.position == pytest.approx(1.0, abs=0.05)
         assert pane.cursor is None

@@ -1,4 +1,4 @@
 """What `accuracy`, `stability` and `section` print, kept apart from their options because it loads NumPy and Rich.
 
-`front` is what `accuracy --all` says more: the lines beside the methods, and who is ahead.
+`references` prints the reference lines of `accuracy --all`, and lists the points of all lines for JSON and CSV.
 """

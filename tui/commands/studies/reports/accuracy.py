@@ -8,27 +8,20 @@ from typing import Any, TextIO
 from rich.text import Text
 
 from engine.accuracy.advice import Advice
-from engine.accuracy.ahead import Ahead, Cost, ahead
-from engine.accuracy.front import TAYLOR_20, Reference, TaylorPoint
-from engine.accuracy.growth import PERIODS
+from engine.accuracy.front import Cheapest, Cost, front
+from engine.accuracy.growth import Growth
+from engine.accuracy.references import TAYLOR_20, AnyPoint, Reference, References
 from engine.accuracy.study import REASONS, ErrorKind, Order, Point
 from engine.methods import Method
 from engine.methods.own import OwnMethod
 from engine.scenes import Scene
 from tui.cli.output import console, fields_of, print_picture, print_table, scene_line, write_csv, write_json
-from tui.commands.studies.reports.front import (
-    WORTH_SAYING,
-    factor_words,
-    front_words,
-    length,
-    print_references,
-    rows_of,
-)
+from tui.commands.studies.reports.references import print_references, rows_of
 from tui.drawing.palette import PALETTES
-from tui.views.accuracy.chart import ERROR_LABELS, MARKS, accuracy_chart, references
+from tui.views.accuracy.chart import ERROR_LABELS, MARKS, accuracy_chart, accuracy_series
+from tui.words.accuracy import WORTH_SAYING, factor_words, front_words, growth_words, length
 
 CHART_SIZE = (100, 24)  # columns at most, rows
-_POWERS = {1: "t", 2: "t²"}
 
 
 @dataclass(slots=True)
@@ -43,18 +36,17 @@ class Findings:
     budget: int | None
     points: list[Point] = field(default_factory=list)
     orders: list[Order] = field(default_factory=list)
-    growth: dict[str, float | None] = field(default_factory=dict)  # power of t of the theta error, by method
+    growth: list[Growth] = field(default_factory=list)  # of the theta error, at the scene's h
     advice: list[Advice] = field(default_factory=list)  # one for each time asked for
     all: bool = False
-    taylor: list[TaylorPoint] = field(default_factory=list)
-    floor: float | None = None  # s, of the closed form
-    absent: str | None = None  # why there is no Taylor series
+    references: References | None = None
     interrupted: bool = False
 
     @property
-    def front(self) -> list[Ahead]:
-        """Who is ahead at each accuracy."""
-        return ahead([*self.points, *self.taylor], self.kind, self.cost)
+    def front(self) -> list[Cheapest]:
+        """The cheapest method at each accuracy."""
+        taylor = self.references.taylor if self.references else ()
+        return front([*self.points, *taylor], self.kind, self.cost)
 
     @property
     def wish(self) -> str:
@@ -67,11 +59,12 @@ def print_text(found: Findings) -> None:
     """Print the table, the chart, and what is recommended."""
     print(f"{scene_line(found.scene)}, over {found.time:g} s\n{ERROR_LABELS[found.kind]}\n")
     _print_points(found)
-    print_references(found.taylor, found.floor, found.absent, found.kind)
+    if found.references:
+        print_references(found.references, found.kind)
     print()
     _print_chart(found)
     if found.all and found.points:
-        alone = ahead(found.points, found.kind, "evaluations")
+        alone = front(found.points, found.kind, "evaluations")
         print(f"\n{front_words(found.front, found.cost, alone)}")
         if words := factor_words(alone):
             print(words)
@@ -91,12 +84,12 @@ def print_json(found: Findings) -> None:
             "scene": found.scene.fields(),
             "time": found.time,
             "error": found.kind,
-            "points": rows_of(found.points, found.taylor, found.floor, found.kind),
+            "points": rows_of(found.points, found.references, found.kind),
             "front": [
                 {"error": a.target, "method": a.method.key, "cost": a.cost, "saves_over_rk4": a.saves}
                 for a in found.front
             ],
-            "absent": found.absent,
+            "absent": found.references and found.references.absent,
             "orders": [
                 {"method": o.method.key, "claimed": _claimed(o.method), "measured": o.measured} for o in found.orders
             ],
@@ -109,7 +102,7 @@ def print_json(found: Findings) -> None:
 
 def print_csv(found: Findings, out: TextIO) -> None:
     """Write a line for each point."""
-    rows = rows_of(found.points, found.taylor, found.floor, found.kind)
+    rows = rows_of(found.points, found.references, found.kind)
     if rows:
         write_csv(out, list(rows[0]), (list(row.values()) for row in rows))
 
@@ -131,19 +124,8 @@ def _print_points(found: Findings) -> None:
     for mark in sorted({MARKS[flaw] for flaw in flaws}):
         print(f"{mark} {'; '.join(REASONS[flaw] for flaw in flaws if MARKS[flaw] == mark)}")
     print("order measured on the theta error over at most one period; n/step: force evaluations")
-    if said := growth_text(found):
-        print(said)
-
-
-def growth_text(found: Findings) -> str:
-    """With which power of t the theta error grows at the scene's h, where it follows one."""
-    powers = {m.label: round(power) for m in found.scene.cast if (power := found.growth.get(m.key)) is not None}
-    each = [
-        f"{_POWERS.get(power, f't^{power}')} ({', '.join(label for label in powers if powers[label] == power)})"
-        for power in sorted(set(powers.values()))
-    ]
-    over = f"at h = {found.scene.h:g} s, over up to {PERIODS} periods"
-    return f"{over}, the theta error grows as {', as '.join(each)}" if each else ""
+    if said := growth_words(found.growth):
+        print(f"at h = {found.scene.h:g} s, {said}")
 
 
 def _claimed(method: Method) -> int | None:
@@ -162,8 +144,9 @@ def _cell(found: Findings, rung: Sequence[Point], method: Method) -> str:
 
 def _print_chart(found: Findings) -> None:
     on, rows, palette = console(CHART_SIZE[0]), CHART_SIZE[1], PALETTES["dark"]
-    beside = references(found.taylor, found.floor, found.points, found.kind)
-    chart = accuracy_chart(found.points, found.kind, found.cost, min(on.width, CHART_SIZE[0]), rows, beside=beside)
+    width = min(on.width, CHART_SIZE[0])
+    series = accuracy_series(found.points, found.kind, found.cost, references=found.references)
+    chart = accuracy_chart(series, found.kind, found.cost, width, rows)
     lines = [Text.assemble(*((text, palette.colour(owner)) for text, owner in chart.row(y))) for y in range(rows)]
     for line in lines:
         line.rstrip()
@@ -186,7 +169,7 @@ def _print_advice(found: Findings, advice: Advice) -> None:
             print(f"RK4 takes {advice.saves:.2g} times as many force evaluations, {advice.rk4.force_evaluations}")
     timed = any(attempt.point and attempt.point.seconds is not None for attempt in advice.attempts)
     rows = []
-    tries: list[tuple[str, Point | TaylorPoint | None, str | None]] = [
+    tries: list[tuple[str, AnyPoint | None, str | None]] = [
         (attempt.method.label, attempt.point, attempt.why_not) for attempt in advice.attempts
     ]
     if advice.series:
@@ -216,7 +199,7 @@ def winners(advice: Sequence[Advice]) -> str:
 
 
 def _run_fields(
-    method: Method | Reference | None, point: Point | TaylorPoint | None, kind: ErrorKind, error: str
+    method: Method | Reference | None, point: AnyPoint | None, kind: ErrorKind, error: str
 ) -> dict[str, Any]:
     """A method and its run, whose error is called `error`; None for what there is not."""
     return {

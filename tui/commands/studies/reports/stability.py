@@ -17,15 +17,16 @@ from engine.methods.own import OwnMethod
 from engine.scenes import Scene
 from engine.stability.grid import Grid
 from engine.stability.linear import amplification, linear_limit
-from engine.stability.outcomes import BAND, CELL, FATES, UNKNOWN, Cells, is_lost
+from engine.stability.outcomes import BAND, CELL, CHAOTIC, FATES, UNKNOWN, Cells, is_lost
 from engine.stability.study import Row, StabilityStudy
 from tui.cli.errors import Exit
 from tui.cli.files import whole_file
 from tui.cli.output import console, print_picture, print_table, warn, write_csv, write_json
 from tui.drawing.palette import PALETTES
 from tui.views.stability.picture import picture
+from tui.views.stability.words import said
 
-ROW_FIELDS = ("method", "theta", "first_failure_z", "reason", "steps_survived")
+ROW_FIELDS = ("method", "theta", "first_failure_z", "reason", "steps_survived", "first_failure_z_early")
 CELL_FIELDS = ("fate", "steps_survived", "max_energy_error")
 
 
@@ -173,30 +174,32 @@ def _print_linear(scene: Scene) -> None:
 
 def _print_pendulum(rows: Sequence[Row], study: StabilityStudy) -> None:
     """Print where swings are lost, and how far from there the scene is."""
-    scene = study.scene
-    print(f"\nPendulum: a swing counts as lost if within {study.steps} steps it goes over the top or becomes chaotic;")
-    print(f"without a symplectic method also if its energy leaves the linear oscillator's band by {100 * BAND:.0f} %")
-    print_table(
-        "lrrrlrlr",
-        ("method", "amplitude", "first lost at z", "h [s]", "failure", "at step", f"at z = {scene.z:.4g}", "margin"),
-        (_cells(row, scene) for row in rows),
-    )
+    scene, early, all_ = study.scene, f"{study.early:,}", f"{study.steps:,}"
+    print(f"\nPendulum: a swing counts as lost if within {all_} steps it goes over the top or becomes chaotic;")
+    print(f"without a symplectic method also if its energy leaves the linear oscillator's band by {100 * BAND:.0f} %.")
+    print(f"A limit holds for so many steps and moves down with more: compare that within {early}, or use --steps.")
+    heads = "method", "amplitude", f"lost from z, {early} steps", f"{all_} steps", "h [s]", "failure", "at step"
+    print_table("lrrrrlrlr", (*heads, f"at z = {scene.z:.4g}", "margin"), (_cells(row, scene) for row in rows))
 
 
 def _cells(row: Row, scene: Scene) -> tuple[str, ...]:
     found, fate = row.failure, int(row.here["fate"])
-    here = f"lost at step {row.here['steps'] + 1}" if is_lost(row.here) else "-" if fate == UNKNOWN else FATES[fate]
+    here = "-" if fate == UNKNOWN else said(row.here)
+    if is_lost(row.here) and fate != CHAOTIC:
+        here = f"lost at step {row.here['steps'] + 1}"
     where, margin = ("-",) * 4, "-"
     if found:
-        where = (f"{found.z:.4g}", f"{found.z / scene.w0:.3g}", found.reason, str(found.steps + 1))
+        step = "-" if found.reason == FATES[CHAOTIC] else str(found.steps + 1)
+        where = (f"{found.z:.4g}", f"{found.z / scene.w0:.3g}", found.reason, step)
         margin = f"{found.z / scene.z:.3g}"
-    return (row.method.label, f"{math.degrees(row.theta):.4g} deg", *where, here, margin)
+    early = f"{row.early.z:.4g}" if row.early else "-"
+    return (row.method.label, f"{math.degrees(row.theta):.4g} deg", early, *where, here, margin)
 
 
 def _row(row: Row) -> tuple[Any, ...]:
     """ROW_FIELDS of a row."""
-    found = row.failure
-    return (row.method.key, row.theta, *((found.z, found.reason, found.steps) if found else (None,) * 3))
+    found, early = row.failure, row.early and row.early.z
+    return (row.method.key, row.theta, *((found.z, found.reason, found.steps) if found else (None,) * 3), early)
 
 
 def _columns(cells: Cells) -> dict[str, Any]:

@@ -1,0 +1,91 @@
+"""Whatever numbers within the limits a model is given: no crash, and no number that is none, on screen and in JSON."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from engine.models import MODELS
+from engine.scenes import LIMITS, PARAMETERS, SCENES, Scene
+from engine.scenes.scene import MOST_DAMPED
+from tests.tui.command_line import pendu
+from tests.tui.harness import Lab
+from tui.drawing.canvas import Picture
+from tui.drawing.time_chart import time_chart
+from tui.playback.shown import Shown, quantities
+from tui.screens.status_line import status_row
+from tui.views.lab.error_table import table
+from tui.views.lab.large_table import large_rows
+from tui.views.lab.pendulums import Bob, pendulum_sketch
+from tui.views.phase.facts import fact_rows
+from tui.words.command_line import scene_arguments
+from tui.words.describe import description
+from tui.words.insight import insight, lasting
+
+
+def numbers(low: float, high: float) -> st.SearchStrategy[float]:
+    """Numbers of every size within limits; the limits themselves are likely."""
+    if low <= 0:
+        return st.floats(low, high)
+    return st.floats(math.log(low), math.log(high)).map(lambda log: min(max(math.exp(log), low), high))
+
+
+def scenes(model: str) -> st.SearchStrategy[Scene]:
+    base = next(scene for scene in SCENES.values() if scene.model == model)
+    limits = LIMITS | {name: PARAMETERS[name] for name in base.parameters}
+    values = st.fixed_dictionaries({name: numbers(*each) for name, each in limits.items()} | {"z": numbers(1e-8, 2.5)})
+
+    def scene(given: dict[str, float]) -> Scene:
+        w0 = math.sqrt(given["gravity"] / given["length"])
+        if "friction" in given:
+            given["friction"] = min(given["friction"], MOST_DAMPED * w0)
+        z = given.pop("z")
+        return base.altered(h=z / w0, **given)
+
+    return values.map(scene)
+
+
+def on_screen(live) -> str:
+    """What the panes of the lab show of it, but for colours."""
+    scene, sample, history = live.scene, live.sample, live.history
+    model, exact = scene.equations, live.exact.at(sample.t)
+    rows = [
+        status_row(live, 120),
+        *table(scene.cast, sample, live.judgements, exact, live.stepping.own, Shown(), 120, model.conserved),
+        *large_rows(scene.cast, sample, live.judgements, Shown(), 120, model.conserved),
+        *fact_rows(live, Shown(), None, None, 120),
+    ]
+    charts = [
+        time_chart(history.window(), scene.cast, quantity, 60, 14, log=log).picture.text
+        for quantity in quantities(scene)
+        for log in (True, False)
+    ]
+    lengths = [1.0 if reading.position is None else abs(reading.position) for reading in sample.readings]
+    bobs = [Bob(reading.theta, 0, length=length) for reading, length in zip(sample.readings, lengths, strict=True)]
+    picture = Picture.of_sketch(pendulum_sketch(40, 12, bobs)).text
+    sentences = [*description(live), insight(live), *lasting(live)]
+    return "\n".join(["".join(text for text, _ in row) for row in rows] + charts + [picture] + sentences)
+
+
+@pytest.mark.parametrize("model", MODELS)
+@settings(max_examples=6)
+@given(data=st.data())
+def test_any_numbers_of_any_model_can_be_shown(model, data):
+    scene = data.draw(scenes(model))
+    lab = Lab(scene, speed=scene.h / 0.05)
+    lab.run(0.25)
+    assert not re.search(r"\b(nan|inf)\b", on_screen(lab.live))
+
+
+@pytest.mark.parametrize("model", MODELS)
+@settings(max_examples=6)
+@given(data=st.data())
+def test_any_numbers_of_any_model_run_and_their_json_has_no_nan(model, data):
+    scene = data.draw(scenes(model))
+    outcome = pendu("run", *scene_arguments(scene), "--time", 5 * scene.h, "--json")
+    assert outcome.code == 0
+    assert outcome.json["scene"]["model"] == model
+    assert np.isfinite([row["energy"] for row in outcome.json["methods"]]).all()

@@ -1,0 +1,58 @@
+"""Which method is the cheapest at each accuracy, and how errors grow with time, in words."""
+
+import math
+from collections.abc import Sequence
+
+from engine.accuracy.front import Cheapest, Cost, ranges
+from engine.accuracy.growth import PERIODS, Growth
+from engine.accuracy.references import TAYLOR_20
+from engine.methods.runge_kutta import RK4
+
+COSTS: dict[Cost, str] = {"evaluations": "force evaluations", "seconds": "seconds"}
+WORTH_SAYING = 1.2  # times fewer force evaluations
+
+
+def length(seconds: float) -> str:
+    """A time of computing with its unit."""
+    for unit, size in (("µs", 1e-6), ("ms", 1e-3)):
+        if seconds < 999.5 * size:
+            return f"{seconds / size:.3g} {unit}"
+    return f"{seconds:.3g} s"
+
+
+def front_words(found: Sequence[Cheapest], cost: Cost, without: Sequence[Cheapest]) -> str:
+    """The cheapest method in each range of errors; `without`: of the methods alone, by force evaluations."""
+    if not found:
+        return "No power of ten lies between the errors of the coarsest and the finest runs, so none can be compared."
+    words = f"Cheapest in {COSTS[cost]}: {_spans(found)}"
+    if any(one.method is TAYLOR_20 for one in found) and without:
+        words += f"; without Numba, in force evaluations: {_spans(without)}"
+    return words + "."
+
+
+def factor_words(found: Sequence[Cheapest]) -> str:
+    """How many force evaluations the cheapest methods save over RK4; empty where none is worth saying."""
+    savings = [
+        f"{one.method.label} {one.saves:.2g} at {_power(one.target)}"
+        for one in found
+        if one.saves and one.method is not RK4 and one.saves >= WORTH_SAYING
+    ]
+    return f"Times fewer force evaluations than RK4: {', '.join(savings)}." if savings else ""
+
+
+def growth_words(found: Sequence[Growth]) -> str:
+    """The measured powers of t with which theta errors grow; empty where none follows one."""
+    named = [growth.name for growth in found if growth.power is not None]
+    return f"over up to {PERIODS} periods, the theta error grows as: {', '.join(named)}" if named else ""
+
+
+def _spans(found: Sequence[Cheapest]) -> str:
+    return ", ".join(f"{method.label} {_span(some[0].target, some[-1].target)}" for method, some in ranges(found))
+
+
+def _span(first: float, last: float) -> str:
+    return f"at {_power(first)}" if first == last else f"from {_power(first)} to {_power(last)}"
+
+
+def _power(target: float) -> str:
+    return f"1e{round(math.log10(target))}"
