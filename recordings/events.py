@@ -141,7 +141,7 @@ def _unknown_method(key: str, sha256: str) -> Method:
         linear_limit=0.0,
         other_names=(),
         reference="",
-        used="",
+        used=None,
         models=tuple(MODELS),
         sha256=sha256,
     )

@@ -58,8 +58,9 @@ class Recording:
         self.bytes = stream.seek(0, SEEK_END)
         self.metadata = contents.metadata
         self.version, self.functions = contents.layout.version, contents.layout.functions
-        self.methods = tuple(dict.fromkeys(method for _, method in contents.layout.methods.values()))
-        self.models = tuple(dict.fromkeys(model for model, _ in contents.layout.methods.values()))
+        self.keys = tuple(contents.layout.methods.values())  # model and method of each topic
+        self.methods = tuple(dict.fromkeys(method for _, method in self.keys))
+        self.models = tuple(dict.fromkeys(model for model, _ in self.keys))
         self.samples, self.seal, self.sealed = contents.samples, contents.seal, contents.sealed
         self.complete, self.damaged, self.reason = contents.complete, contents.damaged, contents.reason
         self.length = (contents.chunks.ends[-1] - CLOCK_OFFSET) / 1e9 if contents.chunks else 0.0

@@ -24,7 +24,8 @@ def rounding_floor(scene: Scene, time: float) -> tuple[float, float]:
     exact = scene.exact()
     if exact.regime == "equilibrium":
         return epsilon, epsilon
-    start = exact.at(exact.period / 4 if exact.regime == "libration" and exact.period else 0.0)
+    swing = ((exact.period or time) * sample / SAMPLES for sample in range(SAMPLES + 1))
+    start = max(map(exact.at, swing), key=lambda state: abs(state.omega))
     moving = scene.altered(theta=start.theta, omega=start.omega).exact()
     slower = scene.altered(theta=start.theta, omega=start.omega * (1 - NUDGE)).exact()
     times = [time * sample / SAMPLES for sample in range(SAMPLES + 1)]

@@ -62,7 +62,9 @@ def learned_energy(theta: float, omega: float) -> float:
     return W0_SQUARED * sum(k * math.tanh(a * theta + b / w0 * omega + c) for (a, b, c), (k,) in features)
 
 
-def _learned(key: str, label: str, letter: str, field: Field, formula: str, note: str) -> Method:
+def _learned(
+    key: str, label: str, letter: str, field: Field, formula: str, note: str, used: str | None = None
+) -> Method:
     return Method(
         key=key,
         label=label,
@@ -77,7 +79,7 @@ def _learned(key: str, label: str, letter: str, field: Field, formula: str, note
         linear_limit=None,
         other_names=("random features",),
         reference="Greydanus, Dzamba & Yosinski, Hamiltonian Neural Networks, NeurIPS 32 (2019)",
-        used="",
+        used=used,
         note=f"{note} Of this order in what was learned; counted are evaluations of that.",
         models=("pendulum",),
         general=False,
@@ -100,6 +102,7 @@ RK4_LEARNED_HAMILTONIAN = _learned(
     learned_hamiltonian(),
     "RK4 on the slopes of H = a sum of 60 tanh(a theta + b omega + c), fitted to 600 measurements",
     "Its field is as inexact as the learned field, yet it conserves its H, so the true energy is off by a percent.",
+    "learned dynamics that conserve: DiffEqFlux, HamiltonianNN [docs.sciml.ai, Hamiltonian Neural Network]",
 )
 
 FAMILY = (RK4_LEARNED_FIELD, RK4_LEARNED_HAMILTONIAN)

@@ -27,7 +27,7 @@ class Method:
     linear_limit: float | None  # largest z = h·w0 that is stable on the linear oscillator; 0: none; None: no one number
     other_names: tuple[str, ...]
     reference: str
-    used: str  # where, and in brackets who says so
+    used: str | None  # where, and in brackets who says so; None: nobody is known to
     note: str = ""  # what else to know; also tested
     modified_energy: ModifiedEnergy | None = None  # which it keeps but for O(h⁴); None: none is known, or there is none
     with_friction: Phases | None = None  # the same where the force has `friction`, if `phases` does not ask for it

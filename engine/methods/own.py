@@ -57,7 +57,7 @@ def own_method(source: str, key: str, letter: str, file: str, measured: Measured
         linear_limit=measured.linear_limit,
         other_names=(),
         reference=f"{file}:{key}",
-        used="",
+        used=None,
         measured=measured,
         source=source,
         file=file,

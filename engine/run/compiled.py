@@ -14,6 +14,7 @@ from typing import Any
 
 from engine.methods import Method
 from engine.methods.own import OwnMethod
+from engine.methods.splitting import COMPILABLE
 from engine.models.model import Model, Phase
 from engine.run import loops
 from engine.run.loops import Advanced, Loops, plain
@@ -40,7 +41,8 @@ def compiled(method: Method, model: Model) -> Loops:
     if not general or not _same_sine(numba):
         return plain(method, model)
     inner = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)  # never called by Python: compiles twice as fast
-    phases, force, energy = inner(method.phases), inner(model.force()), inner(model.energy())
+    phases = inner(COMPILABLE.get(method.phases, method.phases))
+    force, energy = inner(model.force()), inner(model.energy())
     travel, advance = inner(_travel), inner(loops.advance)
 
     def travelling(phase: Phase, h: float, n: int) -> Any:

@@ -16,7 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engine.methods import Method
-from engine.models.model import Model, Phase
+from engine.methods.splitting import COMPILABLE
+from engine.models.model import Energy, Force, Model, Phase
+from engine.models.pendulum import Pendulum
 
 Floats = NDArray[np.float64]
 Arrays = tuple[Floats, Floats]  # theta [rad] and omega [rad/s], a swing each
@@ -26,7 +28,8 @@ class Watched(NamedTuple):
     """What is watched of an ensemble while it swings; energies in s⁻², angles in rad."""
 
     start: Floats  # energies at the start
-    band: Floats  # how far energies may be from there
+    band: Floats  # how far energies may be from there; inf for swings that are not looked at any more
+    top: Floats  # how large |theta| may be; likewise
     off: Floats  # energies, less the start's, after the last step
     worst: Floats  # largest |off| so far
     width: Floats  # largest |theta| so far
@@ -35,9 +38,9 @@ class Watched(NamedTuple):
 class Ensembles(NamedTuple):
     """One method's loops on one model.  All arrays are one-dimensional and of one length."""
 
-    watch: Callable[[Arrays, Floats, Watched, int], tuple[int, Arrays]]
-    """(phase, h, watched, n) -> steps done and phase there: n, or as many as until an energy leaves its band or a
-    swing passes the top.  Changes off, worst and width."""
+    watch: Callable[[Arrays, Floats, Watched, int], Iterator[tuple[int, Arrays]]]
+    """(phase, h, watched, n): take n steps, and yield steps done and phase there after the last one, and whenever an
+    energy is out of its band or a swing over its top.  Changes off, worst and width; band and top may be changed."""
     record: Callable[[Arrays, float, Floats, int], None]
     """(phase, h, points, every): fill points[k] with theta and omega after (k + 1)·every steps of h [s]."""
 
@@ -52,6 +55,37 @@ def section(
     found = np.empty((points, 2, len(phase[0])))
     (compiled if fast else plain)(method, model).record(phase, h, found, every)
     return found
+
+
+def sharing(w0_squared: float) -> tuple[Force, Energy]:
+    """The pendulum's force and energy on arrays, which share one sine where both are asked for the same angles.
+
+    It is that of theta/2: sin theta = 2 sin(theta/2) cos(theta/2), with the cosine as a root of 1 - sin²(theta/2).  Its
+    error is some epsilon / (pi - |theta|); right for |theta| < 3 pi.  They remember angles: make a pair for each run.
+    """
+    known = sine = squared = np.empty(0)  # angles, the sine of their halves, and its square
+
+    def look(theta: Floats) -> None:
+        nonlocal known, sine, squared
+        if theta is not known:
+            known, sine = theta, np.sin(theta * 0.5)
+            squared = sine * sine
+
+    def force(theta: Any) -> Any:
+        look(theta)
+        found = np.copysign(np.sqrt(1 - squared), math.pi - np.abs(theta))
+        found *= sine
+        found *= -2 * w0_squared
+        return found
+
+    def energy(phase: Phase) -> Any:
+        look(phase[0])
+        found = phase[1] * phase[1]
+        found *= 0.5
+        found += 2 * w0_squared * squared
+        return found
+
+    return force, energy
 
 
 def sine(x: Any) -> Any:
@@ -80,18 +114,18 @@ def plain(method: Method, model: Model) -> Ensembles:
     """The loops in NumPy."""
     phases, force, energy = method.phases, model.force(np.sin), model.energy(np.sin)
 
-    def watch(phase: Arrays, h: Floats, watched: Watched, n: int) -> tuple[int, Arrays]:
-        start, band, off, worst, width = watched
-        size, done, bounded = np.empty_like(off), 0, np.isfinite(band).any()
-        for phase in islice(phases(force, phase, h), n):  # type: ignore[arg-type] # noqa: B020
-            done += 1
-            np.subtract(energy(phase), start, out=off)
+    def watch(phase: Arrays, h: Floats, watched: Watched, n: int) -> Iterator[tuple[int, Arrays]]:
+        shares = isinstance(model, Pendulum) and method.force_evaluations == 1  # the force at the same angles
+        pull, value = sharing(model.w0_squared) if shares else (force, energy)
+        start, band, top, off, worst, width = watched
+        size, bounded = np.empty_like(off), np.isfinite(band).any()
+        for done, phase in enumerate(islice(phases(pull, phase, h), n), 1):  # type: ignore[arg-type] # noqa: B020
+            np.subtract(value(phase), start, out=off)
             np.maximum(worst, np.abs(off, out=size), out=worst)
             outside = bounded and (size > band).any()
             np.maximum(width, np.abs(phase[0], out=size), out=width)
-            if outside or size.max() > math.pi:
-                break
-        return done, phase
+            if outside or done == n or (size > top).any():
+                yield done, phase
 
     def record(phase: Arrays, h: float, points: Floats, every: int) -> None:
         _record(phases(force, phase, h), points, every)
@@ -104,16 +138,16 @@ def compiled(method: Method, model: Model) -> Ensembles:
     """The loops with steps and what is watched compiled, which takes a second.  Raises ImportError without Numba."""
     numba: Any = import_module("numba")
     inner = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)  # never called by Python: compiles twice as fast
-    phases, force, energy = numba.njit(method.phases), inner(model.force(numba.vectorize(sine))), model.energy
+    phases = numba.njit(COMPILABLE.get(method.phases, method.phases))
+    force, energy = inner(model.force(numba.vectorize(sine))), model.energy
     look = numba.njit(_looking(inner(energy(inner(sine)))))
 
     # The loop over phases is Python's: in compiled code Numba 0.68 never frees what a generator yields.  What the
-    # generator itself holds when it is given up, a few arrays, is not freed either.
-    def watch(phase: Arrays, h: Floats, watched: Watched, n: int) -> tuple[int, Arrays]:
-        for done, (theta, omega) in enumerate(phases(force, phase, h), 1):
+    # generator itself holds when it is given up, a few arrays, is never freed (numba/numba#1278), so make few of them.
+    def watch(phase: Arrays, h: Floats, watched: Watched, n: int) -> Iterator[tuple[int, Arrays]]:
+        for done, (theta, omega) in enumerate(islice(phases(force, phase, h), n), 1):
             if look(theta, omega, *watched) > 0 or done == n:
-                break
-        return done, (theta, omega)
+                yield done, (theta, omega)
 
     def record(phase: Arrays, h: float, points: Floats, every: int) -> None:
         _record(phases(force, phase, h), points, every)
@@ -123,16 +157,23 @@ def compiled(method: Method, model: Model) -> Ensembles:
 
 def _looking(energy: Callable[[Phase], Any]) -> Callable[..., int]:
     def looking(
-        theta: Floats, omega: Floats, start: Floats, band: Floats, off: Floats, worst: Floats, width: Floats
+        theta: Floats,
+        omega: Floats,
+        start: Floats,
+        band: Floats,
+        top: Floats,
+        off: Floats,
+        worst: Floats,
+        width: Floats,
     ) -> int:
-        """How many swings are over the top or out of their band."""
+        """How many swings are over their top or out of their band."""
         outside = 0
         for i in range(theta.size):
             off[i] = energy((theta[i], omega[i])) - start[i]
             size, wide = abs(off[i]), abs(theta[i])
             worst[i] = max(size, worst[i])
             width[i] = max(wide, width[i])
-            outside += (wide > math.pi) | (size > band[i])
+            outside += (wide > top[i]) | (size > band[i])
         return outside
 
     return looking

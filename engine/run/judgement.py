@@ -20,8 +20,8 @@ class Judgement:
 
     @property
     def trend(self) -> float | None:
-        """The slope where it is significant; a bounded error has none."""
-        if self.slope is None or self.uncertainty is None or self.verdict == "bounded":
+        """The slope where it is significant; what stays in a band, or wanders about, has none."""
+        if self.slope is None or self.uncertainty is None or self.verdict not in ("too early", "grows", "loses"):
             return None
         return self.slope if abs(self.slope) > 3 * self.uncertainty else None
 

@@ -13,8 +13,8 @@ within a band, or chaotic.
 - `wanders`: and h·omega has moved by more than 2 pi, so there is no fence: the energy diffuses.
 
 Any other method is judged by the bands of its energy error.
-- `grows` and `loses`: the error no longer comes back to its value at the start.  Taken back when it does.  Where
-  nothing turns over, a millionfold energy `grows` at once.
+- `grows` and `loses`: the error no longer comes back to its value at the start.  Taken back when it does.  In
+  the plane, a millionfold energy `grows` at once.
 - `caught`: it stays away from the start and has stopped: the second half of the run lies in one band.
 - `wanders`: it goes far up and down, and neither steadily nor within a band.
 - `bounded`: it touches its start, and its slope, which is not significant, and three times its uncertainty would
@@ -53,7 +53,7 @@ WANDER = 1e-9  # as far as rounding was seen to carry an energy error, in rotati
 AT_REST = -1 + 1e-9  # relative energy error: nothing is left
 THROWN = 1.5  # h·w0: beyond, a method that is not symplectic may be thrown far, and back
 SMALL = 0.7  # rad: swings to which the ellipse is applied
-GONE = 1e6  # relative energy error: where there is no top to go over, nothing brings it back
+GONE = 1e6  # relative energy error of a bob in the plane: nothing brings it back
 
 
 def stride(period: float, h: float) -> int:
@@ -98,7 +98,7 @@ class Judge:
             self._modified.add(steps, value, value, value)
         if full and len(self._energy.bins) >= LEAST_BINS:
             self._judge()
-        if not self._model.turns and look.error > GONE:
+        if self._model.in_plane and look.error > GONE:
             self.judgement = replace(self.judgement, verdict="grows")
 
     def fail(self, steps: int) -> None:

@@ -31,6 +31,7 @@ _FIRST_LOOK = (
         length=_UNIT_W0,
         h=0.5,
         model="linear",
+        speed=2.0,
         watch="Linear, so theory is exact: a step gains explicit Euler 25 % of its energy.",
     ),
     Scene(
@@ -38,11 +39,17 @@ _FIRST_LOOK = (
         theta=2.5,
         watch="A swing of 143° takes 1.64 small ones; explicit Euler never ends its first.",
     ),
-    Scene("crossover", h=0.2, watch="RK4 starts far ahead of Verlet in energy and falls behind after half a minute."),
+    Scene(
+        "crossover",
+        h=0.2,
+        speed=4.0,
+        watch="RK4 starts far ahead of Verlet in energy and falls behind after half a minute.",
+    ),
     Scene(
         "near-separatrix",
         theta=math.radians(179.9),
         h=0.02,
+        speed=4.0,
         watch="RK4's energy error is smallest, yet from 30 s on it falls at the wrong time.",
     ),
     Scene(
@@ -66,6 +73,7 @@ _STABILITY = (
         theta=0.1,
         length=_UNIT_W0,
         h=1.98,
+        speed=16.0,
         watch="Just below z = 2: Verlet loses 98 % of its energy, has it back every 11 steps.",
     ),
     Scene(
@@ -73,6 +81,7 @@ _STABILITY = (
         theta=0.1,
         length=_UNIT_W0,
         h=2.02,
+        speed=16.0,
         watch="Just above z = 2: Verlet leaves the bottom, the pendulum holds it at 0.48 rad.",
     ),
     Scene(
@@ -80,6 +89,7 @@ _STABILITY = (
         theta=0.1,
         length=_UNIT_W0,
         h=2.80,
+        speed=8.0,
         watch="Just below z = 2√2: RK4 loses half its energy in 4 steps, the others go over.",
     ),
     Scene(
@@ -87,6 +97,7 @@ _STABILITY = (
         theta=0.1,
         length=_UNIT_W0,
         h=2.86,
+        speed=8.0,
         watch="Just above z = 2√2: RK4 gains energy till the pendulum catches it at 0.2 rad.",
     ),
     Scene(
@@ -94,6 +105,7 @@ _STABILITY = (
         theta=3.14,
         length=_UNIT_W0,
         h=math.sqrt(0.95),
+        speed=64.0,
         watch="K = z² = 0.95: the symplectic ones tumble in chaos, yet |omega| stays < pi/h.",
     ),
     Scene(
@@ -101,6 +113,7 @@ _STABILITY = (
         theta=3.14,
         length=_UNIT_W0,
         h=math.sqrt(1.1),
+        speed=2048.0,
         watch="K = z² = 1.1: no fence is left, |omega| passes 2 pi/h within a million steps.",
     ),
     Scene(
@@ -109,6 +122,7 @@ _STABILITY = (
         length=_UNIT_W0,
         h=1.45,
         cast=_RESONANT,
+        speed=16.0,
         watch="A swing takes Verlet 4 steps, a resonance: its energy doubles and comes back.",
     ),
     Scene(
@@ -117,6 +131,7 @@ _STABILITY = (
         length=_UNIT_W0,
         h=1.45 / _GOLDEN,
         cast=_RESONANT,
+        speed=16.0,
         watch="h over the golden ratio: no resonance, but nor at 5/8 h: irrational is no cure.",
     ),
 )
@@ -129,6 +144,7 @@ _STRUCTURE = (
         friction=0.05,
         h=0.025,
         cast=_cast("explicit_euler", "lagged_verlet", "conformal_verlet", "rk4"),
+        speed=2.0,
         watch="Explicit Euler gains energy against friction, and spins; the others slow down.",
     ),
     Scene(
@@ -136,6 +152,7 @@ _STRUCTURE = (
         theta=2.0,
         h=0.2,
         cast=_cast("halving_verlet", "halving_richardson", "velocity_verlet", "rk4"),
+        speed=4.0,
         watch="Step doubling gains 19 % a minute; Verlet, 8 times cheaper, stays within 8 %.",
     ),
 )
@@ -147,6 +164,7 @@ _STIFFNESS = (
         stiffness=_STIFF,
         h=0.02,
         cast=_SPRING,
+        speed=0.5,
         watch="h·omega = 1: RK4 takes the energy out of the spring, IMEX Euler all of it.",
     ),
     Scene(
@@ -155,6 +173,7 @@ _STIFFNESS = (
         stiffness=_STIFF,
         h=0.05,
         cast=_SPRING,
+        speed=0.25,
         watch="h·omega = 2.5, beyond Verlet's limit of 2: in a quarter second its bob is gone.",
     ),
     Scene(
@@ -163,6 +182,7 @@ _STIFFNESS = (
         stiffness=_STIFF,
         h=0.125,
         cast=_SPRING,
+        speed=0.5,
         watch="A period of the spring a step: r-RESPA resonates, implicit midpoint holds.",
     ),
 )
@@ -180,6 +200,7 @@ _PRECISION = (
         theta=math.pi - 1e-6,
         h=1 / 1024,
         cast=_PRECISE,
+        speed=2.0,
         watch="64 bits lose the angle at 35 s; with compensated sums Verlet is right to 3e-4.",
     ),
 )
@@ -190,6 +211,7 @@ _LEARNING = (
         theta=1.5,
         h=0.02,
         cast=_cast("rk4_learned_field", "rk4_learned_hamiltonian", "rk4"),
+        speed=8.0,
         watch="Of the same data, in 100 s: the field loses 60 %, the Hamiltonian not even 1 %.",
     ),
 )

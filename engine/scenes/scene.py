@@ -1,7 +1,7 @@
 """Scene: everything that determines a run."""
 
 import math
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cache
 from typing import Any
 
@@ -61,25 +61,26 @@ class Scene:
     cast: Cast = USUAL_CAST  # the methods, in order
     friction: float = 0.0  # gamma [s⁻¹], of the model damped
     stiffness: float = 0.0  # spring constant over mass [s⁻²], of the model spring
+    speed: float = field(default=1.0, compare=False)  # times real time, at which a lab starts: it changes no number
 
     def __post_init__(self) -> None:
         parameters = self.parameters
-        for field in PARAMETERS:
-            if field not in parameters and getattr(self, field):
-                raise SceneError(f"the model {self.model} has no {field}; leave it out, or use a model that has.")
-        for field, (low, high) in (LIMITS | {name: PARAMETERS[name] for name in parameters}).items():
-            value = getattr(self, field)
-            if field == "friction":
+        for name in PARAMETERS:
+            if name not in parameters and getattr(self, name):
+                raise SceneError(f"the model {self.model} has no {name}; leave it out, or use a model that has.")
+        for name, (low, high) in (LIMITS | {name: PARAMETERS[name] for name in parameters}).items():
+            value, unit = getattr(self, name), UNITS[name]
+            if name == "friction":
                 high = min(high, MOST_DAMPED * self.w0)
             if not low <= value <= high:  # also refuses nan
-                raise SceneError(
-                    f"{field} = {value:g} {UNITS[field]} is out of range; use {low:g} to {high:g} {UNITS[field]}."
-                )
+                raise SceneError(f"{name} = {value:g} {unit} is out of range; use {low:g} to {high:g} {unit}.")
         if self.h <= 0:
             raise SceneError(
                 f"h = {self.h:g} s is not a usable step; use a positive one, for example {0.15 / self.w0:.1g}."
             )
         check_h(self.h, self.w0)
+        if not 0 < self.speed < math.inf:
+            raise SceneError(f"speed = {self.speed:g} is not usable; use a number above zero, 1 for real time.")
         for method in self.cast:
             if self.model in MODELS and self.model not in method.models:
                 raise SceneError(
@@ -122,8 +123,8 @@ class Scene:
 
     def fields(self) -> dict[str, Any]:
         """What determines the run and names it, as JSON shows it."""
-        others = {"cast"} | set(PARAMETERS) - set(self.parameters)
-        named = {field.name: getattr(self, field.name) for field in fields(self) if field.name not in others}
+        others = {"cast", "speed"} | set(PARAMETERS) - set(self.parameters)
+        named = {each.name: getattr(self, each.name) for each in fields(self) if each.name not in others}
         return named | {"methods": [method.key for method in self.cast]}
 
     def altered(self, **changes: Any) -> "Scene":

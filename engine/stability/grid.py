@@ -10,7 +10,7 @@ from engine.methods import USUAL_CAST, Cast
 from engine.run.compiled import available
 from engine.stability.outcomes import CELL, UNKNOWN, Cells, Floats, outcomes
 
-STRIP = 2048
+STRIP = 4096
 """Swings a method in a strip: enough that NumPy's calls cost little, few enough that they stay in the cache."""
 
 COMPILED_FROM = 100_000_000  # steps of a method: in NumPy they take as long as importing and compiling

@@ -24,12 +24,13 @@ BAND = 0.5
 bounded wobble on the linear oscillator takes it to (engine.stability.linear.wobble)."""
 
 WOBBLE = 1.1  # times as wide as the linear oscillator: what swings wider is held with a larger wobble
+PARKED = 1 / 8  # of the swings in an ensemble: when so many are lost, it goes on without them
 CHAOS_STEPS = 2000  # for which the neighbours of a swing that wobbles are followed
 
 FATES = ("holds", "over the top", "grows", "loses", "holds, wobbling", "caught", "chaotic")
 """What becomes of a swing: it swings as wide as it should; |theta| passes pi; its energy leaves the band upwards or
-downwards; it stays, with a larger wobble; an orbit of period two holds it, beyond a symplectic method's linear
-limit; neighbouring swings part exponentially."""
+downwards; it stays, with a larger wobble; it stays beyond a symplectic method's linear limit, as around the two places
+between which velocity Verlet then jumps; neighbouring swings part exponentially."""
 
 HOLDS, OVER_THE_TOP, GROWS, LOSES, WOBBLES, CAUGHT, CHAOTIC = range(len(FATES))
 HELD = (HOLDS, WOBBLES, CAUGHT)
@@ -46,11 +47,12 @@ def is_lost(cells: Cells) -> NDArray[np.bool_]:
     return ~np.isin(cells["fate"], (*HELD, UNKNOWN))
 
 
+@np.errstate(all="ignore")  # a swing that is lost may go on to infinity
 def outcomes(method: Method, theta: Floats, z: Floats, steps: int, fast: bool = False) -> Cells:
     """What becomes of each of many swings within `steps` steps; `fast`: compiled by Numba.
 
     theta [rad], between 0 and pi, and z are one-dimensional and of one length; the answer is a CELL
-    for each.  A swing that is lost leaves the ensemble at once.  No cell depends on the others.
+    for each.  No cell depends on the others.
     """
     model = Pendulum(1.0)
     watch = (compiled if fast else plain)(method, model).watch
@@ -61,24 +63,29 @@ def outcomes(method: Method, theta: Floats, z: Floats, steps: int, fast: bool = 
     start: Floats = model.energy(np.sin)(phase)
     up, down = (((1 + BAND) * highest[where] - 1) * start, (1 - (1 - BAND) * lowest[where]) * start)
     band = np.full(len(theta), math.inf) if method.symplectic else np.minimum(up, down)
-    watched = Watched(start, band, np.zeros(len(theta)), np.zeros(len(theta)), theta.copy())
+    top = np.full(len(theta), math.pi)
+    watched = Watched(start, band, top, np.zeros(len(theta)), np.zeros(len(theta)), theta.copy())
     index: NDArray[Any] = np.arange(len(theta))
     cells = np.zeros(len(theta), CELL)
     cells["steps"] = steps
-    done = 0
-    while done < steps and len(index):
-        taken, phase = watch(phase, h, watched, steps - done)
-        done += taken
-        over, above = np.abs(phase[0]) > math.pi, watched.off > up
-        lost = over if method.symplectic else over | above | (watched.off < -down)
-        if lost.any():
+    begun = 0
+    while begun < steps and len(index):
+        parked = np.zeros(len(index), np.bool_)
+        for done, phase in watch(phase, h, watched, steps - begun):  # noqa: B020
+            over, above = np.abs(phase[0]) > watched.top, watched.off > up
+            lost = over if method.symplectic else over | above | (watched.off < -down)
             gone = index[lost]
-            cells["steps"][gone] = done - 1
-            cells["error"][gone] = (watched.worst / watched.start)[lost]
+            cells["steps"][gone] = begun + done - 1
+            cells["error"][gone] = watched.worst[lost] / watched.start[lost]
             cells["fate"][gone] = np.where(over, OVER_THE_TOP, np.where(above, GROWS, LOSES))[lost]
-            kept = ~lost
-            index, h, up, down = (each[kept] for each in (index, h, up, down))
-            phase, watched = (phase[0][kept], phase[1][kept]), Watched(*(each[kept] for each in watched))
+            parked |= lost
+            for limit in (watched.band, watched.top, up, down):
+                limit[lost] = math.inf
+            if np.count_nonzero(parked) > PARKED * len(parked):
+                break
+        begun, kept = begun + done, ~parked
+        index, h, up, down = (each[kept] for each in (index, h, up, down))
+        phase, watched = (phase[0][kept], phase[1][kept]), Watched(*(each[kept] for each in watched))
     cells["error"][index] = watched.worst / watched.start
     if method.symplectic and len(index):
         wobbling = index[(watched.width > WOBBLE * reach[index]) | (z[index] > method.linear_limit)]

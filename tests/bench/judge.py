@@ -22,8 +22,6 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from engine.models.exact_pendulum import ExactMotion
-from engine.models.pendulum import energy_reference
 from engine.run.compiled import compiled
 from engine.run.energies import judge
 from tests.truths import scene_at, truths
@@ -109,12 +107,13 @@ def of_cells(every: int) -> tuple[dict[str, Counter[str]], list[tuple[object, ..
     random = np.random.default_rng(2)
     for method, start, z, letter in list(truths())[::every]:
         scene = scene_at(start, z)
-        period = ExactMotion(scene).period or math.tau / scene.w0
+        period = scene.exact().period or math.tau / scene.w0
         stride = max(1, round(period / SAMPLES_A_PERIOD / scene.h))
-        reference = energy_reference(scene.w0_squared, scene.theta, scene.omega)
-        advance, phase, errors, ended = compiled(method).advance, (scene.theta, scene.omega), [0.0], False
+        reference = scene.equations.reference(scene.theta, scene.omega)
+        advance, phase = compiled(method, scene.equations).advance, (scene.theta, scene.omega)
+        errors, ended = [0.0], False
         for _ in range(max(LEAST_SAMPLES, round(PERIODS * period / scene.h / stride))):
-            done, phase, value, *_ = advance(scene.w0_squared, phase, scene.h, stride, math.inf)
+            done, phase, value, *_ = advance(phase, scene.h, stride, math.inf)
             if ended := done < stride:
                 break
             errors.append(reference.error(value))

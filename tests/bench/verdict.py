@@ -21,7 +21,7 @@ from tests.truths import is_true, scene_at, truths, verdicts, watch
 def microseconds_per_look(z: float) -> float:
     """What a look costs, once the bins have begun to merge [µs]."""
     scene = Scene(h=z / Scene().w0)
-    judge = Judge(USUAL_CAST[2], scene.w0_squared, 1.0, scene.h, 2.0)
+    judge = Judge(USUAL_CAST[2], scene.equations, 1.0, scene.h, 2.0)
     best = math.inf
     for k in range(8):
         began = time.perf_counter()

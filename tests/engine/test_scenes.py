@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from engine.methods import method_of
 from engine.run.lockstep import Lockstep, Sample
 from engine.run.observer import RunObserver
+from engine.run.stepping import Stepping
 from engine.scenes import DEFAULT_SCENE, GROUPS, LIMITS, SCENES, Z_LIMITS, Scene, SceneError, check_h
 
 EXPLICIT, SYMPLECTIC, VERLET, RK4 = range(4)
@@ -143,6 +144,19 @@ def test_crossover_rk4_starts_far_ahead_of_verlet_and_falls_behind_after_half_a_
     assert all(behind[behind.index(True) :])
     early = [sample for sample in samples if sample.t < 2.2]  # a swing
     assert worst(early, RK4) < worst(early, VERLET) / 10
+
+
+@pytest.mark.parametrize(
+    ("name", "seconds", "least", "most"),
+    [("crossover", 60, 0, 1e-13), ("crossover", 600, 0, 1e-11), ("chaos-fenced", 200, 0.1, 100)],
+)
+def test_turned_round_verlet_comes_back_but_not_in_chaos(name: str, seconds: float, least: float, most: float) -> None:
+    scene, lockstep = SCENES[name], Lockstep(SCENES[name])
+    lockstep.advance(steps := round(seconds / scene.h))
+    lockstep.set_stepping(Stepping(-scene.h))
+    lockstep.advance(steps)
+    verlet = lockstep.sample().readings[VERLET]
+    assert least <= math.hypot(verlet.theta - scene.theta, verlet.omega / scene.w0) < most
 
 
 def test_near_separatrix_the_best_energy_does_not_mean_the_right_time() -> None:
@@ -344,3 +358,51 @@ def test_learned_the_field_loses_60_percent_and_the_hamiltonian_less_than_one() 
     assert sample.t == 100
     assert field.energy_error == pytest.approx(-0.6, abs=0.02)
     assert rk4.max_energy_error < hamiltonian.max_energy_error < 0.01
+
+
+# How long one waits for it.
+
+MOMENTS = {  # simulated seconds until what the scene says is there to be seen
+    "drift": 7.15,
+    "linear": 5.0,
+    "crossover": 33.4,
+    "near-separatrix": 29.4,
+    "verlet-limit": 11 * 1.98,
+    "verlet-limit-above": 11 * 2.02,
+    "rk4-limit": 20.0,
+    "rk4-limit-above": 40 * 2.86,
+    "chaos-loose": 33_000 * 1.05,
+    "resonance": 50 * 1.45,
+    "damped": 20.0,
+    "halving": 60.0,
+    "stiff-slow": 10.0,
+    "stiff-limit": 0.25,
+    "stiff-resonance": 10.0,
+    "precision": 5.5,
+    "precision-deep": 35.0,
+    "learned": 100.0,
+}
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_at_its_speed_a_scene_takes_a_few_steps_a_second_and_shows_its_point_within_half_a_minute(name: str) -> None:
+    scene = SCENES[name]
+    assert scene.h / scene.speed < 0.4
+    assert MOMENTS.get(name, 1.0) / scene.speed < 30
+
+
+def test_a_speed_changes_no_number() -> None:
+    assert replace(DEFAULT_SCENE, speed=3.0) == DEFAULT_SCENE
+    assert DEFAULT_SCENE.altered(theta=2.0, speed=3.0).speed == 3.0
+    for speed in (0.0, -1.0, math.inf, math.nan):
+        with pytest.raises(SceneError, match="speed"):
+            Scene(speed=speed)
+
+
+def test_in_chaos_loose_omega_passes_2_pi_over_h_within_half_a_minute_of_the_clock() -> None:
+    scene = SCENES["chaos-loose"]
+    lockstep, seen = Lockstep(scene), 0.0
+    while lockstep.t < 20 * scene.speed and seen <= math.tau / scene.h:
+        lockstep.advance(10)
+        seen = max(abs(reading.omega) for reading in lockstep.sample().readings[1:3])
+    assert seen > math.tau / scene.h

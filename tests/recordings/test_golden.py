@@ -1,6 +1,5 @@
 """The bundled recordings: every later version of the methods is compared with them."""
 
-import json
 from pathlib import Path
 
 import pytest
@@ -8,7 +7,8 @@ import pytest
 from engine.methods import USUAL_CAST
 from engine.run.lockstep import Sample
 from recordings.events import Event
-from recordings.fields import COLUMNS, without_extremes
+from recordings.fields import COLUMNS, reading_fields, without_extremes
+from recordings.format import topic
 from recordings.library import GOLDEN, golden_names
 from recordings.recording import Recording
 from recordings.summary import other_functions
@@ -109,21 +109,37 @@ def test_each_golden_recording_shows_what_its_text_says():
         ]
 
 
-def test_the_shipped_layout_shows_what_is_in_a_recording():
-    layout = json.loads((GOLDEN.parent / "viewers" / "foxglove_layout.json").read_text())
+@pytest.mark.parametrize("name", ["drift", "stiff-slow", "damped", "swapped-cast"])
+def test_a_layout_shows_what_is_in_a_recording(name):
+    layout = pendu("export", name, "--format", "foxglove").json
     panels = layout["configById"]
 
     def shown(node):
         return [node] if isinstance(node, str) else [*shown(node["first"]), *shown(node["second"])]
 
     assert sorted(shown(layout["layout"])) == sorted(panels)
-    errors = [path["value"] for path in panels["Plot!energyerror"]["paths"]]
-    assert errors == [f"/pendu/{method.key}.energy_error" for method in USUAL_CAST]
-    phases = [panel for panel in panels.values() if panel.get("xAxisVal") == "custom"]
-    assert [(panel["xAxisPath"]["value"], panel["paths"][0]["value"]) for panel in phases] == [
-        (f"/pendu/{method.key}.theta", f"/pendu/{method.key}.omega") for method in USUAL_CAST
-    ]
+    with Recording.open(GOLDEN / f"{name}.mcap") as recording:
+        keys = recording.keys
+        fields = {f"{topic(method, model)}.{field.name}" for model, method in keys for field in reading_fields(model)}
+        errors = [f"{topic(method, model)}.energy_error" for model, method in keys]
+    assert [path["value"] for path in panels["Plot!energyerror"]["paths"]] == errors
+    plots = [panel for key, panel in panels.items() if key.startswith("Plot!")]
+    paths = [path for panel in plots for path in [*panel["paths"], *filter(None, [panel.get("xAxisPath")])]]
+    assert {path["value"] for path in paths} <= fields
+    planes = [panel["xAxisPath"]["value"].rpartition(".")[2] for panel in plots if panel["xAxisVal"] == "custom"]
+    assert planes == ["x" if name == "stiff-slow" else "theta"] * len(errors)
+    assert ("Plot!springenergy" in panels) == (name == "stiff-slow")
     assert panels["RawMessages!events"]["topicPath"] == "/pendu/events"
+
+
+def test_the_shipped_layout_is_that_of_the_usual_methods(request):
+    path, text = (
+        GOLDEN.parent / "viewers" / "foxglove_layout.json",
+        pendu("export", "drift", "--format", "foxglove").out,
+    )
+    if request.config.getoption("--snapshot-update"):
+        path.write_text(text, encoding="utf-8")
+    assert path.read_text(encoding="utf-8") == text
 
 
 def test_the_csv_has_a_row_for_each_sample_and_method_and_every_number(tmp_path):

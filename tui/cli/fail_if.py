@@ -4,8 +4,7 @@ A gate is comparisons joined by `and`, `or` and parentheses.  Python's parser re
 nodes named here.  It fails safe.  A comparison holds, whatever its sign, where its method has diverged or its value
 is not known (None, missing, not finite): what cannot be checked has not passed.  Hence there is no `not`.  Only
 `diverged_at` is compared as it is, None meaning that the method never diverged.  `verdict` is compared by == or !=
-with bounded, loses, grows or too_early (or 'too early'); too_early is a word like the others, so `!= bounded` is
-the careful gate.
+with one of the verdicts; too_early (or 'too early') is a word like the others, so `!= bounded` is the careful gate.
 """
 
 import ast

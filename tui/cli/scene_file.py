@@ -8,7 +8,7 @@ from typing import Any
 
 from engine.methods import METHODS
 from engine.models import MODELS
-from engine.scenes import Scene, SceneError
+from engine.scenes import SCENES, Scene, SceneError
 from recordings.errors import printable
 from tui.cli.cast import find
 from tui.cli.errors import Exit, UserError
@@ -35,6 +35,8 @@ def read_scene(path: Path) -> Scene:
             values["cast" if name == "methods" else name] = _value(name, value)
         except UserError as error:
             raise UserError(f"{path}, line {_line(text, name)}: {error}", Exit.INPUT_UNREADABLE) from None
+    model = values.get("model", "pendulum")
+    values.setdefault("cast", next(scene.cast for scene in SCENES.values() if scene.model == model))
     try:
         return Scene(**values)
     except SceneError as error:

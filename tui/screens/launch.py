@@ -14,6 +14,7 @@ from tui.cli.errors import Exit, UserError
 from tui.cli.output import progress, warn
 
 if TYPE_CHECKING:  # Textual is imported only where there is a screen, NumPy and mcap only when they are needed
+    from engine.methods import Cast
     from recordings.recording import Recording
     from tui.playback.ghost import Ghost
     from tui.playback.live import Live
@@ -126,14 +127,17 @@ def show(screen: "SourceScreen", options: argparse.Namespace) -> int:
     return app.return_code or Exit.FINE if result is None else result
 
 
-def print_sentences(source: "Source") -> int:
-    """Print what happens as sentences until a signal such as Ctrl+C ends it, which is how it should end."""
+def print_sentences(source: "Source", only: "Cast | None" = None) -> int:
+    """Print what happens, or `only` what these methods do, as sentences until a signal such as Ctrl+C.
+
+    That is how it should end.
+    """
     from tui.cli.files import stop_requests
     from tui.words.plain_text import plain
 
     try:
         with stop_requests() as stopped:
-            plain(source, partial(print, flush=True), stopped)
+            plain(source, partial(print, flush=True), stopped, only=only)
     finally:
         source.close()
     say_goodbye(source)

@@ -40,11 +40,17 @@ class LiveScreen(Touring):
             self.live.mark(return_text(self.live.scene, returned))
             self.show_now()
 
-    def start(self, scene: Scene) -> None:
-        """Start a new run; `u` goes back to the one before, where it was."""
-        back = self.live.way_back()
+    def start(self, scene: Scene, speed: float | None = None) -> None:
+        """Start a new run, perhaps at another speed; `u` goes back to the one before, where it was."""
+        back, before = self.live.way_back(), self.live.playhead.speed
+
+        def undo() -> None:
+            self.live.set_speed(before)
+            self._do(back)
+
         if self._do(lambda: self.live.start(scene)):
-            self.remember(lambda: self._do(back))
+            self.live.set_speed(speed or before)
+            self.remember(undo)
 
     def set_stepping(self, stepping: Stepping) -> None:
         """Change the step size from here on."""
@@ -89,10 +95,10 @@ class LiveScreen(Touring):
         """Start the next scene, or the previous one if direction is -1."""
         names, name = list(SCENES), self.live.scene.name
         at = names.index(name) + direction if name in SCENES else min(direction, 0)
-        self.start(SCENES[names[at % len(names)]])
+        self.action_start_scene(names[at % len(names)])
 
     def action_start_scene(self, name: str) -> None:
-        self.start(SCENES[name])
+        self.start(SCENES[name], SCENES[name].speed)
 
     def action_start_values(self) -> None:
         from tui.screens.dialogs.start_form import StartForm  # Textual's input field is imported when it is needed

@@ -25,7 +25,7 @@ def command(source: Source) -> str:
         scene = scene.altered(h=start)
     first = [change.stepping for change in source.changes if change.step == 0][-1]
     equal_cost = ["--equal-cost"] if first.equal_cost else []
-    speed = [] if source.playhead.speed == 1 else ["--speed", f"{source.playhead.speed:g}"]
+    speed = [] if source.playhead.speed == _listed(scene).speed else ["--speed", f"{source.playhead.speed:g}"]
     return shlex.join(["pendu-tui", "live", *scene_arguments(scene), *equal_cost, *speed])
 
 
@@ -48,11 +48,15 @@ def _moment(file: str, position: float) -> str:
     return shlex.join(["pendu-tui", "replay", file, "--start-at", f"{position:.9g}", "--paused"])
 
 
+def _listed(scene: Scene) -> Scene:
+    """The listed scene of its name, or else the first of its model."""
+    base = SCENES.get(scene.name)
+    return base if base and base.model == scene.model else next(s for s in SCENES.values() if s.model == scene.model)
+
+
 def scene_arguments(scene: Scene) -> list[str]:
     """The options that reproduce a scene to the last bit, a user's own methods from their files."""
-    base = SCENES.get(scene.name)
-    if base is None or base.model != scene.model:
-        base = next(each for each in SCENES.values() if each.model == scene.model)
+    base = _listed(scene)
     arguments = ["--scene", base.name]
     for name in (*LIMITS, "h", *scene.parameters):
         if (value := getattr(scene, name)) != getattr(base, name):

@@ -2,16 +2,18 @@
 
 import math
 
+from engine.methods import Cast
 from tui.playback.source import Source
-from tui.words.findings import ending, endings, leaving
+from tui.words.findings import astray, ending, endings, leaving
 from tui.words.numbers import about, seconds
 
 
-def description(source: Source) -> list[str]:
-    """The run, each method and the recording, one sentence each."""
+def description(source: Source, only: Cast | None = None) -> list[str]:
+    """The run, each method, or `only` these, and the recording, one sentence each."""
+    shown = [index for index, method in enumerate(source.scene.cast) if only is None or method in only]
     return [
         *_run(source),
-        *(method_sentence(source, index) for index in range(len(source.scene.cast))),
+        *(method_sentence(source, index) for index in shown),
         _recording(source),
     ]
 
@@ -44,7 +46,8 @@ def method_sentence(source: Source, index: int) -> str:
     """Whether a method failed or went over the top; if not, its verdict or its error so far."""
     method, reading = source.scene.cast[index], source.sample.readings[index]
     if milestone := endings(source).get(index):
-        return ending(milestone, source.scene.equations.conserved)
+        said = ending(milestone, source.scene.equations.conserved)
+        return f"{said} {astray(method.label, source.judgements[index], reading.energy_error)}".strip()
     if source.judgements[index].verdict == "bounded":
         return f"{method.label} stays bounded: its largest energy error is {reading.max_energy_error:.2g}."
     known = source.judgements[index].verdict

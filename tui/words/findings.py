@@ -114,8 +114,9 @@ def staying(source: Source, hidden: Collection[str] = ()) -> str:
 def astray(name: str, judgement: Judgement, error: float) -> str:
     """The sentence on a method that is chaotic, wanders or is caught; "" for others."""
     match judgement.verdict:
-        case "chaotic" if judgement.lyapunov:
-            return f"{name} is chaotic: two close starts part tenfold every {about(math.log(10) / judgement.lyapunov)}."
+        case "chaotic" | "wanders" if judgement.lyapunov:
+            what = "is chaotic" if judgement.verdict == "chaotic" else "wanders in chaos"
+            return f"{name} {what}: two close starts part tenfold every {about(math.log(10) / judgement.lyapunov)}."
         case "chaotic":
             return f"{name} is chaotic: two close starts part exponentially."
         case "wanders":

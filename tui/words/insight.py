@@ -8,7 +8,7 @@ from engine.run.observer import Milestone
 from engine.scenes import Scene
 from recordings.events import Event, EventKind
 from tui.playback.source import Source
-from tui.words.findings import ending, endings, leaving, passing, short_name, so_far, staying
+from tui.words.findings import astray, ending, endings, leaving, passing, short_name, so_far, staying
 
 WATCH = 8.0  # s of the clock at the beginning of a run, for the scene's own sentence
 FRESH = 6.0  # s of the clock for which a milestone is news
@@ -76,8 +76,14 @@ def lasting(source: Source, hidden: Collection[str] = ()) -> list[str]:
     shown = [index for index, method in enumerate(source.scene.cast) if method.key not in hidden]
     ended = {index: each for index, each in endings(source).items() if index in shown}
     ends = sorted(ended.values(), key=lambda each: (each.kind != "failed", each.step))
-    moves = [leaving(source, index) for index in shown if index not in ended]
     over = [ending(each, source.scene.equations.conserved) for each in ends]
+    every = [*zip(source.scene.cast, source.judgements, source.sample.readings, strict=True)]
+    moves = [
+        leaving(source, index)
+        if index not in ended
+        else astray(short_name(every[index][0]), every[index][1], every[index][2].energy_error)
+        for index in shown
+    ]
     known = list(filter(None, [*over, staying(source, hidden), *moves]))
     return [*known, *filter(None, [_watch(source, hidden)])] if known else [so_far(source, hidden)]
 

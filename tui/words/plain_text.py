@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable
 
+from engine.methods import Cast
 from tui.playback.source import Source
 from tui.words.describe import description
 from tui.words.events import event_lines
@@ -19,9 +20,10 @@ def plain(
     stopped: Callable[[], bool],
     clock: Callable[[], float] = time.monotonic,
     sleep: Callable[[float], object] = time.sleep,
+    only: Cast | None = None,
 ) -> None:
-    """Say what runs, then what happens, until `stopped` or the end of the recording."""
-    for sentence in description(source):
+    """Say what runs, then what happens, until `stopped` or the end of the recording; `only` of these methods."""
+    for sentence in description(source, only):
         say(sentence)
     began, second, news = clock(), 0, False
     source.tick(began)
@@ -30,18 +32,20 @@ def plain(
         sleep(TICK)
         source.tick(clock())
         for line in event_lines(source):
-            if line not in known:
+            if line not in known and (only is None or line.method is None or line.method in only):
                 known.add(line)
                 news = True
                 say(f"{seconds(line.t)}: {line.text}.")
         if clock() - began >= second + 1:
             second = int(clock() - began)
-            say(insight(source) if news or second % TURN == 0 else numbers(source))
+            lasting = only is None and (news or second % TURN == 0)  # the sentences are about all methods
+            say(insight(source) if lasting else numbers(source, only))
             news = False
 
 
-def numbers(source: Source) -> str:
+def numbers(source: Source, only: Cast | None = None) -> str:
     """As "3.00 s: energy errors Explicit Euler +0.4, …"."""
     each = zip(source.scene.cast, source.sample.readings, strict=True)
-    errors = [f"{short_name(method)} {reading.energy_error:+.2g}" for method, reading in each]
+    shown = [(method, reading) for method, reading in each if only is None or method in only]
+    errors = [f"{short_name(method)} {reading.energy_error:+.2g}" for method, reading in shown]
     return f"{seconds(source.sample.t)}: energy errors {', '.join(errors)}."

@@ -47,6 +47,14 @@ def test_from_the_bottom_symplectic_euler_has_the_angles_and_the_order_of_verlet
     assert orders(SCENES["spin"], 5.0)[USUAL_CAST.index(S)].measured == pytest.approx(2, abs=0.1)
 
 
+@pytest.mark.parametrize(("theta", "omega"), [(0.0, 2.0), (0.0, 6.2), (3.1, 0.5), (1.0, 0.0)])
+def test_what_rounding_leaves_does_not_hang_on_where_in_a_swing_it_starts(theta, omega):
+    scene = DRIFT.altered(theta=theta, omega=omega)
+    still = scene.exact().at(scene.exact().period / 5)
+    floors = [rounding_floor(each, 20.0)[1] for each in (scene, scene.altered(theta=still.theta, omega=still.omega))]
+    assert floors[0] == pytest.approx(floors[1], rel=0.3)
+
+
 def test_over_a_hundred_seconds_rk4_reads_more_than_its_order():
     study = Study(DRIFT, 100.0)
     coarse, fine = study.run(R, 2000), study.run(R, 4000)

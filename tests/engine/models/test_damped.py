@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from engine.methods import RK4
 from engine.models.damped import ACCURACY, STEP, DampedPendulum
 from engine.models.pendulum import Pendulum, exact_pendulum
 from engine.models.reference import Reference
@@ -78,3 +79,8 @@ def test_friction_is_for_the_model_that_has_it_and_within_limits() -> None:
     assert scene.fields()["friction"] == 0.1
     assert "friction" not in Scene().fields()
     assert "stiffness" not in scene.fields()
+
+
+def test_friction_far_above_w0_is_refused_with_what_is_not() -> None:
+    with pytest.raises(SceneError, match=r"^friction = 2 s⁻¹ is out of range; use 0 to 1 s⁻¹\.$"):
+        Scene(model="damped", friction=2.0, length=1e4, gravity=1.0, h=1.0, cast=(RK4,))

@@ -84,3 +84,8 @@ def test_stiffness_is_for_the_model_that_has_it_and_more_than_nothing() -> None:
         Scene(model="linear", stiffness=1.0)
     with pytest.raises(SceneError, match=r"^stiffness = 0 s⁻² is out of range; use 1 to 1e\+18 s⁻²\.$"):
         Scene(model="spring", cast=())
+
+
+def test_where_the_spring_is_too_fast_to_be_followed_the_true_motion_is_not_known() -> None:
+    assert math.isfinite(Spring(9.81, 1e6).exact(1.0, 0.0).at(0.1).theta)
+    assert all(map(math.isnan, Spring(9.81, 1e14).exact(1.0, 0.0).at(30.0)))

@@ -4,6 +4,7 @@ import importlib
 import math
 import subprocess
 import sys
+from resource import RUSAGE_SELF, getrusage
 
 import pytest
 
@@ -35,6 +36,21 @@ def test_a_million_steps_compiled_and_plain_end_on_the_same_bits(method):
     assert fast is not slow
     start = ((2.5, 0.3), 0.05, 1_000_000)
     assert fast.advance(*start, math.inf) == slow.advance(*start, math.inf)
+
+
+@needs_numba
+@each_method
+def test_runs_of_compiled_loops_leave_no_memory_behind(method):
+    loops = compiled.compiled(method, PENDULUM)
+
+    def run(times):
+        for _ in range(times):
+            loops.travel((1.0, 0.0), 0.01, 2)
+
+    run(1000)
+    before = getrusage(RUSAGE_SELF).ru_minflt
+    run(20_000)
+    assert getrusage(RUSAGE_SELF).ru_minflt - before < 200  # pages; a list of BM4's in each run would fill 1000
 
 
 @needs_numba

@@ -13,7 +13,7 @@ from engine.methods import GENERAL, VELOCITY_VERLET, Method
 from engine.models import LinearOscillator, Pendulum
 from engine.models.model import Model
 from engine.run.compiled import available
-from engine.run.ensemble import Watched, compiled, plain, section, sine
+from engine.run.ensemble import Watched, compiled, plain, section, sharing, sine
 
 needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed")
 each_method = pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
@@ -24,7 +24,7 @@ PENDULUM = Pendulum(1.0)
 
 def watched(model: Model, h: np.ndarray, band: float) -> Watched:
     start = model.energy(np.sin)((THETA, OMEGA))
-    return Watched(start, np.full(37, band), np.zeros(37), np.zeros(37), np.abs(THETA))
+    return Watched(start, np.full(37, band), np.full(37, math.pi), np.zeros(37), np.zeros(37), np.abs(THETA))
 
 
 @given(st.floats(-1e4, 1e4))
@@ -61,12 +61,39 @@ def test_no_swing_depends_on_the_others(fast: bool) -> None:
 def test_compiled_steps_are_freed() -> None:
     """In a compiled loop Numba 0.68 keeps all that a generator yields, which makes 4 pages a step of these."""
     many, h = (np.full(1024, 0.5), np.zeros(1024)), np.full(1024, 0.1)
-    seen = Watched(many[0], np.full(1024, math.inf), *(np.zeros(1024) for _ in range(3)))
+    seen = Watched(many[0], *(np.full(1024, math.inf) for _ in range(2)), *(np.zeros(1024) for _ in range(3)))
     watch = compiled(VELOCITY_VERLET, PENDULUM).watch
-    watch(many, h, seen, 1000)
+    next(watch(many, h, seen, 1000))
     before = getrusage(RUSAGE_SELF).ru_minflt
-    watch(many, h, seen, 4000)
+    next(watch(many, h, seen, 4000))
     assert getrusage(RUSAGE_SELF).ru_minflt - before < 4000
+
+
+@each_way
+def test_a_swing_that_is_no_longer_looked_at_does_not_stop_the_others(fast: bool) -> None:
+    seen, h = watched(PENDULUM, np.full(37, 0.2), math.inf), np.full(37, 0.2)
+    stops = []
+    for done, phase in (compiled if fast else plain)(GENERAL[0], PENDULUM).watch((THETA, OMEGA), h, seen, 100):
+        stops.append(done)
+        seen.top[np.abs(phase[0]) > seen.top] = math.inf
+    points = section(GENERAL[0], PENDULUM, (THETA, OMEGA), 0.2, 100, fast=fast)
+    over = np.abs(points[:, 0]) > math.pi
+    assert stops == sorted({*(over.argmax(axis=0)[over.any(axis=0)] + 1).tolist(), 100})
+
+
+def test_force_and_energy_that_share_a_sine_are_those_of_the_pendulum() -> None:
+    theta, omega = np.concatenate([np.linspace(-9.4, 9.4, 1001), [0.0, 1e-8, 3.14, -3.1415]]), np.linspace(-2, 2, 1005)
+    force, energy = sharing(9.81)
+    room = 1e-14 + 1e-14 / np.abs(np.cos(theta / 2))
+    assert (np.abs(force(theta) - Pendulum(9.81).force(np.sin)(theta)) < room).all()
+    assert energy((theta, omega)) == pytest.approx(Pendulum(9.81).energy(np.sin)((theta, omega)), rel=1e-14)
+
+
+def test_it_is_the_sine_of_the_angles_at_hand_and_not_of_those_before() -> None:
+    force, energy = sharing(1.0)
+    for theta in (np.array([0.5]), np.array([1.0]), np.array([0.5])):
+        assert force(theta) == pytest.approx(-np.sin(theta))
+        assert energy((theta, np.zeros(1))) == pytest.approx(1 - np.cos(theta))
 
 
 @each_way
@@ -75,13 +102,14 @@ def test_what_is_watched_is_the_largest_of_each_step(method: Method, fast: bool)
     h = np.full(37, 0.2)
     seen = watched(PENDULUM, h, math.inf)
     points = section(method, PENDULUM, (THETA, OMEGA), 0.2, 10, fast=fast)
-    done, phase = (compiled if fast else plain)(method, PENDULUM).watch((THETA, OMEGA), h, seen, 10)
+    ((done, phase),) = (compiled if fast else plain)(method, PENDULUM).watch((THETA, OMEGA), h, seen, 10)
     assert done == 10
-    assert np.array_equal(phase, points[-1])
+    assert np.array(phase) == pytest.approx(points[-1], rel=0, abs=1e-14)
     off = PENDULUM.energy(np.sin)((points[:, 0], points[:, 1])) - seen.start
     assert seen.off == pytest.approx(off[-1], rel=0, abs=1e-14)
     assert seen.worst == pytest.approx(np.abs(off).max(axis=0), rel=0, abs=1e-14)
-    assert np.array_equal(seen.width, np.maximum(np.abs(THETA), np.abs(points[:, 0]).max(axis=0)))
+    width = np.maximum(np.abs(THETA), np.abs(points[:, 0]).max(axis=0))
+    assert seen.width == pytest.approx(width, rel=0, abs=1e-14)
 
 
 @each_way
@@ -89,9 +117,9 @@ def test_it_stops_at_the_step_that_passes_the_top_or_leaves_the_band(fast: bool)
     watch, h = (compiled if fast else plain)(GENERAL[0], PENDULUM).watch, np.full(37, 0.2)
     points = section(GENERAL[0], PENDULUM, (THETA, OMEGA), 0.2, 100, fast=fast)
     over = int(np.flatnonzero((np.abs(points[:, 0]) > math.pi).any(axis=1))[0]) + 1
-    done, _ = watch((THETA, OMEGA), h, watched(PENDULUM, h, math.inf), 1000)
+    done, _ = next(watch((THETA, OMEGA), h, watched(PENDULUM, h, math.inf), 1000))
     assert done == over
     seen = watched(PENDULUM, h, 0.1)
-    done, _ = watch((THETA, OMEGA), h, seen, 1000)
+    done, _ = next(watch((THETA, OMEGA), h, seen, 1000))
     assert 0 < done < over
     assert (seen.worst > 0.1).any()

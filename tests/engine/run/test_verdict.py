@@ -193,6 +193,24 @@ def test_a_verdict_is_taken_back_when_the_error_comes_back() -> None:
     assert judged(away + back).judgement.verdict != "grows"
 
 
+@pytest.mark.parametrize(
+    ("verdict", "slope", "uncertainty", "told"),
+    [
+        ("loses", -1e-3, 1e-4, True),
+        ("too early", -1e-3, 1e-4, True),
+        ("loses", -1e-3, 4e-4, False),  # not significant
+        ("bounded", 1e-3, 1e-4, False),
+        ("caught", 1e-3, 1e-4, False),
+        ("wanders", 1e-3, 1e-4, False),
+        ("too early", None, None, False),
+    ],
+)
+def test_a_trend_is_told_only_where_it_is_significant_and_nothing_says_that_there_is_none(
+    verdict, slope: float | None, uncertainty: float | None, told: bool
+) -> None:
+    assert Judgement(verdict, slope, uncertainty).trend == (slope if told else None)
+
+
 def test_a_method_whose_numbers_end_grows() -> None:
     judge = judged([0.0] * 20)
     judge.fail(20)

@@ -1,4 +1,5 @@
 import math
+from collections.abc import Iterator
 from itertools import pairwise
 
 import numpy as np
@@ -7,8 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.methods import EXPLICIT_EULER, GENERAL, RK4, USUAL_CAST, VELOCITY_VERLET, Method
-from engine.models.model import Phase
-from engine.models.pendulum import acceleration, energy
+from engine.models.model import Model, Phase
+from engine.models.pendulum import acceleration, energy, energy_of
+from engine.run.ensemble import Arrays, Ensembles, Floats, Watched, plain, sharing
 from engine.stability.linear import energy_range
 from engine.stability.outcomes import (
     BAND,
@@ -17,6 +19,7 @@ from engine.stability.outcomes import (
     FATES,
     GROWS,
     HOLDS,
+    PARKED,
     WOBBLES,
     first_failure,
     is_lost,
@@ -54,16 +57,18 @@ def failure_of(
 def test_each_swing_of_an_ensemble_is_what_a_plain_loop_says(
     method: Method, swings: list[tuple[float, float]], steps: int
 ) -> None:
-    force = acceleration(1.0, np.sin)  # not libm's: an ulp of difference would be chaos later
+    force, value = acceleration(1.0, np.sin), energy_of(1.0, np.sin)  # not libm's: an ulp would be chaos later
+    if method.force_evaluations == 1:
+        force, value = sharing(1.0)
     cells = outcomes(method, *np.array(swings).T, steps)
     for cell, (theta, z) in zip(cells, swings, strict=True):
-        phase, survived, expected = (theta, 0.0), 0, "holds"
-        start = energy(1.0, *phase, np.sin)
+        phase, survived, expected = (np.array([theta]), np.zeros(1)), 0, "holds"
+        start = energy(1.0, theta, 0.0, np.sin)
         lowest, highest = energy_range(method, z)
         worst = 0.0
         while survived < steps and expected == "holds":
             phase = method.step(force, phase, z)
-            now = energy(1.0, *phase, np.sin)
+            now = float(value(phase)[0])
             worst = max(worst, abs(now - start) / start)
             if abs(phase[0]) > math.pi:
                 expected = "over the top"
@@ -80,6 +85,24 @@ def test_each_swing_of_an_ensemble_is_what_a_plain_loop_says(
         else:
             assert FATES[cell["fate"]] == expected
         assert (cell["steps"], cell["error"]) == (survived, worst)
+
+
+def test_swings_are_lost_by_hundreds_and_few_ensembles_are_made(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Numba never frees what a generator holds that has not ended, so there should not be one for each lost swing."""
+    begun: list[int] = []
+
+    def counting(method: Method, model: Model) -> Ensembles:
+        def watch(phase: Arrays, h: Floats, watched: Watched, n: int) -> Iterator[tuple[int, Arrays]]:
+            begun.append(len(h))
+            return plain(method, model).watch(phase, h, watched, n)
+
+        return Ensembles(watch, plain(method, model).record)
+
+    monkeypatch.setattr("engine.stability.outcomes.plain", counting)
+    cells = outcomes(EXPLICIT_EULER, np.linspace(0.5, 3, 500), np.full(500, 0.02), 4000)
+    assert len(np.unique(cells["steps"])) > 200
+    assert begun[0] == 500
+    assert all(after < (1 - PARKED) * before for before, after in pairwise(begun))
 
 
 def test_a_swing_knows_nothing_of_the_others() -> None:

@@ -4,6 +4,7 @@ import pytest
 
 from engine.scenes import SCENES
 from tests.tui.command_line import pendu
+from tui.cli.scene_file import read_scene
 
 
 def written(path, fields):
@@ -11,12 +12,21 @@ def written(path, fields):
     return str(path)
 
 
-@pytest.mark.parametrize("name", ["drift", "stiff-slow", "damped", "linear"])
+@pytest.mark.parametrize("name", SCENES)
 def test_the_fields_of_a_listed_scene_give_the_same_run(tmp_path, name):
-    file = written(tmp_path / "mine.toml", SCENES[name].fields())
-    own = pendu("run", "--scene", file, "--time", "1", "--json").json
-    listed = pendu("run", "--scene", name, "--time", "1", "--json").json
+    listed = {scene["name"]: scene for scene in pendu("scenes", "--json").json["scenes"]}
+    file = written(tmp_path / "mine.toml", listed[name])
+    assert read_scene(tmp_path / "mine.toml").speed == listed[name]["speed"]
+    own = pendu("run", "--scene", file, "--time", "3", "--json").json
+    listed = pendu("run", "--scene", name, "--time", "3", "--json").json
     assert (own["scene"], own["methods"]) == (listed["scene"], listed["methods"])
+
+
+@pytest.mark.parametrize("name", ["drift", "stiff-slow", "damped", "linear"])
+def test_without_methods_it_has_those_that_are_for_its_model(tmp_path, name):
+    fields = {key: value for key, value in SCENES[name].fields().items() if key != "methods"}
+    written(tmp_path / "mine.toml", fields)
+    assert read_scene(tmp_path / "mine.toml").cast == SCENES[name].cast
 
 
 @pytest.mark.parametrize(
@@ -25,6 +35,7 @@ def test_the_fields_of_a_listed_scene_give_the_same_run(tmp_path, name):
         ("h = 0.1\nthetta = 1", "line 2: there is no field thetta: did you mean theta?"),
         ("h = 0.1\n\nlength = 'long'", "line 3: length is not a number"),
         ("h = -1", "line 1: h = -1 s is not a usable step"),
+        ("h = 0.1\nspeed = 0", "line 2: speed = 0 is not usable"),
         ("model = 'cubic'", "line 1: model is not one of pendulum"),
         ("theta = 1\nmethods = ['rk5']", "line 2: "),
         ("theta = 1\nfriction = 0.1", "line 2: the model pendulum has no friction"),

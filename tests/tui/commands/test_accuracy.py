@@ -10,11 +10,12 @@ import jsonschema
 import pytest
 
 from engine.accuracy.references import ABSENT, OTHER_MODEL, UNFAIR
-from engine.accuracy.study import REASONS, Study, ladder
+from engine.accuracy.study import REASONS, Order, Study, ladder, orders
 from engine.methods import METHODS, USUAL_CAST
-from engine.run.compiled import available
+from engine.run.compiled import available, tiered
 from engine.scenes import SCENES
 from tests.tui.command_line import pendu
+from tui.commands.studies.reports.orders import order_remarks
 from tui.views.accuracy.chart import accuracy_chart, accuracy_series
 
 QUICK = ("accuracy", "--time", "5", "--h-values", "0.2:0.01:4")
@@ -379,3 +380,24 @@ def test_the_growth_of_the_angle_error_is_told_where_it_is_a_power_of_time():
     powers = next(found.groups() for line in out.splitlines() if (found := re.fullmatch(said, line)))
     assert [float(power) for power in powers] == pytest.approx([1, 2], abs=0.1)
     assert "grows as" not in pendu("accuracy", "--h", "0.4", "--time", "2", "--h-values", "0.1:0.05:2").out
+
+
+@pytest.mark.parametrize(
+    ("scene", "remarks"),
+    [
+        (SCENES["drift"], []),
+        (SCENES["spin"], ["Symplectic Euler reads 2.00, not 1: from theta = 0 its angles are velocity Verlet's"]),
+        (
+            SCENES["near-separatrix"],
+            ["RK4 reads 4.99, not 4: beside upright the phase hangs on the energy, which it loses as h^5"],
+        ),
+    ],
+)
+def test_where_a_measured_order_is_not_the_claimed_one_it_says_why(scene, remarks):
+    found = orders(scene, 20.0, tiered)
+    assert list(order_remarks(scene, found)) == remarks
+
+
+def test_an_order_of_neither_kind_is_remarked_on_in_general():
+    (said,) = order_remarks(SCENES["drift"], [Order(USUAL_CAST[2], 2.6)])
+    assert said == "Velocity Verlet reads 2.60, not 2: over these h its errors follow no one power"

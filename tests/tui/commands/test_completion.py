@@ -34,7 +34,7 @@ CASES = [  # what is typed before the tab, and what it offers: just that, or tha
     ("pendu-tui verify drift ", ANY_RECORDING | {"golden"}),
     ("pendu-tui run --record ", {"swing.mcap"}),
     ("pendu-tui diff drift ", ANY_RECORDING),
-    ("pendu-tui export drift --format ", {"csv", "cast"}),
+    ("pendu-tui export drift --format ", {"csv", "cast", "foxglove"}),
     ("pendu-tui run --fail-if rk4.m", {"rk4.max_energy_error"}),
     ("pendu-tui recordings ", {"list", "prune"}),
     ("pendu-tui serve --at-m", {"--at-most"}),

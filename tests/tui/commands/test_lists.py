@@ -18,7 +18,7 @@ def test_scenes_lists_every_scene_with_what_to_watch():
 def test_scenes_as_json_hold_everything_that_determines_a_run():
     answer = pendu("scenes", "--json").json
     assert answer["schema"] == "pendu.scenes/1"
-    assert answer["scenes"] == [scene.fields() for scene in SCENES.values()]
+    assert answer["scenes"] == [scene.fields() | {"speed": scene.speed} for scene in SCENES.values()]
 
 
 def test_methods_lists_every_method_its_claims_and_what_is_measured():

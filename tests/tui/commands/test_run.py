@@ -1,3 +1,4 @@
+import math
 import os
 import signal
 import subprocess
@@ -8,14 +9,17 @@ from pathlib import Path
 import pytest
 
 from engine.methods import USUAL_CAST
+from engine.methods.adaptive import HALVING_VERLET
 from engine.run.compiled import available
 from engine.run.lockstep import Lockstep
+from engine.run.loops import count_evaluations
 from engine.scenes import DEFAULT_SCENE, SCENES
 from recordings.recording import Recording
 from recordings.verify import verify
 from tests.tui.command_line import pendu
 from tui.cli.fail_if import FIELDS
 from tui.commands.studies.run import SAMPLE_BYTES
+from tui.words.numbers import about
 
 
 def test_json_has_the_fields_of_the_design_and_the_numbers_of_the_engine():
@@ -25,9 +29,18 @@ def test_json_has_the_fields_of_the_design_and_the_numbers_of_the_engine():
     lockstep = Lockstep(DEFAULT_SCENE)
     lockstep.advance(200)
     for told, method, reading in zip(answer["methods"], USUAL_CAST, lockstep.sample().readings, strict=True):
-        assert told.keys() == {"method", "verdict", *FIELDS}
+        assert told.keys() == {"method", "verdict", "lyapunov_per_second", *FIELDS}
         assert told["method"] == method.key
         assert (told["theta"], told["max_energy_error"]) == (reading.theta, reading.max_energy_error)
+
+
+def test_chaos_is_told_with_its_lyapunov_number():
+    chaos = ("run", "--theta", "0.3", "--h", "0.654514", "--time", 200)
+    symplectic = pendu(*chaos, "--json").json["methods"][1]
+    assert symplectic["verdict"] == "chaotic"
+    assert 0.01 < symplectic["lyapunov_per_second"] * 0.654514 < 2
+    seconds = about(math.log(10) / symplectic["lyapunov_per_second"])
+    assert f"Symplectic Euler is chaotic: two close starts part tenfold every {seconds}.\n" in pendu(*chaos).out
 
 
 def test_the_table_shows_which_method_gains_conserves_and_loses_energy():
@@ -55,6 +68,16 @@ def test_extreme_but_legal_starts_neither_crash_nor_print_nan(start):
     out = pendu("run", *start, "--time", "2000").out
     assert "nan" not in out.replace("nance", "")
     assert "inf" not in out
+
+
+def test_evaluations_that_vary_are_counted():
+    rows = {row["method"]: row for row in pendu("run", "--scene", "halving", "--time", "20", "--json").json["methods"]}
+    scene = SCENES["halving"]
+    start = scene.theta, scene.omega
+    for method in scene.cast:
+        counted = count_evaluations(method, scene.equations, start, scene.h, 100)
+        assert rows[method.key]["force_evaluations"] == counted
+    assert rows["halving_verlet"]["force_evaluations"] != HALVING_VERLET.evaluations(100)
 
 
 def test_a_diverged_method_is_reported_with_its_time():

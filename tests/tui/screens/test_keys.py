@@ -10,7 +10,7 @@ from recordings.live_recorder import LiveRecorder
 from recordings.verify import verify
 from tests.tui.harness import lab, on_stage
 from tui.playback.live import Live
-from tui.playback.shown import QUANTITIES, WINDOWS
+from tui.playback.shown import WINDOWS, quantities
 from tui.screens.dialogs.start_form import StartForm
 from tui.screens.dialogs.text import TextScreen, help_text
 from tui.screens.extras import go_to
@@ -152,11 +152,11 @@ async def test_what_is_shown_digits_t_y_e_and_w():
 
         chart = theatre.stage.query_one(TimeChart)
         titles = [chart.border_title]
-        for _ in QUANTITIES:
+        for _ in quantities(DEFAULT_SCENE):
             await theatre.press("e")
             titles.append(chart.border_title)
         assert titles[0] == titles[-1] == "max |dE/E0| per half swing, all"
-        assert len(set(titles)) == len(QUANTITIES)
+        assert len(set(titles)) == len(quantities(DEFAULT_SCENE))
         await theatre.press("y")
         assert chart.border_title == "energy error dE/E0, all"
         spans = set()
@@ -225,6 +225,16 @@ async def test_capital_o_puts_all_pendulums_on_one_pivot():
         await theatre.press("O")
         await theatre.run(0.1)
         assert not view.overlay.is_on_screen
+
+
+async def test_a_listed_scene_starts_at_its_own_speed_and_u_brings_back_run_and_speed():
+    async with lab() as theatre:
+        await theatre.run(1)
+        await theatre.press("greater_than_sign", "P")  # the last scene comes before the first
+        assert (theatre.source.scene.name, theatre.source.playhead.speed) == ("learned", 8.0)
+        await theatre.press("u")
+        assert (theatre.source.scene.name, theatre.source.playhead.speed) == ("drift", 2.0)
+        assert theatre.source.sample.step == 20
 
 
 async def test_the_form_takes_radians_and_degrees_and_starts_with_enter():
@@ -316,7 +326,7 @@ async def test_a_click_on_the_chart_the_events_or_the_title_of_phase_space_does_
         await theatre.run(1)
         await theatre.pilot.click(TimeChart, offset=(20, 5))
         await theatre.run(0.1)
-        assert theatre.stage.shown.quantity == QUANTITIES[1]
+        assert theatre.stage.shown.quantity == "theta_error"
         await theatre.pilot.click("EventList", offset=(5, 2))
         await theatre.pilot.pause()
         assert theatre.app.screen.text_title == "Events"

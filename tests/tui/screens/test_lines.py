@@ -1,5 +1,6 @@
 """The lab's lines, as pictures made of text."""
 
+import re
 from dataclasses import replace
 
 import pytest
@@ -114,6 +115,14 @@ def test_the_table_at_80_columns_has_every_column():
         "3 v Velocity Verlet  -0.758 +1.904 -1.7e-03 5.7e-03        - too early 2.0e-02 1\n"
         "4 r RK4              -0.778 +1.835 -3.6e-05 3.6e-05 -2.9e-06   - loses 3.1e-05 4"
     )
+
+
+@pytest.mark.parametrize("width", [60, 80, 100, 120, 200])
+def test_of_a_bob_that_is_gone_the_table_has_length_and_spring_and_is_no_wider(width):
+    lines = rows(after(SCENES["stiff-limit"], 2.0), width).splitlines()
+    assert all(len(line) <= width for line in lines)
+    assert re.search("length +spring", lines[0])
+    assert re.search(r" 2(\.2)?e\+22 +4\.(7|67)e\+47", lines[1])
 
 
 def test_errors_from_1_percent_on_are_in_percent_or_in_powers_of_ten():

@@ -13,7 +13,7 @@ from tui.views.accuracy import pane as accuracy
 from tui.views.phase import keys as phase
 from tui.views.phase.pane import PhasePane
 from tui.views.stability import pane as stability
-from tui.words.cards import WIDTH, glossary, method_card, scene_card
+from tui.words.cards import OFTEN_SAID, WIDTH, glossary, method_card, scene_card
 
 
 def words(card: str) -> str:
@@ -24,19 +24,26 @@ def words(card: str) -> str:
 @pytest.mark.parametrize("method", METHODS, ids=lambda method: method.key)
 def test_a_method_card_has_every_claim(method):
     card = words(method_card(method))
-    for claim in (method.label, *method.other_names, method.formula, method.reference, method.used):
+    for claim in (method.label, *method.other_names, method.formula, method.reference, method.used or ""):
         assert words(claim) in card
-    assert f"order {method.order}: over one swing, halving h divides the error by {2**method.order}" in card
+    assert ("used in" in card) == (method.used is not None)
+    assert f"order {method.order}: as a rule, over one swing half of h divides the error by {2**method.order}" in card
     assert f"costs {method.force_evaluations} force evaluation" in card
     assert ("symplectic yes" in card, "reversible yes" in card) == (method.symplectic, method.reversible)
-    assert (f"stable up to z = h w0 = {method.linear_limit:.4g}" if method.linear_limit else "stable at no h") in card
+    if method.linear_limit is None:
+        assert "stable up to" not in card
+        assert "stable at no h" not in card
+    else:
+        assert (
+            f"stable up to z = h w0 = {method.linear_limit:.4g}" if method.linear_limit else "stable at no h"
+        ) in card
 
 
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
 def test_a_scene_card_has_what_to_watch_and_the_numbers(scene):
     card = words(scene_card(scene))
     assert words(scene.watch) in card
-    for number in (scene.omega, scene.length, scene.gravity, scene.h):
+    for number in (scene.omega, scene.length, scene.gravity, scene.h, *(getattr(scene, p) for p in scene.parameters)):
         assert f"{number:.5g}" in card
 
 
@@ -65,7 +72,7 @@ def test_the_help_shows_the_current_step_next_to_the_scenes():
     live.set_stepping(Stepping(-0.4, equal_cost=True))
     text = words(help_text(LIVE, live))
     assert (
-        "step h = 0.05 s, z = h w0 = 0.1566 now h = 0.4 s, z = 1.25; at equal cost, the cheaper methods split it"
+        "step h = 0.05 s, z = h·w0 = 0.1566 now h = 0.4 s, z = 1.25; at equal cost, the cheaper methods split it"
         in text
     )
     assert "time runs backwards" in text
@@ -90,3 +97,12 @@ def test_the_glossary_explains_every_sign_of_a_verdict_that_ends_well_or_badly()
     for words in ("h ", "z ", "dE/E0", "E/Es", "= bounded", "+ grows", "- loses", "! chaotic", "too early", "colours"):
         assert f"\n  {words}" in glossary()
     assert max(map(len, glossary().splitlines())) <= WIDTH
+
+
+def test_what_is_often_said_stands_on_the_cards_of_scenes_and_where_there_is_no_closed_form_the_reference():
+    assert set(OFTEN_SAID) <= set(SCENES)
+    for name, scene in SCENES.items():
+        card = words(scene_card(scene))
+        assert ("often said" in card) == (name in OFTEN_SAID)
+        assert ("right to 1e-10 rad" in card) == (scene.model in ("damped", "spring"))
+        assert all(len(line) <= WIDTH for line in scene_card(scene).splitlines())

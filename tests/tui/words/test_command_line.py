@@ -32,7 +32,7 @@ def options_of(text: str):
 
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
 def test_a_listed_scene_is_given_by_name(scene):
-    text = command(Live(scene))
+    text = command(Live(scene, scene.speed))
     assert text == f"pendu-tui live --scene {scene.name}"
     assert scene_of(options_of(text)) == scene
 
@@ -54,7 +54,7 @@ numbers = st.fixed_dictionaries(
     changes=numbers,
     equal_cost=st.booleans(),
     speed=st.floats(0.1, 9),
-    parameter=st.floats(1, 50),
+    parameter=st.floats(1, 30),
     methods=st.randoms(use_true_random=False),
 )
 def test_any_start_is_reproduced_to_the_last_bit(scene, changes, equal_cost, speed, parameter, methods):

@@ -113,6 +113,12 @@ def test_a_step_back_removes_what_comes_later():
     assert texts(live)[-1] == "Explicit Euler over the top, 5.1 E0"
     live.step(-20)
     assert texts(live) == ["start drift, h 0.05 s"]
+    changed = after(DRIFT, 3)
+    changed.set_stepping(Stepping(0.1))
+    changed.step(10)
+    assert texts(changed) == ["start drift, h 0.05 s", "h 0.1 s"]
+    changed.step(-30)
+    assert texts(changed) == ["start drift, h 0.05 s"]
 
 
 def test_a_failed_method_is_listed():

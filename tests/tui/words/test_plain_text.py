@@ -2,7 +2,7 @@
 
 import re
 
-from engine.methods import USUAL_CAST
+from engine.methods import RK4, USUAL_CAST, VELOCITY_VERLET, Cast
 from engine.scenes import SCENES
 from recordings.library import GOLDEN
 from recordings.recording import Recording
@@ -28,11 +28,11 @@ class Hour:
         self.now += seconds
 
 
-def said(source: Source, seconds: float) -> list[str]:
+def said(source: Source, seconds: float, only: Cast | None = None) -> list[str]:
     """What is said in so many seconds of the clock."""
     clock, sentences = Hour(), []
     end = clock.now + seconds
-    plain(source, sentences.append, lambda: clock.now >= end, clock.read, clock.sleep)
+    plain(source, sentences.append, lambda: clock.now >= end, clock.read, clock.sleep, only=only)
     return sentences
 
 
@@ -80,6 +80,13 @@ def test_seconds_are_those_of_the_clock_at_any_speed():
     assert fast.sample.t == 0
     said(fast, 5)
     assert 39 < fast.sample.t < 41
+
+
+def test_of_some_methods_nothing_is_said_of_the_others():
+    sentences = "\n".join(said(lab(), 20.5, (RK4, VELOCITY_VERLET)))
+    assert "RK4 loses energy" in sentences
+    assert "Verlet stays bounded" in sentences
+    assert "Euler" not in sentences
 
 
 def test_a_replay_ends_at_its_end():

@@ -21,7 +21,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     if options.json:
-        write_json("scenes", {"scenes": [scene.fields() for scene in SCENES.values()]})
+        write_json("scenes", {"scenes": [scene.fields() | {"speed": scene.speed} for scene in SCENES.values()]})
         return Exit.FINE
     print_table("lrl", ("scene", "h·w", "what to watch"), [row for group in GROUPS for row in _rows(group)])
     print(f"\n{LEFT_OUT}")

@@ -1,6 +1,8 @@
-"""Write a recording as CSV, one row per sample and method, or as an asciicast: the replay as a film for a terminal."""
+"""Write a recording as CSV, one row per sample and method, as an asciicast, the replay as a film for a terminal, or as
+a layout for Foxglove."""
 
 import argparse
+import json
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import redirect_stderr
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
 
     from recordings.recording import Recording
 
+FORMATS = ("csv", "cast", "foxglove")
 MOST_FRAMES = 100_000  # almost three hours at the usual rate
 FILM = {"size": (80, 24), "speed": 1.0, "fps": 10}
 """The options of a film, with their defaults."""
@@ -28,6 +31,7 @@ examples:
   pendu-tui export latest --format csv -o latest.csv
   pendu-tui export drift --format csv | head -3
   pendu-tui export drift --format cast --size 120x40 --speed 2 -o drift.cast
+  pendu-tui export latest --format foxglove -o layout.json
 
 asciinema plays a .cast: asciinema play drift.cast, or its player on a web page.
 """
@@ -35,7 +39,7 @@ asciinema plays a .cast: asciinema play drift.cast, or its player on a web page.
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_recording(parser)
-    parser.add_argument("--format", choices=("csv", "cast"), default="csv", help="output format (%(default)s)")
+    parser.add_argument("--format", choices=FORMATS, default="csv", help="output format (%(default)s)")
     add_file(parser, "-o", "--output", metavar="OUT", type=Path, help="write to OUT instead of stdout")
     parser.add_argument("--force", action="store_true", help="overwrite OUT")
     add_picture_options(parser, "dark", "braille")
@@ -50,8 +54,8 @@ def run(options: argparse.Namespace) -> int:
     from recordings.recording import Recording
 
     given = [name for name in FILM if getattr(options, name) is not None]
-    if options.format == "csv" and given:
-        raise UserError(f"--{given[0]} belongs to --format cast; a CSV has every sample.")
+    if options.format != "cast" and given:
+        raise UserError(f"--{given[0]} belongs to --format cast.")
     path = library.resolve(options.file)
     with (
         Recording.open(path) as recording,
@@ -63,6 +67,10 @@ def run(options: argparse.Namespace) -> int:
 
             head = columns(*recording.models)
             write_csv(out, head, _rows(recording, len(head), show))
+        elif options.format == "foxglove":
+            from tui.commands.files.foxglove import layout
+
+            print(json.dumps(layout(recording.keys), indent=2), file=out)
         else:
             _film(recording, options, out, show)
         if recording.reason:

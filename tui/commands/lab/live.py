@@ -29,7 +29,7 @@ examples:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_scene_options(parser)
-    parser.add_argument("--speed", metavar="X", type=positive, default=1.0, help="multiple of real time (%(default)g)")
+    parser.add_argument("--speed", metavar="X", type=positive, help="multiple of real time (default: the scene's)")
     parser.add_argument(
         "--equal-cost",
         action="store_true",
@@ -47,7 +47,7 @@ def lab_of(scene: Scene, options: argparse.Namespace) -> "Live":
     """The lab of a scene that the other options describe.  Raises SceneError for a step too large at equal cost."""
     from tui.playback.live import Live
 
-    live = Live(scene, options.speed)
+    live = Live(scene, options.speed or scene.speed)
     if options.equal_cost:
         live.set_stepping(live.stepping.toggled())
     return live

@@ -50,7 +50,7 @@ def run(options: argparse.Namespace) -> int:
     replay.seek(options.start_at)
     replay.pause(options.paused)
     if options.plain:
-        return launch.print_sentences(replay)
+        return launch.print_sentences(replay, only)
     screen = launch.replay_screen(replay, options.no_record)
     if only is not None:
         hidden = {method.key for method in (*METHODS, *replay.scene.cast) if method not in only}

@@ -76,7 +76,7 @@ def run(options: argparse.Namespace) -> int:
     began = time.perf_counter()
     sample, observer, stopped = _simulate(scene, options, steps, every)
     wall_seconds = time.perf_counter() - began
-    rows = _rows(scene, sample, observer)
+    rows = _rows(scene, sample, observer, stopped)
     if options.json:
         fields = {"scene": scene.fields(), "time": sample.t, "steps": sample.step, "wall_seconds": wall_seconds}
         write_json("run", {**fields, "methods": rows})
@@ -121,14 +121,23 @@ def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int)
     return sample, observer, False
 
 
-def _rows(scene: Scene, sample: "Sample", observer: "RunObserver") -> list[dict[str, Any]]:
-    """The results by method, as in --json.  A method that diverged has no theta to compare."""
+def _rows(scene: Scene, sample: "Sample", observer: "RunObserver", stopped: bool) -> list[dict[str, Any]]:
+    """The results by method, as in --json.  A method that diverged has no theta to compare.
+
+    Where evaluations vary they are counted, by running again, unless somebody waits for the end.
+    """
+    from engine.run.loops import count_evaluations
     from recordings.fields import NUMBERS
 
     exact = observer.exact.at(sample.t).theta
     rows = []
     for method, reading, judgement in zip(scene.cast, sample.readings, observer.judgements, strict=True):
         end, off = reading.diverged_at, scene.equations.theta_error(reading.theta, exact)
+        steps = sample.step if end is None else round(end / scene.h)
+        evaluations = method.evaluations(steps)
+        if method.varies and end is None and steps and not stopped:
+            start = scene.equations.start(scene.theta, scene.omega)
+            evaluations = count_evaluations(method, scene.equations, start, scene.h, steps)
         rows.append(
             {
                 "method": method.key,
@@ -138,7 +147,8 @@ def _rows(scene: Scene, sample: "Sample", observer: "RunObserver") -> list[dict[
                 "theta_error": None if math.isnan(off) or end is not None else abs(off),
                 "drift_per_second": judgement.slope,
                 "verdict": judgement.verdict,
-                "force_evaluations": method.evaluations(sample.step if end is None else round(end / scene.h)),
+                "lyapunov_per_second": judgement.lyapunov,
+                "force_evaluations": evaluations,
                 "diverged_at": end,
             }
         )
@@ -156,7 +166,7 @@ def _print(
     print(f"{scene_line(scene, 'h', degrees=degrees)}, {z_name(scene.model)} = {scene.z:.4g}")
     pace = f", {sample.step / wall_seconds / 1e6:.3g} million a second" if wall_seconds > 1 else ""
     print(f"{sample.step} steps to t = {sample.t:g} s in {wall_seconds:.2f} s{pace}\n")
-    from tui.words.findings import ending, passing
+    from tui.words.findings import astray, ending, passing
 
     forms = {"spring_energy": ".4g"} if scene.model == "spring" else {}
     forms |= {"energy_error": "+.2e", "max_energy_error": ".2e", "drift_per_second": "+.1e", "theta_error": ".2e"}
@@ -178,3 +188,6 @@ def _print(
             print(passing(each, each.other))
         elif each.kind == "over the top":
             print(ending(each, scene.equations.conserved))
+    for method, judgement in zip(scene.cast, observer.judgements, strict=True):
+        if judgement.lyapunov:
+            print(astray(method.label, judgement, 0.0))

@@ -71,10 +71,8 @@ COLUMNS = (
     Column(1, ("f", 1), ("evals/step", 10), lambda line, width: str(line.method.force_evaluations).rjust(width)),
 )
 SPRING = (
-    Column(8, ("length", 6), ("length", 7), lambda line, width: f"{abs(line.reading.position or 0):.3g}".rjust(width)),
-    Column(
-        8, ("spring", 7), ("spring E", 8), lambda line, width: f"{line.reading.spring_energy or 0:.3g}".rjust(width)
-    ),
+    Column(8, ("length", 6), ("length", 7), lambda line, width: short(abs(line.reading.position or 0), width)),
+    Column(8, ("spring", 7), ("spring E", 8), lambda line, width: short(line.reading.spring_energy or 0, width)),
 )
 """Of a bob on a spring: its length over that at rest, and the energy in it over that at the start."""
 NAME = 20  # columns of the longest name and its mark
@@ -85,6 +83,12 @@ _LOGARITHM = {"dE/E0": "ln E/Et", "dE/E0 now": "ln E/Etr"}  # to the true energy
 def share(line: TableLine, value: float, width: int, sign: str = "+") -> str:
     """An energy error, relative to the start's energy."""
     return relative(value, width, sign) if line.percent else scientific(value, width, 1, sign)
+
+
+def short(value: float, width: int) -> str:
+    """With three digits, or as many as fit."""
+    text = f"{value:.3g}"
+    return text.rjust(width) if len(text) <= width else scientific(value, width, 1, "-")
 
 
 def theta_error(line: TableLine) -> float:

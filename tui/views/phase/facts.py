@@ -4,6 +4,7 @@ import math
 
 from engine.models.model import ExactMotion, State
 from engine.phase_space.area import Neighbourhood, Neighbours
+from engine.run.stepping import change_before
 from engine.scenes import Scene
 from tui.drawing.axes import in_pi
 from tui.drawing.canvas import Canvas, Picture, Span
@@ -58,8 +59,10 @@ def _ring_text(source: Source, neighbours: Neighbours | None, degrees: bool) -> 
         f" Ring of neighbouring starts, radius {measured(neighbours.radius, degrees):.4g}{'°' if degrees else ' rad'}"
     )
     if friction := source.scene.friction:
-        left = math.exp(-friction * neighbours.step * source.scene.h)
-        text = f"{text}; friction leaves exp(-gamma t) = {left:.9f} of any area"
+        change = change_before(source.changes, neighbours.step)
+        t = change.t + (neighbours.step - change.step) * change.stepping.h
+        left = math.exp(-friction * t)
+        return f" Ring, radius {neighbours.radius:g} rad: friction leaves exp(-gamma t) = {left:.9f} of it"
     return f"{text}: {behind} steps behind" if behind else f"{text} (g: larger, G: smaller)"
 
 

@@ -14,6 +14,7 @@ from rich.segment import Segment
 from rich.style import Style
 
 from engine.methods import Method
+from engine.methods.euler import SYMPLECTIC_EULER
 from engine.methods.verlet import VELOCITY_VERLET
 from engine.stability.chaos import GREENE_Z
 from engine.stability.grid import Grid
@@ -117,13 +118,14 @@ def title(place: int, method: Method, columns: int, palette: Palette | None, not
 def theory(method: Method, grid: Grid, rows: int) -> Iterator[tuple[float, float, str]]:
     """Points (z, theta) that theory names, one a row: the linear limit, Greene's threshold and the catching orbit.
 
-    The catching orbit, z² sin q = 4 q, comes to rest at q only in a reversible method.
+    Greene's threshold is that of the standard map, which symplectic Euler is, and velocity Verlet half a kick earlier.
+    Velocity Verlet's catching orbit jumps between q and -q, z² sin q = 4 q, and is stable where 0 < z² cos q < 4.
     """
     for row in range(rows):
         theta = _theta_of_row(grid, row, rows)
-        if method.symplectic:
+        if method in (SYMPLECTIC_EULER, VELOCITY_VERLET):
             yield GREENE_Z, theta, THRESHOLD
-        if method.symplectic and method.reversible:
+        if method == VELOCITY_VERLET and theta < math.pi / 2:
             yield math.sqrt(4 * theta / math.sin(theta)), theta, CATCHING
         if method.linear_limit:
             yield method.linear_limit, theta, LIMIT

@@ -8,7 +8,7 @@ import numpy as np
 from engine.methods import Method
 from engine.stability.outcomes import CHAOTIC, FATES, HELD, UNKNOWN, Cells, Floats, is_lost
 
-_SAID = {"holds": "held", "holds, wobbling": "held, larger wobble", "caught": "caught, period 2"}
+_SAID = {"holds": "held", "holds, wobbling": "held, larger wobble"}
 
 
 def said(cell: Any) -> str:

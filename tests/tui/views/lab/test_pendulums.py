@@ -83,6 +83,15 @@ def test_any_angle_fits_any_pane(theta, columns, rows):
     assert drawn.characters.shape == (rows, columns)
 
 
+def test_a_bob_on_a_spring_hangs_at_the_end_of_its_rod():
+    assert picture(16, 8, Bob(0.7, 2, letter="p", length=0.6)).text == (
+        "\n\n\n       ⢀⡀\n       ⠈⠑⣤⡀\n         ⠛⠃p\n\n"
+    )
+    assert picture(16, 8, Bob(0.7, 2, letter="p", length=1.08)).text == (
+        "\n\n\n       ⢀⡀\n       ⠈⠑⡄\n         ⠈⢢⣤\n          ⠈⠉p\n"
+    )
+
+
 def test_a_bob_on_a_spring_is_as_far_from_the_pivot_as_its_rod_is_long():
     def lowest(length):
         sketch = pendulum_sketch(40, 20, [Bob(0.0, 2, length=length)])

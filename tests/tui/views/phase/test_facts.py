@@ -5,7 +5,8 @@ import math
 import pytest
 
 from engine.phase_space.area import Neighbours
-from engine.scenes import Scene
+from engine.run.stepping import Stepping
+from engine.scenes import SCENES, Scene
 from tui.playback.live import Live
 from tui.playback.shown import Shown
 from tui.views.phase.facts import area_text, fact_rows, place_text
@@ -54,6 +55,18 @@ def test_the_table_tells_who_keeps_area():
     assert "1 + " in lines[3] or "1 - " in lines[3] or " 1 " in lines[3]  # symplectic Euler, but for rounding
     assert " 0.99997" in lines[5]  # RK4: a loss that four digits would not show
     assert all(len(line) == len(lines[1]) for line in lines[2:])
+
+
+def test_with_friction_the_area_that_is_left_is_told_and_conformal_verlet_leaves_it_also_after_a_change_of_h():
+    live, neighbours = Live(SCENES["damped"]), Neighbours(0.1)
+    live.step(100)
+    live.set_stepping(Stepping(0.05, cast=live.scene.cast))
+    live.step(100)
+    ring = neighbours.follow(live.scene, live.sample.run, live.sample.step, live.changes, 200)
+    lines = ["".join(text for text, _ in row) for row in fact_rows(live, Shown(), neighbours, ring, 80)]
+    left = f"{math.exp(-0.05 * 7.5):.9f}"
+    assert lines[0] == f" Ring, radius 0.1 rad: friction leaves exp(-gamma t) = {left} of it"
+    assert [left in line for line in lines[2:]] == [False, False, True, False]
 
 
 def test_the_table_says_when_the_ring_is_behind_or_not_there():

@@ -5,11 +5,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods import METHODS, Method
+from engine.methods import GENERAL, METHODS, Method
 from engine.stability.grid import Grid
 from engine.stability.outcomes import CELL, GROWS, HOLDS, LOSES, UNKNOWN
 from tui.drawing.palette import PALETTES
-from tui.views.stability.picture import character, colour, panel, picture, scores, worst
+from tui.views.stability.picture import (
+    CATCHING,
+    LIMIT,
+    THRESHOLD,
+    character,
+    colour,
+    panel,
+    picture,
+    scores,
+    theory,
+    worst,
+)
 
 STEPS = 1000
 
@@ -52,12 +63,21 @@ def test_theory_is_drawn_where_it_belongs():
         "    3 v Velocity Verlet\n"
         "165 #########:#####22222|222222222\n"  # Greene's z = 0.986, the linear limit 2
         "    #########:#####22222|222222222\n"
-        "    #########:#####22222|222222o22\n"  # the catching orbit: z = 2.755 at q = 105 deg,
-        " 75 #########:#####.....|..o......\n"  # 2.328 at 75 deg
+        "    #########:#####22222|222222222\n"  # the catching orbit, unstable at q = 105 deg:
+        " 75 #########:#####.....|..o......\n"  # z = 2.328 at 75 deg
         "    #########:#####.....|o........\n"  # and 2.108 at 45 deg
         " 15 #########:#####.....|.........\n"
         "    0.05        z 1.5         2.95"
     )
+
+
+def test_theory_is_drawn_for_the_methods_that_it_is_about():
+    grid, _ = half_lost()
+    signs = {method.key: {sign for _, _, sign in theory(method, grid, 6)} for method in GENERAL}
+    assert signs["velocity_verlet"] == {LIMIT, THRESHOLD, CATCHING}
+    assert signs["symplectic_euler"] == {LIMIT, THRESHOLD}
+    assert signs["explicit_euler"] == set()
+    assert all(signs[key] == {LIMIT} for key in ("rk4", "forest_ruth", "blanes_moan_4", "blanes_moan_6"))
 
 
 def test_the_whole_picture_fits_eighty_columns_and_names_every_method():

@@ -42,7 +42,7 @@ def test_a_verdict_says_when_there_is_no_cliff_or_no_verdict_yet():
     ("cell", "text"),
     [
         ((300, 2.34e-3, HOLDS), "held, 2e-03"),
-        ((300, 2.34e-3, CAUGHT), "caught, period 2, 2e-03"),
+        ((300, 2.34e-3, CAUGHT), "caught, 2e-03"),
         ((80, 0.5, LOSES), "loses, step 81"),
         ((3, 0.5, GROWS), "grows, step 4"),
         ((0, 0.0, UNKNOWN), "…"),

@@ -13,9 +13,9 @@ from engine.accuracy.growth import Growth
 from engine.accuracy.references import TAYLOR_20, AnyPoint, Reference, References
 from engine.accuracy.study import REASONS, ErrorKind, Order, Point
 from engine.methods import Method
-from engine.methods.own import OwnMethod
 from engine.scenes import Scene
 from tui.cli.output import console, fields_of, print_picture, print_table, scene_line, write_csv, write_json
+from tui.commands.studies.reports.orders import claimed, order_remarks
 from tui.commands.studies.reports.references import print_references, rows_of
 from tui.drawing.palette import PALETTES
 from tui.views.accuracy.chart import ERROR_LABELS, MARKS, accuracy_chart, accuracy_series
@@ -91,7 +91,7 @@ def print_json(found: Findings) -> None:
             ],
             "absent": found.references and found.references.absent,
             "orders": [
-                {"method": o.method.key, "claimed": _claimed(o.method), "measured": o.measured} for o in found.orders
+                {"method": o.method.key, "claimed": claimed(o.method), "measured": o.measured} for o in found.orders
             ],
             "recommendation": durations[-1] if durations else None,
             "durations": durations,
@@ -117,20 +117,17 @@ def _print_points(found: Findings) -> None:
     if found.orders:
         measured = ("-" if order.measured is None else f"{order.measured:.2f}" for order in found.orders)
         rows.append(("order", "", "measured", *measured))
-        rows.append(("", "", "claimed", *(str(_claimed(order.method) or "-") for order in found.orders)))
+        rows.append(("", "", "claimed", *(str(claimed(order.method) or "-") for order in found.orders)))
     names = (f"{method.label} ({method.force_evaluations}/step)" for method in cast)
     print_table("rrr" + "r" * len(cast), ("h [s]", "z = h·w0", "steps", *names), rows)
     flaws = {flaw for point in found.points if (flaw := point.flaw(found.kind))}
     for mark in sorted({MARKS[flaw] for flaw in flaws}):
         print(f"{mark} {'; '.join(REASONS[flaw] for flaw in flaws if MARKS[flaw] == mark)}")
     print("order measured on the theta error over at most one period; n/step: force evaluations")
+    for remark in order_remarks(found.scene, found.orders):
+        print(remark)
     if said := growth_words(found.growth):
         print(f"at h = {found.scene.h:g} s, {said}")
-
-
-def _claimed(method: Method) -> int | None:
-    """The claimed order; nothing is claimed of a user's own method."""
-    return None if isinstance(method, OwnMethod) else method.order
 
 
 def _cell(found: Findings, rung: Sequence[Point], method: Method) -> str:
