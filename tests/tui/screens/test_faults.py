@@ -222,7 +222,7 @@ async def test_what_fails_before_the_lab_is_on_stage_ends_the_program(monkeypatc
 FAILING = """
 from tui.words import insight
 from tui.screens import insight_line
-def broken(source):
+def broken(source, hidden):
     raise ZeroDivisionError("the insight")
 insight_line.insight = broken
 """
