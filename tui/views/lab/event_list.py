@@ -31,10 +31,12 @@ class EventList(Pane):
         self.show([[(self._fitted(text, line), owner_of(line))] for line, text in last])
 
     def _fitted(self, text: str, line: EventLine) -> str:
-        """A milestone's text; where it is too long, the method goes by its letter."""
+        """A milestone's text; where it is too long, methods go by their letters."""
         if line.method is None or len(text) <= self.room.width:
             return text
-        return text.replace(short_name(line.method), line.method.letter, 1)
+        for method in self.cast:
+            text = text.replace(short_name(method), method.letter)
+        return text
 
     def on_click(self, event: events.Click) -> None:
         """Go to an event, or list them all."""
