@@ -40,9 +40,9 @@ KEYS = (
     Key("enter", "enter", "use the h of the cursor's point", "choose", _GROUP, "Take it"),
     Key("tab", "tab", "the next method in words", "method(1)", _GROUP, "Next method"),
     Key("escape", "esc", "leave the cursor", "cancel", _GROUP),
-    Key("e", "e", "next chart: error over cost, over time", "chart", _GROUP, "Over time"),
-    Key("asterisk", "*", "all methods, Taylor series and closed form", "all", _GROUP, "All"),
-    Key("", "click", "use the h of that point; the pointer reads a point out", "", _GROUP),
+    Key("e", "e", "next chart: error over time, theta error, energy error", "chart", _GROUP, "Over time"),
+    Key("asterisk", "*", "all methods and reference lines, or the cast", "all", _GROUP, "All"),
+    Key("", "click", "use that point's h; the pointer reads points out", "", _GROUP),
 )
 
 
