@@ -77,7 +77,7 @@ def resolve(name: str) -> Path:
     if name == "latest":
         items = listing(where)
         if not items:
-            raise RecordingError(f"No recordings in {printable(str(where))} yet; start pendu-tui to make one.")
+            raise RecordingError(f"no recordings in {printable(str(where))} yet; start pendu-tui to make one.")
         return items[0].path
     golden = golden_names()
     if name in golden:
@@ -91,7 +91,7 @@ def resolve(name: str) -> Path:
     advice = (
         f"did you mean {printable(close[0])}?" if close else f"choose a file, or one of latest, {', '.join(golden)}."
     )
-    raise RecordingError(f"There is no recording {printable(name)!r}: {advice}")
+    raise RecordingError(f"there is no recording {printable(name)!r}: {advice}")
 
 
 def golden_names() -> list[str]:
@@ -102,6 +102,11 @@ def golden_names() -> list[str]:
 def leftovers(where: Path | None = None) -> list[Path]:
     """Unfinished recordings that no lab is writing any more."""
     return [path for path in _files(where or folder(), SUFFIX + PART) if not in_use(path)]
+
+
+def being_made(where: Path | None = None) -> list[Path]:
+    """Recordings that a lab is writing now."""
+    return [path for path in _files(where or folder(), SUFFIX + PART) if in_use(path)]
 
 
 def to_prune(items: Sequence[Item], keep: int | None = None, size: int | None = None) -> list[Item]:

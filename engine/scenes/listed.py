@@ -64,9 +64,9 @@ _FIRST_LOOK = (
 _STABILITY = (
     Scene(
         "euler-caught",
-        length=0.1,
-        h=0.06,
-        watch="Explicit Euler does not gain for ever: half a turn a step holds it near 32 E0.",
+        h=0.1,
+        speed=20.0,
+        watch="Explicit Euler does not gain for ever: half a turn a step holds it near 110 E0.",
     ),
     Scene(
         "verlet-limit",

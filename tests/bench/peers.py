@@ -18,15 +18,9 @@ import numpy as np
 
 from engine.accuracy.closed_form import closed_form_seconds
 from engine.accuracy.taylor import follow
-from engine.methods import USUAL_CAST
+from engine.methods import GENERAL
 from engine.run.compiled import compiled
 from engine.scenes import Scene
-
-
-def mirrored(n: int, *half: float) -> tuple[float, ...]:
-    """The n coefficients of a symmetric method."""
-    return half + half[n - len(half) - 1 :: -1]
-
 
 SCENE, TIME = Scene(theta=2.0), 100.0
 TARGETS = (1e-3, 1e-6, 1e-9, 1e-12)
@@ -40,22 +34,6 @@ TOO_LONG = 0.4  # s; a solver that takes longer is not asked for smaller errors
 ROUNDS, ENOUGH = 200, 0.5  # rounds of all runs, of which one that has taken so many seconds is left out
 IN_A_ROW = 3  # runs in each turn: the first one finds the caches full of another solver's
 W0_SQUARED, START = SCENE.w0_squared, [SCENE.theta, SCENE.omega]
-SPLITTINGS = {  # kicks and drifts, the second half mirrored: Blanes & Moan, J. Comput. Appl. Math. 142 (2002) 313
-    "Blanes-Moan 4": (
-        mirrored(7, 0.08298440641740502, 0.39630980149836807, -0.039056304922348436, 0.11952419401315068),
-        mirrored(6, 0.24529895718427116, 0.60487266571107997, -0.35017162289535114),
-    ),
-    "Blanes-Moan 6": (
-        mirrored(
-            *(12, 0.04146499851826284, 0.19812867191806655, -0.040006192104152686),
-            *(0.07525398430158034, -0.01151138742068777, 0.23666992478693073),
-        ),
-        mirrored(
-            *(11, 0.12322977594627115, 0.29055379779955827, -0.12704921262541692),
-            *(-0.2463317610620754, 0.35720887279592776, 0.2047770542914703),
-        ),
-    ),
-}
 
 Run = Callable[[], Any]
 
@@ -99,28 +77,8 @@ def fixed(name: str, travel: Callable[[tuple[float, float], float, int], tuple[f
 
 def method_solvers() -> Iterator[Solver]:
     """The methods of the lab."""
-    for method in USUAL_CAST[2:]:
+    for method in GENERAL[2:]:  # the two of order 1 would take too long
         yield fixed(method.label, compiled(method, SCENE.equations).travel)
-
-
-def splitting_solvers() -> Iterator[Solver]:
-    """High-order splittings: kick, drift, kick, … with the last kick's force kept."""
-    numba = import_module("numba")
-
-    @numba.njit
-    def travel(kicks: Any, drifts: Any, phase: Any, h: float, n: int) -> Any:
-        theta, omega = phase
-        force = -W0_SQUARED * math.sin(theta)
-        for _ in range(n):
-            for stage in range(len(drifts)):
-                omega += h * kicks[stage] * force
-                theta += h * drifts[stage] * omega
-                force = -W0_SQUARED * math.sin(theta)
-            omega += h * kicks[-1] * force
-        return theta, omega
-
-    for name, coefficients in SPLITTINGS.items():
-        yield fixed(name, partial(travel, *coefficients))
 
 
 def scipy_solvers() -> Iterator[Solver]:
@@ -261,7 +219,7 @@ def main() -> None:
     rows: dict[str, dict[str, Any]] = {}
     runs: dict[tuple[str, float], Run] = {}
     skipped: dict[str, str] = {}
-    ours = {"taylor": taylor_solvers, "splittings": splitting_solvers, "methods": method_solvers}
+    ours = {"taylor": taylor_solvers, "methods": method_solvers}
     for package, solvers in (ours | PEERS).items():
         try:
             for solver in solvers():

@@ -14,7 +14,7 @@ from engine.methods import USUAL_CAST
 from engine.run.lockstep import Lockstep
 from engine.scenes import DEFAULT_SCENE
 from tui.drawing.canvas import Canvas, Picture
-from tui.drawing.chart import time_chart
+from tui.drawing.time_chart import time_chart
 from tui.playback.history import ErrorHistory
 from tui.playback.levels import Window
 from tui.views.lab.pendulums import Bob, pendulum_sketch

@@ -28,7 +28,7 @@ from tui.screens.keys import COMMON, LIVE, REPLAY
 from tui.screens.live import LiveScreen
 from tui.screens.replay import ReplayScreen
 from tui.views.accuracy import pane as accuracy
-from tui.views.phase import pane as phase
+from tui.views.phase import keys as phase
 from tui.views.stability import pane as stability
 
 SIZE = 120, 40

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -10,6 +11,8 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 from engine.scenes import LIMITS, Scene
 from recordings.errors import printable
+
+LONG = 120.0  # s of work that are announced where there is no bar
 
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
@@ -52,11 +55,14 @@ def fields_of(value: object, *names: str) -> dict[str, Any]:
     return {name: getattr(value, name) for name in names}
 
 
-def scene_line(scene: Scene, *more: str) -> str:
+def scene_line(scene: Scene, *more: str, degrees: bool = False) -> str:
     """The scene's name and numbers, and `more` of its attributes."""
     numbers = fields_of(scene, *LIMITS, *more)
+    if degrees:
+        numbers |= {name: math.degrees(numbers[name]) for name in ("theta", "omega")}
+    units = "SI units, degrees" if degrees else "SI units"
     model = "" if scene.model == "pendulum" else f" ({scene.equations.equation})"
-    return f"{scene.name}{model}: {', '.join(f'{name} {value:g}' for name, value in numbers.items())} (SI units)"
+    return f"{scene.name}{model}: {', '.join(f'{name} {value:g}' for name, value in numbers.items())} ({units})"
 
 
 def print_table(align: str, headers: Sequence[str], rows: Iterable[Iterable[str]]) -> None:
@@ -94,15 +100,23 @@ def _print(on: "Console", renderables: "Iterable[RenderableType]", **how: Any) -
 def progress(what: str) -> Iterator[Callable[[float, float], None]]:
     """Yield a function to call with how much is done and how much there is in all.
 
-    It shows a bar and an estimate of the time left on stderr if that is a terminal and the work takes over a second.
+    On stderr it shows a bar and an estimate of the time left if the work takes over a second; where that is no
+    terminal it says in a sentence what takes over two minutes.
     """
     began = monotonic()
     bar: Any = None
+    said = False
 
     def show(done: float, total: float) -> None:
-        nonlocal bar
+        nonlocal bar, said
         if bar is None:
-            if not sys.stderr.isatty() or monotonic() - began < 1:
+            if (elapsed := monotonic() - began) < 1 or not done:
+                return
+            if not sys.stderr.isatty():
+                if not said and (left := elapsed * (total / done - 1)) > LONG:
+                    size = f"{left / 86400:,.1f} days" if left > 172_800 else f"{left / 60:.0f} minutes"
+                    warn(f"{what} will take about {size} more; an interrupt (Ctrl+C) ends it.")
+                    said = True
                 return
             from rich.console import Console
             from rich.progress import Progress

@@ -16,8 +16,7 @@ def add_scene_options(parser: argparse.ArgumentParser) -> None:
         "--scene",
         metavar="NAME|FILE.toml",
         choices=Suggestions(SCENES),
-        default=DEFAULT_SCENE.name,
-        help="see pendu-tui scenes (%(default)s), or a file with the fields of scenes --json",
+        help=f"see pendu-tui scenes ({DEFAULT_SCENE.name}), or a file with the fields of scenes --json",
     )
     for name, metavar, read, meaning in (
         ("theta", "RAD|DEGdeg", start_angle, "start angle from straight down, in rad, or in degrees (115deg)"),
@@ -32,23 +31,28 @@ def add_scene_options(parser: argparse.ArgumentParser) -> None:
     add_cast_options(group)
 
 
-def scene_of(options: argparse.Namespace) -> Scene:
-    """The scene that the options describe, with its cast.
+def scene_of(options: argparse.Namespace, usual: Scene | None = None) -> Scene:
+    """The scene that the options describe, with its cast; without --scene they change the `usual` one.
 
     Raises UserError for an unknown name, SceneError for bad numbers, OwnMethodError for a method that is none.
     """
     given = {name: getattr(options, name) for name in (*LIMITS, *PARAMETERS, "h")}
     changes = {name: value for name, value in given.items() if value is not None}
-    if options.scene.endswith(".toml"):
+    scene = _named(options.scene, usual or DEFAULT_SCENE).altered(**changes)
+    return scene.with_cast(cast_of(options, scene.cast))
+
+
+def _named(name: str | None, usual: Scene) -> Scene:
+    if name is None:
+        return usual
+    if name.endswith(".toml"):
         from tui.cli.scene_file import read_scene
 
-        scene = read_scene(Path(options.scene)).altered(**changes)
-        return scene.with_cast(cast_of(options, scene.cast))
-    if options.scene not in SCENES:
-        hint = did_you_mean(options.scene, SCENES) or "; pendu-tui scenes lists them."
-        raise UserError(f"there is no scene {options.scene!r}{hint}")
-    scene = SCENES[options.scene].altered(**changes)
-    return scene.with_cast(cast_of(options, scene.cast))
+        return read_scene(Path(name))
+    if name not in SCENES:
+        hint = did_you_mean(name, SCENES) or "; pendu-tui scenes lists them."
+        raise UserError(f"there is no scene {name!r}{hint}")
+    return SCENES[name]
 
 
 def general_scene_of(options: argparse.Namespace) -> Scene:

@@ -69,6 +69,22 @@ class ReplayCursor:
         for place in ahead:
             self._move(place)
 
+    def place(self, number: int, step: int) -> float | None:
+        """When a run came to a step, on the recording clock [s]; None where there is no such run."""
+        run = next((run for run in self.recording.runs if run.number == number), None)
+        if run is None:
+            return None
+        early, late = run.begin, run.end
+        while late - early > NANOSECOND:
+            middle = (early + late) / 2
+            at = self.recording.at(middle)
+            sample = None if at is None else self.recording.sample(at)[1]
+            if isinstance(sample, Sample) and (sample.run, sample.step) < (number, step):
+                early = middle
+            else:
+                late = middle
+        return late
+
     def step(self, n: int) -> None:
         """Go n samples forward, or back where n is negative."""
         for _ in range(abs(n)):

@@ -8,7 +8,7 @@ run's length only: an hour at 60 samples a second takes eight levels.
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -31,6 +31,12 @@ class Window:
     high: dict[Quantity, Floats]
     repeats: float  # s, after which errors repeat: half a swing, a whole turn, or 0
     turned: bool  # whether time has run backwards, so that x is not t
+
+    def cut(self, begin: float, end: float) -> "Window":
+        """What lies between two x [s]."""
+        rows = (self.x >= begin) & (self.x <= end)
+        low, high = ({name: each[rows] for name, each in side.items()} for side in (self.low, self.high))
+        return replace(self, x=self.x[rows], t=self.t[rows], low=low, high=high)
 
 
 class Level:

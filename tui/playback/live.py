@@ -19,6 +19,7 @@ from tui.playback.source import RecordingStatus, Source
 
 if TYPE_CHECKING:
     from recordings.live_recorder import LiveRecorder
+    from tui.playback.ghost import Ghost
 
 FRAME_BUDGET = 0.020  # s of each frame for the simulation; the rest of 33 ms is for drawing
 CHUNK = 256  # steps between looks at the clock, about a millisecond
@@ -43,6 +44,7 @@ class Live(Source):
         self.playhead = Playhead(speed=speed)
         self.pace = Pace()
         self.recorder: LiveRecorder | None = None
+        self.laid_under: Ghost | None = None
         self._events: list[Event] = []
         self._recorded = Playhead()  # the recording clock: it stands while the lab is paused, whatever the speed
         self._clock = clock
@@ -60,6 +62,11 @@ class Live(Source):
     @property
     def stepping(self) -> Stepping:
         return self._run.stepping
+
+    @property
+    def ghost(self) -> "Ghost | None":
+        ghost = self.laid_under
+        return ghost if ghost is not None and ghost.scene.model == self.scene.model else None
 
     @property
     def next_step(self) -> float | None:
@@ -116,6 +123,19 @@ class Live(Source):
             self._run.back_to(max(0, self._run.step + n))
         self.playhead = self.playhead.moved_to(self._run.x)
         return self._take_sample()
+
+    def go_to(self, run: int, step: int) -> bool:
+        if reached := run == self._run.run:
+            self.step(step - self._run.step)
+        return reached
+
+    def seek_event(self, direction: int) -> None:
+        """Go to the previous event of this run, or to the next one that has been."""
+        run, here, end = self._run.run, self._run.step, self._run.furthest
+        kept = ("start", "set_h", "mark", "noticed")
+        steps = {event.step for event in self._events if event.run == run and event.kind in kept}
+        before, after = (step for step in steps if step < here), (step for step in steps if step > here)
+        self.step((min(after, default=end) if direction > 0 else max(before, default=0)) - here)
 
     def start(self, scene: Scene) -> None:
         """Begin a new run.  Raises SceneError, before anything has changed, for a step too large at equal cost."""

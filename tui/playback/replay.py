@@ -176,8 +176,14 @@ class Replay(Source):
         self.playhead = self.playhead.moved_to(min(max(position, 0.0), self.length))
         self._cursor.go_to(self.playhead.position)
 
+    def go_to(self, run: int, step: int) -> bool:
+        self.pause(True)
+        place = self._cursor.place(run, step)
+        if place is not None:
+            self.seek(place)
+        return place is not None
+
     def seek_event(self, direction: int) -> None:
-        """Go to the next event, mark or milestone, or to the previous one."""
         position = self.playhead.position
         if direction > 0:
             self.seek(min((tick for tick in self.ticks if tick > position + 1e-6), default=self.length))

@@ -32,6 +32,7 @@ class Shown:
     quantity: Quantity = "energy_error"  # of the chart
     log: bool = True
     percent: bool = True  # errors from 1 % on
+    degrees: bool = False  # angles, in place of radians
     seconds: float | None = None  # of the chart, one of WINDOWS
     turn: int = 0  # place of the method that is to be alone next
 
@@ -69,6 +70,12 @@ class Shown:
 
     def next_quantity(self, scene: Scene) -> "Shown":
         return replace(self, quantity=self.quantity_ahead(1, scene))
+
+    def zoomed(self, nearer: bool, length: float) -> "Shown":
+        """With the next shorter or longer of the chart's windows into a run of so many seconds."""
+        spans = [*sorted(span for span in WINDOWS if span is not None and span < length), None]
+        at = spans.index(self.seconds) if self.seconds in spans else len(spans) - 1
+        return replace(self, seconds=spans[min(max(at - 1 if nearer else at + 1, 0), len(spans) - 1)])
 
     def next_window(self, forward: bool = True) -> "Shown":
         """With the next of the chart's windows, or the one before, round and round."""

@@ -3,7 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from engine.models.model import ExactMotion
 from engine.run.lockstep import Sample
@@ -15,6 +15,9 @@ from recordings.events import Event
 from tui.playback.history import ErrorHistory
 from tui.playback.playhead import Pace, Playhead
 from tui.playback.so_far import RunSoFar
+
+if TYPE_CHECKING:
+    from tui.playback.ghost import Ghost
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +98,11 @@ class Source(ABC):
         """The recording; None where nothing is recorded."""
 
     @property
+    def ghost(self) -> "Ghost | None":
+        """The recording that is laid under the run."""
+        return None
+
+    @property
     def next_step(self) -> float | None:
         """Seconds of the clock until the next step; None where that cannot be said."""
         return None
@@ -126,6 +134,14 @@ class Source(ABC):
     @abstractmethod
     def step(self, n: int) -> Sample:
         """Pause and go n steps (live) or samples (replay) forward, or back where n is negative."""
+
+    @abstractmethod
+    def go_to(self, run: int, step: int) -> bool:
+        """Pause and go to a step of a run; False where it cannot be reached."""
+
+    @abstractmethod
+    def seek_event(self, direction: int) -> None:
+        """Go to the next event, mark or milestone, or to the previous one."""
 
     @abstractmethod
     def mark(self, text: str | None = None) -> None:

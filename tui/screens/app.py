@@ -7,6 +7,7 @@ import time
 import traceback
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import ClassVar
@@ -73,6 +74,7 @@ class PenduApp(Guarded, App[Exit | OSError]):
         self.fps = terminal.fps
         self.set_reactive(PenduApp.character_set, terminal.character_set)
         self.set_class(terminal.present, PRESENT)
+        screen.set_reactive(SourceScreen.shown, replace(screen.shown, degrees=terminal.degrees))
         self.source_screens = [screen]
         self.throughput = Throughput()
         self._on_stage = False  # before that, what fails ends the program
@@ -106,6 +108,7 @@ class PenduApp(Guarded, App[Exit | OSError]):
     def on_source_screen_began(self, message: SourceScreen.Began) -> None:
         self._on_stage = True
         if message.screen is not self.source_screen:
+            message.screen.shown = replace(message.screen.shown, degrees=self.source_screen.shown.degrees)
             self.source_screens.append(message.screen)
 
     def on_mount(self) -> None:

@@ -5,8 +5,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, ClassVar, Protocol, cast
+from typing import Any, ClassVar, cast
 
 from textual.app import ComposeResult
 from textual.binding import BindingType
@@ -21,6 +20,7 @@ from tui.playback.frame_rate import FrameTimer
 from tui.playback.playhead import doubled
 from tui.playback.shown import Shown
 from tui.playback.source import Source
+from tui.screens.host import Host
 from tui.screens.insight_line import InsightLine
 from tui.screens.key_line import KeyLine
 from tui.screens.keys import COMMON, hinted
@@ -30,23 +30,13 @@ from tui.views import create, following
 from tui.views.keys import Key, bindings
 from tui.views.messages import Asked, MethodChosen
 from tui.views.view import Box, View
+from tui.words.undone import State, undone
 
 READ, BUILT = 10, 5  # updates a second: of numbers that people read, and of charts, which take time to build
 
 STALL = 1.0  # s; a longer gap between frames does not count as time: Ctrl+Z, a computer asleep, a dead line
 UNDOS = 30  # changes; each may hold a run
 ALREADY = "Already marked"
-
-
-class Host(Protocol):
-    """What the screen needs of the app that shows it."""
-
-    fps: int
-    open_replay: Callable[[Path], "SourceScreen"] | None
-    """Makes the screen for a recording; may raise an exception with a sentence."""
-
-    def is_behind(self, urgent: bool = False) -> bool:
-        """Whether frames are still on their way, so that the terminal should get no more of them now."""
 
 
 class SourceScreen(Guarded, Screen[None]):
@@ -97,12 +87,12 @@ class SourceScreen(Guarded, Screen[None]):
         return cast(Host, self.app)
 
     def compose(self) -> ComposeResult:
-        yield StatusLine().data_bind(SourceScreen.source, sample=SourceScreen.sample_10hz)
+        yield StatusLine().data_bind(SourceScreen.source, SourceScreen.shown, sample=SourceScreen.sample_10hz)
         with Box(id="views"):
             yield self._create(self.view)
         yield TooSmall()
         yield from self.more()
-        yield InsightLine().data_bind(SourceScreen.source, sample=SourceScreen.sample_10hz)
+        yield InsightLine().data_bind(SourceScreen.source, SourceScreen.shown, sample=SourceScreen.sample_10hz)
         yield KeyLine(hinted(self.KEYS))
 
     def more(self) -> Iterable[Widget]:
@@ -180,6 +170,10 @@ class SourceScreen(Guarded, Screen[None]):
         self.source.step(n)
         self.show_now()
 
+    def action_event(self, direction: int) -> None:
+        self.source.seek_event(direction)
+        self.show_now()
+
     def action_speed(self, doublings: int) -> None:
         self.action_set_speed(doubled(self.source.playhead.speed, doublings))
 
@@ -211,8 +205,10 @@ class SourceScreen(Guarded, Screen[None]):
 
     def action_undo(self) -> None:
         if self._undo:
+            before = State.of(self.source, self.shown)
             self._undo.pop()()
             self.show_now()
+            self.notify(undone(before, State.of(self.source, self.shown)), timeout=3, markup=False)
 
     def action_view(self, name: str = "") -> None:
         """Show a view, or the next one."""

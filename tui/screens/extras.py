@@ -36,6 +36,22 @@ def show_events(screen: SourceScreen) -> None:
     screen.app.push_screen(TextScreen("Events", "\n".join(numbered(event_lines(screen.source)))))
 
 
+def zoom(screen: SourceScreen, direction: int) -> None:
+    """Show a shorter window of the run in the chart, or a longer one."""
+    shown = screen.shown.zoomed(direction > 0, abs(screen.source.sample.t))
+    if shown != screen.shown:
+        screen.change_shown(shown)
+
+
+def go_to(screen: SourceScreen, place: tuple[int, int]) -> None:
+    """Go to a run's step."""
+    run, step = place
+    if screen.source.go_to(run, step):
+        screen.show_now()
+    else:
+        screen.notify(f"That was in run {run}, which is over; its recording has it.", markup=False)
+
+
 def show_card(screen: SourceScreen, key: str) -> None:
     """Show a method's card."""
     screen.app.push_screen(TextScreen("Method", method_card(method_of(key))))
@@ -78,6 +94,8 @@ EXTRAS: dict[str, Callable[..., Any]] = {
     "describe": show_description,
     "events": show_events,
     "card": show_card,
+    "go_to": go_to,
+    "zoom": zoom,
     "screenshot": take_screenshot,
     "copy_command": copy_command,
     "replay": replay,
@@ -105,6 +123,7 @@ def palette_entries(keys: Iterable[Key], live: bool, recordings: Iterable[Path])
         ),
         *(entry(f"method {method.label}", "details", f"app.extra('card', {method.key!r})") for method in METHODS),
         *(entry(f"theme {name}", "", f"app.use_theme({name!r})") for name in PALETTES),
+        entry("toggle degrees", "angles in degrees or radians", "switch('degrees')"),
         entry("toggle projector mode", "large numbers, thick lines", "app.present"),
         *(entry(f"replay {path.stem}", str(path), f"app.extra('replay', {str(path)!r})") for path in recordings),
         entry("copy the command for this moment", "to the clipboard", "app.extra('copy_command')"),

@@ -27,7 +27,7 @@ class InsightLine(Pane):
         if status is not None and status.failed:
             text, owner = f"Not recording: {status.failed}", WARN
         else:
-            text, owner = self._hint(source) or insight(source), TEXT
+            text, owner = self._hint(source) or insight(source, self.shown.hidden), TEXT
         look = owner if not self.app.has_class(PRESENT) else Style(bold=True)  # for the last row of a class
         self.show([[(f" {line}", look)] for line in fitted(text, self.room.width - 2, self.room.height)])
 

@@ -45,7 +45,8 @@ COMMON = (
     Key("ctrl+z", "ctrl+z", "suspend to the shell (fg returns)", "app.suspend_process", _PROGRAM),
     Key("q", "q", "quit", "quit", _PROGRAM, "Quit"),
     Key("", "ctrl+c", "finish the recording and quit", "", _PROGRAM),
-    Key("", "click", "on a key hint: same as pressing it", "", _PROGRAM),
+    Key("", "click", "on a key hint: same as pressing it; an event: go there", "", _PROGRAM),
+    Key("", "wheel", "on the chart: its window; the pointer reads it out", "", _SHOW),
 )
 
 LIVE = (
@@ -61,6 +62,8 @@ LIVE = (
     Key("m", "m", "mark this moment", "mark", _RUN, "Mark"),
     Key("full_stop", ".", "one step forward", "step(1)", _RUN),
     Key("comma", ",", "one step back", "step(-1)", _RUN),
+    Key("left_square_bracket", "[", "back to the previous event of this run", "event(-1)", _RUN),
+    Key("right_square_bracket", "]", "to the next event, or the newest step", "event(1)", _RUN),
     Key("T,shift+t", "T", "a tour in eight steps: begin, leave, go on", "tour", _RUN),
 )
 

@@ -9,11 +9,14 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from engine.models import MODELS
 from tui.cli.errors import Exit, UserError
 from tui.cli.output import progress, warn
 
 if TYPE_CHECKING:  # Textual is imported only where there is a screen, NumPy and mcap only when they are needed
     from engine.methods import Cast
+    from recordings.recording import Recording
+    from tui.playback.ghost import Ghost
     from tui.playback.live import Live
     from tui.playback.replay import Replay
     from tui.playback.source import Source
@@ -65,17 +68,34 @@ def live_screen(live: "Live", path: Path | None, notices: Sequence[str] = (), or
     return LiveScreen(live, prepare=partial(start_recording, live, path, or_next), notices=notices)
 
 
-def open_replay(path: Path) -> "Replay":
-    """A recording to be replayed.  Raises UserError if there is nothing in it."""
+def open_recording(path: Path) -> "Recording":
+    """A recording to be shown.  Raises UserError if there is nothing in it."""
     from recordings.recording import Recording
-    from tui.playback.marks import Marks
-    from tui.playback.replay import Replay
 
     with progress(f"reading {path.name}") as show_progress:
         recording = Recording.open(path, progress=show_progress)
     if recording.at(0.0) is None:
         raise UserError(f"{path} contains no samples.", Exit.INPUT_UNREADABLE)
-    return Replay(recording, Marks(path))
+    return recording
+
+
+def open_replay(path: Path) -> "Replay":
+    """A recording to be replayed.  Raises UserError if there is nothing in it."""
+    from tui.playback.marks import Marks
+    from tui.playback.replay import Replay
+
+    return Replay(open_recording(path), Marks(path))
+
+
+def open_ghost(path: Path) -> "Ghost":
+    """A recording to be laid under the lab.  Raises UserError if there is nothing in it, or nothing known."""
+    from tui.playback.ghost import Ghost
+
+    with open_recording(path) as recording:
+        ghost = Ghost(recording)
+    if ghost.scene.model not in MODELS:
+        raise UserError(f"{path}: this version does not know the model {ghost.scene.model}.", Exit.INPUT_UNREADABLE)
+    return ghost
 
 
 def replay_screen(replay: "Replay", no_record: bool) -> "ReplayScreen":

@@ -14,6 +14,7 @@ from tui.screens.keys import COMMON, LIVE
 from tui.screens.tour.touring import Touring
 from tui.views.keys import Key, bindings
 from tui.views.messages import SceneChosen, StepSizeChosen
+from tui.words.insight import return_text
 
 
 class LiveScreen(Touring):
@@ -26,6 +27,18 @@ class LiveScreen(Touring):
     def live(self) -> Live:
         assert isinstance(self.source, Live)
         return self.source
+
+    def frame(self) -> None:
+        """Pause where time that runs backwards is back at 0, and keep what each method misses its start by."""
+        before = self.source.history.returned
+        super().frame()
+        returned = self.source.history.returned
+        if returned is None or returned is before or self.source.playhead.paused:
+            return
+        if returned.step == self.source.sample.step and not self.live.is_marked:
+            self.live.pause(True)
+            self.live.mark(return_text(self.live.scene, returned))
+            self.show_now()
 
     def start(self, scene: Scene, speed: float | None = None) -> None:
         """Start a new run, perhaps at another speed; `u` goes back to the one before, where it was."""

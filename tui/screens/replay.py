@@ -59,10 +59,6 @@ class ReplayScreen(SourceScreen):
         """Go forward by a share of the whole, or back."""
         self.seek(self.replay.playhead.position + share * self.replay.length)
 
-    def action_event(self, direction: int) -> None:
-        self.replay.seek_event(direction)
-        self.show_now()
-
     def action_reverse(self) -> None:
         self.replay.set_speed(-self.replay.playhead.speed)
         self.show_now()

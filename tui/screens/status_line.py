@@ -1,6 +1,5 @@
 """StatusLine: what runs, how fast, from which start, and the state of the recording."""
 
-import math
 from typing import NamedTuple
 
 from rich.style import Style
@@ -13,7 +12,7 @@ from tui.drawing.palette import QUIET, TEXT, WARN
 from tui.playback.source import Source
 from tui.views.view import Pane
 from tui.words.findings import limit_warning
-from tui.words.numbers import file_size, percent, seconds, two_digits
+from tui.words.numbers import factor, file_size, percent, seconds, start, two_digits
 
 SLOW = 1.0  # s of the clock from step to step: without a word, the lab would seem to stand still
 BADGE = -10
@@ -29,11 +28,7 @@ class _Part(NamedTuple):
 def speed_text(speed: float) -> str:
     """As "1×", "1/8×", "1024×", "-2×"."""
     sign, size = "-" if speed < 0 else "", abs(speed)
-    return f"{sign}{_factor(size)}×" if size >= 1 else f"{sign}1/{_factor(1 / size)}×"
-
-
-def _factor(value: float) -> str:
-    return f"{value:.0f}" if 1e3 <= value < 1e9 else f"{value:.4g}"
+    return f"{sign}{factor(size)}×" if size >= 1 else f"{sign}1/{factor(1 / size)}×"
 
 
 def coarse(value: float) -> str:
@@ -41,7 +36,7 @@ def coarse(value: float) -> str:
     return f"{int(value)} s" if value < 60 else f"{int(value / 60)} min" if value < 3600 else seconds(value)
 
 
-def status_row(source: Source, width: int, frames: int | None = None) -> Row:
+def status_row(source: Source, width: int, frames: int | None = None, degrees: bool = False) -> Row:
     """The line, as far as there is room; `frames` a second where the machine is too slow for more."""
     scene, playhead, pace, recording = source.scene, source.playhead, source.pace, source.recording_status
     z, live, named = abs(source.stepping.h) * scene.equations.fastest, source.kind == "LIVE", bool(scene.watch)
@@ -54,7 +49,7 @@ def status_row(source: Source, width: int, frames: int | None = None) -> Row:
         _Part(10, f"{'h·omega_s' if scene.model == 'spring' else 'z'} {z:.3g}", WARN if warning else TEXT),
         *([_Part(9, warning, WARN)] if warning else []),
         _Part(6 if named else 3, f"scene {scene.name}" if named else f"{scene.name} scene", QUIET),
-        _Part(4 if named else 6, f"{math.degrees(scene.theta):.4g}° {scene.omega:.4g} rad/s"),
+        _Part(4 if named else 6, start(scene.theta, scene.omega, degrees)),
     ]
     if pace.share < 0.99:
         reached = playhead.speed * pace.share
@@ -85,7 +80,7 @@ class StatusLine(Pane):
     frames: var[int | None] = var(None)
 
     def paint(self, source: Source, sample: Sample) -> None:
-        self.show([status_row(source, self.room.width, self.frames)])
+        self.show([status_row(source, self.room.width, self.frames, self.shown.degrees)])
 
     def style_of(self, owner: int, base: Style) -> Style:
         if owner == BADGE:

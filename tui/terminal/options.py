@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-from tui.cli.options import count
+from tui.cli.options import add_degrees, count
 from tui.drawing.palette import PALETTES
 
 CharacterSet = Literal["braille", "half", "ascii"]
@@ -27,6 +27,7 @@ class TerminalOptions:
     mouse: bool = True
     fps: int = FPS
     present: bool = False  # large numbers and thick lines, for a projector
+    degrees: bool = False  # angles, in place of radians
 
 
 USUAL = TerminalOptions()
@@ -57,6 +58,7 @@ def add_picture_options(parser: argparse.ArgumentParser, theme: str, character_s
         help="what to draw with (%(default)s)",
     )
     group.add_argument("--present", action="store_true", help="large numbers and thick lines, for a projector")
+    add_degrees(group)
     return group
 
 
@@ -86,6 +88,7 @@ def terminal_options_of(options: argparse.Namespace, environment: Mapping[str, s
         not options.no_mouse,
         options.fps or (CALM_FPS if calm else FPS),
         options.present,
+        options.degrees,
     )
 
 

@@ -10,7 +10,7 @@ from engine.run.verdict import Verdict
 from recordings.events import Event
 from tui.playback.source import Source
 from tui.words.findings import short_name
-from tui.words.numbers import two_digits
+from tui.words.numbers import start, two_digits
 
 VERDICTS: dict[Verdict, str] = {
     "bounded": "stays bounded",
@@ -70,8 +70,7 @@ def change_text(event: Event) -> str:
     """A start, or a change of the step size."""
     if event.scene is not None:
         scene = event.scene
-        numbers = f"{math.degrees(scene.theta):.4g}° {scene.omega:.4g} rad/s"
-        return f"start {numbers if scene.name == 'custom' else scene.name}, h {scene.h:.4g} s"
+        return f"start {start(scene.theta, scene.omega) if scene.name == 'custom' else scene.name}, h {scene.h:.4g} s"
     assert event.h is not None
     backwards, equal = "time reversed, " if event.h < 0 else "", ", equal cost" if event.equal_cost else ""
     return f"{backwards}h {abs(event.h):.4g} s{equal}"

@@ -1,7 +1,7 @@
 """What the methods do, in sentences.  Each states only what was measured; a forecast extrapolates a measured slope."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
 from engine.methods import GENERAL, Cast, Method
@@ -98,9 +98,10 @@ def passing(milestone: Milestone, other: Method) -> str:
     return more if len(more) <= LINE else f"{what}."
 
 
-def staying(source: Source) -> str:
-    """The sentence on the bounded methods; "" if there are none yet."""
-    bounded = [(m, j) for m, j in zip(source.scene.cast, source.judgements, strict=True) if j.verdict == "bounded"]
+def staying(source: Source, hidden: Collection[str] = ()) -> str:
+    """The sentence on the bounded methods but for the hidden ones; "" if there are none yet."""
+    judged = zip(source.scene.cast, source.judgements, strict=True)
+    bounded = [(m, j) for m, j in judged if j.verdict == "bounded" and m.key not in hidden]
     if not bounded:
         return ""
     period = source.exact.period or math.tau / source.scene.w0  # the unit of Judgement.periods
@@ -121,7 +122,7 @@ def astray(name: str, judgement: Judgement, error: float) -> str:
         case "wanders":
             return f"{name} wanders: its energy goes up and down, without a trend and in no band."
         case "caught":
-            return f"{name} is caught: its energy error stays in a band, now {error:+.2g}."
+            return f"{name} is caught: its energy error stays in a band, now {error:+.3g}."
     return ""
 
 
@@ -150,9 +151,12 @@ def leaving(source: Source, index: int) -> str:
     return f"{what}."
 
 
-def so_far(source: Source) -> str:
+def so_far(source: Source, hidden: Collection[str] = ()) -> str:
     """The largest energy errors of the best and of the worst method, for as long as there is no verdict."""
-    errors = sorted((reading.max_energy_error, index) for index, reading in enumerate(source.sample.readings))
+    known = zip(source.scene.cast, source.sample.readings, strict=True)
+    errors = sorted((reading.max_energy_error, at) for at, (m, reading) in enumerate(known) if m.key not in hidden)
+    if not errors:
+        return ""
     (least, nearest), (most, furthest) = errors[0], errors[-1]
     near, far = short_name(source.scene.cast[nearest]), short_name(source.scene.cast[furthest])
     text = f"Energy errors so far: {least:.2g} ({near}) to {most:.2g} ({far})."

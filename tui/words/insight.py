@@ -1,7 +1,7 @@
 """The one sentence of the moment, from milestones and verdicts; and hints in the first minute."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
 from engine.run.lockstep import Sample
 from engine.run.observer import Milestone
@@ -34,57 +34,65 @@ def hint(seconds: float, events: Iterable[Event]) -> str:
     return ""
 
 
-def insight(source: Source) -> str:
-    """The sentence: equilibrium, the return to t = 0, news, the scene's own sentence, or the lasting ones in turn."""
+def insight(source: Source, hidden: Collection[str] = ()) -> str:
+    """The sentence: equilibrium, the return to t = 0, news, the scene's own sentence, or the lasting ones in turn.
+
+    Of the methods of these keys, which are `hidden`, it says nothing.
+    """
     sample, scene, returned = source.sample, source.scene, source.history.returned
     if source.exact.regime == "equilibrium":
         return RESTING
     if returned is not None and abs(sample.t) < WATCH:
         return return_text(scene, returned)
     pace = abs(source.playhead.speed)
-    if text := _news(source, FRESH * pace):
+    if text := _news(source, FRESH * pace, hidden):
         return text
-    if abs(sample.t) < WATCH * pace and (text := _watch(source)):
+    if abs(sample.t) < WATCH * pace and (text := _watch(source, hidden)):
         return text
-    sentences = lasting(source)
+    sentences = lasting(source, hidden)
     return sentences[int(sample.step * abs(source.stepping.h) / (TURN * pace)) % len(sentences)]
 
 
-def _news(source: Source, seconds: float) -> str:
+def _news(source: Source, seconds: float, hidden: Collection[str]) -> str:
     """The newest milestone of the last simulated seconds; failures first, over the top, errors that cross, verdicts."""
     kinds = ("verdict", "errors cross", "over the top", "failed")
-    recent = [each for each in source.milestones if (source.sample.step - each.step) * abs(source.stepping.h) < seconds]
+    since = source.sample.step - seconds / abs(source.stepping.h)
+    recent = [each for each in source.milestones if each.step > since and each.method.key not in hidden]
     newest = sorted(recent, key=lambda each: (kinds.index(each.kind), each.step))
-    return next(filter(None, (_sentence(source, each) for each in reversed(newest))), "")
+    return next(filter(None, (_sentence(source, each, hidden) for each in reversed(newest))), "")
 
 
-def _sentence(source: Source, milestone: Milestone) -> str:
+def _sentence(source: Source, milestone: Milestone, hidden: Collection[str]) -> str:
     if milestone.other:
         return passing(milestone, milestone.other)
     if milestone.kind != "verdict":
         return ending(milestone, source.scene.equations.conserved)
     index = source.scene.cast.index(milestone.method)
-    return staying(source) if milestone.verdict == "bounded" else leaving(source, index)
+    return staying(source, hidden) if milestone.verdict == "bounded" else leaving(source, index)
 
 
-def lasting(source: Source) -> list[str]:
-    """All that is known of the run, the most important first; at least one sentence."""
-    ended = endings(source)
+def lasting(source: Source, hidden: Collection[str] = ()) -> list[str]:
+    """All that is known of the methods that are not hidden, the most important first; at least one sentence."""
+    shown = [index for index, method in enumerate(source.scene.cast) if method.key not in hidden]
+    ended = {index: each for index, each in endings(source).items() if index in shown}
     ends = sorted(ended.values(), key=lambda each: (each.kind != "failed", each.step))
-    every = zip(source.scene.cast, source.judgements, source.sample.readings, strict=True)
+    over = [ending(each, source.scene.equations.conserved) for each in ends]
+    every = [*zip(source.scene.cast, source.judgements, source.sample.readings, strict=True)]
     moves = [
-        leaving(source, index) if index not in ended else astray(short_name(method), judgement, reading.energy_error)
-        for index, (method, judgement, reading) in enumerate(every)
+        leaving(source, index)
+        if index not in ended
+        else astray(short_name(every[index][0]), every[index][1], every[index][2].energy_error)
+        for index in shown
     ]
-    known = list(
-        filter(None, [*(ending(each, source.scene.equations.conserved) for each in ends), staying(source), *moves])
-    )
-    return [*known, *filter(None, [_watch(source)])] if known else [so_far(source)]
+    known = list(filter(None, [*over, staying(source, hidden), *moves]))
+    return [*known, *filter(None, [_watch(source, hidden)])] if known else [so_far(source, hidden)]
 
 
-def _watch(source: Source) -> str:
-    """The scene's own sentence, which holds for its own step size only."""
-    return source.scene.watch if source.stepping.h == source.scene.h else ""
+def _watch(source: Source, hidden: Collection[str]) -> str:
+    """The scene's own sentence, which holds for its own step size only; "" where it names a hidden method."""
+    scene = source.scene
+    named = any(method.key in hidden and short_name(method) in scene.watch for method in scene.cast)
+    return scene.watch if source.stepping.h == scene.h and not named else ""
 
 
 def return_text(scene: Scene, sample: Sample) -> str:

@@ -37,11 +37,29 @@ def relative(value: float | None, width: int, sign: str = "+") -> str:
     return next((text.rjust(width) for text in (fine, whole) if len(text) <= width), scientific(value, width, 1, sign))
 
 
-def angle(theta: float, width: int, decimals: int) -> str:
+def angle(theta: float, width: int, decimals: int, degrees: bool = False) -> str:
     """An angle [rad]; beyond a turn, where there is room, as turns and the rest: "-5 t +0.89"."""
     turns = round(theta / math.tau) if math.isfinite(theta) else 0
-    text = f"{turns:+d} t {theta - turns * math.tau:+.2f}"
-    return text.rjust(width) if abs(theta) > math.tau and len(text) <= width else decimal(theta, width, decimals)
+    rest = measured(theta - turns * math.tau, degrees)
+    text = f"{turns:+d} t {rest:+.{0 if degrees else 2}f}"
+    if abs(theta) > math.tau and len(text) <= width:
+        return text.rjust(width)
+    return decimal(measured(theta, degrees), width, max(decimals - 2 * degrees, 1))
+
+
+def in_unit(text: str, degrees: bool) -> str:
+    """A head or a title of angles, in degrees if need be: "theta [rad]" as "theta [°]"."""
+    return text.replace("[rad", "[°") if degrees else text
+
+
+def measured(value: float, degrees: bool) -> float:
+    """An angle [rad], or an angular velocity, in degrees if need be."""
+    return math.degrees(value) if degrees else value
+
+
+def start(theta: float, omega: float, degrees: bool = False) -> str:
+    """Start values: "57.3° 0 rad/s", or with degrees per second."""
+    return f"{math.degrees(theta):.4g}° {measured(omega, degrees):.4g}{'°/s' if degrees else ' rad/s'}"
 
 
 def seconds(value: float) -> str:
@@ -86,6 +104,11 @@ def file_size(count: int) -> str:
 def percent(share: float) -> str:
     """A share of 1 as "62 %"."""
     return f"{100 * share:.0f} %" if math.isfinite(share) else "-"
+
+
+def factor(value: float) -> str:
+    """A factor in full: "4", "262144", "0.125"."""
+    return f"{value:.0f}" if 1e3 <= abs(value) < 1e9 else f"{value:.4g}"
 
 
 def z_name(model: str) -> str:

@@ -48,3 +48,10 @@ def test_work_of_less_than_a_second_shows_no_bar(monkeypatch):
 
 def test_in_a_pipe_there_is_no_bar(monkeypatch):
     assert shown(io.StringIO(), 10.0, monkeypatch) == ""
+
+
+def test_where_there_is_no_terminal_a_sentence_says_what_takes_over_two_minutes_and_only_once(monkeypatch):
+    assert shown(io.StringIO(), 20.0, monkeypatch) == (
+        "pendu-tui: working will take about 3 minutes more; an interrupt (Ctrl+C) ends it.\n"
+    )
+    assert shown(io.StringIO(), 2.0, monkeypatch) == ""

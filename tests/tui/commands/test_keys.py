@@ -64,8 +64,8 @@ async def test_the_keys_of_the_screens_and_panes_are_listed_and_no_others(place)
         panes = {type(pane).__name__: pane for pane in theatre.stage.query("*") if pane.can_focus}
         assert set(panes) == set(PANES)
         for name, pane in panes.items():
-            elsewhere = {"PhasePane": {"tab", "x", "X", "shift+x"}, "SectionPane": {"tab"}}.get(name, set())
-            assert bound(pane) == keys[PANES[name]] - elsewhere  # tab is Textual's
+            elsewhere = {"PhasePane": {"tab", "x"}}.get(name, set())
+            assert bound(pane) == keys[PANES[name]] - elsewhere  # there, tab is Textual's
 
 
 def test_the_page_groups_the_keys_as_the_help_does():

@@ -6,6 +6,7 @@ import struct
 import pytest
 
 from recordings.library import GOLDEN
+from recordings.recorder import Recorder
 from recordings.recording import Recording
 from recordings.verify import verify
 from tests.recordings.examples import record, two_runs
@@ -20,6 +21,12 @@ def library(tmp_path, monkeypatch):
         path = record(tmp_path / f"{name}.mcap", two_runs())
         os.utime(path, (1e9 - age, 1e9 - age))
     return tmp_path
+
+
+def test_a_recording_in_progress_is_listed_as_such(library):
+    with Recorder(library / "now.mcap"):
+        assert f"recording now: {library / 'now.mcap'}, 0 B so far" in pendu("recordings").out
+    assert "recording now" not in pendu("recordings").out
 
 
 def names(folder):

@@ -227,3 +227,14 @@ def test_with_friction_errors_are_logarithms_to_the_true_energy_and_said_to_be()
 
 def test_the_step_of_a_stiff_scene_is_told_by_the_frequency_of_its_spring():
     assert "h·omega_s = 1\n" in pendu("run", "--scene", "stiff-slow", "--time", "1").out
+
+
+def test_degrees_are_for_people_and_json_stays_in_radians():
+    short = ("run", "--time", "5", "--methods", "rk4")
+    radians, degrees = pendu(*short).out, pendu(*short, "--degrees").out
+    assert "theta error [rad]" in radians
+    assert "theta 57.2958" in degrees
+    assert "theta error [deg]" in degrees
+    with_flag, without = pendu(*short, "--json", "--degrees").json, pendu(*short, "--json").json
+    assert with_flag["methods"] == without["methods"]
+    assert with_flag["scene"] == without["scene"]

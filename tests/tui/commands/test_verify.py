@@ -150,7 +150,7 @@ def test_an_unknown_name_does_not_keep_the_others_from_being_verified(tmp_path):
     assert [line.split()[0] for line in outcome.out.splitlines()] == ["identical", "2"]
     missing, there = pendu("verify", "no/such.mcap", path, "--json").json["files"]
     assert (missing["file"], missing["identical"], there["identical"]) == ("no/such.mcap", False, True)
-    assert "There is no recording 'no/such.mcap'" in missing["reason"]
+    assert "there is no recording 'no/such.mcap'" in missing["reason"]
 
 
 def test_only_the_methods_asked_for_are_compared(tmp_path):

@@ -11,9 +11,10 @@ from hypothesis.extra.numpy import arrays
 from engine.methods import USUAL_CAST
 from tests.tui.drawing.test_canvas import dots
 from tui.drawing.axes import held, per_column, time_span
-from tui.drawing.chart import SMALLEST, loglog_chart, time_chart
+from tui.drawing.chart import SMALLEST, loglog_chart
 from tui.drawing.loglog import Series
-from tui.drawing.palette import EXACT, FRAME, NOBODY, TEXT
+from tui.drawing.palette import EXACT, FAINT, FRAME, NOBODY, TEXT
+from tui.drawing.time_chart import CROSSING, time_chart
 from tui.playback.levels import Window
 
 ANY = st.floats(allow_nan=True, allow_infinity=True)
@@ -29,7 +30,7 @@ def window(x, low, high=None, repeats=0.0, turned=False):
 
 
 def chart(data, width=40, height=10, **options):
-    return time_chart(data, USUAL_CAST, "energy_error", width, height, **options)
+    return time_chart(data, USUAL_CAST, "energy_error", width, height, **options).picture
 
 
 def plotted(picture, log):
@@ -165,7 +166,7 @@ def test_speed_against_accuracy():
         "     │             ⠁⠂⠄⡀     r⠉⠒⠤r⡀\n"
         " 1e-9┤                 ⠁⠂⠐⠠⢀     ⠈⠉⠒r⣀⡀\n"
         "     │                      ⠈⠐⠠⢀⢀     ⠈⠑r\n"
-        "1e-12┤                           ⠈order 4\n"
+        "1e-12┤                           ⠈⠐order 4\n"
         "     │\n"
         "     └┬───────────┬────────────┬───────────┬────\n"
         "      10         100          1e3         1e4\n"
@@ -252,3 +253,17 @@ def test_over_a_long_run_growth_is_a_slope_and_a_bounded_error_is_flat():
     assert len(bounded) == 1
     assert growing == sorted(growing, reverse=True)
     assert growing[0] - growing[-1] >= 5
+
+
+def test_where_one_error_passes_another_for_good_there_is_a_cross_and_a_ghost_is_behind_its_methods():
+    t = np.linspace(0, 20, 400)
+    errors = np.stack([1e-3 * t, np.full(400, 0.01)] * 2, axis=1)
+    plot = time_chart(window(t, errors), USUAL_CAST, "energy_error", 60, 14, seconds=20, shown=[0, 1])
+    ((_, column),) = zip(*np.nonzero(plot.picture.characters == ord(CROSSING)), strict=True)
+    assert plot.at(column).t == pytest.approx(10, abs=0.6)
+    assert plot.at(column).values == pytest.approx([0.01, 0.01], rel=0.1)
+    assert plot.at(plot.left - 1) is None
+    ghost = window(t, 10 * errors), USUAL_CAST
+    behind = time_chart(window(t, errors), USUAL_CAST, "energy_error", 60, 14, seconds=20, shown=[0], ghost=ghost)
+    assert {0, FAINT} < set(behind.picture.owners.ravel().tolist())
+    assert FAINT + 1 not in behind.picture.owners

@@ -1,5 +1,6 @@
 """Themes and pixels change while the lab runs, and everything is drawn anew."""
 
+import math
 import re
 
 import pytest
@@ -9,8 +10,12 @@ from tests.tui.conftest import lines_of
 from tests.tui.harness import key_of, lab
 from tui.drawing.palette import PALETTES, TEXT
 from tui.screens.keys import COMMON
+from tui.screens.status_line import StatusLine
 from tui.terminal.options import CHARACTER_SETS
 from tui.views import VIEWS
+from tui.views.lab.error_table import ErrorTable
+from tui.views.lab.time_chart import TimeChart
+from tui.views.phase.pane import PhasePane
 
 
 async def picture(theatre) -> str:
@@ -102,3 +107,23 @@ async def test_an_empty_no_color_means_nothing(monkeypatch):
 def test_the_help_says_how_to_change_the_pixels_and_how_to_leave_for_a_while():
     shown = {key.shown: key.action for key in COMMON}
     assert (shown["a"], shown["ctrl+z"]) == ("app.next_character_set", "app.suspend_process")
+
+
+async def test_degrees_are_in_the_table_the_chart_phase_space_and_the_status_line():
+    async with lab() as theatre:
+        await theatre.run(3)
+        theatre.stage.action_switch("degrees")
+        await theatre.press("e")
+        await theatre.run(0.1)
+        await theatre.settled()
+        assert "theta [°]" in theatre.text(ErrorTable)
+        assert "57.3° 0°/s" in theatre.text(StatusLine)
+        chart, phase = theatre.stage.query(TimeChart).first(), theatre.stage.query(PhasePane).first()
+        assert "[°]" in str(chart.border_title)
+        assert str(phase.border_title).endswith("theta [°], omega [°/s]")
+        assert "-180" in phase.text
+        assert "pi" not in phase.text
+        reading = theatre.source.sample.readings[1]
+        assert f"{math.degrees(reading.theta):+.3f}" in theatre.text(ErrorTable)
+        await theatre.press("u", "u")
+        assert "theta [rad]" in theatre.text(ErrorTable)

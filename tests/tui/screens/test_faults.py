@@ -83,7 +83,7 @@ async def test_a_pane_that_cannot_be_drawn_says_so_and_the_lab_records_on(tmp_pa
 async def test_a_chart_that_cannot_be_built_says_so_until_one_can(faults, monkeypatch):
     async with lab() as theatre:
         await theatre.settled()
-        monkeypatch.setattr("tui.drawing.chart.time_chart", broken)
+        monkeypatch.setattr("tui.drawing.time_chart.time_chart", broken)
         monkeypatch.setattr(TimeChart, "show_picture", broken)
         await theatre.run(1.0)
         await theatre.settled()
@@ -222,7 +222,7 @@ async def test_what_fails_before_the_lab_is_on_stage_ends_the_program(monkeypatc
 FAILING = """
 from tui.words import insight
 from tui.screens import insight_line
-def broken(source):
+def broken(source, hidden):
     raise ZeroDivisionError("the insight")
 insight_line.insight = broken
 """

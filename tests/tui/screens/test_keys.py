@@ -13,10 +13,12 @@ from tui.playback.live import Live
 from tui.playback.shown import WINDOWS, quantities
 from tui.screens.dialogs.start_form import StartForm
 from tui.screens.dialogs.text import TextScreen, help_text
+from tui.screens.extras import go_to
 from tui.screens.keys import COMMON, LIVE
 from tui.screens.live import LiveScreen
 from tui.screens.status_line import StatusLine
 from tui.views.lab.error_table import ErrorTable
+from tui.views.lab.event_list import EventList
 from tui.views.lab.time_chart import TimeChart
 from tui.views.lab.view import LabView
 
@@ -73,6 +75,23 @@ async def test_the_run_r_restarts_plus_and_minus_change_h_b_reverses_p_and_capit
         await theatre.press("P", "P")
         assert theatre.source.scene == SCENES[names[-1]]
         assert names[-1] in theatre.text(StatusLine)
+
+
+async def test_time_that_runs_backwards_pauses_at_0_and_keeps_what_each_method_misses_its_start_by():
+    async with lab() as theatre:
+        await theatre.run(1)
+        await theatre.press("b")
+        for _ in range(40):
+            theatre.now += 1 / 30
+            theatre.stage.frame()
+        assert theatre.source.sample.t == pytest.approx(0, abs=1e-9)
+        assert theatre.source.playhead.paused
+        (mark,) = [event for event in theatre.source.events if event.kind == "mark"]
+        assert mark.text.startswith("Back at t = 0. Missed the start by e ")
+        await theatre.press("space")
+        theatre.now += 0.5
+        theatre.stage.frame()
+        assert theatre.source.sample.t < -0.3
 
 
 async def test_settings_are_undone_one_after_the_other():
@@ -172,6 +191,26 @@ async def test_a_click_on_a_row_or_a_pendulum_shows_that_method_alone_and_anothe
             await theatre.pilot.click(ErrorTable, offset=(5, 1))
             await theatre.run(0.1)
             assert theatre.stage.shown.places(USUAL_CAST) == [0, 1, 2, 3]
+
+
+async def test_a_click_on_an_event_goes_there_and_brackets_go_from_one_to_the_next():
+    async with lab() as theatre:
+        await theatre.run(12)
+        first, over, *_ = [milestone.step for milestone in theatre.source.milestones]
+        listed = theatre.stage.query_one(EventList)
+        row = next(at for at, line in enumerate(listed.text.splitlines()) if "over the top" in line)
+        await theatre.pilot.click(listed, offset=(8, row + 1))
+        await theatre.pilot.pause()
+        assert theatre.source.sample.step == first
+        assert theatre.source.playhead.paused
+        await theatre.press("]")
+        assert theatre.source.sample.step == over
+        await theatre.press("[", "[")
+        assert theatre.source.sample.step == 0
+        await theatre.press("r")
+        go_to(theatre.stage, (1, first))
+        await theatre.pilot.pause()
+        assert "run 1" in [each.message for each in theatre.app._notifications][-1]
 
 
 async def test_capital_o_puts_all_pendulums_on_one_pivot():

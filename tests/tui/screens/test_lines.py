@@ -21,7 +21,7 @@ from tui.screens.keys import COMMON, LIVE, hinted
 from tui.screens.seek_bar import bar, facts
 from tui.screens.status_line import speed_text, status_row
 from tui.views.lab.error_table import table
-from tui.views.phase import pane as phase
+from tui.views.phase import keys as phase
 
 
 def text(row) -> str:

@@ -71,6 +71,20 @@ async def test_events_speed_direction_and_space_at_the_end(path):
         assert replay.playhead.position == pytest.approx(1)
 
 
+async def test_a_click_on_an_event_goes_there(path):
+    async with player(path) as theatre:
+        await theatre.press("end")
+        await theatre.pilot.pause(0.1)
+        listed = theatre.stage.query_one(EventList)
+        row = next(at for at, line in enumerate(listed.text.splitlines()) if "mark 1" in line)
+        await theatre.pilot.click(listed, offset=(8, row + 1))
+        await theatre.pilot.pause()
+        marked = next(event for event in theatre.source.recording.events if event[1].kind == "mark")
+        assert theatre.source.playhead.position == pytest.approx(marked[0], abs=1 / 30)
+        assert (theatre.source.sample.run, theatre.source.sample.step) == (1, marked[1].step)
+        assert theatre.source.playhead.paused
+
+
 async def test_a_loop_is_set_and_left_and_a_mark_becomes_a_tick(path):
     async with player(path) as theatre:
         replay = theatre.source

@@ -14,7 +14,7 @@ from engine.scenes.scene import MOST_DAMPED
 from tests.tui.command_line import pendu
 from tests.tui.harness import Lab
 from tui.drawing.canvas import Picture
-from tui.drawing.chart import time_chart
+from tui.drawing.time_chart import time_chart
 from tui.playback.shown import Shown, quantities
 from tui.screens.status_line import status_row
 from tui.views.lab.error_table import table
@@ -59,7 +59,7 @@ def on_screen(live) -> str:
         *fact_rows(live, Shown(), None, None, 120),
     ]
     charts = [
-        time_chart(history.window(), scene.cast, quantity, 60, 14, log=log).text
+        time_chart(history.window(), scene.cast, quantity, 60, 14, log=log).picture.text
         for quantity in quantities(scene)
         for log in (True, False)
     ]

@@ -10,7 +10,7 @@ from tui.playback.live import Live
 from tui.screens.dialogs.text import help_text
 from tui.screens.keys import COMMON, LIVE, REPLAY
 from tui.views.accuracy import pane as accuracy
-from tui.views.phase import pane as phase
+from tui.views.phase import keys as phase
 from tui.views.phase.pane import PhasePane
 from tui.views.stability import pane as stability
 from tui.words.cards import OFTEN_SAID, WIDTH, glossary, method_card, scene_card

@@ -239,3 +239,12 @@ def test_names_are_short_where_they_stay_different():
     names = [short_name(method) for method in USUAL_CAST]
     assert names == ["Explicit Euler", "Symplectic Euler", "Verlet", "RK4"]
     assert len(set(names)) == len(USUAL_CAST)
+
+
+def test_of_hidden_methods_it_says_nothing():
+    live = after(SCENES["drift"], 20)
+    assert any("RK4" in sentence for sentence in lasting(live))
+    assert not any("RK4" in sentence for sentence in lasting(live, hidden={"rk4"}))
+    others = {method.key for method in live.scene.cast} - {"velocity_verlet"}
+    assert "Verlet" in insight(live, others)
+    assert "Euler" not in "".join(lasting(live, others)[:1])

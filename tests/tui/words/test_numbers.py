@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tui.words.numbers import angle, decimal, file_size, percent, relative, scientific, seconds
+from tui.words.numbers import angle, decimal, file_size, in_unit, percent, relative, scientific, seconds, start
 
 ANY = st.floats(allow_nan=True, allow_infinity=True) | st.none()
 WIDTHS = st.integers(1, 14)
@@ -119,3 +119,10 @@ def test_an_angle_beyond_a_turn_is_turns_and_the_rest():
     assert angle(-30.52848, 6, 3) == "-30.53"
     assert angle(3.0, 11, 5) == "   +3.00000"
     assert angle(math.nan, 6, 3).strip() == "-"
+
+
+def test_angles_in_degrees_are_turns_and_whole_degrees_beyond_a_turn():
+    assert angle(math.radians(57.3), 11, 5, degrees=True) == "    +57.300"
+    assert angle(10 * math.tau + math.radians(-90), 11, 5, degrees=True) == "  +10 t -90"
+    assert in_unit("omega [rad/s]", degrees=True) == "omega [°/s]"
+    assert start(1.0, math.pi, degrees=True) == "57.3° 180°/s"

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 from recordings.errors import printable
 from tui.cli.errors import Exit
-from tui.cli.options import add_recording
+from tui.cli.options import add_degrees, add_recording
 from tui.cli.output import fields_of, print_table, progress, write_json
-from tui.words.numbers import file_size, seconds
+from tui.words.numbers import file_size, measured, seconds
 
 if TYPE_CHECKING:
     from recordings.recording import Recording
@@ -25,6 +25,7 @@ examples:
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_recording(parser)
     parser.add_argument("--json", action="store_true", help="one JSON object")
+    add_degrees(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -36,7 +37,7 @@ def run(options: argparse.Namespace) -> int:
         if options.json:
             write_json("info", _fields(recording, path.stat().st_size))
         else:
-            _print(recording, path.stat().st_size)
+            _print(recording, path.stat().st_size, options.degrees)
     return Exit.FINE
 
 
@@ -67,7 +68,7 @@ def _digest(recording: "Recording") -> str:
     return f"sha256 {recording.seal.sha256}{end}" if recording.sealed and recording.seal else "does not match"
 
 
-def _print(recording: "Recording", size: int) -> None:
+def _print(recording: "Recording", size: int, degrees: bool) -> None:
     health = "complete" if recording.complete else f"{recording.reason}"
     facts = {
         "file": str(recording.path),
@@ -80,10 +81,12 @@ def _print(recording: "Recording", size: int) -> None:
     }
     print_table("ll", ("", ""), facts.items())
     print()
-    headers = ("run", "scene", "theta [rad]", "omega [rad/s]", "h [s]", "steps", "simulated s", "recorded s", "events")
+    angular = ("theta [deg]", "omega [deg/s]") if degrees else ("theta [rad]", "omega [rad/s]")
+    headers = ("run", "scene", *angular, "h [s]", "steps", "simulated s", "recorded s", "events")
     rows = []
     for run in islice(recording.runs, RUNS_SHOWN):
-        start = (f"{value:g}" for value in (run.scene.theta, run.scene.omega, run.scene.h))
+        angles = (measured(value, degrees) for value in (run.scene.theta, run.scene.omega))
+        start = (f"{value:g}" for value in (*angles, run.scene.h))
         lengths = (str(run.steps), f"{run.t:g}", f"{run.end - run.begin:.2f}")
         rows.append((str(run.number), run.scene.name, *start, *lengths, str(run.events)))
     print_table("rlrrrrrrr", headers, rows)

@@ -64,6 +64,8 @@ def run(options: argparse.Namespace) -> int:
             scenes = facts["reason"] or ", ".join(facts["scenes"])
             rows.append((facts["file"], finished, scenes, length, file_size(facts["bytes"])))
         print_table("lllrr", ("recording, newest first", "finished", "scenes", "length", "size"), rows)
+    for path in library.being_made():
+        print(f"recording now: {printable(str(path.with_suffix('')))}, {file_size(path.stat().st_size)} so far")
     for path in leftovers:
         print(f"unfinished: {printable(str(path))}; will be recovered the next time the lab starts")
     return Exit.FINE

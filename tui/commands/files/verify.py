@@ -105,7 +105,7 @@ def _verified(
 
 def _sentence(result: "Verification") -> str:
     name = printable(str(result.file))
-    size = f"{result.samples} samples in {result.runs} run{'s' * (result.runs != 1)}"
+    size = f"{result.samples} sample{'s' * (result.samples != 1)} in {result.runs} run{'s' * (result.runs != 1)}"
     end = "" if result.complete else f"; {result.reason}"
     others = " and ".join(f"{name}()" for name in result.other_functions)
     notes = f"; within tolerance only: this machine has another {others}" if others else ""

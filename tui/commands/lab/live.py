@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from engine.scenes import Scene
-from tui.cli.options import add_file, positive
+from tui.cli.options import add_file, add_recording, positive
 from tui.cli.scene import add_scene_options, scene_of
 from tui.terminal.options import add_terminal_options
 
@@ -20,6 +20,7 @@ examples:
   pendu-tui live --methods rk4,verlet
   pendu-tui live --method mine.py:my_step
   pendu-tui live --theta 170deg --h 0.02 --record swing.mcap
+  pendu-tui live --ghost swing.mcap --h 0.05
   pendu-tui live --scene crossover --equal-cost
   pendu-tui live --present
   pendu-tui live --plain --no-record
@@ -37,6 +38,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     recording = parser.add_mutually_exclusive_group()
     add_file(recording, "--record", metavar="FILE", type=Path, help="record to FILE instead of the data folder")
     recording.add_argument("--no-record", action="store_true", help="do not record")
+    ghost = "lay a recording under the lab, dimmed; without --scene the lab starts as it did"
+    add_recording(parser, "--ghost", help=ghost, metavar="FILE|latest|NAME")
     add_terminal_options(parser)
 
 
@@ -54,7 +57,12 @@ def run(options: argparse.Namespace) -> int:
     from tui.screens import launch
     from tui.terminal.check import check_terminal
 
-    scene = scene_of(options)
+    ghost = None
+    if options.ghost is not None:
+        from recordings.library import resolve
+
+        ghost = launch.open_ghost(resolve(options.ghost))
+    scene = scene_of(options, None if ghost is None else ghost.scene)
     if not options.plain:
         check_terminal()
         gc.disable()  # until the screen is up: collections while importing would delay the first paint by a thirtieth
@@ -62,6 +70,7 @@ def run(options: argparse.Namespace) -> int:
     notices = [] if path is None else launch.recover_leftovers(path.parent)
     or_next = options.record is None
     live = lab_of(scene, options)
+    live.laid_under = ghost
     if options.plain:
         launch.start_recording(live, path, or_next)
         return launch.print_sentences(live)

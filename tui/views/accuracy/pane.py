@@ -24,13 +24,12 @@ from tui.views.accuracy.words import front_lines, growth_lines, point_words
 from tui.views.keys import Key, bindings
 from tui.views.messages import StepSizeChosen
 from tui.views.view import Chooser
-from tui.words.accuracy import COSTS
 from tui.words.scope import left_out
 
 WORDS, MOST_WORDS, ROOMY = 2, 4, 18  # lines of words; as many as that in so many rows
 MOST_STEPS = 2_000_000  # of a run for the mark at the present h: some seconds
-HERE, CURSOR = "X", "O"
-LEGEND = f"{HERE} current h  x useless  ~ rounding limit  dotted: slopes"
+HERE, CURSOR = "@", "O"
+LEGEND = f"{HERE} current h  x useless  ~ rounding  dotted:"
 
 _GROUP = "accuracy"
 KEYS = (
@@ -41,9 +40,9 @@ KEYS = (
     Key("enter", "enter", "use the h of the cursor's point", "choose", _GROUP, "Take it"),
     Key("tab", "tab", "the next method in words", "method(1)", _GROUP, "Next method"),
     Key("escape", "esc", "leave the cursor", "cancel", _GROUP),
-    Key("e", "e", "next chart: error over cost, over time", "chart", _GROUP, "Over time"),
-    Key("asterisk", "*", "all methods, Taylor series and closed form", "all", _GROUP, "All"),
-    Key("", "click", "use the h of that point; the pointer reads a point out", "", _GROUP),
+    Key("e", "e", "next chart: error over time, theta error, energy error", "chart", _GROUP, "Over time"),
+    Key("asterisk", "*", "all methods and reference lines, or the cast", "all", _GROUP, "All"),
+    Key("", "click", "use that point's h; the pointer reads points out", "", _GROUP),
 )
 
 
@@ -137,7 +136,7 @@ class AccuracyPane(Chooser[int]):
     def paint(self, source: Source, sample: Sample) -> None:
         """Build a chart of what is new in a thread, unless one is being built; the next sample asks again."""
         if why := left_out(source.scene, "The accuracy chart"):
-            self.border_title, self.border_subtitle, self._drawn = "Accuracy", "", None
+            self.border_title, self.border_subtitle, self._drawn = "Accuracy (F4)", "", None
             self.show([[(f" {line}", TEXT)] for line in wrap(why, max(self.room.width - 2, 1))])
             return
         if self._drawn != self._state and not self._building:
@@ -155,8 +154,8 @@ class AccuracyPane(Chooser[int]):
         draw = self._growth if self.over_time else self._accuracy
         picture, self._cells = await asyncio.to_thread(draw, self.room.width, max(self.room.height - lines, 1))
         self._chart = [picture.row(y) for y in range(len(picture.characters))]
-        left = f", computing: {self.missing} points left" if self.missing else ""
-        self.border_title = f"Accuracy over {self.time:g} s: {self.kind} error vs. {COSTS[self.cost]}{left}"
+        left = f", {self.missing} points left" if self.missing else ""
+        self.border_title = f"Accuracy (F4) over {self.time:g} s: {self.kind} error{left}"
         self.border_title = "Theta error over time, at each method's h" if self.over_time else self.border_title
         self.tell()
         self._drawn, self._building = state, False

@@ -17,7 +17,7 @@ from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.views.messages import MethodChosen
 from tui.views.view import Pane
-from tui.words.numbers import angle, decimal, relative, scientific
+from tui.words.numbers import angle, decimal, in_unit, measured, relative, scientific
 
 
 class TableLine(NamedTuple):
@@ -29,6 +29,7 @@ class TableLine(NamedTuple):
     exact: State
     h: float  # s, its own step size
     percent: bool = False
+    degrees: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,13 +45,16 @@ class Column:
 COLUMNS = (
     Column(9, ("h", 6), ("h [s]", 8), lambda line, width: f"{line.h:.4g}"[:width].rjust(width)),
     Column(
-        4, ("theta", 6), ("theta [rad]", 11), lambda line, width: angle(line.reading.theta, width, max(width - 6, 3))
+        4,
+        ("theta", 6),
+        ("theta [rad]", 11),
+        lambda line, width: angle(line.reading.theta, width, max(width - 6, 3), line.degrees),
     ),
     Column(
         2,
         ("omega", 6),
         ("omega [rad/s]", 13),
-        lambda line, width: decimal(line.reading.omega, width, max(width - 8, 3)),
+        lambda line, width: decimal(measured(line.reading.omega, line.degrees), width, max(width - 8, 3)),
     ),
     Column(7, ("dE/E0", 8), ("dE/E0 now", 9), lambda line, width: share(line, line.reading.energy_error, width)),
     Column(
@@ -88,9 +92,10 @@ def short(value: float, width: int) -> str:
 
 
 def theta_error(line: TableLine) -> float:
-    """|theta - exact theta| [rad]."""
+    """|theta - exact theta|."""
     error = line.reading.theta - line.exact.theta
-    return abs(error if line.reading.position is None else math.remainder(error, math.tau))
+    error = error if line.reading.position is None else math.remainder(error, math.tau)
+    return measured(abs(error), line.degrees)
 
 
 SIGNS = {"bounded": "=", "grows": "+", "loses": "-", "caught": "=", "chaotic": "!", "wanders": "~", "failed": "!"}
@@ -139,7 +144,7 @@ def table(
         [
             ("method".ljust(NAME), QUIET),
             *(
-                (gap + (head if conserved else _LOGARITHM.get(head, head)).rjust(size), QUIET)
+                (gap + in_unit(head if conserved else _LOGARITHM.get(head, head), shown.degrees).rjust(size), QUIET)
                 for head, size, _ in columns
             ),
         ]
@@ -147,7 +152,13 @@ def table(
     for place in shown.places(cast):
         method = cast[place]
         line = TableLine(
-            method, sample.readings[place], judgements[place], exact, h[place], shown.percent and conserved
+            method,
+            sample.readings[place],
+            judgements[place],
+            exact,
+            h[place],
+            shown.percent and conserved,
+            shown.degrees,
         )
         failed = line.reading.diverged_at is not None
         name = f"{mark(place, method)} {method.label}"[:NAME].ljust(NAME)

@@ -1,11 +1,14 @@
 """EventList: what was done and what happened, the newest last."""
 
+from textual import events
+
 from engine.run.lockstep import Sample
 from tui.drawing.palette import QUIET, TEXT, series
 from tui.playback.source import Source
 from tui.views.messages import Asked
 from tui.views.view import Pane
 from tui.words.events import EventLine, event_lines, numbered
+from tui.words.findings import short_name
 
 
 def owner_of(line: EventLine) -> int:
@@ -19,12 +22,27 @@ class EventList(Pane):
     def __init__(self) -> None:
         super().__init__()
         self.border_title = "Events (E)"
+        self._listed: list[EventLine] = []
 
     def paint(self, source: Source, sample: Sample) -> None:
         lines = event_lines(source)
-        texts = numbered(lines)
-        self.show([[(text, owner_of(line))] for line, text in [*zip(lines, texts, strict=True)][-self.room.height :]])
+        last = [*zip(lines, numbered(lines), strict=True)][-self.room.height :]
+        self._listed = [line for line, _ in last]
+        self.show([[(self._fitted(text, line), owner_of(line))] for line, text in last])
 
-    def on_click(self) -> None:
-        """List them all."""
-        self.post_message(Asked("app.extra('events')"))
+    def _fitted(self, text: str, line: EventLine) -> str:
+        """A milestone's text; where it is too long, methods go by their letters."""
+        if line.method is None or len(text) <= self.room.width:
+            return text
+        for method in self.cast:
+            text = text.replace(short_name(method), method.letter)
+        return text
+
+    def on_click(self, event: events.Click) -> None:
+        """Go to an event, or list them all."""
+        offset = event.get_content_offset(self)
+        if offset is not None and offset.y < len(self._listed):
+            line = self._listed[offset.y]
+            self.post_message(Asked(f"app.extra('go_to', {line[:2]})"))
+        else:
+            self.post_message(Asked("app.extra('events')"))

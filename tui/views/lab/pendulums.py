@@ -8,6 +8,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import cos, isfinite, pi, sin
 
+from textual.content import Content
+
 from engine.models.spring import Spring
 from engine.run.lockstep import Sample
 from tui.drawing.palette import EXACT, FRAME, faint, mark, series
@@ -79,9 +81,7 @@ class Pendulum(Pane):
         """`place` in the cast; None: all."""
         super().__init__(id)
         self._place = place
-        self._title = ""
-        if place is None:
-            self.border_subtitle = "dotted: exact"
+        self._titled: object = None
 
     def on_click(self) -> None:
         """Show this method alone, or all again."""
@@ -91,8 +91,14 @@ class Pendulum(Pane):
     def _retitle(self) -> None:
         place = self._place
         title = "Pendulums (O)" if place is None else f"{mark(place, self.cast[place])} {self.cast[place].label}"
-        if title != self._title:  # setting it paints all of the pane
-            self.border_title = self._title = title
+        ghost = self.source.ghost if self.source is not None else None
+        room = self.room.width - 4
+        if (title, ghost, room) != self._titled:  # setting it paints all of the pane
+            self._titled, self.border_title = (title, ghost, room), title
+            exact = "dotted: exact" if place is None else ""
+            dim = "" if ghost is None else ghost.label(room - len(exact) - 2)
+            texts = [text for text in (exact, dim) if text]
+            self.border_subtitle = Content(", ".join(texts if sum(map(len, texts)) < room else texts[-1:]))
 
     def paint(self, source: Source, sample: Sample) -> None:
         if self._place is not None and self._place >= len(self.cast):
@@ -102,7 +108,13 @@ class Pendulum(Pane):
         bobs = []
         if self.shown.exact or self._place is None:
             bobs += _exact(source, sample.t)
-        for place in self.places if self._place is None else [self._place]:
+        places = self.places if self._place is None else [self._place]
+        ghost = source.ghost
+        rods = {} if ghost is None else ghost.rods(sample.t)
+        for method in [self.cast[place] for place in places]:
+            if (rod := rods.get(method.key)) is not None:
+                bobs.append(Bob(rod.theta, faint(series(method)), length=rod.length))
+        for place in places:
             reading, method = sample.readings[place], self.cast[place]
             bobs.append(
                 Bob(
@@ -114,7 +126,10 @@ class Pendulum(Pane):
                     diverged=reading.diverged_at is not None,
                 )
             )
-        self.show_sketch(pendulum_sketch(*self.room, bobs, reach(source.scene, source.stepping, sample, self.places)))
+        widest = reach(source.scene, source.stepping, sample, self.places)
+        if ghost is not None:
+            widest = max(widest, ghost.widest)
+        self.show_sketch(pendulum_sketch(*self.room, bobs, widest))
 
 
 def _exact(source: Source, t: float) -> list[Bob]:

@@ -1,9 +1,12 @@
 """TimeChart: a quantity of all methods over time."""
 
 import asyncio
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
+from typing import TYPE_CHECKING
 
+from textual import events
 from textual.content import Content
 
 from engine.methods import Cast
@@ -13,7 +16,10 @@ from tui.playback.shown import Quantity, Shown
 from tui.playback.source import Source
 from tui.views.messages import Asked
 from tui.views.view import Pane
-from tui.words.numbers import about
+from tui.words.numbers import about, in_unit, relative, seconds
+
+if TYPE_CHECKING:
+    from tui.drawing.time_chart import Reading, TimePlot
 
 NAMES: dict[Quantity, tuple[str, str]] = {
     "energy_error": ("energy error dE/E0", "|dE/E0|"),
@@ -37,14 +43,32 @@ def title(shown: Shown, exact: ExactMotion, conserved: bool = True) -> str:
     """What the chart shows, and for how long back."""
     name, magnitude = NAMES[shown.quantity] if conserved or shown.quantity != "energy_error" else LOGARITHM
     span = "all" if shown.seconds is None else about(shown.seconds)
+    name, magnitude = in_unit(name, shown.degrees), in_unit(magnitude, shown.degrees)
     if not shown.log:
         return f"{name}, {span}"
     each = {"libration": " per half swing", "rotation": " per turn"}.get(exact.regime, "") if exact.period else ""
     return f"max {magnitude}{each}, {span}"
 
 
+def read_out(reading: "Reading", letters: Sequence[str], percent: bool, room: int) -> str:
+    """All methods at a moment, as far as there is room: "12.35 s: e 3.3, s 0.079, v 0.0057, r 3.8e-5"."""
+    numbers = [
+        relative(value, 8, "-").strip() if percent and abs(value) >= 0.01 else f"{value:.2g}".replace("e-0", "e-")
+        for value in reading.values
+    ]
+    text = f"{seconds(reading.t)}:"
+    for letter, number in zip(letters, numbers, strict=True):
+        part = f" {letter} {number}"
+        if not number.startswith("nan") and len(text) + len(part) <= room:
+            text += part
+    return text
+
+
 class TimeChart(Pane):
-    """Builds the chart in a thread, always from the newest data; samples that come too quickly are skipped."""
+    """Builds the chart in a thread, always from the newest data; samples that come too quickly are skipped.
+
+    The pointer reads out a moment, the wheel changes the window.
+    """
 
     def __init__(self, id: str | None = None, ahead: int = 0) -> None:
         """`ahead`: so many quantities after the one that is chosen."""
@@ -52,7 +76,9 @@ class TimeChart(Pane):
         self._ahead = ahead
         self._wanted = asyncio.Event()
         self._building = False
-        self._title = ""
+        self._titles: object = None
+        self._plot: TimePlot | None = None
+        self._pointer: int | None = None  # the column under it
 
     @property
     def settled(self) -> bool:
@@ -67,6 +93,25 @@ class TimeChart(Pane):
         """Show the next quantity."""
         self.post_message(Asked("quantity"))
 
+    def on_mouse_move(self, event: events.MouseMove) -> None:
+        offset = event.get_content_offset(self)
+        self._pointer = None if offset is None else offset.x
+        self._tell()
+
+    def on_leave(self) -> None:
+        self._pointer = None
+        self._tell()
+
+    def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
+        self._zoom(event, 1)
+
+    def on_mouse_scroll_down(self, event: events.MouseScrollDown) -> None:
+        self._zoom(event, -1)
+
+    def _zoom(self, event: events.MouseEvent, direction: int) -> None:
+        self.post_message(Asked(f"app.extra('zoom', {direction})"))
+        event.stop()
+
     def on_mount(self) -> None:
         """Build from the first paint on: plotext takes as long to import as all else takes to paint."""
         self.call_after_refresh(self._start)
@@ -76,28 +121,52 @@ class TimeChart(Pane):
 
     def paint(self, source: Source, sample: Sample) -> None:
         self._wanted.set()
-        look = self._look(source)
-        text = title(look, source.exact, source.scene.equations.conserved)
-        if text != self._title:  # setting it paints all of the pane
-            self._title = text
-            self.border_title = Content(text)  # as markup, units in brackets would be gone
-            unknown = modified_energy_of(self.cast) if look.quantity == "shadow_error" else ""
-            self.border_subtitle = unknown or "e: quantity, w: window, y: log"
+        self._tell()
+
+    def _tell(self) -> None:
+        """Say in the title what is shown, and below what is under the pointer, or how to change it."""
+        if (source := self.source) is None:
+            return
+        look, plot, room = self._look(source), self._plot, self.room.width - 6
+        above = title(look, source.exact, source.scene.equations.conserved)
+        reading = plot.at(self._pointer) if plot is not None and self._pointer is not None else None
+        if plot is not None and reading is not None:
+            letters = [self.cast[place].letter for place in plot.places if place < len(self.cast)]
+            percent = look.percent and look.quantity == "energy_error" and source.scene.equations.conserved
+            below = read_out(reading, letters, percent, room)
+        else:
+            below = modified_energy_of(self.cast) if look.quantity == "shadow_error" else ""
+            below = below or (source.ghost.label(room) if source.ghost else "e: quantity, w: window, y: log")
+        if (above, below) != self._titles:  # setting them paints all of the pane
+            self._titles = above, below
+            self.border_title, self.border_subtitle = Content(above), Content(below)  # as markup, [rad] would be gone
 
     async def _build_on_demand(self) -> None:
-        from tui.drawing.chart import time_chart  # brings NumPy, which can wait for the first paint
+        from tui.drawing.time_chart import time_chart  # brings NumPy, which can wait for the first paint
 
         while True:
             await self._wanted.wait()
             self._wanted.clear()
-            if self.source is None or not self.drawable:
+            if self.source is None or self.sample is None or not self.drawable:
                 continue
             self._building = True
-            shown, (width, height) = self._look(self.source), self.room
-            build = partial(time_chart, log=shown.log, seconds=shown.seconds, shown=self.places)
+            shown, (width, height), ghost = self._look(self.source), self.room, self.source.ghost
+            behind = None if ghost is None else (ghost.window(self.sample.t, shown.seconds), ghost.scene.cast)
+            build = partial(
+                time_chart,
+                log=shown.log,
+                seconds=shown.seconds,
+                shown=self.places,
+                ghost=behind,
+                degrees=shown.degrees and shown.quantity == "theta_error",
+            )
             window = self.source.history.window(shown.seconds)
             try:
-                self.show_picture(await asyncio.to_thread(build, window, self.cast, shown.quantity, width, height))
+                plot = await asyncio.to_thread(build, window, self.cast, shown.quantity, width, height)
+                self.show_picture(plot.picture)
+                self._plot = plot
+                if self._pointer is not None:
+                    self._tell()
             except Exception as error:
                 self.fail(error)
             self._building = False

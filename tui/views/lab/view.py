@@ -12,7 +12,8 @@ from tui.views.lab.large_table import LargeTable
 from tui.views.lab.layout import CellLayout, places
 from tui.views.lab.pendulums import Pendulum
 from tui.views.lab.time_chart import TimeChart
-from tui.views.phase.pane import KEYS, PhasePane
+from tui.views.phase.keys import KEYS
+from tui.views.phase.pane import PhasePane
 from tui.views.view import Box, View
 
 

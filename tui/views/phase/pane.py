@@ -1,5 +1,6 @@
 """PhasePane: phase space, the methods in it, and a start to choose with the mouse or the keyboard."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import events
@@ -12,10 +13,12 @@ from engine.models.model import State
 from engine.run.lockstep import Sample
 from engine.scenes import SceneError
 from tui.playback.source import Source
-from tui.views.keys import Key, arrows, bindings
+from tui.views.keys import bindings
 from tui.views.messages import Asked, SceneChosen
+from tui.views.phase.keys import KEYS
 from tui.views.phase.viewport import Viewport
 from tui.views.view import Chooser
+from tui.words.numbers import in_unit
 from tui.words.scope import has_ring
 
 if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
@@ -24,22 +27,6 @@ if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
 
 TITLE = "Phase space (F3): theta [rad], omega [rad/s]"
 RING_STEPS = 100  # a frame; 52 µs each, so a ring that has to catch up costs 5 ms of a frame at most
-BIG_STEP, _GROUP = 8, "phase space"  # dots
-KEYS = (
-    Key("", "tab", "in the lab: to this pane, for its keys", "", _GROUP),
-    *arrows(_GROUP, "crosshair", "choose a start", BIG_STEP),
-    Key("enter", "enter", "start at the crosshair", "choose", _GROUP, "Start"),
-    Key("escape", "esc", "leave the crosshair, cancel a drag", "cancel", _GROUP),
-    Key("z", "z", "zoom in at the crosshair or the pointer", "zoom(0.5)", _GROUP, "Zoom"),
-    Key("Z,shift+z", "Z", "zoom out", "zoom(2.0)", _GROUP),
-    Key("o", "o", "overview: the whole portrait", "whole", _GROUP, "Overview"),
-    Key("c", "c", "angles within a turn, or unwrapped", "wrap", _GROUP, "Wrap"),
-    Key("g", "g", "a ring of neighbours, of another radius", "radius(1)", _GROUP, "Ring"),
-    Key("G,shift+g", "G", "a smaller ring, or none", "radius(-1)", _GROUP),
-    Key("", "click, drag", "start there; a drag shows the orbit first", "", _GROUP),
-    Key("", "wheel", "zoom at the pointer", "", _GROUP),
-    Key("", "shift+drag", "move the picture, as arrows do at its edge", "", _GROUP),
-)
 
 
 class PhasePane(Chooser[State]):
@@ -73,9 +60,12 @@ class PhasePane(Chooser[State]):
         return self.sample is not None and not (self.drawable and self._catching_up)
 
     def watch_source(self) -> None:
-        self.border_title = Content(TITLE)
+        self.border_title = Content(in_unit(TITLE, self.shown.degrees))
         self.border_subtitle = f"{'click: start, ' if self.is_live else ''}wheel: zoom"
         super().watch_source()
+
+    def watch_shown(self) -> None:
+        self.watch_source()
 
     def watch_wrap(self) -> None:
         self._whole = self.zoomed = None
@@ -95,10 +85,11 @@ class PhasePane(Chooser[State]):
     def viewport(self) -> Viewport:
         assert self.source is not None
         if self.zoomed is not None:
-            self.zoomed = self.zoomed.resized(*self.cells)
-            return self.zoomed
-        self._whole = Viewport.portrait(*self.cells, self.source.scene, self.wrap).steadied(self._whole)
-        return self._whole
+            found = self.zoomed = self.zoomed.resized(*self.cells)
+        else:
+            found = Viewport.portrait(*self.cells, self.source.scene, self.wrap).steadied(self._whole)
+            self._whole = found
+        return replace(found, degrees=self.shown.degrees)
 
     @property
     def aim(self) -> State | None:
@@ -134,7 +125,7 @@ class PhasePane(Chooser[State]):
         if self.source is not None and self._plot is not None:
             from tui.views.phase.facts import captioned
 
-            self.show_picture(captioned(self._plot, self.source.scene, self.source.exact, self.aim))
+            self.show_picture(captioned(self._plot, self.source.scene, self.source.exact, self.aim, self.shown.degrees))
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         return (action == "cancel" and self.aiming) or super().check_action(action, parameters)

@@ -13,7 +13,7 @@ from engine.models.model import Model, Phase, State
 from engine.run.lockstep import Sample
 from tui.playback.source import Source
 from tui.views.keys import Key, bindings
-from tui.views.phase.pane import KEYS as PORTRAIT_KEYS
+from tui.views.phase.keys import KEYS as PORTRAIT_KEYS
 from tui.views.phase.pane import PhasePane
 from tui.views.phase.viewport import Viewport
 from tui.words.scope import left_out
@@ -26,7 +26,7 @@ STEPS = 2000  # of the orbit that is described: some ms
 
 _OWN = (
     Key("x", "x", "a method's own map: islands, chaos, spirals", "section", "phase space"),
-    Key("X,shift+x", "X", "the map of the next method", "next_map", "phase space"),
+    Key("tab", "tab", "beside x: the map of the next method", "next_map", "phase space"),
 )
 KEYS = (*PORTRAIT_KEYS, *_OWN)
 
@@ -74,6 +74,15 @@ class SectionPane(PhasePane):
         if self.source is None or method not in self.cast:
             return None
         return self.source.scene.equations, abs(self.source.stepping.own[self.cast.index(method)])
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        return super().check_action(action, parameters) and (action != "next_map" or self.shows_section)
+
+    def watch_shown(self) -> None:
+        if self.shows_section:
+            self.draw()
+        else:
+            super().watch_shown()
 
     def watch_shows_section(self) -> None:
         if not self.shows_section:
@@ -145,10 +154,8 @@ class SectionPane(PhasePane):
         self.shows_section = not self.shows_section
 
     def action_next_map(self) -> None:
-        """Show the section of the next method; where there is none yet, that of the first."""
-        if self.shows_section:
-            self.action_method(1)
-        self.shows_section = True
+        """Show the section of the next method."""
+        self.action_method(1)
 
 
 @lru_cache(maxsize=64)

@@ -89,5 +89,5 @@ class PhaseView(View):
         for place in self.shown.places(scene.cast):
             method, h = scene.cast[place], abs(self.source.stepping.own[place])
             known.append((place, method, followed(method, scene.equations, h, (scene.theta, scene.omega))[1]))
-        head = " The start's orbit under each method's own map (x: back, X: next method)"
+        head = " The start's orbit under each method's own map (x: back, tab: next method)"
         return [[(head[:width], TEXT)], *kind_rows(known, width)]

@@ -25,6 +25,7 @@ class Viewport:
     theta_per_dot: float  # rad
     omega_per_dot: float  # rad/s
     wrap: bool = True  # every angle is shown, in the one turn that is there
+    degrees: bool = False  # along the axes
 
     @classmethod
     def portrait(cls, columns: int, rows: int, scene: Scene, wrap: bool = True) -> "Viewport":

@@ -22,8 +22,8 @@ from engine.stability.outcomes import HELD, UNKNOWN, Cells
 from tui.drawing.palette import Palette, mark, mixed, series
 
 EXACT_ENOUGH = 1e-12  # energy errors below it are drawn alike
-LIMIT, THRESHOLD, CATCHING, HERE = "│", "┊", "•", "X"
-_WITHOUT_COLOUR = {LIMIT: "|", THRESHOLD: ":", CATCHING: "o", HERE: "X"}
+LIMIT, THRESHOLD, CATCHING, HERE = "│", "┊", "•", "@"
+_WITHOUT_COLOUR = {LIMIT: "|", THRESHOLD: ":", CATCHING: "o", HERE: HERE}
 EXAMPLE = VELOCITY_VERLET  # whose colours the legend shows
 MARGIN = 4  # for the labels of the amplitudes
 SHADES = 16  # from lost at once to lost at the end, and again from there to held exactly

@@ -40,7 +40,7 @@ class StabilityView(View):
         pane, cast = self.query_one(StabilityPane), self.source.scene.cast
         if not self.source.scene.general:
             cast = ()
-            pane.border_title = "Stability"
+            pane.border_title = "Stability (F5)"
         if cast != pane.grid.methods:
             self.workers.cancel_node(self)
             pane.begin(_grid(cast))
@@ -53,7 +53,7 @@ class StabilityView(View):
         async for piece in computed(pieces, pane.grid, PASSES):
             pane.fill(piece.z, piece.method, piece.cells)
             pane.complete = piece.done == 1 and piece.steps == PASSES[-1]
-            state = "" if pane.complete else f", computing {int(10 * piece.done) / 10:.0%}"
-            title = f"Stability after {piece.steps} steps: step size h [s] vs. amplitude [deg]{state}"
+            state = "" if pane.complete else f", {int(10 * piece.done) / 10:.0%}"
+            title = f"Stability (F5), {piece.steps} steps: h [s], amplitude [°]{state}"
             if title != shown:
                 shown, pane.border_title = title, Content(title)  # as markup, units in brackets would be gone

@@ -162,7 +162,7 @@ STEPS = (
         SCENES["verlet-limit-above"],
         2.0,
         "stability",
-        "z = h·sqrt(g/L) goes to the right, the amplitude up; X is here, just above Verlet's limit 2.",
+        "z = h·sqrt(g/L) goes to the right, the amplitude up; @ is here, just above Verlet's limit 2.",
         reaches(VERLET, 0.45),
         "In ten steps Verlet's swing grew from 0.1 to almost 0.5 rad. For a linear spring that would never end.",
         "Does it go over the top here?",

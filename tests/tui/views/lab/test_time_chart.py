@@ -1,12 +1,14 @@
-"""The chart's title: which quantity, its unit, of what each point is the largest, and how far back."""
+"""The chart: what its title says, and how it answers to the mouse."""
 
 from itertools import product
 
 import pytest
+from textual.events import MouseScrollUp
 
 from engine.scenes import SCENES
+from tests.tui.harness import lab
 from tui.playback.shown import WINDOWS, Shown, quantities
-from tui.views.lab.time_chart import title
+from tui.views.lab.time_chart import TimeChart, title
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -33,3 +35,21 @@ def test_a_chart_goes_through_what_a_scene_has_and_no_more():
     assert shown.quantity == "spring_energy"
     assert shown.next_quantity(spring) == Shown()
     assert shown.quantity_ahead(0, drift) == "energy_error"  # what the next scene lacks is not shown
+
+
+async def test_the_pointer_reads_the_chart_out_and_the_wheel_takes_another_window():
+    async with lab() as theatre:
+        await theatre.run(12)
+        await theatre.settled()
+        chart = theatre.stage.query(TimeChart).first()
+        await theatre.pilot.hover(chart, offset=(30, 4))
+        told = str(chart.border_subtitle)
+        assert [word for word in told.split() if word in "esvr"] == ["e", "s", "v", "r"]
+        assert told.startswith(f"{chart._plot.at(29).t:.2f} s:")
+        chart.on_mouse_scroll_up(MouseScrollUp(chart, 5, 5, 0, -1, 0, False, False, False))
+        await theatre.pilot.pause()
+        await theatre.pilot.pause()
+        assert theatre.stage.shown.seconds == 5.0
+        await theatre.press("u")
+        assert theatre.stage.shown.seconds is None
+        assert [each.message for each in theatre.app._notifications] == ["Undone: the window of the chart"]

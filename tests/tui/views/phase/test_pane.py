@@ -13,7 +13,8 @@ from engine.phase_space.area import Neighbours
 from engine.scenes import SCENES, Scene
 from tui.playback.live import Live
 from tui.views.messages import SceneChosen
-from tui.views.phase.pane import BIG_STEP, PhasePane
+from tui.views.phase.keys import BIG_STEP
+from tui.views.phase.pane import PhasePane
 from tui.views.phase.viewport import NARROWEST
 
 DRIFT = SCENES["drift"]

@@ -116,14 +116,14 @@ async def test_the_section_is_the_engines():
         assert [line.rstrip() for line in pane.text.splitlines()[:-1]] == expected
 
 
-async def test_another_step_redraws_it_and_x_with_shift_takes_the_next_method():
+async def test_another_step_redraws_it_and_tab_takes_the_next_method():
     async with lab(SCENE, size=(100, 30)) as theatre:
         pane = await section_of(theatre, "x")
         before = pane.text
         pane = await section_of(theatre, "plus")
         assert "h 0.5 s" in str(pane.border_title)
         assert pane.text != before
-        pane = await section_of(theatre, "X")
+        pane = await section_of(theatre, "tab")
         assert str(pane.border_title).startswith("Own map of RK4: h 0.5 s")
         table = theatre.stage.query_one("#facts", CellWidget).text.splitlines()
         assert (

@@ -93,13 +93,13 @@ def test_the_whole_picture_fits_eighty_columns_and_names_every_method():
 def test_you_are_here_is_marked():
     grid, cells = half_lost()
     lines = text(panel(grid, cells, 0, 34, 6, None, here=(0.95, math.radians(75)))).splitlines()
-    assert lines[4][4 + 9] == "X"
+    assert lines[4][4 + 9] == "@"
 
 
 @pytest.mark.parametrize("here", [(5.0, 1.0), (0.0, 1.0), (1.0, 3.14), (1.0, 0.0)])
 def test_a_place_outside_the_map_is_not_marked(here: tuple[float, float]):
     grid, cells = half_lost()
-    assert "X" not in text(panel(grid, cells, 0, 34, 6, None, here=here))
+    assert "@" not in text(panel(grid, cells, 0, 34, 6, None, here=here))
 
 
 def test_what_is_not_computed_yet_is_blank():

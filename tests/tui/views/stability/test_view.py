@@ -52,7 +52,7 @@ async def test_it_says_what_becomes_of_the_swing_on_screen(monkeypatch: pytest.M
     async with stability_view(monkeypatch) as (_, pane, live):
         z, theta = pane.here(VERLET)
         assert (z, theta) == (live.scene.z, 1.0)
-        assert pane.text.count("X") == 4
+        assert pane.text.count("@") == 4
         assert "Velocity Verlet at h 0.0539 s, 58.1 deg: held" in pane.text
 
 
@@ -136,7 +136,7 @@ async def test_another_theme_recolours_it(monkeypatch: pytest.MonkeyPatch):
 async def test_a_scene_that_spins_is_not_on_the_map(monkeypatch: pytest.MonkeyPatch):
     async with stability_view(monkeypatch, SCENES["spin"]) as (_, pane, _live):
         assert pane.here(VERLET) is None
-        assert "X" not in pane.text
+        assert "@" not in pane.text
 
 
 @pytest.mark.parametrize("size", [(60, 16), (79, 20), (120, 40), (200, 60)])

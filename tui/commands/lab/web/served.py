@@ -19,7 +19,7 @@ from tui.screens.launch import start_recording
 from tui.screens.live import LiveScreen
 from tui.views.keys import Key, bindings
 
-EXTRAS = {"describe", "events", "card", "copy_command"}
+EXTRAS = {"describe", "events", "card", "copy_command", "go_to", "zoom"}
 """The rarely used actions that touch no file."""
 
 KEPT_OUT = {"app.extra('screenshot')", "app.suspend_process"}

@@ -2,7 +2,7 @@
 
 import io
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from rich.console import Console
@@ -32,6 +32,7 @@ class Study:
     method: Method  # whose map is drawn
     starts: int
     steps: int
+    degrees: bool = False
 
     def kind(self, method: Method) -> OrbitKind:
         """The orbit of the scene's start."""
@@ -41,7 +42,7 @@ class Study:
     def picture(self, columns: int, rows: int) -> Picture:
         """The portrait of the map."""
         model, h, start = self.scene.equations, self.scene.h, (self.scene.theta, self.scene.omega)
-        viewport = Viewport.portrait(columns, rows, self.scene, wrap=model.turns)
+        viewport = replace(Viewport.portrait(columns, rows, self.scene, wrap=model.turns), degrees=self.degrees)
         section, done = Section(viewport, model, self.method), 0
         with progress("section") as show:
             for piece in pieces(self.method, model, h, starts(viewport, self.starts), self.steps):
@@ -111,7 +112,7 @@ def _title(study: Study) -> str:
 def _print_words(study: Study) -> None:
     """Print on what orbits the start lies, in a table and, for the method that is drawn, in a sentence."""
     kinds = [(method, study.kind(method)) for method in study.scene.cast]
-    print(f"\n{scene_line(study.scene, 'h', 'z')}, {study.steps} steps")
+    print(f"\n{scene_line(study.scene, 'h', 'z', degrees=study.degrees)}, {study.steps} steps")
     rows = [(method.label, *cells(method, kind)) for method, kind in kinds]
     print_table("llrrrr", ("method", *HEADS), rows)
     kind = next((kind for method, kind in kinds if method == study.method), None) or study.kind(study.method)

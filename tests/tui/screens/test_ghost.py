@@ -1,0 +1,84 @@
+"""A recording laid under the lab: the same moment of simulated time, whatever the clock did while it was recorded."""
+
+import numpy as np
+import pytest
+
+from engine.scenes import DEFAULT_SCENE, SCENES
+from recordings.recording import Recording
+from tests.tui.command_line import pendu
+from tests.tui.harness import after, lab, recorded
+from tui.drawing.palette import faint, series
+from tui.playback.ghost import Ghost
+from tui.views.lab.time_chart import TimeChart
+from tui.views.lab.view import LabView
+
+OTHER_H = DEFAULT_SCENE.altered(h=0.1)
+
+
+@pytest.fixture
+def path(tmp_path):
+    """3 s at half the speed, and 6 s at twice the speed, after a pause: 15 s of simulated time in all."""
+    return recorded(
+        tmp_path / "swing.mcap",
+        lambda live: live.set_speed(0.5),
+        6.0,
+        lambda live: live.pause(True),
+        1.0,
+        lambda live: live.pause(False),
+        lambda live: live.set_speed(2.0),
+        6.0,
+        scene=OTHER_H,
+    )
+
+
+def ghost(path) -> Ghost:
+    with Recording.open(path) as recording:
+        return Ghost(recording)
+
+
+def test_its_pendulums_are_where_a_lab_with_its_step_size_would_have_them(path):
+    found = ghost(path)
+    for t in (1.0, 2.5, 3.0, 7.0, 14.0):
+        readings = after(OTHER_H, t).sample.readings
+        for method, reading in zip(OTHER_H.cast, readings, strict=True):
+            assert found.rods(t)[method.key].theta == pytest.approx(reading.theta, abs=0.7)  # one step of 0.1 s
+    assert found.rods(16.0) == found.rods(-1.0) == {}
+
+
+def test_its_errors_end_where_the_lab_is(path):
+    found = ghost(path)
+    assert found.window(4.0).x.max() == pytest.approx(4.0, abs=0.2)
+    low, high = found.window(4.0).low["energy_error"][:, 0], found.window(10.0).high["energy_error"][:, 0]
+    assert np.nanmax(high) > np.nanmax(low) > 0
+
+
+def test_of_a_recording_of_reversed_time_there_is_what_came_before(tmp_path):
+    def turn(live):
+        live.set_stepping(live.stepping.reversed())
+
+    found = ghost(recorded(tmp_path / "turned.mcap", 2.0, turn, 1.0))
+    assert found.window(10.0).x.max() == pytest.approx(2.0, abs=0.1)
+
+
+async def test_it_is_faint_behind_the_same_methods_and_says_which_step_size_it_has(path):
+    async with lab() as theatre:
+        theatre.source.laid_under = ghost(path)
+        await theatre.run(5)
+        await theatre.settled()
+        first = theatre.stage.query_one(LabView).pendulums[1]
+        colour = faint(series(DEFAULT_SCENE.cast[1]))
+        assert colour in {owner for row in first._rows for _, owner in row}
+        assert first.border_subtitle == "dim: h 0.1 s" or "dim: swing, h 0.1 s" in first.border_subtitle
+        chart = theatre.stage.query(TimeChart).first()
+        assert chart._plot is not None
+        assert colour in set(chart._plot.picture.owners.ravel().tolist())
+        assert "dim: swing, h 0.1 s" in str(chart.border_subtitle)
+        theatre.stage.start(SCENES["stiff-slow"])
+        assert theatre.source.ghost is None  # another model
+
+
+def test_what_is_no_recording_is_refused_in_a_sentence(tmp_path):
+    broken = tmp_path / "broken.mcap"
+    broken.write_bytes(b"nothing")
+    assert pendu("live", "--plain", "--no-record", "--ghost", broken).refused(3, "broken.mcap")
+    assert pendu("live", "--plain", "--no-record", "--ghost", tmp_path / "none.mcap").refused(3, "no recording")
