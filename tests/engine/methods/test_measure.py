@@ -1,26 +1,13 @@
-"""The measured properties of a method: the claims of METHODS, and of methods that are not in it."""
+"""The measured properties of methods that are not in METHODS; test_claims has those that are."""
 
 from collections.abc import Iterator
 
 import pytest
 
-from engine.methods import GENERAL, Method, measure
+from engine.methods import measure
 from engine.methods.measure import Measured, measured
 from engine.methods.method import Phases
 from engine.models.model import Force, Phase
-
-
-@pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
-def test_the_measured_properties_are_the_claimed_ones(method: Method) -> None:
-    found = measured(method.phases)
-    assert found.order == pytest.approx(method.order, abs=0.1)
-    assert found.linear_limit == pytest.approx(method.linear_limit, abs=2e-9)
-    assert found[1:5] == (
-        method.force_evaluations,
-        int(method.first_same_as_last),
-        method.symplectic,
-        method.reversible,
-    )
 
 
 def midpoint(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
