@@ -6,6 +6,11 @@ Tables get the width that they ask for, and a hyphen instead of "nan" or "inf".
 import math
 
 
+def counted(number: int, noun: str) -> str:
+    """As "1 sample" or "3 samples"."""
+    return f"{number} {noun}{'s' * (number != 1)}"
+
+
 def decimal(value: float | None, width: int, decimals: int = 3) -> str:
     """With a sign and as many decimals as fit, or in scientific notation: " +1.000", "+1.2e+09"."""
     if value is None or not math.isfinite(value):
