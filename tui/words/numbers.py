@@ -34,8 +34,8 @@ def scientific(value: float | None, width: int, digits: int = 1, sign: str = "+"
 
 
 def relative(value: float | None, width: int, sign: str = "+") -> str:
-    """An error relative to 1: from 1 % on as "-4.2 %" or "+633 %"."""
-    if value is None or not math.isfinite(value) or abs(value) < 0.01:
+    """An error relative to 1: from 1 % to 10 000 % as "-4.2 %" or "+633 %"."""
+    if value is None or not math.isfinite(value) or not 0.01 <= abs(value) < 100:
         return scientific(value, width, 1, sign)
     whole = f"{100 * value:{sign}.0f} %"
     fine = whole if abs(value) >= 1 else f"{100 * value:{sign}.1f} %"
