@@ -32,9 +32,9 @@ class InsightLine(Pane):
         self.show([[(f" {line}", look)] for line in fitted(text, self.room.width - 2, self.room.height)])
 
     def _hint(self, source: Source) -> str:
-        """The hint that is due after some time in the lab."""
+        """The hint that is due after some time in the lab; none where time that ran backwards is back at 0."""
         now = source.playhead.seen
-        if now is None or not self.is_live:
+        if now is None or not self.is_live or source.history.returned is not None:
             return ""
         self._began = now if self._began is None else self._began
         return hint(now - self._began, source.events)

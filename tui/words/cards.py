@@ -31,6 +31,25 @@ GLOSSARY = {
     "colours": "each method keeps its own, and its letter, wherever it is shown; its digit is its place and its key",
     "dotted": "the exact motion",
 }
+HEADS = {
+    ("h",): GLOSSARY["h"],
+    ("theta", "omega"): GLOSSARY["theta, omega"],
+    ("dE/E0", "dE/E0 now"): GLOSSARY["dE/E0"],
+    ("ln E/Et", "ln E/Etr"): "the logarithm of the energy over that of the exact motion, which loses energy, too",
+    ("largest",): GLOSSARY["largest"],
+    ("per s", "trend per s"): GLOSSARY["trend"],
+    ("verdict",): "what the energy error does in the long run; ? explains each word",
+    ("th.err", "theta error"): "the distance from the exact angle [rad]",
+    ("f", "evals/step"): "force evaluations a step: what the method costs",
+    ("length",): "the length of the rod over its length at rest",
+    ("spring", "spring E"): "the energy in the spring over that at the start",
+}
+"""What the heads of the table's columns mean."""
+
+
+def head_text(head: str) -> str | None:
+    """What the head of a column means, in a line."""
+    return next((text for heads, text in HEADS.items() if head.partition(" [")[0] in heads), None)
 
 
 def glossary() -> str:

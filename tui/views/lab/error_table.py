@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import accumulate
 from typing import NamedTuple
 
 from textual import events
@@ -174,6 +175,7 @@ class ErrorTable(Pane):
     """As many columns as fit."""
 
     _rows_shown = 0
+    _head: Sequence[str] = ()
 
     def paint(self, source: Source, sample: Sample) -> None:
         exact, h = source.exact.at(sample.t), source.stepping.own
@@ -190,7 +192,16 @@ class ErrorTable(Pane):
         if len(rows) != self._rows_shown:
             self._rows_shown = len(rows)
             self.styles.height = len(rows)  # hidden methods leave no gap
+        self._head = [text for text, _ in rows[0]]
         self.show(rows)
+
+    def on_mouse_move(self, event: events.MouseMove) -> None:
+        """Say what the head of the column under the pointer means."""
+        from tui.words.cards import head_text  # not needed for the first paint
+
+        ends = accumulate(map(len, self._head))
+        head = next((text for text, end in zip(self._head, ends, strict=True) if event.x < end), "")
+        self.tooltip = head_text(head.strip()) if event.y == 0 else None
 
     def on_click(self, event: events.Click) -> None:
         """Show the method of this row alone, or all again."""
