@@ -38,8 +38,10 @@ class Pendulum(Model):
 def acceleration(w0_squared: float, sin: Sine = math.sin) -> Force:
     """theta -> -w0² sin theta [rad/s²]."""
 
+    strength = -w0_squared
+
     def pendulum_acceleration(theta: Any) -> Any:
-        return -w0_squared * sin(theta)
+        return strength * sin(theta)
 
     return pendulum_acceleration
 
@@ -50,10 +52,12 @@ def energy_of(w0_squared: float, sin: Sine = math.sin) -> Energy:
     Equal to omega²/2 + w0² (1 - cos theta), which would cancel to nothing near the bottom.
     """
 
+    twice = 2 * w0_squared
+
     def pendulum_energy(phase: Phase) -> Any:
         theta, omega = phase
         half = sin(theta * 0.5)
-        return omega * omega * 0.5 + 2 * w0_squared * half * half
+        return omega * omega * 0.5 + twice * half * half
 
     return pendulum_energy
 
