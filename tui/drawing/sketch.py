@@ -56,7 +56,7 @@ class Sketch:
             self.points([(x0, y0)], owner)
             return
         shares = [(at + 0.5 - start) / step for at in range(first, last + sign, sign * every)]
-        shares[0], shares[-1] = max(shares[0], 0.0), min(shares[-1], 1.0)
+        shares[0], shares[-1] = max(shares[0], 0.0), min(shares[-1], 1.0)  # what is between lies on the line
         self.points([(x0 + share * dx, y0 + share * dy) for share in shares], owner)
 
     def disc(self, x: float, y: float, radius: float, owner: int, hollow: bool = False) -> None:
