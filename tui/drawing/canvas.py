@@ -5,20 +5,22 @@ the upper left corner; dot (i, j) covers [i, i+1) × [j, j+1).  Dots of several 
 which has the colour of the last one drawn.  Points outside or not finite are not drawn.
 """
 
+import copy
 import itertools
 import textwrap
+from array import array
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tui.drawing.palette import NOBODY
-from tui.drawing.sketch import Sketch, disc
+from tui.drawing.sketch import ORDER, Sketch, disc
 
 Span = tuple[str, int]
 """Adjacent characters with the same owner."""
 
-_BITS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]], np.uint8)  # Unicode's order of braille dots
+_ORDER = np.array(ORDER)
 _GLYPHS = np.array([ord(" "), *range(0x2801, 0x2900)], np.uint32)
 
 
@@ -102,14 +104,14 @@ class Canvas:
     def __init__(self, columns: int, rows: int) -> None:
         self.columns, self.rows = columns, rows
         self.width, self.height = 2 * columns, 4 * rows  # dots
-        self._dots = np.zeros((self.height, self.width), np.uint8)
-        self._owners = np.full((rows, columns), NOBODY, np.int8)
+        self._dots = bytearray(8 * rows * columns)  # cell by cell, in Unicode's order
+        self._owners = array("b", [NOBODY]) * (rows * columns)
         self._labels: dict[tuple[int, int], tuple[str, int]] = {}  # (row, column) -> character, owner
 
     def copy(self) -> "Canvas":
         """The same dots, to draw more on; labels are not copied."""
-        copied = Canvas(self.columns, self.rows)
-        copied._dots, copied._owners = self._dots.copy(), self._owners.copy()
+        copied = copy.copy(self)
+        copied._dots, copied._owners, copied._labels = self._dots[:], self._owners[:], {}
         return copied
 
     def points(self, x: ArrayLike, y: ArrayLike, owner: ArrayLike) -> None:
@@ -119,8 +121,9 @@ class Canvas:
             j = np.floor(np.atleast_1d(np.asarray(y, np.float64)))
             inside = (i >= 0) & (i < self.width) & (j >= 0) & (j < self.height)
         i, j = i[inside].astype(np.intp), j[inside].astype(np.intp)
-        self._dots[j, i] = 1
-        self._owners[j >> 2, i >> 1] = owner[inside] if isinstance(owner, np.ndarray) else owner
+        cells = (j >> 2) * self.columns + (i >> 1)
+        np.frombuffer(self._dots, np.uint8)[8 * cells + _ORDER[(j & 3) << 1 | i & 1]] = 1
+        np.frombuffer(self._owners, np.int8)[cells] = owner[inside] if isinstance(owner, np.ndarray) else owner
 
     def line(self, x: ArrayLike, y: ArrayLike, owner: ArrayLike, dotted: bool = False) -> None:
         """Join the points x, y (arrays of n) with straight lines, broken where a point is not finite.
@@ -134,8 +137,11 @@ class Canvas:
     def disc(self, x: float, y: float, radius: float, owner: int, hollow: bool = False) -> None:
         """Set the dots whose centres are within `radius` of (x, y); hollow: only the rim, one dot wide."""
         if abs(x) < 1e6 and abs(y) < 1e6:  # not elsewhere, and finite
-            i, j = np.reshape(disc(x, y, radius, hollow), (-1, 2)).T
-            self.points(i, j, owner)
+            dots, owners = self._dots, self._owners
+            for i, j in disc(x, y, radius, hollow):  # so few, that NumPy would take longer
+                if 0 <= i < self.width and 0 <= j < self.height:
+                    cell = (j >> 2) * self.columns + (i >> 1)
+                    dots[8 * cell + ORDER[(j & 3) << 1 | i & 1]], owners[cell] = 1, owner
 
     def label(self, column: int, row: int, text: str, owner: int) -> None:
         """Write text over any dots, beginning at a cell; text beyond the edges is cut off."""
@@ -149,12 +155,10 @@ class Canvas:
 
     def picture(self) -> Picture:
         """The characters and owners drawn so far."""
-        cells = self._dots.reshape(self.rows, 4, self.columns, 2)
-        bits = np.zeros((self.rows, self.columns), np.uint8)
-        for down in range(4):
-            for right in range(2):
-                bits |= cells[:, down, :, right] * _BITS[down, right]
-        characters, owners = _GLYPHS[bits], self._owners.copy()
+        bits = np.packbits(np.frombuffer(self._dots, np.uint8), bitorder="little")
+        shape = self.rows, self.columns
+        characters = _GLYPHS[bits].reshape(shape)
+        owners = np.frombuffer(self._owners, np.int8).reshape(shape).copy()
         for place, (character, owner) in self._labels.items():
             characters[place], owners[place] = ord(character), owner
         return Picture(characters, owners)

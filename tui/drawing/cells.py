@@ -2,20 +2,18 @@
 
 import textwrap
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
 from itertools import zip_longest
 from typing import TYPE_CHECKING, Self
 
 from rich.cells import cell_len
 from rich.segment import Segment
 from rich.style import Style
-from textual.color import Color
-from textual.filter import LineFilter
-from textual.geometry import Region, Size, Spacing
+from textual.geometry import Region, Size
 from textual.strip import Strip
 from textual.widget import Widget
 
 from tui.drawing.faults import Fault, Guarded, sentence
+from tui.drawing.painted import Painted
 from tui.drawing.palette import NOBODY, WARN, palette
 from tui.drawing.sketch import Sketch
 
@@ -27,35 +25,6 @@ Row = Sequence[tuple[str, int | Style]]
 
 PRESENT = "-present"
 """The app's class where pictures have thick lines."""
-
-
-_NO_GUTTER, _BLACK = Spacing(), Color(0, 0, 0)
-
-
-@dataclass(slots=True)
-class _Painted:
-    """What Textual has been given: lines from border to border, as they leave its filters."""
-
-    lines: list[Strip] = field(default_factory=list)
-    crop: Region | None = None
-    gutter: Spacing = _NO_GUTTER
-    background: Color = _BLACK
-    filters: Sequence[LineFilter] = ()
-    stale: set[int] = field(default_factory=set)  # rows that have changed since
-    left: list[Segment] = field(default_factory=list)  # the border, the same on every row
-    right: list[Segment] = field(default_factory=list)
-
-    def __post_init__(self) -> None:
-        if self.crop is not None:
-            line, width = self.lines[self.gutter.top], self.crop.width
-            self.left, self.right = [*line.crop(0, self.gutter.left)], [*line.crop(width - self.gutter.right, width)]
-
-    def replace(self, y: int, row: list[Segment]) -> None:
-        """Put a row between its borders."""
-        assert self.crop is not None
-        for one in self.filters:
-            row = one.apply(row, self.background)
-        self.lines[self.gutter.top + y] = Strip([*self.left, *row, *self.right], self.crop.width)
 
 
 class CellWidget(Guarded, Widget):
@@ -72,7 +41,7 @@ class CellWidget(Guarded, Widget):
         self._styles: dict[int | Style, Style] = {}
         self._plain: set[Style] = set()  # in which a blank is nothing but a blank
         self._visible = False
-        self._painted = _Painted()
+        self._painted = Painted()
         self.room = Size()  # asking Textual how large a widget is walks through the screen; and may change any time
 
     @property
@@ -86,7 +55,7 @@ class CellWidget(Guarded, Widget):
     def fail(self, error: BaseException) -> None:
         """Say so in place of what cannot be shown; what is drawn next replaces it."""
         width, height = self.room
-        self._painted = _Painted()
+        self._painted = Painted()
         self.show([[(line, WARN)] for line in textwrap.wrap(sentence(error), max(width, 1))[:height]])
         self.app.post_message(Fault(error, shown=self.drawable))
 
@@ -150,7 +119,13 @@ class CellWidget(Guarded, Widget):
             self._painted.stale.update(changed)
             gutter = self._painted.gutter
             width = self.room.width + gutter.width
-            self.refresh(*(Region(-gutter.left, y, width, 1) for y in changed))
+            blocks: list[tuple[int, int]] = []  # rows below each other, which Textual takes apart again: first, end
+            for y in changed:
+                if blocks and y == blocks[-1][1]:
+                    blocks[-1] = blocks[-1][0], y + 1
+                else:
+                    blocks.append((y, y + 1))
+            self.refresh(*(Region(-gutter.left, first, width, end - first) for first, end in blocks))
 
     @property
     def text(self) -> str:
@@ -160,7 +135,7 @@ class CellWidget(Guarded, Widget):
     def refresh(self, *regions: Region, repaint: bool = True, layout: bool = False, recompose: bool = False) -> Self:
         """Paint all of it anew, or what regions there are."""
         if not regions:
-            self._painted = _Painted()
+            self._painted = Painted()
         return super().refresh(*regions, repaint=repaint, layout=layout, recompose=recompose)
 
     def render_lines(self, crop: Region) -> list[Strip]:
@@ -179,27 +154,27 @@ class CellWidget(Guarded, Widget):
         if crop != painted.crop:
             lines, gutter = super().render_lines(crop), self.gutter
             if self.room and self.room == self.size and crop == Region(0, 0, *(self.room + gutter.totals)):
-                self._painted = _Painted(lines, crop, gutter, self.background_colors[1], self.get_line_filters())
+                self._painted = Painted(lines, crop, gutter, self.background_colors[1], self.get_line_filters())
             return lines
         for y in painted.stale:
             if y < self.room.height:
-                painted.replace(y, self._segments(y))
+                painted.replace(y, self._pieces(y))
         painted.stale.clear()
         return painted.lines
 
     def render_line(self, y: int) -> Strip:
-        return Strip(self._segments(y), self.room.width)
+        return Strip([Segment(text, style) for text, style in self._pieces(y)], self.room.width)
 
-    def _segments(self, y: int) -> list[Segment]:
+    def _pieces(self, y: int) -> list[tuple[str, Style]]:
         """One row, as wide as the room."""
         row = self._rows[y] if y < len(self._rows) else ()
         if self._picture_width != self.room.width:
             missing = self.room.width - sum([cell_len(text) for text, _ in row])
             if missing < 0:
                 strip = Strip([Segment(text, self._style(owner)) for text, owner in row])
-                return [*strip.adjust_cell_length(self.room.width)]
+                return [(text, style or Style()) for text, style, _ in strip.adjust_cell_length(self.room.width)]
             row = (*row, (" " * missing, NOBODY))
-        return [Segment(text, style) for text, style in self._joined(row)]
+        return self._joined(row)
 
     def _joined(self, row: Row) -> list[tuple[str, Style]]:
         """A row in few pieces: a blank looks the same in any colour, so it takes that of what is next to it."""
@@ -225,7 +200,7 @@ class CellWidget(Guarded, Widget):
         """Forget styles that the theme or the sheet has changed."""
         super().notify_style_update()
         self._styles, self._plain = {}, set()
-        self._painted = _Painted()
+        self._painted = Painted()
 
     def _style(self, owner: int | Style) -> Style:
         style = self._styles.get(owner)

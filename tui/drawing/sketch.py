@@ -10,7 +10,9 @@ from math import floor
 
 from tui.drawing.palette import NOBODY
 
-_DOTS = (0x01, 0x08, 0x02, 0x10, 0x04, 0x20, 0x40, 0x80)  # of a cell row by row, as Unicode's bits of braille
+ORDER = (0, 3, 1, 4, 2, 5, 6, 7)
+"""The places of a cell's dots, taken row by row, among Unicode's bits of braille."""
+_DOTS = tuple(1 << place for place in ORDER)
 _BRAILLE = 0x2800
 _OWNER = 21  # bits of a character; above them, its owner
 _CODE = (1 << _OWNER) - 1
@@ -53,8 +55,8 @@ class Sketch:
         if not step:
             self.points([(x0, y0)], owner)
             return
-        centres = [at + 0.5 for at in range(first, last + sign, sign * every)]
-        shares = [min(max((centre - start) / step, 0.0), 1.0) for centre in centres]
+        shares = [(at + 0.5 - start) / step for at in range(first, last + sign, sign * every)]
+        shares[0], shares[-1] = max(shares[0], 0.0), min(shares[-1], 1.0)  # what is between lies on the line
         self.points([(x0 + share * dx, y0 + share * dy) for share in shares], owner)
 
     def disc(self, x: float, y: float, radius: float, owner: int, hollow: bool = False) -> None:

@@ -173,6 +173,10 @@ class Levels:
 
     def trail(self, index: int, length: int) -> tuple[Floats, Floats]:
         """theta [rad] and omega [rad/s] of a method, or EXACT, at the last `length` samples, oldest first."""
-        level = self.levels[0]
-        states = self._states[level.slots(level.count - length, level.count), index]
+        states = self.trails(length)[:, index]
         return states[:, 0], states[:, 1]
+
+    def trails(self, length: int) -> Floats:
+        """theta and omega of every method and of the exact motion, (samples, methods + 1, 2), as trail."""
+        level = self.levels[0]
+        return self._states[level.slots(level.count - length, level.count)]

@@ -55,7 +55,6 @@ class SourceScreen(Guarded, Screen[None]):
     KEYS: ClassVar[tuple[Key, ...]] = COMMON
 
     source: var[Source] = var(Initialize(lambda screen: cast(Source, cast(Any, screen).first_source)))
-    sample: var[Sample | None] = var(None)
     sample_10hz: var[Sample | None] = var(None, always_update=True)
     sample_5hz: var[Sample | None] = var(None)
     shown: var[Shown] = var(Shown())
@@ -75,11 +74,12 @@ class SourceScreen(Guarded, Screen[None]):
         self.first_source = source
         self.clock = clock
         self._frames = 0
+        self._on_stage: View = create(self.view)
         self._timer = FrameTimer(lambda seconds: self.set_interval(seconds, self.frame))
         self._missed = 0.0  # s of the clock while the program was stopped
         self._late = False  # the next frame shows everything
         self._undo: deque[Callable[[], object]] = deque(maxlen=UNDOS)
-        for reactive in (SourceScreen.sample, SourceScreen.sample_10hz, SourceScreen.sample_5hz):
+        for reactive in (SourceScreen.sample_10hz, SourceScreen.sample_5hz):
             self.set_reactive(reactive, source.sample)
 
     @property
@@ -89,7 +89,7 @@ class SourceScreen(Guarded, Screen[None]):
     def compose(self) -> ComposeResult:
         yield StatusLine().data_bind(SourceScreen.source, SourceScreen.shown, sample=SourceScreen.sample_10hz)
         with Box(id="views"):
-            yield self._create(self.view)
+            yield self._bound(self._on_stage)
         yield TooSmall()
         yield from self.more()
         yield InsightLine().data_bind(SourceScreen.source, SourceScreen.shown, sample=SourceScreen.sample_10hz)
@@ -134,7 +134,7 @@ class SourceScreen(Guarded, Screen[None]):
         if self.host.is_behind(urgent=self._late):
             return
         self._frames += 1
-        self.sample = sample
+        self._on_stage.follow(sample)
         if self._late or self._timer.is_turn(self._frames, READ):
             self.sample_10hz = sample
         if self._late or self._timer.is_turn(self._frames, BUILT):
@@ -145,7 +145,8 @@ class SourceScreen(Guarded, Screen[None]):
         """Show everything at once; on a busy line, with the next frame that it can carry."""
         self._late = self.host.is_behind(urgent=True)
         if not self._late:
-            self.sample = self.sample_10hz = self.sample_5hz = self.source.sample
+            self._on_stage.follow(self.source.sample)
+            self.sample_10hz = self.sample_5hz = self.source.sample
         self._timer.rest(self.source.is_at_rest)
 
     def remember(self, undo: Callable[[], object]) -> None:
@@ -217,10 +218,11 @@ class SourceScreen(Guarded, Screen[None]):
     async def _show_view(self, name: str) -> None:
         views = self.query_one("#views")
         if not views.query(f"#{name}"):
-            await views.mount(self._create(name))
+            await views.mount(self._bound(create(name)))
         for each in views.children:
             each.display = each.id == name
         self.view, view = name, self.query_one(f"#{name}", View)
+        self._on_stage = view
         self.query_one(KeyLine).keys = hinted(self.KEYS, name, view.KEYS)
         self.call_after_refresh(view.wake)
         self.show_now()
@@ -236,10 +238,10 @@ class SourceScreen(Guarded, Screen[None]):
     def action_quit(self) -> None:
         self.app.exit()
 
-    def _create(self, name: str) -> View:
-        return create(name).data_bind(
+    def _bound(self, view: View) -> View:
+        view.follow(self.source.sample)
+        return view.data_bind(
             SourceScreen.source,
-            SourceScreen.sample,
             SourceScreen.sample_10hz,
             SourceScreen.sample_5hz,
             SourceScreen.shown,

@@ -1,6 +1,7 @@
 """InsightLine: a sentence about what to notice now, and at first a hint or two."""
 
 import textwrap
+from functools import lru_cache
 
 from rich.style import Style
 
@@ -12,6 +13,7 @@ from tui.views.view import Pane
 from tui.words.insight import hint, insight
 
 
+@lru_cache(maxsize=8)  # it stays for many seconds
 def fitted(text: str, width: int, height: int) -> list[str]:
     """The text on `height` lines; where it does not fit it ends in …."""
     return textwrap.wrap(text, max(width, 2), max_lines=max(height, 1), placeholder=" …")

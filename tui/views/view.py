@@ -34,8 +34,6 @@ class View(Box):
     """The keys of its panes, for the help."""
 
     source: var[Source | None] = var(None)
-    sample: var[Sample | None] = var(None)
-    """Every frame."""
     sample_10hz: var[Sample | None] = var(None)
     """The sample as often as people can read it, 10 times a second."""
     sample_5hz: var[Sample | None] = var(None)
@@ -46,6 +44,7 @@ class View(Box):
         super().__init__(id=id)
         self._moving: list[Pane] = []
         self._late: list[Pane] = []
+        self._followed: Sample | None = None
 
     def moving(self, pane: "Pane", late: bool = False) -> "Pane":
         """A pane that follows every frame: it gets the sample directly, for data_bind takes longer than drawing.
@@ -56,7 +55,7 @@ class View(Box):
         return pane.data_bind(View.source, View.shown)
 
     def on_mount(self) -> None:
-        self.watch_sample()
+        self._draw_moving()
         self.call_after_refresh(self._begin)
 
     def compute(self, work: Callable[[], Coroutine[None, None, None]], group: str = "default") -> Worker[None]:
@@ -77,11 +76,17 @@ class View(Box):
 
     def _begin(self) -> None:
         self._moving += self._late
-        self.watch_sample()
+        self._draw_moving()
 
-    def watch_sample(self) -> None:
+    def follow(self, sample: Sample) -> None:
+        """Show the sample of a frame."""
+        if sample != self._followed:
+            self._followed = sample
+            self._draw_moving()
+
+    def _draw_moving(self) -> None:
         for pane in self._moving:
-            pane.set_reactive(Pane.sample, self.sample)
+            pane.set_reactive(Pane.sample, self._followed)
             pane.draw()
 
 

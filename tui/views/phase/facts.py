@@ -1,6 +1,7 @@
 """Words and numbers below the portrait: a state, and what each method made of area, time and energy."""
 
 import math
+from functools import lru_cache
 
 from engine.models.model import ExactMotion, State
 from engine.phase_space.area import Neighbourhood, Neighbours
@@ -71,6 +72,7 @@ def captioned(plot: Picture, scene: Scene, exact: ExactMotion, aim: State | None
     return Picture.stacked(plot, _caption(scene, exact, aim, plot.characters.shape[1], degrees))
 
 
+@lru_cache(maxsize=8)  # it changes with the run and with what is aimed at only
 def _caption(scene: Scene, exact: ExactMotion, aim: State | None, width: int, degrees: bool) -> Picture:
     motion = _NOT_CURVES.get(scene.model) or motion_text(scene, exact)
     line = Canvas(width, 1).picture()

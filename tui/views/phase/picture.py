@@ -53,9 +53,10 @@ def method_points(source: Source, sample: Sample, shown: Shown, ring: Neighbourh
     length = TRAIL if shown.trails else 0
     exact = source.exact.at(sample.t)
     points = [PhasePoint(*exact, EXACT, "x")] if shown.exact and math.isfinite(exact.theta) else []
+    trails = source.history.levels.trails(length)  # of all at once, as NumPy takes as long for one
     for index in shown.places(source.scene.cast):
         method = source.scene.cast[index]
-        reading, trail = sample.readings[index], source.history.trail(index, length)
+        reading, trail = sample.readings[index], (trails[:, index, 0], trails[:, index, 1])
         around = None if ring is None else ring.rings[index]
         points.append(PhasePoint(reading.theta, reading.omega, series(method), method.letter, trail, around))
     return points
