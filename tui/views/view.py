@@ -132,9 +132,9 @@ class Pane(CellWidget):
 
 
 class Chooser(Pane, Generic[Place], can_focus=True):
-    """A pane with a cursor, to choose how the lab is to go on; of one method it says more.
+    """A pane with a cursor that chooses how the lab goes on.  It describes one method.
 
-    A recording has nothing to choose: there the arrows, enter and esc are the replay's.
+    In a replay there is nothing to choose: the arrows, enter and esc are the replay's.
     """
 
     def __init__(self, id: str | None = None) -> None:
@@ -173,6 +173,5 @@ class Chooser(Pane, Generic[Place], can_focus=True):
     def action_method(self, down: int) -> None:
         """Describe the next of the methods that are shown."""
         if shown := self.places:
-            at = shown.index(self.index) if self.index in shown else -1
-            self.describe(shown[(at + down) % len(shown)])
+            self.describe(shown[(shown.index(self.index) + down) % len(shown)])
             self.draw()

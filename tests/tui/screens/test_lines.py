@@ -100,11 +100,7 @@ def test_speeds_are_read_as_people_say_them():
 
 
 def rows(live: Live, width: int, shown: Shown | None = None) -> str:
-    cast, exact = live.scene.cast, live.exact.at(live.sample.t)
-    return "\n".join(
-        text(row)
-        for row in table(cast, live.sample, live.judgements, exact, live.stepping.own, shown or Shown(), width)
-    )
+    return "\n".join(text(row) for row in table(live, live.sample, shown or Shown(), width))
 
 
 def test_the_table_at_80_columns_has_every_column():
@@ -138,7 +134,7 @@ def test_where_there_is_room_an_angle_beyond_a_turn_is_told_in_turns_and_the_res
 
 def test_a_verdict_has_a_colour_and_a_sign():
     live = lab(20.0)
-    shown = table(live.scene.cast, live.sample, live.judgements, live.exact.at(20.0), live.stepping.own, Shown(), 80)
+    shown = table(live, live.sample, Shown(), 80)
     verdicts = ("+ grows", "= bounded", "- loses")
     found = {words.strip(): owner for row in shown[1:] for words, owner in row if words.strip() in verdicts}
     assert found == {"+ grows": WARN, "= bounded": GOOD, "- loses": WARN}

@@ -69,11 +69,8 @@ class MethodList(CellWidget, can_focus=True):
 
     def action_move(self, down: int) -> None:
         self.cursor = (self.cursor + down) % len(self.methods)
-        self.scroll_visible_row()
-        self.draw()
-
-    def scroll_visible_row(self) -> None:
         self.screen.query_one(VerticalScroll).scroll_to_region(Region(0, self.cursor, 1, 1), animate=False)
+        self.draw()
 
     def action_take(self) -> None:
         method = self.methods[self.cursor]

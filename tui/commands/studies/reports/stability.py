@@ -53,7 +53,7 @@ def print_text(study: StabilityStudy, with_map: bool) -> int:
 def print_json(study: StabilityStudy, with_map: bool) -> int:
     """Print one object: linear, pendulum and, if asked for, map."""
     scene = study.scene
-    rows, whole = _table(study)
+    rows, whole = ([], True) if _is_linear(scene) else study.table()
     fields = {
         "scene": scene.fields(),
         "z": scene.z,
@@ -146,10 +146,6 @@ def _ended(whole: bool, kept: str = "swings already found lost are kept") -> int
 def _is_linear(scene: Scene) -> bool:
     """Whether there is nothing but linear theory to say: no top to go over, no chaos, no amplitude that matters."""
     return scene.model == "linear"
-
-
-def _table(study: StabilityStudy) -> tuple[list[Row], bool]:
-    return ([], True) if _is_linear(study.scene) else study.table()
 
 
 def _limits(method: Method) -> tuple[float | None, float | None]:
