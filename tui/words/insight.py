@@ -37,7 +37,7 @@ def hint(seconds: float, events: Iterable[Event]) -> str:
 def insight(source: Source, hidden: Collection[str] = ()) -> str:
     """The sentence: equilibrium, the return to t = 0, news, the scene's own sentence, or the lasting ones in turn.
 
-    Of the methods of these keys, which are `hidden`, it says nothing.
+    It does not mention methods whose keys are `hidden`.
     """
     sample, scene, returned = source.sample, source.scene, source.history.returned
     if source.exact.regime == "equilibrium":

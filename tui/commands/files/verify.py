@@ -40,7 +40,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         type=count,
         default=10_000_000,
-        help="simulate at most so many steps of each recording (%(default)s, less than a minute)",
+        help="simulate at most so many steps of each recording (%(default)s)",
     )
     parser.add_argument("--json", action="store_true", help="one JSON object")
 

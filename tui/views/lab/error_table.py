@@ -130,26 +130,13 @@ def table(source: Source, sample: Sample, shown: Shown, width: int) -> list[Row]
     columns = chosen(every, width - NAME)
     spare = width - NAME - sum(size + 1 for _, size, _ in columns)
     gap = " " * (1 + min(spare // max(len(columns), 1), MOST_GAP))
-    rows: list[Row] = [
-        [
-            ("method".ljust(NAME), QUIET),
-            *(
-                (gap + in_unit(head if conserved else _LOGARITHM.get(head, head), shown.degrees).rjust(size), QUIET)
-                for head, size, _ in columns
-            ),
-        ]
-    ]
+    heads = [(head if conserved else _LOGARITHM.get(head, head), size) for head, size, _ in columns]
+    names = [(gap + in_unit(head, shown.degrees).rjust(size), QUIET) for head, size in heads]
+    rows: list[Row] = [[("method".ljust(NAME), QUIET), *names]]
     for place in shown.places(cast):
         method = cast[place]
-        line = TableLine(
-            method,
-            sample.readings[place],
-            judgements[place],
-            exact,
-            h[place],
-            shown.percent and conserved,
-            shown.degrees,
-        )
+        percent = shown.percent and conserved
+        line = TableLine(method, sample.readings[place], judgements[place], exact, h[place], percent, shown.degrees)
         failed = line.reading.diverged_at is not None
         name = f"{mark(place, method)} {method.label}"[:NAME].ljust(NAME)
         rows.append([(name, series(method))])

@@ -20,7 +20,7 @@ _NOT_CURVES = {
     "spring": "a projection: angle and angular velocity of the swing",
     "damped": "curves of equal energy, which friction makes it cross inwards",
 }
-"""What the portrait of a model is whose motion does not follow the curves."""
+"""Captions for the models whose motion does not follow the curves."""
 
 
 def fact_rows(

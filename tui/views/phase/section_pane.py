@@ -50,8 +50,8 @@ class SectionPane(PhasePane):
     class SectionWanted(Message):
         """Another section is to be computed, or none."""
 
-    def __init__(self, id: str | None = None, radius: float | None = None) -> None:
-        super().__init__(id, radius)
+    def __init__(self, radius: float | None = None) -> None:
+        super().__init__(radius)
         self.wanted: Wanted | None = None
         self.share = 0.0  # of the section that is there
         self._section: Section | None = None
@@ -140,7 +140,6 @@ class SectionPane(PhasePane):
         self.shows_section = not self.shows_section
 
     def action_next_map(self) -> None:
-        """Show the section of the next method."""
         self.action_method(1)
 
 

@@ -193,7 +193,6 @@ def _cells(row: Row, scene: Scene) -> tuple[str, ...]:
 
 
 def _row(row: Row) -> tuple[Any, ...]:
-    """ROW_FIELDS of a row."""
     found, early = row.failure, row.early and row.early.z
     return (row.method.key, row.theta, *((found.z, found.reason, found.steps) if found else (None,) * 3), early)
 
