@@ -2,7 +2,7 @@
 
     samples, events --format--> messages --recorder--> file --framing--> chunks --contents--> samples, events
                                                         |
-                                                        +-- summary   what it says of itself      > recording
+                                                        +-- summary   its index, if it is whole    > recording
                                                         +-- scan      every byte, past any damage  > verify, recover
 
 - What a file holds: `events`; `fields`, the one table of names and units; `format`, messages to bytes and back.

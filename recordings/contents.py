@@ -1,4 +1,4 @@
-"""Contents: what a file's channels are for, which chunks it has, and whether it is whole."""
+"""Contents: the purpose of a file's channels, its chunks, and whether it is whole."""
 
 import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -48,11 +48,11 @@ class Layout:
     functions: dict[str, str]  # fingerprints of those it was made with
 
     def samples(self, messages: Mapping[int, int]) -> int:
-        """How many samples so many messages of each channel make, at least: runs may have different methods."""
+        """The least number of samples in so many messages of each channel: runs may have different methods."""
         return max((messages.get(channel, 0) for channel in self.methods), default=0)
 
     def samples_in(self, messages: Iterable[Message]) -> int:
-        """How many samples the messages of a chunk make: those of each have a sequence number of their own."""
+        """The number of samples in a chunk: the messages of a sample share a sequence number."""
         return len({message.sequence for message in messages if message.channel in self.methods})
 
     def channels_of(self, scene: Scene) -> list[int]:
@@ -131,7 +131,7 @@ def layout_of(channels: Iterable[Channel]) -> Layout:
 
 
 def clock_of(message: Message) -> float:
-    """The recording clock [s]."""
+    """The recording clock of a message [s]."""
     return (message.log_time - CLOCK_OFFSET) / 1e9
 
 

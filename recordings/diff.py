@@ -1,4 +1,4 @@
-"""Diff: what differs between two recordings: scenes, methods, changes, and every number that both have.
+"""Diff: the differences of two recordings: scenes, methods, events, and every number that both have.
 
 Runs are paired by number, samples by step.  Where the runs step differently, samples are paired by the time that was
 simulated up to them, so that the same swing at two step sizes can be held side by side.
@@ -37,7 +37,7 @@ class SceneDifference:
 
 @dataclass(frozen=True, slots=True)
 class EventDifference:
-    """Something that was done in one of the recordings only."""
+    """An event of one of the recordings only."""
 
     only_in: str  # "a" or "b"
     event: Event
@@ -64,7 +64,7 @@ class ValueDifference:
 
 @dataclass(slots=True)
 class MethodErrors:
-    """A method's errors in both recordings, and how far apart it is."""
+    """A method's errors in both recordings, and the largest differences between them."""
 
     max_energy_error: list[float | None] = field(default_factory=lambda: [None, None])  # of a and b; None: not in it
     theta_difference: float = 0.0  # rad, the largest of paired samples
@@ -73,7 +73,7 @@ class MethodErrors:
     t: float | None = None  # s, of a
 
     def take(self, sample: Sample, a: Reading, b: Reading) -> None:
-        """Take in the readings of a pair, of which a's is this sample."""
+        """Take in the readings of a pair; `sample` is a's."""
         if (apart := distance(a.theta, b.theta)) > self.theta_difference:
             self.theta_difference, self.run, self.t = apart, sample.run, sample.t
         self.energy_error_difference = max(self.energy_error_difference, distance(a.energy_error, b.energy_error))
@@ -95,7 +95,7 @@ class Comparison:
 
     @property
     def identical(self) -> bool:
-        """Whether the same was done and every number came out the same."""
+        """Whether all events and all numbers are the same."""
         only_in_one = (*self.runs_only, *self.methods_only, *self.unpaired)
         return not (self.scenes or self.events or self.first or any(only_in_one))
 
@@ -122,13 +122,13 @@ def compare(a: Recording, b: Recording, progress: ShowProgress | None = None) ->
 
 
 def _fields(scene: Scene) -> dict[str, Any]:
-    """What a run started with, as numbers and texts."""
+    """The start of a run, as numbers and texts."""
     parameters = {name: getattr(scene, name) for name in PARAMETERS}  # 0.0 of models without
     return scene.fields() | parameters | {"methods": ", ".join(method.key for method in scene.cast)}
 
 
 def _events(a: Recording, b: Recording, run: int) -> Iterator[EventDifference]:
-    """What was done in one of them only, a's first."""
+    """The events of one of them only, a's first."""
     done = [[event for _, event in each.events.of(run) if event.kind not in NOT_DONE] for each in (a, b)]
     for side, only_in in enumerate("ab"):
         left = Counter(done[1 - side])

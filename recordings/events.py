@@ -1,4 +1,4 @@
-"""Event: what was done in the lab, and what it noticed.  Entry: a sample or an event, with its time in the recording.
+"""Event: an action in the lab, or a milestone.  Entry: a sample or an event, with its time in the recording.
 
 A recording may name methods and models that this version does not know.  Stand-ins for them play as they were
 recorded: nothing is computed of them, so they cannot be verified.
@@ -135,11 +135,7 @@ def _unknown_method(key: str, sha256: str) -> Method:
         formula="unknown",
         order=1,
         force_evaluations=1,
-        first_same_as_last=False,
-        symplectic=False,
-        reversible=False,
         linear_limit=0.0,
-        other_names=(),
         reference="",
         used=None,
         models=tuple(MODELS),

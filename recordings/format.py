@@ -7,7 +7,6 @@ Reading checks every field; anything that is not written here raises RecordingEr
 
 import json
 import math
-from functools import lru_cache
 from typing import Any, NoReturn, get_args
 
 from engine.methods import Cast, Method
@@ -224,16 +223,15 @@ def _cast(fields: dict[str, Any]) -> Cast:
     keys = fields.get("methods")
     if type(keys) is not list or not 0 < len(keys) <= MOST_METHODS:
         raise RecordingError(f"a start names no methods, or more than {MOST_METHODS}")
-    cast = tuple(_method(key) if type(key) is str else _method(_key(key)) for key in keys)
+    cast = tuple(map(_method, keys))
     if len({method.key for method in cast}) < len(cast):
         raise RecordingError("a start names a method twice")
     return cast
 
 
-@lru_cache(64)
-def _method(name: str) -> Method:
+def _method(name: Any) -> Method:
     """The method of a key, or of a key, @ and the hash of a user's text."""
-    key, at, sha256 = name.partition("@")
+    key, at, sha256 = name.partition("@") if type(name) is str else (name, "", "")
     return method_named(_key(key) + at + printable(sha256))
 
 

@@ -3,12 +3,11 @@
 The clock of their recordings is the simulated time, so the same run gives the same bytes.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 
 from engine.run.lockstep import Lockstep, Sample
 from engine.run.loops import LoopsOf, plain
 from engine.run.observer import RunObserver
-from engine.run.stepping import Stepping, SteppingChange
 from engine.scenes import Scene
 from recordings.errors import RecordingError
 from recordings.events import Event, noticed
@@ -16,25 +15,10 @@ from recordings.recorder import Recorder
 
 SAMPLE_EVERY = 1 / 30  # s of simulated time, as often as the live lab paints
 
-Changes = Sequence[tuple[int, float]]
-"""(step, h): from this step on, this step size [s].  Steps ascend."""
 
-
-def segments(scene: Scene, time: float, changes: Changes = ()) -> Iterator[tuple[int, int, float]]:
-    """(first step, last step, h) of each stretch of constant h.  Backwards or forwards, |h| adds to the time [s]."""
-    first, h, left = 0, scene.h, time
-    for change, following in changes:
-        if first + round(left / abs(h)) <= change:
-            break
-        yield first, change, h
-        left -= (change - first) * abs(h)
-        first, h = change, following
-    yield first, first + max(0, round(left / abs(h))), h
-
-
-def steps_for(scene: Scene, time: float, changes: Changes = ()) -> int:
+def steps_for(scene: Scene, time: float) -> int:
     """The number of steps in this much simulated time [s]."""
-    return [last for _, last, _ in segments(scene, time, changes)][-1]
+    return max(0, round(time / scene.h))
 
 
 def simulate(
@@ -42,7 +26,6 @@ def simulate(
     time: float,
     recorder: Recorder | None = None,
     sample_every: int | None = None,
-    changes: Changes = (),
     loops: LoopsOf = plain,
     observer: RunObserver | None = None,
 ) -> Iterator[Sample]:
@@ -51,40 +34,25 @@ def simulate(
     What an `observer` notices is recorded, too; without one, a recording has one of its own.
 
     Samples are `sample_every` steps apart, or 1/30 s rounded to whole steps; always the first and the
-    last step and the step of each change.  Memory does not grow.  The caller closes the recorder;
-    without a wall clock, the recording has the same bytes each time.
+    last step.  Memory does not grow.  The caller closes the recorder; without a wall clock, the recording has the
+    same bytes each time.
     """
-    lockstep = Lockstep(scene, loops=loops)
-    change = SteppingChange(0, 0.0, lockstep.stepping)
-    clock = 0.0  # s, simulated; goes up while t goes down
+    lockstep, last = Lockstep(scene, loops=loops), steps_for(scene, time)
+    every = sample_every or max(1, round(SAMPLE_EVERY / scene.h))
     if recorder:
         observer = observer or RunObserver(scene, loops)
-
-    def record(event: Event) -> None:
-        if recorder:
-            recorder.event(event, clock)
-
-    def sampled() -> Sample:
+        recorder.event(Event("start", 1, 0, 0.0, scene=scene), 0.0)
+    while True:
         sample = lockstep.sample()
         if recorder:
-            recorder.sample(sample, clock)
-        for milestone in observer.add(sample, change) if observer else ():
-            record(noticed(1, milestone))
-        return sample
-
-    record(Event("start", 1, 0, 0.0, scene=scene))
-    yield sampled()
-    for first, last, h in segments(scene, time, changes):
-        if h != lockstep.stepping.h:
-            record(Event("set_h", 1, first, lockstep.t, h=h))
-            change = SteppingChange(first, lockstep.t, Stepping(h, cast=scene.cast))
-            lockstep.set_stepping(change.stepping)
-        begin = clock
-        every = sample_every or max(1, round(SAMPLE_EVERY / abs(h)))
-        while lockstep.step < last:
-            lockstep.advance(min(every, last - lockstep.step))
-            clock = begin + (lockstep.step - first) * abs(h)
-            yield sampled()
+            recorder.sample(sample, sample.t)
+        for milestone in observer.add(sample) if observer else ():
+            if recorder:
+                recorder.event(noticed(1, milestone), sample.t)
+        yield sample
+        if lockstep.step >= last:
+            return
+        lockstep.advance(min(every, last - lockstep.step))
 
 
 MOST_STEPS = 10_000_000  # simulated again of a file, unless more are asked for: less than a minute

@@ -1,4 +1,4 @@
-"""Library: where recordings live, and who is using them; list, find, name and prune them.
+"""Library: the folder of recordings, their locks; list, find, name and prune them.
 
 A writer holds an exclusive lock on a recording, a reader a shared one.  A lock ends with its process, however that
 ends, so a leftover differs from a recording in progress.  Only POSIX has such locks; elsewhere nothing is locked.
@@ -66,12 +66,12 @@ def listing(where: Path | None = None) -> list[Item]:
     return sorted(items, key=lambda item: (item.modified, item.path.name), reverse=True)
 
 
-def resolve(name: str, where: Path | None = None) -> Path:
+def resolve(name: str) -> Path:
     """The recording of this name: a file, `latest`, one of the library, or a bundled one.
 
     Raises RecordingError, a sentence, if there is none.
     """
-    path, where = Path(name), where or folder()
+    path, where = Path(name), folder()
     if path.exists() and not path.is_dir():
         return path
     if name == "latest":

@@ -1,4 +1,4 @@
-"""LiveRecorder: records what the lab does, whatever becomes of the disk."""
+"""LiveRecorder: records the lab, and goes on when the disk fails."""
 
 import time
 from contextlib import suppress

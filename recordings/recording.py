@@ -223,7 +223,6 @@ class Recording:
         return runs
 
     def _last_sample(self, first: int, end: int) -> Entry | None:
-        """The last sample in these chunks."""
         place = self.previous(SamplePlace(end - 1, _BEYOND), first)
         return self.sample(place) if place else None
 

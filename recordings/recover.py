@@ -41,7 +41,7 @@ class Recovery:
 
 @dataclass(frozen=True, slots=True)
 class Rescue:
-    """What became of a recording that a killed lab left unfinished."""
+    """The result of a rescue of a recording that a killed lab left unfinished."""
 
     saved: Path | None  # the recording made of it; None if nothing could be saved
     kept: Path | None  # where the leftover is now; None if all of it is in `saved`, or it was empty
@@ -177,7 +177,6 @@ class _Salvage:
         return encoded
 
     def finished(self, path: Path) -> Recovery:
-        """Finish the copy."""
         assert self._recorder is not None
         self._recorder.close()
         summary = self._scan.summary
@@ -201,7 +200,6 @@ class _Salvage:
         )
 
     def give_up(self) -> None:
-        """Leave nothing behind."""
         if self._recorder is not None:
             self._recorder.abandon()
             self._recorder.part.unlink(missing_ok=True)

@@ -78,7 +78,7 @@ class Scan:
         self.channels = dict(self.summary.channels) if self.summary else {}
 
     def progress_within(self, piece: Intact) -> Callable[[float], None] | None:
-        """How to show that so large a share of the work on this chunk is done."""
+        """A callback that shows the share done of the work on this chunk."""
         progress = self._progress
         if progress is None:
             return None
@@ -186,7 +186,7 @@ class Scan:
             raise RecordingError("unexpectedly many channels")
 
     def _check_seal(self, chunk: Chunk, layout: Layout) -> None:
-        """Compare a chunk's seal with all that was read; the first wrong one makes those after it wrong, too."""
+        """Compare a chunk's seal with all bytes so far; after a wrong one the others count as wrong, too."""
         if layout.version == 1 or self._digest is None or self.sealed is False:
             return
         seal, end = seal_of(chunk, layout), len(chunk.data) - len(chunk.messages[-1].data) - MESSAGE_SIZE

@@ -1,13 +1,13 @@
-"""What a file says of itself.
+"""A file's account of itself.
 
-Summary: what is where, from its end, so that opening and seeking need not read the rest.
+Summary: the index at its end, so that opening and seeking need not read the rest.
 
-Digest: the SHA-256 by which it vouches for all that it holds.  The last message of every chunk is a seal, with the
+Digest: the SHA-256 of all that it holds.  The last message of every chunk is a seal, with the
 digest of all records in chunks before it and of the metadata, in the order of the file, so an unfinished file is
 covered up to its last chunk.  It shows what was changed, left out or added by somebody who did not recompute it;
 against one who did it proves nothing.
 
-Fingerprints: which functions its bits depend on, as they were where it was made.
+Fingerprints: checksums of the library functions that its bits depend on, as they were where it was made.
 """
 
 import hashlib
@@ -172,7 +172,6 @@ class Digest:
         self._waiting = BytesIO()
 
     def message(self, channel: int, sequence: int, log_time: int, publish_time: int, data: bytes) -> None:
-        """Add a message's record."""
         head = _MESSAGE.pack(Opcode.MESSAGE, MESSAGE_SIZE - 9 + len(data), channel, sequence, log_time, publish_time)
         self._waiting.write(head)
         self._waiting.write(data)
@@ -184,7 +183,6 @@ class Digest:
         self._waiting.write(builder.end())  # type: ignore[no-untyped-call]
 
     def add(self, data: "bytes | memoryview") -> None:
-        """Add records as bytes."""
         self._hash.update(data)
 
     @property
@@ -209,12 +207,12 @@ def fingerprint(function: str) -> str:
 
 
 def fingerprints() -> dict[str, str]:
-    """Those of all FUNCTIONS."""
+    """The fingerprints of FUNCTIONS here."""
     return {function: fingerprint(function) for function in FUNCTIONS}
 
 
 def other_functions(recorded: Mapping[str, str]) -> tuple[str, ...]:
-    """Those that this machine computes differently, by their fingerprints.  Format 1 states that of sin only."""
+    """The FUNCTIONS that this machine computes differently, by their fingerprints; format 1 has that of sin only."""
     here = fingerprints()
     return tuple(name for name in dict.fromkeys(("sin", *recorded)) if recorded.get(name) != here[name])
 

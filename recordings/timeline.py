@@ -84,11 +84,10 @@ class Events(_Rows[tuple[float, Event]]):
 
     @property
     def cut(self) -> bool:
-        """Whether the texts were too long together, and the last ones are not there."""
+        """Whether the last texts were left out, as all together were too long."""
         return self._room < 0
 
     def add(self, clock: float, event: Event) -> None:
-        """Add the next one."""
         extra, value = _NOTHING, event.speed if event.h is None else event.h
         if (scene := event.scene) is not None:
             extra = len(self._cast_ends) - 1
@@ -122,11 +121,11 @@ class Events(_Rows[tuple[float, Event]]):
                 numbers[:] = array("d", compress(numbers, kept))
 
     def of(self, run: int) -> Iterator[tuple[float, Event]]:
-        """Those of one run."""
+        """The events of one run."""
         return map(self._row, self.places(run))
 
     def places(self, run: int) -> "array[int]":
-        """Where those of one run are."""
+        """The places of a run's events."""
         order, runs = self._by_run
         return order[bisect_left(runs, run) : bisect_right(runs, run)]
 
@@ -140,17 +139,17 @@ class Events(_Rows[tuple[float, Event]]):
         return (clock for clock, kind in zip(self.clocks, self._kinds, strict=True) if _KINDS[kind & 7] != "stop")
 
     def start_of(self, run: int) -> Scene | None:
-        """What a run started with."""
+        """The scene of a run's start."""
         kinds = ((at, _KINDS[self._kinds[at] & 7]) for at in self.places(run))
         return next((self._scene(self._extras[at]) for at, kind in kinds if kind == "start"), None)
 
     def milestones(self, run: int) -> list[tuple[float, Milestone]]:
-        """What the lab noticed of a run, each with its clock [s], in the order in which it noticed."""
+        """The milestones of a run, each with its clock [s], in the order of recording."""
         found = (self._row(at) for at in self.places(run) if _KINDS[self._kinds[at] & 7] == "noticed")
         return [(clock, event.milestone) for clock, event in found if event.milestone is not None]
 
     def starts(self) -> Iterator[int]:
-        """Where the starts are."""
+        """The places of the starts."""
         return (at for at, kind in enumerate(self._kinds) if kind == _KINDS.index("start"))
 
     def head(self, at: int) -> tuple[float, int, int, float]:

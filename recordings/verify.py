@@ -25,7 +25,7 @@ from recordings.scan import Gap, Scan, ShowProgress
 from recordings.summary import other_functions
 
 Only = Collection[str] | None
-"""Keys of the methods that are compared; None: all."""
+"""Keys of the methods to compare; None: all."""
 
 TOLERANCE = 1e-11
 LOST = 1e-3  # rad, or rad/s
@@ -155,7 +155,7 @@ class Rerun:
         self.max_difference = 0.0
 
     def follow(self, event: Event) -> None:
-        """Take in a recorded event.  It is applied when a sample after it needs it: that one vouches for the steps."""
+        """Take in a recorded event.  It is applied at the next sample, which shows that its step was reached."""
         if event.kind == "set_h" and event.h is not None:
             if event.step < max(self._reached, self._sampled):
                 raise RecordingError(f"the steps of run {self.run} are not in order")

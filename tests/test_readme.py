@@ -193,7 +193,7 @@ def test_a_method_is_added_to_the_project_as_described(tmp_path):
     done = subprocess.run(
         [*pytest_alone, *claims], cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
     )
-    assert re.search(r"= \d{2} passed, \d+ deselected", done.stdout), done.stdout
+    assert re.search(r"= [7-9] passed, \d+ deselected", done.stdout), done.stdout
 
 
 def methods_after(seconds: float, scene: str) -> dict[str, dict]:

@@ -18,7 +18,7 @@ RUNS = 20  # in a row, as one is short
 
 
 def closed_form_seconds(scene: Scene, time: float, clock: Clock, fast: bool = True) -> float:
-    """Seconds of the exact motion at COMPARISONS + 1 times, compiled where Numba is, unless it should not be `fast`.
+    """Seconds of the exact motion at COMPARISONS + 1 times; `fast`: compiled where Numba is installed.
 
     A floor for runs of some hundred steps and more; it does not depend on the time that is simulated.
     """
@@ -39,9 +39,9 @@ def at_times(motion: Motion, times: Floats) -> Floats:
 
 
 def compiled_motion(motion: Motion) -> Any:
-    """An exact motion compiled by Numba, and first whatever it calls and keeps; the last digit may differ.
+    """Compile an exact motion by Numba, the functions in its closure first; the last digit may differ.
 
-    A function that Numba compiles may keep numbers, tuples and compiled functions, and no more.
+    Numba accepts only numbers, tuples and compiled functions in a closure.
     """
 
     def kept(value: Any) -> Any:

@@ -60,7 +60,7 @@ def front(points: Iterable[AnyPoint], kind: ErrorKind, cost: Cost) -> list[Cheap
 
 
 def cost_at(line: Sequence[AnyPoint], kind: ErrorKind, cost: Cost, target: float) -> float | None:
-    """The cost at which a method's error falls to `target`, interpolated; None where none of its points reaches it."""
+    """The cost at which a method's error falls to `target`, interpolated; None if no point reaches it."""
     line = _coarsest_first(line)
     at = next((n for n, point in enumerate(line) if _usable(point, kind) and point.error(kind) <= target), None)
     if at is None or not (dear := cost_of(line[at], cost)):

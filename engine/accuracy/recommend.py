@@ -15,15 +15,15 @@ from engine.scenes import Z_LIMITS
 MOST_EVALUATIONS = 20_000_000  # of a run; some seconds in plain Python
 TOLERANCE = 0.02  # to which the fewest steps are found
 CONFIRMING_COMPARISONS = 10_000
-CONFIRMING_RUNS = 20  # that are given up after so many
+CONFIRMING_RUNS = 20  # before a method is given up
 SECONDS_SLACK = 3.0  # where seconds count: no method's force evaluation takes a third of another's
-IN_VAIN = 2  # doublings of the steps that lower an error no more: then rounding stops it
-REFINED = 1.1  # times the steps must reach the target, too: an error that happens to cross zero is no accuracy
+IN_VAIN = 2  # doublings of the steps that do not lower the error: then rounding stops it
+REFINED = 1.1  # times the steps must reach the target, too: an error may happen to cross zero
 
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
-    """How far a method got: the run that will do, or the last one and why it will not."""
+    """A method's run that reaches the target, or its last one and why it does not."""
 
     method: Method
     point: Point | None  # None: there was no usable h
@@ -31,7 +31,6 @@ class Attempt:
 
     @property
     def succeeded(self) -> bool:
-        """Whether the run will do."""
         return self.why_not is None
 
 

@@ -32,7 +32,7 @@ OTHER_MODEL = "Taylor's series is that of the pendulum, and of no other model."
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """A line on the chart that is no method of the lockstep."""
+    """A line on the chart that is not a method of the lockstep."""
 
     key: str  # in JSON and on the command line
     label: str  # for people
@@ -46,7 +46,7 @@ CLOSED_FORM = Reference("closed_form", "Closed form", "c", "Bulirsch, Numer. Mat
 
 @dataclass(frozen=True, slots=True)
 class TaylorPoint:
-    """One run of Taylor's series: how far off it was, and what it cost."""
+    """One run of Taylor's series: its errors and its cost."""
 
     time: float  # s, simulated
     tolerance: float  # rad/s
@@ -63,11 +63,9 @@ class TaylorPoint:
         return TAYLOR_20
 
     def error(self, kind: ErrorKind) -> float:
-        """theta_error, energy_error or final_error."""
         return {"theta": self.theta_error, "energy": self.energy_error, "final": self.final_error}[kind]
 
     def flaw(self, kind: ErrorKind) -> Flaw | None:
-        """What is wrong with that error."""
         return {"theta": self.flaws.theta, "energy": self.flaws.energy, "final": self.flaws.final}[kind]
 
 
@@ -83,7 +81,7 @@ class Reached:
 
 
 class TaylorStudy:
-    """Runs of Taylor's series from one start over one time, with what they share.  They need Numba: see `available`."""
+    """Runs of Taylor's series from one start over one time.  They need Numba: see `available`."""
 
     def __init__(self, scene: Scene, time: float) -> None:
         self.scene, self.time = scene, time
@@ -95,8 +93,7 @@ class TaylorStudy:
     def run(self, tolerance: float, comparisons: int = COMPARISONS) -> TaylorPoint | None:
         """The run with this tolerance [rad/s], errors taken at so many times; None where it takes MOST_STEPS.
 
-        An error counts as rounding where it is no larger than rounding may be and does not double with 16 times the
-        tolerance.
+        An error counts as rounding if it lies below the rounding floor and does not double with 16 times the tolerance.
         """
         errors, steps = self._errors(tolerance, comparisons)
         if steps == MOST_STEPS:
@@ -143,7 +140,7 @@ class TaylorStudy:
         return Reached(row[0])
 
     def timed(self, point: TaylorPoint, clock: Clock) -> TaylorPoint:
-        """The same point with its seconds: the same steps again, with the state at the end alone."""
+        """The same point with its seconds: the same steps again, computing only the state at the end."""
         end = np.array([self.time])
         seconds, spread = shortest(
             lambda: self._follow(end, point.tolerance), max(1, TIMED_STEPS // point.steps), clock

@@ -22,10 +22,10 @@ from engine.run.loops import LoopsOf, plain
 from engine.scenes import Z_LIMITS, Scene
 
 ErrorKind = Literal["theta", "energy", "final"]
-COMPARISONS = 400  # with the exact swing in a run: at least so many, or at every step; never twice as many
-TIMED_STEPS = 20_000  # at least, in each of them
+COMPARISONS = 400  # with the exact swing in a run: at least so many, or at every step; below 800
+TIMED_STEPS = 20_000  # at least, in each measurement of seconds
 SWINGS = 10
-Z_LADDER = (0.6, 0.0015, 12)  # from about ten steps a small swing to four thousand
+Z_LADDER = (0.6, 0.0015, 12)  # about ten steps a small swing, to four thousand
 ALL_LADDER = (2.4, 0.0015, 14)  # for BM4 and BM6, too, which are stable up to 3
 ORDER_STEPS = tuple(2**power for power in range(4, 15))
 ORDER_COMPARISONS = ORDER_STEPS[0]
@@ -42,7 +42,7 @@ REASONS: dict[Flaw, str] = {
 
 
 class Flaws(NamedTuple):
-    """Why an error says nothing of how the method depends on h; None where it does."""
+    """Why an error does not show how the method depends on h; None where it does."""
 
     theta: Flaw | None
     energy: Flaw | None
@@ -51,7 +51,7 @@ class Flaws(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """One run of one method: what it cost and how far off it was."""
+    """One run of one method: its errors and its cost."""
 
     method: Method
     time: float  # s, simulated
@@ -70,15 +70,12 @@ class Point:
 
     @property
     def force_evaluations(self) -> int:
-        """Cost of the run."""
         return self.method.evaluations(self.steps)
 
     def error(self, kind: ErrorKind) -> float:
-        """theta_error, energy_error or final_error."""
         return {"theta": self.theta_error, "energy": self.energy_error, "final": self.final_error}[kind]
 
     def flaw(self, kind: ErrorKind) -> Flaw | None:
-        """What is wrong with that error."""
         return {"theta": self.flaws.theta, "energy": self.flaws.energy, "final": self.flaws.final}[kind]
 
 
@@ -90,7 +87,7 @@ class Order(NamedTuple):
 
 
 class Study:
-    """Runs of one scene over one time, with what they share: the exact swing and the rounding floor."""
+    """Runs of one scene over one time.  They share the exact swing and the rounding floor."""
 
     def __init__(self, scene: Scene, time: float, loops: LoopsOf = plain) -> None:
         self.scene, self.time, self.loops = scene, time, loops
@@ -100,10 +97,10 @@ class Study:
         self._width = min(math.pi, max(abs(self.exact.at(t).theta) for t in times))
 
     def run(self, method: Method, steps: int, comparisons: int = COMPARISONS) -> Point:
-        """Take this many steps; at least `comparisons` of them, the last included, meet the exact swing.
+        """Take this many steps; at least `comparisons` of them, the last included, are compared with the exact swing.
 
-        An error counts as rounding where it is no larger than rounding may be, and where it was measured to be: with
-        a half and a quarter of the steps it is not larger by what the method's order promises, nor by half of that.
+        An error counts as rounding if it lies below the rounding floor, and if runs with a half and a quarter of the
+        steps do not have errors larger by half of what the method's order promises.
 
         Raises SceneError where time/steps is no usable h.
         """
@@ -136,7 +133,7 @@ class Study:
         return (theta_error, reading.max_energy_error, final_error), reading.diverged_at is not None
 
     def may_be_rounding(self, point: Point) -> bool:
-        """Whether a point's error in theta is no larger than what rounding adds up to, by the estimate from above."""
+        """Whether a point's error in theta lies below the rounding floor."""
         return point.theta_error <= self._theta_floor * math.sqrt(point.steps)
 
     def points(self, ladder: Sequence[int]) -> Iterator[Point]:
@@ -169,7 +166,7 @@ def usual(scene: Scene, all: bool = False) -> tuple[float, list[int]]:
 
 
 def compilable(cast: Cast) -> bool:
-    """Whether all these methods can be timed compiled by Numba: a user's own cannot, and then none is, to be fair."""
+    """Whether to time these methods compiled by Numba: a user's own cannot be, and then, to be fair, none is."""
     return available() and not any(isinstance(method, OwnMethod) for method in cast)
 
 

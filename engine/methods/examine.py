@@ -1,4 +1,4 @@
-"""Whether a user's function is a method at all: what must be so of any that the lab, its charts and files can use."""
+"""Checks of a user's function: what the lab, its charts and its files need of a method."""
 
 import math
 from itertools import islice
@@ -13,7 +13,7 @@ from engine.models.model import Phase
 
 H = 0.05  # s
 STEPS = 6
-SAME = 1e-9  # relative; what rounding leaves is far smaller, what a wrong kind of number does far larger
+SAME = 1e-9  # relative; rounding makes far smaller differences, a wrong kind of number far larger ones
 
 
 def load(source: str, key: str, letter: str, file: str) -> OwnMethod:
@@ -24,7 +24,7 @@ def load(source: str, key: str, letter: str, file: str) -> OwnMethod:
     try:
         _examine(phases, f"{file}: {key}")
         found = measured(phases)
-    except (ValueError, ArithmeticError) as error:  # overflow is none of the method's errors, but here it is
+    except (ValueError, ArithmeticError) as error:  # in a run overflow is no error of the method; here it is
         raise OwnMethodError(f"{file}: {key} overflows on an ordinary swing ({error}).") from None
     return own_method(source, key, letter, file, found)
 
@@ -60,7 +60,7 @@ def _path(phases: Phases, start: Phase) -> list[Phase]:
 
 
 def _examine_arrays(phases: Phases, path: list[Phase], who: str) -> bool:
-    """Whether arrays are carried as floats are."""
+    """Whether arrays give the numbers that floats give."""
     start, h = tuple(np.full(3, value) for value in START), np.full(3, H)
     given = [each.copy() for each in (*start, h)]
     found: list[Any] = []
@@ -75,7 +75,7 @@ def _examine_arrays(phases: Phases, path: list[Phase], who: str) -> bool:
 
 
 def _examine_complexes(phases: Phases, path: list[Phase], who: str) -> bool:
-    """Whether real parts are what floats are, and imaginary parts the derivative."""
+    """Whether real parts are the numbers that floats give, and imaginary parts the derivative."""
     force = PENDULUM.force(np.sin)
     for along in ((1.0, 0.0), (0.0, 1.0)):
 

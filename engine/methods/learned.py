@@ -55,13 +55,6 @@ def learned_hamiltonian() -> Field:
     return field
 
 
-def learned_energy(theta: float, omega: float) -> float:
-    """The learned Hamiltonian [s⁻²], up to a constant."""
-    w0 = math.sqrt(W0_SQUARED)
-    features = zip(_rows(FEATURES), _rows(HAMILTONIAN), strict=True)
-    return W0_SQUARED * sum(k * math.tanh(a * theta + b / w0 * omega + c) for (a, b, c), (k,) in features)
-
-
 def _learned(
     key: str, label: str, letter: str, field: Field, formula: str, note: str, used: str | None = None
 ) -> Method:
@@ -73,10 +66,6 @@ def _learned(
         formula=formula,
         order=4,
         force_evaluations=4,
-        first_same_as_last=False,
-        symplectic=False,
-        reversible=False,
-        linear_limit=None,
         other_names=("random features",),
         reference="Greydanus, Dzamba & Yosinski, Hamiltonian Neural Networks, NeurIPS 32 (2019)",
         used=used,

@@ -1,7 +1,7 @@
 """The properties of a method as measured: order, cost, symplectic or not, reversible or not, linear limit.
 
-On the pendulum with w0² = 9.81 s⁻², unless it says linear.  The tests hold the claims of METHODS against these; of a
-user's own method there is nothing else to say.
+All but the linear limit on the pendulum with w0² = 9.81 s⁻².  The tests hold the claims of METHODS against these; for
+a user's own method they are the claims.
 """
 
 import cmath
@@ -16,7 +16,7 @@ from engine.models.pendulum import Pendulum
 
 PENDULUM = Pendulum(9.81)
 START = (1.0, 0.3)
-LARGE_H = 0.2  # s: what a high order does to area and time shows at large steps
+LARGE_H = 0.2  # s: at small steps a high order hides a change of area, or a miss of the start
 WIDEST_Z, RUNGS = 16, 2048  # z is looked at up to here, in steps of 1/2048: two thirds of the narrowest gap, BM6's
 NO_LIMIT_BELOW = 0.1  # z up to which some unstable methods grow by less than rounding
 ROUNDING = 1e-12
@@ -26,7 +26,7 @@ FITTED_BELOW = 0.1  # rad; larger errors are not yet proportional to a power of 
 
 
 class Measured(NamedTuple):
-    """What was measured of a method."""
+    """The measured properties of a method."""
 
     order: float | None  # over half a period; None: its errors do not fall like a power of h
     force_evaluations: float  # a step, on average over many
@@ -37,7 +37,7 @@ class Measured(NamedTuple):
 
 
 def measured(phases: Phases) -> Measured:
-    """All of it.  Raises what the method raises."""
+    """Measure them all.  Raises what the method raises."""
     each, more = evaluations(phases)
     return Measured(order(phases), each, more, is_symplectic(phases), is_reversible(phases), linear_limit(phases))
 

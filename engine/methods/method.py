@@ -1,4 +1,4 @@
-"""What a method is, and what is claimed of it."""
+"""A method and its claims."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
@@ -10,7 +10,7 @@ Phases = Callable[[Force, Phase, float], Iterator[Phase]]
 """(force, phase, h) -> the phases after one step of h [s], after two, and so on without end."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Method:
     """A method and what is claimed of it; tests/engine/methods measure every claim."""
 
@@ -21,22 +21,24 @@ class Method:
     formula: str
     order: int  # global order on the nonlinear pendulum, over at most one period
     force_evaluations: int  # a step
-    first_same_as_last: bool  # the last force of a step is the next one's first: a run needs one more than its steps
-    symplectic: bool  # the step's Jacobian has determinant 1
-    reversible: bool  # the step and omega -> -omega undo each other
-    linear_limit: float | None  # largest z = h·w0 that is stable on the linear oscillator; 0: none; None: no one number
-    other_names: tuple[str, ...]
+    first_same_as_last: bool = (
+        False  # the last force of a step is the next one's first: a run needs one more than its steps
+    )
+    symplectic: bool = False  # the step's Jacobian has determinant 1
+    reversible: bool = False  # the step and omega -> -omega undo each other
+    linear_limit: float | None = None  # largest stable z = h·w0 on the linear oscillator; 0: none; None: no one number
+    other_names: tuple[str, ...] = ()
     reference: str
     used: str | None  # where, and in brackets who says so; None: nobody is known to
     note: str = ""  # what else to know; also tested
     modified_energy: ModifiedEnergy | None = None  # which it keeps but for O(h⁴); None: none is known, or there is none
     with_friction: Phases | None = None  # the same where the force has `friction`, if `phases` does not ask for it
-    models: tuple[str, ...] = ("pendulum", "linear")  # keys of those that it is for
+    models: tuple[str, ...] = ("pendulum", "linear")  # keys of the models that it integrates
     general: bool = True  # takes any force, and arrays, complex and mpmath numbers too; else there is no map, no area
-    varies: bool = False  # its evaluations depend on where it is; `force_evaluations` is then what is usual
+    varies: bool = False  # its evaluations depend on the phase; `force_evaluations` is then an average
 
     def on(self, model: Model) -> "Method":
-        """This method as it carries a model."""
+        """This method for a model: with its friction, if it has any."""
         return replace(self, phases=self.with_friction) if model.friction and self.with_friction else self
 
     def step(self, force: Force, phase: Phase, h: float) -> Phase:

@@ -1,14 +1,14 @@
 """A user's own method: a generator function from the text of a file, measured, and guarded while it runs.
 
-Nothing is claimed of it: what the lab needs to know of a method is measured when the text is loaded.  Its code is
-executed as any Python is.  It goes to another process as its text, and is compiled again there.
+It claims nothing: its properties are measured when the text is loaded.  Its code is executed like any Python.
+Another process receives the text and compiles it again.
 """
 
 import copyreg
 import hashlib
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cache
 from numbers import Complex, Real
 from typing import Any
@@ -24,13 +24,13 @@ class OwnMethodError(Exception):
     """What is wrong with a user's method; its text is a sentence for the user."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class OwnMethod(Method):
-    """A user's method.  The fields that are claims of other methods are what was measured of it."""
+    """A user's method.  The fields that other methods claim are measured."""
 
-    measured: Measured = field(kw_only=True)
-    source: str = field(kw_only=True)  # the whole text of the file
-    file: str = field(kw_only=True)  # its name, for sentences
+    measured: Measured
+    source: str  # the whole text of the file
+    file: str  # its name, for sentences
 
     @property
     def sha256(self) -> str:
@@ -55,7 +55,6 @@ def own_method(source: str, key: str, letter: str, file: str, measured: Measured
         symplectic=measured.symplectic,
         reversible=measured.reversible,
         linear_limit=measured.linear_limit,
-        other_names=(),
         reference=f"{file}:{key}",
         used=None,
         measured=measured,
@@ -87,7 +86,7 @@ def own_phases(source: str, name: str, file: str) -> Phases:
 
 
 class _PrintedError(Exception):
-    """A method has printed."""
+    """The method has printed."""
 
 
 def _no_print(*values: object, file: Any = None, **settings: Any) -> None:
@@ -127,7 +126,7 @@ _FORM = "write `while True:` with the formulas and `yield theta, omega`"
 
 
 def _phase(found: Any, start: Phase, who: str) -> Phase:
-    """What was yielded as a phase of the same kind of numbers as the start."""
+    """The yielded value as a phase, in the kind of numbers of the start."""
     try:
         theta, omega = (_number(value, like) for value, like in zip(found, start, strict=True))
     except (TypeError, ValueError):
@@ -156,7 +155,7 @@ def _short(value: object) -> str:
 
 
 def _is_of_force(error: BaseException, force: Force) -> bool:
-    """Whether the force had no answer, as the sine of infinity has none: the numbers have ended, not the method."""
+    """Whether the force raised it, as the sine of infinity does: then the run has diverged."""
     if not isinstance(error, ValueError | ArithmeticError):
         return False
     return any(frame.f_code is getattr(force, "__code__", None) for frame, _ in _frames(error))

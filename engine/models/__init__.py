@@ -12,6 +12,6 @@ from engine.models.model import Model as Model
 from engine.models.pendulum import Pendulum
 from engine.models.spring import Spring
 
-MODELS: dict[str, type[Pendulum | LinearOscillator | DampedPendulum | Spring]] = {
+MODELS: dict[str, type[Pendulum | LinearOscillator | Spring]] = {
     model.key: model for model in (Pendulum, LinearOscillator, DampedPendulum, Spring)
 }

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import ClassVar
 
-from engine.models.model import Energy, EnergyReference, ExactMotion, Force, Model, Phase, Regime, Sine, State
-from engine.models.pendulum import acceleration, energy_of, separatrix_energy
+from engine.models.model import EnergyReference, ExactMotion, Force, Phase, Regime, Sine, State
+from engine.models.pendulum import Pendulum, separatrix_energy
 from engine.models.reference import Reference
 
 STEP = 0.05  # of the reference, times the larger of w0 and gamma
@@ -17,30 +17,22 @@ ACCURACY = 1e-10  # rad
 
 
 @dataclass(frozen=True)
-class DampedPendulum(Model):
+class DampedPendulum(Pendulum):
     """theta'' = -w0² sin theta - gamma omega."""
 
-    w0_squared: float  # s⁻²
     friction: float  # gamma [s⁻¹]
 
     key: ClassVar[str] = "damped"
     equation: ClassVar[str] = "theta'' = -w0² sin theta - gamma omega"
-    turns: ClassVar[bool] = True
     parameters: ClassVar[tuple[str, ...]] = ("friction",)
     plain: ClassVar[bool] = False
     conserved: ClassVar[bool] = False
 
     def force(self, sin: Sine = math.sin) -> Force:
         """Gravity's; its attribute `friction` is gamma [s⁻¹]."""
-        force = acceleration(self.w0_squared, sin)
+        force = super().force(sin)
         force.friction = self.friction  # type: ignore[attr-defined]
         return force
-
-    def slope(self, theta: float) -> float:
-        return -self.w0_squared * math.cos(theta)
-
-    def energy(self, sin: Sine = math.sin) -> Energy:
-        return energy_of(self.w0_squared, sin)
 
     def exact(self, theta: float, omega: float) -> ExactMotion:
         """By the reference; it swings down to rest, and turns before if its energy is enough."""

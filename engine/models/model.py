@@ -1,4 +1,4 @@
-"""What a model is: the physics that methods integrate, and what the rest of the lab asks of it."""
+"""Model: the physics that methods integrate, and what the rest of the lab needs to know of it."""
 
 import math
 from abc import ABC, abstractmethod
@@ -64,17 +64,16 @@ class ExactMotion:
 class Model(ABC):
     """Equations of motion theta'' = force(theta): a frozen dataclass of their parameters.
 
-    With friction there is a velocity on the right as well, and in the plane a position is a complex number; then the
-    force has attributes for methods that ask for more than its value.
+    With friction the right side has a velocity as well, and in the plane a position is a complex number; the force
+    then has attributes for the methods that need more than its value.
     """
 
     key: ClassVar[str]  # in scenes, recordings and on the command line
     equation: ClassVar[str]  # for people
     turns: ClassVar[bool]  # whether theta + 2 pi is the same place, and it can go over the top
-    in_plane: ClassVar[bool] = False  # a position is a complex number, and theta and omega do not tell the whole phase
-    parameters: ClassVar[tuple[str, ...]] = ()  # what a scene says of it beside length and gravity
-    plain: ClassVar[bool] = True  # theta'' = force(theta) and no more: compiled, mapped, and its energy is conserved
-
+    in_plane: ClassVar[bool] = False  # positions are complex numbers, and theta and omega only a part of the phase
+    parameters: ClassVar[tuple[str, ...]] = ()  # fields of a scene, besides length and gravity
+    plain: ClassVar[bool] = True  # theta'' = force(theta): it can be compiled and mapped, and its energy is conserved
     conserved: ClassVar[bool] = True  # whether the true motion keeps its energy
 
     w0_squared: float  # the square of the frequency of small swings [s⁻²]

@@ -17,7 +17,7 @@ EVERY = 64  # steps from one that is kept to the next
 
 
 class Reference:
-    """The motion from a start, computed as far as it is asked for.  Which times are asked for first does not matter."""
+    """The motion from a start, computed when asked for.  The order of the times asked for changes no bit."""
 
     def __init__(self, force: Force, start: Phase, h: float, friction: float = 0.0) -> None:
         """In steps of h [s]; friction [s⁻¹]."""

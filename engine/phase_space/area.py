@@ -1,4 +1,4 @@
-"""Area in phase space: a ring of neighbouring starts, and how much each method changes what it encloses."""
+"""Area in phase space: a ring of neighbouring starts, and how much each method changes the area in it."""
 
 import math
 from collections.abc import Sequence
@@ -82,18 +82,18 @@ class Neighbours:
     """The neighbours of a run's start, carried along to the step on screen.
 
     They begin at the run's start and take the run's own steps, changes of the stepping included, so
-    what they show does not depend on when the ring was switched on.  Going back starts over.
+    the ring does not depend on when it was switched on.  Going back starts over.
     """
 
     def __init__(self, radius: float) -> None:
         self.radius = radius  # rad
         self.step = 0
         self._begun: tuple[Scene, int] | None = None
-        self._taken: list[SteppingChange] = []  # the changes that steps were taken with
+        self._taken: list[SteppingChange] = []  # the changes already applied
         self._ring: Neighbourhood | None = None
 
     def follow(self, scene: Scene, run: int, step: int, changes: Sequence[SteppingChange], most: int) -> Neighbourhood:
-        """Come nearer to a step of a run by `most` steps or less; `changes` are the run's, its start's first."""
+        """Carry the ring towards a step of a run, by at most `most` steps; `changes` are all of the run's, in order."""
         known = [change for change in changes if change.step < self.step]
         if self._ring is None or self._begun != (scene, run) or step < self.step or known != self._taken:
             self._ring = Neighbourhood(scene, self.radius)

@@ -1,4 +1,4 @@
-"""The phase portrait of a method's own map: many starts iterated, and what kind of orbit one of them lies on.
+"""The phase portrait of a method's own map: many starts iterated, and the kind of a single orbit.
 
 A step of fixed h is a map of the phase plane, and its orbits are a Poincaré section as they are: a smooth curve, a
 chain of islands, a chaotic layer or, if the method is not symplectic, a spiral.
@@ -30,7 +30,7 @@ _CHUNK = 8  # steps between two looks at a displacement
 
 
 def spread(count: int, theta: tuple[float, float], omega: tuple[float, float]) -> Points:
-    """So many starts evenly over a rectangle, however many of them one takes: Roberts' sequence R2 (2018)."""
+    """`count` starts spread evenly over a rectangle, and so are the first n of them: Roberts' sequence R2 (2018)."""
     n = np.arange(1.0, count + 1)
     across, up = n * 0.7548776662466927 % 1, n * 0.5698402909980532 % 1  # 1/p and 1/p², where p³ = p + 1
     return theta[0] + (theta[1] - theta[0]) * across, omega[0] + (omega[1] - omega[0]) * up
@@ -47,7 +47,7 @@ def iterate(method: Method, model: Model, h: float, starts: Points, steps: int) 
 
 
 def pieces(method: Method, model: Model, h: float, starts: Points, steps: int, batch: int = 25) -> Iterator[Points]:
-    """The same for somebody who watches, `batch` starts at a time; however it is cut, the bits are the same."""
+    """`iterate` in batches of starts, with the same bits."""
     for first in range(0, len(starts[0]), batch):
         part = slice(first, first + batch)
         yield iterate(method, model, h, (starts[0][part], starts[1][part]), steps)
@@ -69,13 +69,13 @@ def orbit(method: Method, model: Model, h: float, start: Phase, steps: int) -> P
 
 @dataclass(frozen=True, slots=True)
 class OrbitKind:
-    """What can be told from an orbit of finite length."""
+    """The properties of an orbit of finite length."""
 
-    steps: int  # that were followed
+    steps: int  # followed
     moves: bool  # not an equilibrium
     spins: bool  # goes over the top, at least once
     rotation: float | None
-    """Turns a step: around the bottom, or over the top and then with its sign; None where there is no one number."""
+    """Turns a step: around the bottom, or over the top with its sign; None: the orbit has no single number."""
     fraction: Fraction | None  # the nearest small one, of |rotation|
     island: bool  # every so many steps, by the fraction's denominator, the orbit is back in the same island
     lyapunov: float  # mean growth of ln |a small displacement| a step; tends to 0 where the orbit is regular
@@ -84,7 +84,7 @@ class OrbitKind:
 
 
 def kind_of(method: Method, model: Model, h: float, points: Points) -> OrbitKind:
-    """What kind of orbit this is; `points` are those of `orbit`."""
+    """The kind of an orbit; `points` are those of `orbit`."""
     theta, omega = points
     steps, start = len(theta) - 1, (float(theta[0]), float(omega[0]))
     moves = bool(np.ptp(theta) or np.ptp(omega))
@@ -133,10 +133,10 @@ def rotation_number(theta: Floats, omega: Floats, w0: float, spins: bool = False
 
 
 def numerical_period(method: Method, model: Model, h: float, start: Phase) -> float | None:
-    """How long a swing or a turn takes a method [s]: h over the rotation number of its map, on average over many.
+    """The time of a method's swing or turn [s], on average over many: h over the rotation number of its map.
 
-    Small swings of velocity Verlet and symplectic Euler take h·pi / asin(h·w0/2).  None where there is no such
-    number, or within MOST_STEPS too few periods.
+    Small swings of velocity Verlet and symplectic Euler take h·pi / asin(h·w0/2).  None where there is no rotation
+    number, or where PERIODS take more than MOST_STEPS.
     """
     period = model.exact(*start).period
     if period is None or (steps := round(PERIODS * period / h)) > MOST_STEPS:
@@ -153,14 +153,14 @@ def _average(values: Floats) -> float:
     return float(weights @ values / weights.sum())
 
 
-def nearest_fraction(rotation: float, largest: int = LARGEST) -> Fraction:
-    """The fraction nearest to a rotation number [turns a step] with a denominator up to `largest`.
+def nearest_fraction(rotation: float) -> Fraction:
+    """The fraction nearest to a rotation number [turns a step] with a denominator up to LARGEST.
 
-    Below 1/largest it is one over the nearest number of whole steps a turn.
+    Below 1/LARGEST it is one over the nearest number of whole steps a turn.
     """
-    if 0 < rotation < 1 / largest:
+    if 0 < rotation < 1 / LARGEST:
         return Fraction(1, round(1 / rotation)) if rotation > 1e-9 else Fraction(0)
-    return Fraction(rotation).limit_denominator(largest)
+    return Fraction(rotation).limit_denominator(LARGEST)
 
 
 def _is_island(points: Points, w0: float, rotation: float, fraction: Fraction, spins: bool) -> bool:

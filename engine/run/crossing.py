@@ -21,7 +21,7 @@ class Crossings:
         self._passed: set[tuple[int, int]] = set()  # once is enough
 
     def add(self, seen: Mapping[int, Seen]) -> list[tuple[int, int]]:
-        """Take in what one look found of each method; which have passed, and whom, since the look before."""
+        """Take in one look at each method; the pairs (passing, passed) that are new since the last look."""
         bounded = [(other, found.peak) for other, found in seen.items() if found.verdict == "bounded"]
         leaving = [(index, found.peak) for index, found in seen.items() if found.verdict in LEAVING]
         pairs = {(index, other): mine - peak for index, mine in leaving for other, peak in bounded if peak > FLOOR}

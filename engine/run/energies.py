@@ -1,4 +1,4 @@
-"""Energies alone: what the energy of any program does, from times and energies, with no model and no known period.
+"""Energies alone: a verdict on any program, from times and energies, with no model and no known period.
 
 The record is cut into up to 64 blocks of equal time.  A block's mean hardly shows the wobble within it, and blocks
 without samples are left out, so sampling may be uneven.  A straight line through the means gives the trend, with
@@ -47,7 +47,7 @@ class Forecast:
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """What is known of the energies of a record."""
+    """The verdict on a record of energies."""
 
     verdict: Verdict
     slope: float | None  # mean change of the relative energy error per unit of time; None if too early for one

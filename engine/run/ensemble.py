@@ -1,6 +1,6 @@
 """Many swings at once: a method's phases on arrays, in NumPy or compiled by Numba from the same generator.
 
-Compiled they take a sine of their own, which the compiler turns into instructions for many numbers together.  Its last
+The compiled loop has its own sine, which the compiler turns into instructions for many numbers together.  Its last
 bits are not NumPy's, so a picture made with it is the same on one machine however it is cut and whoever computes
 it, but not the same as without Numba.
 """
@@ -35,26 +35,10 @@ class Watched(NamedTuple):
     width: Floats  # largest |theta| so far
 
 
-class Ensembles(NamedTuple):
-    """One method's loops on one model.  All arrays are one-dimensional and of one length."""
-
-    watch: Callable[[Arrays, Floats, Watched, int], Iterator[tuple[int, Arrays]]]
-    """(phase, h, watched, n): take n steps, and yield steps done and phase there after the last one, and whenever an
-    energy is out of its band or a swing over its top.  Changes off, worst and width; band and top may be changed."""
-    record: Callable[[Arrays, float, Floats, int], None]
-    """(phase, h, points, every): fill points[k] with theta and omega after (k + 1)·every steps of h [s]."""
-
-
-def section(
-    method: Method, model: Model, phase: Arrays, h: float, points: int, every: int = 1, fast: bool = False
-) -> Floats:
-    """Theta and omega of many starts after each `every` steps of h [s], so many points long: (points, 2, starts).
-
-    With a step that divides a period these are the points of a stroboscopic map.  `fast`: compiled by Numba.
-    """
-    found = np.empty((points, 2, len(phase[0])))
-    (compiled if fast else plain)(method, model).record(phase, h, found, every)
-    return found
+Watch = Callable[[Arrays, Floats, Watched, int], Iterator[tuple[int, Arrays]]]
+"""(phase, h, watched, n): take n steps, and yield steps done and phase there after the last one, and whenever an energy
+is out of its band or a swing over its top.  Changes off, worst and width; band and top may be changed.  All arrays are
+one-dimensional and of one length."""
 
 
 def sharing(w0_squared: float) -> tuple[Force, Energy]:
@@ -110,8 +94,8 @@ _C3, _C5, _C7, _C9, _C11, _C13, _C15, _C17, _C19, _C21 = ((-1) ** k / math.facto
 
 
 @cache
-def plain(method: Method, model: Model) -> Ensembles:
-    """The loops in NumPy."""
+def plain(method: Method, model: Model) -> Watch:
+    """The loop in NumPy."""
     phases, force, energy = method.phases, model.force(np.sin), model.energy(np.sin)
 
     def watch(phase: Arrays, h: Floats, watched: Watched, n: int) -> Iterator[tuple[int, Arrays]]:
@@ -127,15 +111,12 @@ def plain(method: Method, model: Model) -> Ensembles:
             if outside or done == n or (size > top).any():
                 yield done, phase
 
-    def record(phase: Arrays, h: float, points: Floats, every: int) -> None:
-        _record(phases(force, phase, h), points, every)
-
-    return Ensembles(watch, record)
+    return watch
 
 
 @cache
-def compiled(method: Method, model: Model) -> Ensembles:
-    """The loops with steps and what is watched compiled, which takes a second.  Raises ImportError without Numba."""
+def compiled(method: Method, model: Model) -> Watch:
+    """The loop with the steps and what is watched compiled, which takes a second.  Raises ImportError without Numba."""
     numba: Any = import_module("numba")
     inner = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)  # never called by Python: compiles twice as fast
     phases = numba.njit(COMPILABLE.get(method.phases, method.phases))
@@ -149,10 +130,7 @@ def compiled(method: Method, model: Model) -> Ensembles:
             if look(theta, omega, *watched) > 0 or done == n:
                 yield done, (theta, omega)
 
-    def record(phase: Arrays, h: float, points: Floats, every: int) -> None:
-        _record(phases(force, phase, h), points, every)
-
-    return Ensembles(watch, record)
+    return watch
 
 
 def _looking(energy: Callable[[Phase], Any]) -> Callable[..., int]:
@@ -177,12 +155,3 @@ def _looking(energy: Callable[[Phase], Any]) -> Callable[..., int]:
         return outside
 
     return looking
-
-
-def _record(phases: Iterator[Phase], points: Floats, every: int) -> None:
-    for step, (theta, omega) in enumerate(phases, 1):
-        if step % every == 0:
-            points[step // every - 1, 0] = theta
-            points[step // every - 1, 1] = omega
-            if step == every * len(points):
-                break

@@ -1,4 +1,4 @@
-"""What a Judge is shown of a method, and what it says."""
+"""The input of a Judge, a Look, and its output, a Judgement."""
 
 from dataclasses import dataclass
 from typing import Literal, NamedTuple, get_args
@@ -9,7 +9,7 @@ VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 
 @dataclass(frozen=True, slots=True)
 class Judgement:
-    """What is known of an energy error so far; no slope before there are four bins."""
+    """The verdict on an energy error so far; no slope before there are four bins."""
 
     verdict: Verdict = "too early"
     slope: float | None = None  # recent mean change of the relative energy error [1/s]
@@ -27,7 +27,7 @@ class Judgement:
 
 
 class Look(NamedTuple):
-    """What a Judge is shown of a method."""
+    """A method at one step."""
 
     theta: float  # rad
     omega: float  # rad/s

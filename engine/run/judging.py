@@ -1,4 +1,4 @@
-"""A Judge at work: it is shown a method at fixed steps of a run, whichever samples the run is known by."""
+"""Shows a method to a Judge at fixed steps of a run, whatever samples of the run are known."""
 
 import math
 from dataclasses import replace
@@ -15,7 +15,7 @@ MOST_STEPS = 20_000
 
 
 class Seen(NamedTuple):
-    """What a look at a method found."""
+    """One look at a method."""
 
     step: int  # of the lockstep, since the first sample
     error: float  # relative, of the energy
@@ -25,7 +25,7 @@ class Seen(NamedTuple):
 
 
 class Judging:
-    """Judges one method from a sample on, by the states at every so many steps, which it computes between samples.
+    """Judges one method from a sample on, by its states every `stride` steps, which it computes between samples.
 
     So verdicts depend on the scene, the stepping and the step only: live, replayed and without a screen.
     """
@@ -56,11 +56,10 @@ class Judging:
 
     @property
     def judgement(self) -> Judgement:
-        """What is known by now."""
         return self._judge.judgement
 
     def follow(self, step: int, reading: Reading) -> list[Seen]:
-        """Take in the reading so many steps after the first; what the looks on the way found."""
+        """Take in the reading `step` steps after the first; the looks on the way to it."""
         error, phase = reading.energy_error, reading.phase
         seen: list[Seen] = []
         if reading.diverged_at is not None:
@@ -76,7 +75,7 @@ class Judging:
         return seen
 
     def _is_taken_again(self, step: int, seen: list[Seen]) -> bool:
-        """Whether there were looks before this step, and the steps to them, and on, could be taken again."""
+        """Take the steps since the last reading again, and look on the way; False if none is due, or it cannot."""
         first = (self._step // self._stride + 1) * self._stride
         if first >= step or step - self._step > MOST_STEPS:
             return False

@@ -31,7 +31,7 @@ class Reading:
 
     @property
     def phase(self) -> Phase:
-        """What the method goes on from."""
+        """The phase from which the method goes on."""
         return (self.theta, self.omega) if self.position is None else (self.position, self.velocity)
 
 

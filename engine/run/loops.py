@@ -101,9 +101,9 @@ def advance_with_errors(
 
 
 def count_evaluations(method: Method, model: Model, phase: Phase, h: float, n: int) -> int:
-    """How often a run of n >= 1 steps evaluates the force, by taking them; where it is fixed, `Method.evaluations`.
+    """How often a run of n >= 1 steps evaluates the force, by taking them; `Method.evaluations` where that is fixed.
 
-    Where the force has a fast part, that counts, and so does solving for it.
+    If the force has a fast part, the evaluations of that part count, and the times it is solved for.
     """
     count = 0
 

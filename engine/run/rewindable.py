@@ -41,7 +41,7 @@ class RewindableRun:
         self._copies = [self._copy()]
 
     def repeat(self, changes: Iterable[SteppingChange], step: int) -> None:
-        """Go to a step as another run of this scene did."""
+        """Go to a step with these changes, which another run of this scene made."""
         for change in changes:
             self.forward(change.step - self.step)
             self.set_stepping(change.stepping)
@@ -68,7 +68,7 @@ class RewindableRun:
 
     @property
     def in_past(self) -> bool:
-        """Whether something is known of what comes next."""
+        """Whether a later step, or a change, is known already."""
         return self.step < self.furthest or self._applied < len(self.changes)
 
     def step_at(self, x: float) -> int:

@@ -1,14 +1,14 @@
 """Verdict: what a method's energy error does, judged while the run goes on.  In constant memory.
 
-A Judge looks at a method at fixed steps of a run, so its verdict depends on the scene, on h and on the step, and
-not on how often somebody looks.
+A Judge looks at a method at fixed steps of a run, so its verdict depends on the scene, on h and on the step, not on
+how often the screen is drawn.
 
 A symplectic method can neither gain nor lose for good: its orbit is regular, and then its energy error stays
 within a band, or chaotic.
-- `bounded`: the orbit is known to be regular or fenced in.  Up to h·w0 = 0.25 chaos is thinner than rounding; up to
-  0.9, and beyond where the modified energy hardly moves or small swings stay on their ellipse, it lies only beside
-  upright: then 8 periods are enough.  Elsewhere, near resonances and upright, it takes 4096 steps in which
-  neighbouring starts have parted no faster than in proportion to time.
+- `bounded`: the orbit is known to be regular or fenced in.  Up to h·w0 = 0.25 chaos is thinner than rounding
+  (Gelfreich & Lazutkin, Russ. Math. Surv. 56 (2001) 499); up to 0.9, and beyond where the modified energy hardly
+  moves or small swings stay on their ellipse, it lies only beside upright: then 8 periods are enough.  Elsewhere,
+  near resonances and upright, it takes 4096 steps in which neighbouring starts part at most in proportion to time.
 - `chaotic`: neighbouring starts part exponentially; the Lyapunov number says how fast.
 - `wanders`: and h·omega has moved by more than 2 pi, so there is no fence: the energy diffuses.
 
@@ -39,7 +39,7 @@ from engine.run.tangent import Stretching, conserved_ellipse
 LOOKS = 8  # a period
 LEAST_PERIODS = 8  # for `bounded`
 LEAST_BINS = 4
-RECENT = 0.5  # of the bins: where the slope that is told is measured
+RECENT = 0.5  # of the bins: where the reported slope is measured
 LEAST_STEPS = 16  # in a bin: beyond h·w0 = 0.4 a swing has fewer steps, and they show its band badly
 QUIET = 0.25  # h·w0 of a symplectic method: below, chaos is thinner than exp(-pi²/0.25), which is rounding
 LONG = 4096  # steps that show an orbit to be regular where nothing else does
@@ -106,7 +106,7 @@ class Judge:
         self.judgement = Judgement("grows", periods=steps * abs(self._h) / self._period)
 
     def _follow(self, phase: Phase, steps: int) -> None:
-        """What only symplectic methods are asked: of neighbours, and of the ellipse of small swings."""
+        """Follow neighbouring starts and the ellipse of small swings, for symplectic methods only."""
         self._omegas = min(self._omegas[0], phase[1]), max(self._omegas[1], phase[1])
         if self._form is not None:
             a, b, c = self._form
@@ -196,7 +196,7 @@ class Judge:
         return "too early"
 
     def _has_left(self) -> Verdict | None:
-        """Where to the last quarter has left the start, if it has."""
+        """The direction in which the last quarter has left the start, if it has."""
         assert self._first is not None
         bands = self._energy
         low, high = hull(bands.recent(0.25))

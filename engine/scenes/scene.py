@@ -9,17 +9,17 @@ from engine.methods import USUAL_CAST, Cast
 from engine.models import MODELS
 from engine.models.model import ExactMotion, Model
 
-LIMITS = {  # inclusive; beyond them a value is a typing error, not a pendulum
+LIMITS = {  # inclusive; a value beyond them is a typing error
     "theta": (-1e9, 1e9),
     "omega": (-1e9, 1e9),
     "length": (1e-6, 1e6),
     "gravity": (1e-6, 1e6),
 }
-PARAMETERS = {  # of models that have them, likewise; of others they are 0
+PARAMETERS = {  # likewise, of models that have them; 0 in the scenes of other models
     "friction": (0.0, 100.0),
     "stiffness": (1.0, 1e18),
 }
-MOST_DAMPED = 100  # friction over w0: what is more than that creeps, and its reference takes too many steps
+MOST_DAMPED = 100  # friction over w0: beyond, the pendulum creeps, and its reference takes too many steps
 UNITS = {
     "theta": "rad",
     "omega": "rad/s",
@@ -94,7 +94,7 @@ class Scene:
 
     @property
     def parameters(self) -> tuple[str, ...]:
-        """The fields that only some models have, of this one; none of a model that this version does not know."""
+        """The names of the model's own parameters, such as friction; none for an unknown model."""
         return MODELS[self.model].parameters if self.model in MODELS else ()
 
     def exact(self) -> ExactMotion:
@@ -118,11 +118,11 @@ class Scene:
 
     @property
     def general(self) -> bool:
-        """Whether model and methods take any force and numbers: for maps, areas, and errors against their cost."""
+        """Whether model and methods take any force and numbers, as maps, areas and error-cost charts need."""
         return self.equations.plain and all(method.general for method in self.cast)
 
     def fields(self) -> dict[str, Any]:
-        """What determines the run and names it, as JSON shows it."""
+        """All fields that determine the run, with its name, as JSON shows them."""
         others = {"cast", "speed"} | set(PARAMETERS) - set(self.parameters)
         named = {each.name: getattr(self, each.name) for each in fields(self) if each.name not in others}
         return named | {"methods": [method.key for method in self.cast]}
@@ -133,7 +133,7 @@ class Scene:
         return self if other == self else replace(other, name="custom", watch="")
 
     def with_cast(self, cast: Cast) -> "Scene":
-        """This scene with other methods; what to watch goes with the methods that show it."""
+        """This scene with other methods; it keeps `watch` if it keeps all methods that show it."""
         return replace(self, cast=cast, watch=self.watch if set(self.cast) <= set(cast) else "")
 
 

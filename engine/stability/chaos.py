@@ -1,4 +1,4 @@
-"""Chaos in a method's own map: at large steps a pendulum, which cannot be chaotic, is given motion that is.
+"""Chaos in a method's own map: the pendulum is not chaotic, but at large steps its numerical motion is.
 
 Symplectic Euler on the pendulum is the Chirikov standard map with K = z²; velocity Verlet is the same map,
 seen half a kick earlier.  Up to Greene's threshold invariant curves fence the chaotic orbits in; above
@@ -22,7 +22,8 @@ def parting(method: Method, theta: Any, omega: Any, z: Any, steps: int) -> Any:
     """ln of how far two neighbouring starts have parted after so many steps, with w0 = 1; for numbers or arrays.
 
     The displacement is brought back to length 1 after each step: Benettin et al., Meccanica 15 (1980) 9.  On
-    regular orbits it grows in proportion to the steps, on chaotic ones exponentially.
+    regular orbits it grows in proportion to the steps, on chaotic ones exponentially.  Divided by the steps the
+    logarithm tends to the largest Lyapunov exponent; for K >= 10 that is ln(K/2): Chirikov, Phys. Rep. 52 (1979) 263.
     """
     force = Pendulum(1.0).force(np.sin)
     along, across, total = 1.0 + 0.0 * theta, 0.0 * theta, 0.0 * theta
@@ -33,17 +34,8 @@ def parting(method: Method, theta: Any, omega: Any, z: Any, steps: int) -> Any:
     return total
 
 
-def lyapunov(method: Method, theta: float, omega: float, z: float, steps: int) -> float:
-    """Largest Lyapunov exponent per step, with w0 = 1: mean growth of ln |a small displacement| along an orbit.
-
-    Regular orbits tend to 0 as ln(steps)/steps, chaotic ones to a positive number; for K >= 10 that
-    is ln(K/2): Chirikov, Phys. Rep. 52 (1979) 263.
-    """
-    return float(parting(method, theta, omega, z, steps)) / steps
-
-
 def is_chaotic(method: Method, theta: Any, z: Any, steps: int = 10_000) -> Any:
-    """Whether swings from rest at theta [rad] are chaotic, judged from `steps` steps: theta and z are arrays, or not.
+    """Whether swings from rest at theta [rad] are chaotic, judged from `steps` steps; for numbers or arrays.
 
     Over a million steps regular orbits part by at most e^14, chaotic ones by e^28 within some thousand.  From
     beside upright the exact swing alone parts neighbours by 1/cos²(theta/2), which counts as none.

@@ -18,7 +18,7 @@ COMPILED_FROM = 100_000_000  # steps of a method: in NumPy they take as long as 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Grid:
-    """What to try.  A strip of a grid is a grid, and is computed in the same way."""
+    """The amplitudes, steps and methods of a map.  A strip of a grid is a grid, too."""
 
     theta: Floats  # rad, amplitudes between 0 and pi
     z: Floats  # h·w0, above 0
@@ -45,7 +45,7 @@ class Grid:
         return self.fast
 
     def unknown(self) -> Cells:
-        """Cells of which nothing is known yet."""
+        """Cells that are not computed yet."""
         return np.full(self.shape, np.array((0, 0.0, UNKNOWN), CELL))
 
     def strips(self) -> list["Grid"]:
@@ -57,15 +57,15 @@ class Grid:
     def compute(self, executor: Executor | None = None) -> Iterator[Cells]:
         """The cells of strip after strip, z ascending, from the executor's workers or from here.
 
-        The cells depend on `sin` and so on processor and libm, and on whether Numba is there: workers of one kind
-        give one picture, the one that is computed here.
+        The cells depend on `sin`, so on processor and libm, and on whether Numba is installed: only workers of one kind
+        give the picture that is computed here.
         """
         return (executor.map if executor else map)(Grid.cells, self.strips())
 
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """Some of a map that is computed while somebody watches."""
+    """A part of a map that is shown while it is computed."""
 
     z: slice
     method: int  # index into the grid's
@@ -77,7 +77,7 @@ class Piece:
 def pieces(grid: Grid, passes: Sequence[int], width: int = 10) -> Iterator[Piece]:
     """The map in pieces of `width` z and one method: all of it with few steps a swing, then with more.
 
-    In NumPy, unless the grid says otherwise: to compile would hold up whoever watches.
+    In NumPy, unless the grid says otherwise: compiling would delay the first piece.
     """
     places = [(slice(z, z + width), m) for z in range(0, len(grid.z), width) for m in range(len(grid.methods))]
     for steps in passes:

@@ -7,7 +7,7 @@ import cmath
 import math
 from fractions import Fraction
 from numbers import Rational
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -33,9 +33,9 @@ def amplification(method: Method, z: float) -> float:
 def is_stable(method: Method, z: Number) -> Any:
     """Whether neither multiplier of the step is larger than 1, for one z or an array of them.
 
-    Both lie in the closed unit disc if det <= 1 and |trace| <= 1 + det (Jury's conditions).  A step has only
-    + and * on the phase, so where its coefficients are rational a Fraction goes through it exactly, and no
-    tolerance has to tell |multiplier| = 1, where symplectic methods live, from growth.  Floats are given one.
+    Both lie in the closed unit disc if det <= 1 and |trace| <= 1 + det: Jury, Theory and Application of the
+    z-Transform Method (1964).  A step has only + and * on the phase, so if its coefficients are rational a Fraction
+    goes through it exactly, and |multiplier| = 1, the case of symplectic methods, needs no tolerance.  Floats get one.
     """
     a, c = method.step(_spring, (1, 0), z)
     b, d = method.step(_spring, (0, 1), z)
@@ -66,27 +66,27 @@ def linear_limit(method: Method) -> float:
     return float(below)
 
 
-def energy_range(method: Method, z: float) -> tuple[float, float]:
-    """Lowest and highest energy, over the start's, that a linear swing from rest is taken to by this step.
+class Wobble(NamedTuple):
+    """How far a bounded linear swing from rest goes, over its start."""
+
+    lowest: float  # energy
+    highest: float
+    widest: float  # |theta|
+
+
+def wobble(method: Method, z: float) -> Wobble:
+    """The lowest and highest energy and the largest amplitude that this step takes a linear swing from rest to.
 
     A symplectic step keeps a quadratic form, not the energy: the swing stays on the ellipse
     -c theta² + (a - d) theta omega + b omega² = -c theta0², where ((a, b), (c, d)) is its Jacobian at
-    w0 = 1.  The half axes, squared, are the extremes: (1 - z²/4, 1) for velocity Verlet, for symplectic
-    Euler (1/(1 + z/2), 1/(1 - z/2)).  Explicit Euler and RK4 do not wobble: (1, 1).  Beyond the limit of a
-    symplectic step there is no ellipse, and (0, 1) is what velocity Verlet's has become there.
-    """
-    a, b, c, d = at_bottom(method, z)
-    if (a - d) ** 2 / 4 + b * c >= 0:
-        return 0.0, 1.0
-    mean, spread = (b - c) / 2, math.hypot((b + c) / 2, (a - d) / 2)
-    return -c / (mean + spread), -c / (mean - spread)
-
-
-def widest(method: Method, z: float) -> float:
-    """How wide, over its start, a linear swing from rest may go with this step: the reach of its ellipse.
-
-    1 for velocity Verlet, 1/sqrt(1 - z²/4) for symplectic Euler, and 1 where there is no ellipse.
+    w0 = 1.  The half axes, squared, are the extremes of the energy: (1 - z²/4, 1) for velocity Verlet, for symplectic
+    Euler (1/(1 + z/2), 1/(1 - z/2)).  Explicit Euler and RK4 do not wobble: (1, 1).  The reach of the ellipse is 1 for
+    velocity Verlet, 1/sqrt(1 - z²/4) for symplectic Euler.  Beyond the limit of a symplectic step there is no
+    ellipse, and (0, 1, 1) is what velocity Verlet's has become there.
     """
     a, b, c, d = at_bottom(method, z)
     skew = (a - d) ** 2 / 4 + b * c
-    return math.sqrt(b * c / skew) if skew < 0 else 1.0
+    if skew >= 0:
+        return Wobble(0.0, 1.0, 1.0)
+    mean, spread = (b - c) / 2, math.hypot((b + c) / 2, (a - d) / 2)
+    return Wobble(-c / (mean + spread), -c / (mean - spread), math.sqrt(b * c / skew))

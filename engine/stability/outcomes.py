@@ -17,15 +17,15 @@ from engine.models.pendulum import Pendulum
 from engine.run.ensemble import Floats as Floats
 from engine.run.ensemble import Watched, compiled, plain
 from engine.stability.chaos import is_chaotic
-from engine.stability.linear import energy_range, widest
+from engine.stability.linear import wobble
 
 BAND = 0.5
 """How far, as a fraction, energy may go above the highest and below the lowest that the method's own
 bounded wobble on the linear oscillator takes it to (engine.stability.linear.wobble)."""
 
-WOBBLE = 1.1  # times as wide as the linear oscillator: what swings wider is held with a larger wobble
+WOBBLE = 1.1  # times as wide as the linear oscillator: a swing that is wider counts as wobbling
 PARKED = 1 / 8  # of the swings in an ensemble: when so many are lost, it goes on without them
-CHAOS_STEPS = 2000  # for which the neighbours of a swing that wobbles are followed
+CHAOS_STEPS = 2000  # for which neighbours of a wobbling swing are followed
 
 FATES = ("holds", "over the top", "grows", "loses", "holds, wobbling", "caught", "chaotic")
 """What becomes of a swing: it swings as wide as it should; |theta| passes pi; its energy leaves the band upwards or
@@ -43,7 +43,7 @@ Cells = NDArray[Any]  # of CELL
 
 
 def is_lost(cells: Cells) -> NDArray[np.bool_]:
-    """Which swings a method loses; not those of which nothing is known."""
+    """Which swings a method loses; UNKNOWN cells do not count."""
     return ~np.isin(cells["fate"], (*HELD, UNKNOWN))
 
 
@@ -55,13 +55,13 @@ def outcomes(method: Method, theta: Floats, z: Floats, steps: int, fast: bool = 
     for each.  No cell depends on the others.
     """
     model = Pendulum(1.0)
-    watch = (compiled if fast else plain)(method, model).watch
+    watch = (compiled if fast else plain)(method, model)
     distinct, where = np.unique(z, return_inverse=True)
-    lowest, highest = np.array([energy_range(method, value) for value in distinct.tolist()]).T
-    reach = np.array([widest(method, value) for value in distinct.tolist()])[where] * theta
+    lowest, highest, widest = np.array([wobble(method, value) for value in distinct.tolist()]).T[:, where]
+    reach = widest * theta
     h, phase = z, (theta, np.zeros(len(theta)))
     start: Floats = model.energy(np.sin)(phase)
-    up, down = (((1 + BAND) * highest[where] - 1) * start, (1 - (1 - BAND) * lowest[where]) * start)
+    up, down = ((1 + BAND) * highest - 1) * start, (1 - (1 - BAND) * lowest) * start
     band = np.full(len(theta), math.inf) if method.symplectic else np.minimum(up, down)
     top = np.full(len(theta), math.pi)
     watched = Watched(start, band, top, np.zeros(len(theta)), np.zeros(len(theta)), theta.copy())

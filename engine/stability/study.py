@@ -16,7 +16,7 @@ from engine.stability.grid import Grid, default_grid
 from engine.stability.outcomes import Cells, Failure, first_failure, is_lost
 
 Show = Callable[[float, float], None]
-"""Takes how much is done, and how much there is in all."""
+"""(done, total)."""
 
 THETAS = (0.1, 0.5, 1.0, 2.0, 3.0)  # rad, and the scene's own
 
@@ -50,7 +50,7 @@ def amplitude(scene: Scene) -> float | None:
 
 @dataclass(frozen=True, slots=True)
 class StabilityStudy:
-    """What was asked for, what computes it, and what shows how far that is."""
+    """A request, with the executor that computes it and the display of its progress."""
 
     scene: Scene
     thetas: Sequence[float] | None = None  # rad

@@ -1,13 +1,16 @@
 """Recordings made for tests: tiny, and the same each time."""
 
+import math
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from engine.methods import USUAL_CAST, VELOCITY_VERLET
 from engine.run.lockstep import Lockstep, Sample
-from engine.run.stepping import Stepping
+from engine.run.observer import RunObserver
+from engine.run.stepping import Stepping, SteppingChange
 from engine.scenes import Scene
-from recordings.events import Entry, Event
+from recordings.events import Entry, Event, noticed
 from recordings.recorder import FLUSH_EVERY, Recorder
 
 METHOD_KEYS = tuple(method.key for method in USUAL_CAST)
@@ -81,3 +84,40 @@ def tiny(path: Path) -> Path:
         lockstep.advance(3)
         entries.append(Entry(clock, lockstep.sample()))
     return record(path, entries)
+
+
+Changes = Sequence[tuple[int, float]]
+"""(step, h): from this step on, this step size [s].  Steps ascend."""
+
+
+def with_changes(
+    scene: Scene, time: float, recorder: Recorder, changes: Changes, sample_every: int = 1
+) -> Iterator[Sample]:
+    """`headless.simulate` with changes of h; its clock is the time simulated, backwards or forwards."""
+    lockstep, observer = Lockstep(scene), RunObserver(scene)
+    change, clock, left = SteppingChange(0, 0.0, lockstep.stepping), 0.0, time
+
+    def sampled() -> Sample:
+        sample = lockstep.sample()
+        recorder.sample(sample, clock)
+        for milestone in observer.add(sample, change):
+            recorder.event(noticed(1, milestone), clock)
+        return sample
+
+    recorder.event(start(scene=scene), 0.0)
+    yield sampled()
+    for step, h in (*changes, (math.inf, 0.0)):
+        begin, first, size = clock, lockstep.step, abs(lockstep.stepping.h)
+        last = first + max(0, round(left / size))
+        end = int(min(step, last))
+        while lockstep.step < end:
+            lockstep.advance(min(sample_every, end - lockstep.step))
+            clock = begin + (lockstep.step - first) * size
+            yield sampled()
+        if end == last:
+            return
+        left -= (end - first) * size
+        if h != lockstep.stepping.h:
+            recorder.event(Event("set_h", 1, end, lockstep.t, h=h), clock)
+            change = SteppingChange(end, lockstep.t, Stepping(h, cast=scene.cast))
+            lockstep.set_stepping(change.stepping)

@@ -13,9 +13,9 @@ from engine.methods import EXPLICIT_EULER, RK4, SYMPLECTIC_EULER, VELOCITY_VERLE
 from engine.run.lockstep import Sample
 from engine.scenes import SCENES, Scene
 from recordings.events import Event
-from recordings.headless import Changes, simulate
 from recordings.library import GOLDEN, SUFFIX
 from recordings.recorder import Recorder
+from tests.recordings.examples import Changes, with_changes
 
 
 class Golden(NamedTuple):
@@ -128,8 +128,7 @@ def make(name: str, path: Path) -> None:
     scene, time, sample_every, changes, then = RECORDINGS[name]
     with Recorder(path, wall=None, overwrite=True) as recorder:
         for run, cast in enumerate((scene.cast, *then), 1):
-            for _ in simulate(replace(scene, cast=cast), time, Later(recorder, run), sample_every, changes):
-                pass
+            list(with_changes(replace(scene, cast=cast), time, Later(recorder, run), changes, sample_every))
 
 
 if __name__ == "__main__":

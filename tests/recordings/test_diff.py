@@ -77,7 +77,7 @@ def test_other_starts_are_listed_number_by_number(tmp_path):
     assert (result.first.step, result.first.field) == (0, "theta")
 
 
-def test_what_was_done_in_one_of_them_only_is_listed_and_makes_them_differ(tmp_path):
+def test_events_of_one_recording_only_are_listed_and_make_them_differ(tmp_path):
     a = recorded(tmp_path / "a.mcap", 1.0, lambda live: live.mark("here"), 1.0)
     b = recorded(tmp_path / "b.mcap", 1.0, lambda live: live.mark("there"), 1.0)
     result = compared(a, b)
@@ -129,7 +129,7 @@ def test_time_that_runs_backwards_is_still_compared_in_order(tmp_path):
     assert other.first.step > 20  # on the way back
 
 
-def test_of_a_damaged_recording_what_is_intact_is_compared(whole, tmp_path):
+def test_the_intact_part_of_a_damaged_recording_is_compared(whole, tmp_path):
     cut = tmp_path / "cut.mcap"
     cut.write_bytes(whole.read_bytes()[: whole.stat().st_size * 3 // 5])
     result = compared(whole, cut)

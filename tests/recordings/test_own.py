@@ -51,7 +51,7 @@ def test_the_recording_keeps_the_text_and_its_hash(path):
     assert own["method"] == "heun"
 
 
-def test_it_can_be_looked_at_by_those_who_do_not_have_the_text(path):
+def test_info_and_export_work_without_the_text(path):
     Path("mine.py").unlink()
     assert "heun" in pendu("info", path).out
     assert pendu("export", path, "-o", "own.csv").code == 0

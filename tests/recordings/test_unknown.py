@@ -52,7 +52,7 @@ def test_the_methods_that_are_known_can_be_verified_alone(path, scene):
     assert outcome.code == (0 if scene is METHOD else 3)
 
 
-def test_it_opens_and_holds_what_was_recorded(path, scene):
+def test_it_opens_with_all_recorded_samples(path, scene):
     with Recording.open(path, check=True) as recording:
         assert recording.complete
         assert recording.sealed
@@ -87,11 +87,12 @@ def test_a_replay_shows_its_numbers_and_judges_nothing_that_it_cannot_compute(pa
         assert replay.scene == KNOWN
 
 
+@pytest.mark.parametrize("scene", [MODEL], ids=["model"])
 def test_the_screen_shows_it(path):
     with PtyLab("replay", str(path)) as lab:
         for key in ("", "n", "\x1b[F", "\x1bOR", "\x1bOQ", "p"):
             lab.type(key)
-            lab.run(0.7)
+            lab.run(0.4)
         lab.type("q")
         assert lab.end() == 0
 

@@ -17,7 +17,7 @@ from recordings.headless import simulate
 from recordings.recorder import Recorder
 from recordings.summary import fingerprints
 from recordings.verify import TOLERANCE, Difference, verify
-from tests.recordings.examples import SCENE, record, start, tiny, two_runs
+from tests.recordings.examples import SCENE, record, start, tiny, two_runs, with_changes
 
 
 def altered(entries, at, method, **numbers):
@@ -54,8 +54,7 @@ def test_a_recording_of_several_runs_and_changes_of_h_verifies(tmp_path):
 def test_every_scene_verifies_however_it_is_sampled(tmp_path_factory, scene, time, sample_every, change):
     path = tmp_path_factory.mktemp("verify") / "a.mcap"
     with Recorder(path, wall=None) as recorder:
-        for _ in simulate(SCENES[scene], time, recorder, sample_every, [change]):
-            pass
+        list(with_changes(SCENES[scene], time, recorder, [change], sample_every))
     assert verify(path).identical
 
 

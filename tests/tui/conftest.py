@@ -1,6 +1,7 @@
 import asyncio
 import difflib
 import html
+import pickle
 import re
 from collections.abc import AsyncIterator, Callable, Iterator
 from pathlib import Path
@@ -26,11 +27,23 @@ def faults(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[BaseException]]:
         raise found[0]
 
 
+_computed: dict[bytes, list[object]] = {}
+
+
 async def computed_here(function: Callable[..., Iterator[object]], *arguments: object) -> AsyncIterator[object]:
-    """As tui.views.background.computed, in a thread: another process takes seconds to import everything again."""
-    items = function(*arguments)
-    while (found := await asyncio.to_thread(next, items, None)) is not None:
-        yield found
+    """As tui.views.background.computed, but in a thread, and each thing once.
+
+    Another process takes seconds to import everything again, and many tests look at the same map.
+    """
+    task = pickle.dumps((function, arguments))
+    for item in _computed.get(task, ()):
+        yield item
+    if task not in _computed:
+        items, found = function(*arguments), []
+        while (item := await asyncio.to_thread(next, items, None)) is not None:
+            found.append(item)
+            yield item
+        _computed[task] = found
 
 
 @pytest.fixture(autouse=True)

@@ -90,11 +90,18 @@ class LiveScreen(Touring):
         """Toggle between equal force evaluations and equal steps for all methods."""
         self.set_stepping(self.live.stepping.toggled())
 
-    def action_scene(self, direction: int) -> None:
-        """Start the next scene, or the previous one if direction is -1."""
+    def action_next_scene(self) -> None:
         names, name = list(SCENES), self.live.scene.name
-        at = names.index(name) + direction if name in SCENES else min(direction, 0)
-        self.action_start_scene(names[at % len(names)])
+        self.action_start_scene(names[(names.index(name) + 1) % len(names) if name in SCENES else 0])
+
+    def action_scenes(self) -> None:
+        from tui.screens.dialogs.scene_list import SceneList
+
+        def chosen(name: str | None) -> None:
+            if name is not None:
+                self.action_start_scene(name)
+
+        self.app.push_screen(SceneList(self.live.scene.name), chosen)
 
     def action_start_scene(self, name: str) -> None:
         self.start(SCENES[name], SCENES[name].speed)

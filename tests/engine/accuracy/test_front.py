@@ -30,7 +30,7 @@ def test_between_two_points_the_cost_follows_the_slope(target):
     assert cost_at(LINES[:4][::-1], "theta", "seconds", target) == pytest.approx(1e-4 * steps)
 
 
-def test_what_no_point_reaches_has_no_cost():
+def test_an_error_that_no_point_reaches_has_no_cost():
     assert cost_at(LINES[:4], "theta", "evaluations", 1e-13) is None
 
 

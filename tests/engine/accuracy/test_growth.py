@@ -43,7 +43,7 @@ def test_the_error_of_a_symplectic_method_grows_as_t_and_that_of_rk4_as_t_square
     ],
     ids=lambda value: str(getattr(value, "key", "")),
 )
-def test_where_there_is_no_power_of_t_none_is_given(scene, method):
+def test_errors_without_a_power_of_t_give_none(scene, method):
     assert growth(scene, method).power is None
 
 

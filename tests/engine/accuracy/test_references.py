@@ -61,7 +61,7 @@ def test_a_recommended_tolerance_reaches_its_target_and_so_do_finer_ones(study, 
     assert max(looser) > target
 
 
-def test_where_rounding_is_in_the_way_it_says_so(study):
+def test_a_target_below_rounding_gets_a_reason(study):
     reached = study.reach("theta", 1e-15)
     assert reached.point is None
     assert reached.why_not.startswith("rounding stops it at ")
@@ -73,7 +73,7 @@ def test_a_loose_target_is_met_by_the_loosest_tolerance():
     assert study.reach("theta", 1.0).point.steps == 1
 
 
-def test_what_takes_too_many_steps_is_given_up(monkeypatch):
+def test_a_tolerance_that_takes_too_many_steps_is_given_up(monkeypatch):
     monkeypatch.setattr("engine.accuracy.taylor.MOST_STEPS", 300)
     monkeypatch.setattr(module, "MOST_STEPS", 300)
     study = TaylorStudy(SWING, 100.0)

@@ -19,6 +19,7 @@ from engine.scenes import SCENES, SceneError
 from tests.engine.run.test_loops import OVERFLOWING
 
 E, S, V, R = USUAL_CAST
+LOOPS = compiled.compiled if compiled.available() else plain  # the same bits
 DRIFT = SCENES["drift"]
 STEPS = ladder(20.0, 0.2, 0.0005, 9)
 
@@ -113,7 +114,7 @@ def test_errors_are_the_largest_of_the_run(steps):
     assert sampled.energy_error == point.energy_error
 
 
-def test_what_fails_is_kept_and_said_to_be_lost(points):
+def test_a_failed_run_is_kept_with_the_flaw_lost(points):
     worst = points[0]
     assert worst.method is E
     assert worst.theta_error > math.pi
@@ -121,7 +122,7 @@ def test_what_fails_is_kept_and_said_to_be_lost(points):
     assert worst.flaws == ("lost", "lost", "lost")
 
 
-def test_a_method_whose_numbers_overflow_is_said_to_have_diverged():
+def test_a_method_that_overflows_has_the_flaw_diverged():
     point = Study(DRIFT.altered(theta=1.5), 10.0).run(OVERFLOWING, 100)
     assert point.flaws == ("diverged", "diverged", "diverged")
     assert math.isfinite(point.theta_error)
@@ -129,8 +130,8 @@ def test_a_method_whose_numbers_overflow_is_said_to_have_diverged():
 
 @pytest.mark.parametrize("time", [2.0, 20.0])
 @pytest.mark.parametrize("name", ["drift", "gentle", "large-swing", "near-separatrix", "spin"])
-def test_the_rounding_floor_lies_above_what_rounding_does_and_not_far_above(name, time):
-    study, steps = Study(SCENES[name], time), 2**17
+def test_the_rounding_floor_lies_above_the_rounding_errors_but_not_far_above(name, time):
+    study, steps = Study(SCENES[name], time, LOOPS), 2**17
     point = study.run(R, steps)
     energy_floor, theta_floor = (floor * math.sqrt(steps) for floor in rounding_floor(SCENES[name], time))
     # measured 0.005 to 0.6 in theta and 0.001 to 0.5 in energy, for steps from 2^14 to 2^22
@@ -141,7 +142,7 @@ def test_the_rounding_floor_lies_above_what_rounding_does_and_not_far_above(name
 
 def test_errors_below_the_rounding_floor_are_not_fitted():
     fitted = orders(DRIFT, 20.0)[USUAL_CAST.index(R)].measured
-    study = Study(DRIFT, DRIFT.exact().period)
+    study = Study(DRIFT, DRIFT.exact().period, LOOPS)
     deep = [study.run(R, 2**power) for power in range(13, 17)]
     assert all(study.may_be_rounding(point) for point in deep)
     # with them the slope would be flat: RK4 at 2^13 steps and at 2^16 errs alike

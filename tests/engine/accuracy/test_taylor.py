@@ -68,7 +68,7 @@ def test_the_phase_stays_with_the_exact_one_for_a_million_steps():
 
 
 @needs_numba
-def test_what_is_asked_for_between_does_not_change_the_steps():
+def test_times_asked_for_in_between_do_not_change_the_steps():
     parameters = SWING.w0_squared, SWING.theta, SWING.omega
     coarse, steps = follow(*parameters, np.array([10.0]), 1e-9)
     fine, same_steps = follow(*parameters, np.linspace(0, 10, 10_001), 1e-9)

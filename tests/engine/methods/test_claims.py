@@ -3,7 +3,6 @@
 import cmath
 import math
 import re
-from itertools import islice
 
 import mpmath as mp
 import numpy as np
@@ -28,23 +27,22 @@ def travel(method: Method, force: Force, phase: Phase, h: float, n: int) -> Phas
 
 
 @each_method
-@pytest.mark.parametrize("start", [(1.0, 0.0), (2.5, 0.5), (0.5, 8.0)])
-def test_the_error_falls_with_the_claimed_power_of_h(method: Method, start: tuple[float, float]) -> None:
-    assert measure.order(method.phases, start) == pytest.approx(method.order, abs=0.1)  # the next power of h is felt
+def test_the_measured_properties_are_the_claimed_ones(method: Method) -> None:
+    found = measure.measured(method.phases)
+    assert found.order == pytest.approx(method.order, abs=0.1)
+    assert found.linear_limit == pytest.approx(method.linear_limit, abs=2e-9)  # to 1e-9 each
+    assert found[1:5] == (
+        method.force_evaluations,
+        int(method.first_same_as_last),
+        method.symplectic,
+        method.reversible,
+    )
 
 
 @each_method
-def test_a_step_evaluates_the_force_as_often_as_claimed(method: Method) -> None:
-    where: list[float] = []
-
-    def counted(theta: float) -> float:
-        where.append(theta)
-        return -W0_SQUARED * math.sin(theta)
-
-    for steps in (1, 2, 10):
-        where.clear()
-        next(islice(method.phases(counted, (1.0, 0.5), 0.05), steps - 1, None))
-        assert len(where) == method.evaluations(steps)
+@pytest.mark.parametrize("start", [(2.5, 0.5), (0.5, 8.0)])
+def test_the_error_falls_with_the_claimed_power_of_h(method: Method, start: tuple[float, float]) -> None:
+    assert measure.order(method.phases, start) == pytest.approx(method.order, abs=0.1)  # the next power of h is felt
 
 
 @pytest.mark.parametrize("method", [m for m in GENERAL if m.symplectic], ids=lambda m: m.key)
@@ -52,13 +50,6 @@ def test_a_step_evaluates_the_force_as_often_as_claimed(method: Method) -> None:
 def test_area_is_kept_where_claimed(method: Method, theta: float, omega: float, h: float) -> None:
     # Jacobian entries up to 3 and a few products of them, each rounded.
     assert jacobian(method, Pendulum(W0_SQUARED), theta, omega, h).determinant == pytest.approx(1, abs=1e-14)
-
-
-@each_method
-def test_area_is_lost_or_gained_where_it_is_not_claimed(method: Method) -> None:
-    phases = [(theta, omega) for theta in (-2.0, 0.0, 1.0, 3.0) for omega in (-4.0, 0.0, 3.0)]
-    kept = all(abs(jacobian(method, Pendulum(W0_SQUARED), *phase, 0.05).determinant - 1) < 1e-12 for phase in phases)
-    assert kept == method.symplectic
 
 
 @given(theta=st.floats(-4, 4), omega=st.floats(-8, 8), h=st.floats(-0.5, 0.5))
@@ -80,37 +71,15 @@ def test_rk4_loses_area_with_the_sixth_power_of_h() -> None:
 
 
 @each_method
-@pytest.mark.parametrize("start", [(2.0, 0.3), (0.5, 2.0), (0.3, 8.0)])
-def test_there_and_back_it_meets_its_start_where_claimed(method: Method, start: Phase) -> None:
-    miss = measure.out_and_back(method.phases, start, 0.05, 200)  # 10 s
-    # Rounding returns as 1e-13; the best of the others is RK4, which misses by more than 1e-6.
-    assert (miss < 1e-12) == method.reversible
-    assert method.reversible or miss > 1e-6
-
-
-@each_method
 @given(theta=st.floats(-3, 3), omega=st.floats(-6, 6))
 def test_a_negative_step_undoes_a_step_only_where_reversible(method: Method, theta: float, omega: float) -> None:
-    """Time reversed by h -> -h, as the lab does it; all four methods keep the symmetry omega, h -> -omega, -h."""
+    """Time reversed by h -> -h, as the lab does it; all methods keep the symmetry omega, h -> -omega, -h."""
     force = acceleration(W0_SQUARED)
     back = method.step(force, method.step(force, (theta, omega), 0.05), -0.05)
     if method.reversible:
         assert back == pytest.approx((theta, omega), abs=1e-14)  # rounding of one step
     turned = method.step(force, (theta, -omega), 0.05)
     assert method.step(force, (theta, omega), -0.05) == (turned[0], -turned[1])
-
-
-@each_method
-def test_on_the_linear_oscillator_it_is_stable_up_to_the_claimed_limit(method: Method) -> None:
-    def amplitude(z: float) -> float:
-        theta, omega = travel(method, lambda theta: -theta, (1.0, 0.0), z, 20_000)
-        return math.hypot(theta, omega)
-
-    # Just below the limit the ellipse of a symplectic method is 32 times as long as wide; just above, BM6 grows by
-    # 0.04 % a step, BM4 by 0.12 %, the next, RK4, by 0.07 %; from 1.0003 times its limit on BM6 is stable again.
-    if method.linear_limit:
-        assert amplitude(method.linear_limit * 0.999) < 100
-    assert amplitude(method.linear_limit * 1.0001 or 0.1) > 1e3
 
 
 @each_method
@@ -124,7 +93,7 @@ def test_one_definition_serves_floats_arrays_complex_and_mpmath(method: Method) 
         assert other == pytest.approx(expected, abs=1e-13)  # 20 steps' rounding; their sines may differ in the last bit
 
 
-def test_names_are_unique_and_every_method_says_where_it_comes_from() -> None:
+def test_names_are_unique_and_every_method_has_a_reference() -> None:
     for field in ("key", "label", "letter", "phases", "formula"):
         assert len({getattr(method, field) for method in METHODS}) == len(METHODS)
     for method in METHODS:
@@ -135,7 +104,7 @@ def test_names_are_unique_and_every_method_says_where_it_comes_from() -> None:
 
 
 @pytest.mark.parametrize("method", METHODS, ids=lambda method: method.key)
-def test_where_a_method_is_used_is_said_with_who_says_so_or_not_at_all(method: Method) -> None:
+def test_every_general_method_names_a_use_and_its_source(method: Method) -> None:
     if method.used is None:
         assert not method.general
     else:

@@ -12,7 +12,6 @@ from engine.methods.splitting import BLANES_MOAN_6
 from engine.models.damped import DampedPendulum
 from engine.run.loops import count_evaluations, plain
 from engine.run.tangent import jacobian
-from engine.scenes import Scene, SceneError
 
 CAST = (EXPLICIT_EULER, LAGGED_VERLET, CONFORMAL_VERLET, RK4)
 each_method = pytest.mark.parametrize("method", CAST, ids=lambda m: m.key)
@@ -100,8 +99,3 @@ def test_conformal_verlet_is_cheapest_at_one_percent_and_rk4_from_a_thousandth_o
 
     assert error(CONFORMAL_VERLET, 1440) < 1e-2 < error(RK4, 1440)
     assert error(RK4, 5760) < 1e-4 < 1e-3 / 4 < error(CONFORMAL_VERLET, 5760)
-
-
-def test_a_method_without_friction_is_refused_where_there_is_some() -> None:
-    with pytest.raises(SceneError, match="Velocity Verlet is not for the model damped"):
-        Scene(model="damped", friction=0.1, cast=(VELOCITY_VERLET,))

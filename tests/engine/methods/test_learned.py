@@ -13,7 +13,6 @@ from engine.methods.learned import (
     RK4_LEARNED_FIELD,
     RK4_LEARNED_HAMILTONIAN,
     W0_SQUARED,
-    learned_energy,
     learned_field,
     learned_hamiltonian,
 )
@@ -28,11 +27,11 @@ STARTS = (0.5, 1.0, 1.5, 2.0)
 both = pytest.mark.parametrize("method", [RK4_LEARNED_FIELD, RK4_LEARNED_HAMILTONIAN], ids=lambda m: m.key)
 
 
-def largest_energy_error(method: Method, start: float, seconds: float) -> float:
-    """Of the true energy, relative."""
-    energy = PENDULUM.energy()((start, 0.0))
-    _, _, _, low, high = plain(method, PENDULUM).advance((start, 0.0), 0.02, round(seconds / 0.02), math.inf)
-    return max(high / energy - 1, 1 - low / energy)
+def learned_energy(theta: float, omega: float) -> float:
+    """The learned Hamiltonian [s⁻²], up to a constant."""
+    rows = [tuple(map(float, row.split(","))) for numbers in (FEATURES, HAMILTONIAN) for row in numbers.split()]
+    sums = zip(rows[: len(rows) // 2], rows[len(rows) // 2 :], strict=True)
+    return W0_SQUARED * sum(k * math.tanh(a * theta + b / PENDULUM.w0 * omega + c) for (a, b, c), (k,) in sums)
 
 
 def test_the_numbers_are_those_that_the_script_learns() -> None:
@@ -53,28 +52,26 @@ def test_both_fields_are_about_as_far_from_the_true_one() -> None:
         assert 0.005 < error < 0.008  # .0064 and .0062, of measurements with 2 % noise
 
 
-def test_after_100_seconds_the_field_has_lost_the_energy_and_the_hamiltonian_has_not() -> None:
-    field, hamiltonian = (
-        [largest_energy_error(method, start, 100) for start in STARTS]
-        for method in (RK4_LEARNED_FIELD, RK4_LEARNED_HAMILTONIAN)
-    )
-    assert max(hamiltonian) < 0.044  # .012, .012, .006, .003
-    assert min(field) > 0.1  # 1.19, .36, .60, .15
-    assert all(ours < theirs / 10 for ours, theirs in zip(hamiltonian, field, strict=True))
+def largest_energy_errors(method: Method, start: float) -> tuple[float, float]:
+    """The largest relative errors of the true energy in 50 s and in 100 s."""
+    energy, advance = PENDULUM.energy()((start, 0.0)), plain(method, PENDULUM).advance
+    _, phase, _, low, high = advance((start, 0.0), 0.02, 2500, math.inf)
+    _, _, _, lowest, highest = advance(phase, 0.02, 2500, math.inf)
+    early = max(high / energy - 1, 1 - low / energy)
+    return early, max(early, highest / energy - 1, 1 - lowest / energy)
 
 
 @pytest.mark.parametrize("start", STARTS)
-def test_the_error_of_the_hamiltonian_is_bounded_and_that_of_the_field_grows(start: float) -> None:
-    growth = [
-        largest_energy_error(method, start, 100) / largest_energy_error(method, start, 50)
-        for method in (RK4_LEARNED_HAMILTONIAN, RK4_LEARNED_FIELD)
-    ]
-    assert growth[0] == pytest.approx(1, abs=0.005)
-    assert growth[1] > 1.1
+def test_the_energy_error_of_the_hamiltonian_is_bounded_and_that_of_the_field_grows(start: float) -> None:
+    early, late = largest_energy_errors(RK4_LEARNED_HAMILTONIAN, start)
+    assert late == pytest.approx(early, rel=0.005)
+    assert late < 0.044  # .012, .012, .006, .003
+    field_early, field_late = largest_energy_errors(RK4_LEARNED_FIELD, start)
+    assert field_late > max(0.1, 1.1 * field_early, 10 * late)  # 1.19, .36, .60, .15
 
 
-@pytest.mark.parametrize("start", STARTS)
-def test_what_was_learned_as_energy_is_conserved_but_for_rk4s_own_loss(start: float) -> None:
+@pytest.mark.parametrize("start", STARTS[::3])
+def test_the_learned_energy_is_conserved_but_for_rk4s_own_loss(start: float) -> None:
     before = learned_energy(start, 0.0) - learned_energy(0.0, 0.0)
     theta, omega = plain(RK4_LEARNED_HAMILTONIAN, PENDULUM).travel((start, 0.0), 0.02, 5000)
     after = learned_energy(theta, omega) - learned_energy(0.0, 0.0)
@@ -94,7 +91,7 @@ def test_the_learned_hamiltonians_field_is_made_of_its_slopes(theta: float, omeg
 
 
 @both
-def test_it_has_the_claimed_order_in_what_was_learned_and_never_asks_for_the_force(method: Method) -> None:
+def test_it_has_the_claimed_order_on_the_learned_field_and_never_asks_for_the_force(method: Method) -> None:
     def never(theta: float) -> float:
         raise AssertionError
 

@@ -142,7 +142,7 @@ def test_energy_errors_are_the_measured_ones(
         assert largest_energy_error(method, seconds * method.force_evaluations) == pytest.approx(expected, rel=0.2)
 
 
-def test_forest_ruth_is_the_warning_that_its_card_says_it_is() -> None:
+def test_forest_ruth_has_the_weaknesses_on_its_card() -> None:
     assert FOREST_RUTH.linear_limit == min(method.linear_limit for method in METHODS if method.linear_limit)
     same_cost = Stepping(0.15, equal_cost=True, cast=(FOREST_RUTH, VELOCITY_VERLET)).own
     ours, verlets = map(largest_energy_error, (FOREST_RUTH, VELOCITY_VERLET), same_cost)
@@ -220,7 +220,7 @@ def reaches(name: str, target: float, cost: int) -> bool:
         ("Kahan-Li 8", 1e-9, 30_600),
     ],
 )
-def test_accuracy_costs_what_the_cards_say(name: str, target: float, cost: int) -> None:
+def test_accuracy_costs_as_much_as_the_cards_say(name: str, target: float, cost: int) -> None:
     assert reaches(name, target, cost)
     assert not reaches(name, target, round(0.93 * cost))
 

@@ -42,7 +42,7 @@ def test_upright_and_at_rest_it_has_the_energy_of_the_separatrix() -> None:
 
 
 @given(theta=st.floats(-3, 3), omega=st.floats(-10, 10))
-def test_the_margin_is_what_the_energy_leaves_to_the_separatrix(theta: float, omega: float) -> None:
+def test_the_margin_is_one_minus_the_energy_over_the_separatrixs(theta: float, omega: float) -> None:
     share = energy(9.81, theta, omega) / separatrix_energy(9.81)
     assert separatrix_margin(9.81**0.5, theta, omega) == pytest.approx(1 - share, abs=1e-14)  # roundings below 6
 

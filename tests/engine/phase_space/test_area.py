@@ -45,7 +45,7 @@ def shoelace(ring) -> float:
 
 
 @pytest.mark.parametrize("method", USUAL_CAST, ids=lambda m: m.key)
-def test_a_small_ring_encloses_what_the_jacobians_say(method):
+def test_a_small_ring_encloses_the_area_of_the_jacobians(method):
     neighbourhood = Neighbourhood(DRIFT, radius=1e-4)
     before = shoelace(neighbourhood.rings[INDEX[method.key]])
     neighbourhood.advance(40, Stepping(DRIFT.h))
@@ -101,7 +101,7 @@ def test_neighbours_take_the_steps_of_the_run_changes_of_h_included():
     assert np.array_equal(rings(Neighbours(0.1), run), expected((7, 0.05), (5, 0.02), (3, -0.02)))
 
 
-def test_it_does_not_matter_when_one_began_to_look_nor_how_often():
+def test_the_ring_does_not_depend_on_when_or_how_often_it_was_followed():
     run, early = RewindableRun(DRIFT, 1), Neighbours(0.1)
     for _ in range(10):
         run.forward(3)
@@ -109,7 +109,7 @@ def test_it_does_not_matter_when_one_began_to_look_nor_how_often():
     assert np.array_equal(rings(early, run), rings(Neighbours(0.1), run))
 
 
-def test_they_come_nearer_by_no_more_steps_than_a_frame_has_time_for():
+def test_they_take_at_most_the_given_steps_at_a_time():
     run, neighbours = RewindableRun(DRIFT, 1), Neighbours(0.1)
     run.forward(250)
     for step in (100, 200, 250):

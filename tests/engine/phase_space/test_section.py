@@ -163,7 +163,7 @@ def test_an_orbit_ends_where_numbers_stop_being_finite():
 
 
 @pytest.mark.parametrize("steps", [1, 2, 5])
-def test_few_steps_tell_nothing_and_fail_nowhere(steps):
+def test_orbits_of_few_steps_have_no_rotation_number(steps):
     found = kind(VERLET, 1.0, 0.3, steps)
     assert (found.steps, found.rotation, found.chaotic) == (steps, None, False)
 
@@ -200,5 +200,5 @@ def test_with_small_steps_a_period_is_nearly_the_exact_one(start):
         (VERLET, 1.1, (2.3, 0.0)),  # chaotic
     ],
 )
-def test_where_there_is_no_period_none_is_given(method, h, start):
+def test_orbits_without_a_period_give_none(method, h, start):
     assert numerical_period(method, UNIT, h, start) is None

@@ -23,18 +23,12 @@ PENDULUM = Pendulum(9.81)
 each_method = pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
 
 
-def test_asking_whether_numba_is_installed_does_not_import_it():
-    question = "import sys; from engine.run.compiled import available; available(); print('numba' in sys.modules)"
-    told = subprocess.run([sys.executable, "-c", question], check=True, capture_output=True, text=True)
-    assert told.stdout == "False\n"
-
-
 @needs_numba
 @each_method
-def test_a_million_steps_compiled_and_plain_end_on_the_same_bits(method):
+def test_many_steps_compiled_and_plain_end_on_the_same_bits(method):
     fast, slow = compiled.compiled(method, PENDULUM), plain(method, PENDULUM)
     assert fast is not slow
-    start = ((2.5, 0.3), 0.05, 1_000_000)
+    start = ((2.5, 0.3), 0.05, 200_000)
     assert fast.advance(*start, math.inf) == slow.advance(*start, math.inf)
 
 
@@ -56,7 +50,7 @@ def test_runs_of_compiled_loops_leave_no_memory_behind(method):
 @needs_numba
 @each_method
 @pytest.mark.parametrize(
-    "model", [kind(w0_squared) for kind in MODELS.values() if kind.plain for w0_squared in (0.01, 98.1)], ids=str
+    "model", [kind(w0_squared) for kind in MODELS.values() if kind.plain for w0_squared in (98.1,)], ids=str
 )
 def test_compiled_and_plain_agree_on_any_model_at_any_step(method, model):
     fast, slow = compiled.compiled(method, model), plain(method, model)
@@ -113,9 +107,11 @@ def test_it_pays_from_a_number_of_steps_done_or_known_to_lie_ahead(ahead, compil
     assert used == compiled_steps
 
 
-def test_a_few_steps_do_not_import_numba():
+def test_neither_a_few_steps_nor_asking_for_numba_imports_it():
     work = "import sys; from engine.run.compiled import *; from engine.scenes import DEFAULT_SCENE as s; "
-    work += "tiered(s.cast[0], s.equations).travel((1.0, 0.0), 0.05, 10_000); print('numba' in sys.modules)"
+    work += (
+        "available(); tiered(s.cast[0], s.equations).travel((1.0, 0.0), 0.05, 10_000); print('numba' in sys.modules)"
+    )
     told = subprocess.run([sys.executable, "-c", work], check=True, capture_output=True, text=True)
     assert told.stdout == "False\n"
 

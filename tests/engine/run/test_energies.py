@@ -36,7 +36,7 @@ def test_the_verdict_is_the_truth(name):
 
 
 @pytest.mark.parametrize("name", MAKES)
-def test_the_verdict_depends_neither_on_units_nor_on_the_origin_of_time(name):
+def test_the_verdict_does_not_depend_on_units_or_on_the_origin_of_time(name):
     energies, truth = MAKES[name]
     assert judge(1e-12 * T - 3e-9, 1e-20 * (1000 + energies - energies[0])).verdict == truth
 
@@ -48,7 +48,7 @@ def test_uneven_sampling_changes_no_trend():
     assert found.slope == pytest.approx(-0.02, rel=0.05)
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(5))
 def test_the_slope_of_a_line_within_noise_is_found_within_four_uncertainties(seed):
     noise = np.random.default_rng(seed).standard_normal(2000)
     found = judge(T, np.r_[1000, 1000 + noise[1:] + 0.03 * T[1:]], 1000)
@@ -56,7 +56,7 @@ def test_the_slope_of_a_line_within_noise_is_found_within_four_uncertainties(see
     assert abs(found.slope - 3e-5) < 4 * found.uncertainty
 
 
-def test_a_forecast_holds_what_comes():
+def test_a_forecast_contains_the_energy_that_follows():
     long = np.linspace(0, 1000, 20_001)
     energies = 100 + np.sin(5 * long) - long / 100
     found = judge(long[:2000], energies[:2000])

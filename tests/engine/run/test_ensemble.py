@@ -10,10 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.methods import GENERAL, VELOCITY_VERLET, Method
-from engine.models import LinearOscillator, Pendulum
-from engine.models.model import Model
+from engine.models import Pendulum
 from engine.run.compiled import available
-from engine.run.ensemble import Watched, compiled, plain, section, sharing, sine
+from engine.run.ensemble import Watched, compiled, plain, sharing, sine
 
 needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed")
 each_method = pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
@@ -22,9 +21,19 @@ THETA, OMEGA = np.linspace(-2.0, 2.5, 37), np.linspace(1.5, -1.0, 37)
 PENDULUM = Pendulum(1.0)
 
 
-def watched(model: Model, h: np.ndarray, band: float) -> Watched:
-    start = model.energy(np.sin)((THETA, OMEGA))
-    return Watched(start, np.full(37, band), np.full(37, math.pi), np.zeros(37), np.zeros(37), np.abs(THETA))
+def watched(band: float = math.inf, which: slice = slice(None)) -> Watched:
+    start = PENDULUM.energy(np.sin)((THETA[which], OMEGA[which]))
+    band, top, off, worst = (np.full_like(start, value) for value in (band, math.pi, 0.0, 0.0))
+    return Watched(start, band, top, off, worst, np.abs(THETA[which]))
+
+
+def path(method: Method, h: float, steps: int, fast: bool, which: slice = slice(None)) -> np.ndarray:
+    """The phases after each step: (steps, 2, swings).  A band below 0 stops at each."""
+    start = THETA[which], OMEGA[which]
+    stops = (compiled if fast else plain)(method, PENDULUM)(
+        start, np.full(len(start[0]), h), watched(-1.0, which), steps
+    )
+    return np.array([np.array(phase) for _, phase in stops])
 
 
 @given(st.floats(-1e4, 1e4))
@@ -32,29 +41,18 @@ def test_the_sine_is_right_to_four_ulp_of_one(x: float) -> None:
     assert sine(x) == pytest.approx(math.sin(x), rel=0, abs=4.5e-16)
 
 
+@each_way
 @each_method
-@pytest.mark.parametrize("model", [Pendulum(1.0), LinearOscillator(1.0)], ids=lambda model: model.key)
-def test_in_numpy_each_swing_is_the_one_that_swings_alone(method: Method, model: Model) -> None:
-    points = section(method, model, (THETA, OMEGA), 0.1, 5, every=3)
-    for which in (0, 17, 36):
-        alone = islice(method.phases(model.force(np.sin), (THETA[which], OMEGA[which]), 0.1), 2, None, 3)
-        assert [tuple(point[:, which]) for point in points] == list(islice(alone, 5))
-
-
-@needs_numba
-@each_method
-@pytest.mark.parametrize("model", [Pendulum(1.0), LinearOscillator(1.0)], ids=lambda model: model.key)
-def test_compiled_ensembles_are_numpys_but_for_rounding(method: Method, model: Model) -> None:
-    both = [section(method, model, (THETA, OMEGA), 0.1, 20, every=2, fast=fast) for fast in (False, True)]
-    assert both[0] == pytest.approx(both[1], rel=0, abs=1e-13)  # 40 steps' rounding
+def test_each_swing_of_an_ensemble_is_the_methods_but_for_rounding(method: Method, fast: bool) -> None:
+    expected = islice(method.phases(PENDULUM.force(np.sin), (THETA, OMEGA), 0.1), 40)
+    assert path(method, 0.1, 40, fast) == pytest.approx(np.array([*expected]), rel=0, abs=1e-13)  # 40 steps' rounding
 
 
 @each_way
 def test_no_swing_depends_on_the_others(fast: bool) -> None:
-    together = section(VELOCITY_VERLET, PENDULUM, (THETA, OMEGA), 0.3, 50, fast=fast)
+    together = path(VELOCITY_VERLET, 0.3, 50, fast)
     for part in (slice(0, 1), slice(5, 30), slice(30, 37)):
-        alone = section(VELOCITY_VERLET, PENDULUM, (THETA[part], OMEGA[part]), 0.3, 50, fast=fast)
-        assert alone.tobytes() == np.ascontiguousarray(together[:, :, part]).tobytes()
+        assert np.array_equal(path(VELOCITY_VERLET, 0.3, 50, fast, part), together[:, :, part])
 
 
 @needs_numba
@@ -62,7 +60,7 @@ def test_compiled_steps_are_freed() -> None:
     """In a compiled loop Numba 0.68 keeps all that a generator yields, which makes 4 pages a step of these."""
     many, h = (np.full(1024, 0.5), np.zeros(1024)), np.full(1024, 0.1)
     seen = Watched(many[0], *(np.full(1024, math.inf) for _ in range(2)), *(np.zeros(1024) for _ in range(3)))
-    watch = compiled(VELOCITY_VERLET, PENDULUM).watch
+    watch = compiled(VELOCITY_VERLET, PENDULUM)
     next(watch(many, h, seen, 1000))
     before = getrusage(RUSAGE_SELF).ru_minflt
     next(watch(many, h, seen, 4000))
@@ -70,13 +68,13 @@ def test_compiled_steps_are_freed() -> None:
 
 
 @each_way
-def test_a_swing_that_is_no_longer_looked_at_does_not_stop_the_others(fast: bool) -> None:
-    seen, h = watched(PENDULUM, np.full(37, 0.2), math.inf), np.full(37, 0.2)
+def test_a_swing_without_limits_does_not_stop_the_others(fast: bool) -> None:
+    seen, h = watched(), np.full(37, 0.2)
     stops = []
-    for done, phase in (compiled if fast else plain)(GENERAL[0], PENDULUM).watch((THETA, OMEGA), h, seen, 100):
+    for done, phase in (compiled if fast else plain)(GENERAL[0], PENDULUM)((THETA, OMEGA), h, seen, 100):
         stops.append(done)
         seen.top[np.abs(phase[0]) > seen.top] = math.inf
-    points = section(GENERAL[0], PENDULUM, (THETA, OMEGA), 0.2, 100, fast=fast)
+    points = path(GENERAL[0], 0.2, 100, fast)
     over = np.abs(points[:, 0]) > math.pi
     assert stops == sorted({*(over.argmax(axis=0)[over.any(axis=0)] + 1).tolist(), 100})
 
@@ -89,7 +87,7 @@ def test_force_and_energy_that_share_a_sine_are_those_of_the_pendulum() -> None:
     assert energy((theta, omega)) == pytest.approx(Pendulum(9.81).energy(np.sin)((theta, omega)), rel=1e-14)
 
 
-def test_it_is_the_sine_of_the_angles_at_hand_and_not_of_those_before() -> None:
+def test_the_shared_sine_follows_the_angles() -> None:
     force, energy = sharing(1.0)
     for theta in (np.array([0.5]), np.array([1.0]), np.array([0.5])):
         assert force(theta) == pytest.approx(-np.sin(theta))
@@ -98,11 +96,11 @@ def test_it_is_the_sine_of_the_angles_at_hand_and_not_of_those_before() -> None:
 
 @each_way
 @each_method
-def test_what_is_watched_is_the_largest_of_each_step(method: Method, fast: bool) -> None:
+def test_a_watched_ensemble_keeps_the_largest_error_and_angle(method: Method, fast: bool) -> None:
     h = np.full(37, 0.2)
-    seen = watched(PENDULUM, h, math.inf)
-    points = section(method, PENDULUM, (THETA, OMEGA), 0.2, 10, fast=fast)
-    ((done, phase),) = (compiled if fast else plain)(method, PENDULUM).watch((THETA, OMEGA), h, seen, 10)
+    seen = watched()
+    points = path(method, 0.2, 10, fast)
+    ((done, phase),) = (compiled if fast else plain)(method, PENDULUM)((THETA, OMEGA), h, seen, 10)
     assert done == 10
     assert np.array(phase) == pytest.approx(points[-1], rel=0, abs=1e-14)
     off = PENDULUM.energy(np.sin)((points[:, 0], points[:, 1])) - seen.start
@@ -114,12 +112,12 @@ def test_what_is_watched_is_the_largest_of_each_step(method: Method, fast: bool)
 
 @each_way
 def test_it_stops_at_the_step_that_passes_the_top_or_leaves_the_band(fast: bool) -> None:
-    watch, h = (compiled if fast else plain)(GENERAL[0], PENDULUM).watch, np.full(37, 0.2)
-    points = section(GENERAL[0], PENDULUM, (THETA, OMEGA), 0.2, 100, fast=fast)
+    watch, h = (compiled if fast else plain)(GENERAL[0], PENDULUM), np.full(37, 0.2)
+    points = path(GENERAL[0], 0.2, 100, fast)
     over = int(np.flatnonzero((np.abs(points[:, 0]) > math.pi).any(axis=1))[0]) + 1
-    done, _ = next(watch((THETA, OMEGA), h, watched(PENDULUM, h, math.inf), 1000))
+    done, _ = next(watch((THETA, OMEGA), h, watched(), 1000))
     assert done == over
-    seen = watched(PENDULUM, h, 0.1)
+    seen = watched(0.1)
     done, _ = next(watch((THETA, OMEGA), h, seen, 1000))
     assert 0 < done < over
     assert (seen.worst > 0.1).any()

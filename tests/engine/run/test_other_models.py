@@ -47,7 +47,7 @@ def test_the_same_bits_however_the_steps_are_cut(scene: Scene, cuts: list[int]) 
 
 
 @each_scene
-def test_readings_are_floats_and_finite_and_tell_of_a_spring_only_where_there_is_one(scene: Scene) -> None:
+def test_readings_are_finite_floats_and_have_a_spring_only_on_that_model(scene: Scene) -> None:
     lockstep = Lockstep(scene)
     for n in (0, 1, 1000):
         lockstep.advance(n)
@@ -60,7 +60,7 @@ def test_readings_are_floats_and_finite_and_tell_of_a_spring_only_where_there_is
 
 
 @each_scene
-def test_verdicts_do_not_depend_on_how_often_somebody_looks(scene: Scene) -> None:
+def test_verdicts_do_not_depend_on_the_distance_of_samples(scene: Scene) -> None:
     if scene.name.startswith("precision"):
         scene = scene.with_cast(scene.cast[:2])  # a sample does not tell what a compensated sum keeps
     steps = 14 * round(20 / scene.h / 14)
@@ -75,8 +75,11 @@ def test_verdicts_do_not_depend_on_how_often_somebody_looks(scene: Scene) -> Non
         ("halving", {"halving_verlet": "grows", "halving_richardson": "loses", "velocity_verlet": "bounded"}),
     ],
 )
-def test_the_verdicts_say_what_the_scenes_show(name: str, expected: dict[str, str]) -> None:
-    last = {key: verdict for _, key, verdict in verdicts(SCENES[name], round(300 / SCENES[name].h), 50)}
+def test_the_scenes_have_their_verdicts(name: str, expected: dict[str, str]) -> None:
+    last = {
+        key: verdict
+        for _, key, verdict in verdicts(SCENES[name], round((60 if name == "damped" else 300) / SCENES[name].h), 50)
+    }
     assert last.items() >= expected.items()
 
 
@@ -117,7 +120,7 @@ def test_backwards_and_at_equal_cost_there_are_still_numbers(scene: Scene) -> No
     stiffness=st.floats(1, 1e18),
     h=st.floats(1e-8, 300),
 )
-def test_whatever_is_within_the_limits_neither_crashes_nor_ends_in_nan(
+def test_any_scene_within_the_limits_gives_finite_numbers(
     model: str, theta: float, omega: float, friction: float, stiffness: float, h: float
 ) -> None:
     given_values = {"friction": friction, "stiffness": stiffness}
@@ -137,7 +140,7 @@ def test_a_model_refuses_a_method_that_is_not_for_it(model: str) -> None:
         if model in method.models:
             assert Scene(model=model, cast=(method,), **own).cast == (method,)
         else:
-            with pytest.raises(SceneError, match=f"is not for the model {model}"):
+            with pytest.raises(SceneError, match=rf"is not for the model {model}; it is for \w+"):
                 Scene(model=model, cast=(method,), **own)
 
 

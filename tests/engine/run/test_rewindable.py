@@ -61,7 +61,7 @@ def test_changes_of_h_are_repeated_on_the_way_there(moves, h):
     assert phases(course.sample()) == phases(expected)
 
 
-def test_in_the_past_one_knows_what_comes_next_and_at_the_end_one_does_not():
+def test_a_run_is_in_its_past_until_it_reaches_its_furthest_step():
     course = RewindableRun(DEFAULT_SCENE, 1)
     course.forward(10)
     course.sample()
@@ -84,7 +84,7 @@ def test_a_change_made_where_one_steps_back_to_is_still_to_come():
     assert course.stepping.h == 0.1
 
 
-def test_a_branch_shares_the_past_and_forgets_what_came_next():
+def test_a_branch_shares_the_past_and_forgets_the_future():
     course = RewindableRun(DEFAULT_SCENE, 1)
     course.forward(100)
     course.set_stepping(Stepping(0.1))

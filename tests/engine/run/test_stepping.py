@@ -51,7 +51,7 @@ def test_at_equal_cost_the_cheap_methods_take_a_step_in_parts():
     assert EQUAL.reversed().with_own(USUAL_CAST[0], 0.5) == Stepping(-2.0, equal_cost=True)
 
 
-def test_a_method_whose_cost_divides_no_other_takes_the_nearest_number_of_parts():
+def test_costs_that_do_not_divide_are_rounded_to_whole_parts():
     costs = tuple(replace(USUAL_CAST[0], force_evaluations=n) for n in (1, 3, 4, 7))
     assert Stepping(0.1, True, costs).parts == (7, 2, 2, 1)
 
@@ -91,18 +91,7 @@ def test_a_method_takes_the_step_in_its_own_parts(index: int):
     assert bits(equal)[index] == bits(alone)[index]
 
 
-def test_any_cut_of_the_steps_gives_the_same_bits():
-    whole, cut = Lockstep(DEFAULT_SCENE), Lockstep(DEFAULT_SCENE)
-    for lockstep in (whole, cut):
-        lockstep.advance(7)
-        lockstep.set_stepping(EQUAL)
-    whole.advance(30)
-    for n in (1, 9, 20):
-        cut.advance(n)
-    assert bits(whole) == bits(cut)
-
-
-def test_a_method_that_diverges_says_when_to_its_own_part_of_a_step():
+def test_the_time_of_divergence_is_exact_to_a_part_of_a_step():
     def doubling(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
         theta, omega = phase
         while True:

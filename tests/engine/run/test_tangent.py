@@ -1,4 +1,4 @@
-"""The step's Jacobian by complex step; what its determinant is, tests/engine/test_methods.py says."""
+"""The step's Jacobian by complex step; tests/engine/methods/test_claims.py has its determinant."""
 
 import math
 

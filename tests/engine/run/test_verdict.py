@@ -34,7 +34,7 @@ def test_the_grid_of_truths_is_large() -> None:
 
 
 @pytest.mark.parametrize("part", range(6))
-def test_no_verdict_is_wrong_and_none_flickers(part: int) -> None:
+def test_no_verdict_is_wrong_or_flickers(part: int) -> None:
     for method, start, z, letter in SAMPLED[part::6]:
         scene = scene_at(start, z)
         given = verdicts(method, scene, LOOPS, watch(scene))
@@ -60,7 +60,7 @@ def test_verdicts_wait_for_nine_periods_as_a_rule() -> None:
     [(1.25, 0.348011), (1.47, 0.359185), (1.69, 0.370360), (1.3, 0.3512), (0.48, 0.459757), (0.37, 0.459757)],
 )
 @pytest.mark.parametrize("method", [S, V], ids=lambda method: method.key)
-def test_an_orbit_that_beats_at_a_resonance_is_never_said_to_leave(method, theta: float, h: float) -> None:
+def test_an_orbit_that_beats_at_a_resonance_never_grows_or_loses(method, theta: float, h: float) -> None:
     assert course(method, Scene(theta=theta, h=h), 6000) in ([], ["bounded"])
 
 
@@ -84,7 +84,7 @@ def test_rk4_at_200_rad_per_s_is_not_called_bounded_while_its_slope_is_significa
     assert "bounded" not in course(R, scene, 30_000)
 
 
-def test_what_is_caught_is_called_caught_and_what_wanders_wanders() -> None:
+def test_caught_chaotic_and_wandering_orbits_get_their_verdicts() -> None:
     assert course(R, SCENES["rk4-limit-above"], 6000)[-1] == "caught"
     assert course(E, SCENES["drift"].altered(h=0.16), 6000) == ["grows", "caught"]  # at omega h = pi
     assert course(V, SCENES["chaos-fenced"], 6000) == ["chaotic"]
@@ -100,7 +100,7 @@ def change(step: int, t: float, h: float) -> SteppingChange:
 
 
 @pytest.mark.parametrize("name", ["drift", "large-swing", "spin", "verlet-limit-above"])
-def test_verdicts_come_at_the_same_steps_however_often_one_looks(name: str) -> None:
+def test_verdicts_come_at_the_same_steps_whatever_the_samples(name: str) -> None:
     scene, uneven = SCENES[name], random.Random(1)
     steps = math.ceil(40 * (scene.exact().period or 1.0) / scene.h)
     told = []
@@ -205,13 +205,13 @@ def test_a_verdict_is_taken_back_when_the_error_comes_back() -> None:
         ("too early", None, None, False),
     ],
 )
-def test_a_trend_is_told_only_where_it_is_significant_and_nothing_says_that_there_is_none(
+def test_a_judgement_has_a_trend_only_if_its_slope_is_significant(
     verdict, slope: float | None, uncertainty: float | None, told: bool
 ) -> None:
     assert Judgement(verdict, slope, uncertainty).trend == (slope if told else None)
 
 
-def test_a_method_whose_numbers_end_grows() -> None:
+def test_a_failed_method_gets_the_verdict_grows() -> None:
     judge = judged([0.0] * 20)
     judge.fail(20)
     assert judge.judgement.verdict == "grows"

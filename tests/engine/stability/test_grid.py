@@ -24,7 +24,7 @@ def test_cells_lie_by_z_method_and_amplitude() -> None:
 
 
 @each_way
-@pytest.mark.parametrize("strip", [1, 7, 8, 20, 50, 10_000])
+@pytest.mark.parametrize("strip", [1, 8, 50])
 def test_the_picture_is_the_same_bit_for_bit_however_it_is_split(
     strip: int, fast: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -41,7 +41,7 @@ def test_a_large_map_is_compiled_wherever_its_strips_are_computed_and_a_small_on
         assert {strip.compiled for strip in grid.strips()} == {fast} == {grid.compiled}
 
 
-def test_a_map_that_somebody_watches_is_not_compiled() -> None:
+def test_a_map_computed_in_pieces_is_not_compiled() -> None:
     piece = next(pieces(default_grid(), [50]))
     plain = replace(default_grid(), z=default_grid().z[piece.z], methods=USUAL_CAST[:1], steps=50, fast=False)
     assert piece.cells.tobytes() == plain.cells()[:, 0].tobytes()
@@ -68,15 +68,15 @@ def test_a_dask_cluster_gives_the_same_picture(monkeypatch: pytest.MonkeyPatch) 
     distributed = pytest.importorskip("distributed")
     monkeypatch.setattr(stability_map, "STRIP", 20)
     with (
-        distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, host="127.0.0.1", dashboard_address=None
+        distributed.LocalCluster(  # in threads, which start quickly; what goes to a process is tested above
+            n_workers=2, threads_per_worker=1, processes=False, dashboard_address=None
         ) as cluster,
         distributed.Client(cluster) as client,
     ):
         assert np.concatenate(list(GRID.compute(client.get_executor()))).tobytes() == GRID.cells().tobytes()
 
 
-def test_what_is_not_computed_is_not_known() -> None:
+def test_cells_that_are_not_computed_are_unknown() -> None:
     assert (GRID.unknown()["fate"] == UNKNOWN).all()
 
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from engine.methods import GENERAL, USUAL_CAST, Method
 from engine.models.model import Number
-from engine.stability.linear import amplification, energy_range, is_stable, linear_limit
+from engine.stability.linear import amplification, is_stable, linear_limit, wobble
 
 BY_KEY = {method.key: method for method in GENERAL}
 
@@ -79,32 +79,36 @@ def test_the_wobble_bounds_the_energy_of_a_linear_swing_and_is_reached(z: float,
         return -theta
 
     for key in ("symplectic_euler", "velocity_verlet"):
-        phase, energies = (1.0, 0.0), [1.0]
+        phase, energies, angles = (1.0, 0.0), [1.0], [1.0]
         for _ in range(steps):
             phase = BY_KEY[key].step(spring, phase, z)
             energies.append(phase[0] ** 2 + phase[1] ** 2)
-        lowest, highest = energy_range(BY_KEY[key], z)
+            angles.append(abs(phase[0]))
+        lowest, highest, widest = wobble(BY_KEY[key], z)
         assert lowest * (1 - 1e-9) <= min(energies)  # 2000 steps' rounding is 1e-12
         assert max(energies) <= highest * (1 + 1e-9)
+        assert max(angles) <= widest * (1 + 1e-9)
         if all(abs(z - 2 * math.sin(math.pi * p / q)) > 0.01 for q in range(2, 21) for p in range(1, q)):
             # Where the orbit is no short cycle it comes close to every point of the ellipse.
             assert min(energies) == pytest.approx(lowest, rel=0.05)
             assert max(energies) == pytest.approx(highest, rel=0.05)
+            assert max(angles) == pytest.approx(widest, rel=0.05)
 
 
 @given(z=st.floats(0.05, 1.9))
 def test_the_wobble_of_the_symplectic_steps_has_a_closed_form(z: float) -> None:
-    assert energy_range(BY_KEY["velocity_verlet"], z) == pytest.approx((1 - z**2 / 4, 1), rel=1e-12)
-    assert energy_range(BY_KEY["symplectic_euler"], z) == pytest.approx((1 / (1 + z / 2), 1 / (1 - z / 2)), rel=1e-12)
+    assert wobble(BY_KEY["velocity_verlet"], z) == pytest.approx((1 - z**2 / 4, 1, 1), rel=1e-12)
+    expected = (1 / (1 + z / 2), 1 / (1 - z / 2), 1 / math.sqrt(1 - z**2 / 4))
+    assert wobble(BY_KEY["symplectic_euler"], z) == pytest.approx(expected, rel=1e-12)
 
 
 @given(z=st.floats(0.01, 2.8))
 def test_explicit_euler_and_rk4_do_not_wobble(z: float) -> None:
     for key in ("explicit_euler", "rk4"):
-        assert energy_range(BY_KEY[key], z) == pytest.approx((1.0, 1.0), abs=1e-9)
+        assert wobble(BY_KEY[key], z)[:2] == pytest.approx((1.0, 1.0), abs=1e-9)
 
 
 @given(z=st.floats(2.001, 1000))
 def test_beyond_its_limit_a_symplectic_step_has_no_ellipse(z: float) -> None:
     for key in ("symplectic_euler", "velocity_verlet"):
-        assert energy_range(BY_KEY[key], z) == (0.0, 1.0)
+        assert wobble(BY_KEY[key], z) == (0.0, 1.0, 1.0)

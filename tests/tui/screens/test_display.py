@@ -63,7 +63,7 @@ async def test_a_draws_with_half_blocks_then_ascii_then_braille_again_in_every_v
 async def test_forms_help_and_the_palette_are_ascii_too():
     async with lab() as theatre:
         theatre.app.character_set = "ascii"
-        for keys in (["i"], ["question_mark"], ["ctrl+p", *"theme"]):
+        for keys in (["i"], ["P"], ["question_mark"], ["ctrl+p", *"theme"]):
             await theatre.press(*keys)
             await theatre.pilot.pause(0.3)
             assert theatre.app.screen is not theatre.stage

@@ -72,8 +72,11 @@ async def test_the_run_r_restarts_plus_and_minus_change_h_b_reverses_p_and_capit
         assert theatre.source.scene == SCENES[names[0]]  # 0.02 made it a scene of its own
         await theatre.press("p")
         assert theatre.source.scene == SCENES[names[1]]
-        await theatre.press("P", "P")
+        await theatre.press("P", "end", "enter")
         assert theatre.source.scene == SCENES[names[-1]]
+        await theatre.press("P", "escape", "p")
+        assert theatre.source.scene == SCENES[names[0]]
+        await theatre.press("P", "up", "enter")  # from the first to the last
         assert names[-1] in theatre.text(StatusLine)
 
 
@@ -230,7 +233,7 @@ async def test_capital_o_puts_all_pendulums_on_one_pivot():
 async def test_a_listed_scene_starts_at_its_own_speed_and_u_brings_back_run_and_speed():
     async with lab() as theatre:
         await theatre.run(1)
-        await theatre.press("greater_than_sign", "P")  # the last scene comes before the first
+        await theatre.press("greater_than_sign", "P", "end", "enter")
         assert (theatre.source.scene.name, theatre.source.playhead.speed) == ("learned", 8.0)
         await theatre.press("u")
         assert (theatre.source.scene.name, theatre.source.playhead.speed) == ("drift", 2.0)

@@ -37,7 +37,7 @@ from tui.screens.replay import ReplayScreen
 
 pytestmark = pytest.mark.other_process  # what is computed is left again at once
 
-PRESSES, WILD = 1000, 300
+PRESSES, WILD = 600, 200
 SEED = int(os.environ.get("PENDU_MONKEY", "1"))
 
 

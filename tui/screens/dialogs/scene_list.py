@@ -1,0 +1,50 @@
+"""SceneList: the scenes in their groups, to start one."""
+
+from typing import ClassVar
+
+from rich.table import Table
+from rich.text import Text
+from textual import events
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.widgets import OptionList
+from textual.widgets.option_list import Option
+
+from engine.scenes import GROUPS, SCENES
+from tui.screens.dialogs.modal import Modal
+
+
+class SceneList(Modal[str | None]):
+    """Returns the name of the scene to start, or None."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape,P,shift+p,q", "dismiss(None)", "cancel")]
+
+    def __init__(self, current: str | None) -> None:
+        super().__init__()
+        self._current = current
+
+    def compose(self) -> ComposeResult:
+        listed = OptionList(id="scenes", markup=False)
+        listed.border_title = "Scenes, with what to watch"
+        listed.border_subtitle = "Enter starts, Esc cancels"
+        for group, scenes in GROUPS.items():
+            listed.add_option(Option(Text(group.upper(), "bold"), disabled=True))
+            listed.add_options(Option(_line(scene.name, scene.watch), scene.name) for scene in scenes)
+        if self._current and self._current in SCENES:
+            listed.highlighted = listed.get_option_index(self._current)
+        yield listed
+
+    def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
+        self.dismiss(event.option_id)
+
+    def on_click(self, event: events.Click) -> None:
+        if event.widget is self:  # outside the list
+            self.dismiss(None)
+
+
+def _line(name: str, watch: str) -> Table:
+    line = Table.grid(padding=(0, 2))
+    line.add_column(width=max(map(len, SCENES)))
+    line.add_column()
+    line.add_row(name, watch)
+    return line
