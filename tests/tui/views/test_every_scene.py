@@ -6,11 +6,12 @@ import pytest
 
 from engine.methods import USUAL_CAST
 from engine.scenes import SCENES
-from tests.tui.harness import key_of, lab
+from recordings.library import resolve
+from tests.tui.harness import key_of, lab, player
 from tui.views.accuracy.pane import AccuracyPane
 from tui.views.phase.section_pane import SectionPane
 from tui.views.stability.pane import StabilityPane
-from tui.views.view import Pane
+from tui.views.view import Chooser, Pane
 
 pytestmark = pytest.mark.other_process  # what is computed is left again at once
 
@@ -63,6 +64,19 @@ async def test_back_at_a_pendulum_chart_and_map_are_computed():
             assert "take any force" not in theatre.text(pane)
             if view == "accuracy":
                 assert theatre.stage.query_one(pane).rungs
+
+
+@pytest.mark.parametrize("view", ["phase", "accuracy", "stability"])
+async def test_in_a_replay_the_arrows_seek_and_nothing_can_be_chosen(view):
+    async with player(resolve("drift")) as theatre:
+        await theatre.press("space", key_of(view))
+        (pane,) = (pane for pane in theatre.stage.query(Chooser) if pane.drawable)
+        pane.focus()
+        before = theatre.source.scene, theatre.source.stepping
+        await theatre.press("right", "enter")
+        await theatre.pilot.click(pane, offset=(20, 4))
+        assert theatre.source.playhead.position == 1.0
+        assert (theatre.source.scene, theatre.source.stepping, pane.cursor) == (*before, None)
 
 
 async def test_only_the_pendulum_has_regimes_and_a_separatrix():

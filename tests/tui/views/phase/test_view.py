@@ -1,20 +1,12 @@
 """Phase space in the lab, and over the whole screen."""
 
-from pathlib import Path
-
 import pytest
 
 from engine.phase_space.area import Neighbourhood
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene
-from recordings.recording import Recording
-from tests.tui.harness import Theatre, lab, recorded, until
+from tests.tui.harness import Theatre, lab, until
 from tui.drawing.cells import CellWidget
-from tui.playback.marks import Marks
-from tui.playback.replay import Replay
-from tui.screens.app import PenduApp
-from tui.screens.live import LiveScreen
-from tui.screens.replay import ReplayScreen
 from tui.views.phase.pane import PhasePane
 from tui.views.phase.view import RADIUS
 
@@ -146,17 +138,3 @@ async def test_the_exact_point_comes_with_5_and_drawn_where_the_exact_swing_is()
         await theatre.pilot.pause()
         assert "x" not in without.replace("exact", "").replace("separatrix", "")
         assert "x" in shown(theatre).text.replace("exact", "").replace("separatrix", "")
-
-
-async def test_in_a_replay_the_arrows_still_seek(tmp_path: Path):
-    path = recorded(tmp_path / "sitting.mcap", 5.0)
-    replay = Replay(Recording.open(path), Marks(path), clock=lambda: 0.0)
-    player = ReplayScreen(replay, go_live=LiveScreen, clock=lambda: 0.0)
-    async with PenduApp(player).run_test(size=(120, 40)) as pilot:
-        await pilot.press("f3")
-        await pilot.pause()
-        pane = next(pane for pane in player.query(PhasePane) if pane.drawable)
-        pane.focus()
-        await pilot.press("right", "right")
-        assert replay.playhead.position == pytest.approx(2.0)
-        assert pane.cursor is None
