@@ -14,7 +14,7 @@ from engine.methods import METHODS, Cast, Method
 from engine.scenes import MOST_METHODS
 from tui.drawing.cells import CellWidget, Row
 from tui.drawing.palette import TEXT, series
-from tui.screens.dialogs.modal import Modal
+from tui.screens.dialogs.modal import Form
 
 MARKED = Style(reverse=True)
 
@@ -89,7 +89,7 @@ class MethodList(CellWidget, can_focus=True):
             self.action_take()
 
 
-class CastForm(Modal[Cast | None]):
+class CastForm(Form[Cast | None]):
     """Returns the methods to start with, or None."""
 
     AUTO_FOCUS = "MethodList"
@@ -103,7 +103,3 @@ class CastForm(Modal[Cast | None]):
         with VerticalScroll(id="cast", can_focus=False) as form:
             form.border_title = f"Methods on stage, one to {MOST_METHODS}"
             yield MethodList(self._cast)
-
-    def on_click(self, event: events.Click) -> None:
-        if event.widget is self:  # outside the list
-            self.dismiss(None)
