@@ -87,13 +87,15 @@ def _named(text: str, known: Sequence[Method]) -> Cast:
 
 
 def find(name: str, known: Sequence[Method], option: str = "--methods") -> Method:
-    """The method of a key, of the start of one, or of the start of a word in one, general methods first.
+    """The method of a key or a label, of the start of a key, or of the start of a word in one, general methods first.
 
     Raises UserError for the option.
     """
     by_key = {method.key: method for method in known}
-    if name in by_key:
-        return by_key[name]
+    for method in known:
+        if name == method.key or name.lower() == method.label.lower():
+            return method
+    name = name.lower()
     for keys in ([key for key, method in by_key.items() if method.general], list(by_key)):
         for begins in (str.startswith, lambda key, start: f"_{start}" in key):
             found = [key for key in keys if name and begins(key, name)]

@@ -145,6 +145,8 @@ def command_of(name: str) -> tuple["Parser", ModuleType]:
         hint = did_you_mean(name, COMMANDS) or "; pendu-tui --help lists them."
         if name in SCENES:
             hint = f"; for the scene use: pendu-tui --scene {name}"
+        elif name.endswith(".mcap"):
+            hint = f"; to play the recording use: pendu-tui replay {name}"
         raise UserError(f"there is no command {name!r}{hint}")
     command = module_of(name)
     parser = Parser(

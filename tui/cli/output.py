@@ -121,7 +121,7 @@ def progress(what: str) -> Iterator[Callable[[float, float], None]]:
             if (elapsed := monotonic() - began) < 1 or not done:
                 return
             if not sys.stderr.isatty():
-                if not said and (left := elapsed * (total / done - 1)) > LONG:
+                if not said and elapsed > 5 and (left := elapsed * (total / done - 1)) > LONG:
                     size = f"{left / 86400:,.1f} days" if left > 172_800 else f"{left / 60:.0f} minutes"
                     warn(f"{what} will take about {size} more; an interrupt (Ctrl+C) ends it.")
                     said = True

@@ -4,6 +4,8 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from textual.content import Content
+
 from engine.methods import METHODS, method_of
 from engine.scenes import GROUPS
 from recordings import library
@@ -25,7 +27,11 @@ def show_description(screen: SourceScreen) -> None:
     """Describe in words what runs and what is on screen."""
     from tui.words.orbit import period_sentence  # with NumPy
 
-    panes = [str(pane.border_title) for pane in screen.query("*") if pane.border_title and pane.is_on_screen]
+    panes = [
+        Content.from_markup(pane.border_title).plain
+        for pane in screen.query("*")
+        if pane.border_title and pane.is_on_screen
+    ]
     shown = f"On screen: {VIEWS[screen.view].title}; {'; '.join(panes)}."
     lines = [*description(screen.source), period_sentence(screen.source), shown]
     screen.app.push_screen(TextScreen("In words", "\n".join(filter(None, lines))))

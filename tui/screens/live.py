@@ -124,7 +124,7 @@ class LiveScreen(Touring):
             if cast:
                 self.start(scene.with_cast(cast))
 
-        self.app.push_screen(CastForm(scene.cast), chosen)
+        self.app.push_screen(CastForm(scene), chosen)
 
     def action_mark(self) -> None:
         text = ALREADY if self.live.is_marked else f"Mark at {self.live.sample.t:.2f} s"

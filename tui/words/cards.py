@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from engine.methods import Method
 from engine.scenes import SCENES, UNITS, Scene
 from tui.words.motion import motion_text
-from tui.words.numbers import z_name
+from tui.words.numbers import counted, z_name
 
 WIDTH = 72  # characters; of 80 columns, frame and scroll bar take the rest
 _HEAD = 14
@@ -49,7 +49,7 @@ def method_card(method: Method) -> str:
             "also called": ", ".join(method.other_names),
             "formula": method.formula,
             "order": f"{method.order}: as a rule, over one swing half of h divides the error by {2**method.order}",
-            "costs": f"{method.force_evaluations} force evaluation{'s' * (method.force_evaluations > 1)} per step",
+            "costs": f"{counted(method.force_evaluations, 'force evaluation')} per step",
             "symplectic": "yes: conserves phase-space area" if method.symplectic else "no: phase-space area changes",
             "reversible": "yes: run backwards, it returns to its start, but for rounding"
             if method.reversible

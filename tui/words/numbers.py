@@ -6,6 +6,11 @@ Tables get the width that they ask for, and a hyphen instead of "nan" or "inf".
 import math
 
 
+def counted(number: int, noun: str) -> str:
+    """As "1 sample" or "3 samples"."""
+    return f"{number} {noun}{'s' * (number != 1)}"
+
+
 def decimal(value: float | None, width: int, decimals: int = 3) -> str:
     """With a sign and as many decimals as fit, or in scientific notation: " +1.000", "+1.2e+09"."""
     if value is None or not math.isfinite(value):
@@ -29,8 +34,8 @@ def scientific(value: float | None, width: int, digits: int = 1, sign: str = "+"
 
 
 def relative(value: float | None, width: int, sign: str = "+") -> str:
-    """An error relative to 1: from 1 % on as "-4.2 %" or "+633 %"."""
-    if value is None or not math.isfinite(value) or abs(value) < 0.01:
+    """An error relative to 1: from 1 % to 10 000 % as "-4.2 %" or "+633 %"."""
+    if value is None or not math.isfinite(value) or not 0.01 <= abs(value) < 100:
         return scientific(value, width, 1, sign)
     whole = f"{100 * value:{sign}.0f} %"
     fine = whole if abs(value) >= 1 else f"{100 * value:{sign}.1f} %"

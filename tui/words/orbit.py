@@ -7,6 +7,7 @@ from engine.methods import Method
 from engine.phase_space.section import OrbitKind, numerical_period
 from tui.drawing.palette import FRAME, TEXT, mark, series
 from tui.playback.source import Source
+from tui.words.numbers import counted
 
 HEADS = ("orbit", "turns a step", "steps a turn", "nearest", "Lyapunov number")
 WIDTHS = (18, 14, 14, 9, 17)  # columns, two of them blank
@@ -58,7 +59,7 @@ def sentence(method: Method, kind: OrbitKind) -> str:
         turns, steps = kind.fraction.numerator, kind.fraction.denominator
         over = " over the top" if kind.spins else ""
         if kind.island:
-            return f"A chain of islands: {turns} turn{'s' * (turns > 1)}{over} in every {steps} steps, {turns}:{steps}."
+            return f"A chain of islands: {counted(turns, 'turn')}{over} in every {steps} steps, {turns}:{steps}."
         near = f"{1 / abs(kind.rotation):.5g} steps a turn{over}, nearest {turns}:{steps}."
         if what.startswith("spirals"):
             return f"It {what}, {near}"

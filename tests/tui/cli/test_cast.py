@@ -85,6 +85,13 @@ def test_the_start_of_a_name_is_enough_and_the_order_is_the_one_given(text, cast
     assert cast_from("--methods", text) == cast
 
 
+def test_a_name_as_the_tables_print_it_will_do_in_any_case():
+    for method in METHODS:
+        assert cast_options.find(method.label, METHODS) is method
+        assert cast_options.find(method.label.upper(), METHODS) is method
+        assert cast_options.find(method.key.upper(), METHODS) is method
+
+
 def test_the_start_of_a_later_word_will_do_where_it_is_the_only_one():
     assert cast_options.find("verlet", USUAL_CAST) is VELOCITY_VERLET
     with pytest.raises(UserError, match="'euler' may be explicit_euler or symplectic_euler; write more of it"):

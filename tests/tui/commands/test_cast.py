@@ -133,7 +133,6 @@ def test_interrupted_it_leaves_nothing_behind(tmp_path, number):
     while time.monotonic() < until and not (part.exists() and part.stat().st_size):
         time.sleep(0.05)
     os.kill(process.pid, number)
-    *announced, last = process.communicate(timeout=30)[1].splitlines()  # on a busy machine, how long it will take
-    assert (len(announced) < 2, last) == (True, "pendu-tui: interrupted.")
+    assert process.communicate(timeout=30)[1].endswith("pendu-tui: interrupted.\n")
     assert process.returncode == 130
     assert list(tmp_path.iterdir()) == []

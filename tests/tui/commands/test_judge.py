@@ -182,6 +182,11 @@ def test_a_file_that_cannot_be_read_is_one_sentence():
     assert judge(table(), "--fail-if", "theta_error > 1").refused(2, "There is no field 'theta_error'")
 
 
+def test_a_table_of_several_methods_is_refused():
+    Path("all.csv").write_text("t,E\n" + "".join(f"{t},{energy}\n" for t in range(5) for energy in (1, 2, 3)))
+    assert pendu("judge", "all.csv", "--time", "t", "--energy", "E").refused(3, "several runs or methods", "grep")
+
+
 @given(st.binary(max_size=300) | st.text(st.sampled_from('0123456789.,;\t \n"#@tEnai-+'), max_size=300))
 def test_any_input_is_columns_or_one_sentence(data):
     text = data if isinstance(data, str) else data.decode("utf-8", "replace")

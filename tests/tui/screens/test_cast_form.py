@@ -3,7 +3,7 @@
 import pytest
 
 from engine.methods import METHODS, USUAL_CAST, method_of
-from engine.scenes import MOST_METHODS
+from engine.scenes import MOST_METHODS, SCENES
 from tests.tui.harness import lab
 from tui.screens.dialogs.cast_form import CastForm, MethodList, method_line, toggled
 from tui.views.lab.error_table import ErrorTable
@@ -72,6 +72,15 @@ async def test_a_click_takes_a_method_or_leaves_it():
         await theatre.press("M")
         await theatre.pilot.click(MethodList, offset=(5, 2))
         assert theatre.app.screen.query_one(MethodList).cast == tuple(each for each in USUAL_CAST if each != VERLET)
+
+
+async def test_only_methods_for_the_model_of_the_scene_are_listed():
+    for name in ("drift", "damped", "stiff-slow"):
+        async with lab(SCENES[name]) as theatre:
+            await theatre.press("M")
+            listed = theatre.app.screen.query_one(MethodList).methods
+            assert set(SCENES[name].cast) <= set(listed)
+            assert listed == [method for method in METHODS if SCENES[name].model in method.models]
 
 
 async def test_a_run_has_the_pendulums_and_lines_of_its_own_cast():

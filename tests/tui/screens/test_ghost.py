@@ -82,3 +82,7 @@ def test_what_is_no_recording_is_refused_in_a_sentence(tmp_path):
     broken.write_bytes(b"nothing")
     assert pendu("live", "--plain", "--no-record", "--ghost", broken).refused(3, "broken.mcap")
     assert pendu("live", "--plain", "--no-record", "--ghost", tmp_path / "none.mcap").refused(3, "no recording")
+
+
+def test_a_scene_of_another_model_is_refused(path):
+    assert pendu("live", "--ghost", path, "--scene", "stiff-limit").refused(2, "--ghost", "model pendulum", "spring")

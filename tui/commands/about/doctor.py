@@ -141,4 +141,4 @@ def numba() -> Check:
     try:
         return Check("numba", version("numba"))
     except PackageNotFoundError:
-        return Check("numba", "not installed", "speeds up long runs: pip install 'pendu-tui[fast]'")
+        return Check("numba", "not installed", "speeds up long runs: pip install '.[fast]' in the clone")

@@ -8,7 +8,7 @@ from recordings.errors import printable
 from tui.cli.errors import Exit
 from tui.cli.options import add_recording
 from tui.cli.output import difference_fields, fields_of, print_table, progress, warn, write_json
-from tui.words.numbers import scientific, seconds
+from tui.words.numbers import counted, scientific, seconds
 
 if TYPE_CHECKING:
     from recordings.diff import Comparison, EventDifference, ValueDifference
@@ -87,10 +87,10 @@ def _event_fields(difference: "EventDifference") -> dict[str, Any]:
 
 def _print(a: "Recording", b: "Recording", result: "Comparison") -> None:
     for name, recording in (("A", a), ("B", b)):
-        runs = f"{len(recording.runs)} run{'s' * (len(recording.runs) != 1)}"
+        runs = counted(len(recording.runs), "run")
         print(f"{name}  {printable(str(recording.path))}: {seconds(recording.length)}, {runs}")
     if result.identical:
-        print(f"identical: {result.paired} samples")
+        print(f"identical: {counted(result.paired, 'sample')}")
         return
     starts = [(d.run, d.field, _plain(d.a), _plain(d.b)) for d in result.scenes if d.field != "watch"]
     _table("start of", "lll", ("A", "B"), [(f"run {run}, {field}", x, y) for run, field, x, y in starts])

@@ -8,7 +8,7 @@ from recordings.errors import printable
 from tui.cli.errors import Exit
 from tui.cli.options import add_degrees, add_recording
 from tui.cli.output import fields_of, print_table, progress, write_json
-from tui.words.numbers import file_size, measured, seconds
+from tui.words.numbers import counted, file_size, measured, seconds
 
 if TYPE_CHECKING:
     from recordings.recording import Recording
@@ -74,7 +74,7 @@ def _print(recording: "Recording", size: int, degrees: bool) -> None:
         "file": str(recording.path),
         "health": ("damaged: " if recording.damaged else "") + health,
         "length": seconds(recording.length),
-        "size": f"{file_size(size)}, {recording.samples} samples",
+        "size": f"{file_size(size)}, {counted(recording.samples, 'sample')}",
         "methods": ", ".join(recording.methods),
         "digest": _digest(recording),
         **{name: value for name, value in recording.metadata.items() if not name.endswith(".hex")},

@@ -10,7 +10,7 @@ from tui.cli.errors import Exit
 from tui.cli.files import check_free
 from tui.cli.options import add_file, add_recording
 from tui.cli.output import progress, write_json
-from tui.words.numbers import seconds
+from tui.words.numbers import counted, seconds
 
 if TYPE_CHECKING:
     from recordings.recover import Recovery
@@ -45,7 +45,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _sentence(recovery: "Recovery") -> str:
-    lines = [f"{printable(str(recovery.out))}: {recovery.samples_kept} samples saved."]
+    lines = [f"{printable(str(recovery.out))}: {counted(recovery.samples_kept, 'sample')} saved."]
     if recovery.reason:
         lines.append(f"Problem: {recovery.reason}.")
     chunks = f"{recovery.chunks_lost} chunk{'' if recovery.chunks_lost == 1 else 's'}"

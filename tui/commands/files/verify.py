@@ -12,6 +12,7 @@ from tui.cli.cast import add_cast_options, cast_of, own_methods
 from tui.cli.errors import Exit
 from tui.cli.options import add_recording, count
 from tui.cli.output import difference_fields, fields_of, progress, warn, write_json
+from tui.words.numbers import counted
 
 if TYPE_CHECKING:
     from recordings.verify import Difference, Verification
@@ -105,7 +106,7 @@ def _verified(
 
 def _sentence(result: "Verification") -> str:
     name = printable(str(result.file))
-    size = f"{result.samples} sample{'s' * (result.samples != 1)} in {result.runs} run{'s' * (result.runs != 1)}"
+    size = f"{counted(result.samples, 'sample')} in {counted(result.runs, 'run')}"
     end = "" if result.complete else f"; {result.reason}"
     others = " and ".join(f"{name}()" for name in result.other_functions)
     notes = f"; within tolerance only: this machine has another {others}" if others else ""

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from engine.scenes import Scene
+from tui.cli.errors import UserError
 from tui.cli.options import add_file, add_recording, positive
 from tui.cli.scene import add_scene_options, scene_of
 from tui.terminal.options import add_terminal_options
@@ -63,6 +64,11 @@ def run(options: argparse.Namespace) -> int:
 
         ghost = launch.open_ghost(resolve(options.ghost))
     scene = scene_of(options, None if ghost is None else ghost.scene)
+    if ghost is not None and ghost.scene.model != scene.model:
+        raise UserError(
+            f"--ghost: the recording is of the model {ghost.scene.model}, the scene of {scene.model};"
+            " leave out --scene, or choose one of that model."
+        )
     if not options.plain:
         check_terminal()
         gc.disable()  # until the screen is up: collections while importing would delay the first paint by a thirtieth

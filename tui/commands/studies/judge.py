@@ -17,6 +17,7 @@ from tui.cli.fail_if import parse
 from tui.cli.junit import Check, write_junit
 from tui.cli.options import Suggestions, add_file, positive
 from tui.cli.output import fields_of, warn, write_json
+from tui.words.numbers import counted
 
 if TYPE_CHECKING:
     from engine.run.energies import Finding
@@ -59,6 +60,12 @@ def run(options: argparse.Namespace) -> int:
         columns = read_columns(lines, options.time, options.energy)
     if not columns.times:
         raise UserError(f"no row has a usable time and energy{_skipped(columns)}.", Exit.INPUT_UNREADABLE)
+    if columns.skipped["time_not_later"] > len(columns.times):
+        raise UserError(
+            "most rows are not later than the row before: there seem to be several runs or methods in this table;"
+            " judge one of them, for example filtered with grep.",
+            Exit.INPUT_UNREADABLE,
+        )
     import numpy as np
 
     from engine.run.energies import judge
@@ -118,7 +125,7 @@ def _fields(options: argparse.Namespace, columns: Columns, finding: "Finding") -
 def _lines(fields: dict[str, Any], columns: Columns, finding: "Finding") -> list[str]:
     """The result for people."""
     name = "stdin" if fields["file"] == "-" else printable(fields["file"])
-    many = f"{fields['samples']} sample{'s' * (fields['samples'] != 1)}"
+    many = counted(fields["samples"], "sample")
     span = f"from time {fields['first_time']:g} to {fields['last_time']:g}"
     lines = [f"{name}: {many} {span}{_skipped(columns)}", f"verdict       {finding.verdict}"]
     if columns.diverged_at is not None:
@@ -135,4 +142,4 @@ def _skipped(columns: Columns) -> str:
     """How many lines were not used, and why."""
     reasons = [f"{count} {REASONS[why]}" for why, count in columns.skipped.items() if count]
     total = sum(columns.skipped.values())
-    return f"; {total} row{'s' * (total != 1)} skipped ({', '.join(reasons)})" if reasons else ""
+    return f"; {counted(total, 'row')} skipped ({', '.join(reasons)})" if reasons else ""

@@ -9,7 +9,7 @@ from engine.methods import METHODS
 from tui.cli.cast import KEYS, find
 from tui.cli.errors import UserError
 from tui.cli.options import Suggestions, add_file, count
-from tui.cli.scene import add_scene_options, scene_of
+from tui.cli.scene import add_scene_options, general_scene_of
 from tui.terminal.options import add_picture_options, cells, terminal_options_of
 
 EXAMPLES = """\
@@ -51,7 +51,7 @@ def picture(text: str) -> Path:
 
 
 def run(options: argparse.Namespace) -> int:
-    scene = scene_of(options)
+    scene = general_scene_of(options)
     for name, most in (("starts", MOST_STARTS), ("steps", MOST_STEPS)):
         if (given := getattr(options, name)) > most:
             raise UserError(f"--{name} {given} is too many; use at most {most}.")

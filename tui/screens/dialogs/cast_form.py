@@ -11,10 +11,11 @@ from textual.containers import VerticalScroll
 from textual.geometry import Region
 
 from engine.methods import METHODS, Cast, Method
-from engine.scenes import MOST_METHODS
+from engine.scenes import MOST_METHODS, Scene
 from tui.drawing.cells import CellWidget, Row
 from tui.drawing.palette import TEXT, series
 from tui.screens.dialogs.modal import Form
+from tui.words.numbers import counted
 
 MARKED = Style(reverse=True)
 
@@ -29,7 +30,7 @@ def toggled(cast: Cast, method: Method) -> Cast:
 def method_line(method: Method, cast: Cast) -> str:
     """As "2 v Velocity Verlet      order 2   1 force a step  symplectic": its digit if it is in the cast."""
     digit = str(cast.index(method) + 1) if method in cast else " "
-    forces = f"{method.force_evaluations} force{'s' * (method.force_evaluations > 1)} a step"
+    forces = f"{counted(method.force_evaluations, 'force')} a step"
     kind = "symplectic" if method.symplectic else "not symplectic"
     return f" {digit} {method.letter} {method.label:<22} order {method.order:<2}  {forces:<15} {kind} "
 
@@ -55,9 +56,9 @@ class MethodList(CellWidget, can_focus=True):
         Binding("enter", "start", show=False),
     ]
 
-    def __init__(self, cast: Cast) -> None:
+    def __init__(self, cast: Cast, model: str) -> None:
         super().__init__()
-        self.methods = [*METHODS, *(method for method in cast if method not in METHODS)]
+        self.methods = [method for method in dict.fromkeys((*METHODS, *cast)) if model in method.models]
         self.cast, self.cursor = cast, 0
         self.styles.height = len(self.methods)
 
@@ -95,11 +96,11 @@ class CastForm(Form[Cast | None]):
     AUTO_FOCUS = "MethodList"
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape,M,shift+m,q", "dismiss(None)", "cancel")]
 
-    def __init__(self, cast: Cast) -> None:
+    def __init__(self, scene: Scene) -> None:
         super().__init__()
-        self._cast = cast
+        self._scene = scene
 
     def compose(self) -> ComposeResult:
         with VerticalScroll(id="cast", can_focus=False) as form:
-            form.border_title = f"Methods on stage, one to {MOST_METHODS}"
-            yield MethodList(self._cast)
+            form.border_title = f"Methods for the model {self._scene.model}, one to {MOST_METHODS}"
+            yield MethodList(self._scene.cast, self._scene.model)

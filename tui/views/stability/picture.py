@@ -164,7 +164,7 @@ def legend(steps: int, palette: Palette | None, columns: int = 80) -> list[Segme
     """What colours, characters and lines mean."""
     limit, threshold, catching = (sign if palette else _WITHOUT_COLOUR[sign] for sign in (LIMIT, THRESHOLD, CATCHING))
     lines = [Segment(f"{limit} linear limit   {threshold} global chaos above   ")]
-    orbit = [Segment(f"{catching} stable 2-cycle   y: amplitude [deg]")]
+    orbit = [Segment(f"{catching} stable 2-cycle   y: amplitude [°]")]
     if palette is None:
         held = [Segment("held: error <1e-4 #  <0.1 +  above -   ")]
         lost = [Segment("lost: at step <10 .  <100 1  <1000 2")]
