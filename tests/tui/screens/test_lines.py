@@ -204,6 +204,7 @@ def test_the_bar_shows_position_length_run_step_and_event(tmp_path):
         replay.seek(float(clock))
         widths.add(len(facts(replay, 30)))
     assert len(widths) == 1  # so that the bar stays where it is
+    replay.close()
 
 
 def test_a_sentence_that_does_not_fit_ends_in_an_ellipsis():
