@@ -4,6 +4,7 @@ import io
 import json
 from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from tui.cli.dispatch import main
@@ -35,6 +36,20 @@ def pendu(*arguments: object) -> Outcome:
     with redirect_stdout(out), redirect_stderr(err):
         code = main([str(argument) for argument in arguments])
     return Outcome(code, *(stream.buffer.getvalue().decode() for stream in (out, err)))
+
+
+def own_method(folder: Path) -> str:
+    """A file with symplectic Euler in it as somebody's own method, for --method."""
+    lines = [
+        "def mine(force, phase, h):",
+        "    theta, omega = phase",
+        "    while True:",
+        "        omega = omega + h * force(theta)",
+        "        theta = theta + h * omega",
+        "        yield theta, omega",
+    ]
+    (folder / "my methods.py").write_text("\n".join(lines))
+    return f"{folder}/my methods.py:mine"
 
 
 def _no_constant(name: str) -> float:

@@ -1,4 +1,4 @@
-"""The options --methods and --method: which methods are on stage, the user's own among them."""
+"""The options --methods and --method, which choose the methods, the user's own among them."""
 
 import argparse
 import io
@@ -37,20 +37,13 @@ COMPLETE_KEYS = {  # the last of a list with commas, in the words of each shell,
 }
 
 
-def add_cast_options(parser: argparse._ActionsContainer, usual: str = "the scene's", own: bool = True) -> None:
-    """Add the options that choose methods; `cast_of` reads them.  `usual` are those without; `own`: also --method."""
+def add_cast_options(parser: argparse._ActionsContainer, usual: str = "the scene's") -> None:
+    """Add the options that choose methods; `cast_of` reads them.  `usual`: the methods without --methods, in words."""
     parser.add_argument(
         "--methods",
         metavar="KEY,KEY",
         help=f"these methods, 1 to {MOST_METHODS}, in this order (default: {usual}); the start of a name is enough",
     ).complete = COMPLETE_KEYS  # type: ignore[attr-defined]
-    parser.set_defaults(method=[])
-    if own:
-        add_own_option(parser)
-
-
-def add_own_option(parser: argparse._ActionsContainer) -> None:
-    """Add the option for the user's own methods; `own_methods` reads it."""
     add_file(
         parser,
         "--method",

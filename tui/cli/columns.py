@@ -1,4 +1,4 @@
-"""Two columns of somebody else's table: times and energies from a CSV, an .xvg, a log, a file or stdin.
+"""Two columns of another program's table: times and energies from a CSV, an .xvg, a log, a file or stdin.
 
 Lines are read one by one, so a table may stand between other text.  The delimiter is that of the header: a tab, a
 semicolon, a comma or blanks.  Lines that start with # or @ are comments, but for names of columns: those of a header

@@ -72,20 +72,14 @@ def _gate(node: ast.expr, source: str, fields: Sequence[str], methods: Sequence[
             join = all if isinstance(op, ast.And) else any
             gates = [_gate(part, source, fields, methods) for part in parts]
             return lambda values: join(gate(values) for gate in gates)
-        case ast.Compare(ast.Attribute(ast.Name(method), field), [sign], [value]) if (
-            not fields and type(sign) in _SIGNS
-        ):
-            method = _known("method", method, methods)
-            field = _known("field", field, (*FIELDS, "verdict"))
-            return partial(_holds, method, field, _SIGNS[type(sign)], _value(field, sign, value, source))
-        case ast.Compare(ast.Name(field), [sign], [value]) if fields and _is_sign(sign):
-            field = _known("field", field, (*fields, "verdict"))
-            return partial(_holds, "", field, _SIGNS[type(sign)], _value(field, sign, value, source))
-    raise _no_comparison(ast.get_source_segment(source, node) or source, fields)
-
-
-def _is_sign(sign: ast.cmpop) -> bool:
-    return type(sign) in _SIGNS
+        case ast.Compare(ast.Attribute(ast.Name(key), field), [sign], [value]) if type(sign) in _SIGNS and not fields:
+            method, known = _known("method", key, methods), FIELDS
+        case ast.Compare(ast.Name(field), [sign], [value]) if type(sign) in _SIGNS and fields:
+            method, known = "", tuple(fields)
+        case _:
+            raise _no_comparison(ast.get_source_segment(source, node) or source, fields)
+    field = _known("field", field, (*known, "verdict"))
+    return partial(_holds, method, field, _SIGNS[type(sign)], _value(field, sign, value, source))
 
 
 def _holds(method: str, field: str, compare: Callable[[Any, Any], bool], value: float | str, values: Values) -> bool:

@@ -55,6 +55,14 @@ def fields_of(value: object, *names: str) -> dict[str, Any]:
     return {name: getattr(value, name) for name in names}
 
 
+def difference_fields(difference: Any, place: Sequence[str], values: Sequence[str]) -> dict[str, Any]:
+    """A number that differs, as in JSON: where, and its two values, also in hexadecimal."""
+    numbers = fields_of(difference, *values)
+    hexes = {f"{name}_hex": None if value is None else value.hex() for name, value in numbers.items()}
+    named = {"method": difference.method or None, "field": difference.field}
+    return {**fields_of(difference, *place), **named, **numbers, **hexes, "ulps": difference.ulps}
+
+
 def scene_line(scene: Scene, *more: str, degrees: bool = False) -> str:
     """The scene's name and numbers, and `more` of its attributes."""
     numbers = fields_of(scene, *LIMITS, *more)

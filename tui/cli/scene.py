@@ -34,7 +34,7 @@ def add_scene_options(parser: argparse.ArgumentParser) -> None:
 def scene_of(options: argparse.Namespace, usual: Scene | None = None) -> Scene:
     """The scene that the options describe, with its cast; without --scene they change the `usual` one.
 
-    Raises UserError for an unknown name, SceneError for bad numbers, OwnMethodError for a method that is none.
+    Raises UserError for an unknown name, SceneError for bad numbers, OwnMethodError for a bad function.
     """
     given = {name: getattr(options, name) for name in (*LIMITS, *PARAMETERS, "h")}
     changes = {name: value for name, value in given.items() if value is not None}

@@ -48,7 +48,8 @@ def read_scene(path: Path) -> Scene:
 def _value(name: str, value: Any) -> Any:
     """A field's value, as a Scene takes it."""
     if name not in FIELDS:
-        raise UserError(f"there is no field {printable(name, 40)}{did_you_mean(name, FIELDS) or _known()}")
+        advice = did_you_mean(name, FIELDS) or f"; choose from {', '.join(FIELDS)}."
+        raise UserError(f"there is no field {printable(name, 40)}{advice}")
     if name == "methods":
         if not isinstance(value, list) or not value or not all(isinstance(key, str) for key in value):
             raise UserError('methods is not a list of names; use for example ["velocity_verlet", "rk4"].')
@@ -66,10 +67,6 @@ def _value(name: str, value: Any) -> Any:
         return float(value)
     except OverflowError:
         raise UserError(f"{name} is out of range; use a number of ordinary size.") from None
-
-
-def _known() -> str:
-    return f"; choose from {', '.join(FIELDS)}."
 
 
 def _line(text: str, name: str) -> int:

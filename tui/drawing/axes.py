@@ -1,7 +1,6 @@
 """Axes: their range, round labels along them, and the part of a series in each of their columns."""
 
 import math
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -62,28 +61,20 @@ def log_x_axis(low: float, high: float, columns: int) -> Axis:
     return Axis(first, last, {power: _power(power) for power in range(first, last + 1) if power % step == 0})
 
 
-def _power(exponent: float, _: float = 1) -> str:
+def _power(exponent: float) -> str:
     return "1" + "0" * int(exponent) if 0 <= exponent <= 2 else f"1e{exponent:.0f}"
 
 
 def linear_axis(low: float, high: float, rows: int) -> Axis:
-    """A vertical axis from low to high, or a little wider where they hardly differ."""
+    """A vertical axis from low to high or a little beyond, wider where the two hardly differ.
+
+    Its labels are equally spaced, two or more rows apart if possible.
+    """
     least = max(1e-4 * max(abs(low), abs(high)), 1e-16)
     if high - low < least:
         low, high = low - least, high + least
     power = math.floor(math.log10(high - low)) - 1
-
-    def label(value: float, step: float) -> str:
-        decimals = max(-math.floor(math.log10(step) + 1e-9), 0)
-        if decimals < 5:
-            return f"{value:.{decimals}f}"
-        return f"{value * 10.0**decimals:.0f}e-{decimals}" if value else "0"
-
-    return _ruled(low, high, rows, [part * 10.0**power for part in (1, 2, 5, 10, 20, 50, 100)], label)
-
-
-def _ruled(low: float, high: float, rows: int, steps: Sequence[float], label: Callable[[float, float], str]) -> Axis:
-    """An axis from low to high or a little beyond, with equally spaced labels, two or more rows apart if possible."""
+    steps = [part * 10.0**power for part in (1, 2, 5, 10, 20, 50, 100)]
 
     def rows_apart(step: float) -> int:
         top = math.ceil(high / step - 1e-9)
@@ -94,7 +85,14 @@ def _ruled(low: float, high: float, rows: int, steps: Sequence[float], label: Ca
     top, row = math.ceil(high / step - 1e-9), step / rows_apart(step)
     bottom = top * step - (rows - 0.5) * row
     numbers = range(math.ceil(bottom / step), top + 1)
-    return Axis(bottom, top * step + row / 2, {number * step: label(number * step, step) for number in numbers})
+    return Axis(bottom, top * step + row / 2, {number * step: _label(number * step, step) for number in numbers})
+
+
+def _label(value: float, step: float) -> str:
+    decimals = max(-math.floor(math.log10(step) + 1e-9), 0)
+    if decimals < 5:
+        return f"{value:.{decimals}f}"
+    return f"{value * 10.0**decimals:.0f}e-{decimals}" if value else "0"
 
 
 def time_axis(start: float, end: float, columns: int, note: str = "") -> Axis:

@@ -105,12 +105,7 @@ def _parsed(drawn: str, width: int, height: int) -> Picture:
 
 
 def first_free(
-    picture: Picture,
-    places: Iterable[tuple[int, int]],
-    length: int,
-    top: int,
-    end: int,
-    otherwise: tuple[int, int],
+    picture: Picture, places: Iterable[tuple[int, int]], length: int, top: int, end: int, otherwise: tuple[int, int]
 ) -> tuple[int, int]:
     """The first of these places (row, column) where `length` blank cells are, from row `top` to before row `end`."""
     width = picture.characters.shape[1]

@@ -1,4 +1,4 @@
-"""Guarded: a widget whose faults are told instead of ending the lab."""
+"""Guarded: a widget whose errors are reported instead of ending the lab."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ LOG = "faults.log"
 
 
 def sentence(error: BaseException) -> str:
-    """What failed, for people: of a user's own method just that."""
+    """The error as a sentence."""
     if isinstance(error, OwnMethodError):
         return f"{error} The run stands still; p starts another."
     what = f"{type(error).__name__}: {error}".strip(": ")
@@ -21,14 +21,14 @@ def sentence(error: BaseException) -> str:
 
 @dataclass
 class Fault(Message):
-    """Something failed that must not."""
+    """An error that did not end the lab."""
 
     error: BaseException
-    shown: bool = False  # where it failed, so that no notice need say it
+    shown: bool = False  # in the widget already: no notice is needed
 
 
 class Guarded(MessagePump):
-    """Textual ends the program with the first exception in a handler; here it costs no more than that message."""
+    """Textual ends the program at the first exception in a handler; here only that message is lost."""
 
     async def _dispatch_message(self, message: Message) -> None:
         try:
@@ -37,5 +37,4 @@ class Guarded(MessagePump):
             self.fail(error)
 
     def fail(self, error: BaseException) -> None:
-        """Tell the app what failed."""
         self.app.post_message(Fault(error))

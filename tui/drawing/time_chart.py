@@ -107,16 +107,16 @@ def time_chart(
         behind = [place for place, method in enumerate(ghost[1]) if method.key in keys]
         parts.append(_part(*ghost, quantity, behind, scale, is_ghost=True))
     note = " run" if window.turned else ""
-    late = log and seconds is None and time_span(window.x, seconds, 1)[1] > LONG
+    log_time = log and seconds is None and time_span(window.x, seconds, 1)[1] > LONG
     if log:
         columns = width - 1 - ROOM - LABEL
-        x_axis = _time_axis(window, seconds, columns, note, late)
-        sides = [(largest, largest) for largest in (_largest(part, x_axis, columns, late) for part in parts)]
+        x_axis = _time_axis(window, seconds, columns, note, log_time)
+        sides = [(largest, largest) for largest in (_largest(part, x_axis, columns, log_time) for part in parts)]
         y_axis = _log_y_axis(np.hstack([low for low, _ in sides]), rows)
     else:
         y_axis = _linear_y_axis([part.low for part in parts], [part.high for part in parts], rows)
         columns = width - 1 - ROOM - y_axis.label_width
-        x_axis = _time_axis(window, seconds, columns, note, late)
+        x_axis = _time_axis(window, seconds, columns, note, log_time)
         sides = [per_column(part.window.x, part.low, part.high, x_axis.low, x_axis.high, columns) for part in parts]
     curves = [
         _outline(owner, letter, *heights)
@@ -139,7 +139,7 @@ def time_chart(
     middles = x_axis.low + (np.arange(columns) + 0.5) / columns * (x_axis.high - x_axis.low)
     low, high = sides[0]
     values = 10.0**high if log else np.where(abs(low) > abs(high), low, high)
-    return TimePlot(picture, places, left, (10.0**middles if late else middles).tolist(), values)
+    return TimePlot(picture, places, left, (10.0**middles if log_time else middles).tolist(), values)
 
 
 def _part(
@@ -152,18 +152,18 @@ def _part(
     return _Part(window, owners, [cast[place].letter for place in places], low, high)
 
 
-def _time_axis(window: Window, seconds: float | None, columns: int, note: str, late: bool) -> Axis:
-    """The axis of time; `late`: a logarithmic one, of a long run."""
+def _time_axis(window: Window, seconds: float | None, columns: int, note: str, log_time: bool) -> Axis:
+    """The axis of time; `log_time`: a logarithmic one, for a long run."""
     start, end = time_span(window.x, seconds, columns)
-    if not late:
+    if not log_time:
         return time_axis(start, end, columns, note)
     return log_time_axis(max(log_start(end), min(window.repeats, end / 10)), end, columns, note)
 
 
-def _largest(part: _Part, axis: Axis, columns: int, late: bool) -> Floats:
+def _largest(part: _Part, axis: Axis, columns: int, log_time: bool) -> Floats:
     """log10 of the largest magnitude at each column, (columns, methods)."""
     window, high = part.window, np.log10(np.maximum(np.fmax(abs(part.low), abs(part.high)), FLOOR))
-    if not late:
+    if not log_time:
         return held(window.x, high, axis.low, axis.high, columns, window.repeats)
     largest = envelope(window.x, high, window.repeats)
     return per_column(np.log10(np.maximum(window.x, 1e-9)), largest, largest, axis.low, axis.high, columns)[1]

@@ -90,7 +90,6 @@ class FrameTimer:
         return frames % max(self._rate.rate // times, 1) == 0
 
     def frame(self, now: float, processor: float) -> bool:
-        """Count a frame; whether the rate has changed."""
         changed = not self._resting and self._timer is not None and self._rate.frame(now, processor)
         if changed:
             self._restart()
@@ -107,6 +106,5 @@ class FrameTimer:
         self._timer = self._start(1 / (RESTING if self._resting else self._rate.rate))
 
     def stop(self) -> None:
-        """Call for no more."""
         if self._timer is not None:
             self._timer.stop()

@@ -60,7 +60,7 @@ class Ghost:
         return text if len(text) <= room else short
 
     def rods(self, t: float) -> dict[str, Rod]:
-        """By the key of its method, each pendulum at a simulated time [s]; none after the end, or its numbers' end."""
+        """The pendulums at a simulated time [s] by method key, but for those that have ended or failed by then."""
         if not self._times or not 0 <= t <= self._times[-1] + abs(self.scene.h):
             return {}
         count, at = 2 * len(self.scene.cast), bisect_right(self._times, t + ROUNDING) - 1

@@ -72,7 +72,6 @@ class ErrorHistory:
 
     @property
     def levels(self) -> "Levels":
-        """All rows."""
         if self._levels is None:
             from tui.playback.levels import Levels
 
@@ -102,11 +101,9 @@ class ErrorHistory:
         self._recent = deque(map(list, zip(*thetas, strict=True)), RECENT)
 
     def window(self, seconds: float | None = None) -> "Window":
-        """The last `seconds` of simulated time and half a swing before, or the whole run, in `capacity` rows or so."""
         return self.levels.window(seconds)
 
     def trail(self, index: int, length: int) -> "tuple[Floats, Floats]":
-        """theta [rad] and omega [rad/s] of a method, or EXACT, at the last `length` samples, oldest first."""
         return self.levels.trail(index, length)
 
     def thetas(self, index: int, length: int) -> list[float]:

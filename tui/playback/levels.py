@@ -82,9 +82,9 @@ class Level:
 
 
 class Levels:
-    """The rows of one run; times that errors repeat after and what energies are relative to are the run's, too.
+    """The rows of one run, with the STORED quantities and the `others` that its model has.
 
-    Rows hold what is STORED and what else the run's model has.  Where energy is conserved, it follows from its error.
+    Errors repeat after `repeats` [s]; `reference` is the start and the scale of energies.
     """
 
     def __init__(

@@ -19,7 +19,6 @@ class Playhead:
         return Playhead(self.position + elapsed * self.speed, self.speed, self.paused, now)
 
     def moved_to(self, position: float) -> "Playhead":
-        """The same playhead elsewhere."""
         return replace(self, position=position)
 
 

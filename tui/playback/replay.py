@@ -60,7 +60,6 @@ class Replay(Source):
 
     @property
     def run(self) -> "Run":
-        """The run on screen."""
         return self._cursor.run
 
     @property

@@ -63,7 +63,7 @@ class Shown:
         return self.alone(self.turn % len(cast), cast)
 
     def quantity_ahead(self, ahead: int, scene: Scene) -> Quantity:
-        """The quantity, or one of those after it, of those that a scene has."""
+        """The quantity `ahead` places after the chosen one, among those that the scene has."""
         known = quantities(scene)
         at = known.index(self.quantity) if self.quantity in known else 0
         return known[(at + ahead) % len(known)]

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class RecordingStatus:
-    """What becomes of a recording, or what is replayed."""
+    """The recording that is being written, or replayed."""
 
     name: str
     seconds: float  # of the recording clock

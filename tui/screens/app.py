@@ -163,7 +163,6 @@ class PenduApp(Guarded, App[Exit | OSError]):
         self.interrupt()
 
     def finish(self) -> None:
-        """Finish the recording."""
         self.source_screen.source.close()
 
     def interrupt(self) -> None:

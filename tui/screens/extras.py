@@ -120,7 +120,11 @@ def palette_entries(keys: Iterable[Key], live: bool, recordings: Iterable[Path])
     """The entries; only a live lab can be given another scene."""
     entry = PaletteEntry
     return [
-        *(entry(f"{key.does} ({key.shown})", key.group, key.action) for key in keys if _is_offered(key)),
+        *(
+            entry(f"{key.does} ({key.shown})", key.group, key.action)
+            for key in keys
+            if key.does and key.action not in ("", "command_palette")
+        ),
         *(
             entry(f"scene {scene.name}", f"{group}: {scene.watch}", f"start_scene({scene.name!r})")
             for group, scenes in GROUPS.items()
@@ -134,7 +138,3 @@ def palette_entries(keys: Iterable[Key], live: bool, recordings: Iterable[Path])
         *(entry(f"replay {path.stem}", str(path), f"app.extra('replay', {str(path)!r})") for path in recordings),
         entry("copy the command for this moment", "to the clipboard", "app.extra('copy_command')"),
     ]
-
-
-def _is_offered(key: Key) -> bool:
-    return bool(key.does and key.action) and key.action != "command_palette"

@@ -47,7 +47,7 @@ def recover_leftovers(folder: Path) -> list[str]:
     """Recover what killed labs left unfinished in a folder, and print a sentence about each."""
     from tui.words import recovered
 
-    sentences = recovered.recover_leftovers(folder, progress)
+    sentences = recovered.recover_leftovers(folder)
     for sentence in sentences:
         warn(sentence)
     return sentences

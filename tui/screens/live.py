@@ -53,7 +53,6 @@ class LiveScreen(Touring):
             self.remember(undo)
 
     def set_stepping(self, stepping: Stepping) -> None:
-        """Change the step size from here on."""
         before = self.live.stepping
         if self._do(lambda: self.live.set_stepping(stepping)):
             self.remember(lambda: self._do(lambda: self.live.set_stepping(before)))

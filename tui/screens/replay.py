@@ -48,7 +48,6 @@ class ReplayScreen(SourceScreen):
         self.seek(message.position)
 
     def seek(self, position: float) -> None:
-        """Go to a position [s] of the recording."""
         self.replay.seek(position)
         self.show_now()
 

@@ -52,10 +52,7 @@ def add_picture_options(parser: argparse.ArgumentParser, theme: str, character_s
     group = parser.add_argument_group("display", "auto: detected from the terminal (see pendu-tui doctor)")
     group.add_argument("--theme", choices=("auto", *PALETTES), default=theme, help="colours (%(default)s)")
     group.add_argument(
-        "--pixels",
-        choices=("auto", *CHARACTER_SETS),
-        default=character_set,
-        help="what to draw with (%(default)s)",
+        "--pixels", choices=("auto", *CHARACTER_SETS), default=character_set, help="what to draw with (%(default)s)"
     )
     group.add_argument("--present", action="store_true", help="large numbers and thick lines, for a projector")
     add_degrees(group)

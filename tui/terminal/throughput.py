@@ -64,9 +64,7 @@ class Throughput:
             self.rate = self.rate * (1 + GROWTH * elapsed) if now - self._full[0] < FORGOTTEN else math.inf
             self._on_its_way = max(0.0, self._on_its_way - self.rate * elapsed)
         while self._waits:
-            began, at, most, written = (
-                self._waits.popleft()
-            )  # at most, since some of the write may have found room at once
+            began, at, most, written = self._waits.popleft()  # most: some of the write may have found room at once
             (before, so_far), self._full = self._full, (at, written)
             if self.is_slow or began - before < TWICE:
                 least = (written - so_far) / (at - before)

@@ -59,7 +59,7 @@ class View(Box):
         self.call_after_refresh(self._begin)
 
     def compute(self, work: Callable[[], Coroutine[None, None, None]], group: str = "default") -> Worker[None]:
-        """Do this in place of the group's earlier work.  It is a function: what is replaced may not have begun yet."""
+        """Run this instead of the group's earlier work.  A function, since work that is replaced may not have begun."""
         return self.run_worker(work, group=group, exclusive=True, exit_on_error=False)
 
     def on_worker_state_changed(self, event: Worker.StateChanged) -> None:
@@ -113,7 +113,6 @@ class Pane(CellWidget):
 
     @property
     def places(self) -> list[int]:
-        """The places in the cast of the methods that are shown."""
         return self.shown.places(self.cast)
 
     @property
@@ -137,13 +136,13 @@ class Pane(CellWidget):
 
 
 class Chooser(Pane, Generic[Place], can_focus=True):
-    """A pane with a cursor, to choose how the lab is to go on; of one method it says more.
+    """A pane with a cursor that chooses how the lab goes on.  It describes one method.
 
-    A recording has nothing to choose: there the arrows, enter and esc are the replay's.
+    In a replay there is nothing to choose: the arrows, enter and esc are the replay's.
     """
 
-    def __init__(self, id: str | None = None) -> None:
-        super().__init__(id)
+    def __init__(self) -> None:
+        super().__init__()
         self.cursor: Place | None = None
         self._described = DESCRIBED_FIRST  # key of a method
 
@@ -154,7 +153,6 @@ class Chooser(Pane, Generic[Place], can_focus=True):
         return next((place for place in shown if self.cast[place].key == self._described), shown[0] if shown else 0)
 
     def describe(self, place: int) -> None:
-        """Describe another method."""
         self._described = self.cast[place].key
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
@@ -176,8 +174,6 @@ class Chooser(Pane, Generic[Place], can_focus=True):
         self.draw()
 
     def action_method(self, down: int) -> None:
-        """Describe the next of the methods that are shown."""
         if shown := self.places:
-            at = shown.index(self.index) if self.index in shown else -1
-            self.describe(shown[(at + down) % len(shown)])
+            self.describe(shown[(shown.index(self.index) + down) % len(shown)])
             self.draw()

@@ -11,11 +11,7 @@ from tui.words.numbers import about, seconds
 def description(source: Source, only: Cast | None = None) -> list[str]:
     """The run, each method, or `only` these, and the recording, one sentence each."""
     shown = [index for index, method in enumerate(source.scene.cast) if only is None or method in only]
-    return [
-        *_run(source),
-        *(method_sentence(source, index) for index in shown),
-        _recording(source),
-    ]
+    return [*_run(source), *(method_sentence(source, index) for index in shown), _recording(source)]
 
 
 def _run(source: Source) -> list[str]:

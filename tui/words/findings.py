@@ -13,9 +13,9 @@ from tui.words.numbers import about, two_digits
 
 LARGEST_BAND = 0.2
 """Of the energy: a larger loss changes the rate of loss itself."""
-LONGEST = 1000 * 86400.0  # s; nobody waits longer
+LONGEST = 1000 * 86400.0  # s; later forecasts are left out
 LINE = 80  # characters of a sentence, which has one line of the screen
-MOSTLY = 0.5  # of the energy: beyond, what is lost is told, and not how fast
+MOSTLY = 0.5  # of the energy; beyond it the sentence gives the share that is lost, and not the rate
 STEADY = 0.05
 """Relative change of the period, up to which a rate of loss per second is taken to stay."""
 
@@ -38,7 +38,7 @@ def forecast(source: Source, index: int) -> Forecast | None:
     """When a method's steady loss of energy will take its error past the smallest maximum that it is still below.
 
     None unless the slope is known to a tenth; after a change of the step size, because the run's maxima
-    then belong to another step size; where the period hangs on the energy, and the rate of loss with it; and if
+    then belong to another step size; where the period depends on the energy, and the rate of loss with it; and if
     the maximum is too large or the time too long.
     """
     judgement, error = source.judgements[index], source.sample.readings[index].energy_error
@@ -99,7 +99,7 @@ def passing(milestone: Milestone, other: Method) -> str:
 
 
 def staying(source: Source, hidden: Collection[str] = ()) -> str:
-    """The sentence on the bounded methods but for the hidden ones; "" if there are none yet."""
+    """The sentence on the bounded methods that are not hidden; "" if there are none yet."""
     judged = zip(source.scene.cast, source.judgements, strict=True)
     bounded = [(m, j) for m, j in judged if j.verdict == "bounded" and m.key not in hidden]
     if not bounded:

@@ -37,7 +37,7 @@ def hint(seconds: float, events: Iterable[Event]) -> str:
 def insight(source: Source, hidden: Collection[str] = ()) -> str:
     """The sentence: equilibrium, the return to t = 0, news, the scene's own sentence, or the lasting ones in turn.
 
-    Of the methods of these keys, which are `hidden`, it says nothing.
+    It does not mention methods whose keys are `hidden`.
     """
     sample, scene, returned = source.sample, source.scene, source.history.returned
     if source.exact.regime == "equilibrium":
@@ -77,12 +77,10 @@ def lasting(source: Source, hidden: Collection[str] = ()) -> list[str]:
     ended = {index: each for index, each in endings(source).items() if index in shown}
     ends = sorted(ended.values(), key=lambda each: (each.kind != "failed", each.step))
     over = [ending(each, source.scene.equations.conserved) for each in ends]
-    every = [*zip(source.scene.cast, source.judgements, source.sample.readings, strict=True)]
+    cast, judgements, readings = source.scene.cast, source.judgements, source.sample.readings
     moves = [
-        leaving(source, index)
-        if index not in ended
-        else astray(short_name(every[index][0]), every[index][1], every[index][2].energy_error)
-        for index in shown
+        astray(short_name(cast[at]), judgements[at], readings[at].energy_error) if at in ended else leaving(source, at)
+        for at in shown
     ]
     known = list(filter(None, [*over, staying(source, hidden), *moves]))
     return [*known, *filter(None, [_watch(source, hidden)])] if known else [so_far(source, hidden)]

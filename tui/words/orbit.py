@@ -1,4 +1,4 @@
-"""On what kind of orbit of a method's own map a start lies, in words and numbers."""
+"""The orbit of a start under a method's own map, in words and numbers."""
 
 import math
 from collections.abc import Sequence

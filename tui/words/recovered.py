@@ -1,20 +1,17 @@
 """Recordings left unfinished by a lab that was killed: recovered at the next start, and reported."""
 
-from collections.abc import Callable
-from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from recordings.errors import printable
 from recordings.library import leftovers
+from tui.cli.output import progress
 
 if TYPE_CHECKING:
     from recordings.recover import Rescue
 
-Progress = Callable[[str], AbstractContextManager[Callable[[float, float], None]]]
 
-
-def recover_leftovers(folder: Path, progress: Progress) -> list[str]:
+def recover_leftovers(folder: Path) -> list[str]:
     """Recover all unfinished recordings in a folder; returns a sentence on each, also where the disk fails."""
     sentences = []
     for part in leftovers(folder):

@@ -32,7 +32,6 @@ class State(NamedTuple):
 
     @classmethod
     def of(cls, source: Source, shown: Shown) -> Self:
-        """As it is now."""
         sample = source.sample
         return cls(sample.run, source.scene.name, sample.t, source.stepping, source.playhead.speed, shown)
 

@@ -127,12 +127,12 @@ def test_a_method_of_ones_own_comes_last_in_the_scenes_cast(mine):
     assert (own.key, own.symplectic, own.source) == ("kick_drift", True, MINE.format(name="rk4"))
 
 
-def test_with_methods_it_stands_where_it_is_named_or_last(mine):
+def test_a_method_of_ones_own_stands_where_methods_names_it_or_last(mine):
     for named, keys in (("kick,rk4", ["kick_drift", "rk4"]), ("rk4", ["rk4", "kick_drift"])):
         assert [method.key for method in cast_from("--method", f"{mine}:kick_drift", "--methods", named)] == keys
 
 
-def test_its_letter_is_the_one_given_or_one_that_is_free(mine):
+def test_a_method_of_ones_own_has_the_letter_given_or_a_free_one(mine):
     assert cast_from("--method", f"{mine}:kick_drift,letter=x")[-1].letter == "x"
     free = cast_from("--method", f"{mine}:kick_drift")[-1].letter
     assert free not in {method.letter for method in METHODS}
@@ -167,7 +167,7 @@ def test_a_file_that_is_not_text_is_one_sentence_and_exit_3(mine):
     assert pendu("run", "--time", "2", "--method", f"{mine}:rk4x").refused(3, "it is not text in UTF-8")
 
 
-def test_one_that_never_yields_is_given_up(mine, monkeypatch):
+def test_a_method_that_never_yields_is_interrupted(mine, monkeypatch):
     monkeypatch.setattr(cast_options, "MOST_SECONDS", 0.2)
     assert pendu("run", "--time", "2", "--method", f"{mine}:endless").refused(2, "more than 0.2 s", "ever yield?")
 

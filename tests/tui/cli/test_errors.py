@@ -1,13 +1,11 @@
 import os
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from tests.tui.command_line import pendu
-
-PENDU = [sys.executable, "-c", "import sys; from tui.cli.dispatch import main; sys.exit(main())"]
+from tests.tui.pty_lab import PENDU
 
 
 @pytest.mark.parametrize("arguments", [("scnes",), ("scenes", "--jsn"), ("scenes", "extra"), ("--nonsense",)])
@@ -60,21 +58,13 @@ def test_a_bug_is_not_hidden_behind_a_sentence(monkeypatch):
         pendu("scenes")
 
 
-def test_an_interrupt_is_one_sentence_and_exit_130(monkeypatch):
-    def interrupted(_: object) -> int:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr("tui.commands.about.scenes.run", interrupted)
-    outcome = pendu("scenes")
-    assert (outcome.code, outcome.err) == (130, "pendu-tui: interrupted.\n")
-
-
-def test_an_interrupt_that_a_library_turns_into_an_error_is_still_an_interrupt(monkeypatch):
+@pytest.mark.parametrize("becomes", [KeyboardInterrupt, ImportError])
+def test_an_interrupt_is_one_sentence_and_exit_130_even_if_a_library_makes_another_error_of_it(monkeypatch, becomes):
     def interrupted(_: object) -> int:
         try:
             raise KeyboardInterrupt
         except KeyboardInterrupt:
-            raise ImportError("half imported") from None
+            raise becomes("half imported") from None
 
     monkeypatch.setattr("tui.commands.about.scenes.run", interrupted)
     outcome = pendu("scenes")

@@ -35,7 +35,7 @@ def reading(**values: float | str | None) -> dict[str, dict[str, float | str | N
 
 
 @given(methods, plain_fields, signs, numbers, numbers)
-def test_a_comparison_says_what_python_says(method: str, field: str, sign: str, value: float, number: float) -> None:
+def test_a_comparison_is_that_of_python(method: str, field: str, sign: str, value: float, number: float) -> None:
     assert parse(f"{method}.{field}{sign}{number!r}")(reading(**{field: value})) is SIGNS[sign](value, number)
 
 

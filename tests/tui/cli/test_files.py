@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.tui.command_line import pendu
+from tests.tui.pty_lab import PENDU
 from tui.cli.errors import UserError
 from tui.cli.files import repeat_swallowed_interrupts, whole_file
 
@@ -19,6 +20,7 @@ WRITERS = {
     "accuracy": ("accuracy", "--time", 1, "--h-values", "0.2:0.1:2", "--csv"),
     "stability": ("stability", "--steps", 5, "--z-values", "0.1,0.2", "--theta-values", "1", "-o"),
     "film": ("export", "drift", "--format", "cast", "--speed", 15, "--fps", 1, "-o"),
+    "section": ("section", "--starts", 9, "--steps", 50, "-o"),
     "snapshot": ("snapshot", "--time", 0, "--size", "60x16", "-o"),
 }
 LONG = {
@@ -108,6 +110,7 @@ def test_a_missing_folder_is_refused_before_anything_is_computed(tmp_path, comma
     monkeypatch.setattr("engine.accuracy.study.Study.points", None)
     monkeypatch.setattr("engine.stability.grid.Grid.compute", None)
     monkeypatch.setattr("tui.commands.files.export.write_csv", None)
+    monkeypatch.setattr("tui.commands.studies.reports.section.pieces", None)
     monkeypatch.setattr("tui.screens.still.film", None)
     assert pendu(*command, tmp_path / "no" / "file.svg").refused(5, "no folder", "create the folder")
 
@@ -117,8 +120,8 @@ def test_a_missing_folder_is_refused_before_anything_is_computed(tmp_path, comma
 def test_a_command_stopped_by_a_signal_leaves_no_part_behind(tmp_path, command, number):
     file = tmp_path / "file"
     file.write_text("older")
-    run = [sys.executable, "-c", "import sys; from tui.cli.dispatch import main; sys.exit(main())", *command, str(file)]
-    with subprocess.Popen([*run, "--force"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+    run = [*PENDU, *command, str(file), "--force"]
+    with subprocess.Popen(run, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         while process.poll() is None and not file.with_name("file.part").exists():
             time.sleep(0.01)
         time.sleep(0.2)  # s; libraries are still being imported before that, and may make an error of their own of it

@@ -34,6 +34,14 @@ def test_an_option_equal_to_the_scenes_value_keeps_the_scenes_name():
     assert scene_from("--scene", "crossover", "--h", "0.2") == SCENES["crossover"]
 
 
+def test_without_a_name_the_options_change_the_usual_scene_as_that_of_a_ghost():
+    parser = Parser(prog="pendu-tui test")
+    add_scene_options(parser)
+    assert scene_of(parser.parse_args([]), SCENES["spin"]) == SCENES["spin"]
+    assert scene_of(parser.parse_args(["--h", "0.01"]), SCENES["spin"]) == SCENES["spin"].altered(h=0.01)
+    assert scene_of(parser.parse_args(["--scene", "drift"]), SCENES["spin"]) == SCENES["drift"]
+
+
 def test_degrees_become_radians():
     assert angle("115deg") == angle("115°") == math.radians(115)
     assert angle("-90deg") == -math.pi / 2

@@ -42,14 +42,14 @@ def test_without_methods_it_has_those_that_are_for_its_model(tmp_path, name):
         ("theta = = 1", "is not TOML: Invalid value (at line 1"),
     ],
 )
-def test_what_is_wrong_is_told_with_line_and_field(tmp_path, text, said):
+def test_an_error_names_the_line_and_the_field(tmp_path, text, said):
     (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
     answer = pendu("run", "--scene", str(tmp_path / "mine.toml"), "--time", "1")
     assert answer.code == 3
     assert said in answer.err
 
 
-def test_a_file_that_is_not_there_is_said():
+def test_a_missing_file_is_one_sentence():
     answer = pendu("run", "--scene", "none.toml", "--time", "1")
     assert answer.code == 3
     assert "cannot read none.toml" in answer.err

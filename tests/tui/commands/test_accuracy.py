@@ -6,7 +6,6 @@ import math
 import re
 from itertools import islice
 
-import jsonschema
 import pytest
 
 from engine.accuracy.references import ABSENT, OTHER_MODEL, UNFAIR
@@ -14,75 +13,12 @@ from engine.accuracy.study import REASONS, Order, Study, ladder, orders
 from engine.methods import METHODS, USUAL_CAST
 from engine.run.compiled import available, tiered
 from engine.scenes import SCENES
-from tests.tui.command_line import pendu
+from tests.tui.command_line import own_method, pendu
 from tui.commands.studies.reports.orders import order_remarks
 from tui.views.accuracy.chart import accuracy_chart, accuracy_series
 
 QUICK = ("accuracy", "--time", "5", "--h-values", "0.2:0.01:4")
 KEYS = [method.key for method in USUAL_CAST]
-NUMBER = {"type": "number"}
-MAYBE = {"type": ["number", "null"]}
-
-
-def fields(**types):
-    return {"type": "object", "properties": types, "required": list(types), "additionalProperties": False}
-
-
-def rows(**types):
-    return {"type": "array", "items": fields(**types)}
-
-
-METHOD = {"enum": [method.key for method in METHODS]}
-ANY = {"enum": [*METHOD["enum"], "taylor_20", "closed_form"]}
-ADVICE = {
-    "time": NUMBER,
-    "target": MAYBE,
-    "budget": MAYBE,
-    "method": {"enum": [*ANY["enum"], None]},
-    "h": MAYBE,
-    "force_evaluations": MAYBE,
-    "reached": MAYBE,
-    "seconds": MAYBE,
-    "tolerance": MAYBE,
-    "saves_over_rk4": MAYBE,
-    "reason": {"type": ["string", "null"]},
-    "attempts": rows(
-        method=ANY,
-        h=MAYBE,
-        force_evaluations=MAYBE,
-        error=MAYBE,
-        seconds=MAYBE,
-        tolerance=MAYBE,
-        why_not={"type": ["string", "null"]},
-    ),
-}
-SCHEMA = fields(
-    schema={"const": "pendu.accuracy/1"},
-    scene={"type": "object"},
-    time=NUMBER,
-    error={"enum": ["theta", "energy", "final"]},
-    points=rows(
-        method=ANY,
-        h=MAYBE,
-        steps={"type": ["integer", "null"]},
-        force_evaluations={"type": ["integer", "null"]},
-        seconds=MAYBE,
-        spread=MAYBE,
-        theta_error=MAYBE,
-        energy_error=MAYBE,
-        final_error=MAYBE,
-        valid={"type": "boolean"},
-        reason={"type": ["string", "null"]},
-        tolerance=MAYBE,
-    ),
-    front=rows(error=NUMBER, method=ANY, cost=NUMBER, saves_over_rk4=MAYBE),
-    absent={"type": ["string", "null"]},
-    orders=rows(method=METHOD, claimed={"type": "integer"}, measured=MAYBE),
-    recommendation={"anyOf": [{"type": "null"}, fields(**ADVICE)]},
-    durations=rows(**ADVICE),
-    interrupted={"type": "boolean"},
-)
-
 TABLE = """\
   h [s]  z = h·w0     steps  Explicit Euler (1/step)  Symplectic Euler (1/step)  Velocity Verlet (1/step)  RK4 (4/step)
     0.2     0.626        25                x 1.9e+01                    4.4e-01                   2.1e-01       8.1e-03
@@ -146,7 +82,6 @@ def test_every_point_on_the_chart_is_where_its_cost_and_its_error_are():
 
 def test_as_json_it_holds_points_orders_and_recommendation():
     answer = pendu(*QUICK, "--target", "1e-4", "--json").json
-    jsonschema.validate(answer, SCHEMA)
     assert [point["method"] for point in answer["points"]] == KEYS * 4
     assert [order["claimed"] for order in answer["orders"]] == [method.order for method in USUAL_CAST]
     advice = answer["recommendation"]
@@ -240,18 +175,14 @@ def test_a_mistake_is_one_sentence_and_exit_2(arguments, words):
     assert pendu("accuracy", *arguments).refused(2, *words)
 
 
-def test_a_folder_that_is_not_there_is_one_sentence_and_exit_5(tmp_path):
-    assert pendu(*QUICK, "--csv", tmp_path / "no" / "where.csv").refused(5, "create the folder")
-
-
 @pytest.mark.parametrize(
     "extreme",
     [("--theta", "1e-170"), ("--theta", "1e6"), ("--omega", "1e8"), ("--theta", "180deg")],
 )
 def test_extreme_starts_print_numbers_and_no_nan(extreme):
-    told = pendu("accuracy", "--time", "1", "--h-values", "0.1:0.01:3", *extreme, "--target", "1e-3", "--json")
-    jsonschema.validate(told.json, SCHEMA)
-    text = pendu("accuracy", "--time", "1", "--h-values", "0.1:0.01:3", *extreme)
+    quick = ("accuracy", "--time", "1", "--h-values", "0.1:0.01:3", *extreme)
+    assert len(pendu(*quick, "--target", "1e-3", "--json").json["points"]) == 12  # read by a parser that refuses nan
+    text = pendu(*quick)
     assert text.code == 0
     assert "nan" not in text.out
     assert "inf" not in text.out
@@ -267,7 +198,6 @@ def test_ctrl_c_keeps_what_is_done(monkeypatch):
     monkeypatch.setattr(Study, "points", interrupted)
     told = pendu(*QUICK, "--target", "1e-4", "--json")
     assert (told.code, told.err) == (130, "pendu-tui: interrupted; partial results are kept.\n")
-    jsonschema.validate(told.json, SCHEMA)
     assert told.json["interrupted"]
     assert (len(told.json["points"]), told.json["recommendation"]) == (5, None)
 
@@ -288,11 +218,7 @@ def test_the_linear_oscillator_is_compared_with_its_cosine():
 
 def test_seconds_of_ones_own_method_are_compared_without_numba(tmp_path, monkeypatch):
     monkeypatch.setattr("engine.run.compiled.compiled", None)
-    (tmp_path / "mine.py").write_text(
-        "def mine(force, phase, h):\n    theta, omega = phase\n    while True:\n"
-        "        theta, omega = theta + h * omega, omega + h * force(theta)\n        yield theta, omega\n"
-    )
-    own = ("--method", f"{tmp_path}/mine.py:mine", "--methods", "mine,explicit_euler", "--cost", "seconds")
+    own = ("--method", own_method(tmp_path), "--methods", "mine,explicit_euler", "--cost", "seconds")
     points = pendu("accuracy", "--time", "2", "--h-values", "0.01:0.001:2", *own, "--json").json["points"]
     assert {point["method"] for point in points if point["seconds"] > 0} == {"mine", "explicit_euler"}
 
@@ -302,19 +228,14 @@ needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed
 
 
 def test_all_methods_are_those_there_are_and_ones_own(tmp_path):
-    (tmp_path / "mine.py").write_text(
-        "def mine(force, phase, h):\n    theta, omega = phase\n    while True:\n"
-        "        theta, omega = theta + h * omega, omega + h * force(theta)\n        yield theta, omega\n"
-    )
     keys = [method.key for method in METHODS if method.general]
     assert pendu(*ALL, "--json").json["scene"]["methods"] == keys
-    own = pendu(*ALL, "--method", f"{tmp_path}/mine.py:mine", "--json").json
+    own = pendu(*ALL, "--method", own_method(tmp_path), "--json").json
     assert own["scene"]["methods"] == [*keys[:4], "mine", *keys[4:]]  # the cast first
 
 
-def test_of_all_methods_it_says_who_is_ahead_and_by_which_factor():
+def test_of_all_methods_it_names_the_cheapest_and_by_which_factor():
     answer = pendu(*ALL, "--target", "1e-6", "--json").json
-    jsonschema.validate(answer, SCHEMA)
     best = {place["error"]: place for place in answer["front"]}[1e-6]
     advice = answer["recommendation"]
     assert (best["method"], advice["method"]) == ("blanes_moan_6", "blanes_moan_6")
@@ -331,7 +252,6 @@ def test_of_all_methods_it_says_who_is_ahead_and_by_which_factor():
 @needs_numba
 def test_over_seconds_all_there_is_includes_the_series_and_the_floor():
     answer = pendu(*ALL, "--cost", "seconds", "--target", "1e-9", "--json").json
-    jsonschema.validate(answer, SCHEMA)
     series = [point for point in answer["points"] if point["method"] == "taylor_20"]
     assert len(series) > 10
     for point in series:
@@ -374,7 +294,7 @@ def test_without_numba_the_series_is_said_to_need_it(monkeypatch):
     assert ABSENT in told.out
 
 
-def test_the_growth_of_the_angle_error_is_told_where_it_is_a_power_of_time():
+def test_the_growth_of_the_angle_error_is_printed_where_it_is_a_power_of_time():
     out = pendu("accuracy", "--theta", "2", "--h", "0.02", "--time", "2", "--h-values", "0.1:0.05:2").out
     said = r"at h = 0.02 s, over up to 100 periods, the theta error grows as: Velocity Verlet t\^(.*), RK4 t\^(.*)"
     powers = next(found.groups() for line in out.splitlines() if (found := re.fullmatch(said, line)))
@@ -389,7 +309,7 @@ def test_the_growth_of_the_angle_error_is_told_where_it_is_a_power_of_time():
         (SCENES["spin"], ["Symplectic Euler reads 2.00, not 1: from theta = 0 its angles are velocity Verlet's"]),
         (
             SCENES["near-separatrix"],
-            ["RK4 reads 4.99, not 4: beside upright the phase hangs on the energy, which it loses as h^5"],
+            ["RK4 reads 4.99, not 4: near the upright position the phase depends on the energy, which it loses as h^5"],
         ),
     ],
 )
@@ -400,4 +320,4 @@ def test_where_a_measured_order_is_not_the_claimed_one_it_says_why(scene, remark
 
 def test_an_order_of_neither_kind_is_remarked_on_in_general():
     (said,) = order_remarks(SCENES["drift"], [Order(USUAL_CAST[2], 2.6)])
-    assert said == "Velocity Verlet reads 2.60, not 2: over these h its errors follow no one power"
+    assert said == "Velocity Verlet reads 2.60, not 2: its errors do not follow a single power over these h"

@@ -4,7 +4,6 @@ import json
 import os
 import signal
 import subprocess
-import sys
 import time
 
 import pyte
@@ -14,6 +13,7 @@ from recordings.library import GOLDEN
 from tests.recordings.examples import record, two_runs
 from tests.tui.command_line import pendu
 from tests.tui.harness import player, recorded
+from tests.tui.pty_lab import PENDU
 from tui.terminal.screenshot import text_of
 
 
@@ -126,9 +126,8 @@ def test_of_a_damaged_recording_what_is_intact_is_shown(tmp_path):
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_interrupted_it_leaves_nothing_behind(tmp_path, number):
-    command = [sys.executable, "-c", "import sys; from tui.cli.dispatch import main; sys.exit(main())"]
     film = ["export", str(GOLDEN / "drift.mcap"), "--format", "cast", "--speed", "0.01", "-o", str(tmp_path / "x.cast")]
-    process = subprocess.Popen([*command, *film], stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen([*PENDU, *film], stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     part = tmp_path / "x.cast.part"
     until = time.monotonic() + 30
     while time.monotonic() < until and not (part.exists() and part.stat().st_size):

@@ -160,10 +160,11 @@ def test_every_command_is_completed():
     assert set(whole_parser()._subparsers._group_actions[0].choices) == set(COMMANDS)
 
 
-@pytest.mark.parametrize("method", METHODS, ids=lambda method: method.key)
 @pytest.mark.parametrize("shell", SHELLS)
-def test_every_method_can_be_completed(method, shell):
-    assert f"{method.key}.max_energy_error" in pendu("completion", shell).out
+def test_every_method_can_be_completed(shell):
+    script = pendu("completion", shell).out
+    for method in METHODS:
+        assert f"{method.key}.max_energy_error" in script
 
 
 @pytest.mark.parametrize("arguments", [(), ("tcsh",), ("bash", "zsh")])

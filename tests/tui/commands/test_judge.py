@@ -122,7 +122,7 @@ def test_fail_if_names_a_field_without_a_method(expression, code):
     assert outcome.err == (f"pendu-tui: the check failed: {expression}\n" if code else "")
 
 
-def test_what_is_not_known_yet_has_not_passed():
+def test_a_value_that_is_not_known_yet_fails_the_check():
     assert judge("t,E\n0,1\n1,1\n", "--fail-if", "trend_per_second > 1").code == 1
     assert judge("t,E\n0,1\n1,1\n", "--fail-if", "verdict != bounded").code == 1
     assert "too early" in judge("t,E\n0,1\n1,1\n").out

@@ -56,7 +56,7 @@ def test_text_from_a_file_does_not_steer_the_terminal(capsys):
     assert out.count("\n") == 2
 
 
-def test_scenes_come_in_groups_and_what_is_left_out_is_said():
+def test_scenes_are_listed_in_groups_and_the_last_line_says_what_is_left_out():
     lines = pendu("scenes").out.splitlines()
     names = [line.split("  ")[0].strip().casefold() for line in lines]
     for group, scenes in GROUPS.items():

@@ -42,6 +42,12 @@ def test_a_name_that_was_taken_meanwhile_is_replaced_only_if_nobody_gave_it(tmp_
     other.close()
 
 
+def test_a_library_that_cannot_be_made_is_one_sentence_and_exit_5(tmp_path, monkeypatch):
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path / "file" / "library"))
+    assert pendu("live", "--plain").refused(5, str(tmp_path / "file"))
+
+
 def test_a_file_that_is_there_is_not_recorded_over(tmp_path):
     path = tmp_path / "mine.mcap"
     path.write_bytes(b"precious")

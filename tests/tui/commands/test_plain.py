@@ -3,17 +3,13 @@
 import os
 import signal
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from recordings.library import listing
 from recordings.verify import verify
-from tests.tui.command_line import pendu
-
-PENDU = [sys.executable, "-c", "import sys; from tui.cli.dispatch import main; sys.exit(main())"]
-ROOT = Path(__file__).parents[3]
+from tests.tui.pty_lab import PENDU, ROOT
 
 
 def started(folder: Path, *arguments: str) -> "subprocess.Popen[str]":
@@ -64,20 +60,10 @@ def test_when_nobody_reads_any_more_the_recording_is_whole_too(tmp_path):
     assert verify(item.path).complete
 
 
-def test_a_replay_is_told_to_its_end_and_nothing_is_recorded(tmp_path):
+def test_a_replay_is_printed_to_its_end_and_nothing_is_recorded(tmp_path):
     with started(tmp_path, "replay", "drift", "--plain", "--speed", "20") as process:
         out, err = process.communicate(timeout=60)
     assert (process.returncode, err) == (0, "")
     assert out.startswith("The replay runs at 20 times real time")
     assert "Explicit Euler over the top" in out
     assert not list(tmp_path.iterdir())
-
-
-def test_without_a_terminal_the_way_out_is_named():
-    assert pendu("live", "--no-record").refused(4, "--plain")
-
-
-def test_help_names_both_ways_to_show_the_lab_otherwise():
-    for name in ("live", "replay"):
-        assert {"--plain", "--present"} <= set(pendu(name, "--help").out.split())
-    assert "--present" in pendu("snapshot", "--help").out

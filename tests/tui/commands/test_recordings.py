@@ -106,25 +106,6 @@ def test_export_to_stdout_is_the_file(tmp_path):
     assert pendu("export", "spin").out == (tmp_path / "spin.csv").read_text()
 
 
-def test_export_overwrites_nothing_unless_by_force_and_leaves_nothing_half_written(tmp_path):
-    out = tmp_path / "drift.csv"
-    out.write_text("precious")
-    assert pendu("export", "drift", "-o", out).refused(5, "--force")
-    assert out.read_text() == "precious"
-    assert pendu("export", "drift", "-o", out, "--force").code == 0
-    assert pendu("export", "drift", "-o", tmp_path / "missing" / "drift.csv").refused(5, "create the folder")
-    assert names(tmp_path) == ["drift.csv"]
-
-
-def test_an_export_that_fails_half_way_leaves_no_file(tmp_path, monkeypatch):
-    def full(*_: object) -> int:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr("tui.commands.files.export.write_csv", full)
-    assert pendu("export", "drift", "-o", tmp_path / "drift.csv").refused(5, "No space")
-    assert names(tmp_path) == []
-
-
 def test_the_library_is_listed_newest_first(library):
     answer = pendu("recordings", "--json").json
     assert answer["schema"] == "pendu.recordings/1"

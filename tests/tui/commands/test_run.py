@@ -2,7 +2,6 @@ import math
 import os
 import signal
 import subprocess
-import sys
 import time
 from pathlib import Path
 
@@ -17,6 +16,7 @@ from engine.scenes import DEFAULT_SCENE, SCENES
 from recordings.recording import Recording
 from recordings.verify import verify
 from tests.tui.command_line import pendu
+from tests.tui.pty_lab import PENDU
 from tui.cli.fail_if import FIELDS
 from tui.commands.studies.run import SAMPLE_BYTES
 from tui.words.numbers import about
@@ -34,7 +34,7 @@ def test_json_has_the_fields_of_the_design_and_the_numbers_of_the_engine():
         assert (told["theta"], told["max_energy_error"]) == (reading.theta, reading.max_energy_error)
 
 
-def test_chaos_is_told_with_its_lyapunov_number():
+def test_a_chaotic_method_has_its_lyapunov_number():
     chaos = ("run", "--theta", "0.3", "--h", "0.654514", "--time", 200)
     symplectic = pendu(*chaos, "--json").json["methods"][1]
     assert symplectic["verdict"] == "chaotic"
@@ -130,11 +130,6 @@ def test_a_folder_that_cannot_be_written_is_one_sentence_and_exit_5(tmp_path, pl
     "arguments",
     [
         ("--h", "0"),
-        ("--h", "nan"),
-        ("--h", "1e9"),
-        ("--h", "-1"),
-        ("--length", "0"),
-        ("--gravity", "-9.81"),
         ("--theta", "abc"),
         ("--scene", "drfit"),
         ("--time", "0"),
@@ -165,10 +160,6 @@ def test_a_gate_may_ask_for_the_verdict():
     assert pendu("run", "--time", 1, "--fail-if", "rk4.verdict == 'too early'").code == 1
 
 
-def test_a_gate_that_does_not_hold_is_exit_0():
-    assert pendu("run", "--time", 10, "--fail-if", "velocity_verlet.max_energy_error > 1e-2").code == 0
-
-
 @pytest.mark.skipif(not available(), reason="Numba is not installed")
 def test_compiled_and_plain_runs_print_the_same_numbers(monkeypatch):
     monkeypatch.setattr("engine.run.compiled.COMPILED_FROM", 1)
@@ -180,9 +171,8 @@ def test_compiled_and_plain_runs_print_the_same_numbers(monkeypatch):
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_run_that_is_stopped_finishes_its_recording(tmp_path, number):
     path = tmp_path / "run.mcap"
-    program = [sys.executable, "-c", "import sys; from tui.cli.dispatch import main; sys.exit(main())"]
     arguments = ["run", "--time", "1e7", "--no-compiled", "--record", str(path)]
-    process = subprocess.Popen([*program, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen([*PENDU, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     part = Path(f"{path}.part")
     deadline = time.monotonic() + 60  # s; a second is usual
     while not (part.exists() and part.stat().st_size > 100_000) and time.monotonic() < deadline:
@@ -216,7 +206,7 @@ def test_a_bob_on_a_spring_has_the_energy_in_its_spring_and_nothing_else_has():
     assert {(row["spring_energy"], row["log_energy_error"]) for row in others} == {(None, None)}
 
 
-def test_with_friction_errors_are_logarithms_to_the_true_energy_and_said_to_be():
+def test_with_friction_errors_are_logarithms_of_the_ratio_to_the_true_energy():
     rows = pendu("run", "--scene", "damped", "--time", "5", "--json").json["methods"]
     assert rows[0]["log_energy_error"] > 0.3 > abs(rows[3]["log_energy_error"])
     assert {row["spring_energy"] for row in rows} == {None}
@@ -225,7 +215,7 @@ def test_with_friction_errors_are_logarithms_to_the_true_energy_and_said_to_be()
     assert "energy error" not in text
 
 
-def test_the_step_of_a_stiff_scene_is_told_by_the_frequency_of_its_spring():
+def test_the_step_of_a_stiff_scene_is_given_in_units_of_its_springs_frequency():
     assert "h·omega_s = 1\n" in pendu("run", "--scene", "stiff-slow", "--time", "1").out
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.tui.command_line import pendu
+from tests.tui.command_line import own_method, pendu
 from tui.terminal.screenshot import text_of
 
 ISLANDS = ("--theta", "1.25", "--h", "0.348011")  # at the 1:6 resonance of velocity Verlet
@@ -69,11 +69,7 @@ def test_pixels_and_methods_can_be_chosen(tmp_path):
 
 
 def test_one_may_draw_a_method_of_ones_own(tmp_path):
-    (tmp_path / "mine.py").write_text(
-        "def mine(force, phase, h):\n    theta, omega = phase\n    while True:\n"
-        "        omega = omega + h * force(theta)\n        theta = theta + h * omega\n        yield theta, omega\n"
-    )
-    own = ("--method", f"{tmp_path}/mine.py:mine", "--methods", "symplectic_euler")
+    own = ("--method", own_method(tmp_path), "--methods", "symplectic_euler")
     answer = pendu("section", *ISLANDS, *own, "--json").json
     theirs, mine = answer["orbits"]
     assert (theirs["method"], mine["method"]) == ("symplectic_euler", "mine")
@@ -95,15 +91,6 @@ def test_one_may_draw_a_method_of_ones_own(tmp_path):
 )
 def test_what_cannot_be_is_one_sentence(words, said):
     assert pendu("section", *words).refused(2, *said)
-
-
-def test_a_file_that_is_there_is_kept(tmp_path: Path):
-    file = tmp_path / "map.svg"
-    file.write_text("mine")
-    assert pendu("section", *FEW, "-o", file).refused(5, "already exists", "--force")
-    assert file.read_text() == "mine"
-    assert pendu("section", *FEW, "-o", file, "--force").code == 0
-    assert pendu("section", *FEW, "-o", tmp_path / "no" / "map.svg").refused(5, "create the folder")
 
 
 def test_an_interrupt_leaves_no_file(tmp_path: Path, monkeypatch):

@@ -14,12 +14,12 @@ import pytest
 from engine.scenes import SCENES
 from recordings.verify import verify
 from tests.tui.command_line import pendu
+from tests.tui.pty_lab import PENDU
 from tui.terminal.options import TerminalOptions
 
 aiohttp = pytest.importorskip("aiohttp", reason="the extra web is not installed")
 pytest.importorskip("textual_serve", reason="the extra web is not installed")
 
-PENDU = [sys.executable, "-c", "import sys; from tui.cli.dispatch import main; sys.exit(main())"]
 PATIENCE = 50.0  # s, on a busy machine
 CTRL_P, CTRL_Z, ESCAPE, ENTER = "\x10", "\x1a", "\x1b", "\r"
 
@@ -244,7 +244,7 @@ class Heard:
         ('["focus"]', []),
     ],
 )
-async def test_what_a_terminal_says_is_passed_on_within_reason(said, heard):
+async def test_the_messages_of_a_terminal_are_passed_on_with_sane_sizes(said, heard):
     from tui.commands.lab.web.server import passed_on
 
     ears = Heard()
@@ -256,7 +256,7 @@ async def test_what_a_terminal_says_is_passed_on_within_reason(said, heard):
     "said",
     ["no json", "[]", '["stdin", 1]', '["resize", {"width": 1}]', '["run", "ls"]', '{"a": 1}', "3", "[" * 10_000],
 )
-async def test_what_no_terminal_says_is_not(said):
+async def test_any_other_message_is_refused(said):
     from tui.commands.lab.web.server import passed_on
 
     ears = Heard()
@@ -264,7 +264,7 @@ async def test_what_no_terminal_says_is_not(said):
     assert ears.words == []
 
 
-async def test_and_ends_the_tab(server):
+async def test_a_message_that_is_not_a_terminals_closes_the_tab(server):
     async with server.tab() as tab:
         await tab.shows("LIVE")
         await tab.socket.send_str("no json")

@@ -101,7 +101,8 @@ def test_csv_has_a_line_for_each_amplitude_or_with_the_map_for_each_swing():
 def test_the_map_is_drawn_in_characters_where_there_is_no_colour():
     out = pendu("stability", *SMALL, "--map").out
     assert "\x1b" not in out
-    assert "3 v Velocity Verlet" in out
+    assert max(map(len, out.splitlines())) <= 120
+    assert all(title in out for title in ("1 e Explicit Euler", "3 v Velocity Verlet", "4 r RK4"))
     assert "| linear limit" in out
 
 
@@ -211,10 +212,6 @@ def test_impossible_values_are_refused_in_one_sentence(arguments, words):
     assert pendu("stability", *arguments).refused(2, *words)
 
 
-def test_a_file_that_cannot_be_written_is_exit_5(tmp_path):
-    assert pendu("stability", *SMALL, "-o", tmp_path / "no" / "map.npz").refused(5, "create the folder")
-
-
 def test_dask_without_its_package_says_what_to_install(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
     assert pendu("stability", "--dask", "tcp://127.0.0.1:1").refused(2, "pendu-tui[cluster]")
@@ -227,15 +224,6 @@ def test_the_amplitude_of_a_scene_is_how_far_it_swings():
     assert math.cos(amplitude(moving)) == pytest.approx(1 - 2 / moving.w0_squared, rel=1e-12)
     assert amplitude(SCENES["spin"]) is None
     assert amplitude(Scene(theta=0.0)) is None
-
-
-def test_the_map_has_a_line_for_each_of_its_rows_when_it_is_piped():
-    lines = pendu(
-        "stability", "--steps", "3", "--theta-values", "0.5:3:6", "--z-values", "0.1:3:20", "--map"
-    ).out.splitlines()
-    assert max(map(len, lines)) <= 120
-    titles = [line for line in lines if "1 e Explicit Euler" in line or "4 r RK4" in line]
-    assert len(titles) == 2
 
 
 def test_of_the_linear_oscillator_there_are_the_lines_of_theory_and_a_sentence():

@@ -125,6 +125,7 @@ def test_a_file_that_is_not_a_recording_is_one_sentence_and_exit_3(tmp_path, con
     path.write_bytes(content)
     assert pendu("verify", path).refused(3, str(path))
     assert pendu("info", path).refused(3, str(path))
+    assert pendu("replay", path, "--plain").refused(3, str(path))
     assert pendu("export", path).refused(3, str(path))
     assert pendu("recover", path, "-o", tmp_path / "out.mcap").refused(3, str(path))
     assert [other.name for other in tmp_path.iterdir()] == ["file.mcap"]

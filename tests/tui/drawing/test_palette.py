@@ -68,7 +68,7 @@ def contrast(colour, background):
 @pytest.mark.parametrize(
     ("theme", "apart", "all_apart"), [("dark", 19.5, 10.0), ("light", 16.0, 9.7), ("high-contrast", 21.6, 9.2)]
 )
-def test_methods_are_told_apart_by_the_colour_blind(theme, apart, all_apart):
+def test_the_colour_blind_can_distinguish_the_methods(theme, apart, all_apart):
     assert worst_pair(PALETTES[theme].methods[:4]) == pytest.approx(apart, abs=0.05)  # the figures are given to 0.1
     assert worst_pair(PALETTES[theme].methods) == pytest.approx(all_apart, abs=0.05)
     assert worst_pair(("#FF0000", "#00FF00", "#FFFF00", "#0000FF")) < apart / 4
@@ -88,7 +88,7 @@ def test_in_high_contrast_text_meets_the_strictest_level_of_wcag():
 
 
 @THEMES
-def test_methods_are_told_apart_in_256_colours(theme):
+def test_the_methods_differ_in_256_colours(theme):
     colours = PALETTES[theme]
     names = [*colours.methods[:4], colours.text, colours.background]
     fewer = [Color.parse(name).downgrade(ColorSystem.EIGHT_BIT).get_truecolor().hex for name in names]
@@ -97,7 +97,7 @@ def test_methods_are_told_apart_in_256_colours(theme):
 
 
 @pytest.mark.parametrize("terminal", TERMINALS)
-def test_methods_are_told_apart_in_the_terminals_own_16_colours(terminal):
+def test_the_methods_differ_in_the_terminals_own_16_colours(terminal):
     assert PALETTES["ansi"].methods == ("bright_red", "bright_blue", "bright_cyan", "bright_yellow")
     black, *methods = TERMINALS[terminal]
     assert worst_pair(methods) >= 14.4

@@ -68,7 +68,7 @@ def test_a_stop_is_not_a_late_frame():
     assert machine.rate.rate == 30
 
 
-def test_whoever_wants_few_frames_gets_no_fewer():
+def test_a_low_frame_rate_is_not_lowered_further():
     assert Machine(0.5, wanted=10).run(30.0).rate.rate == 10
     assert Machine(0.2, wanted=12).run(30.0).rate.rate == 10
 

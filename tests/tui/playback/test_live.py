@@ -88,7 +88,7 @@ def test_time_that_runs_back_to_its_start_is_sampled_there_and_goes_on(speed):
     assert end.t == pytest.approx(turn - 4 * speed, abs=0.011 + 1e-9)  # nothing is dropped: less than a step behind
 
 
-def test_what_the_processor_cannot_do_within_the_frame_is_dropped_and_told():
+def test_time_that_the_processor_cannot_simulate_is_dropped_and_lowers_the_pace():
     bench = Bench(speed=4096, second_per_look=FRAME_BUDGET / 4)
     bench.run(5)
     assert bench.live.pace.share < 0.9
@@ -108,7 +108,7 @@ def test_a_step_is_one_step_and_pauses():
     assert bench.live.step(-(10**6)).step == 0
 
 
-def test_stepping_back_and_going_on_has_the_bits_of_never_having_stepped_back():
+def test_after_a_step_back_the_run_goes_on_with_the_same_bits_and_nothing_is_recorded_twice():
     bench = Bench()
     bench.run(3)
     bench.live.step(-25)
@@ -118,14 +118,6 @@ def test_stepping_back_and_going_on_has_the_bits_of_never_having_stepped_back():
     lockstep.advance(sample.step)
     expected = lockstep.sample()
     assert [reading.theta for reading in sample.readings] == [reading.theta for reading in expected.readings]
-
-
-def test_nothing_is_recorded_twice():
-    bench = Bench()
-    bench.run(3)
-    bench.live.step(-25)
-    bench.live.pause(False)
-    bench.run(4)
     steps = [sample.step for sample in bench.keeper.samples]
     assert steps == sorted(set(steps))
     assert {sample.run for sample in bench.keeper.samples} == {1}

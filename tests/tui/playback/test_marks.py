@@ -8,12 +8,6 @@ from tui.playback.marks import Mark, Marks
 MARK = Mark(1.0, 1, 20, "here")
 
 
-def test_marks_are_kept_beside_their_recording(tmp_path: Path):
-    Marks(tmp_path / "a.mcap").add(MARK)
-    assert list(Marks(tmp_path / "a.mcap")) == [MARK]
-    assert [path.name for path in tmp_path.iterdir()] == ["a.mcap.marks.json"]
-
-
 def test_those_of_a_recording_that_came_with_the_program_are_kept_in_the_library(tmp_path: Path, monkeypatch):
     monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path / "library"))
     Marks(resolve("drift")).add(MARK)

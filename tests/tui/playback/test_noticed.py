@@ -4,40 +4,28 @@ from dataclasses import replace
 
 import pytest
 
-from engine.scenes import DEFAULT_SCENE, SCENES
+from engine.scenes import SCENES
 from recordings.events import Event
 from recordings.headless import simulate
-from recordings.live_recorder import LiveRecorder
 from recordings.recorder import Recorder
 from recordings.recording import Recording
 from recordings.verify import verify
-from tui.playback.live import Live
+from tests.tui.harness import Lab, after
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
-
-FRAME = 1 / 30
-
-
-def play(live, seconds, now):
-    """So many seconds of the clock, from `now` on."""
-    for _ in range(round(seconds / FRAME)):
-        now += FRAME
-        live.tick(now)
-    return now
 
 
 @pytest.fixture
 def lab(tmp_path):
     """A lab that ran for 24 s, and then from 10 s on for 8 s with another step size; and its recording."""
-    live = Live(DEFAULT_SCENE, clock=lambda: 0.0)
-    live.record(LiveRecorder(tmp_path / "lab.mcap", wall=lambda: 1_700_000_000_000_000_000))
-    live.tick(0.0)
-    now = play(live, 24.0, 0.0)
+    bench = Lab(record=tmp_path / "lab.mcap")
+    bench.run(24.0)
+    live = bench.live
     first = list(live.milestones)
     live.step(-(live.sample.step - 200))
     live.set_stepping(replace(live.stepping, h=0.02))
     live.pause(False)
-    play(live, 8.0, now)
+    bench.run(8.0)
     live.close()
     return live, first, tmp_path / "lab.mcap"
 
@@ -102,7 +90,4 @@ def test_errors_that_cross_are_recorded_and_a_stop_of_the_replay(tmp_path):
         replay.seek_event(1)
         assert replay.sample.step == crossing.step == 167
         assert crossing in replay.milestones
-    live = Live(scene, clock=lambda: 0.0)
-    live.tick(0.0)
-    play(live, 40, 0.0)
-    assert crossing in live.milestones
+    assert crossing in after(scene, 40).milestones

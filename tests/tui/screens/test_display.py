@@ -9,7 +9,6 @@ from rich.color import Color
 from tests.tui.conftest import lines_of
 from tests.tui.harness import key_of, lab
 from tui.drawing.palette import PALETTES, TEXT
-from tui.screens.keys import COMMON
 from tui.screens.status_line import StatusLine
 from tui.terminal.options import CHARACTER_SETS
 from tui.views import VIEWS
@@ -102,11 +101,6 @@ async def test_an_empty_no_color_means_nothing(monkeypatch):
     monkeypatch.setenv("NO_COLOR", "")
     async with lab() as theatre:
         assert not theatre.app.no_color
-
-
-def test_the_help_says_how_to_change_the_pixels_and_how_to_leave_for_a_while():
-    shown = {key.shown: key.action for key in COMMON}
-    assert (shown["a"], shown["ctrl+z"]) == ("app.next_character_set", "app.suspend_process")
 
 
 async def test_degrees_are_in_the_table_the_chart_phase_space_and_the_status_line():

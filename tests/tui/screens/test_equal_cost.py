@@ -23,28 +23,15 @@ def toggle(live: Live) -> None:
     Driver(live).action_equal_cost()
 
 
-def test_each_method_has_its_own_step_and_all_meet(tmp_path: Path):
-    steps = []
-    recorded(
-        tmp_path / "a.mcap",
-        toggle,
-        lambda live: steps.append((live.stepping.h, live.stepping.own, live.stepping.smallest)),
-    )
-    assert steps == [(0.2, (0.05, 0.05, 0.05, 0.2), 0.05)]
-
-
-def test_the_same_key_goes_back_to_the_same_step_for_all(tmp_path: Path):
-    steps = []
-    recorded(tmp_path / "a.mcap", toggle, 0.5, toggle, lambda live: steps.append(live.stepping.own))
-    assert steps == [(0.05,) * 4]
-
-
-def test_a_restart_stays_at_equal_cost(tmp_path: Path):
-    steps = []
-    recorded(
-        tmp_path / "a.mcap", toggle, 0.5, Live.restart, lambda live: steps.append((live.scene.h, live.stepping.own))
-    )
-    assert steps == [(0.05, (0.05, 0.05, 0.05, 0.2))]
+def test_the_key_toggles_equal_cost_which_a_restart_keeps():
+    live = Live(Scene(h=0.05))
+    toggle(live)
+    assert (live.stepping.h, live.stepping.own, live.stepping.smallest) == (0.2, (0.05, 0.05, 0.05, 0.2), 0.05)
+    live.step(5)
+    live.restart()
+    assert (live.scene.h, live.stepping.own) == (0.05, (0.05, 0.05, 0.05, 0.2))
+    toggle(live)
+    assert live.stepping.own == (0.05,) * 4
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from tui.playback.shown import WINDOWS, quantities
 from tui.screens.dialogs.start_form import StartForm
 from tui.screens.dialogs.text import TextScreen, help_text
 from tui.screens.extras import go_to
-from tui.screens.keys import COMMON, LIVE
+from tui.screens.keys import COMMON, LIVE, REPLAY
 from tui.screens.live import LiveScreen
 from tui.screens.status_line import StatusLine
 from tui.views.lab.error_table import ErrorTable
@@ -340,12 +340,10 @@ async def test_a_click_on_the_chart_the_events_or_the_title_of_phase_space_does_
         assert (theatre.stage.view, theatre.source.sample.run) == ("phase", run)
 
 
-def test_the_help_names_every_key():
-    said = help_text((*LIVE, *COMMON), Live(DEFAULT_SCENE))
-    for key in (*LIVE, *COMMON):
+@pytest.mark.parametrize("keys", [(*LIVE, *COMMON), (*REPLAY, *COMMON)], ids=["lab", "replay"])
+def test_the_help_names_every_key_and_no_key_has_two_meanings(keys):
+    said = help_text(keys, Live(DEFAULT_SCENE))
+    for key in keys:
         assert f"  {key.shown:<14}{key.does}" in said
-
-
-def test_no_key_has_two_meanings():
-    names = [name for key in (*LIVE, *COMMON) if key.names for name in key.names.split(",")]
+    names = [name for key in keys if key.names for name in key.names.split(",")]
     assert len(names) == len(set(names))

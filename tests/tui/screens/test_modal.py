@@ -24,7 +24,7 @@ async def opened(theatre) -> TextScreen:
     return help_screen
 
 
-async def test_asked_twice_it_closes_itself_only():
+async def test_dismissed_twice_a_text_closes_only_itself():
     async with lab() as theatre:
         help_screen = await opened(theatre)
         help_screen.dismiss()
@@ -33,7 +33,7 @@ async def test_asked_twice_it_closes_itself_only():
         assert theatre.app.screen is theatre.stage
 
 
-async def test_asked_while_something_lies_over_it_it_waits_until_it_is_asked_again():
+async def test_a_text_below_another_one_stays_when_it_is_dismissed():
     async with lab() as theatre:
         help_screen = await opened(theatre)
         above = TextScreen("Above", "it")

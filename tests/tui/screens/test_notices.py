@@ -35,7 +35,7 @@ async def test_equal_notices_replace_each_other():
         assert len(app._notifications) == 2
 
 
-async def test_a_second_mark_at_one_moment_is_none_and_is_said_to_be():
+async def test_a_moment_is_marked_only_once_and_the_second_time_a_notice_says_so():
     live = Live(DEFAULT_SCENE, clock=lambda: 0.0)
     app = PenduApp(LiveScreen(live, lambda: 0.0))
     async with app.run_test(size=(80, 24), notifications=True) as pilot:

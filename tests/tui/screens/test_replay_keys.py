@@ -7,15 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from engine.scenes import DEFAULT_SCENE
 from recordings.recording import Recording
 from tests.tui.harness import eventful, on_stage, player, recorded
 from tui.cli.errors import UserError
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
-from tui.screens.dialogs.text import help_text
-from tui.screens.keys import COMMON, REPLAY
 from tui.screens.live import LiveScreen
 from tui.screens.replay import NO_LENGTH, ReplayScreen
 from tui.screens.seek_bar import SeekBar
@@ -173,12 +170,3 @@ async def test_f_stays_in_the_replay_where_the_lab_could_not_record(path):
         await theatre.press("right")
         assert theatre.source.playhead.position == pytest.approx(2.0)
         assert any("/nowhere" in notice.message for notice in theatre.app._notifications)
-
-
-def test_the_help_names_every_key_and_no_key_has_two_meanings():
-    keys = (*REPLAY, *COMMON)
-    said = help_text(keys, Live(DEFAULT_SCENE))
-    for key in keys:
-        assert f"  {key.shown:<14}{key.does}" in said
-    names = [name for key in keys if key.names for name in key.names.split(",")]
-    assert len(names) == len(set(names))

@@ -57,7 +57,7 @@ async def test_s_saves_a_picture_and_its_text_among_the_recordings_and_says_wher
 
 
 @pytest.mark.skipif("not hasattr(__import__('os'), 'geteuid')")
-async def test_where_nothing_can_be_saved_that_is_said(tmp_path, monkeypatch):
+async def test_a_screenshot_that_cannot_be_saved_is_reported(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path / "file" / "below"))
     async with lab(size=(80, 24)) as theatre:

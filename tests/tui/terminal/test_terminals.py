@@ -58,15 +58,6 @@ def test_without_utf_8_the_whole_lab_is_ascii(tmp_path):
     assert b"-----" in output  # a frame
 
 
-def test_with_new_pixels_all_is_sent_anew_even_what_stands_still(tmp_path):
-    with session(tmp_path) as pendu:
-        pendu.wait_for(RECORDING)
-        pendu.type(" a")
-        pendu.wait_for(NEVER_CHANGES)
-        pendu.type("q")
-        assert pendu.end() == 0
-
-
 def test_pixels_can_be_chosen_and_changed_with_a(tmp_path):
     assert seen(tmp_path / "ascii", "--pixels", "ascii").isascii()
     output = seen(tmp_path / "half", "live", "--pixels", "half", keys="aa").decode()

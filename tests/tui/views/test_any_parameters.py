@@ -51,11 +51,10 @@ def scenes(model: str) -> st.SearchStrategy[Scene]:
 def on_screen(live) -> str:
     """What the panes of the lab show of it, but for colours."""
     scene, sample, history = live.scene, live.sample, live.history
-    model, exact = scene.equations, live.exact.at(sample.t)
     rows = [
         status_row(live, 120),
-        *table(scene.cast, sample, live.judgements, exact, live.stepping.own, Shown(), 120, model.conserved),
-        *large_rows(scene.cast, sample, live.judgements, Shown(), 120, model.conserved),
+        *table(live, sample, Shown(), 120),
+        *large_rows(live, sample, Shown(), 120),
         *fact_rows(live, Shown(), None, None, 120),
     ]
     charts = [

@@ -6,15 +6,14 @@ import pytest
 
 from engine.methods import USUAL_CAST
 from engine.scenes import SCENES
-from tests.tui.harness import key_of, lab
+from recordings.library import resolve
+from tests.tui.harness import key_of, lab, player
 from tui.views.accuracy.pane import AccuracyPane
 from tui.views.phase.section_pane import SectionPane
 from tui.views.stability.pane import StabilityPane
-from tui.views.view import Pane
+from tui.views.view import Chooser, Pane
 
 pytestmark = pytest.mark.other_process  # what is computed is left again at once
-
-SPECIAL = [name for name, scene in SCENES.items() if not scene.general]
 
 
 def words(theatre):
@@ -30,19 +29,18 @@ async def test_every_scene_runs_in_every_view(name):
             assert not re.search(r"\b(nan|inf)\b", words(theatre))
 
 
-@pytest.mark.parametrize("name", SPECIAL)
 @pytest.mark.parametrize(
     ("view", "pane", "what"),
     [("accuracy", AccuracyPane, "The accuracy chart"), ("stability", StabilityPane, "The map of stability")],
 )
-async def test_what_a_scene_cannot_have_says_why(name, view, pane, what):
-    async with lab(SCENES[name]) as theatre:
+async def test_a_view_that_a_scene_cannot_have_says_why(view, pane, what):
+    async with lab(SCENES["stiff-slow"]) as theatre:
         await theatre.press(key_of(view))
         await theatre.run(0.2)
         said = " ".join(theatre.text(pane).split())
         assert said == f"{what} is for methods that take any force, on a pendulum without friction."
         await theatre.press("right", "enter", "tab", "escape")
-        assert theatre.source.scene == SCENES[name]
+        assert theatre.source.scene == SCENES["stiff-slow"]
 
 
 async def test_its_own_map_is_left_out_with_a_word():
@@ -66,6 +64,19 @@ async def test_back_at_a_pendulum_chart_and_map_are_computed():
             assert "take any force" not in theatre.text(pane)
             if view == "accuracy":
                 assert theatre.stage.query_one(pane).rungs
+
+
+@pytest.mark.parametrize("view", ["phase", "accuracy", "stability"])
+async def test_in_a_replay_the_arrows_seek_and_nothing_can_be_chosen(view):
+    async with player(resolve("drift")) as theatre:
+        await theatre.press("space", key_of(view))
+        (pane,) = (pane for pane in theatre.stage.query(Chooser) if pane.drawable)
+        pane.focus()
+        before = theatre.source.scene, theatre.source.stepping
+        await theatre.press("right", "enter")
+        await theatre.pilot.click(pane, offset=(20, 4))
+        assert theatre.source.playhead.position == 1.0
+        assert (theatre.source.scene, theatre.source.stepping, pane.cursor) == (*before, None)
 
 
 async def test_only_the_pendulum_has_regimes_and_a_separatrix():

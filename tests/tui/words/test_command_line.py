@@ -14,6 +14,7 @@ from engine.scenes import LIMITS, SCENES
 from recordings.library import GOLDEN
 from recordings.live_recorder import LiveRecorder
 from recordings.recording import Recording
+from tests.tui.command_line import own_method
 from tui.cli.dispatch import command_of
 from tui.cli.scene import scene_of
 from tui.commands.lab.live import lab_of
@@ -86,16 +87,7 @@ def test_a_step_changed_before_the_first_one_is_part_of_the_start_but_time_that_
 
 
 def test_a_method_of_ones_own_is_loaded_again_from_its_file(tmp_path):
-    file = tmp_path / "my methods.py"
-    file.write_text("""
-def mine(force, phase, h):
-    theta, omega = phase
-    while True:
-        omega = omega + h * force(theta)
-        theta = theta + h * omega
-        yield theta, omega
-""")
-    given = options_of(f"pendu-tui live --method '{file}:mine,letter=q' --methods mine,rk4")
+    given = options_of(f"pendu-tui live --method '{own_method(tmp_path)},letter=q' --methods mine,rk4")
     scene = scene_of(given)
     assert scene_of(options_of(command(Live(scene)))) == scene
 

@@ -72,7 +72,7 @@ def test_where_there_are_several_runs_each_event_has_the_number_of_its_own():
     assert numbered(event_lines(live)) == [" 1    0.00 start drift, h 0.05 s", " 2    0.00 start spin, h 0.02 s"]
 
 
-def test_over_the_top_with_almost_the_energy_of_the_start_the_excess_is_told():
+def test_an_energy_close_to_that_of_the_start_is_given_as_the_difference():
     milestone = Milestone("over the top", USUAL_CAST[3], 10, 0.5, 0.0034)
     assert milestone_text(milestone) == "RK4 over the top, +0.34 %"
 

@@ -13,7 +13,7 @@ from tests.tui.harness import FPS, Lab, after
 from tui.playback.live import Live
 from tui.words.events import event_lines
 from tui.words.findings import astray, ending, forecast, leaving, short_name, so_far, staying
-from tui.words.insight import FRESH, RESTING, TURN, WATCH, insight, lasting
+from tui.words.insight import FRESH, RESTING, TURN, insight, lasting
 from tui.words.numbers import about, two_digits
 
 EXPLICIT, SYMPLECTIC, VERLET, RK4 = range(4)
@@ -104,13 +104,6 @@ def test_a_forecast_comes_true_in_a_long_run(name, h, seconds):
     assert sample.t - seconds == pytest.approx(ahead.seconds, rel=0.08)
 
 
-def test_the_default_scene_s_forecast_is_about_half_an_hour():
-    live = after(SCENES["drift"], 40)
-    assert re.fullmatch(
-        r"RK4 loses 0\.00029 % of E0/s; its error will pass Verlet's in about 3[123] min\.", leaving(live, RK4)
-    )
-
-
 def test_there_is_no_forecast_where_the_period_hangs_on_the_energy():
     live = after(SCENES["near-separatrix"], 200)
     assert live.judgements[RK4].verdict == "loses"
@@ -127,11 +120,11 @@ def test_there_is_no_forecast_where_the_period_hangs_on_the_energy():
         (Judgement("loses", -1e-3, 1e-4), ""),
     ],
 )
-def test_what_neither_stays_nor_leaves_has_a_sentence(judgement, text):
+def test_a_chaotic_wandering_or_caught_method_has_a_sentence(judgement, text):
     assert astray("RK4", judgement, 29.0) == text
 
 
-def test_what_is_nearly_all_lost_is_told_as_a_share_and_not_as_a_rate():
+def test_a_large_loss_of_energy_is_given_as_a_share_and_not_as_a_rate():
     assert leaving(after(SCENES["verlet-limit"], 127), RK4) == "RK4 has lost all of its energy."
 
 
@@ -179,7 +172,7 @@ def test_a_pendulum_in_equilibrium():
     assert {(reading.theta, reading.omega) for reading in live.sample.readings} == {(0.0, 0.0)}
 
 
-def test_a_failure_comes_first_and_is_all_that_is_said_of_its_method():
+def test_a_failure_comes_first_and_is_the_only_sentence_on_its_method():
     live = Live(SCENES["drift"].altered(theta=1e-150), clock=lambda: 0.0)  # any growth overflows a relative error
     while live.sample.readings[EXPLICIT].diverged_at is None:
         live.step(1000)
@@ -191,7 +184,6 @@ def test_a_failure_comes_first_and_is_all_that_is_said_of_its_method():
 
 def test_a_run_begins_with_what_to_watch():
     assert insight(after(SCENES["crossover"], 1)) == SCENES["crossover"].watch
-    assert WATCH > 5  # s: to be read
 
 
 def test_with_another_step_size_what_to_watch_is_left_out():

@@ -1,14 +1,9 @@
-from contextlib import nullcontext
 from pathlib import Path
 
 from recordings.recording import Recording
 from recordings.verify import verify
 from tests.tui.harness import Lab
 from tui.words.recovered import recover_leftovers
-
-
-def recover_in(folder: Path) -> list[str]:
-    return recover_leftovers(folder, lambda what: nullcontext(lambda done, total: None))
 
 
 def left_unfinished(path: Path) -> Path:
@@ -21,35 +16,35 @@ def left_unfinished(path: Path) -> Path:
 
 
 def test_without_leftovers_there_is_no_sentence(tmp_path):
-    assert recover_in(tmp_path) == []
-    assert recover_in(tmp_path / "no such folder") == []
+    assert recover_leftovers(tmp_path) == []
+    assert recover_leftovers(tmp_path / "no such folder") == []
 
 
 def test_a_leftover_becomes_a_complete_recording_and_is_reported(tmp_path):
     part = left_unfinished(tmp_path / "one.mcap")
-    (said,) = recover_in(tmp_path)
+    (said,) = recover_leftovers(tmp_path)
     (whole,) = tmp_path.iterdir()
     assert not part.exists()
     assert str(whole) in said
     assert verify(whole).identical
     assert Recording.open(whole).length > 2  # at most the last second is lost
-    assert recover_in(tmp_path) == []
+    assert recover_leftovers(tmp_path) == []
 
 
 def test_what_cannot_be_recovered_is_kept_and_reported_once(tmp_path):
     (tmp_path / "bad.mcap.part").write_bytes(b"nothing of ours")
     left_unfinished(tmp_path / "good.mcap")
-    said = recover_in(tmp_path)
+    said = recover_leftovers(tmp_path)
     assert len(said) == 2
     (kept,) = [path for path in tmp_path.iterdir() if path.read_bytes() == b"nothing of ours"]
     assert any("cannot be recovered" in sentence and str(kept) in sentence for sentence in said)
-    assert recover_in(tmp_path) == []
+    assert recover_leftovers(tmp_path) == []
 
 
 def test_a_recording_in_progress_is_left_alone(tmp_path):
     lab = Lab(record=tmp_path / "one.mcap")
     lab.run(1.0)
-    assert recover_in(tmp_path) == []
+    assert recover_leftovers(tmp_path) == []
     lab.live.close()
     assert [path.name for path in tmp_path.iterdir()] == ["one.mcap"]
 
@@ -62,11 +57,11 @@ def test_a_full_disk_does_not_keep_the_lab_from_starting(tmp_path, monkeypatch):
 
     with monkeypatch.context() as elsewhere:
         elsewhere.setattr("mcap.writer.Writer.flush", full)
-        (said,) = recover_in(tmp_path)
+        (said,) = recover_leftovers(tmp_path)
     assert str(part) in said
     assert "No space left on device" in said
     assert list(tmp_path.iterdir()) == [part]
-    assert len(recover_in(tmp_path)) == 1
+    assert len(recover_leftovers(tmp_path)) == 1
     assert not part.exists()
 
 
@@ -74,5 +69,5 @@ def test_leftovers_recovered_by_another_lab_are_skipped(tmp_path, monkeypatch):
     one, two = left_unfinished(tmp_path / "one.mcap"), left_unfinished(tmp_path / "two.mcap")
     monkeypatch.setattr("tui.words.recovered.leftovers", lambda folder: [one, two])
     one.unlink()
-    assert len(recover_in(tmp_path)) == 1
+    assert len(recover_leftovers(tmp_path)) == 1
     assert not two.exists()

@@ -70,7 +70,7 @@ def test_a_step_says_one_thing_and_asks_one_question_in_a_view_that_there_is(ste
     assert "?" not in step.watch + step.sentence + step.answer
 
 
-def test_who_gains():
+def test_the_numbers_of_the_first_step():
     readings = Walked(GAINS).readings
     assert 1 + readings[EXPLICIT].energy_error == pytest.approx(5, abs=0.3)
     assert readings[SYMPLECTIC].max_energy_error == pytest.approx(0.08, abs=0.005)
@@ -218,7 +218,7 @@ CHANGES = [lambda live: live.start(SCENES["spin"]), lambda live: live.set_steppi
 
 
 @pytest.mark.parametrize("change", CHANGES, ids=["another scene", "another step"])
-def test_who_changes_the_run_is_told_so_and_gets_the_step_again(change):
+def test_after_a_change_of_the_run_the_guide_says_so_and_enter_begins_the_step_again(change):
     guide = guided()
     change(guide.live)
     assert not guide.follow()

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from recordings.errors import printable
 from tui.cli.errors import Exit
 from tui.cli.options import add_recording
-from tui.cli.output import fields_of, print_table, progress, warn, write_json
+from tui.cli.output import difference_fields, fields_of, print_table, progress, warn, write_json
 from tui.words.numbers import counted, scientific, seconds
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def _fields(a: "Recording", b: "Recording", result: "Comparison") -> dict[str, A
         **{f"runs_only_in_{side}": runs for side, runs in zip("ab", result.runs_only, strict=True)},
         **{f"methods_only_in_{side}": keys for side, keys in zip("ab", result.methods_only, strict=True)},
         "event_differences": map(_event_fields, result.events),
-        "first_difference": None if result.first is None else _difference_fields(result.first),
+        "first_difference": result.first and difference_fields(result.first, ("run", "step", "step_b", "t"), "ab"),
         "samples": {"compared": result.paired, "different": result.differing}
         | {f"only_in_{side}": count for side, count in zip("ab", result.unpaired, strict=True)},
         "methods": [
@@ -83,18 +83,6 @@ def _file_fields(recording: "Recording") -> dict[str, Any]:
 def _event_fields(difference: "EventDifference") -> dict[str, Any]:
     names = ("run", "step", "t", "kind", "h", "equal_cost", "speed", "text")
     return {"only_in": difference.only_in, **fields_of(difference.event, *names)}
-
-
-def _difference_fields(difference: "ValueDifference") -> dict[str, Any]:
-    values = fields_of(difference, "a", "b")
-    return {
-        **fields_of(difference, "run", "step", "step_b", "t"),
-        "method": difference.method or None,
-        "field": difference.field,
-        **values,
-        **{f"{name}_hex": None if value is None else value.hex() for name, value in values.items()},
-        "ulps": difference.ulps,
-    }
 
 
 def _print(a: "Recording", b: "Recording", result: "Comparison") -> None:

@@ -11,7 +11,7 @@ from recordings.library import PART
 from tui.cli.cast import add_cast_options, cast_of, own_methods
 from tui.cli.errors import Exit
 from tui.cli.options import add_recording, count
-from tui.cli.output import fields_of, progress, warn, write_json
+from tui.cli.output import difference_fields, fields_of, progress, warn, write_json
 from tui.words.numbers import counted
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         type=count,
         default=10_000_000,
-        help="simulate at most so many steps of each recording (%(default)s, less than a minute)",
+        help="simulate at most so many steps of each recording (%(default)s)",
     )
     parser.add_argument("--json", action="store_true", help="one JSON object")
 
@@ -146,18 +146,6 @@ def _fields(path: Path, result: "Verification | RecordingError") -> dict[str, An
         **fields_of(result, "complete", "runs", "samples", "same_sin", "identical", "other_functions", "sha256"),
         "digest_matches": result.sealed,
         "max_difference": result.max_difference if math.isfinite(result.max_difference) else None,
-        "first_difference": None if first is None else _difference_fields(first),
+        "first_difference": first and difference_fields(first, ("run", "step", "t"), ("recorded", "computed")),
         "reason": result.reason,
-    }
-
-
-def _difference_fields(difference: "Difference") -> dict[str, Any]:
-    values = fields_of(difference, "recorded", "computed")
-    return {
-        **fields_of(difference, "run", "step", "t"),
-        "method": difference.method or None,
-        "field": difference.field,
-        **values,
-        **{f"{name}_hex": None if value is None else value.hex() for name, value in values.items()},
-        "ulps": difference.ulps,
     }

@@ -3,7 +3,6 @@
 import argparse
 import time
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -73,10 +72,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--target", metavar="ERROR", type=positive, help="find the cheapest method and h for this error"
     )
     parser.add_argument(
-        "--budget",
-        metavar="N",
-        type=positive,
-        help="limit of force evaluations; alone: find the least error within it",
+        "--budget", metavar="N", type=positive, help="limit of force evaluations; alone: find the least error within it"
     )
     parser.add_argument("--no-compiled", action="store_true", help="do not use Numba (results are identical)")
     form = parser.add_mutually_exclusive_group()
@@ -170,12 +166,11 @@ def _fill(found: "Findings", times: list[float], rungs: list[int], fast: bool) -
     with progress("searching") as show:
         for number, duration in enumerate(times):
             there = study if duration == study.time else Study(found.scene, duration, study.loops)
-            found.advice.append(_advice(found, there, fast, partial(_show_searched, show, number, len(times))))
 
+            def show_share(share: float, done: int = number) -> None:
+                show(done + share, len(times))
 
-def _show_searched(show: Callable[[float, float], None], times: int, of: int, share: float) -> None:
-    """Show how much is searched: so many times, and a share of the next."""
-    show(times + share, of)
+            found.advice.append(_advice(found, there, fast, show_share))
 
 
 def _advice(found: "Findings", study: "Study", fast: bool, show: Callable[[float], None]) -> "Advice":
@@ -190,9 +185,8 @@ def _advice(found: "Findings", study: "Study", fast: bool, show: Callable[[float
         advice = least_evaluations(*wish)
     else:
         steps = compiled.compiled if fast else loops.plain
-        series = (
-            bool(found.references and found.references.taylor) and not found.budget
-        )  # which is one of force evaluations
+        taylor = found.references.taylor if found.references else ()
+        series = bool(taylor) and not found.budget  # which limits force evaluations, of which a series has none
         advice = least_seconds(*wish, time.perf_counter, steps, series)
     return with_saving_over_rk4(advice, study, found.kind, found.target) if found.all else advice
 

@@ -103,7 +103,6 @@ def _input(name: str) -> Iterator[TextIO]:
 
 
 def _fields(options: argparse.Namespace, columns: Columns, finding: "Finding") -> dict[str, Any]:
-    """The fields of --json."""
     forecast = finding.forecast
     return {
         "file": options.file,

@@ -1,4 +1,4 @@
-"""Draw the phase portrait of a method's own map, and tell on what kind of orbit the scene's start lies."""
+"""Draw the phase portrait of a method's own map, and describe the orbit of the scene's start."""
 
 import argparse
 import os

@@ -14,7 +14,7 @@ from engine.methods import METHODS, Cast, Method
 from engine.scenes import MOST_METHODS, Scene
 from tui.drawing.cells import CellWidget, Row
 from tui.drawing.palette import TEXT, series
-from tui.screens.dialogs.modal import Modal
+from tui.screens.dialogs.modal import Form
 from tui.words.numbers import counted
 
 MARKED = Style(reverse=True)
@@ -70,11 +70,8 @@ class MethodList(CellWidget, can_focus=True):
 
     def action_move(self, down: int) -> None:
         self.cursor = (self.cursor + down) % len(self.methods)
-        self.scroll_visible_row()
-        self.draw()
-
-    def scroll_visible_row(self) -> None:
         self.screen.query_one(VerticalScroll).scroll_to_region(Region(0, self.cursor, 1, 1), animate=False)
+        self.draw()
 
     def action_take(self) -> None:
         method = self.methods[self.cursor]
@@ -93,7 +90,7 @@ class MethodList(CellWidget, can_focus=True):
             self.action_take()
 
 
-class CastForm(Modal[Cast | None]):
+class CastForm(Form[Cast | None]):
     """Returns the methods to start with, or None."""
 
     AUTO_FOCUS = "MethodList"
@@ -107,7 +104,3 @@ class CastForm(Modal[Cast | None]):
         with VerticalScroll(id="cast", can_focus=False) as form:
             form.border_title = f"Methods for the model {self._scene.model}, one to {MOST_METHODS}"
             yield MethodList(self._scene.cast, self._scene.model)
-
-    def on_click(self, event: events.Click) -> None:
-        if event.widget is self:  # outside the list
-            self.dismiss(None)

@@ -2,7 +2,7 @@
 
 from contextlib import suppress
 
-from textual import work
+from textual import events, work
 from textual.await_complete import AwaitComplete
 from textual.command import CommandList, CommandPalette
 from textual.css.query import NoMatches
@@ -30,6 +30,14 @@ class _Once(Guarded, Screen[ScreenResultType]):
 
 class Modal(ModalScreen[ScreenResultType], _Once[ScreenResultType]):
     """A screen over the lab."""
+
+
+class Form(Modal[ScreenResultType]):
+    """A modal that asks for something; a click beside it cancels."""
+
+    def on_click(self, event: events.Click) -> None:
+        if event.widget is self:
+            self.dismiss(None)
 
 
 _gather = CommandPalette._gather_commands.__wrapped__  # type: ignore[attr-defined]

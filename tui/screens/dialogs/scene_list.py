@@ -4,17 +4,16 @@ from typing import ClassVar
 
 from rich.table import Table
 from rich.text import Text
-from textual import events
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.widgets import OptionList
 from textual.widgets.option_list import Option
 
 from engine.scenes import GROUPS, SCENES
-from tui.screens.dialogs.modal import Modal
+from tui.screens.dialogs.modal import Form
 
 
-class SceneList(Modal[str | None]):
+class SceneList(Form[str | None]):
     """Returns the name of the scene to start, or None."""
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape,P,shift+p,q", "dismiss(None)", "cancel")]
@@ -36,10 +35,6 @@ class SceneList(Modal[str | None]):
 
     def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
         self.dismiss(event.option_id)
-
-    def on_click(self, event: events.Click) -> None:
-        if event.widget is self:  # outside the list
-            self.dismiss(None)
 
 
 def _line(name: str, watch: str) -> Table:

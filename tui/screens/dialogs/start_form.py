@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Callable
 from typing import ClassVar
 
-from textual import events, on
+from textual import on
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Container, Horizontal
@@ -12,7 +12,7 @@ from textual.widgets import Input, Label
 
 from engine.scenes import PARAMETERS, UNITS, Scene
 from tui.cli.options import angle, number
-from tui.screens.dialogs.modal import Modal
+from tui.screens.dialogs.modal import Form
 from tui.words.numbers import z_name
 
 FIELDS: dict[str, tuple[str, Callable[[str], float]]] = {
@@ -37,7 +37,7 @@ def scene_from(texts: dict[str, str], before: Scene) -> Scene:
     return before.altered(**values)
 
 
-class StartForm(Modal[Scene | None]):
+class StartForm(Form[Scene | None]):
     """Returns the scene to start, or None."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -82,10 +82,6 @@ class StartForm(Modal[Scene | None]):
     def submit(self) -> None:
         if self._scene is not None:
             self.dismiss(self._scene)
-
-    def on_click(self, event: events.Click) -> None:
-        if event.widget is self:  # outside the form
-            self.dismiss(None)
 
     def _summary(self) -> str:
         scene = self._scene

@@ -27,7 +27,7 @@ class TextScreen(Modal[None]):
     """A text.  Esc closes it, and so do the keys that open one."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("escape,question_mark,q,space,enter,d,E,shift+e", "dismiss(None)", "close"),
+        Binding("escape,question_mark,q,space,enter,d,E,shift+e", "dismiss(None)", "close")
     ]
 
     def __init__(self, title: str, text: str) -> None:

@@ -155,8 +155,8 @@ class AccuracyPane(Chooser[int]):
         picture, self._cells = await asyncio.to_thread(draw, self.room.width, max(self.room.height - lines, 1))
         self._chart = [picture.row(y) for y in range(len(picture.characters))]
         left = f", {self.missing} points left" if self.missing else ""
-        self.border_title = f"Accuracy (F4) over {self.time:g} s: {self.kind} error{left}"
-        self.border_title = "Theta error over time, at each method's h" if self.over_time else self.border_title
+        over_cost = f"Accuracy (F4) over {self.time:g} s: {self.kind} error{left}"
+        self.border_title = "Theta error over time, at each method's h" if self.over_time else over_cost
         self.tell()
         self._drawn, self._building = state, False
 

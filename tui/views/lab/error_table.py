@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from textual import events
 
-from engine.methods import Cast, Method
+from engine.methods import Method
 from engine.models.model import State
 from engine.run.lockstep import Reading, Sample
 from engine.run.verdict import Judgement
@@ -59,10 +59,7 @@ COLUMNS = (
     ),
     Column(7, ("dE/E0", 8), ("dE/E0 now", 9), lambda line, width: share(line, line.reading.energy_error, width)),
     Column(
-        6,
-        ("largest", 7),
-        ("largest", 8),
-        lambda line, width: share(line, line.reading.max_energy_error, width, "-"),
+        6, ("largest", 7), ("largest", 8), lambda line, width: share(line, line.reading.max_energy_error, width, "-")
     ),
     Column(5, ("per s", 8), ("trend per s", 11), lambda line, width: scientific(line.judgement.trend, width)),
     Column(
@@ -124,43 +121,23 @@ def chosen(columns: Sequence[Column], room: int) -> list[tuple[str, int, Callabl
     return [(*column.narrow, column.cell) for column in left]
 
 
-def table(
-    cast: Cast,
-    sample: Sample,
-    judgements: Sequence[Judgement],
-    exact: State,
-    h: Sequence[float],
-    shown: Shown,
-    width: int,
-    conserved: bool = True,
-) -> list[Row]:
+def table(source: Source, sample: Sample, shown: Shown, width: int) -> list[Row]:
     """The table's rows, its head first; each method's own step size where they differ."""
+    cast, judgements, h = source.scene.cast, source.judgements, source.stepping.own
+    exact, conserved = source.exact.at(sample.t), source.scene.equations.conserved
     every = COLUMNS[len(set(h)) == 1 :]
     if any(reading.position is not None for reading in sample.readings):
         every = (*every[:-1], *SPRING, every[-1])
     columns = chosen(every, width - NAME)
     spare = width - NAME - sum(size + 1 for _, size, _ in columns)
     gap = " " * (1 + min(spare // max(len(columns), 1), MOST_GAP))
-    rows: list[Row] = [
-        [
-            ("method".ljust(NAME), QUIET),
-            *(
-                (gap + in_unit(head if conserved else _LOGARITHM.get(head, head), shown.degrees).rjust(size), QUIET)
-                for head, size, _ in columns
-            ),
-        ]
-    ]
+    heads = [(head if conserved else _LOGARITHM.get(head, head), size) for head, size, _ in columns]
+    names = [(gap + in_unit(head, shown.degrees).rjust(size), QUIET) for head, size in heads]
+    rows: list[Row] = [[("method".ljust(NAME), QUIET), *names]]
     for place in shown.places(cast):
         method = cast[place]
-        line = TableLine(
-            method,
-            sample.readings[place],
-            judgements[place],
-            exact,
-            h[place],
-            shown.percent and conserved,
-            shown.degrees,
-        )
+        percent = shown.percent and conserved
+        line = TableLine(method, sample.readings[place], judgements[place], exact, h[place], percent, shown.degrees)
         failed = line.reading.diverged_at is not None
         name = f"{mark(place, method)} {method.label}"[:NAME].ljust(NAME)
         rows.append([(name, series(method))])
@@ -178,17 +155,7 @@ class ErrorTable(Pane):
     _head: Sequence[str] = ()
 
     def paint(self, source: Source, sample: Sample) -> None:
-        exact, h = source.exact.at(sample.t), source.stepping.own
-        rows = table(
-            self.cast,
-            sample,
-            source.judgements,
-            exact,
-            h,
-            self.shown,
-            self.room.width,
-            source.scene.equations.conserved,
-        )
+        rows = table(source, sample, self.shown, self.room.width)
         if len(rows) != self._rows_shown:
             self._rows_shown = len(rows)
             self.styles.height = len(rows)  # hidden methods leave no gap

@@ -1,12 +1,11 @@
 """LargeTable: each method's energy error and verdict, large."""
 
 import math
-from collections.abc import Sequence
 
 from rich.style import Style
 from textual.renderables.digits import Digits
 
-from engine.methods import Cast, Method
+from engine.methods import Method
 from engine.run.lockstep import Reading, Sample
 from engine.run.verdict import Judgement
 from tui.drawing.cells import Row
@@ -29,10 +28,9 @@ def large(text: str) -> list[str]:
     return [" ".join(segment.text.ljust(3) for segment in row) for row in zip(*digits, strict=True)]
 
 
-def large_rows(
-    cast: Cast, sample: Sample, judgements: Sequence[Judgement], shown: Shown, width: int, conserved: bool = True
-) -> list[Row]:
+def large_rows(source: Source, sample: Sample, shown: Shown, width: int) -> list[Row]:
     """A name, a verdict and a large energy error for each method, in as few lines as fit."""
+    cast, judgements, conserved = source.scene.cast, source.judgements, source.scene.equations.conserved
     places = shown.places(cast)
     lines = math.ceil(len(places) / max(width // CELL, 1))
     across = math.ceil(len(places) / max(lines, 1))
@@ -80,8 +78,6 @@ class LargeTable(Pane):
 
     def paint(self, source: Source, sample: Sample) -> None:
         self._changed = source.playhead.seen
-        rows = large_rows(
-            self.cast, sample, source.judgements, self.shown, self.room.width, source.scene.equations.conserved
-        )
+        rows = large_rows(source, sample, self.shown, self.room.width)
         self.styles.height = len(rows)
         self.show(rows)

@@ -10,7 +10,7 @@ from textual.widget import Widget
 
 CHART = 52  # columns at least: a title fits above it
 NARROW = 28 + CHART  # columns below which there is no chart
-PANE = Size(26, 9)  # of one pendulum at least: the longest name fits above it
+PANE = Size(26, 9)  # of one pendulum at least: the names of the usual cast fit above it
 EVENTS = 5  # rows at least
 TWO_ROWS = 20  # rows from which on there are events, and phase space below the chart
 THREE_ROWS = 45  # rows from which on there are two charts

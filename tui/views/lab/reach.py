@@ -12,10 +12,10 @@ REACHES = (0.5, 1.2, math.pi / 2)
 
 
 def reach(scene: Scene, stepping: Stepping, sample: Sample, shown: Sequence[int]) -> float:
-    """The first of REACHES that no shown method and no exact motion can leave with its energy so far; pi: none.
+    """The smallest of REACHES that neither a shown method nor the exact motion can leave with its energy; else pi.
 
-    A method that is unstable at its h will need all the room: it gets it at once.  Largest errors only
-    grow during a run, so the pendulums never jump back and forth.
+    A method that is unstable at its h gets all the room at once.  Largest errors only grow during a run, so the
+    picture never jumps back and forth.
     """
     fastest = scene.equations.fastest
     each = [(scene.cast[place], stepping.own[place], sample.readings[place]) for place in shown]

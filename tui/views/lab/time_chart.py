@@ -70,9 +70,9 @@ class TimeChart(Pane):
     The pointer reads out a moment, the wheel changes the window.
     """
 
-    def __init__(self, id: str | None = None, ahead: int = 0) -> None:
+    def __init__(self, ahead: int = 0) -> None:
         """`ahead`: so many quantities after the one that is chosen."""
-        super().__init__(id)
+        super().__init__()
         self._ahead = ahead
         self._wanted = asyncio.Event()
         self._building = False
@@ -90,7 +90,6 @@ class TimeChart(Pane):
         return replace(self.shown, quantity=self.shown.quantity_ahead(self._ahead, source.scene))
 
     def on_click(self) -> None:
-        """Show the next quantity."""
         self.post_message(Asked("quantity"))
 
     def on_mouse_move(self, event: events.MouseMove) -> None:

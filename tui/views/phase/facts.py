@@ -21,7 +21,7 @@ _NOT_CURVES = {
     "spring": "a projection: angle and angular velocity of the swing",
     "damped": "curves of equal energy, which friction makes it cross inwards",
 }
-"""What the portrait of a model is whose motion does not follow the curves."""
+"""Captions for the models whose motion does not follow the curves."""
 
 
 def fact_rows(
@@ -38,13 +38,9 @@ def fact_rows(
     for index in shown.places(source.scene.cast):
         method = source.scene.cast[index]
         reading = source.sample.readings[index]
-        cells = (
-            *(("-", "-") if ring is None or not has_ring(source.scene) else area_text(ring.area_ratios[index])),
-            scientific(
-                measured(source.scene.equations.theta_error(reading.theta, exact.theta), shown.degrees), _CELL, 3
-            ),
-            scientific(reading.energy_error, _CELL, 3),
-        )
+        off = measured(source.scene.equations.theta_error(reading.theta, exact.theta), shown.degrees)
+        area = ("-", "-") if ring is None or not has_ring(source.scene) else area_text(ring.area_ratios[index])
+        cells = (*area, scientific(off, _CELL, 3), scientific(reading.energy_error, _CELL, 3))
         name = f" {mark(index, method)} {method.label}".ljust(_NAME)
         rows.append([(name, series(method)), ("".join(cell.rjust(_CELL) for cell in cells[:fit]), TEXT)])
     return rows
@@ -56,14 +52,13 @@ def _ring_text(source: Source, neighbours: Neighbours | None, degrees: bool) -> 
     if neighbours is None:
         return " Press g to draw a ring of neighbouring starts and measure its area."
     behind = source.sample.step - neighbours.step
-    text = (
-        f" Ring of neighbouring starts, radius {measured(neighbours.radius, degrees):.4g}{'°' if degrees else ' rad'}"
-    )
     if friction := source.scene.friction:
         change = change_before(source.changes, neighbours.step)
         t = change.t + (neighbours.step - change.step) * change.stepping.h
         left = math.exp(-friction * t)
         return f" Ring, radius {neighbours.radius:g} rad: friction leaves exp(-gamma t) = {left:.9f} of it"
+    radius = f"{measured(neighbours.radius, degrees):.4g}{'°' if degrees else ' rad'}"
+    text = f" Ring of neighbouring starts, radius {radius}"
     return f"{text}: {behind} steps behind" if behind else f"{text} (g: larger, G: smaller)"
 
 

@@ -41,8 +41,8 @@ class PhasePane(Chooser[State]):
     class RingMoved(Message):
         """The ring has moved on towards the sample, which is the same."""
 
-    def __init__(self, id: str | None = None, radius: float | None = None) -> None:
-        super().__init__(id)
+    def __init__(self, radius: float | None = None) -> None:
+        super().__init__()
         self.set_reactive(PhasePane.radius, radius)
         self.neighbours: Neighbours | None = None
         self.ring: Neighbourhood | None = None

@@ -21,9 +21,7 @@ def starts(viewport: Viewport, count: int) -> Points:
     """So many starts all over a viewport."""
     width, height = 2.0 * viewport.columns, 4.0 * viewport.rows
     return spread(
-        count,
-        (viewport.theta_at(0.0), viewport.theta_at(width)),
-        (viewport.omega_at(height), viewport.omega_at(0.0)),
+        count, (viewport.theta_at(0.0), viewport.theta_at(width)), (viewport.omega_at(height), viewport.omega_at(0.0))
     )
 
 

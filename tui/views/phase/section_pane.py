@@ -50,8 +50,8 @@ class SectionPane(PhasePane):
     class SectionWanted(Message):
         """Another section is to be computed, or none."""
 
-    def __init__(self, id: str | None = None, radius: float | None = None) -> None:
-        super().__init__(id, radius)
+    def __init__(self, radius: float | None = None) -> None:
+        super().__init__(radius)
         self.wanted: Wanted | None = None
         self.share = 0.0  # of the section that is there
         self._section: Section | None = None
@@ -60,20 +60,6 @@ class SectionPane(PhasePane):
     @property
     def settled(self) -> bool:
         return super().settled and not (self.drawable and self.shows_section and self.share < 1)
-
-    @property
-    def described(self) -> Method | None:
-        """The method whose map is shown: one of those that are."""
-        shown = self.places
-        if not self.cast:
-            return None
-        return self.cast[self.index if self.index in shown or not shown else shown[0]]
-
-    def map_of(self, method: Method) -> tuple[Model, float] | None:
-        """The model and the step [s] of a method on screen."""
-        if self.source is None or method not in self.cast:
-            return None
-        return self.source.scene.equations, abs(self.source.stepping.own[self.cast.index(method)])
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         return super().check_action(action, parameters) and (action != "next_map" or self.shows_section)
@@ -96,12 +82,12 @@ class SectionPane(PhasePane):
             self.notify(why, severity="warning")
             self.shows_section = False
             return
-        if not self.shows_section or (method := self.described) is None:
+        if not self.shows_section:
             super().paint(source, sample)
             return
         from tui.views.phase.section import Section
 
-        model, h = self.map_of(method) or (source.scene.equations, source.scene.h)
+        method, model, h = self.cast[self.index], source.scene.equations, abs(source.stepping.own[self.index])
         wanted = Wanted(method, model, h, self.viewport)
         if wanted != self.wanted or self._section is None:
             self.wanted, self.share = wanted, 0.0
@@ -154,7 +140,6 @@ class SectionPane(PhasePane):
         self.shows_section = not self.shows_section
 
     def action_next_map(self) -> None:
-        """Show the section of the next method."""
         self.action_method(1)
 
 

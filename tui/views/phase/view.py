@@ -77,7 +77,6 @@ class PhaseView(View):
                 facts.fail(error)
 
     def _facts(self, pane: SectionPane, width: int) -> list[Row]:
-        """What is below the picture."""
         assert self.source is not None
         scene = self.source.scene
         if not pane.shows_section:

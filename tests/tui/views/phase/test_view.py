@@ -1,23 +1,12 @@
 """Phase space in the lab, and over the whole screen."""
 
-from pathlib import Path
-
 import pytest
-from textual.widgets import Static
 
 from engine.phase_space.area import Neighbourhood
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene
-from recordings.recording import Recording
-from tests.tui.harness import Theatre, lab, recorded, until
+from tests.tui.harness import Theatre, lab, until
 from tui.drawing.cells import CellWidget
-from tui.playback.marks import Marks
-from tui.playback.replay import Replay
-from tui.screens.app import PenduApp
-from tui.screens.insight_line import InsightLine
-from tui.screens.live import LiveScreen
-from tui.screens.replay import ReplayScreen
-from tui.views.lab.time_chart import TimeChart
 from tui.views.phase.pane import PhasePane
 from tui.views.phase.view import RADIUS
 
@@ -52,7 +41,7 @@ async def test_a_click_in_the_lab_starts_all_four_there_with_the_step_in_force_a
         assert theatre.source.scene == DRIFT.altered(h=0.05)
 
 
-@pytest.mark.parametrize("size", [(60, 16), (80, 24), (120, 40), (200, 60)])
+@pytest.mark.parametrize("size", [(60, 16), (120, 40)])
 async def test_f3_shows_all_of_it_and_the_arrows_are_its_keys(size):
     async with lab(size=size) as theatre:
         await theatre.run(1)
@@ -67,7 +56,7 @@ async def test_f3_shows_all_of_it_and_the_arrows_are_its_keys(size):
         assert shown(theatre).has_focus
 
 
-async def test_the_view_shows_who_keeps_the_area_around_the_start():
+async def test_the_view_shows_the_area_ratios_of_the_ring_around_the_start():
     async with lab() as theatre:
         await theatre.press("f3")
         await theatre.run(20)
@@ -109,7 +98,7 @@ async def test_no_start_is_too_much_for_it(scene):
         assert "inf" not in text
 
 
-async def test_one_who_looks_late_and_paused_sees_the_ring_catch_up():
+async def test_the_ring_catches_up_while_the_lab_is_paused():
     async with lab() as theatre:
         await theatre.run(20)
         await theatre.pilot.press("space")
@@ -149,52 +138,3 @@ async def test_the_exact_point_comes_with_5_and_drawn_where_the_exact_swing_is()
         await theatre.pilot.pause()
         assert "x" not in without.replace("exact", "").replace("separatrix", "")
         assert "x" in shown(theatre).text.replace("exact", "").replace("separatrix", "")
-
-
-async def test_reversed_time_tells_at_its_start_how_far_each_method_misses_it():
-    async with lab() as theatre:
-        await theatre.run(5)
-        await theatre.pilot.press("b")
-        await theatre.run(6)
-        assert theatre.stage.query_one(InsightLine).text.startswith(" Back at t = 0. Missed the start by e ")
-
-
-async def test_e_comes_by_the_shadow_energies():
-    async with lab() as theatre:
-        await theatre.run(3)
-        chart = theatre.stage.query_one(TimeChart)
-        for _ in range(4):
-            await theatre.pilot.press("e")
-            if "shadow" in chart.border_title:
-                break
-        assert "shadow error" in chart.border_title
-        assert chart.border_subtitle == "shadow energy is known for s and v only"
-        for _ in range(200):
-            await theatre.pilot.pause(0.01)
-            if chart.settled:
-                break
-        assert all(letter in chart.text for letter in "sv")
-
-
-async def test_the_help_tells_the_panes_keys():
-    async with lab() as theatre:
-        await theatre.press("f3")
-        await theatre.pilot.press("question_mark")
-        await theatre.pilot.pause()
-        text = "\n".join(str(static.render()) for static in theatre.pilot.app.screen.query(Static))
-        assert "crosshair, to choose a start" in text
-        assert "a ring of neighbours" in text
-
-
-async def test_in_a_replay_the_arrows_still_seek(tmp_path: Path):
-    path = recorded(tmp_path / "sitting.mcap", 5.0)
-    replay = Replay(Recording.open(path), Marks(path), clock=lambda: 0.0)
-    player = ReplayScreen(replay, go_live=LiveScreen, clock=lambda: 0.0)
-    async with PenduApp(player).run_test(size=(120, 40)) as pilot:
-        await pilot.press("f3")
-        await pilot.pause()
-        pane = next(pane for pane in player.query(PhasePane) if pane.drawable)
-        pane.focus()
-        await pilot.press("right", "right")
-        assert replay.playhead.position == pytest.approx(2.0)
-        assert pane.cursor is None

@@ -8,14 +8,9 @@ from textual.pilot import Pilot
 
 from engine.scenes import SCENES, Scene
 from engine.stability.outcomes import UNKNOWN
-from recordings.library import resolve
-from recordings.recording import Recording
 from tests.tui.harness import until, view_of
 from tui.playback.live import Live
-from tui.playback.marks import Marks
-from tui.playback.replay import Replay
 from tui.screens.live import LiveScreen
-from tui.screens.replay import ReplayScreen
 from tui.screens.status_line import StatusLine
 from tui.views.stability.pane import StabilityPane
 
@@ -139,8 +134,8 @@ async def test_a_scene_that_spins_is_not_on_the_map(monkeypatch: pytest.MonkeyPa
         assert "@" not in pane.text
 
 
-@pytest.mark.parametrize("size", [(60, 16), (79, 20), (120, 40), (200, 60)])
-async def test_it_fits_terminals_of_all_sizes(size: tuple[int, int], monkeypatch: pytest.MonkeyPatch):
+@pytest.mark.parametrize("size", [(60, 16), (79, 20)])
+async def test_it_fits_small_terminals(size: tuple[int, int], monkeypatch: pytest.MonkeyPatch):
     async with stability_view(monkeypatch, size=size) as (pilot, pane, _):
         await pilot.press("right", "up")
         lines = pane.text.splitlines()
@@ -165,20 +160,3 @@ async def test_a_larger_step_beyond_a_limit_is_warned_of_and_taken(monkeypatch: 
         assert live.stepping.h == 5.0
         assert "z 5  unstable: s v (z > 2), r (z > 2.83)" in status.text
         assert pane.aim(VERLET) is None  # it is beyond the map, too
-
-
-async def test_a_replay_says_what_becomes_of_its_swing_and_keeps_its_arrows(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("tui.views.stability.view.PASSES", (20, 60))
-    path = resolve("drift")
-    replay = Replay(Recording.open(path), Marks(path))
-    replay.pause(True)
-    screen = ReplayScreen(replay, lambda live: LiveScreen(live))
-    async with view_of(screen, "f5", StabilityPane, is_complete, (80, 30)) as (pilot, pane):
-        assert "Velocity Verlet at h 0.0539 s, 58.1 deg: held" in pane.text
-        await pilot.press("right")
-        assert replay.playhead.position == pytest.approx(1.0, abs=0.05)
-        assert pane.cursor is None
-        scene = replay.scene
-        await pilot.press("enter")
-        await pilot.click(StabilityPane, offset=(20, 4))
-        assert replay.scene == scene

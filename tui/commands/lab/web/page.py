@@ -44,5 +44,5 @@ def lab_page(address: str) -> str:
 
 
 def full_text(most: int) -> str:
-    """What one more than the most labs get."""
+    """The answer to a browser when `most` labs are open."""
     return f"{most} labs are open, and that is the most at once. Close one, or reload this page later.\n"

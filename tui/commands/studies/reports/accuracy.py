@@ -166,12 +166,7 @@ def _print_advice(found: Findings, advice: Advice) -> None:
             print(f"RK4 takes {advice.saves:.2g} times as many force evaluations, {advice.rk4.force_evaluations}")
     timed = any(attempt.point and attempt.point.seconds is not None for attempt in advice.attempts)
     rows = []
-    tries: list[tuple[str, AnyPoint | None, str | None]] = [
-        (attempt.method.label, attempt.point, attempt.why_not) for attempt in advice.attempts
-    ]
-    if advice.series:
-        tries.append((TAYLOR_20.label, advice.series.point, advice.series.why_not))
-    for label, tried, why_not in tries:
+    for method, tried, why_not in _tries(advice):
         note = why_not or ("recommended" if tried is point else "")
         cells = (
             f"{tried.h:.5g}" if isinstance(tried, Point) else "-",
@@ -179,9 +174,15 @@ def _print_advice(found: Findings, advice: Advice) -> None:
             *([length(tried.seconds) if tried and tried.seconds is not None else "-"] if timed else []),
             f"{tried.error(kind):.2e}" if tried else "-",
         )
-        rows.append((label, *cells, note))
+        rows.append((method.label, *cells, note))
     headers = ("method", "h [s]", "force evaluations", *(["seconds"] if timed else []), f"{kind} error", "")
     print_table("lrr" + "r" * timed + "rl", headers, rows)
+
+
+def _tries(advice: Advice) -> list[tuple[Method | Reference, AnyPoint | None, str | None]]:
+    """What was tried: a method or the series, its run, and why it will not do."""
+    series = [(TAYLOR_20, advice.series.point, advice.series.why_not)] if advice.series else []
+    return [*((each.method, each.point, each.why_not) for each in advice.attempts), *series]
 
 
 def winners(advice: Sequence[Advice]) -> str:
@@ -208,18 +209,15 @@ def _run_fields(
 
 
 def _advice_fields(found: Findings, advice: Advice) -> dict[str, Any]:
-    point, series = advice.point, advice.series
-    attempts = [
-        _run_fields(attempt.method, attempt.point, found.kind, "error") | {"why_not": attempt.why_not}
-        for attempt in advice.attempts
-    ]
-    if series:
-        attempts.append(_run_fields(TAYLOR_20, series.point, found.kind, "error") | {"why_not": series.why_not})
+    point = advice.point
     return {
         "time": advice.time,
         **fields_of(found, "target", "budget"),
         **_run_fields(point.method if point else None, point, found.kind, "reached"),
         "saves_over_rk4": advice.saves,
         "reason": None if point else "no method gets there",
-        "attempts": attempts,
+        "attempts": [
+            _run_fields(method, tried, found.kind, "error") | {"why_not": why_not}
+            for method, tried, why_not in _tries(advice)
+        ],
     }

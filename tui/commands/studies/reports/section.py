@@ -40,7 +40,6 @@ class Study:
         return kind_of(method, model, h, orbit(method, model, h, start, self.steps))
 
     def picture(self, columns: int, rows: int) -> Picture:
-        """The portrait of the map."""
         model, h, start = self.scene.equations, self.scene.h, (self.scene.theta, self.scene.omega)
         viewport = replace(Viewport.portrait(columns, rows, self.scene, wrap=model.turns), degrees=self.degrees)
         section, done = Section(viewport, model, self.method), 0
@@ -110,7 +109,7 @@ def _title(study: Study) -> str:
 
 
 def _print_words(study: Study) -> None:
-    """Print on what orbits the start lies, in a table and, for the method that is drawn, in a sentence."""
+    """Print the orbits of the start as a table, and a sentence on that of the method that is drawn."""
     kinds = [(method, study.kind(method)) for method in study.scene.cast]
     print(f"\n{scene_line(study.scene, 'h', 'z', degrees=study.degrees)}, {study.steps} steps")
     rows = [(method.label, *cells(method, kind)) for method, kind in kinds]
@@ -120,7 +119,7 @@ def _print_words(study: Study) -> None:
 
 
 def _lines(picture: Picture, display: TerminalOptions) -> list[Text]:
-    """The rows of a picture in the colours of a theme and the characters that there are."""
+    """The rows of a picture in the colours and characters of a display."""
     palette = PALETTES[display.theme]
     if display.present:
         picture = picture.thick()

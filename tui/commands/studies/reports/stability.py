@@ -53,7 +53,7 @@ def print_text(study: StabilityStudy, with_map: bool) -> int:
 def print_json(study: StabilityStudy, with_map: bool) -> int:
     """Print one object: linear, pendulum and, if asked for, map."""
     scene = study.scene
-    rows, whole = _table(study)
+    rows, whole = ([], True) if _is_linear(scene) else study.table()
     fields = {
         "scene": scene.fields(),
         "z": scene.z,
@@ -148,10 +148,6 @@ def _is_linear(scene: Scene) -> bool:
     return scene.model == "linear"
 
 
-def _table(study: StabilityStudy) -> tuple[list[Row], bool]:
-    return ([], True) if _is_linear(study.scene) else study.table()
-
-
 def _limits(method: Method) -> tuple[float | None, float | None]:
     """The largest stable z as measured, and in theory; a user's own method has no theory."""
     if isinstance(method, OwnMethod):
@@ -197,7 +193,6 @@ def _cells(row: Row, scene: Scene) -> tuple[str, ...]:
 
 
 def _row(row: Row) -> tuple[Any, ...]:
-    """ROW_FIELDS of a row."""
     found, early = row.failure, row.early and row.early.z
     return (row.method.key, row.theta, *((found.z, found.reason, found.steps) if found else (None,) * 3), early)
 
