@@ -58,7 +58,7 @@ async def goes_on(theatre: Theatre) -> None:
     await theatre.press("space")
 
 
-@pytest.mark.parametrize("place", ["paint", "_segments", "on_resize"])
+@pytest.mark.parametrize("place", ["paint", "_pieces", "on_resize"])
 async def test_a_pane_that_cannot_be_drawn_says_so_and_the_lab_records_on(tmp_path, faults, monkeypatch, place):
     path = tmp_path / "run.mcap"
     async with recorded_lab(path) as theatre:
