@@ -214,7 +214,7 @@ def test_impossible_values_are_refused_in_one_sentence(arguments, words):
 
 def test_dask_without_its_package_says_what_to_install(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
-    assert pendu("stability", "--dask", "tcp://127.0.0.1:1").refused(2, "pendu-tui[cluster]")
+    assert pendu("stability", "--dask", "tcp://127.0.0.1:1").refused(2, ".[cluster]")
 
 
 def test_the_amplitude_of_a_scene_is_how_far_it_swings():

@@ -144,6 +144,6 @@ def _dask(address: str) -> Any:
 
         return distributed.Client(address, timeout="10s")
     except ImportError:
-        raise UserError("--dask needs the extra cluster: pip install 'pendu-tui[cluster]'.") from None
+        raise UserError("--dask needs the extra cluster: pip install '.[cluster]' in the clone.") from None
     except (OSError, ValueError) as error:
         raise UserError(f"no Dask scheduler answers at {address!r}: {type(error).__name__}; is it running?") from None
