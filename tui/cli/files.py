@@ -5,7 +5,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
-from threading import Timer
+from threading import Timer, main_thread
 from types import FrameType
 from typing import TextIO
 
@@ -65,8 +65,9 @@ def repeat_swallowed_interrupts() -> None:
     report = sys.unraisablehook
 
     def hook(swallowed: "sys.UnraisableHookArgs") -> None:
-        if issubclass(swallowed.exc_type, KeyboardInterrupt):
-            Timer(0.05, signal.raise_signal, [signal.SIGINT]).start()  # s; by then the callback has returned
+        if issubclass(swallowed.exc_type, KeyboardInterrupt) and hasattr(signal, "pthread_kill"):
+            again = main_thread().ident, signal.SIGINT
+            Timer(0.05, signal.pthread_kill, again).start()  # s; by then the callback has returned
         else:
             report(swallowed)
 
