@@ -14,6 +14,8 @@ from tui.screens.tour.panel import TourPanel
 from tui.views.lab.error_table import ErrorTable
 from tui.words.tour.steps import STEPS
 
+SIZES = [(80, 24), (120, 40), (200, 60)]
+
 
 @pytest.fixture(autouse=True)
 def _few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -36,8 +38,9 @@ async def to_the_moment(theatre: Theatre) -> float:
     return theatre.now - began
 
 
-async def test_it_is_walked_from_the_first_step_to_the_last():
-    async with lab(SCENES["spin"], (80, 24)) as theatre:
+@pytest.mark.parametrize("size", SIZES, ids="{0[0]}x{0[1]}".format)
+async def test_it_is_walked_from_the_first_step_to_the_last(size):
+    async with lab(SCENES["spin"], size) as theatre:
         await theatre.press("T")
         for number, step in enumerate(STEPS, 1):
             await theatre.pilot.pause()
@@ -57,7 +60,7 @@ async def test_it_is_walked_from_the_first_step_to_the_last():
         assert not theatre.source.playhead.paused
 
 
-@pytest.mark.parametrize("size", [(60, 16), (80, 24), (200, 60)], ids="{0[0]}x{0[1]}".format)
+@pytest.mark.parametrize("size", [(60, 16), *SIZES], ids="{0[0]}x{0[1]}".format)
 async def test_the_panel_takes_the_place_of_the_insight_line_and_covers_nothing(size):
     async with lab(size=size) as theatre:
         await theatre.press("T")
