@@ -52,7 +52,7 @@ class TaylorPoint:
     tolerance: float  # rad/s
     steps: int
     theta_error: float  # rad, the largest of those compared
-    energy_error: float  # relative, likewise
+    energy_error: float  # relative, the largest of those compared
     final_error: float  # rad, in theta at the end
     flaws: Flaws
     seconds: float | None = None  # the shortest of REPEATS runs to the end alone
@@ -177,7 +177,7 @@ class References:
 
     floor: float  # s, of the closed form
     taylor: Sequence[TaylorPoint] = ()
-    absent: str | None = None  # why there is no Taylor series
+    absent: str | None = None  # the reason, if there is no Taylor series
 
 
 def references(scene: Scene, time: float, clock: Clock, fast: bool) -> References:

@@ -29,12 +29,12 @@ class Method:
     linear_limit: float | None = None  # largest stable z = h·w0 on the linear oscillator; 0: none; None: no one number
     other_names: tuple[str, ...] = ()
     reference: str
-    used: str | None  # where, and in brackets who says so; None: nobody is known to
+    used: str | None  # a program that uses it, with its page in brackets; None if we know of none
     note: str = ""  # what else to know; also tested
-    modified_energy: ModifiedEnergy | None = None  # which it keeps but for O(h⁴); None: none is known, or there is none
+    modified_energy: ModifiedEnergy | None = None  # conserved up to O(h⁴); None if none is known
     with_friction: Phases | None = None  # the same where the force has `friction`, if `phases` does not ask for it
     models: tuple[str, ...] = ("pendulum", "linear")  # keys of the models that it integrates
-    general: bool = True  # takes any force, and arrays, complex and mpmath numbers too; else there is no map, no area
+    general: bool = True  # takes any force, also on arrays, complex and mpmath numbers; maps and areas need that
     varies: bool = False  # its evaluations depend on the phase; `force_evaluations` is then an average
 
     def on(self, model: Model) -> "Method":

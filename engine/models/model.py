@@ -58,7 +58,7 @@ class ExactMotion:
     """The state at a time [s], negative times included; theta continues from the start, unwrapped."""
     regime: Regime
     period: float | None = None  # s, per swing or, in rotation, per turn; None: not periodic
-    accuracy: float = 0.0  # rad; theta's largest error in the first minute where there is no closed form
+    accuracy: float = 0.0  # rad; largest error of theta in the first minute; 0 where the motion has a closed form
 
 
 class Model(ABC):

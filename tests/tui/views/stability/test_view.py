@@ -104,8 +104,10 @@ async def test_tab_goes_through_the_methods_in_words(monkeypatch: pytest.MonkeyP
 
 async def test_the_axis_is_that_of_the_scenes_pendulum(monkeypatch: pytest.MonkeyPatch):
     async with stability_view(monkeypatch) as (pilot, pane, live):
+        assert "h 3 " not in pane.text
         live.start(Scene(length=4 * 9.81))  # w0 = 1/2, so h = 2 z
         await until(pilot, lambda: "h 3 " in pane.text)
+        assert "h 0.479" not in pane.text
 
 
 async def test_hidden_methods_leave_their_panels_to_the_others(monkeypatch: pytest.MonkeyPatch):
