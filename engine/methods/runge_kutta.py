@@ -27,8 +27,8 @@ def rk4(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
         a3 = force(theta + half * omega2)
         omega4 = omega + h * a3
         a4 = force(theta + h * omega3)
-        theta = theta + sixth * (omega + 2 * omega2 + 2 * omega3 + omega4)
-        omega = omega + sixth * (a1 + 2 * a2 + 2 * a3 + a4)
+        theta = theta + sixth * (omega + 2.0 * omega2 + 2.0 * omega3 + omega4)
+        omega = omega + sixth * (a1 + 2.0 * a2 + 2.0 * a3 + a4)
         yield theta, omega
 
 
