@@ -1,7 +1,7 @@
 """How many steps a second the lockstep of four makes, beside C loops compiled in the same run: one JSON object.
 
 The C loops do the same operations in the same order (gcc -O3, libm's sin, no contraction); where no compiler
-is found their numbers are null.  Each number is the best of several repeats: the others had company.
+is found their numbers are null.  Each number is the best of several repeats, taken in turns: the others had company.
 """
 
 import ctypes
@@ -12,6 +12,7 @@ import subprocess
 import tempfile
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 from engine.methods import USUAL_CAST, Method
@@ -19,7 +20,7 @@ from engine.run.lockstep import Lockstep
 from engine.run.loops import plain
 from engine.scenes import DEFAULT_SCENE
 
-STEPS, REPEATS = 20_000, 9
+STEPS, REPEATS = 10_000, 30
 BUDGET = 250_000  # lockstep steps a second, all four methods, energy extremes taken at every step
 
 C = r"""
@@ -67,18 +68,19 @@ def compiled(folder: str) -> ctypes.CDLL | None:
     return ctypes.CDLL(str(library))
 
 
-def rate(run: Callable[[], object], steps: int) -> float:
-    """Steps a second, the best of the repeats."""
-    best = math.inf
+def rates(*runs: tuple[Callable[[], object], int]) -> list[float]:
+    """Steps a second of runs of so many steps, the best of the repeats, in turns: what slows one slows all."""
+    best = [math.inf] * len(runs)
     for _ in range(REPEATS):
-        began = time.perf_counter()
-        run()
-        best = min(best, time.perf_counter() - began)
-    return steps / best
+        for k, (run, _) in enumerate(runs):
+            began = time.perf_counter()
+            run()
+            best[k] = min(best[k], time.perf_counter() - began)
+    return [steps / time for (_, steps), time in zip(runs, best, strict=True)]
 
 
-def c_rate(library: ctypes.CDLL | None, method: Method, loop: str) -> float | None:
-    """Steps a second of the C loop, which has to end where ours does."""
+def c_loop(library: ctypes.CDLL | None, method: Method, loop: str) -> Callable[[int], float] | None:
+    """The C loop of so many steps, which has to end where ours does."""
     if library is None:
         return None
     scene, function = DEFAULT_SCENE, getattr(library, f"{method.key}_{loop}")
@@ -89,7 +91,7 @@ def c_rate(library: ctypes.CDLL | None, method: Method, loop: str) -> float | No
         return float(function(scene.w0_squared, scene.theta, scene.omega, scene.h, steps, 1e300))
 
     assert run(1000) == plain(method, scene.equations).travel((scene.theta, scene.omega), scene.h, 1000)[0]
-    return rate(lambda: run(20 * STEPS), 20 * STEPS)
+    return run
 
 
 def main() -> None:
@@ -101,14 +103,17 @@ def main() -> None:
         library = compiled(folder)
         for method in USUAL_CAST:
             travel, advance = plain(method, scene.equations)
-            ours = {
-                "without_energies": rate(lambda: travel(start, scene.h, STEPS), STEPS),  # noqa: B023
-                "with_energies": rate(lambda: advance(start, scene.h, STEPS, 1e300), STEPS),  # noqa: B023
+            runs = {
+                "without_energies": (partial(travel, start, scene.h, STEPS), c_loop(library, method, "travel")),
+                "with_energies": (partial(advance, start, scene.h, STEPS, 1e300), c_loop(library, method, "advance")),
             }
-            c = {name: c_rate(library, method, loop) for name, loop in zip(ours, ("travel", "advance"), strict=True)}
-            ratios = {name: c_speed and ours[name] / c_speed for name, c_speed in c.items()}
-            methods[method.key] = {"steps_per_second": ours, "c_steps_per_second": c, "of_c": ratios}
-    together = rate(lambda: lockstep.advance(STEPS), STEPS)
+            ours, c, of_c = {}, {}, {}
+            for name, (run, in_c) in runs.items():
+                ours[name], *rest = rates((run, STEPS), *([(partial(in_c, STEPS), STEPS)] if in_c else []))
+                c[name] = rest[0] if rest else None
+                of_c[name] = ours[name] / rest[0] if rest else None
+            methods[method.key] = {"steps_per_second": ours, "c_steps_per_second": c, "of_c": of_c}
+    (together,) = rates((partial(lockstep.advance, STEPS), STEPS))
     bare = 1 / sum(1 / method["steps_per_second"]["without_energies"] for method in methods.values())
     report = {
         "bench": "lockstep",
