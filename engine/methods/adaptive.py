@@ -52,8 +52,8 @@ def _halving(richardson: bool, key: str, label: str, letter: str, ends: str, ord
         other_names=("adaptive Verlet",),
         reference="Press et al., Numerical Recipes, 2nd edition (1992), 16.2",
         used=None,
-        note="Its force evaluations are those of a minute of scene halving, on average; six for a step that is not "
-        "divided, and of this order it is as long as none is.",
+        note="Its force evaluations are those of a minute of scene halving, on average, and equal cost goes by them; "
+        "a step that is not divided takes six, and of this order it is as long as none is.",
         models=("pendulum", "linear"),
         general=False,
         varies=True,

@@ -2,6 +2,9 @@
 
 At equal cost a method that needs fewer force evaluations takes a step of the lockstep in equal parts, so that
 all methods need about as many: RK4 one step of h, the others four of h/4.
+
+The parts hang on the cast alone, so that a step size and a switch say how a run goes on.  Of a method whose cost
+varies, the usual cost counts: measured at each h and phase it would change the steps of all the others on the way.
 """
 
 import math

@@ -38,7 +38,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     from engine.run.compiled import COMPILED_FROM, available
 
-    methods = _measured(cast_of(options, METHODS, most=None))
+    cast = cast_of(options, METHODS, most=None)
+    methods = _measured(cast)
     if options.json:
         write_json("methods", {"methods": methods, "compiled": available()})
         return Exit.FINE
@@ -47,8 +48,9 @@ def run(options: argparse.Namespace) -> int:
         ("method", "order", "measured", "forces", "symplectic", "reversible", "z limit", "measured", "also called"),
         map(_row, methods),
     )
+    usual = "; where they vary, the average of a minute of scene halving" * any(method.varies for method in cast)
     print(
-        "\nOrder: measured on theta over one swing of scene drift.  Forces: evaluations per step."
+        f"\nOrder: measured on theta over one swing of scene drift.  Forces: evaluations per step{usual}."
         "\nz limit: linear oscillator, z = h·w0; for the pendulum see pendu-tui stability."
         "\n"
         + (f"Numba: used in runs of at least {COMPILED_FROM:,} steps." if available() else "Numba is not installed.")
