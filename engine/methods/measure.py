@@ -124,24 +124,27 @@ def linear_limit(phases: Phases) -> float:
 
     Looked for upwards, as high-order methods are stable again beyond it, in islands.
     """
-    if not _is_stable(phases, NO_LIMIT_BELOW):
+    if not is_stable(phases, NO_LIMIT_BELOW):
         return 0.0
     rungs = range(int(NO_LIMIT_BELOW * RUNGS), WIDEST_Z * RUNGS)
-    first = next((rung for rung in rungs if not _is_stable(phases, rung / RUNGS)), None)
+    first = next((rung for rung in rungs if not is_stable(phases, rung / RUNGS)), None)
     if first is None:
         return WIDEST_Z
     stable, unstable = (first - 1) / RUNGS, first / RUNGS
     while unstable - stable > 1e-10:
         middle = (stable + unstable) / 2
-        if _is_stable(phases, middle):
+        if is_stable(phases, middle):
             stable = middle
         else:
             unstable = middle
     return stable
 
 
-def _is_stable(phases: Phases, z: float) -> bool:
-    """Jury's conditions: both multipliers of a linear step lie in the closed unit disc, but for rounding."""
+def is_stable(phases: Phases, z: float) -> bool:
+    """Whether both multipliers of a linear step lie in the closed unit disc, but for rounding.
+
+    They do if det <= 1 and |trace| <= 1 + det: Jury, Theory and Application of the z-Transform Method (1964).
+    """
     a, c = after(phases, _spring, (1.0, 0.0), z, 1)
     b, d = after(phases, _spring, (0.0, 1.0), z, 1)
     area = a * d - b * c

@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods import EXPLICIT_EULER, GENERAL, METHODS, RK4, Method, measure
+from engine.methods import EXPLICIT_EULER, GENERAL, METHODS, RK4, USUAL_CAST, Method, measure
+from engine.methods.splitting import BLANES_MOAN_4, BLANES_MOAN_6
 from engine.models.model import Force, Phase
 from engine.models.pendulum import Pendulum, acceleration
 from engine.run.tangent import jacobian
@@ -37,6 +38,21 @@ def test_the_measured_properties_are_the_claimed_ones(method: Method) -> None:
         method.symplectic,
         method.reversible,
     )
+
+
+@given(share=st.floats(0, 1 - 1e-8), beyond=st.floats(1e-8, 4))  # nearer to the edge it is a matter of rounding
+def test_up_to_its_limit_a_method_is_stable_and_those_of_the_usual_cast_nowhere_beyond(share, beyond) -> None:
+    for method in GENERAL:
+        assert measure.is_stable(method.phases, share * method.linear_limit)
+    for method in USUAL_CAST[1:]:
+        assert not measure.is_stable(method.phases, method.linear_limit + beyond)
+
+
+@pytest.mark.parametrize(("method", "island"), [(BLANES_MOAN_4, (3.1686, 5.02)), (BLANES_MOAN_6, (3.1424, 6.34))])
+def test_above_the_first_edge_lies_a_gap_and_then_an_island(method: Method, island: tuple[float, float]) -> None:
+    gap = np.linspace(method.linear_limit + 1e-6, island[0] - 3e-4, 100)
+    assert all(measure.is_stable(method.phases, z) for z in np.linspace(*island, 100))
+    assert not any(measure.is_stable(method.phases, z) for z in gap)
 
 
 @each_method

@@ -1,14 +1,12 @@
 import math
-from fractions import Fraction
 
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods import GENERAL, USUAL_CAST, Method
+from engine.methods import GENERAL
 from engine.models.model import Number
-from engine.stability.linear import amplification, is_stable, linear_limit, wobble
+from engine.stability.linear import amplification, wobble
 
 BY_KEY = {method.key: method for method in GENERAL}
 
@@ -25,12 +23,6 @@ FORMULAS = {
 }
 
 
-@pytest.fixture(params=GENERAL, ids=lambda method: method.key)
-def method(request: pytest.FixtureRequest) -> Method:
-    found: Method = request.param
-    return found
-
-
 @given(z=st.floats(1e-6, 3).filter(lambda z: abs(z - 2) > 1e-3))
 def test_the_amplification_is_the_textbooks(z: float) -> None:
     # At z = 2 two multipliers meet and rounding shows as its square root; 1e-3 away it is below 1e-13.
@@ -40,37 +32,6 @@ def test_the_amplification_is_the_textbooks(z: float) -> None:
 
 def test_rk4_halves_the_energy_fastest_at_the_square_root_of_six() -> None:
     assert amplification(BY_KEY["rk4"], math.sqrt(6)) == pytest.approx(0.5, rel=1e-12)
-
-
-def test_the_limit_is_the_claimed_one(method: Method) -> None:
-    assert linear_limit(method) == pytest.approx(method.linear_limit, abs=1e-9)
-
-
-@given(z=st.fractions(0, 8, max_denominator=10**6))
-def test_below_the_limit_every_step_is_stable_and_above_it_none(z: Fraction) -> None:
-    for method in USUAL_CAST:
-        assert is_stable(method, z) == (z <= Fraction(method.linear_limit))
-
-
-@given(share=st.floats(0, 1 - 1e-8))  # nearer to the edge it is a matter of rounding
-def test_below_the_first_edge_a_method_with_rounded_coefficients_is_stable_too(share: float) -> None:
-    for method in GENERAL:
-        assert is_stable(method, share * method.linear_limit)
-
-
-@pytest.mark.parametrize(("key", "island"), [("blanes_moan_4", (3.1686, 5.02)), ("blanes_moan_6", (3.1424, 6.34))])
-def test_above_the_first_edge_lies_a_gap_and_then_an_island(key: str, island: tuple[float, float]) -> None:
-    method, (near, far) = BY_KEY[key], island
-    assert is_stable(method, np.linspace(near, far, 1000)).all()
-    assert not is_stable(method, np.linspace(method.linear_limit + 1e-6, near - 3e-4, 1000)).any()
-
-
-def test_a_fraction_goes_through_a_step_exactly_where_the_coefficients_are_rational() -> None:
-    for method in USUAL_CAST[1:]:
-        assert is_stable(method, Fraction(1))
-    beyond = Fraction(2) + Fraction(1, 10**30)
-    assert not is_stable(BY_KEY["velocity_verlet"], beyond)
-    assert float(beyond) == 2
 
 
 @given(z=st.floats(0.05, 1.9), steps=st.just(2000))

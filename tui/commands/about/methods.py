@@ -92,14 +92,12 @@ def _claims(method: Method) -> dict[str, Any]:
 
 def _properties(method: Method, order: float | None) -> dict[str, Any]:
     from engine.methods import measure
-    from engine.methods.own import OwnMethod
-    from engine.stability.linear import linear_limit
 
     if not method.general:  # it is for a scene of its own, and measured there by the tests
         return dict.fromkeys(MEASURED)
     return {
         "measured_order": order,
-        "measured_linear_limit": method.linear_limit if isinstance(method, OwnMethod) else linear_limit(method),
+        "measured_linear_limit": measure.linear_limit(method.phases),
         "measured_symplectic": measure.is_symplectic(method.phases),
         "measured_reversible": measure.is_reversible(method.phases),
         "measured_force_evaluations": measure.evaluations(method.phases)[0],

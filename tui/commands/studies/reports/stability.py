@@ -13,10 +13,11 @@ from numpy.lib import format as npy
 from rich.text import Text
 
 from engine.methods import Method
+from engine.methods.measure import linear_limit
 from engine.methods.own import OwnMethod
 from engine.scenes import Scene
 from engine.stability.grid import Grid
-from engine.stability.linear import amplification, linear_limit
+from engine.stability.linear import amplification
 from engine.stability.outcomes import BAND, CELL, CHAOTIC, FATES, UNKNOWN, Cells, is_lost
 from engine.stability.study import Row, StabilityStudy
 from tui.cli.errors import Exit
@@ -150,9 +151,7 @@ def _is_linear(scene: Scene) -> bool:
 
 def _limits(method: Method) -> tuple[float | None, float | None]:
     """The largest stable z as measured, and in theory; a user's own method has no theory."""
-    if isinstance(method, OwnMethod):
-        return method.linear_limit, None
-    return linear_limit(method), method.linear_limit
+    return linear_limit(method.phases), None if isinstance(method, OwnMethod) else method.linear_limit
 
 
 def _print_linear(scene: Scene) -> None:
