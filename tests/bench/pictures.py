@@ -12,6 +12,7 @@ import numpy as np
 
 from engine.methods import USUAL_CAST
 from engine.run.lockstep import Lockstep
+from engine.run.observer import RunObserver
 from engine.scenes import DEFAULT_SCENE
 from tui.drawing.canvas import Canvas, Picture
 from tui.drawing.time_chart import time_chart
@@ -54,7 +55,7 @@ def scattered(random: np.random.Generator) -> Callable[[], Picture]:
 
 def long_run() -> tuple[ErrorHistory, float]:
     """A history of many frames, and what adding one took on average [ms]."""
-    lockstep, exact, history = Lockstep(DEFAULT_SCENE), DEFAULT_SCENE.exact(), ErrorHistory(DEFAULT_SCENE)
+    lockstep, exact, history = Lockstep(DEFAULT_SCENE), DEFAULT_SCENE.exact(), ErrorHistory(RunObserver(DEFAULT_SCENE))
     samples = []
     for _ in range(FRAMES):
         samples.append(lockstep.sample())
@@ -89,7 +90,9 @@ def fuzz(random: np.random.Generator, builds: int) -> None:
             bool(random.integers(2)),
             None if random.integers(3) == 0 else float(10.0 ** random.uniform(-1, 6)),
         )
-        assert time_chart(window, "energy_error", width, height, log=log, seconds=seconds).characters.size
+        assert time_chart(
+            window, USUAL_CAST, "energy_error", width, height, log=log, seconds=seconds
+        ).picture.characters.size
 
 
 def main() -> None:
@@ -98,13 +101,15 @@ def main() -> None:
     history, add = long_run()
     window, whole = history.window(20.0), history.window()
     trail = history.trail(0, 40)[0].tolist()
-    chart = time_chart(window, "energy_error", 160, 40, seconds=20.0)
+    chart = time_chart(window, USUAL_CAST, "energy_error", 160, 40, seconds=20.0).picture
     milliseconds = {
         "canvas_4x3000_points": least(scattered(random)),
-        "chart_80x20": least(lambda: time_chart(window, "energy_error", 80, 20, seconds=20.0)),
-        "chart_160x40": least(lambda: time_chart(window, "energy_error", 160, 40, seconds=20.0)),
-        "chart_160x40_whole_run": least(lambda: time_chart(whole, "energy_error", 160, 40)),
-        "chart_160x40_linear": least(lambda: time_chart(window, "energy_error", 160, 40, seconds=20.0, log=False)),
+        "chart_80x20": least(lambda: time_chart(window, USUAL_CAST, "energy_error", 80, 20, seconds=20.0)),
+        "chart_160x40": least(lambda: time_chart(window, USUAL_CAST, "energy_error", 160, 40, seconds=20.0)),
+        "chart_160x40_whole_run": least(lambda: time_chart(whole, USUAL_CAST, "energy_error", 160, 40)),
+        "chart_160x40_linear": least(
+            lambda: time_chart(window, USUAL_CAST, "energy_error", 160, 40, seconds=20.0, log=False)
+        ),
         "chart_160x40_as_runs": least(lambda: [chart.row(y) for y in range(40)]),
         "pendulum_23x18": least(lambda: pendulum_sketch(23, 18, [Bob(1.0, 0, trail=trail)])),
         "history_add": add,
