@@ -8,6 +8,7 @@ from engine.methods import USUAL_CAST
 from engine.scenes import SCENES
 from recordings.library import resolve
 from tests.tui.harness import key_of, lab, player
+from tui.views import VIEWS
 from tui.views.accuracy.pane import AccuracyPane
 from tui.views.phase.section_pane import SectionPane
 from tui.views.stability.pane import StabilityPane
@@ -20,13 +21,23 @@ def words(theatre):
     return "\n".join(pane.text for pane in theatre.stage.query(Pane) if pane.drawable)
 
 
-@pytest.mark.parametrize("name", SCENES)
-async def test_every_scene_runs_in_every_view(name):
-    async with lab(SCENES[name]) as theatre:
-        for view in ("lab", "phase", "accuracy", "stability"):
-            await theatre.press(key_of(view))
-            await theatre.run(3 if view == "lab" else 0.5)
-            assert not re.search(r"\b(nan|inf)\b", words(theatre))
+@pytest.mark.parametrize("view", VIEWS)
+async def test_every_scene_runs_in_every_view(view, monkeypatch):
+    for each in ("accuracy", "phase", "stability"):
+        monkeypatch.setattr(f"tui.views.{each}.view.computed", nothing)
+    async with lab() as theatre:
+        await theatre.press(key_of(view))
+        for scene in SCENES.values():
+            theatre.source.start(scene)
+            await theatre.run(1)
+            assert not re.search(r"\b(nan|inf)\b", said := words(theatre))
+            assert said
+
+
+async def nothing(*_):
+    """In place of what another process would compute, too late for this."""
+    for item in ():
+        yield item
 
 
 @pytest.mark.parametrize(
