@@ -34,7 +34,13 @@ def complex_acceleration(theta):  # type: ignore[no-untyped-def]
 
 def runner(method: Method):  # type: ignore[no-untyped-def]
     """A loop over the windows that fills in (low, high, log of the stretching, lowest omega, highest omega)."""
-    step, w0 = numba.njit(method.step), math.sqrt(9.81)
+    phases, w0 = numba.njit(method.phases), math.sqrt(9.81)
+
+    @numba.njit
+    def step(force, phase, h):  # type: ignore[no-untyped-def]
+        for following in phases(force, phase, h):
+            return following
+        return phase
 
     @numba.njit
     def alone(theta, omega, along, across, h):  # type: ignore[no-untyped-def]

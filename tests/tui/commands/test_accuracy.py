@@ -8,10 +8,12 @@ from itertools import islice
 
 import pytest
 
+from engine.accuracy.growth import Growth
 from engine.accuracy.references import ABSENT, OTHER_MODEL, UNFAIR
 from engine.accuracy.study import REASONS, Order, Study, ladder, orders
 from engine.methods import METHODS, USUAL_CAST
 from engine.run.compiled import available, tiered
+from engine.run.loops import plain
 from engine.scenes import SCENES
 from tests.tui.command_line import own_method, pendu
 from tui.commands.studies.reports.orders import order_remarks
@@ -74,8 +76,9 @@ def test_the_chart_has_letters_for_points_and_dotted_lines_for_orders():
 
 
 def test_every_point_on_the_chart_is_where_its_cost_and_its_error_are():
-    points = list(Study(SCENES["drift"], 20.0).points(ladder(20.0, 0.1, 0.00005, 4)))
-    lines = charted([p for p in points if p.method.key == "rk4"], 80, 24).text.split("\n")
+    scene = SCENES["drift"].with_cast(USUAL_CAST[3:])
+    points = list(Study(scene, 20.0).points(ladder(20.0, 0.1, 0.00005, 4)))
+    lines = charted(points, 80, 24).text.split("\n")
     assert sum(line.count("r") for line in lines[1:-1]) == 3  # the fourth is only rounding
     assert sum(line.count("~") for line in lines[1:-1]) == 1
 
@@ -99,7 +102,8 @@ def test_the_numbers_are_the_same_without_numba():
 
 
 def test_useless_points_are_kept_with_their_reason():
-    points = pendu("accuracy", "--time", "20", "--h-values", "0.2:0.00005:4", "--json").json["points"]
+    ladder = ("--time", "20", "--h-values", "0.2:0.0001:4", "--methods", "explicit,rk4")
+    points = pendu("accuracy", *ladder, "--json").json["points"]
     assert {(p["method"], p["reason"]) for p in points if not p["valid"]} == {
         ("explicit_euler", REASONS["lost"]),
         ("rk4", REASONS["rounding"]),
@@ -272,26 +276,34 @@ def test_over_seconds_all_there_is_includes_the_series_and_the_floor():
     assert {"t", "c"} <= {mark for line in told.split("\n") if {"│", "┤"} & set(line) for mark in line}
 
 
-def test_csv_has_the_reference_lines_with_empty_fields():
-    told = pendu(*ALL, "--cost", "seconds", "--csv").out
+SMALL = ("accuracy", "--all", "--cost", "seconds", "--time", "2", "--h-values", "0.1:0.05:2")
+
+
+@pytest.fixture
+def hurried(monkeypatch):
+    """Without seconds of compiling, and of following errors, for numbers at which nobody looks."""
+    monkeypatch.setattr("engine.run.compiled.compiled", plain)
+    monkeypatch.setattr("engine.accuracy.growth.growth", lambda _, method: Growth(method, [], [], None))
+
+
+def test_csv_has_the_reference_lines_with_empty_fields(hurried):
+    told = pendu(*SMALL, "--csv").out
     read = list(csv.DictReader(io.StringIO(told)))
     assert {row["method"] for row in read if not row["h"]} == {"closed_form", *["taylor_20"] * available()}
 
 
 @pytest.mark.parametrize(("more", "words"), [(("--scene", "linear"), OTHER_MODEL), (("--no-compiled",), UNFAIR)])
-def test_where_there_is_no_series_it_says_why(more, words):
-    quick = ("accuracy", "--all", "--cost", "seconds", "--time", "2", "--h-values", "0.1:0.05:2", *more)
-    answer = pendu(*quick, "--json").json
+def test_where_there_is_no_series_it_says_why(more, words, hurried):
+    answer = pendu(*SMALL, *more, "--json").json
     assert answer["absent"] == (words if available() or words == OTHER_MODEL else ABSENT)
     assert "taylor_20" not in {point["method"] for point in answer["points"]}
-    assert answer["absent"] in pendu(*quick).out
+    assert answer["absent"] in pendu(*SMALL, *more).out
 
 
-def test_without_numba_the_series_is_said_to_need_it(monkeypatch):
+def test_without_numba_the_series_is_said_to_need_it(monkeypatch, hurried):
     for module in ("study", "references"):
         monkeypatch.setattr(f"engine.accuracy.{module}.available", lambda: False)
-    told = pendu("accuracy", "--all", "--cost", "seconds", "--time", "2", "--h-values", "0.1:0.05:2")
-    assert ABSENT in told.out
+    assert ABSENT in pendu(*SMALL).out
 
 
 def test_the_growth_of_the_angle_error_is_printed_where_it_is_a_power_of_time():

@@ -1,4 +1,4 @@
-"""Five thousand random keys and clicks over all views, live and replay."""
+"""Hundreds of random keys and clicks over all views, live and replay; tests/bench/monkey.py presses more of them."""
 
 import itertools
 import os
@@ -37,7 +37,7 @@ from tui.screens.replay import ReplayScreen
 
 pytestmark = pytest.mark.other_process  # what is computed is left again at once
 
-PRESSES, WILD = 600, 200
+PRESSES, WILD = 300, 120
 SEED = int(os.environ.get("PENDU_MONKEY", "1"))
 
 
