@@ -108,7 +108,6 @@ def test_the_five_lines_for_pytest_are_a_test(tmp_path):
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
     assert "1 failed, 1 passed" in done.stdout, done.stdout
-    assert re.search(r"^FAILED .*damaged", done.stdout, re.MULTILINE)
 
 
 def test_the_recipes_name_columns_that_the_csv_has():

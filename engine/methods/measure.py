@@ -20,6 +20,7 @@ LARGE_H = 0.2  # s: at small steps a high order hides a change of area, or a mis
 WIDEST_Z, RUNGS = 16, 2048  # z is looked at up to here, in steps of 1/2048: two thirds of the narrowest gap, BM6's
 NO_LIMIT_BELOW = 0.1  # z up to which some unstable methods grow by less than rounding
 ROUNDING = 1e-12
+LINEAR_ROUNDING = 3e-13  # of a linear step; a limit moves by up to a thousand times as much
 RETURNED = 1e-11  # rad; rounding of 100 steps of a dozen forces
 FLOOR = 1e-14  # rad a step; smaller errors are rounding
 FITTED_BELOW = 0.1  # rad; larger errors are not yet proportional to a power of h
@@ -148,7 +149,7 @@ def is_stable(phases: Phases, z: float) -> bool:
     a, c = after(phases, _spring, (1.0, 0.0), z, 1)
     b, d = after(phases, _spring, (0.0, 1.0), z, 1)
     area = a * d - b * c
-    return bool(area <= 1 + ROUNDING and abs(a + d) <= 1 + area + ROUNDING)
+    return bool(area <= 1 + LINEAR_ROUNDING and abs(a + d) <= 1 + area + LINEAR_ROUNDING)
 
 
 def _spring(theta: Any) -> Any:

@@ -89,26 +89,31 @@ def test_a_command_runs_no_module_of_the_current_folder(tmp_path, hostile, progr
 
 
 @pytest.mark.parametrize("command", ON_SCREEN)
-def test_no_view_runs_a_module_of_the_current_folder(tmp_path, hostile, program, command):
+def test_no_lab_runs_a_module_of_the_current_folder(tmp_path, hostile, program, command):
     arguments = (command, *ON_SCREEN[command])
     with PtyLab(*arguments, program=program, folder=hostile, **environment(tmp_path)) as session:
         session.wait_for("Quit")
-        session.type("\x1bOR")  # F3
-        session.wait_for("area")
-        session.type("x")
-        session.wait_for("Own map of Velocity Verlet")
-        session.wait_for("computing 10%")  # by another process
-        session.type("\x1bOS")  # F4
-        session.wait_for("points left")
-        session.type("\x1b[15~")  # F5
-        session.wait_for("300 steps")  # of what another process has computed
+        if command == "live":
+            look_at_all_views(session)
         session.type("s?")
-        session.run(1.0)
-        session.type("\x1b")
         session.run(0.5)
+        session.type("\x1b")
+        session.run(0.3)
         session.type("q")
         assert session.end() == 0
     assert not (tmp_path / "ran").exists(), (tmp_path / "ran").read_text()
+
+
+def look_at_all_views(session: PtyLab) -> None:
+    session.type("\x1bOR")  # F3
+    session.wait_for("area")
+    session.type("x")
+    session.wait_for("Own map of Velocity Verlet")
+    session.wait_for("computing 10%")  # by another process
+    session.type("\x1bOS")  # F4
+    session.wait_for("points left")
+    session.type("\x1b[15~")  # F5
+    session.wait_for("300 steps")  # of what another process has computed
 
 
 def test_what_lies_there_would_be_run_if_python_looked_for_it(tmp_path, hostile):

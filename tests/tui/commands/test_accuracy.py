@@ -281,8 +281,9 @@ SMALL = ("accuracy", "--all", "--cost", "seconds", "--time", "2", "--h-values", 
 
 @pytest.fixture
 def hurried(monkeypatch):
-    """Without seconds of compiling, and of following errors, for numbers at which nobody looks."""
+    """Without the seconds that compiling and numbers take at which nobody looks."""
     monkeypatch.setattr("engine.run.compiled.compiled", plain)
+    monkeypatch.setattr("engine.accuracy.study.orders", lambda *_: [])
     monkeypatch.setattr("engine.accuracy.growth.growth", lambda _, method: Growth(method, [], [], None))
 
 

@@ -64,8 +64,8 @@ def test_every_scene_runs_and_its_json_has_no_nan(name):
     "start", [("--omega", "1e8"), ("--theta", "1e6"), ("--h", "15.97"), ("--theta", "1e-300"), ("--theta", "0")]
 )
 def test_extreme_but_legal_starts_neither_crash_nor_print_nan(start):
-    assert pendu("run", *start, "--time", "2000", "--json").code == 0
-    out = pendu("run", *start, "--time", "2000").out
+    assert pendu("run", *start, "--time", "500", "--json").code == 0
+    out = pendu("run", *start, "--time", "500").out
     assert "nan" not in out.replace("nance", "")
     assert "inf" not in out
 
@@ -81,7 +81,15 @@ def test_evaluations_that_vary_are_counted():
 
 
 def test_a_diverged_method_is_reported_with_its_time():
-    arguments = ("run", "--theta", "1e-150", "--time", "2000")  # so small that its growth overflows any relative error
+    arguments = (
+        "run",
+        "--theta",
+        "1e-150",
+        "--time",
+        "2000",
+        "--methods",
+        "explicit",
+    )  # so small that its growth overflows any relative error
     euler = pendu(*arguments, "--json").json["methods"][0]
     assert euler["theta_error"] is None
     assert 0 < euler["diverged_at"] < 2000

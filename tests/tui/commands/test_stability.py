@@ -177,13 +177,13 @@ def test_interrupted_before_the_scenes_z_its_cell_is_null(interrupted):
 
 def test_a_table_of_many_amplitudes_takes_the_memory_of_a_strip():
     tracemalloc.start()
-    rows, whole = StabilityStudy(Scene(), np.linspace(0.1, 3, 2000).tolist(), steps=1).table()
+    rows, whole = StabilityStudy(Scene(), np.linspace(0.1, 3, 1000).tolist(), steps=1).table()
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert whole
-    assert len(rows) == 8000
-    # The cells of all 813 z would be 813 * 4 * 2000 * 16 bytes = 104 MB, and twice that when they are joined.
-    assert peak < 20e6
+    assert len(rows) == 4000
+    # The cells of all 813 z would be 813 * 4 * 1000 * 16 bytes = 52 MB, and twice that when they are joined.
+    assert peak < 12e6
 
 
 @pytest.mark.parametrize(
