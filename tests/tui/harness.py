@@ -145,6 +145,8 @@ async def on_stage(make_stage: Any, size: tuple[int, int]) -> AsyncIterator[Thea
         await theatre.pilot.pause()
         theatre.source.tick(0.0)
         yield theatre
+        if theatre.source.kind == "REPLAY":
+            theatre.source.close()
 
 
 def lab(scene: Scene = DEFAULT_SCENE, size: tuple[int, int] = (120, 40)) -> Any:
@@ -167,6 +169,12 @@ async def until(pilot: Pilot[Any], condition: Callable[[], object]) -> None:
     async with asyncio.timeout(PATIENCE):
         while not condition():
             await pilot.pause(0.05)
+
+
+async def uncomputed(*_: object) -> AsyncIterator[object]:
+    """In place of tui.views.background.computed, where nobody looks at what it gives."""
+    for item in ():
+        yield item
 
 
 @asynccontextmanager

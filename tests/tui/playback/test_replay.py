@@ -3,6 +3,7 @@
 import itertools
 from functools import cached_property
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -24,11 +25,22 @@ NANOSECOND = 1e-9  # what clocks in a file are rounded to
 LENGTH = 12.0  # s, of the eventful sitting
 
 
+@pytest.fixture(autouse=True)
+def closed():
+    """What a test has opened."""
+    yield
+    while Table.opened:
+        Table.opened.pop().close()
+
+
 class Table(Clocked):
     """A replay with its clock."""
 
+    opened: ClassVar[list[Recording]] = []
+
     def __init__(self, path: Path):
         self.recording = Recording.open(path)
+        self.opened.append(self.recording)
         self.replay = Replay(self.recording, Marks(path), clock=lambda: 0.0)
         super().__init__(self.replay)
 

@@ -95,6 +95,7 @@ def test_a_replay_shows_what_the_lab_showed(tmp_path: Path):
     for frame in range(100):
         replay.tick(frame / 30)
     shown, was = replay.history.window(), live[0].history.window()
+    replay.close()
     assert np.array_equal(shown.x, was.x)
     for quantity in ("shadow_error", "energy_error"):
         assert np.array_equal(shown.high[quantity], was.high[quantity], equal_nan=True)

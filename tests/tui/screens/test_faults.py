@@ -77,7 +77,8 @@ async def test_a_pane_that_cannot_be_drawn_says_so_and_the_lab_records_on(tmp_pa
         theatre.source.close()
     faults.clear()
     assert verify(path).identical
-    assert Recording.open(path).length > 3
+    with Recording.open(path) as recording:
+        assert recording.length > 3
 
 
 async def test_a_chart_that_cannot_be_built_says_so_until_one_can(faults, monkeypatch):

@@ -34,9 +34,9 @@ def whole(library: Path) -> Recording:
     (path,) = library.iterdir()
     assert path.suffix == ".mcap"
     assert verify(path).identical
-    recording = Recording.open(path, check=True)
-    assert recording.complete
-    return recording
+    with Recording.open(path, check=True) as recording:
+        assert recording.complete
+        return recording
 
 
 def test_the_program_starts_follows_the_keys_quits_and_leaves_a_recording_that_verifies(library):
@@ -121,7 +121,7 @@ def test_a_lab_whose_input_is_at_its_end_leaves_without_a_signal(library):
 
 def test_the_recording_of_a_killed_lab_is_recovered_and_reported_at_the_next_start(library):
     with lab(library) as session:
-        session.wait_for("REC 2 s")
+        session.wait_for("REC 1 s")
         session.signal(signal.SIGKILL)
         assert session.end() == -signal.SIGKILL
     assert [path.suffix for path in library.iterdir()] == [".part"]
@@ -132,7 +132,8 @@ def test_the_recording_of_a_killed_lab_is_recovered_and_reported_at_the_next_sta
         assert session.end() == 0
     recovered, latest = sorted(library.iterdir())
     assert {recovered.suffix, latest.suffix} == {".mcap"}
-    assert Recording.open(recovered).length > 1
+    with Recording.open(recovered) as recording:
+        assert recording.length > 0
 
 
 def test_without_recording_nothing_is_written(library):

@@ -134,9 +134,9 @@ def test_a_lab_that_was_stopped_goes_on_where_it_was(tmp_path):
     assert pendu.output.count(b"\x1b[?1049h") == 3  # painted anew
     (path,) = tmp_path.iterdir()
     assert verify(path).identical
-    recording = Recording.open(path)
-    assert recording.length < present
-    times = [entry.value.t for entry in recording.entries() if isinstance(entry.value, Sample)]
+    with Recording.open(path) as recording:
+        assert recording.length < present
+        times = [entry.value.t for entry in recording.entries() if isinstance(entry.value, Sample)]
     assert max(after - before for before, after in itertools.pairwise(times)) < 1.0
 
 

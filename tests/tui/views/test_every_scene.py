@@ -7,7 +7,7 @@ import pytest
 from engine.methods import USUAL_CAST
 from engine.scenes import SCENES
 from recordings.library import resolve
-from tests.tui.harness import key_of, lab, player
+from tests.tui.harness import key_of, lab, player, uncomputed
 from tui.views import VIEWS
 from tui.views.accuracy.pane import AccuracyPane
 from tui.views.phase.section_pane import SectionPane
@@ -24,7 +24,7 @@ def words(theatre):
 @pytest.mark.parametrize("view", VIEWS)
 async def test_every_scene_runs_in_every_view(view, monkeypatch):
     for each in ("accuracy", "phase", "stability"):
-        monkeypatch.setattr(f"tui.views.{each}.view.computed", nothing)
+        monkeypatch.setattr(f"tui.views.{each}.view.computed", uncomputed)
     async with lab() as theatre:
         await theatre.press(key_of(view))
         for scene in SCENES.values():
@@ -32,12 +32,6 @@ async def test_every_scene_runs_in_every_view(view, monkeypatch):
             await theatre.run(1)
             assert not re.search(r"\b(nan|inf)\b", said := words(theatre))
             assert said
-
-
-async def nothing(*_):
-    """In place of what another process would compute, too late for this."""
-    for item in ():
-        yield item
 
 
 @pytest.mark.parametrize(

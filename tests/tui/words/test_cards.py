@@ -5,7 +5,7 @@ import pytest
 from engine.methods import METHODS, USUAL_CAST
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES
-from tests.tui.harness import lab
+from tests.tui.harness import lab, uncomputed
 from tui.playback.live import Live
 from tui.screens.dialogs.text import help_text
 from tui.screens.keys import COMMON, LIVE, REPLAY
@@ -78,7 +78,8 @@ def test_the_help_shows_the_current_step_next_to_the_scenes():
     assert "time runs backwards" in text
 
 
-async def test_the_help_begins_with_the_keys_of_the_focused_pane():
+async def test_the_help_begins_with_the_keys_of_the_focused_pane(monkeypatch):
+    monkeypatch.setattr("tui.views.stability.view.computed", uncomputed)
     async with lab() as theatre:
         for view, pane, first in ((None, None, "Run"), (None, PhasePane, "Phase space"), ("f5", None, "Stability")):
             if view:

@@ -128,11 +128,6 @@ def test_a_failed_method_is_listed():
     assert "Explicit Euler failed" in texts(live)
 
 
-def test_lines_fit_the_smallest_pane():
-    for scene in SCENES.values():
-        assert all(len(str(line)) <= 46 for line in event_lines(after(scene, 60)))
-
-
 async def test_the_pane_shows_the_newest_last_and_only_where_there_is_room():
     live = after(DRIFT, 20)
     app = PenduApp(LiveScreen(live, clock=lambda: 20.0))

@@ -41,11 +41,12 @@ def test_the_first_minute_of_the_default_scene():
     assert re.fullmatch(r"Symplectic Euler and Verlet stay bounded; no trend over \d\d s\.", said[45])
 
 
-def test_every_second_of_every_scene_has_a_sentence_that_fits_on_its_line():
+def test_every_second_of_every_scene_has_a_sentence_that_fits_on_its_line_and_events_fit_the_smallest_pane():
     for scene in SCENES.values():
         lab = Told(scene)
         for _ in range(60):
             assert 10 < len(lab.run(1).removesuffix(".")) <= WIDTH
+        assert all(len(str(line)) <= 46 for line in event_lines(lab.live))
 
 
 @pytest.mark.parametrize("speed", [0.5, 1.0, 16.0])
