@@ -8,6 +8,7 @@ from rich.color import Color
 
 from tests.tui.conftest import lines_of
 from tests.tui.harness import key_of, lab
+from tests.tui.monkey import small_studies
 from tui.drawing.palette import PALETTES, TEXT
 from tui.screens.status_line import StatusLine
 from tui.terminal.options import CHARACTER_SETS
@@ -15,6 +16,12 @@ from tui.views import VIEWS
 from tui.views.lab.error_table import ErrorTable
 from tui.views.lab.time_chart import TimeChart
 from tui.views.phase.pane import PhasePane
+
+
+@pytest.fixture(autouse=True)
+def small(tmp_path):
+    with small_studies(tmp_path):
+        yield
 
 
 async def picture(theatre) -> str:

@@ -214,6 +214,7 @@ async def test_a_replay_goes_on_too(faults, monkeypatch):
 
 async def test_what_fails_before_the_lab_is_on_stage_ends_the_program(monkeypatch):
     monkeypatch.setattr(LiveScreen, "compose", broken)
+    monkeypatch.setattr("rich.traceback.Traceback", lambda **_: "")  # takes seconds to draw
     with pytest.raises(ZeroDivisionError):
         async with lab():
             pass

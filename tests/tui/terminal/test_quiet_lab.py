@@ -14,7 +14,7 @@ def test_a_paused_program_sends_no_byte_and_wakes_a_few_times_a_second(arguments
         lab.wait_for("paused")
         for _ in range(10):  # until the last chart is there, and a hint that is due
             sent, woken, began = len(lab.output), lab.wakes(), lab.now
-            lab.run(2.0)
+            lab.run(1.4)
             if len(lab.output) == sent:
                 break
         assert len(lab.output) == sent
