@@ -56,6 +56,11 @@ class TimePlot:
     times: Sequence[float] = ()  # s, at the middle of each column
     values: Floats | None = None  # (columns, methods)
 
+    @property
+    def column(self) -> float:
+        """The time in the last column [s]."""
+        return self.times[-1] - self.times[-2] if len(self.times) > 1 else 0.0
+
     def at(self, column: int) -> Reading | None:
         """What is shown in a column of the picture, or in the last one before it that shows anything."""
         at = column - self.left

@@ -1,6 +1,6 @@
 """What views are made of: a View fills the screen between status line and key line with Panes; some are Choosers."""
 
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable, Collection, Coroutine
 from typing import ClassVar, Generic, TypeVar
 
 from textual.containers import Container
@@ -18,6 +18,9 @@ from tui.views.keys import Key
 
 Place = TypeVar("Place")
 
+FRAMES, READ, BUILT = 30, 10, 5
+"""Updates a second: of what moves with every frame, of what people read, and of charts, which take long to build."""
+RATES = (FRAMES, READ, BUILT)
 DESCRIBED_FIRST = "velocity_verlet"
 
 
@@ -28,34 +31,33 @@ class Box(Guarded, Container):
 
 
 class View(Box):
-    """A view gets these from the screen, and passes them on to its panes with data_bind."""
+    """A view gets source and shown from the screen with data_bind, and passes them on to its panes.
+
+    Samples come directly, each pane's as often as it wants them: data_bind would take longer than drawing.
+    """
 
     KEYS: ClassVar[tuple[Key, ...]] = ()
     """The keys of its panes, for the help."""
 
     source: var[Source | None] = var(None)
-    sample_10hz: var[Sample | None] = var(None)
-    """The sample as often as people can read it, 10 times a second."""
-    sample_5hz: var[Sample | None] = var(None)
-    """The sample as often as a chart is worth building, 5 times a second."""
     shown: var[Shown] = var(Shown())
 
     def __init__(self, id: str | None = None) -> None:
         super().__init__(id=id)
-        self._moving: list[Pane] = []
-        self._late: list[Pane] = []
+        self._panes: list[tuple[int, Pane]] = []
+        self._late: list[tuple[int, Pane]] = []
         self._followed: Sample | None = None
 
-    def moving(self, pane: "Pane", late: bool = False) -> "Pane":
-        """A pane that follows every frame: it gets the sample directly, for data_bind takes longer than drawing.
+    def pane(self, pane: "Pane", rate: int = READ, late: bool = False) -> "Pane":
+        """Let a pane of this view follow the samples, so many a second.
 
         A late one draws after the first paint only, since NumPy takes long to import.
         """
-        (self._late if late else self._moving).append(pane)
+        (self._late if late else self._panes).append((rate, pane))
         return pane.data_bind(View.source, View.shown)
 
     def on_mount(self) -> None:
-        self._draw_moving()
+        self._tell(self._panes)
         self.call_after_refresh(self._begin)
 
     def compute(self, work: Callable[[], Coroutine[None, None, None]], group: str = "default") -> Worker[None]:
@@ -75,32 +77,33 @@ class View(Box):
             pane.wake()
 
     def _begin(self) -> None:
-        self._moving += self._late
-        self._draw_moving()
+        self._panes += self._late
+        self._tell(self._late)
 
-    def follow(self, sample: Sample) -> None:
-        """Show the sample of a frame."""
-        if sample != self._followed:
-            self._followed = sample
-            self._draw_moving()
+    def follow(self, sample: Sample, rates: Collection[int] = RATES) -> None:
+        """Show a sample in the panes whose turn it is; what is read also tells of more than the sample."""
+        self._followed = sample
+        self._tell([(rate, pane) for rate, pane in self._panes if rate in rates])
 
-    def _draw_moving(self) -> None:
-        for pane in self._moving:
-            pane.set_reactive(Pane.sample, self._followed)
-            pane.draw()
+    def _tell(self, panes: Collection[tuple[int, "Pane"]]) -> None:
+        sample = self._followed
+        for rate, pane in panes:
+            if sample is not None and (rate == READ or pane.sample != sample):
+                pane.follow(sample)
 
 
 class Pane(CellWidget):
     """Draws a source at one of its samples, again whenever one of the three values changes."""
 
     source: var[Source | None] = var(None)
-    sample: var[Sample | None] = var(None)
+    sample: Sample | None = None
     shown: var[Shown] = var(Shown())
 
-    def watch_source(self) -> None:
+    def follow(self, sample: Sample) -> None:
+        self.sample = sample
         self.draw()
 
-    def watch_sample(self) -> None:
+    def watch_source(self) -> None:
         self.draw()
 
     def watch_shown(self) -> None:

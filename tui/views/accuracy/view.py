@@ -1,7 +1,7 @@
 """AccuracyView: error over cost and over time for the pendulum on screen; the charts fill in as they are computed."""
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from functools import partial
 
 from textual.app import ComposeResult
@@ -9,9 +9,10 @@ from textual.app import ComposeResult
 from engine.accuracy.growth import Growth, growths
 from engine.accuracy.references import References, measured_front, with_all_methods
 from engine.accuracy.study import Point, measured, usual
+from engine.run.lockstep import Sample
 from tui.views.accuracy.pane import KEYS, MOST_STEPS, AccuracyPane
 from tui.views.background import computed
-from tui.views.view import View
+from tui.views.view import RATES, READ, View
 
 Found = Iterator[Point | References | Growth]
 Start = tuple[object, ...]
@@ -29,15 +30,21 @@ class AccuracyView(View):
         self._grown: object = None  # what the errors over time are for
 
     def compose(self) -> ComposeResult:
-        yield AccuracyPane().data_bind(View.source, View.shown, sample=View.sample_10hz)
+        yield self.pane(AccuracyPane())
 
     def on_mount(self) -> None:
-        self.watch_sample_10hz()
+        super().on_mount()
+        self._compute_missing()
 
     def on_show(self) -> None:
         self.query_one(AccuracyPane).focus()
 
-    def watch_sample_10hz(self) -> None:
+    def follow(self, sample: Sample, rates: Collection[int] = RATES) -> None:
+        super().follow(sample, rates)
+        if READ in rates:
+            self._compute_missing()
+
+    def _compute_missing(self) -> None:
         """Compute what is missing for the run on screen, if the view is shown."""
         if self.source is None or not self.display or not self.query(AccuracyPane):
             return

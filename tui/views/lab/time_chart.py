@@ -78,6 +78,7 @@ class TimeChart(Pane):
         self._building = False
         self._titles: object = None
         self._plot: TimePlot | None = None
+        self._built: Sample | None = None  # what the plot shows, or the one being built
         self._pointer: int | None = None  # the column under it
 
     @property
@@ -118,6 +119,19 @@ class TimeChart(Pane):
     def _start(self) -> None:
         self.run_worker(self._build_on_demand(), group="chart")
 
+    def follow(self, sample: Sample) -> None:
+        """Build it again once the sample is in a column of its own, or where one looks closely."""
+        self.sample, built, plot = sample, self._built, self._plot
+        moves = self.source is not None and not self.source.is_at_rest
+        if (
+            not moves
+            or plot is None
+            or built is None
+            or sample.run != built.run
+            or abs(sample.t - built.t) >= plot.column
+        ):
+            self.draw()
+
     def paint(self, source: Source, sample: Sample) -> None:
         self._wanted.set()
         self._tell()
@@ -148,7 +162,7 @@ class TimeChart(Pane):
             self._wanted.clear()
             if self.source is None or self.sample is None or not self.drawable:
                 continue
-            self._building = True
+            self._building, self._built = True, self.sample
             shown, (width, height), ghost = self._look(self.source), self.room, self.source.ghost
             behind = None if ghost is None else (ghost.window(self.sample.t, shown.seconds), ghost.scene.cast)
             build = partial(

@@ -1,9 +1,12 @@
 """LabView: the pendulums, the chart of their errors, phase space, the events, and the table."""
 
+from collections.abc import Collection
+
 from textual.app import ComposeResult
 from textual.geometry import Region, Size
 from textual.widget import Widget
 
+from engine.run.lockstep import Sample
 from engine.scenes import MOST_METHODS
 from tui.playback.source import Source
 from tui.views.lab.error_table import ErrorTable
@@ -14,7 +17,7 @@ from tui.views.lab.pendulums import Pendulum
 from tui.views.lab.time_chart import TimeChart
 from tui.views.phase.keys import KEYS
 from tui.views.phase.pane import PhasePane
-from tui.views.view import Box, View
+from tui.views.view import BUILT, FRAMES, RATES, READ, Box, View
 
 
 class Stage(Box):
@@ -44,15 +47,15 @@ class LabView(View):
 
     def compose(self) -> ComposeResult:
         for pendulum in (*self.pendulums, self.overlay):
-            self.moving(pendulum)
+            self.pane(pendulum, FRAMES)
         for chart in (self.chart, self.second_chart):
-            chart.data_bind(View.source, View.shown, sample=View.sample_5hz)
-        self.moving(self.phase, late=True)
-        self.events.data_bind(View.source, sample=View.sample_10hz)
+            self.pane(chart, BUILT)
+        self.pane(self.phase, FRAMES, late=True)
+        self.pane(self.events)
         panes = self.overlay, self.events, self.chart, self.second_chart, self.phase
         yield Stage(self, *self.pendulums, *panes)
-        yield ErrorTable().data_bind(View.source, View.shown, sample=View.sample_10hz)
-        yield LargeTable().data_bind(View.source, View.shown, sample=View.sample_10hz)
+        yield self.pane(ErrorTable())
+        yield self.pane(LargeTable())
 
     def regions(self, size: Size) -> dict[Widget, Region]:
         """Where each pane is on a stage of this size.  A method that is hidden leaves its room to the others."""
@@ -76,8 +79,10 @@ class LabView(View):
     def watch_source(self, source: Source | None) -> None:
         self._arrange()
 
-    def watch_sample_10hz(self) -> None:
-        self._arrange()
+    def follow(self, sample: Sample, rates: Collection[int] = RATES) -> None:
+        if READ in rates:
+            self._arrange()
+        super().follow(sample, rates)
 
     def _arrange(self) -> None:
         """Have Textual arrange the stage again, where that would change anything."""

@@ -1,15 +1,17 @@
 """PhaseView: phase space over the whole screen, with a table of what the methods do to area, or of their orbits."""
 
 import asyncio
+from collections.abc import Collection
 from functools import partial
 
 from textual.app import ComposeResult
 
+from engine.run.lockstep import Sample
 from tui.drawing.cells import CellWidget, Row
 from tui.views.background import computed
 from tui.views.phase.facts import fact_rows
 from tui.views.phase.section_pane import KEYS, SectionPane, Wanted, followed
-from tui.views.view import View
+from tui.views.view import FRAMES, RATES, READ, View
 
 RADIUS = 0.1  # rad; large enough to be seen, small enough to stay a ring for a while
 
@@ -24,7 +26,7 @@ class PhaseView(View):
     KEYS = KEYS
 
     def compose(self) -> ComposeResult:
-        yield self.moving(SectionPane(radius=RADIUS), late=True)
+        yield self.pane(SectionPane(radius=RADIUS), FRAMES, late=True)
         yield CellWidget(id="facts")
 
     def on_show(self) -> None:
@@ -39,8 +41,11 @@ class PhaseView(View):
         self.query_one("#facts", CellWidget).wake()
         self._write_facts()
 
-    def watch_sample_10hz(self) -> None:
+    def follow(self, sample: Sample, rates: Collection[int] = RATES) -> None:
         """Follow h, too: another one brings no other sample."""
+        super().follow(sample, rates)
+        if READ not in rates:
+            return
         for pane in self.query(SectionPane):
             if pane.shows_section:
                 pane.draw()

@@ -1,6 +1,7 @@
 """StabilityView: where each method becomes unstable; the map fills in as it is computed."""
 
 import math
+from collections.abc import Collection
 from functools import partial
 
 import numpy as np
@@ -8,10 +9,11 @@ from textual.app import ComposeResult
 from textual.content import Content
 
 from engine.methods import Cast
+from engine.run.lockstep import Sample
 from engine.stability.grid import Grid, pieces
 from tui.views.background import computed
 from tui.views.stability.pane import KEYS, StabilityPane
-from tui.views.view import View
+from tui.views.view import RATES, READ, View
 
 PASSES = (300, 10_000)
 """Steps of each swing: a first map at once, then the final one."""
@@ -27,13 +29,19 @@ class StabilityView(View):
     KEYS = KEYS
 
     def compose(self) -> ComposeResult:
-        yield StabilityPane(_grid(())).data_bind(View.source, View.shown, sample=View.sample_10hz)
+        yield self.pane(StabilityPane(_grid(())))
 
     def on_mount(self) -> None:
         self.query_one(StabilityPane).focus()
-        self.watch_sample_10hz()
+        super().on_mount()
+        self._compute_missing()
 
-    def watch_sample_10hz(self) -> None:
+    def follow(self, sample: Sample, rates: Collection[int] = RATES) -> None:
+        super().follow(sample, rates)
+        if READ in rates:
+            self._compute_missing()
+
+    def _compute_missing(self) -> None:
         """Compute the map for the methods on screen."""
         if self.source is None or not self.display or not self.query(StabilityPane):
             return
