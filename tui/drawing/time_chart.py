@@ -204,7 +204,7 @@ def _linear_y_axis(low: Sequence[Floats], high: Sequence[Floats], rows: int) -> 
 
 
 def _outline(owner: int, letter: str, low: Floats, high: Floats) -> Series:
-    """A line through the lows and highs of all columns, in the order that keeps it short; only the ends of what is flat."""
+    """A line through the lows and highs of all columns, in the order that keeps it short, but for what is flat."""
     known = np.flatnonzero(~np.isnan(low))
     low, high = low[known], high[known]
     falling = np.diff(low + high, prepend=0.0) < 0

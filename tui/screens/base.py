@@ -3,7 +3,7 @@
 import gc
 import time
 from collections import deque
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, cast
 
@@ -29,9 +29,10 @@ from tui.screens.too_small import TooSmall
 from tui.views import create, following
 from tui.views.keys import Key, bindings
 from tui.views.messages import Asked, MethodChosen
-from tui.views.view import BUILT, FRAMES, RATES, READ, Box, Pane, View
+from tui.views.view import Box, Pane, View
 from tui.words.undone import State, undone
 
+READ = 5  # updates a second of what people read
 STALL = 1.0  # s; a longer gap between frames does not count as time: Ctrl+Z, a computer asleep, a dead line
 UNDOS = 30  # changes; each may hold a run
 ALREADY = "Already marked"
@@ -135,13 +136,12 @@ class SourceScreen(Guarded, Screen[None]):
         if self.host.is_behind(urgent=self._late):
             return
         self._frames += 1
-        turns = (FRAMES, *(rate for rate in (READ, BUILT) if self._timer.is_turn(self._frames, rate)))
-        self._follow(sample, RATES if self._late else turns)
+        self._follow(sample, read=self._late or self._timer.is_turn(self._frames, READ))
         self._late = False
 
-    def _follow(self, sample: Sample, rates: Collection[int] = RATES) -> None:
-        self._on_stage.follow(sample, rates)
-        if READ in rates:
+    def _follow(self, sample: Sample, read: bool = True) -> None:
+        self._on_stage.follow(sample, read)
+        if read:
             for line in self._lines:
                 line.follow(sample)
 
@@ -242,5 +242,5 @@ class SourceScreen(Guarded, Screen[None]):
         self.app.exit()
 
     def _bound(self, view: View) -> View:
-        view.follow(self.source.sample, ())
+        view.follow(self.source.sample, read=False)
         return view.data_bind(SourceScreen.source, SourceScreen.shown)

@@ -1,6 +1,6 @@
 """What views are made of: a View fills the screen between status line and key line with Panes; some are Choosers."""
 
-from collections.abc import Callable, Collection, Coroutine
+from collections.abc import Callable, Coroutine, Iterable
 from typing import ClassVar, Generic, TypeVar
 
 from textual.containers import Container
@@ -18,9 +18,6 @@ from tui.views.keys import Key
 
 Place = TypeVar("Place")
 
-FRAMES, READ, BUILT = 30, 10, 5
-"""Updates a second: of what moves with every frame, of what people read, and of charts, which take long to build."""
-RATES = (FRAMES, READ, BUILT)
 DESCRIBED_FIRST = "velocity_verlet"
 
 
@@ -33,7 +30,7 @@ class Box(Guarded, Container):
 class View(Box):
     """A view gets source and shown from the screen with data_bind, and passes them on to its panes.
 
-    Samples come directly, each pane's as often as it wants them: data_bind would take longer than drawing.
+    Samples come directly: data_bind would take longer than drawing.
     """
 
     KEYS: ClassVar[tuple[Key, ...]] = ()
@@ -44,20 +41,23 @@ class View(Box):
 
     def __init__(self, id: str | None = None) -> None:
         super().__init__(id=id)
-        self._panes: list[tuple[int, Pane]] = []
-        self._late: list[tuple[int, Pane]] = []
+        self._moving: list[Pane] = []
+        self._late: list[Pane] = []
+        self._read: list[Pane] = []
         self._followed: Sample | None = None
 
-    def pane(self, pane: "Pane", rate: int = READ, late: bool = False) -> "Pane":
-        """Let a pane of this view follow the samples, so many a second.
+    def moving(self, pane: "Pane", late: bool = False) -> "Pane":
+        """A pane that follows every frame; a late one after the first paint only, since NumPy takes long to import."""
+        (self._late if late else self._moving).append(pane)
+        return pane.data_bind(View.source, View.shown)
 
-        A late one draws after the first paint only, since NumPy takes long to import.
-        """
-        (self._late if late else self._panes).append((rate, pane))
+    def read(self, pane: "Pane") -> "Pane":
+        """A pane that people read: it follows a few frames a second."""
+        self._read.append(pane)
         return pane.data_bind(View.source, View.shown)
 
     def on_mount(self) -> None:
-        self._tell(self._panes)
+        self._tell([*self._moving, *self._read])
         self.call_after_refresh(self._begin)
 
     def compute(self, work: Callable[[], Coroutine[None, None, None]], group: str = "default") -> Worker[None]:
@@ -77,18 +77,17 @@ class View(Box):
             pane.wake()
 
     def _begin(self) -> None:
-        self._panes += self._late
+        self._moving += self._late
         self._tell(self._late)
 
-    def follow(self, sample: Sample, rates: Collection[int] = RATES) -> None:
-        """Show a sample in the panes whose turn it is; what is read also tells of more than the sample."""
-        self._followed = sample
-        self._tell([(rate, pane) for rate, pane in self._panes if rate in rates])
+    def follow(self, sample: Sample, read: bool = True) -> None:
+        """Show a sample where it moves, and perhaps where it is read, which tells of more than the sample."""
+        moved, self._followed = sample != self._followed, sample
+        self._tell([*(self._moving if moved else ()), *(self._read if read else ())])
 
-    def _tell(self, panes: Collection[tuple[int, "Pane"]]) -> None:
-        sample = self._followed
-        for rate, pane in panes:
-            if sample is not None and (rate == READ or pane.sample != sample):
+    def _tell(self, panes: Iterable["Pane"]) -> None:
+        if (sample := self._followed) is not None:
+            for pane in panes:
                 pane.follow(sample)
 
 

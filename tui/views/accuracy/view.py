@@ -1,7 +1,7 @@
 """AccuracyView: error over cost and over time for the pendulum on screen; the charts fill in as they are computed."""
 
 import time
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 
 from textual.app import ComposeResult
@@ -12,7 +12,7 @@ from engine.accuracy.study import Point, measured, usual
 from engine.run.lockstep import Sample
 from tui.views.accuracy.pane import KEYS, MOST_STEPS, AccuracyPane
 from tui.views.background import computed
-from tui.views.view import RATES, READ, View
+from tui.views.view import View
 
 Found = Iterator[Point | References | Growth]
 Start = tuple[object, ...]
@@ -30,7 +30,7 @@ class AccuracyView(View):
         self._grown: object = None  # what the errors over time are for
 
     def compose(self) -> ComposeResult:
-        yield self.pane(AccuracyPane())
+        yield self.read(AccuracyPane())
 
     def on_mount(self) -> None:
         super().on_mount()
@@ -39,10 +39,10 @@ class AccuracyView(View):
     def on_show(self) -> None:
         self.query_one(AccuracyPane).focus()
 
-    def follow(self, sample: Sample, rates: Collection[int] = RATES) -> None:
-        super().follow(sample, rates)
-        if READ in rates:
+    def follow(self, sample: Sample, read: bool = True) -> None:
+        if read:
             self._compute_missing()
+        super().follow(sample, read)
 
     def _compute_missing(self) -> None:
         """Compute what is missing for the run on screen, if the view is shown."""

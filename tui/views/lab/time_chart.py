@@ -120,16 +120,13 @@ class TimeChart(Pane):
         self.run_worker(self._build_on_demand(), group="chart")
 
     def follow(self, sample: Sample) -> None:
-        """Build it again once the sample is in a column of its own, or where one looks closely."""
-        self.sample, built, plot = sample, self._built, self._plot
-        moves = self.source is not None and not self.source.is_at_rest
-        if (
-            not moves
-            or plot is None
-            or built is None
-            or sample.run != built.run
-            or abs(sample.t - built.t) >= plot.column
-        ):
+        """Build it again once the sample is in a column of its own; of a run at rest, at once."""
+        before, built, plot = self.sample, self._built, self._plot
+        self.sample = sample
+        due = sample != before
+        if plot is not None and built is not None and self.source is not None and not self.source.is_at_rest:
+            due = sample.run != built.run or abs(sample.t - built.t) >= plot.column
+        if due:
             self.draw()
 
     def paint(self, source: Source, sample: Sample) -> None:

@@ -1,7 +1,5 @@
 """LabView: the pendulums, the chart of their errors, phase space, the events, and the table."""
 
-from collections.abc import Collection
-
 from textual.app import ComposeResult
 from textual.geometry import Region, Size
 from textual.widget import Widget
@@ -17,7 +15,7 @@ from tui.views.lab.pendulums import Pendulum
 from tui.views.lab.time_chart import TimeChart
 from tui.views.phase.keys import KEYS
 from tui.views.phase.pane import PhasePane
-from tui.views.view import BUILT, FRAMES, RATES, READ, Box, View
+from tui.views.view import Box, View
 
 
 class Stage(Box):
@@ -47,15 +45,15 @@ class LabView(View):
 
     def compose(self) -> ComposeResult:
         for pendulum in (*self.pendulums, self.overlay):
-            self.pane(pendulum, FRAMES)
+            self.moving(pendulum)
         for chart in (self.chart, self.second_chart):
-            self.pane(chart, BUILT)
-        self.pane(self.phase, FRAMES, late=True)
-        self.pane(self.events)
+            self.read(chart)
+        self.moving(self.phase, late=True)
+        self.read(self.events)
         panes = self.overlay, self.events, self.chart, self.second_chart, self.phase
         yield Stage(self, *self.pendulums, *panes)
-        yield self.pane(ErrorTable())
-        yield self.pane(LargeTable())
+        yield self.read(ErrorTable())
+        yield self.read(LargeTable())
 
     def regions(self, size: Size) -> dict[Widget, Region]:
         """Where each pane is on a stage of this size.  A method that is hidden leaves its room to the others."""
@@ -79,10 +77,10 @@ class LabView(View):
     def watch_source(self, source: Source | None) -> None:
         self._arrange()
 
-    def follow(self, sample: Sample, rates: Collection[int] = RATES) -> None:
-        if READ in rates:
+    def follow(self, sample: Sample, read: bool = True) -> None:
+        if read:
             self._arrange()
-        super().follow(sample, rates)
+        super().follow(sample, read)
 
     def _arrange(self) -> None:
         """Have Textual arrange the stage again, where that would change anything."""

@@ -1,7 +1,6 @@
 """PhaseView: phase space over the whole screen, with a table of what the methods do to area, or of their orbits."""
 
 import asyncio
-from collections.abc import Collection
 from functools import partial
 
 from textual.app import ComposeResult
@@ -11,7 +10,7 @@ from tui.drawing.cells import CellWidget, Row
 from tui.views.background import computed
 from tui.views.phase.facts import fact_rows
 from tui.views.phase.section_pane import KEYS, SectionPane, Wanted, followed
-from tui.views.view import FRAMES, RATES, READ, View
+from tui.views.view import View
 
 RADIUS = 0.1  # rad; large enough to be seen, small enough to stay a ring for a while
 
@@ -26,7 +25,7 @@ class PhaseView(View):
     KEYS = KEYS
 
     def compose(self) -> ComposeResult:
-        yield self.pane(SectionPane(radius=RADIUS), FRAMES, late=True)
+        yield self.moving(SectionPane(radius=RADIUS), late=True)
         yield CellWidget(id="facts")
 
     def on_show(self) -> None:
@@ -41,10 +40,10 @@ class PhaseView(View):
         self.query_one("#facts", CellWidget).wake()
         self._write_facts()
 
-    def follow(self, sample: Sample, rates: Collection[int] = RATES) -> None:
+    def follow(self, sample: Sample, read: bool = True) -> None:
         """Follow h, too: another one brings no other sample."""
-        super().follow(sample, rates)
-        if READ not in rates:
+        super().follow(sample, read)
+        if not read:
             return
         for pane in self.query(SectionPane):
             if pane.shows_section:

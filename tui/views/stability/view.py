@@ -1,7 +1,6 @@
 """StabilityView: where each method becomes unstable; the map fills in as it is computed."""
 
 import math
-from collections.abc import Collection
 from functools import partial
 
 import numpy as np
@@ -13,7 +12,7 @@ from engine.run.lockstep import Sample
 from engine.stability.grid import Grid, pieces
 from tui.views.background import computed
 from tui.views.stability.pane import KEYS, StabilityPane
-from tui.views.view import RATES, READ, View
+from tui.views.view import View
 
 PASSES = (300, 10_000)
 """Steps of each swing: a first map at once, then the final one."""
@@ -29,17 +28,17 @@ class StabilityView(View):
     KEYS = KEYS
 
     def compose(self) -> ComposeResult:
-        yield self.pane(StabilityPane(_grid(())))
+        yield self.read(StabilityPane(_grid(())))
 
     def on_mount(self) -> None:
         self.query_one(StabilityPane).focus()
         super().on_mount()
         self._compute_missing()
 
-    def follow(self, sample: Sample, rates: Collection[int] = RATES) -> None:
-        super().follow(sample, rates)
-        if READ in rates:
+    def follow(self, sample: Sample, read: bool = True) -> None:
+        if read:
             self._compute_missing()
+        super().follow(sample, read)
 
     def _compute_missing(self) -> None:
         """Compute the map for the methods on screen."""
