@@ -21,6 +21,7 @@ Span = tuple[str, int]
 """Adjacent characters with the same owner."""
 
 _ORDER = np.array(ORDER)
+_BLANK = ord(" ")
 _GLYPHS = np.array([ord(" "), *range(0x2801, 0x2900)], np.uint32)
 
 
@@ -42,11 +43,16 @@ class Picture:
     owners: NDArray[np.int8]  # (rows, columns)
 
     def row(self, y: int) -> list[Span]:
-        """The spans of row y, from the left; none if the picture has no columns."""
-        text = self.characters[y].astype("<u4").tobytes().decode("utf-32-le")
-        owners = self.owners[y]
-        starts = [0, *(np.flatnonzero(owners[1:] != owners[:-1]) + 1).tolist(), len(text)] if text else []
-        return [(text[start:end], int(owners[start])) for start, end in itertools.pairwise(starts)]
+        """The spans of row y, from the left; blanks belong to the span before them, or to the first one."""
+        codes = self.characters[y]
+        text, there = codes.astype("<u4").tobytes().decode("utf-32-le"), np.flatnonzero(codes != _BLANK)
+        if not len(there):
+            return [(text, NOBODY)] if text else []
+        owners = self.owners[y][there]
+        turns = np.flatnonzero(owners[1:] != owners[:-1]) + 1
+        starts = [0, *there[turns].tolist(), len(text)]
+        whose = [int(owners[0]), *owners[turns].tolist()]
+        return [(text[start:end], owner) for (start, end), owner in zip(itertools.pairwise(starts), whose, strict=True)]
 
     @property
     def text(self) -> str:

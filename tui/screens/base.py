@@ -136,11 +136,11 @@ class SourceScreen(Guarded, Screen[None]):
         if self.host.is_behind(urgent=self._late):
             return
         self._frames += 1
-        self._follow(sample, read=self._late or self._timer.is_turn(self._frames, READ))
+        self._follow(sample, self._late or self._timer.is_turn(self._frames, READ), at_once=self._late)
         self._late = False
 
-    def _follow(self, sample: Sample, read: bool = True) -> None:
-        self._on_stage.follow(sample, read)
+    def _follow(self, sample: Sample, read: bool = True, at_once: bool = True) -> None:
+        self._on_stage.follow(sample, read, at_once)
         if read:
             for line in self._lines:
                 line.follow(sample)
@@ -242,5 +242,5 @@ class SourceScreen(Guarded, Screen[None]):
         self.app.exit()
 
     def _bound(self, view: View) -> View:
-        view.follow(self.source.sample, read=False)
+        view.follow(self.source.sample, read=False, at_once=False)
         return view.data_bind(SourceScreen.source, SourceScreen.shown)

@@ -80,10 +80,14 @@ class View(Box):
         self._moving += self._late
         self._tell(self._late)
 
-    def follow(self, sample: Sample, read: bool = True) -> None:
-        """Show a sample where it moves, and perhaps where it is read, which tells of more than the sample."""
+    def follow(self, sample: Sample, read: bool = True, at_once: bool = True) -> None:
+        """Show a sample where it moves, and perhaps where it is read: at once, or where it is due.
+
+        What is read tells of more than the sample.
+        """
         moved, self._followed = sample != self._followed, sample
-        self._tell([*(self._moving if moved else ()), *(self._read if read else ())])
+        reading = self._read if at_once else [pane for pane in self._read if read and pane.is_due(sample)]
+        self._tell([*(self._moving if moved else ()), *reading])
 
     def _tell(self, panes: Iterable["Pane"]) -> None:
         if (sample := self._followed) is not None:
@@ -95,20 +99,23 @@ class Pane(CellWidget):
     """Draws a source at one of its samples, again whenever one of the three values changes."""
 
     PAUSE: ClassVar[float] = 0.0
-    """Between one picture and the next of a run that goes on [s of the clock]."""
+    """For which a picture stands while its run goes on [s of the clock]."""
 
     source: var[Source | None] = var(None)
     sample: Sample | None = None
     shown: var[Shown] = var(Shown())
     _followed: float | None = None  # s, the clock
 
+    def is_due(self, sample: Sample) -> bool:
+        """Whether it is time to show a sample, the last one having been shown for long enough."""
+        now, last = self.source.playhead.seen if self.source is not None else None, self._followed
+        return now is None or last is None or not 0 <= now - last < self.PAUSE
+
     def follow(self, sample: Sample) -> None:
-        """Show a sample, if it does not come too soon after the one before."""
-        now, before, last = self.source.playhead.seen if self.source else None, self.sample, self._followed
-        goes_on = before is not None and sample.run == before.run and self.source and not self.source.is_at_rest
-        if now is None or last is None or not goes_on or not 0 <= now - last < self.PAUSE:
-            self._followed, self.sample = now, sample
-            self.draw()
+        """Show a sample."""
+        self._followed = self.source.playhead.seen if self.source is not None else None
+        self.sample = sample
+        self.draw()
 
     def watch_source(self) -> None:
         self.draw()

@@ -121,13 +121,12 @@ class TimeChart(Pane):
     def _start(self) -> None:
         self.run_worker(self._build_on_demand(), group="chart")
 
-    def follow(self, sample: Sample) -> None:
-        """Build it again once the sample is in a column of its own; of a run at rest, where it is another one."""
+    def is_due(self, sample: Sample) -> bool:
+        """Whether the sample is in a column of its own; of a run at rest, whether it is another one."""
         built, plot, due = self._built, self._plot, sample != self.sample
         if plot is not None and built is not None and self.source is not None and not self.source.is_at_rest:
-            due = sample.run != built.run or abs(sample.t - built.t) >= plot.column
-        if due:
-            super().follow(sample)
+            due = sample.run != built.run or (abs(sample.t - built.t) >= plot.column and super().is_due(sample))
+        return due
 
     def paint(self, source: Source, sample: Sample) -> None:
         self._wanted.set()

@@ -35,10 +35,10 @@ class StabilityView(View):
         super().on_mount()
         self._compute_missing()
 
-    def follow(self, sample: Sample, read: bool = True) -> None:
+    def follow(self, sample: Sample, read: bool = True, at_once: bool = True) -> None:
         if read:
             self._compute_missing()
-        super().follow(sample, read)
+        super().follow(sample, read, at_once)
 
     def _compute_missing(self) -> None:
         """Compute the map for the methods on screen."""
