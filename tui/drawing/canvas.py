@@ -183,6 +183,11 @@ class Canvas:
         return Picture(characters, owners)
 
 
+def _all_inside(values: NDArray[np.float64], size: int) -> bool:
+    """Whether nothing is outside [0, size), which is clear at once from the extremes."""
+    return bool(np.fmin.reduce(values, initial=0.0) >= 0 and np.fmax.reduce(values, initial=0.0) < size)
+
+
 def _along(
     x: NDArray[np.float64], y: NDArray[np.float64], width: int, height: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.intp]]:
@@ -191,7 +196,8 @@ def _along(
         x0, y0, dx, dy = x[:-1], y[:-1], np.diff(x), np.diff(y)
         # Liang and Barsky (1984): the part [first, last] of each segment that is inside, as fractions of it.
         first, last = np.zeros(len(dx)), np.ones(len(dx))
-        for start, step, size in ((x0, dx, width), (y0, dy, height)):
+        sides = ((x0, dx, width), (y0, dy, height))
+        for start, step, size in () if _all_inside(x, width) and _all_inside(y, height) else sides:
             low, high = np.sort([-start / step, (size - start) / step], axis=0)
             level, inside = step == 0, (start >= 0) & (start < size)
             first = np.maximum(first, np.where(level, np.where(inside, 0.0, 2.0), low))
