@@ -21,6 +21,7 @@ Span = tuple[str, int]
 """Adjacent characters with the same owner."""
 
 _ORDER = np.array(ORDER)
+_BLANK = ord(" ")
 _GLYPHS = np.array([ord(" "), *range(0x2801, 0x2900)], np.uint32)
 
 
@@ -42,11 +43,16 @@ class Picture:
     owners: NDArray[np.int8]  # (rows, columns)
 
     def row(self, y: int) -> list[Span]:
-        """The spans of row y, from the left; none if the picture has no columns."""
-        text = self.characters[y].astype("<u4").tobytes().decode("utf-32-le")
-        owners = self.owners[y]
-        starts = [0, *(np.flatnonzero(owners[1:] != owners[:-1]) + 1).tolist(), len(text)] if text else []
-        return [(text[start:end], int(owners[start])) for start, end in itertools.pairwise(starts)]
+        """The spans of row y, from the left; blanks belong to the span before them, or to the first one."""
+        codes = self.characters[y]
+        text, there = codes.astype("<u4").tobytes().decode("utf-32-le"), np.flatnonzero(codes != _BLANK)
+        if not len(there):
+            return [(text, NOBODY)] if text else []
+        owners = self.owners[y][there]
+        turns = np.flatnonzero(owners[1:] != owners[:-1]) + 1
+        starts = [0, *there[turns].tolist(), len(text)]
+        whose = [int(owners[0]), *owners[turns].tolist()]
+        return [(text[start:end], owner) for (start, end), owner in zip(itertools.pairwise(starts), whose, strict=True)]
 
     @property
     def text(self) -> str:
@@ -137,11 +143,24 @@ class Canvas:
     def disc(self, x: float, y: float, radius: float, owner: int, hollow: bool = False) -> None:
         """Set the dots whose centres are within `radius` of (x, y); hollow: only the rim, one dot wide."""
         if abs(x) < 1e6 and abs(y) < 1e6:  # not elsewhere, and finite
-            dots, owners = self._dots, self._owners
             for i, j in disc(x, y, radius, hollow):  # so few, that NumPy would take longer
-                if 0 <= i < self.width and 0 <= j < self.height:
-                    cell = (j >> 2) * self.columns + (i >> 1)
-                    dots[8 * cell + ORDER[(j & 3) << 1 | i & 1]], owners[cell] = 1, owner
+                if (dot := self.dot(i, j)) is not None:
+                    self.put(dot, True, owner)
+
+    def dot(self, x: float, y: float) -> int | None:
+        """The number of the dot at x, y, eight to a cell; None outside."""
+        if 0 <= x < self.width and 0 <= y < self.height:
+            i, j = int(x), int(y)
+            return 8 * ((j >> 2) * self.columns + (i >> 1)) + ORDER[(j & 3) << 1 | i & 1]
+        return None
+
+    def at(self, dot: int) -> tuple[bool, int]:
+        """Whether a dot is set, and the owner of its cell."""
+        return self._dots[dot] == 1, self._owners[dot >> 3]
+
+    def put(self, dot: int, on: bool, owner: int) -> None:
+        """Set a dot or take it away, and give its cell an owner."""
+        self._dots[dot], self._owners[dot >> 3] = on, owner
 
     def label(self, column: int, row: int, text: str, owner: int) -> None:
         """Write text over any dots, beginning at a cell; text beyond the edges is cut off."""
@@ -164,6 +183,11 @@ class Canvas:
         return Picture(characters, owners)
 
 
+def _all_inside(values: NDArray[np.float64], size: int) -> bool:
+    """Whether nothing is outside [0, size), which is clear at once from the extremes."""
+    return bool(np.fmin.reduce(values, initial=0.0) >= 0 and np.fmax.reduce(values, initial=0.0) < size)
+
+
 def _along(
     x: NDArray[np.float64], y: NDArray[np.float64], width: int, height: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.intp]]:
@@ -172,7 +196,8 @@ def _along(
         x0, y0, dx, dy = x[:-1], y[:-1], np.diff(x), np.diff(y)
         # Liang and Barsky (1984): the part [first, last] of each segment that is inside, as fractions of it.
         first, last = np.zeros(len(dx)), np.ones(len(dx))
-        for start, step, size in ((x0, dx, width), (y0, dy, height)):
+        sides = ((x0, dx, width), (y0, dy, height))
+        for start, step, size in () if _all_inside(x, width) and _all_inside(y, height) else sides:
             low, high = np.sort([-start / step, (size - start) / step], axis=0)
             level, inside = step == 0, (start >= 0) & (start < size)
             first = np.maximum(first, np.where(level, np.where(inside, 0.0, 2.0), low))

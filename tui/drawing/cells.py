@@ -174,7 +174,7 @@ class CellWidget(Guarded, Widget):
                 strip = Strip([Segment(text, self._style(owner)) for text, owner in row])
                 return [(text, style or Style()) for text, style, _ in strip.adjust_cell_length(self.room.width)]
             row = (*row, (" " * missing, NOBODY))
-        return self._joined(row)
+        return self._joined(row) if self._picture_width is None else [(text, self._style(owner)) for text, owner in row]
 
     def _joined(self, row: Row) -> list[tuple[str, Style]]:
         """A row in few pieces: a blank looks the same in any colour, so it takes that of what is next to it."""

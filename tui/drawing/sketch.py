@@ -77,16 +77,20 @@ class Sketch:
     def row(self, y: int) -> list[tuple[str, int]]:
         """Row y from the left, as Picture.row."""
         start, columns = y * self.columns, self.columns
-        values = [*map(self.cells.get, range(start, start + columns))]
         spans: list[tuple[str, int]] = []
-        text, owner = "", NOBODY
-        for value in values:
-            whose = NOBODY if value is None else (value >> _OWNER) + NOBODY
-            if whose != owner and text:
-                spans.append((text, owner))
-                text = ""
-            text, owner = text + (" " if value is None else chr(value & _CODE)), whose
-        return [*spans, (text, owner)] if text else spans
+        text, owner = "", None
+        for value in map(self.cells.get, range(start, start + columns)):
+            if value is None:
+                text += " "
+                continue
+            whose = (value >> _OWNER) + NOBODY
+            if whose != owner:
+                if owner is not None:
+                    spans.append((text, owner))
+                    text = ""
+                owner = whose
+            text += chr(value & _CODE)
+        return [*spans, (text, NOBODY if owner is None else owner)] if text else spans
 
     def changed_rows(self, before: "Sketch | None") -> list[int]:
         """The rows that differ from those of a sketch before; all of them where there is nothing to compare with."""

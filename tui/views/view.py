@@ -1,6 +1,6 @@
 """What views are made of: a View fills the screen between status line and key line with Panes; some are Choosers."""
 
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable, Coroutine, Iterable
 from typing import ClassVar, Generic, TypeVar
 
 from textual.containers import Container
@@ -28,34 +28,36 @@ class Box(Guarded, Container):
 
 
 class View(Box):
-    """A view gets these from the screen, and passes them on to its panes with data_bind."""
+    """A view gets source and shown from the screen with data_bind, and passes them on to its panes.
+
+    Samples come directly: data_bind would take longer than drawing.
+    """
 
     KEYS: ClassVar[tuple[Key, ...]] = ()
     """The keys of its panes, for the help."""
 
     source: var[Source | None] = var(None)
-    sample_10hz: var[Sample | None] = var(None)
-    """The sample as often as people can read it, 10 times a second."""
-    sample_5hz: var[Sample | None] = var(None)
-    """The sample as often as a chart is worth building, 5 times a second."""
     shown: var[Shown] = var(Shown())
 
     def __init__(self, id: str | None = None) -> None:
         super().__init__(id=id)
         self._moving: list[Pane] = []
         self._late: list[Pane] = []
+        self._read: list[Pane] = []
         self._followed: Sample | None = None
 
     def moving(self, pane: "Pane", late: bool = False) -> "Pane":
-        """A pane that follows every frame: it gets the sample directly, for data_bind takes longer than drawing.
-
-        A late one draws after the first paint only, since NumPy takes long to import.
-        """
+        """A pane that follows every frame; a late one after the first paint only, since NumPy takes long to import."""
         (self._late if late else self._moving).append(pane)
         return pane.data_bind(View.source, View.shown)
 
+    def read(self, pane: "Pane") -> "Pane":
+        """A pane that people read: it follows a few frames a second."""
+        self._read.append(pane)
+        return pane.data_bind(View.source, View.shown)
+
     def on_mount(self) -> None:
-        self._draw_moving()
+        self._tell([*self._moving, *self._read])
         self.call_after_refresh(self._begin)
 
     def compute(self, work: Callable[[], Coroutine[None, None, None]], group: str = "default") -> Worker[None]:
@@ -76,31 +78,46 @@ class View(Box):
 
     def _begin(self) -> None:
         self._moving += self._late
-        self._draw_moving()
+        self._tell(self._late)
 
-    def follow(self, sample: Sample) -> None:
-        """Show the sample of a frame."""
-        if sample != self._followed:
-            self._followed = sample
-            self._draw_moving()
+    def follow(self, sample: Sample, read: bool = True, at_once: bool = True) -> None:
+        """Show a sample where it moves, and perhaps where it is read: at once, or where it is due.
 
-    def _draw_moving(self) -> None:
-        for pane in self._moving:
-            pane.set_reactive(Pane.sample, self._followed)
-            pane.draw()
+        What is read tells of more than the sample.
+        """
+        moved, self._followed = sample != self._followed, sample
+        reading = self._read if at_once else [pane for pane in self._read if read and pane.is_due(sample)]
+        self._tell([*(self._moving if moved else ()), *reading])
+
+    def _tell(self, panes: Iterable["Pane"]) -> None:
+        if (sample := self._followed) is not None:
+            for pane in panes:
+                pane.follow(sample)
 
 
 class Pane(CellWidget):
     """Draws a source at one of its samples, again whenever one of the three values changes."""
 
-    source: var[Source | None] = var(None)
-    sample: var[Sample | None] = var(None)
-    shown: var[Shown] = var(Shown())
+    PAUSE: ClassVar[float] = 0.0
+    """For which a picture stands while its run goes on [s of the clock]."""
 
-    def watch_source(self) -> None:
+    source: var[Source | None] = var(None)
+    sample: Sample | None = None
+    shown: var[Shown] = var(Shown())
+    _followed: float | None = None  # s, the clock
+
+    def is_due(self, sample: Sample) -> bool:
+        """Whether it is time to show a sample, the last one having been shown for long enough."""
+        now, last = self.source.playhead.seen if self.source is not None else None, self._followed
+        return now is None or last is None or not 0 <= now - last < self.PAUSE
+
+    def follow(self, sample: Sample) -> None:
+        """Show a sample."""
+        self._followed = self.source.playhead.seen if self.source is not None else None
+        self.sample = sample
         self.draw()
 
-    def watch_sample(self) -> None:
+    def watch_source(self) -> None:
         self.draw()
 
     def watch_shown(self) -> None:

@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tui.drawing.canvas import Canvas, Picture
-from tui.drawing.palette import NOBODY, TEXT
+from tui.drawing.palette import TEXT
 
 DOT_OF_BIT = {0: (0, 0), 1: (0, 1), 2: (0, 2), 3: (1, 0), 4: (1, 1), 5: (1, 2), 6: (0, 3), 7: (1, 3)}
 COLUMNS, ROWS = 10, 6
@@ -54,7 +54,7 @@ def test_dots_of_several_owners_share_a_cell_and_the_last_one_owns_it():
 def test_a_row_has_as_few_spans_as_possible():
     canvas = Canvas(6, 1)
     canvas.points([0, 2, 6], [0, 0, 0], 2)
-    assert canvas.picture().row(0) == [("⠁⠁", 2), (" ", NOBODY), ("⠁", 2), ("  ", NOBODY)]
+    assert canvas.picture().row(0) == [("⠁⠁ ⠁  ", 2)]
 
 
 def test_a_line_has_one_dot_in_each_column_of_dots_or_row_where_it_is_steep():
@@ -143,7 +143,7 @@ def test_pictures_are_stacked_and_written_on():
     picture = Picture.stacked(Canvas(4, 1).picture(), Canvas(4, 2).picture())
     picture.write(2, 2, "abc", 1)
     assert picture.text == "\n\n  ab"
-    assert picture.row(2) == [("  ", NOBODY), ("ab", 1)]
+    assert picture.row(2) == [("  ab", 1)]
 
 
 def test_a_picture_without_columns_has_empty_rows():

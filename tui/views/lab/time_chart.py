@@ -70,6 +70,8 @@ class TimeChart(Pane):
     The pointer reads out a moment, the wheel changes the window.
     """
 
+    PAUSE = 0.35
+
     def __init__(self, ahead: int = 0) -> None:
         """`ahead`: so many quantities after the one that is chosen."""
         super().__init__()
@@ -78,6 +80,7 @@ class TimeChart(Pane):
         self._building = False
         self._titles: object = None
         self._plot: TimePlot | None = None
+        self._built: Sample | None = None  # what the plot shows, or the one being built
         self._pointer: int | None = None  # the column under it
 
     @property
@@ -118,6 +121,13 @@ class TimeChart(Pane):
     def _start(self) -> None:
         self.run_worker(self._build_on_demand(), group="chart")
 
+    def is_due(self, sample: Sample) -> bool:
+        """Whether the sample is in a column of its own; of a run at rest, whether it is another one."""
+        built, plot, due = self._built, self._plot, sample != self.sample
+        if plot is not None and built is not None and self.source is not None and not self.source.is_at_rest:
+            due = sample.run != built.run or (abs(sample.t - built.t) >= plot.column and super().is_due(sample))
+        return due
+
     def paint(self, source: Source, sample: Sample) -> None:
         self._wanted.set()
         self._tell()
@@ -148,7 +158,7 @@ class TimeChart(Pane):
             self._wanted.clear()
             if self.source is None or self.sample is None or not self.drawable:
                 continue
-            self._building = True
+            self._building, self._built = True, self.sample
             shown, (width, height), ghost = self._look(self.source), self.room, self.source.ghost
             behind = None if ghost is None else (ghost.window(self.sample.t, shown.seconds), ghost.scene.cast)
             build = partial(

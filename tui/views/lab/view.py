@@ -4,6 +4,7 @@ from textual.app import ComposeResult
 from textual.geometry import Region, Size
 from textual.widget import Widget
 
+from engine.run.lockstep import Sample
 from engine.scenes import MOST_METHODS
 from tui.playback.source import Source
 from tui.views.lab.error_table import ErrorTable
@@ -46,13 +47,13 @@ class LabView(View):
         for pendulum in (*self.pendulums, self.overlay):
             self.moving(pendulum)
         for chart in (self.chart, self.second_chart):
-            chart.data_bind(View.source, View.shown, sample=View.sample_5hz)
+            self.read(chart)
         self.moving(self.phase, late=True)
-        self.events.data_bind(View.source, sample=View.sample_10hz)
+        self.read(self.events)
         panes = self.overlay, self.events, self.chart, self.second_chart, self.phase
         yield Stage(self, *self.pendulums, *panes)
-        yield ErrorTable().data_bind(View.source, View.shown, sample=View.sample_10hz)
-        yield LargeTable().data_bind(View.source, View.shown, sample=View.sample_10hz)
+        yield self.read(ErrorTable())
+        yield self.read(LargeTable())
 
     def regions(self, size: Size) -> dict[Widget, Region]:
         """Where each pane is on a stage of this size.  A method that is hidden leaves its room to the others."""
@@ -76,8 +77,10 @@ class LabView(View):
     def watch_source(self, source: Source | None) -> None:
         self._arrange()
 
-    def watch_sample_10hz(self) -> None:
-        self._arrange()
+    def follow(self, sample: Sample, read: bool = True, at_once: bool = True) -> None:
+        if read:
+            self._arrange()
+        super().follow(sample, read, at_once)
 
     def _arrange(self) -> None:
         """Have Textual arrange the stage again, where that would change anything."""

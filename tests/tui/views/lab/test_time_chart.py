@@ -60,3 +60,18 @@ async def test_the_pointer_reads_the_chart_out_and_the_wheel_takes_another_windo
         await theatre.press("u")
         assert theatre.stage.shown.seconds is None
         assert [each.message for each in theatre.app._notifications] == ["Undone: the window of the chart"]
+
+
+async def test_it_is_built_again_when_a_column_has_passed_and_at_once_where_one_asks():
+    async with lab() as theatre:
+        chart = theatre.stage.query_one(TimeChart)
+        await theatre.run(40)
+        await theatre.settled()
+        column = chart._plot.column
+        assert column > 0.5  # s, on a logarithmic axis
+        theatre.source.tick(theatre.now + column / 2)
+        assert not chart.is_due(theatre.source.sample)
+        theatre.source.tick(theatre.now + 1.5 * column)
+        assert chart.is_due(theatre.source.sample)
+        theatre.stage.show_now()
+        assert not chart.settled
