@@ -28,7 +28,7 @@ from tui.screens.status_line import StatusLine
 from tui.screens.too_small import TooSmall
 from tui.views import create, following
 from tui.views.keys import Key, bindings
-from tui.views.messages import Asked, MethodChosen
+from tui.views.messages import Asked, MethodChosen, Zoomed
 from tui.views.view import Box, View
 from tui.words.undone import State, undone
 
@@ -202,7 +202,11 @@ class SourceScreen(Guarded, Screen[None]):
         self.change_shown(self.shown.next_quantity(self.source.scene))
 
     def action_window(self, direction: int) -> None:
-        self.change_shown(self.shown.next_window(direction > 0))
+        if (shown := self.shown.next_window(direction)) != self.shown:
+            self.change_shown(shown)
+
+    def on_zoomed(self, message: Zoomed) -> None:
+        self.shown = self.shown.zoomed(message.stretch)  # `w` leads back; undoing every turn of the wheel would be long
 
     def action_undo(self) -> None:
         if self._undo:
@@ -240,9 +244,5 @@ class SourceScreen(Guarded, Screen[None]):
 
     def _bound(self, view: View) -> View:
         view.follow(self.source.sample)
-        return view.data_bind(
-            SourceScreen.source,
-            SourceScreen.sample_10hz,
-            SourceScreen.sample_5hz,
-            SourceScreen.shown,
-        )
+        values = SourceScreen.source, SourceScreen.sample_10hz, SourceScreen.sample_5hz, SourceScreen.shown
+        return view.data_bind(*values)

@@ -26,6 +26,8 @@ NAMES = {  # of keys that Textual calls something else
     ",": {"comma"},
     "[": {"left_square_bracket"},
     "]": {"right_square_bracket"},
+    "(": {"left_parenthesis"},
+    ")": {"right_parenthesis"},
 }
 PANES = {
     "PhasePane": "phase space",

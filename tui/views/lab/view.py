@@ -54,6 +54,9 @@ class LabView(View):
         yield ErrorTable().data_bind(View.source, View.shown, sample=View.sample_10hz)
         yield LargeTable().data_bind(View.source, View.shown, sample=View.sample_10hz)
 
+    def zoom(self, factor: float, shift: float) -> None:
+        self.chart.zoom(factor, shift)
+
     def regions(self, size: Size) -> dict[Widget, Region]:
         """Where each pane is on a stage of this size.  A method that is hidden leaves its room to the others."""
         shown = self.shown.places(self.source.scene.cast) if self.source is not None else []
