@@ -31,6 +31,7 @@ NAMES = {  # of keys that Textual calls something else
 }
 PANES = {
     "PhasePane": "phase space",
+    "ErrorTable": "table",
     "SectionPane": "phase space",
     "AccuracyPane": "accuracy",
     "StabilityPane": "stability",
