@@ -44,12 +44,12 @@ def run(options: argparse.Namespace) -> int:
         return Exit.FINE
     print_table(
         "lrrrllrrl",
-        ("method", "order", "measured", "forces", "symplectic", "reversible", "z limit", "measured", "also called"),
+        ("method", "order", "found", "forces", "symplectic", "reversible", "z limit", "found z", "also called"),
         map(_row, methods),
     )
     print(
-        "\nOrder: measured on theta over one swing of scene drift.  Forces: evaluations per step."
-        "\nz limit: linear oscillator, z = h·w0; for the pendulum see pendu-tui stability."
+        "\nFound: the order as measured on theta over one swing of scene drift.  Forces: evaluations per step."
+        "\nz limit, and as measured, found z: linear oscillator, z = h·w0; for the pendulum see pendu-tui stability."
         "\n"
         + (f"Numba: used in runs of at least {COMPILED_FROM:,} steps." if available() else "Numba is not installed.")
     )

@@ -11,7 +11,7 @@ from rich.terminal_theme import DEFAULT_TERMINAL_THEME, TerminalTheme
 from rich.text import Text
 
 from engine.methods import Method
-from engine.phase_space.section import OrbitKind, kind_of, orbit, pieces
+from engine.phase_space.section import OrbitKind, kind_of, least_lyapunov, orbit, pieces
 from engine.scenes import Scene
 from tui.cli.errors import Exit
 from tui.cli.files import whole_file
@@ -114,6 +114,7 @@ def _print_words(study: Study) -> None:
     print(f"\n{scene_line(study.scene, 'h', 'z', degrees=study.degrees)}, {study.steps} steps")
     rows = [(method.label, *cells(method, kind)) for method, kind in kinds]
     print_table("llrrrr", ("method", *HEADS), rows)
+    print(f"Lyapunov number: 0 within what {study.steps} steps can tell up to about {least_lyapunov(study.steps):.2g}.")
     kind = next((kind for method, kind in kinds if method == study.method), None) or study.kind(study.method)
     print(f"\n{study.method.label}: {sentence(study.method, kind)}")
 
