@@ -17,6 +17,7 @@ RESTING = "Nothing moves: the pendulum started at rest in equilibrium."
 
 HINT_SHOWN = 6.0  # s
 HINTS: tuple[tuple[float, EventKind, str], ...] = (
+    (9.0, "start", "? lists the keys: p next scene, M methods, i start values."),
     (16.0, "start", "New here? T shows the lab in a tour of eight short steps."),
     (24.0, "pause", "Press space to pause, then . or , to step forward or back."),
     (38.0, "set_h", "Press + for a larger step: which methods conserve energy?"),

@@ -127,7 +127,7 @@ class Touring(SourceScreen):
             if live.sample.run != run:
                 self.remember(way_back)
                 if back:
-                    self.action_undo()
+                    self._undo.pop()()  # without a notice of its own
 
         return leave
 

@@ -78,7 +78,7 @@ SPRING = (
     Column(8, ("spring", 7), ("spring E", 8), lambda line, width: short(line.reading.spring_energy or 0, width)),
 )
 """Of a bob on a spring: its length over that at rest, and the energy in it over that at the start."""
-NAME = 20  # columns of the longest name and its mark
+NAME = 20  # columns of a name and its mark, or as many as the longest takes
 MOST_GAP = 3
 _LOGARITHM = {"dE/E0": "ln E/Et", "dE/E0 now": "ln E/Etr"}  # to the true energy
 
@@ -133,18 +133,19 @@ def table(source: Source, sample: Sample, shown: Shown, width: int) -> list[Row]
     every = COLUMNS[len(set(h)) == 1 :]
     if any(reading.position is not None for reading in sample.readings):
         every = (*every[:-1], *SPRING, every[-1])
-    columns = chosen(every, width - NAME)
-    spare = width - NAME - sum(size + 1 for _, size, _ in columns)
+    room = max([NAME, *(len(f"{mark(place, method)} {method.label}") for place, method in enumerate(cast))])
+    columns = chosen(every, width - room)
+    spare = width - room - sum(size + 1 for _, size, _ in columns)
     gap = " " * (1 + min(spare // max(len(columns), 1), MOST_GAP))
     heads = [(head if conserved else _LOGARITHM.get(head, head), size) for head, size, _ in columns]
     names = [(gap + in_unit(head, shown.degrees).rjust(size), QUIET) for head, size in heads]
-    rows: list[Row] = [[("method".ljust(NAME), QUIET), *names]]
+    rows: list[Row] = [[("method".ljust(room), QUIET), *names]]
     for place in shown.places(cast):
         method = cast[place]
         percent = shown.percent and conserved
         line = TableLine(method, sample.readings[place], judgements[place], exact, h[place], percent, shown.degrees)
         failed = line.reading.diverged_at is not None
-        name = f"{mark(place, method)} {method.label}"[:NAME].ljust(NAME)
+        name = f"{mark(place, method)} {method.label}".ljust(room)
         rows.append([(name, series(method))])
         for head, size, cell in columns:
             text = gap + cell(line, size)

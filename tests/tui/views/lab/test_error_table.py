@@ -2,6 +2,7 @@
 
 from textual.widgets import Tooltip
 
+from engine.scenes import SCENES
 from tests.tui.harness import lab
 from tui.views.lab.error_table import COLUMNS, SPRING, ErrorTable
 from tui.views.phase.pane import PhasePane
@@ -50,3 +51,8 @@ def test_every_head_has_a_meaning():
     for column in (*COLUMNS, *SPRING):
         assert head_text(column.wide[0]) is not None
         assert head_text(column.wide[0]) == head_text(column.narrow[0])
+
+
+async def test_the_longest_name_is_written_in_full():
+    async with lab(SCENES["stiff-limit"], (80, 24)) as theatre:
+        assert " Implicit midpoint " in theatre.text(ErrorTable)
