@@ -58,6 +58,11 @@ class TimePlot:
     ends: tuple[float, float] = (0.0, 1.0)  # of its axis of time: s, or log10 of that
     log_time: bool = False
 
+    @property
+    def column(self) -> float:
+        """The time in the last column [s]."""
+        return self.times[-1] - self.times[-2] if len(self.times) > 1 else 0.0
+
     def at(self, column: int) -> Reading | None:
         """What is shown in a column of the picture, or in the last one before it that shows anything."""
         at = column - self.left
@@ -231,10 +236,12 @@ def _linear_y_axis(low: Sequence[Floats], high: Sequence[Floats], rows: int) -> 
 
 
 def _outline(owner: int, letter: str, low: Floats, high: Floats) -> Series:
-    """A line through the lows and highs of all columns, in the order that keeps it short."""
+    """A line through the lows and highs of all columns, in the order that keeps it short, but for what is flat."""
     known = np.flatnonzero(~np.isnan(low))
     low, high = low[known], high[known]
     falling = np.diff(low + high, prepend=0.0) < 0
     heights = np.stack([np.where(falling, high, low), np.where(falling, low, high)], axis=1).ravel()
     distinct = np.stack([np.full(len(low), True), low != high], axis=1).ravel()
-    return Series(owner, letter, np.repeat(known + 0.5, 2)[distinct], heights[distinct])
+    x, y = np.repeat(known + 0.5, 2)[distinct], heights[distinct]
+    bends = np.concatenate([[True], (y[1:-1] != y[:-2]) | (y[1:-1] != y[2:]), [True]])[: len(y)]
+    return Series(owner, letter, x[bends], y[bends])

@@ -29,11 +29,10 @@ from tui.screens.too_small import TooSmall
 from tui.views import create, following
 from tui.views.keys import Key, bindings
 from tui.views.messages import Asked, MethodChosen, Zoomed
-from tui.views.view import Box, View
+from tui.views.view import Box, Pane, View
 from tui.words.undone import State, undone
 
-READ, BUILT = 10, 5  # updates a second: of numbers that people read, and of charts, which take time to build
-
+READ = 5  # updates a second of what people read
 STALL = 1.0  # s; a longer gap between frames does not count as time: Ctrl+Z, a computer asleep, a dead line
 UNDOS = 30  # changes; each may hold a run
 ALREADY = "Already marked"
@@ -55,8 +54,6 @@ class SourceScreen(Guarded, Screen[None]):
     KEYS: ClassVar[tuple[Key, ...]] = COMMON
 
     source: var[Source] = var(Initialize(lambda screen: cast(Source, cast(Any, screen).first_source)))
-    sample_10hz: var[Sample | None] = var(None, always_update=True)
-    sample_5hz: var[Sample | None] = var(None)
     shown: var[Shown] = var(Shown())
     view: var[str] = var("lab")
 
@@ -79,21 +76,26 @@ class SourceScreen(Guarded, Screen[None]):
         self._missed = 0.0  # s of the clock while the program was stopped
         self._late = False  # the next frame shows everything
         self._undo: deque[Callable[[], object]] = deque(maxlen=UNDOS)
-        for reactive in (SourceScreen.sample_10hz, SourceScreen.sample_5hz):
-            self.set_reactive(reactive, source.sample)
+        self._lines: list[Pane] = []
 
     @property
     def host(self) -> Host:
         return cast(Host, self.app)
 
     def compose(self) -> ComposeResult:
-        yield StatusLine().data_bind(SourceScreen.source, SourceScreen.shown, sample=SourceScreen.sample_10hz)
+        yield self.line(StatusLine())
         with Box(id="views"):
             yield self._bound(self._on_stage)
         yield TooSmall()
         yield from self.more()
-        yield InsightLine().data_bind(SourceScreen.source, SourceScreen.shown, sample=SourceScreen.sample_10hz)
+        yield self.line(InsightLine())
         yield KeyLine(hinted(self.KEYS))
+
+    def line(self, line: Pane) -> Pane:
+        """Let a line of this screen follow the samples, as often as people can read it."""
+        self._lines.append(line)
+        line.sample = self.source.sample
+        return line.data_bind(SourceScreen.source, SourceScreen.shown)
 
     def more(self) -> Iterable[Widget]:
         """The widgets above the insight line."""
@@ -134,19 +136,20 @@ class SourceScreen(Guarded, Screen[None]):
         if self.host.is_behind(urgent=self._late):
             return
         self._frames += 1
-        self._on_stage.follow(sample)
-        if self._late or self._timer.is_turn(self._frames, READ):
-            self.sample_10hz = sample
-        if self._late or self._timer.is_turn(self._frames, BUILT):
-            self.sample_5hz = sample
+        self._follow(sample, read=self._late or self._timer.is_turn(self._frames, READ))
         self._late = False
+
+    def _follow(self, sample: Sample, read: bool = True) -> None:
+        self._on_stage.follow(sample, read)
+        if read:
+            for line in self._lines:
+                line.follow(sample)
 
     def show_now(self) -> None:
         """Show everything at once; on a busy line, with the next frame that it can carry."""
         self._late = self.host.is_behind(urgent=True)
         if not self._late:
-            self._on_stage.follow(self.source.sample)
-            self.sample_10hz = self.sample_5hz = self.source.sample
+            self._follow(self.source.sample)
         self._timer.rest(self.source.is_at_rest)
 
     def remember(self, undo: Callable[[], object]) -> None:
@@ -243,6 +246,5 @@ class SourceScreen(Guarded, Screen[None]):
         self.app.exit()
 
     def _bound(self, view: View) -> View:
-        view.follow(self.source.sample)
-        values = SourceScreen.source, SourceScreen.sample_10hz, SourceScreen.sample_5hz, SourceScreen.shown
-        return view.data_bind(*values)
+        view.follow(self.source.sample, read=False)
+        return view.data_bind(SourceScreen.source, SourceScreen.shown)

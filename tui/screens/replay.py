@@ -46,7 +46,7 @@ class ReplayScreen(SourceScreen):
         return self.source
 
     def more(self) -> Iterator[Widget]:
-        yield SeekBar().data_bind(SourceScreen.source, sample=SourceScreen.sample_10hz)
+        yield self.line(SeekBar())
 
     def on_seek_bar_sought(self, message: SeekBar.Sought) -> None:
         self.seek(message.position)

@@ -1,6 +1,6 @@
 """What views are made of: a View fills the screen between status line and key line with Panes; some are Choosers."""
 
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable, Coroutine, Iterable
 from typing import ClassVar, Generic, TypeVar
 
 from textual.containers import Container
@@ -28,34 +28,36 @@ class Box(Guarded, Container):
 
 
 class View(Box):
-    """A view gets these from the screen, and passes them on to its panes with data_bind."""
+    """A view gets source and shown from the screen with data_bind, and passes them on to its panes.
+
+    Samples come directly: data_bind would take longer than drawing.
+    """
 
     KEYS: ClassVar[tuple[Key, ...]] = ()
     """The keys of its panes, for the help."""
 
     source: var[Source | None] = var(None)
-    sample_10hz: var[Sample | None] = var(None)
-    """The sample as often as people can read it, 10 times a second."""
-    sample_5hz: var[Sample | None] = var(None)
-    """The sample as often as a chart is worth building, 5 times a second."""
     shown: var[Shown] = var(Shown())
 
     def __init__(self, id: str | None = None) -> None:
         super().__init__(id=id)
         self._moving: list[Pane] = []
         self._late: list[Pane] = []
+        self._read: list[Pane] = []
         self._followed: Sample | None = None
 
     def moving(self, pane: "Pane", late: bool = False) -> "Pane":
-        """A pane that follows every frame: it gets the sample directly, for data_bind takes longer than drawing.
-
-        A late one draws after the first paint only, since NumPy takes long to import.
-        """
+        """A pane that follows every frame; a late one after the first paint only, since NumPy takes long to import."""
         (self._late if late else self._moving).append(pane)
         return pane.data_bind(View.source, View.shown)
 
+    def read(self, pane: "Pane") -> "Pane":
+        """A pane that people read: it follows a few frames a second."""
+        self._read.append(pane)
+        return pane.data_bind(View.source, View.shown)
+
     def on_mount(self) -> None:
-        self._draw_moving()
+        self._tell([*self._moving, *self._read])
         self.call_after_refresh(self._begin)
 
     def compute(self, work: Callable[[], Coroutine[None, None, None]], group: str = "default") -> Worker[None]:
@@ -79,31 +81,31 @@ class View(Box):
 
     def _begin(self) -> None:
         self._moving += self._late
-        self._draw_moving()
+        self._tell(self._late)
 
-    def follow(self, sample: Sample) -> None:
-        """Show the sample of a frame."""
-        if sample != self._followed:
-            self._followed = sample
-            self._draw_moving()
+    def follow(self, sample: Sample, read: bool = True) -> None:
+        """Show a sample where it moves, and perhaps where it is read, which tells of more than the sample."""
+        moved, self._followed = sample != self._followed, sample
+        self._tell([*(self._moving if moved else ()), *(self._read if read else ())])
 
-    def _draw_moving(self) -> None:
-        for pane in self._moving:
-            pane.set_reactive(Pane.sample, self._followed)
-            pane.draw()
+    def _tell(self, panes: Iterable["Pane"]) -> None:
+        if (sample := self._followed) is not None:
+            for pane in panes:
+                pane.follow(sample)
 
 
 class Pane(CellWidget):
     """Draws a source at one of its samples, again whenever one of the three values changes."""
 
     source: var[Source | None] = var(None)
-    sample: var[Sample | None] = var(None)
+    sample: Sample | None = None
     shown: var[Shown] = var(Shown())
 
-    def watch_source(self) -> None:
+    def follow(self, sample: Sample) -> None:
+        self.sample = sample
         self.draw()
 
-    def watch_sample(self) -> None:
+    def watch_source(self) -> None:
         self.draw()
 
     def watch_shown(self) -> None:

@@ -9,6 +9,7 @@ from textual.app import ComposeResult
 from engine.accuracy.growth import Growth, growths
 from engine.accuracy.references import References, measured_front, with_all_methods
 from engine.accuracy.study import Point, measured, usual
+from engine.run.lockstep import Sample
 from tui.views.accuracy.pane import KEYS, MOST_STEPS, AccuracyPane
 from tui.views.background import computed
 from tui.views.view import View
@@ -29,15 +30,21 @@ class AccuracyView(View):
         self._grown: object = None  # what the errors over time are for
 
     def compose(self) -> ComposeResult:
-        yield AccuracyPane().data_bind(View.source, View.shown, sample=View.sample_10hz)
+        yield self.read(AccuracyPane())
 
     def on_mount(self) -> None:
-        self.watch_sample_10hz()
+        super().on_mount()
+        self._compute_missing()
 
     def on_show(self) -> None:
         self.query_one(AccuracyPane).focus()
 
-    def watch_sample_10hz(self) -> None:
+    def follow(self, sample: Sample, read: bool = True) -> None:
+        if read:
+            self._compute_missing()
+        super().follow(sample, read)
+
+    def _compute_missing(self) -> None:
         """Compute what is missing for the run on screen, if the view is shown."""
         if self.source is None or not self.display or not self.query(AccuracyPane):
             return

@@ -70,7 +70,8 @@ class LargeTable(Pane):
 
     _changed: float | None = None  # s, the clock
 
-    def watch_sample(self) -> None:
+    def follow(self, sample: Sample) -> None:
+        self.sample = sample
         now = self.source.playhead.seen if self.source is not None else None
         recent = now is not None and self._changed is not None and 0 <= now - self._changed < OFTEN
         if not recent or (self.source is not None and self.source.playhead.paused):

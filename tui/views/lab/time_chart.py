@@ -90,6 +90,7 @@ class TimeChart(Pane):
         self._building = False
         self._titles: object = None
         self._plot: TimePlot | None = None
+        self._built: Sample | None = None  # what the plot shows, or the one being built
         self._pointer: int | None = None  # the column under it
 
     @property
@@ -144,6 +145,16 @@ class TimeChart(Pane):
     def _start(self) -> None:
         self.run_worker(self._build_on_demand(), group="chart")
 
+    def follow(self, sample: Sample) -> None:
+        """Build it again once the sample is in a column of its own; of a run at rest, at once."""
+        before, built, plot = self.sample, self._built, self._plot
+        self.sample = sample
+        due = sample != before
+        if plot is not None and built is not None and self.source is not None and not self.source.is_at_rest:
+            due = sample.run != built.run or abs(sample.t - built.t) >= plot.column
+        if due:
+            self.draw()
+
     def paint(self, source: Source, sample: Sample) -> None:
         self._wanted.set()
         self._tell()
@@ -175,7 +186,7 @@ class TimeChart(Pane):
             self._wanted.clear()
             if self.source is None or self.sample is None or not self.drawable:
                 continue
-            self._building = True
+            self._building, self._built = True, self.sample
             shown, (width, height), ghost = self._look(self.source), self.room, self.source.ghost
             history, stretch, until, back = self.source.history, shown.stretch, self.sample.t, shown.seconds
             window = history.window(back) if stretch is None else history.between(*stretch[1:3])

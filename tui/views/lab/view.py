@@ -4,6 +4,7 @@ from textual.app import ComposeResult
 from textual.geometry import Region, Size
 from textual.widget import Widget
 
+from engine.run.lockstep import Sample
 from engine.scenes import MOST_METHODS
 from tui.playback.source import Source
 from tui.views.lab import error_table
@@ -47,13 +48,13 @@ class LabView(View):
         for pendulum in (*self.pendulums, self.overlay):
             self.moving(pendulum)
         for chart in (self.chart, self.second_chart):
-            chart.data_bind(View.source, View.shown, sample=View.sample_5hz)
+            self.read(chart)
         self.moving(self.phase, late=True)
-        self.events.data_bind(View.source, sample=View.sample_10hz)
+        self.read(self.events)
         panes = self.overlay, self.events, self.chart, self.second_chart, self.phase
         yield Stage(self, *self.pendulums, *panes)
-        yield ErrorTable().data_bind(View.source, View.shown, sample=View.sample_10hz)
-        yield LargeTable().data_bind(View.source, View.shown, sample=View.sample_10hz)
+        yield self.read(ErrorTable())
+        yield self.read(LargeTable())
 
     def zoom(self, factor: float, shift: float) -> None:
         self.chart.zoom(factor, shift)
@@ -81,8 +82,10 @@ class LabView(View):
     def watch_source(self, source: Source | None) -> None:
         self._arrange()
 
-    def watch_sample_10hz(self) -> None:
-        self._arrange()
+    def follow(self, sample: Sample, read: bool = True) -> None:
+        if read:
+            self._arrange()
+        super().follow(sample, read)
 
     def _arrange(self) -> None:
         """Have Textual arrange the stage again, where that would change anything."""

@@ -119,7 +119,7 @@ def on_screen(
 
 def letter(canvas: Canvas, x: float, y: float, point: PhasePoint) -> None:
     """Write the point's letter into the first free cell around it, or at the edge nearest to it."""
-    if not (np.isfinite(x) and np.isfinite(y)):
+    if not (math.isfinite(x) and math.isfinite(y)):
         return
     inside = 0 <= x < canvas.width and 0 <= y < canvas.height
     column = int(min(max(x, 0), canvas.width - 1)) // 2

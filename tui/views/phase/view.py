@@ -5,6 +5,7 @@ from functools import partial
 
 from textual.app import ComposeResult
 
+from engine.run.lockstep import Sample
 from tui.drawing.cells import CellWidget, Row
 from tui.views.background import computed
 from tui.views.phase.facts import fact_rows
@@ -39,8 +40,11 @@ class PhaseView(View):
         self.query_one("#facts", CellWidget).wake()
         self._write_facts()
 
-    def watch_sample_10hz(self) -> None:
+    def follow(self, sample: Sample, read: bool = True) -> None:
         """Follow h, too: another one brings no other sample."""
+        super().follow(sample, read)
+        if not read:
+            return
         for pane in self.query(SectionPane):
             if pane.shows_section:
                 pane.draw()

@@ -8,6 +8,7 @@ from textual.app import ComposeResult
 from textual.content import Content
 
 from engine.methods import Cast
+from engine.run.lockstep import Sample
 from engine.stability.grid import Grid, pieces
 from tui.views.background import computed
 from tui.views.stability.pane import KEYS, StabilityPane
@@ -27,13 +28,19 @@ class StabilityView(View):
     KEYS = KEYS
 
     def compose(self) -> ComposeResult:
-        yield StabilityPane(_grid(())).data_bind(View.source, View.shown, sample=View.sample_10hz)
+        yield self.read(StabilityPane(_grid(())))
 
     def on_mount(self) -> None:
         self.query_one(StabilityPane).focus()
-        self.watch_sample_10hz()
+        super().on_mount()
+        self._compute_missing()
 
-    def watch_sample_10hz(self) -> None:
+    def follow(self, sample: Sample, read: bool = True) -> None:
+        if read:
+            self._compute_missing()
+        super().follow(sample, read)
+
+    def _compute_missing(self) -> None:
         """Compute the map for the methods on screen."""
         if self.source is None or not self.display or not self.query(StabilityPane):
             return

@@ -228,7 +228,7 @@ async def test_a_ring_has_the_radius_one_chooses_or_is_not_there():
         assert pane.ring is None
         await pilot.press("g", "g", "g")
         live.step(20)
-        pane.sample = live.sample
+        pane.follow(live.sample)
         await pilot.pause()
         assert pane.radius == 0.05
         expected = Neighbours(0.05).follow(DRIFT, 1, 20, live.changes, 20)
