@@ -3,7 +3,9 @@
 import csv
 import json
 import math
+import shutil
 import sys
+import textwrap
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from operator import sub
@@ -23,7 +25,16 @@ if TYPE_CHECKING:
 
 def warn(sentence: str) -> None:
     """Say something besides the data, on stderr."""
-    print(f"pendu-tui: {sentence}", file=sys.stderr)
+    text = f"pendu-tui: {sentence}"
+    print(_wrapped(text) if sys.stderr.isatty() else text, file=sys.stderr)
+
+
+def _wrapped(text: str) -> str:
+    """On lines as wide as the terminal, which would break words; what is to be copied stays whole."""
+    columns = shutil.get_terminal_size().columns
+    return "\n".join(
+        textwrap.fill(line, columns, break_long_words=False, break_on_hyphens=False) for line in text.split("\n")
+    )
 
 
 def write_json(name: str, fields: Mapping[str, Any]) -> None:
@@ -111,7 +122,8 @@ def print_table(align: str, headers: Sequence[str], rows: Iterable[Iterable[str]
 
 def print_lines(*lines: str) -> None:
     """Print sentences, wrapped between words where the terminal is narrower."""
-    _print(console(240), lines)
+    for line in lines:
+        print(_wrapped(line) if sys.stdout.isatty() else line)
 
 
 def print_picture(on: "Console", lines: "Iterable[Text]") -> None:

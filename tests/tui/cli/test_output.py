@@ -5,7 +5,7 @@ import math
 import pytest
 from rich.console import Console
 
-from tui.cli.output import print_table, progress, write_json
+from tui.cli.output import print_table, progress, warn, write_json
 
 
 class Terminal(io.StringIO):
@@ -67,6 +67,17 @@ def test_a_table_fits_the_terminal_by_leaving_out_columns_and_breaks_no_word(mon
     told = capsys.readouterr().out
     table, _, left = told.partition("Only in a wider terminal, or with --json: ")
     assert " ".join(left.split()) == ", ".join(headers[5 - left_out :]) + "." * bool(left_out)
-    assert max(len(line.rstrip()) for line in told.splitlines()) <= width
+    assert max(len(line.rstrip()) for line in table.splitlines()) <= width
     words = [word for text in (*headers[: 5 - left_out], *row[: 5 - left_out]) for word in text.split()]
     assert sorted(table.split()) == sorted(words)
+
+
+def test_a_sentence_on_a_terminal_is_wrapped_between_words_and_whole_elsewhere(monkeypatch, capsys):
+    sentence = "the recording will be about 30 MB; --sample-every 4 would reduce it to a quarter of that."
+    monkeypatch.setenv("COLUMNS", "30")
+    warn(sentence)
+    assert capsys.readouterr().err == f"pendu-tui: {sentence}\n"
+    monkeypatch.setattr("sys.stderr", terminal := Terminal())
+    warn(sentence)
+    lines = terminal.getvalue().splitlines()
+    assert (max(map(len, lines)) <= 30, " ".join(lines)) == (True, f"pendu-tui: {sentence}")

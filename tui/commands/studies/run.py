@@ -15,7 +15,7 @@ from tui.cli.errors import Exit, UserError
 from tui.cli.fail_if import FIELDS, parse
 from tui.cli.files import check_free, stop_requests
 from tui.cli.options import Suggestions, add_degrees, add_file, count, positive
-from tui.cli.output import fields_of, print_table, progress, scene_line, warn, write_json
+from tui.cli.output import fields_of, print_lines, print_table, progress, scene_line, warn, write_json
 from tui.cli.scene import add_scene_options, scene_of
 from tui.words.numbers import file_size, measured, z_name
 
@@ -171,7 +171,7 @@ def _print(
     observer: "RunObserver",
     degrees: bool,
 ) -> None:
-    print(f"{scene_line(scene, 'h', degrees=degrees)}, {z_name(scene.model)} = {scene.z:.4g}")
+    print_lines(f"{scene_line(scene, 'h', degrees=degrees)}, {z_name(scene.model)} = {scene.z:.4g}")
     pace = f", {sample.step / wall_seconds / 1e6:.3g} million a second" if wall_seconds > 1 else ""
     print(f"{sample.step} steps to t = {sample.t:g} s in {wall_seconds:.2f} s{pace}\n")
     from tui.words.findings import astray, ending, passing
