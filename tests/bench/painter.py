@@ -21,7 +21,7 @@ from textual.strip import Strip
 from textual.widget import Widget
 from textual.widgets import Static
 
-FPS, SECONDS, H = 30, 6, 0.01  # more than one step a frame, so that every frame moves
+FPS, BEGIN, SECONDS, H = 30, 5, 10, 0.01  # more than one step a frame, so that every frame moves
 TOLD = ("h 0.02 s", "h 0.01 s")
 
 
@@ -33,7 +33,7 @@ class Pane(NamedTuple):
 
 
 async def film(size: tuple[int, int], key: str | None) -> list[Pane]:
-    """What the lab shows in some seconds."""
+    """What the lab shows in the seconds in which it is watched."""
     from engine.scenes import DEFAULT_SCENE
     from tui.playback.live import Live
     from tui.screens.app import PenduApp
@@ -47,12 +47,12 @@ async def film(size: tuple[int, int], key: str | None) -> list[Pane]:
         await pilot.pause()
         stage._timer.stop()
         await pilot.press(*([key] if key else []))
-        for frame in range(1, (SECONDS + 2) * FPS):
+        for frame in range(1, (BEGIN + SECONDS) * FPS):
             now = frame / FPS
             stage.frame()
             await pilot.pause(0)
             await settled(app)
-            if now < 2.0:
+            if now < BEGIN:
                 continue
             for widget in stage.walk_children(Widget):
                 if not widget.children and widget.is_on_screen and widget.region:

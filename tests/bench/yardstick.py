@@ -18,9 +18,10 @@ from statistics import mean, median
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
+from tests.bench import painter as film
 from tests.tui.pty_lab import PtyLab
 
-ROUNDS, SECONDS, KEYS, STARTS, MOVES = 3, 10.0, 30, 9, 40
+ROUNDS, SECONDS, KEYS, STARTS, MOVES = 3, float(film.SECONDS), 30, 9, 40
 LAB = ("live", "--h", "0.01")  # more than one step a frame, so that every frame moves
 PAINTER = [sys.executable, str(Path(__file__).with_name("painter.py"))]
 SMALL, LARGE, F3 = (120, 40), (200, 60), "\x1bOR"
@@ -130,9 +131,8 @@ def beside(ours: Callable[[], Figures], theirs: Callable[[], Figures], names: tu
 def of_lab(size: tuple[int, int] = SMALL, key: str = "") -> Figures:
     """The lab's figures."""
     with tempfile.TemporaryDirectory() as folder, lab(folder, size=size) as program:
-        if key:
-            program.type(key)
-            program.run(3.0)
+        program.type(key)
+        program.run(film.BEGIN - 2.0)
         figures = watched(program)
         times = drag_times(program) if key else key_times(program)
         end(program)

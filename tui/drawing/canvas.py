@@ -137,11 +137,24 @@ class Canvas:
     def disc(self, x: float, y: float, radius: float, owner: int, hollow: bool = False) -> None:
         """Set the dots whose centres are within `radius` of (x, y); hollow: only the rim, one dot wide."""
         if abs(x) < 1e6 and abs(y) < 1e6:  # not elsewhere, and finite
-            dots, owners = self._dots, self._owners
             for i, j in disc(x, y, radius, hollow):  # so few, that NumPy would take longer
-                if 0 <= i < self.width and 0 <= j < self.height:
-                    cell = (j >> 2) * self.columns + (i >> 1)
-                    dots[8 * cell + ORDER[(j & 3) << 1 | i & 1]], owners[cell] = 1, owner
+                if (dot := self.dot(i, j)) is not None:
+                    self.put(dot, True, owner)
+
+    def dot(self, x: float, y: float) -> int | None:
+        """The number of the dot at x, y, eight to a cell; None outside."""
+        if 0 <= x < self.width and 0 <= y < self.height:
+            i, j = int(x), int(y)
+            return 8 * ((j >> 2) * self.columns + (i >> 1)) + ORDER[(j & 3) << 1 | i & 1]
+        return None
+
+    def at(self, dot: int) -> tuple[bool, int]:
+        """Whether a dot is set, and the owner of its cell."""
+        return self._dots[dot] == 1, self._owners[dot >> 3]
+
+    def put(self, dot: int, on: bool, owner: int) -> None:
+        """Set a dot or take it away, and give its cell an owner."""
+        self._dots[dot], self._owners[dot >> 3] = on, owner
 
     def label(self, column: int, row: int, text: str, owner: int) -> None:
         """Write text over any dots, beginning at a cell; text beyond the edges is cut off."""

@@ -75,17 +75,19 @@ class Sketch:
         return inside and row * self.columns + column not in self._labels
 
     def row(self, y: int) -> list[tuple[str, int]]:
-        """Row y from the left, as Picture.row."""
+        """Row y from the left, as Picture.row; a blank belongs to the owner before it."""
         start, columns = y * self.columns, self.columns
-        values = [*map(self.cells.get, range(start, start + columns))]
         spans: list[tuple[str, int]] = []
         text, owner = "", NOBODY
-        for value in values:
-            whose = NOBODY if value is None else (value >> _OWNER) + NOBODY
+        for value in map(self.cells.get, range(start, start + columns)):
+            if value is None:
+                text += " "
+                continue
+            whose = (value >> _OWNER) + NOBODY
             if whose != owner and text:
                 spans.append((text, owner))
                 text = ""
-            text, owner = text + (" " if value is None else chr(value & _CODE)), whose
+            text, owner = text + chr(value & _CODE), whose
         return [*spans, (text, owner)] if text else spans
 
     def changed_rows(self, before: "Sketch | None") -> list[int]:

@@ -43,6 +43,7 @@ class ErrorHistory:
         self._recent: deque[list[float]] = deque(maxlen=RECENT)
         self._waiting: list[_Row] = []
         self._levels: Levels | None = None
+        self.added = self.rewound = 0  # samples so far, and how often some were taken back
         self.returned: Sample | None = None  # where simulated time last was back at 0
 
     def add(self, sample: Sample, exact: State | None = None, modified: Sequence[float] | None = None) -> None:
@@ -64,6 +65,7 @@ class ErrorHistory:
             x = before + abs(sample.t - t)
             if abs(sample.t) < 1e-6 * abs((sample.t - t) / (sample.step - step)):  # t is rounded
                 self.returned = sample
+        self.added += 1
         self._latest = sample.step, x, sample.t
         self._recent.append([reading.theta for reading in sample.readings])
         self._waiting.append(_Row(sample, x, exact or _UNKNOWN, modified))
@@ -92,6 +94,7 @@ class ErrorHistory:
 
     def rewind(self, step: int) -> None:
         """Forget what came after `step`, or a little more where it is long ago."""
+        self.rewound += 1
         if self.returned is not None and self.returned.step > step:
             self.returned = None
         levels = self.levels

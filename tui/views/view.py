@@ -97,13 +97,21 @@ class View(Box):
 class Pane(CellWidget):
     """Draws a source at one of its samples, again whenever one of the three values changes."""
 
+    PAUSE: ClassVar[float] = 0.0
+    """Between one picture and the next of a run that goes on [s of the clock]."""
+
     source: var[Source | None] = var(None)
     sample: Sample | None = None
     shown: var[Shown] = var(Shown())
+    _followed: float | None = None  # s, the clock
 
     def follow(self, sample: Sample) -> None:
-        self.sample = sample
-        self.draw()
+        """Show a sample, if it does not come too soon after the one before."""
+        now, before, last = self.source.playhead.seen if self.source else None, self.sample, self._followed
+        goes_on = before is not None and sample.run == before.run and self.source and not self.source.is_at_rest
+        if now is None or last is None or not goes_on or not 0 <= now - last < self.PAUSE:
+            self._followed, self.sample = now, sample
+            self.draw()
 
     def watch_source(self) -> None:
         self.draw()

@@ -19,7 +19,6 @@ from tui.words.numbers import relative, scientific
 DIGITS = 8  # of an energy error
 HEIGHT = 3  # rows of large digits
 CELL = 40  # columns that a method needs: its digits, and what they are
-OFTEN = 0.5  # s of the clock between two changes, so that a class can read them
 
 
 def large(text: str) -> list[str]:
@@ -68,17 +67,9 @@ def _cell(
 class LargeTable(Pane):
     """Takes as many rows as it needs."""
 
-    _changed: float | None = None  # s, the clock
-
-    def follow(self, sample: Sample) -> None:
-        self.sample = sample
-        now = self.source.playhead.seen if self.source is not None else None
-        recent = now is not None and self._changed is not None and 0 <= now - self._changed < OFTEN
-        if not recent or (self.source is not None and self.source.playhead.paused):
-            self.draw()
+    PAUSE = 0.5  # so that a class can read it
 
     def paint(self, source: Source, sample: Sample) -> None:
-        self._changed = source.playhead.seen
         rows = large_rows(source, sample, self.shown, self.room.width)
         self.styles.height = len(rows)
         self.show(rows)

@@ -2,7 +2,9 @@
 
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 
+from engine.models.model import Model
 from engine.run.lockstep import Sample
 from engine.run.stepping import Stepping
 from engine.scenes import Scene
@@ -24,7 +26,13 @@ def reach(scene: Scene, stepping: Stepping, sample: Sample, shown: Sequence[int]
     limits = [(abs(h) * fastest, method.linear_limit) for method, h, _ in each]
     if any(limit is not None and z > limit for z, limit in limits):
         return math.pi
-    model = scene.equations
-    energy, reference = model.energy(), model.reference(scene.theta, scene.omega)
     largest = max([0.0, *(now.max_energy_error for _, _, now in each)])
-    return next((angle for angle in REACHES if reference.error(energy(model.still(angle))) > largest), math.pi)
+    margins = _margins(scene.equations, scene.theta, scene.omega)
+    return next((angle for angle, margin in zip(REACHES, margins, strict=True) if margin > largest), math.pi)
+
+
+@lru_cache(maxsize=8)
+def _margins(model: Model, theta: float, omega: float) -> list[float]:
+    """The energy error with which a pendulum from a start comes to rest at each of REACHES."""
+    energy, reference = model.energy(), model.reference(theta, omega)
+    return [reference.error(energy(model.still(angle))) for angle in REACHES]

@@ -82,6 +82,8 @@ class TimeChart(Pane):
     The pointer reads out a moment, the wheel zooms there.
     """
 
+    PAUSE = 0.35
+
     def __init__(self, ahead: int = 0) -> None:
         """`ahead`: so many quantities after the one that is chosen."""
         super().__init__()
@@ -146,14 +148,12 @@ class TimeChart(Pane):
         self.run_worker(self._build_on_demand(), group="chart")
 
     def follow(self, sample: Sample) -> None:
-        """Build it again once the sample is in a column of its own; of a run at rest, at once."""
-        before, built, plot = self.sample, self._built, self._plot
-        self.sample = sample
-        due = sample != before
+        """Build it again once the sample is in a column of its own; of a run at rest, where it is another one."""
+        built, plot, due = self._built, self._plot, sample != self.sample
         if plot is not None and built is not None and self.source is not None and not self.source.is_at_rest:
             due = sample.run != built.run or abs(sample.t - built.t) >= plot.column
         if due:
-            self.draw()
+            super().follow(sample)
 
     def paint(self, source: Source, sample: Sample) -> None:
         self._wanted.set()

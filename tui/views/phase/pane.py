@@ -24,6 +24,7 @@ from tui.words.scope import has_ring
 if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
     from engine.phase_space.area import Neighbourhood, Neighbours
     from tui.drawing.canvas import Picture
+    from tui.views.phase.picture import PhaseTrails
 
 TITLE = "Phase space (F3): theta [rad], omega [rad/s]"
 RING_STEPS = 100  # a frame; 52 µs each, so a ring that has to catch up costs 5 ms of a frame at most
@@ -52,6 +53,7 @@ class PhasePane(Chooser[State]):
         self.zoomed: Viewport | None = None  # None: the whole portrait
         self._whole: Viewport | None = None
         self._plot: Picture | None = None
+        self._trails: PhaseTrails | None = None
         self._panning: tuple[int, int] | None = None  # the cell where the picture was last moved to
 
     @property
@@ -89,7 +91,7 @@ class PhasePane(Chooser[State]):
         else:
             found = Viewport.portrait(*self.cells, self.source.scene, self.wrap).steadied(self._whole)
             self._whole = found
-        return replace(found, degrees=self.shown.degrees)
+        return found if found.degrees == self.shown.degrees else replace(found, degrees=self.shown.degrees)
 
     @property
     def aim(self) -> State | None:
@@ -97,11 +99,14 @@ class PhasePane(Chooser[State]):
         return self.cursor or (None if self.pointer is None else self.viewport.at_cell(*self.pointer))
 
     def paint(self, source: Source, sample: Sample) -> None:
-        from tui.views.phase.picture import source_picture
+        from tui.views.phase.picture import PhaseTrails, source_picture
 
+        self._trails = self._trails or PhaseTrails()
         orbit = self.aim if self.aiming or self.cursor is not None else None
         self._follow(source, sample)
-        self._plot = source_picture(self.viewport, source, sample, self.shown, self.ring, self.cursor, orbit)
+        self._plot = source_picture(
+            self.viewport, source, sample, self.shown, self._trails, self.ring, self.cursor, orbit
+        )
         self.tell()
 
     def _follow(self, source: Source, sample: Sample) -> None:

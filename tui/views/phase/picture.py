@@ -12,6 +12,7 @@ from engine.phase_space.area import Neighbourhood
 from engine.run.lockstep import Sample
 from tui.drawing.canvas import Canvas, Picture
 from tui.drawing.palette import EXACT, TEXT, faint, series
+from tui.drawing.trails import Trails
 from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.views.phase.portrait import Portrait
@@ -24,66 +25,87 @@ Floats = NDArray[np.float64]
 Track = tuple[Floats, Floats]  # theta [rad], omega [rad/s]
 
 
-_NOWHERE = np.zeros(0), np.zeros(0)
-
-
 @dataclass(frozen=True, slots=True)
 class PhasePoint:
-    """Where a method is, where it was, and its ring of neighbouring starts."""
+    """Where a method is, and its ring of neighbouring starts."""
 
     theta: float  # rad
     omega: float  # rad/s
     owner: int
     letter: str
-    trail: Track = _NOWHERE
     ring: Track | None = None
 
 
+class PhaseTrails:
+    """The trails of a source's methods on a portrait, which go on from frame to frame."""
+
+    def __init__(self) -> None:
+        self._of: object = None  # what they are trails of
+        self._trails: Trails | None = None
+        self._added = 0  # samples of the history that they show
+
+    def follow(self, portrait: Portrait, source: Source, shown: Shown) -> Canvas:
+        """The portrait's ground, with the trails up to the newest sample."""
+        history, places, viewport = source.history, shown.places(source.scene.cast), portrait.viewport
+        key, new = (portrait, history, history.rewound, places), history.added - self._added
+        if self._trails is None or key != self._of or new > TRAIL:
+            owners = [faint(series(source.scene.cast[place])) for place in places]
+            self._of, self._trails, new = key, Trails(portrait.ground, owners, TRAIL), TRAIL
+        for states in history.levels.trails(new).tolist() if new else ():
+            shown_states = [states[place] for place in places]
+            self._trails.add([(viewport.x(theta), viewport.y(omega)) for theta, omega in shown_states])
+        self._added = history.added
+        return self._trails.canvas
+
+
 def source_picture(
-    viewport: Viewport, source: Source, sample: Sample, shown: Shown, ring: Neighbourhood | None, *aims: State | None
+    viewport: Viewport,
+    source: Source,
+    sample: Sample,
+    shown: Shown,
+    trails: PhaseTrails,
+    ring: Neighbourhood | None,
+    *aims: State | None,
 ) -> Picture:
     """What is to be shown of a sample, with the crosshair and the state whose orbit is shown, if any."""
     portrait = Portrait.of(viewport, source.scene.w0, source.scene.model)
     around = ring if has_ring(source.scene) else None
-    return phase_picture(portrait, method_points(source, sample, shown, around), *aims)
+    ground = trails.follow(portrait, source, shown) if shown.trails else portrait.ground
+    return phase_picture(portrait, ground, method_points(source, sample, shown, around), *aims)
 
 
 def method_points(source: Source, sample: Sample, shown: Shown, ring: Neighbourhood | None) -> list[PhasePoint]:
     """The points that are to be shown of a sample, the exact one first."""
-    length = TRAIL if shown.trails else 0
     exact = source.exact.at(sample.t)
     points = [PhasePoint(*exact, EXACT, "x")] if shown.exact and math.isfinite(exact.theta) else []
-    trails = source.history.levels.trails(length)  # of all at once, as NumPy takes as long for one
     for index in shown.places(source.scene.cast):
         method = source.scene.cast[index]
-        reading, trail = sample.readings[index], (trails[:, index, 0], trails[:, index, 1])
+        reading = sample.readings[index]
         around = None if ring is None else ring.rings[index]
-        points.append(PhasePoint(reading.theta, reading.omega, series(method), method.letter, trail, around))
+        points.append(PhasePoint(reading.theta, reading.omega, series(method), method.letter, around))
     return points
 
 
 @np.errstate(over="ignore", invalid="ignore")  # a method may be farther out than dots can be counted
 def phase_picture(
     portrait: Portrait,
+    ground: Canvas,
     points: Sequence[PhasePoint],
     crosshair: tuple[float, float] | None = None,
     orbit: tuple[float, float] | None = None,
 ) -> Picture:
-    """The portrait with points on it, later ones in front; perhaps a crosshair, perhaps the exact orbit of a state.
+    """Points on the portrait's ground, later ones in front; perhaps a crosshair, perhaps the exact orbit of a state.
 
     Dots of several owners in one cell all stay.
     """
     viewport = portrait.viewport
-    canvas = portrait.ground.copy()
+    canvas = ground.copy()
     if crosshair is not None:
         x, y = viewport.x(crosshair[0]), viewport.y(crosshair[1])
         canvas.line([0, canvas.width], [y, y], TEXT, dotted=True)
         canvas.line([x, x], [0, canvas.height], TEXT, dotted=True)
     if orbit is not None:
         canvas.points(*portrait.orbit(*orbit), EXACT)
-    if trails := [(faint(point.owner), point.trail) for point in points if len(point.trail[0])]:
-        theta, omega, owners = _together(trails)
-        canvas.points(viewport.x(theta), viewport.y(omega), owners)
     if rings := [(point.owner, _closed(point.ring)) for point in points if point.ring is not None]:
         canvas.line(*on_screen(viewport, *_together(rings)))
     for point in points:
