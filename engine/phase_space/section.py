@@ -95,7 +95,7 @@ def kind_of(method: Method, model: Model, h: float, points: Points) -> OrbitKind
         neighbours.carry((float(theta[at]), float(omega[at])), _CHUNK)
     # Regular orbits part in proportion to the steps, beside upright with a large factor: engine.stability.chaos.
     slack = -math.log(max(abs(separatrix_margin(model.w0, *start)), 1e-16)) if model.turns else 0.0
-    parted = neighbours.log > 15 + math.log(max(steps, 1)) + max(slack, 0.0)
+    parted = neighbours.log > least_lyapunov(steps) * max(steps, 1) + max(slack, 0.0)
     chaotic = method.symplectic and parted  # else neighbours part while they spiral outwards, too
     rotation = None if chaotic or not moves else rotation_number(theta, omega, model.w0, spins)
     fraction = None if rotation is None else nearest_fraction(abs(rotation))
@@ -112,6 +112,11 @@ def kind_of(method: Method, model: Model, h: float, points: Points) -> OrbitKind
         chaotic=chaotic,
         energy_error=error,
     )
+
+
+def least_lyapunov(steps: int) -> float:
+    """The Lyapunov number [a step] up to which so many steps tell an orbit from no regular one, away from upright."""
+    return (15 + math.log(max(steps, 1))) / max(steps, 1)
 
 
 def rotation_number(theta: Floats, omega: Floats, w0: float, spins: bool = False) -> float | None:

@@ -74,6 +74,11 @@ def _gate(node: ast.expr, source: str, fields: Sequence[str], methods: Sequence[
             return lambda values: join(gate(values) for gate in gates)
         case ast.Compare(ast.Attribute(ast.Name(key), field), [sign], [value]) if type(sign) in _SIGNS and not fields:
             method, known = _known("method", key, methods), FIELDS
+        case ast.Compare(ast.Attribute(ast.Name(), field) as named) if fields:
+            ours = source.replace(ast.get_source_segment(source, named) or "", field)
+            raise _refusal(
+                f"{_quoted(source)} names a method, and one table of energies has none; write {_quoted(ours)}."
+            )
         case ast.Compare(ast.Name(field), [sign], [value]) if type(sign) in _SIGNS and fields:
             method, known = "", tuple(fields)
         case _:

@@ -3,15 +3,19 @@
 import csv
 import json
 import math
+import shutil
 import sys
+import textwrap
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from operator import sub
 from time import monotonic
 from typing import TYPE_CHECKING, Any, TextIO
 
 from engine.scenes import LIMITS, Scene
 from recordings.errors import printable
 
+SENTENCE = 24  # columns; a longer cell may be wrapped
 LONG = 120.0  # s of work that are announced where there is no bar
 
 if TYPE_CHECKING:
@@ -21,7 +25,16 @@ if TYPE_CHECKING:
 
 def warn(sentence: str) -> None:
     """Say something besides the data, on stderr."""
-    print(f"pendu-tui: {sentence}", file=sys.stderr)
+    text = f"pendu-tui: {sentence}"
+    print(_wrapped(text) if sys.stderr.isatty() else text, file=sys.stderr)
+
+
+def _wrapped(text: str) -> str:
+    """On lines as wide as the terminal, which would break words; what is to be copied stays whole."""
+    columns = shutil.get_terminal_size().columns
+    return "\n".join(
+        textwrap.fill(line, columns, break_long_words=False, break_on_hyphens=False) for line in text.split("\n")
+    )
 
 
 def write_json(name: str, fields: Mapping[str, Any]) -> None:
@@ -74,15 +87,43 @@ def scene_line(scene: Scene, *more: str, degrees: bool = False) -> str:
 
 
 def print_table(align: str, headers: Sequence[str], rows: Iterable[Iterable[str]]) -> None:
-    """Print a table; `align` has an l or an r for each column.  The first column is never wrapped."""
+    """Print a table; `align` has an l or an r for each column.
+
+    No word is broken, and only a SENTENCE is wrapped: where the columns do not fit, the last ones are left out, which
+    a line below says.
+    """
+    from rich.cells import cell_len
     from rich.table import Table
 
+    lines = [[printable(cell, limit=1000) for cell in row] for row in rows]  # no text is to steer the terminal
+    on, count = console(240), len(headers)  # a file or a pipe has room for every column
+    columns = [[line[at] for line in lines] for at in range(count)]
+
+    def least(at: int) -> int:
+        whole = [text for text in columns[at] if not at or cell_len(text) <= SENTENCE]
+        words = [word for text in (headers[at], *columns[at]) for word in text.split()]
+        return max(map(cell_len, (*whole, *words)), default=0)
+
+    leasts = [least(at) for at in range(count)]
+    widths = [max(map(cell_len, (headers[at], *columns[at]))) for at in range(count)]
+    while count > 2 and sum(leasts[:count]) + 2 * (count - 1) > on.width:
+        count -= 1
+    while sum(widths[:count]) + 2 * (count - 1) > on.width and (slack := max(map(sub, widths[:count], leasts))) > 0:
+        widths[[width - least for width, least in zip(widths[:count], leasts, strict=False)].index(slack)] -= 1
     table = Table(box=None, pad_edge=False, header_style="bold", show_header=any(headers))
-    for side, header in zip(align, headers, strict=True):
-        table.add_column(header, justify="left" if side == "l" else "right", no_wrap=not table.columns, overflow="fold")
-    for row in rows:
-        table.add_row(*(printable(cell, limit=1000) for cell in row))  # a file's text must not steer the terminal
-    _print(console(240), [table])  # a file or a pipe has room for every column
+    for side, header, width in zip(align, headers[:count], widths, strict=False):
+        table.add_column(header, justify="left" if side == "l" else "right", width=width, overflow="fold")
+    for line in lines:
+        table.add_row(*line[:count])
+    _print(on, [table])
+    if left := ", ".join(headers[count:]):
+        print_lines(f"Only in a wider terminal, or with --json: {left}.")
+
+
+def print_lines(*lines: str) -> None:
+    """Print sentences, wrapped between words where the terminal is narrower."""
+    for line in lines:
+        print(_wrapped(line) if sys.stdout.isatty() else line)
 
 
 def print_picture(on: "Console", lines: "Iterable[Text]") -> None:

@@ -121,8 +121,10 @@ def log_time_axis(start: float, end: float, columns: int, note: str = "") -> Axi
         place = math.log10(seconds)
         if low <= place <= high and (not labels or (place - max(labels)) / (high - low) * columns >= 8):
             labels[place] = text
-    if labels:
-        labels[max(labels)] += note
+    if len(labels) < 2:  # so short that it is almost linear
+        linear = time_axis(start, end, columns, note).labels
+        return Axis(low, high, {math.log10(value): text for value, text in linear.items() if value > 0})
+    labels[max(labels)] += note
     return Axis(low, high, labels)
 
 

@@ -29,7 +29,7 @@ from tui.drawing.loglog import ROOM, Series, row_at
 from tui.drawing.palette import TEXT, faint
 from tui.drawing.palette import series as series_of
 from tui.playback.levels import Window
-from tui.playback.shown import Quantity
+from tui.playback.shown import Quantity, Stretch
 
 FLOOR = 1e-17  # below the resolution of doubles; zeros are drawn here
 TOP = 1e6  # larger magnitudes are drawn here, so that a failing method leaves room for the others
@@ -55,6 +55,8 @@ class TimePlot:
     left: int = 0  # column of the picture with the first moment
     times: Sequence[float] = ()  # s, at the middle of each column
     values: Floats | None = None  # (columns, methods)
+    ends: tuple[float, float] = (0.0, 1.0)  # of its axis of time: s, or log10 of that
+    log_time: bool = False
 
     @property
     def column(self) -> float:
@@ -68,6 +70,23 @@ class TimePlot:
             return None
         known = np.flatnonzero(~np.isnan(self.values[: at + 1]).all(axis=1))
         return Reading(self.times[known[-1]], self.values[known[-1]].tolist()) if len(known) else None
+
+    def zoomed(
+        self, whole: Window, factor: float, column: int | None = None, shift: float = 0.0
+    ) -> tuple[float, float] | None:
+        """Begin and end [s] of a stretch of `factor` times the length, or later by a `shift` of its length.
+
+        What is in the column, or in the middle, stays there.  None where it would be the whole run.
+        """
+        low, high = self.ends
+        at = 0.5 if column is None else min(max((column - self.left + 0.5) / max(len(self.times), 1), 0.0), 1.0)
+        still, length = low + at * (high - low), factor * (high - low)
+        low, high = (float(np.log10(end)) for end in _log_span(whole)) if self.log_time else time_span(whole.x, None, 1)
+        begin = min(max(still - at * length + shift * length, low), max(high - length, low))
+        end = min(begin + length, high)
+        if begin == low and end == high:
+            return None
+        return (10.0**begin, 10.0**end) if self.log_time else (begin, end)
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,17 +109,19 @@ def time_chart(
     *,
     log: bool = True,
     seconds: float | None = None,
+    stretch: Stretch | None = None,
     shown: Sequence[int] | None = None,
     ghost: tuple[Window, Cast] | None = None,
     degrees: bool = False,
 ) -> TimePlot:
-    """A quantity of a cast over the last `seconds`, or over the whole run; `shown`: only those at these places.
+    """A quantity of a cast over a `stretch`, the last `seconds`, or the whole run; `shown`: only those at these places.
 
     On a linear axis, each column of characters spans the lowest to the highest value in it.  On a
     logarithmic axis, it shows the largest magnitude of the half swing that ends in it, or of the
     column if that is longer; otherwise zero crossings would tear the lines.  There a long run as a whole has
     a logarithmic axis of time, too: steady growth is a slope, and a bounded error is flat; and where one error
-    passes another for good, there is a CROSSING.  Behind all that are the same methods of a `ghost`, fainter.
+    passes another for the rest of the chart, there is a CROSSING.  Behind all that are the same methods of a
+    `ghost`, fainter.
     """
     if width < SMALLEST[0] or height < SMALLEST[1]:
         return TimePlot(too_small(width, height, *SMALLEST))
@@ -113,15 +134,16 @@ def time_chart(
         parts.append(_part(*ghost, quantity, behind, scale, is_ghost=True))
     note = " run" if window.turned else ""
     log_time = log and seconds is None and time_span(window.x, seconds, 1)[1] > LONG
+    log_time = log and stretch.log_time if stretch is not None else log_time
     if log:
         columns = width - 1 - ROOM - LABEL
-        x_axis = _time_axis(window, seconds, columns, note, log_time)
+        x_axis = _time_axis(window, stretch, seconds, columns, note, log_time)
         sides = [(largest, largest) for largest in (_largest(part, x_axis, columns, log_time) for part in parts)]
         y_axis = _log_y_axis(np.hstack([low for low, _ in sides]), rows)
     else:
         y_axis = _linear_y_axis([part.low for part in parts], [part.high for part in parts], rows)
         columns = width - 1 - ROOM - y_axis.label_width
-        x_axis = _time_axis(window, seconds, columns, note, log_time)
+        x_axis = _time_axis(window, stretch, seconds, columns, note, log_time)
         sides = [per_column(part.window.x, part.low, part.high, x_axis.low, x_axis.high, columns) for part in parts]
     curves = [
         _outline(owner, letter, *heights)
@@ -144,7 +166,8 @@ def time_chart(
     middles = x_axis.low + (np.arange(columns) + 0.5) / columns * (x_axis.high - x_axis.low)
     low, high = sides[0]
     values = 10.0**high if log else np.where(abs(low) > abs(high), low, high)
-    return TimePlot(picture, places, left, (10.0**middles if log_time else middles).tolist(), values)
+    times = (10.0**middles if log_time else middles).tolist()
+    return TimePlot(picture, places, left, times, values, (x_axis.low, x_axis.high), log_time)
 
 
 def _part(
@@ -157,12 +180,21 @@ def _part(
     return _Part(window, owners, [cast[place].letter for place in places], low, high)
 
 
-def _time_axis(window: Window, seconds: float | None, columns: int, note: str, log_time: bool) -> Axis:
+def _log_span(window: Window) -> tuple[float, float]:
+    """Begin and end [s] of the logarithmic axis of a whole run."""
+    _, end = time_span(window.x, None, 1)
+    return max(log_start(end), min(window.repeats, end / 10)), end
+
+
+def _time_axis(
+    window: Window, stretch: Stretch | None, seconds: float | None, columns: int, note: str, log_time: bool
+) -> Axis:
     """The axis of time; `log_time`: a logarithmic one, for a long run."""
-    start, end = time_span(window.x, seconds, columns)
-    if not log_time:
-        return time_axis(start, end, columns, note)
-    return log_time_axis(max(log_start(end), min(window.repeats, end / 10)), end, columns, note)
+    if stretch is not None:
+        return (log_time_axis if log_time else time_axis)(stretch.begin, stretch.end, columns, note)
+    if log_time:
+        return log_time_axis(*_log_span(window), columns, note)
+    return time_axis(*time_span(window.x, seconds, columns), columns, note)
 
 
 def _largest(part: _Part, axis: Axis, columns: int, log_time: bool) -> Floats:

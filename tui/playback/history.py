@@ -106,6 +106,11 @@ class ErrorHistory:
     def window(self, seconds: float | None = None) -> "Window":
         return self.levels.window(seconds)
 
+    def between(self, begin: float, end: float) -> "Window":
+        """What lies between two moments [s] of simulated time run through, and half a swing before."""
+        latest = self._latest[1] if self._latest else 0.0
+        return self.window(latest - begin).cut(begin - self._repeats, end)
+
     def trail(self, index: int, length: int) -> "tuple[Floats, Floats]":
         return self.levels.trail(index, length)
 

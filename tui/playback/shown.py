@@ -1,7 +1,7 @@
 """Shown: which methods and quantities are on screen, and how.  Nothing in it changes a number."""
 
 from dataclasses import dataclass, replace
-from typing import Any, Literal, get_args
+from typing import Any, Literal, NamedTuple, get_args
 
 from engine.methods import Cast
 from engine.scenes import Scene
@@ -21,6 +21,15 @@ def quantities(scene: Scene) -> tuple[Quantity, ...]:
     return tuple(quantity for quantity in QUANTITIES if quantity not in missing)
 
 
+class Stretch(NamedTuple):
+    """A part of a run that the chart was zoomed to."""
+
+    run: int
+    begin: float  # s, simulated time run through
+    end: float
+    log_time: bool  # on a logarithmic axis of time
+
+
 @dataclass(frozen=True, slots=True)
 class Shown:
     """What is shown of a source, and how."""
@@ -34,6 +43,7 @@ class Shown:
     percent: bool = True  # errors from 1 % on
     degrees: bool = False  # angles, in place of radians
     seconds: float | None = None  # of the chart, one of WINDOWS
+    stretch: Stretch | None = None  # in place of that
     turn: int = 0  # place of the method that is to be alone next
 
     def places(self, cast: Cast) -> list[int]:
@@ -71,13 +81,16 @@ class Shown:
     def next_quantity(self, scene: Scene) -> "Shown":
         return replace(self, quantity=self.quantity_ahead(1, scene))
 
-    def zoomed(self, nearer: bool, length: float) -> "Shown":
-        """With the next shorter or longer of the chart's windows into a run of so many seconds."""
-        spans = [*sorted(span for span in WINDOWS if span is not None and span < length), None]
-        at = spans.index(self.seconds) if self.seconds in spans else len(spans) - 1
-        return replace(self, seconds=spans[min(max(at - 1 if nearer else at + 1, 0), len(spans) - 1)])
+    def next_window(self, direction: int) -> "Shown":
+        """With the window before the chart was zoomed; else with the next (1), the one before (-1), round and round."""
+        if self.stretch is not None:
+            return replace(self, stretch=None)
+        return replace(self, seconds=WINDOWS[(WINDOWS.index(self.seconds) + direction) % len(WINDOWS)])
 
-    def next_window(self, forward: bool = True) -> "Shown":
-        """With the next of the chart's windows, or the one before, round and round."""
-        at = WINDOWS.index(self.seconds) + (1 if forward else -1)
-        return replace(self, seconds=WINDOWS[at % len(WINDOWS)])
+    def zoomed(self, stretch: Stretch | None) -> "Shown":
+        """With this part of the run in the chart, or all of it."""
+        return replace(self, stretch=stretch, seconds=self.seconds if stretch else None)
+
+    def of(self, run: int) -> "Shown":
+        """As it is for this run: another run's stretch says nothing about it."""
+        return self if self.stretch is None or self.stretch.run == run else replace(self, stretch=None)

@@ -28,7 +28,7 @@ from tui.screens.status_line import StatusLine
 from tui.screens.too_small import TooSmall
 from tui.views import create, following
 from tui.views.keys import Key, bindings
-from tui.views.messages import Asked, MethodChosen
+from tui.views.messages import Asked, MethodChosen, Zoomed
 from tui.views.view import Box, Pane, View
 from tui.words.undone import State, undone
 
@@ -205,7 +205,11 @@ class SourceScreen(Guarded, Screen[None]):
         self.change_shown(self.shown.next_quantity(self.source.scene))
 
     def action_window(self, direction: int) -> None:
-        self.change_shown(self.shown.next_window(direction > 0))
+        if (shown := self.shown.next_window(direction)) != self.shown:
+            self.change_shown(shown)
+
+    def on_zoomed(self, message: Zoomed) -> None:
+        self.shown = self.shown.zoomed(message.stretch)  # `w` leads back; undoing every turn of the wheel would be long
 
     def action_undo(self) -> None:
         if self._undo:

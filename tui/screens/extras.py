@@ -17,6 +17,7 @@ from tui.screens.dialogs.text import TextScreen
 from tui.terminal.screenshot import save_screenshot
 from tui.views import VIEWS
 from tui.views.keys import Key
+from tui.views.view import View
 from tui.words.cards import method_card
 from tui.words.command_line import command, reproduces
 from tui.words.describe import description
@@ -42,11 +43,9 @@ def show_events(screen: SourceScreen) -> None:
     screen.app.push_screen(TextScreen("Events", "\n".join(numbered(event_lines(screen.source)))))
 
 
-def zoom(screen: SourceScreen, direction: int) -> None:
-    """Show a shorter window of the run in the chart, or a longer one."""
-    shown = screen.shown.zoomed(direction > 0, abs(screen.source.sample.t))
-    if shown != screen.shown:
-        screen.change_shown(shown)
+def zoom(screen: SourceScreen, factor: float, shift: float = 0.0) -> None:
+    """Show `factor` times the stretch of time in the chart, or later by a `shift` of it."""
+    screen.query_one(f"#{screen.view}", View).zoom(factor, shift)
 
 
 def go_to(screen: SourceScreen, place: tuple[int, int]) -> None:

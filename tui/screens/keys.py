@@ -30,6 +30,11 @@ COMMON = (
     Key("percent_sign", "%", "errors from 1 % on: as percent, or in powers of ten", "switch('percent')", _SHOW),
     Key("w", "w", "chart: whole run, last 20 s, 60 s, ...", "window(1)", _SHOW, "Window"),
     Key("W,shift+w", "W", "chart: the window before", "window(-1)", _SHOW),
+    Key("z", "z", "chart: zoom in at the pointer, or its middle", "app.extra('zoom', 0.5)", _SHOW, "Zoom"),
+    Key("Z,shift+z", "Z", "chart: zoom out, up to the whole run", "app.extra('zoom', 2.0)", _SHOW),
+    Key("left_parenthesis", "(", "chart: earlier, once it is zoomed", "app.extra('zoom', 1.0, -0.25)", _SHOW),
+    Key("right_parenthesis", ")", "chart: later", "app.extra('zoom', 1.0, 0.25)", _SHOW),
+    Key("escape", "esc", "chart: back from the zoom, as w", "window(0)", _SHOW),
     Key("v", "v", "next view", "view", _VIEWS, "View"),
     Key("f2", "F2", "lab view", "view('lab')", _VIEWS, "Lab"),
     Key("f3", "F3", "phase space view", "view('phase')", _VIEWS, "Phase"),
@@ -46,7 +51,7 @@ COMMON = (
     Key("q", "q", "quit", "quit", _PROGRAM, "Quit"),
     Key("", "ctrl+c", "finish the recording and quit", "", _PROGRAM),
     Key("", "click", "on a key hint: same as pressing it; an event: go there", "", _PROGRAM),
-    Key("", "wheel", "on the chart: its window; the pointer reads it out", "", _SHOW),
+    Key("", "wheel", "on the chart: zoom at the pointer, which reads it out", "", _SHOW),
 )
 
 LIVE = (
@@ -106,9 +111,9 @@ OVERLAYS = (
 """Only listed: Textual binds them."""
 
 ALWAYS = ("F2", "F3", "F4", "F5", "space", "?", "q")
-HINTS = ("+", "]", "f", "M", "i", "p", "u", ">", *"ewyXO", "right", "home", "end", "L", *"rbnmdEsv")
+HINTS = ("+", "]", "f", "M", "i", "p", "u", ">", *"ewzyXO", "right", "home", "end", "L", *"rbnmdEsv")
 """The keys on the key line, the most important first: those that do not fit are left out."""
-CHARTS = frozenset("ewyO")
+CHARTS = frozenset("ewzyO")
 """Keys of what only the lab's view shows."""
 
 

@@ -113,7 +113,8 @@ class LiveScreen(Touring):
             if scene is not None:
                 self.start(scene)
 
-        self.app.push_screen(StartForm(self.live.scene.altered(h=self.live.stepping.smallest)), chosen)
+        stepping = self.live.stepping
+        self.app.push_screen(StartForm(self.live.scene.altered(h=stepping.smallest), stepping.h < 0), chosen)
 
     def action_methods(self) -> None:
         from tui.screens.dialogs.cast_form import CastForm

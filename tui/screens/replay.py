@@ -5,6 +5,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from typing import ClassVar
 
+from textual import events
 from textual.binding import BindingType
 from textual.widget import Widget
 
@@ -12,12 +13,15 @@ from tui.cli.errors import UserError, explained
 from tui.playback.live import Live
 from tui.playback.replay import Replay
 from tui.screens.base import ALREADY, SourceScreen
-from tui.screens.keys import COMMON, REPLAY
+from tui.screens.keys import COMMON, LIVE, REPLAY
 from tui.screens.seek_bar import SeekBar
 from tui.views.keys import Key, bindings
 
 NO_LENGTH = "A loop cannot start and end at the same moment: move along the recording, then set the other end."
 LONG = 100_000  # steps; a quarter of a second
+_OF_THE_LAB = {name for key in LIVE for name in key.names.split(",")} - {
+    name for key in (*REPLAY, *COMMON) for name in key.names.split(",")
+}
 
 
 class ReplayScreen(SourceScreen):
@@ -46,6 +50,11 @@ class ReplayScreen(SourceScreen):
 
     def on_seek_bar_sought(self, message: SeekBar.Sought) -> None:
         self.seek(message.position)
+
+    def on_key(self, event: events.Key) -> None:
+        """Say why a key of the lab does nothing here."""
+        if event.key in _OF_THE_LAB:
+            self.notify("A recording cannot be changed: f continues it live, and then it can.", timeout=4)
 
     def seek(self, position: float) -> None:
         self.replay.seek(position)

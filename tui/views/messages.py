@@ -6,6 +6,7 @@ from textual.message import Message
 
 from engine.run.stepping import Stepping
 from engine.scenes import Scene
+from tui.playback.shown import Stretch
 
 
 @dataclass
@@ -27,6 +28,13 @@ class MethodChosen(Message):
     """The user wants to see this method alone or, if it is, all of them again."""
 
     place: int  # in the cast
+
+
+@dataclass
+class Zoomed(Message):
+    """The user wants to see this part of the run in the chart, or all of it."""
+
+    stretch: Stretch | None
 
 
 @dataclass

@@ -71,6 +71,9 @@ class View(Box):
             for pane in self.query(Pane):
                 pane.border_subtitle = Content(sentence(error))
 
+    def zoom(self, factor: float, shift: float) -> None:
+        """Show `factor` times the stretch of time, or later by a `shift` of it, where the view has a chart of that."""
+
     def wake(self) -> None:
         """Draw what is on screen again: the view was hidden."""
         for pane in self.query(Pane):

@@ -30,6 +30,7 @@ GLOSSARY = {
     "! chaotic": "starts next to each other part exponentially",
     "colours": "each method keeps its own, and its letter, wherever it is shown; its digit is its place and its key",
     "dotted": "the exact motion",
+    "dim": "a recording laid under the lab, maybe with another h: pendu-tui live --ghost FILE",
 }
 HEADS = {
     ("h",): GLOSSARY["h"],

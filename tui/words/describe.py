@@ -26,6 +26,7 @@ def _run(source: Source) -> list[str]:
         f"The pendulum is {scene.length:.4g} m long and started at {math.degrees(scene.theta):.4g} degrees "
         f"with {scene.omega:.4g} radians per second{motion}.",
         f"The step size is {step_text(source)}.",
+        *([f"Under it, {source.ghost.label(60)}."] if source.ghost else []),
     ]
 
 

@@ -19,6 +19,7 @@ HINT_SHOWN = 6.0  # s
 HINTS: tuple[tuple[float, EventKind, str], ...] = (
     (16.0, "start", "New here? T shows the lab in a tour of eight short steps."),
     (24.0, "pause", "Press space to pause, then . or , to step forward or back."),
+    (31.0, "start", "? lists the keys: p next scene, M methods, i start values."),
     (38.0, "set_h", "Press + for a larger step: which methods conserve energy?"),
     (52.0, "start", "Click anywhere in phase space (F3) to start from there."),
 )

@@ -16,6 +16,7 @@ _NAMES = {
     "log": "log or linear",
     "percent": "percent or powers of ten",
     "seconds": "the window of the chart",
+    "stretch": "the zoom of the chart",
     "degrees": "degrees or radians",
 }
 

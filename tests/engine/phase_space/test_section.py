@@ -13,6 +13,7 @@ from engine.phase_space.section import (
     OrbitKind,
     iterate,
     kind_of,
+    least_lyapunov,
     nearest_fraction,
     numerical_period,
     orbit,
@@ -137,6 +138,12 @@ def test_strong_chaos_has_the_lyapunov_number_of_the_standard_map():
 @pytest.mark.parametrize(("theta", "z"), [(2.0, 0.05), (3.0, 0.5), (math.pi - 1e-5, 0.1), (0.5, 1.41)])
 def test_regular_orbits_are_not_called_chaotic(theta, z):
     assert not kind(VERLET, theta, z).chaotic
+
+
+@pytest.mark.parametrize("steps", [300, 4000])
+def test_a_regular_orbits_lyapunov_number_is_below_what_so_many_steps_can_tell(steps):
+    found = [kind(VERLET, theta, z, steps).lyapunov for theta, z in ((2.0, 0.05), (1.0, 0.5), (0.5, 1.41))]
+    assert 0 < max(found) < least_lyapunov(steps) < kind(VERLET, 2.0, 1.4, steps).lyapunov  # which is chaotic
 
 
 def test_rk4_ends_at_its_sink_and_explicit_euler_is_not_called_chaotic():

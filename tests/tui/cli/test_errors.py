@@ -37,7 +37,7 @@ def test_an_unknown_option_is_named_before_one_that_is_missing(arguments, words)
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (("run",), "required: --time"),
+        (("judge", "x.csv"), "required: --time, --energy"),
         (("run", "--time", "1", "--theta", "-abc"), "has no option -a"),
         (("run", "--time", "--h", "0.1"), "--time: expected one argument"),
         (("run", "--time", "1", "more"), "unrecognized arguments: more"),

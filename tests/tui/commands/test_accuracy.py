@@ -334,3 +334,11 @@ def test_where_a_measured_order_is_not_the_claimed_one_it_says_why(scene, remark
 def test_an_order_of_neither_kind_is_remarked_on_in_general():
     (said,) = order_remarks(SCENES["drift"], [Order(USUAL_CAST[2], 2.6)])
     assert said == "Velocity Verlet reads 2.60, not 2: its errors do not follow a single power over these h"
+
+
+def test_the_points_of_a_method_are_joined_once_they_are_all_there():
+    points = list(Study(SCENES["drift"].with_cast(USUAL_CAST[3:]), 5.0).points(ladder(5.0, 0.1, 0.01, 4)))
+    series = accuracy_series(points[::2], "theta", "evaluations", whole=len(points))
+    assert [len(one.x) for one in series if one.mark == "r"] == [1] * len(points[::2])
+    (joined,) = (one for one in accuracy_series(points, "theta", "evaluations", whole=len(points)) if one.mark == "r")
+    assert len(joined.x) == len(points)

@@ -15,6 +15,7 @@ from tests.tui.command_line import pendu
 from tests.tui.harness import player, recorded
 from tests.tui.pty_lab import PENDU
 from tui.terminal.screenshot import text_of
+from tui.words.numbers import file_size
 
 
 class Film:
@@ -136,3 +137,18 @@ def test_interrupted_it_leaves_nothing_behind(tmp_path, number):
     assert process.communicate(timeout=30)[1].endswith("pendu-tui: interrupted.\n")
     assert process.returncode == 130
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("form", ["csv", "cast", "foxglove"])
+def test_what_was_written_is_told_on_stderr_and_nothing_on_stdout(short, tmp_path, form):
+    outcome = pendu(
+        "export",
+        short,
+        "--format",
+        form,
+        "--fps" if form == "cast" else "-o",
+        *(["1", "-o"] * (form == "cast")),
+        out := tmp_path / "x",
+    )
+    size = file_size(out.stat().st_size)
+    assert (outcome.out, outcome.err) == ("", f"pendu-tui: wrote 1 s of short.mcap, {size}: {out}\n")

@@ -178,7 +178,9 @@ def test_stdin_is_read_where_it_is_open(end, code, word):
 def test_a_file_that_cannot_be_read_is_one_sentence():
     assert pendu("judge", "absent.csv", "--time", "1", "--energy", "2").refused(3, "absent.csv", "No such file")
     assert pendu("judge", ".", "--time", "1", "--energy", "2").refused(3, "directory")
-    assert judge(table(), "--fail-if", "rk4.verdict == grows").refused(2, "write FIELD > NUMBER")
+    assert judge(table(), "--fail-if", "rk4.verdict == grows").refused(2, "has none; write 'verdict == grows'.")
+    both = "verdict == grows or rk4.max_energy_error > 1"
+    assert judge(table(), "--fail-if", both).refused(2, "write 'verdict == grows or max_energy_error > 1'.")
     assert judge(table(), "--fail-if", "theta_error > 1").refused(2, "There is no field 'theta_error'")
 
 
@@ -209,3 +211,14 @@ def test_a_hundred_thousand_lines_with_gaps_take_a_fraction_of_a_second():
     outcome = pendu("judge", "energies.csv", "--time", "t", "--energy", "E", "--json")
     assert time.process_time() - began < 1.0  # 0.15 s on an idle machine; 10⁶ lines may take 2 s
     assert (outcome.json["samples"], outcome.json["skipped"]["text_or_gap"]) == (90_000, 10_000)
+
+
+def test_of_energies_that_grew_and_stopped_run_says_so_later_and_both_helps_tell():
+    """In the scene crossover explicit Euler is over the top within seconds, and then its energy hardly grows."""
+    euler = ("run", "--scene", "crossover", "--methods", "explicit_euler", "--record", "euler.mcap", "--time")
+    (method,) = pendu(*euler, 60, "--json").json["methods"]
+    energies = pendu("export", "euler.mcap", "--format", "csv").out
+    told = judge(energies, "--json", time="t_s", energy="energy_per_s2").json
+    assert (method["verdict"], told["verdict"]) == ("grows", "caught")
+    for command in ("run", "judge"):
+        assert "4096 steps" in pendu(command, "--help").out

@@ -26,9 +26,12 @@ NAMES = {  # of keys that Textual calls something else
     ",": {"comma"},
     "[": {"left_square_bracket"},
     "]": {"right_square_bracket"},
+    "(": {"left_parenthesis"},
+    ")": {"right_parenthesis"},
 }
 PANES = {
     "PhasePane": "phase space",
+    "ErrorTable": "table",
     "SectionPane": "phase space",
     "AccuracyPane": "accuracy",
     "StabilityPane": "stability",

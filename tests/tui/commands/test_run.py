@@ -19,7 +19,7 @@ from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PENDU
 from tui.cli.fail_if import FIELDS
 from tui.commands.studies.run import SAMPLE_BYTES
-from tui.words.numbers import about
+from tui.words.numbers import about, file_size
 
 
 def test_json_has_the_fields_of_the_design_and_the_numbers_of_the_engine():
@@ -123,7 +123,8 @@ def test_a_recording_is_not_overwritten_unless_by_force(tmp_path):
 
 def test_the_size_of_a_large_recording_is_known_before_it_is_made(tmp_path):
     path, steps = tmp_path / "run.mcap", 4000
-    assert pendu("run", "--time", steps * DEFAULT_SCENE.h, "--record", path).err == ""  # it is not large
+    told = pendu("run", "--time", steps * DEFAULT_SCENE.h, "--record", path).err  # it is not large
+    assert told == f"pendu-tui: recorded 200 s, {file_size(path.stat().st_size)}: {path}\n"
     assert steps * SAMPLE_BYTES == pytest.approx(path.stat().st_size, rel=0.1)
 
 
@@ -236,3 +237,9 @@ def test_degrees_are_for_people_and_json_stays_in_radians():
     with_flag, without = pendu(*short, "--json", "--degrees").json, pendu(*short, "--json").json
     assert with_flag["methods"] == without["methods"]
     assert with_flag["scene"] == without["scene"]
+
+
+def test_other_mistakes_are_told_before_a_missing_time():
+    assert pendu("run").refused(2, "--time is missing")
+    assert pendu("run", "--fail-if", "rk5.verdict == grows").refused(2, "rk5")
+    assert pendu("run", "--length", "-1").refused(2, "length")

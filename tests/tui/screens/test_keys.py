@@ -270,6 +270,17 @@ async def test_the_form_has_the_parameters_of_the_model_with_units_and_limits():
         assert theatre.source.scene == SCENES["stiff-slow"].altered(stiffness=400.0)
 
 
+async def test_the_form_says_of_a_lab_whose_time_runs_backwards_that_a_run_begins_forward():
+    async with lab() as theatre:
+        await theatre.press("b", "i")
+        form = theatre.app.screen
+        assert form.query_one("#h").value == "0.05"
+        assert "begins forward in time" in str(form.query_one("#verdict").render())
+        await theatre.press("enter")
+        await theatre.pilot.pause()
+        assert theatre.source.stepping.h == 0.05
+
+
 async def test_the_form_says_what_is_wrong_as_it_is_typed_and_does_not_start_that():
     async with lab() as theatre:
         await theatre.press("i")

@@ -170,3 +170,12 @@ async def test_f_stays_in_the_replay_where_the_lab_could_not_record(path):
         await theatre.press("right")
         assert theatre.source.playhead.position == pytest.approx(2.0)
         assert any("/nowhere" in notice.message for notice in theatre.app._notifications)
+
+
+async def test_keys_that_would_change_a_lab_say_once_that_a_recording_stays_as_it_is(path):
+    async with player(path) as theatre:
+        await theatre.press("i", "M", "plus", "minus", "p", "P", "r", "n")
+        (told,) = theatre.app._notifications
+        assert told.message == "A recording cannot be changed: f continues it live, and then it can."
+        await theatre.press("m", "t", "b", "comma")  # the replay has its own
+        assert len([each for each in theatre.app._notifications if each.message == told.message]) == 1

@@ -58,6 +58,8 @@ async def test_it_is_walked_from_the_first_step_to_the_last(size):
         assert not theatre.stage.query_one(TourPanel).is_on_screen
         assert (theatre.stage.view, theatre.source.scene) == ("lab", SCENES["spin"])
         assert not theatre.source.playhead.paused
+        (told,) = theatre.app._notifications
+        assert told.message.startswith("That was the tour.")
 
 
 @pytest.mark.parametrize("size", [(60, 16), *SIZES], ids="{0[0]}x{0[1]}".format)

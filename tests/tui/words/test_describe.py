@@ -6,7 +6,10 @@ import pytest
 
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES
+from recordings.library import GOLDEN
+from recordings.recording import Recording
 from tests.tui.harness import after, lab
+from tui.playback.ghost import Ghost
 from tui.playback.live import Live
 from tui.words.describe import description, method_sentence
 
@@ -71,3 +74,10 @@ async def test_d_opens_the_description_and_closes_it():
         assert "dE/E0" in text.splitlines()[-1]
         await theatre.press("d")
         assert theatre.app.screen is theatre.stage
+
+
+def test_a_recording_under_the_lab_is_said():
+    live = after(SCENES["drift"], 1)
+    with Recording.open(GOLDEN / "drift.mcap") as recording:
+        live.laid_under = Ghost(recording)
+    assert "Under it, dim: drift, h 0.05 s." in description(live)

@@ -9,7 +9,7 @@ from engine.methods import METHODS, Cast, Method
 from engine.scenes import DEFAULT_SCENE
 from tui.cli.cast import add_cast_options, cast_of
 from tui.cli.errors import Exit
-from tui.cli.output import fields_of, print_table, write_json
+from tui.cli.output import fields_of, print_lines, print_table, write_json
 
 EXAMPLES = """\
 examples:
@@ -45,15 +45,15 @@ def run(options: argparse.Namespace) -> int:
         return Exit.FINE
     print_table(
         "lrrrllrrl",
-        ("method", "order", "measured", "forces", "symplectic", "reversible", "z limit", "measured", "also called"),
+        ("method", "order", "found", "forces", "symplectic", "reversible", "z limit", "found z", "also called"),
         map(_row, methods),
     )
     usual = "; where they vary, the average of a minute of scene halving" * any(method.varies for method in cast)
-    print(
-        f"\nOrder: measured on theta over one swing of scene drift.  Forces: evaluations per step{usual}."
-        "\nz limit: linear oscillator, z = h·w0; for the pendulum see pendu-tui stability."
-        "\n"
-        + (f"Numba: used in runs of at least {COMPILED_FROM:,} steps." if available() else "Numba is not installed.")
+    print_lines(
+        "",
+        f"Found: the order as measured on theta over one swing of scene drift.  Forces: evaluations per step{usual}.",
+        "z limit, and as measured, found z: linear oscillator, z = h·w0; for the pendulum see pendu-tui stability.",
+        f"Numba: used in runs of at least {COMPILED_FROM:,} steps." if available() else "Numba is not installed.",
     )
     return Exit.FINE
 

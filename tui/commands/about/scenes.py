@@ -4,7 +4,7 @@ import argparse
 
 from engine.scenes import GROUPS, LEFT_OUT, SCENES
 from tui.cli.errors import Exit
-from tui.cli.output import print_table, write_json
+from tui.cli.output import print_lines, print_table, write_json
 
 EXAMPLES = """\
 examples:
@@ -24,7 +24,7 @@ def run(options: argparse.Namespace) -> int:
         write_json("scenes", {"scenes": [scene.fields() | {"speed": scene.speed} for scene in SCENES.values()]})
         return Exit.FINE
     print_table("lrl", ("scene", "h·w", "what to watch"), [row for group in GROUPS for row in _rows(group)])
-    print(f"\n{LEFT_OUT}")
+    print_lines("", LEFT_OUT)
     return Exit.FINE
 
 

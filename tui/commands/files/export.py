@@ -15,6 +15,7 @@ from tui.cli.files import text_file
 from tui.cli.options import add_file, add_recording, positive
 from tui.cli.output import progress, warn, write_csv
 from tui.terminal.options import add_picture_options, cells, frames_per_second, terminal_options_of
+from tui.words.numbers import file_size
 
 if TYPE_CHECKING:
     from textual.strip import Strip
@@ -75,6 +76,9 @@ def run(options: argparse.Namespace) -> int:
             _film(recording, options, out, show)
         if recording.reason:
             warn(f"{printable(str(path))}: {recording.reason}; the rest is exported.")
+    if options.output:
+        size = file_size(options.output.stat().st_size)
+        warn(f"wrote {recording.length:g} s of {printable(path.name)}, {size}: {printable(str(options.output))}")
     return Exit.FINE
 
 

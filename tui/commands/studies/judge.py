@@ -30,6 +30,8 @@ examples:
   ./game --headless | pendu-tui judge - --time 1 --energy 4 --fail-if 'max_energy_error > 1e-2'
 
 verdicts: bounded; grows; loses; caught (left its start, stays at another level); wanders; too early.
+They follow from the energies alone. run, which knows the method and its step, may say it otherwise for a while: an
+energy that grew and stopped is caught here at once, and there after 4096 steps.
 Energies that end in nan or inf are called grows, and fail every check.
 """
 

@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 from engine.methods import METHODS
 from engine.scenes import Scene
+from recordings.errors import printable
 from tui.cli.errors import Exit, UserError
 from tui.cli.fail_if import FIELDS, parse
 from tui.cli.files import check_free, stop_requests
 from tui.cli.options import Suggestions, add_degrees, add_file, count, positive
-from tui.cli.output import fields_of, print_table, progress, scene_line, warn, write_json
+from tui.cli.output import fields_of, print_lines, print_table, progress, scene_line, warn, write_json
 from tui.cli.scene import add_scene_options, scene_of
 from tui.words.numbers import file_size, measured, z_name
 
@@ -30,6 +31,9 @@ examples:
   pendu-tui run --theta 170deg --time 60 --json | jq '.methods[] | {method, verdict}'
   pendu-tui run --time 60 --fail-if 'velocity_verlet.max_energy_error > 1e-2 or rk4.drift_per_second < -1e-5'
   pendu-tui run --time 600 --fail-if 'velocity_verlet.verdict != bounded'
+
+Verdicts know the method and its step, and may be slower than those of judge, which sees energies only: an energy that
+grew and stopped is called grows for 4096 steps, then caught.
 """
 
 LONGEST = 1e9  # s, 30 years; a recording's clock ends there, too
@@ -42,7 +46,7 @@ AT_ONCE = 1_000_000  # steps in a batch, about a second; Ctrl+C is only seen bet
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_scene_options(parser)
     parser.add_argument(
-        "--time", metavar="S", type=positive, required=True, help="simulated time in s, rounded to whole steps"
+        "--time", metavar="S", type=positive, help="simulated time in s, rounded to whole steps; needed"
     )
     add_file(parser, "--record", metavar="FILE", type=Path, help="record to FILE (identical runs give identical files)")
     parser.add_argument("--force", action="store_true", help="overwrite FILE")
@@ -63,6 +67,8 @@ def run(options: argparse.Namespace) -> int:
     gate = None if options.fail_if is None else parse(options.fail_if, cast=scene.cast)
     from recordings.headless import SAMPLE_EVERY, steps_for
 
+    if options.time is None:  # said last: argparse would say it before what else is wrong
+        raise UserError("--time is missing: how many seconds to simulate, for example --time 60.")
     if options.time > LONGEST:
         raise UserError(f"--time {options.time:g} is out of range; use at most {LONGEST:g} s.")
     steps = steps_for(scene, options.time)
@@ -77,6 +83,8 @@ def run(options: argparse.Namespace) -> int:
     sample, observer, stopped = _simulate(scene, options, steps, every)
     wall_seconds = time.perf_counter() - began
     rows = _rows(scene, sample, observer, stopped)
+    if options.record:
+        warn(f"recorded {sample.t:g} s, {file_size(options.record.stat().st_size)}: {printable(str(options.record))}")
     if options.json:
         fields = {"scene": scene.fields(), "time": sample.t, "steps": sample.step, "wall_seconds": wall_seconds}
         write_json("run", {**fields, "methods": rows})
@@ -163,7 +171,7 @@ def _print(
     observer: "RunObserver",
     degrees: bool,
 ) -> None:
-    print(f"{scene_line(scene, 'h', degrees=degrees)}, {z_name(scene.model)} = {scene.z:.4g}")
+    print_lines(f"{scene_line(scene, 'h', degrees=degrees)}, {z_name(scene.model)} = {scene.z:.4g}")
     pace = f", {sample.step / wall_seconds / 1e6:.3g} million a second" if wall_seconds > 1 else ""
     print(f"{sample.step} steps to t = {sample.t:g} s in {wall_seconds:.2f} s{pace}\n")
     from tui.words.findings import astray, ending, passing

@@ -46,8 +46,10 @@ class StartForm(Form[Scene | None]):
         Binding("up", "app.focus_previous", show=False),
     ]
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, backwards: bool = False) -> None:
+        """`backwards`: time does so now, which no run begins with."""
         super().__init__()
+        self._backwards = backwards
         self._before = scene
         self._scene: Scene | None = scene
         self._fields = [name for name in FIELDS if name not in PARAMETERS or name in scene.parameters]
@@ -85,4 +87,5 @@ class StartForm(Form[Scene | None]):
 
     def _summary(self) -> str:
         scene = self._scene
-        return "" if scene is None else f"w0 = {scene.w0:.4g} 1/s, {z_name(scene.model)} = {scene.z:.3g}"
+        forward = "; it begins forward in time" if self._backwards else ""
+        return "" if scene is None else f"w0 = {scene.w0:.4g} 1/s, {z_name(scene.model)} = {scene.z:.3g}{forward}"

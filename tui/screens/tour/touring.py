@@ -10,7 +10,8 @@ from tui.playback.live import Live
 from tui.playback.shown import Shown
 from tui.screens.base import SourceScreen
 from tui.screens.insight_line import InsightLine
-from tui.screens.keys import TOUR
+from tui.screens.keys import COMMON, TOUR
+from tui.views.keys import bindings
 
 if TYPE_CHECKING:  # imported when the tour begins
     from tui.screens.tour.panel import TourPanel
@@ -25,7 +26,8 @@ class Touring(SourceScreen):
     """The lab's screen, with a tour that is left and gone on with at any time."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding(key.names, key.action, key.does, show=False, priority=True) for key in TOUR
+        *(Binding(key.names, key.action, key.does, show=False, priority=True) for key in TOUR),
+        *bindings(*(key for key in COMMON if key.names == "escape")),  # where no tour is left with it
     ]
 
     begins_with_tour = False
@@ -103,7 +105,7 @@ class Touring(SourceScreen):
 
     def _show_step(self) -> None:
         assert self._guide is not None
-        self.shown = replace(self.shown, hidden=frozenset(), quantity=Shown().quantity, seconds=None)
+        self.shown = replace(self.shown, hidden=frozenset(), quantity=Shown().quantity, seconds=None, stretch=None)
         if self.view != self._guide.step.view:
             self.action_view(self._guide.step.view)
         self._show_words()
@@ -125,7 +127,7 @@ class Touring(SourceScreen):
             if live.sample.run != run:
                 self.remember(way_back)
                 if back:
-                    self.action_undo()
+                    self._undo.pop()()  # without a notice of its own
 
         return leave
 

@@ -67,10 +67,12 @@ def accuracy_series(
     cost: Cost,
     marks: Sequence[tuple[str, Point]] = (),
     references: References | None = None,
+    whole: int = 0,
 ) -> list[Series]:
     """Letters for points, x for useless and ~ for rounding-limited ones, dotted lines for orders, and `marks`.
 
-    The reference lines are Taylor's series and, upright, what the closed form takes.
+    Of methods with fewer points than a `whole` line has, no line joins those that are there.  The reference lines
+    are Taylor's series and, upright, what the closed form takes.
     """
 
     def series(owner: int, some: Sequence[AnyPoint], mark: str) -> Series:
@@ -80,7 +82,8 @@ def accuracy_series(
     by_method = [[point for point in points if point.method == method] for method in methods]
     slopes = [_slope(ours, kind, cost, points) for ours in by_method]
     found = [slope for slope in slopes if slope]
-    found += (series(series_of(ours[0].method), ours, ours[0].method.letter) for ours in by_method)
+    joined = [each for ours in by_method for each in ([[p] for p in ours] if len(ours) < whole else [ours])]
+    found += (series(series_of(ours[0].method), ours, ours[0].method.letter) for ours in joined)
     found += (series(series_of(p.method), [p], MARKS[flaw]) for p in points if (flaw := p.flaw(kind)))
     if references:
         taylor = references.taylor

@@ -173,7 +173,8 @@ class AccuracyPane(Chooser[int]):
         if self.cursor is not None and (at := self.points.get((self.index, self.rungs[self.cursor]))):
             marks.append((CURSOR, at))
         every: list[AnyPoint] = [*points, *(p for _, p in marks), *(self.references.taylor if self.references else ())]
-        return charted(accuracy_series(points, kind, cost, marks, self.references), every, kind, cost, width, height)
+        series = accuracy_series(points, kind, cost, marks, self.references, len(self.rungs))
+        return charted(series, every, kind, cost, width, height)
 
     def _growth(self, width: int, height: int) -> tuple[Picture, list[Placed]]:
         """The chart of error over time, of the methods that are shown."""

@@ -4,9 +4,13 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import accumulate
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
+from rich.style import Style
 from textual import events
+from textual.binding import BindingType
+from textual.geometry import Offset
+from textual.widgets import Tooltip
 
 from engine.methods import Method
 from engine.models.model import State
@@ -16,6 +20,7 @@ from tui.drawing.cells import Row
 from tui.drawing.palette import GOOD, QUIET, TEXT, WARN, mark, series
 from tui.playback.shown import Shown
 from tui.playback.source import Source
+from tui.views.keys import Key, bindings
 from tui.views.messages import MethodChosen
 from tui.views.view import Pane
 from tui.words.numbers import angle, decimal, in_unit, measured, relative, scientific
@@ -73,7 +78,7 @@ SPRING = (
     Column(8, ("spring", 7), ("spring E", 8), lambda line, width: short(line.reading.spring_energy or 0, width)),
 )
 """Of a bob on a spring: its length over that at rest, and the energy in it over that at the start."""
-NAME = 20  # columns of the longest name and its mark
+NAME = 20  # columns of a name and its mark, or as many as the longest takes
 MOST_GAP = 3
 _LOGARITHM = {"dE/E0": "ln E/Et", "dE/E0 now": "ln E/Etr"}  # to the true energy
 
@@ -128,18 +133,19 @@ def table(source: Source, sample: Sample, shown: Shown, width: int) -> list[Row]
     every = COLUMNS[len(set(h)) == 1 :]
     if any(reading.position is not None for reading in sample.readings):
         every = (*every[:-1], *SPRING, every[-1])
-    columns = chosen(every, width - NAME)
-    spare = width - NAME - sum(size + 1 for _, size, _ in columns)
+    room = max([NAME, *(len(f"{mark(place, method)} {method.label}") for place, method in enumerate(cast))])
+    columns = chosen(every, width - room)
+    spare = width - room - sum(size + 1 for _, size, _ in columns)
     gap = " " * (1 + min(spare // max(len(columns), 1), MOST_GAP))
     heads = [(head if conserved else _LOGARITHM.get(head, head), size) for head, size, _ in columns]
     names = [(gap + in_unit(head, shown.degrees).rjust(size), QUIET) for head, size in heads]
-    rows: list[Row] = [[("method".ljust(NAME), QUIET), *names]]
+    rows: list[Row] = [[("method".ljust(room), QUIET), *names]]
     for place in shown.places(cast):
         method = cast[place]
         percent = shown.percent and conserved
         line = TableLine(method, sample.readings[place], judgements[place], exact, h[place], percent, shown.degrees)
         failed = line.reading.diverged_at is not None
-        name = f"{mark(place, method)} {method.label}"[:NAME].ljust(NAME)
+        name = f"{mark(place, method)} {method.label}".ljust(room)
         rows.append([(name, series(method))])
         for head, size, cell in columns:
             text = gap + cell(line, size)
@@ -148,11 +154,23 @@ def table(source: Source, sample: Sample, shown: Shown, width: int) -> list[Row]
     return rows
 
 
-class ErrorTable(Pane):
-    """As many columns as fit."""
+_GROUP = "table"
+KEYS = (
+    Key("tab", "tab", "to the heads of the columns: what each one means", "head(1)", _GROUP),
+    Key("shift+tab", "shift+tab", "to the head before", "head(-1)", _GROUP),
+    Key("escape", "esc", "leave them", "leave", _GROUP),
+)
+
+
+class ErrorTable(Pane, can_focus=True):
+    """As many columns as fit.  The pointer on a head, or Tab, says what it means."""
+
+    BINDINGS: ClassVar[list[BindingType]] = bindings(*KEYS)
+    FOCUS_ON_CLICK = False  # that shows a method
 
     _rows_shown = 0
     _head: Sequence[str] = ()
+    _chosen: int | None = None  # of the heads
 
     def paint(self, source: Source, sample: Sample) -> None:
         rows = table(source, sample, self.shown, self.room.width)
@@ -160,7 +178,49 @@ class ErrorTable(Pane):
             self._rows_shown = len(rows)
             self.styles.height = len(rows)  # hidden methods leave no gap
         self._head = [text for text, _ in rows[0]]
+        if self._chosen is not None:
+            text, chosen = self._head[self._chosen], Style(reverse=True)
+            gap = len(text) - len(text.lstrip())
+            rows[0] = [
+                *rows[0][: self._chosen],
+                (text[:gap], QUIET),
+                (text[gap:], chosen),
+                *rows[0][self._chosen + 1 :],
+            ]
         self.show(rows)
+
+    def on_focus(self) -> None:
+        self._choose(1)
+
+    def on_blur(self) -> None:
+        self._choose(None)
+
+    def action_head(self, direction: int) -> None:
+        """Go to the next head that has a meaning; beyond the last to the next pane."""
+        at = (self._chosen or 0) + direction
+        if 0 < at < len(self._head):
+            self._choose(at)
+        elif direction > 0:
+            self.screen.focus_next()
+            if self.has_focus:
+                self._choose(1)
+        else:
+            self.screen.focus_previous()
+
+    def action_leave(self) -> None:
+        self.screen.set_focus(None)
+
+    def _choose(self, at: int | None) -> None:
+        """Say what a head means where its tooltip is said, or nothing."""
+        from tui.words.cards import head_text
+
+        self._chosen = at
+        self.draw()
+        for tooltip in self.screen.query(Tooltip):
+            if at is not None and at < len(self._head):
+                tooltip.absolute_offset = self.region.offset + Offset(sum(map(len, self._head[: at + 1])), 0)
+                tooltip.update(head_text(self._head[at].strip()) or "")
+            tooltip.display = at is not None
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
         """Say what the head of the column under the pointer means."""

@@ -1,6 +1,7 @@
 """TimeChart: a quantity of all methods over time."""
 
 import asyncio
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
@@ -12,9 +13,9 @@ from textual.content import Content
 from engine.methods import Cast
 from engine.models.model import ExactMotion
 from engine.run.lockstep import Sample
-from tui.playback.shown import Quantity, Shown
+from tui.playback.shown import Quantity, Shown, Stretch
 from tui.playback.source import Source
-from tui.views.messages import Asked
+from tui.views.messages import Asked, Zoomed
 from tui.views.view import Pane
 from tui.words.numbers import about, in_unit, relative, seconds
 
@@ -29,6 +30,8 @@ NAMES: dict[Quantity, tuple[str, str]] = {
     "spring_energy": ("energy in the spring, 1 at the start", "spring energy (1 at start)"),
 }
 """Of the quantity itself, and of its magnitude for a logarithmic chart."""
+HELP, HELP_ZOOMED = "e: quantity, w: window, z: zoom, y: log", "z Z: zoom, ( ): earlier, later, w: back"
+FEWEST = 8  # rows of the history in a stretch; an hour ago they are seconds apart
 LOGARITHM = ("ln(E/E_true)", "|ln(E/E_true)|")
 """The energy error where the true motion does not keep its energy."""
 
@@ -43,11 +46,20 @@ def title(shown: Shown, exact: ExactMotion, conserved: bool = True) -> str:
     """What the chart shows, and for how long back."""
     name, magnitude = NAMES[shown.quantity] if conserved or shown.quantity != "energy_error" else LOGARITHM
     span = "all" if shown.seconds is None else about(shown.seconds)
+    if shown.stretch is not None:
+        span = span_text(shown.stretch.begin, shown.stretch.end)
     name, magnitude = in_unit(name, shown.degrees), in_unit(magnitude, shown.degrees)
     if not shown.log:
         return f"{name}, {span}"
-    each = {"libration": " per half swing", "rotation": " per turn"}.get(exact.regime, "") if exact.period else ""
+    each = {"libration": " per half swing", "rotation": " per turn"}.get(exact.regime, "")
+    each = each if exact.period and shown.stretch is None else ""
     return f"max {magnitude}{each}, {span}"
+
+
+def span_text(begin: float, end: float) -> str:
+    """A stretch of time, with as many decimals as tell its ends apart: "31.2 to 33.0 s"."""
+    before, after = (max(1 - math.floor(math.log10(span)), 0) for span in (min(begin or end, end - begin), end - begin))
+    return f"{begin:.{before}f} to {end:.{after}f} s"
 
 
 def read_out(reading: "Reading", letters: Sequence[str], percent: bool, room: int) -> str:
@@ -67,7 +79,7 @@ def read_out(reading: "Reading", letters: Sequence[str], percent: bool, room: in
 class TimeChart(Pane):
     """Builds the chart in a thread, always from the newest data; samples that come too quickly are skipped.
 
-    The pointer reads out a moment, the wheel changes the window.
+    The pointer reads out a moment, the wheel zooms there.
     """
 
     PAUSE = 0.35
@@ -90,7 +102,8 @@ class TimeChart(Pane):
 
     def _look(self, source: Source) -> Shown:
         """What to show of the source here."""
-        return replace(self.shown, quantity=self.shown.quantity_ahead(self._ahead, source.scene))
+        shown = self.shown.of(source.sample.run)
+        return replace(shown, quantity=shown.quantity_ahead(self._ahead, source.scene))
 
     def on_click(self) -> None:
         self.post_message(Asked("quantity"))
@@ -105,14 +118,27 @@ class TimeChart(Pane):
         self._tell()
 
     def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
-        self._zoom(event, 1)
+        self._wheel(event, 0.7)
 
     def on_mouse_scroll_down(self, event: events.MouseScrollDown) -> None:
-        self._zoom(event, -1)
+        self._wheel(event, 1 / 0.7)
 
-    def _zoom(self, event: events.MouseEvent, direction: int) -> None:
-        self.post_message(Asked(f"app.extra('zoom', {direction})"))
+    def _wheel(self, event: events.MouseEvent, factor: float) -> None:
+        offset = event.get_content_offset(self)
+        self._pointer = None if offset is None else offset.x
+        self.zoom(factor)
         event.stop()
+
+    def zoom(self, factor: float, shift: float = 0.0) -> None:
+        """Ask for `factor` times the stretch about the pointer, or a `shift` of it later, if that has FEWEST rows."""
+        if (source := self.source) is None or (plot := self._plot) is None or plot.values is None:
+            return
+        history, run = source.history, source.sample.run
+        ends = plot.zoomed(history.window(), factor, None if shift else self._pointer, shift)
+        if ends is None:
+            self.post_message(Zoomed(None))
+        elif factor >= 1 or len(history.between(*ends).x) >= FEWEST:
+            self.post_message(Zoomed(Stretch(run, *ends, plot.log_time)))
 
     def on_mount(self) -> None:
         """Build from the first paint on: plotext takes as long to import as all else takes to paint."""
@@ -145,7 +171,8 @@ class TimeChart(Pane):
             below = read_out(reading, letters, percent, room)
         else:
             below = modified_energy_of(self.cast) if look.quantity == "shadow_error" else ""
-            below = below or (source.ghost.label(room) if source.ghost else "e: quantity, w: window, y: log")
+            help_text = HELP if look.stretch is None else HELP_ZOOMED
+            below = below or (source.ghost.label(room) if source.ghost else help_text)
         if (above, below) != self._titles:  # setting them paints all of the pane
             self._titles = above, below
             self.border_title, self.border_subtitle = Content(above), Content(below)  # as markup, [rad] would be gone
@@ -160,16 +187,21 @@ class TimeChart(Pane):
                 continue
             self._building, self._built = True, self.sample
             shown, (width, height), ghost = self._look(self.source), self.room, self.source.ghost
-            behind = None if ghost is None else (ghost.window(self.sample.t, shown.seconds), ghost.scene.cast)
+            history, stretch, until, back = self.source.history, shown.stretch, self.sample.t, shown.seconds
+            window = history.window(back) if stretch is None else history.between(*stretch[1:3])
+            if stretch is not None:
+                until = min(until, stretch.end)
+                back = until - stretch.begin
+            behind = None if ghost is None else (ghost.window(until, back), ghost.scene.cast)
             build = partial(
                 time_chart,
                 log=shown.log,
                 seconds=shown.seconds,
+                stretch=stretch,
                 shown=self.places,
                 ghost=behind,
                 degrees=shown.degrees and shown.quantity == "theta_error",
             )
-            window = self.source.history.window(shown.seconds)
             try:
                 plot = await asyncio.to_thread(build, window, self.cast, shown.quantity, width, height)
                 self.show_picture(plot.picture)

@@ -7,6 +7,7 @@ from textual.widget import Widget
 from engine.run.lockstep import Sample
 from engine.scenes import MOST_METHODS
 from tui.playback.source import Source
+from tui.views.lab import error_table
 from tui.views.lab.error_table import ErrorTable
 from tui.views.lab.event_list import EventList
 from tui.views.lab.large_table import LargeTable
@@ -33,7 +34,7 @@ class Stage(Box):
 class LabView(View):
     """Arranges the panes anew when their size, the cast or what is shown of it changes."""
 
-    KEYS = KEYS
+    KEYS = (*KEYS, *error_table.KEYS)
 
     def __init__(self, id: str | None = None) -> None:
         super().__init__(id)
@@ -55,10 +56,14 @@ class LabView(View):
         yield self.read(ErrorTable())
         yield self.read(LargeTable())
 
+    def zoom(self, factor: float, shift: float) -> None:
+        self.chart.zoom(factor, shift)
+
     def regions(self, size: Size) -> dict[Widget, Region]:
         """Where each pane is on a stage of this size.  A method that is hidden leaves its room to the others."""
         shown = self.shown.places(self.source.scene.cast) if self.source is not None else []
         found = places(size.width, size.height, len(shown), self.shown.overlay)
+        self.phase.can_focus = found.phase is not None  # Tab is not to lead where nobody sees it
         regions: dict[Widget, Region] = {
             self.pendulums[place]: region for place, region in zip(shown, found.pendulums, strict=False)
         }

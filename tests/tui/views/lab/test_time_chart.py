@@ -7,7 +7,9 @@ from textual.events import MouseScrollUp
 
 from engine.scenes import SCENES
 from tests.tui.harness import lab
-from tui.playback.shown import WINDOWS, Shown, quantities
+from tests.tui.playback.test_so_far import run
+from tui.drawing.time_chart import time_chart
+from tui.playback.shown import WINDOWS, Shown, Stretch, quantities
 from tui.views.lab.time_chart import TimeChart, modified_energy_of, title
 
 
@@ -44,7 +46,53 @@ def test_the_chart_names_the_methods_that_have_a_modified_energy_unless_all_have
     assert modified_energy_of(cast[3:]) == "shadow energy is known for none only"
 
 
-async def test_the_pointer_reads_the_chart_out_and_the_wheel_takes_another_window():
+WHOLE = SCENES["drift"]
+
+
+def chart(seconds=100.0, shown=None, **options):
+    """The chart of a run of a sample every 50 ms, and its history."""
+    history = run(WHOLE, (round(seconds / WHOLE.h), WHOLE.h))
+    between = history.window() if shown is None else history.between(*shown[1:3])
+    return time_chart(between, WHOLE.cast, "energy_error", 60, 12, stretch=shown, **options), history
+
+
+@pytest.mark.parametrize("log", [True, False])
+def test_what_is_under_the_pointer_stays_there_in_a_zoom_and_the_whole_run_is_the_farthest(log):
+    plot, history = chart(log=log)
+    column = plot.left + 35
+    begin, end = plot.zoomed(history.window(), 0.1, column)
+    nearer, _ = chart(shown=Stretch(1, begin, end, plot.log_time), log=log)
+    assert (plot.log_time, nearer.log_time) == (log, log)
+    assert nearer.times[35] == pytest.approx(plot.times[35], rel=1e-6)
+    assert nearer.values[35][[0, 3]] == pytest.approx(plot.values[35][[0, 3]], rel=0.2)  # the steady ones
+    assert nearer.times[0] > plot.times[0]
+    assert nearer.times[-1] < plot.times[-1]
+    assert len([label for label in nearer.picture.text.splitlines()[-1].split() if label[0].isdigit()]) >= 2
+    back = nearer.zoomed(history.window(), 10.0, column)
+    assert back is None or back == pytest.approx((plot.times[0], plot.times[-1]), rel=0.2, abs=2)
+    assert nearer.zoomed(history.window(), 1e3) is None
+    earlier, later = (nearer.zoomed(history.window(), 1.0, shift=shift) for shift in (-0.25, 0.25))
+    assert earlier[0] < begin < later[0] < earlier[1] < end < later[1]
+    assert nearer.zoomed(history.window(), 1.0, shift=1e3)[1] == pytest.approx(100.0)
+
+
+def test_a_title_says_the_ends_of_a_stretch_as_exactly_as_they_differ():
+    exact = WHOLE.exact()
+    for ends, span in (
+        ((0.5, 1000.0), "0.50 to 1000 s"),
+        ((500.0, 501.5), "500.0 to 501.5 s"),
+        ((0.0, 20.0), "0 to 20 s"),
+    ):
+        assert title(Shown(stretch=Stretch(1, *ends, True)), exact) == f"max |dE/E0|, {span}"
+
+
+def test_another_run_is_shown_as_before_the_zoom():
+    shown = Shown(seconds=20.0, stretch=Stretch(1, 3.0, 4.0, False))
+    assert shown.of(1) == shown
+    assert shown.of(2) == shown.next_window(1) == Shown(seconds=20.0)
+
+
+async def test_the_pointer_reads_the_chart_out_the_wheel_zooms_there_and_keys_lead_on_and_back():
     async with lab() as theatre:
         await theatre.run(12)
         await theatre.settled()
@@ -52,14 +100,29 @@ async def test_the_pointer_reads_the_chart_out_and_the_wheel_takes_another_windo
         await theatre.pilot.hover(chart, offset=(30, 4))
         told = str(chart.border_subtitle)
         assert [word for word in told.split() if word in "esvr"] == ["e", "s", "v", "r"]
-        assert told.startswith(f"{chart._plot.at(29).t:.2f} s:")
-        chart.on_mouse_scroll_up(MouseScrollUp(chart, 5, 5, 0, -1, 0, False, False, False))
+        t = chart._plot.at(29).t
+        assert told.startswith(f"{t:.2f} s:")
+        scroll = {"delta_x": 0, "delta_y": -1, "button": 0, "shift": False, "meta": False, "ctrl": False}
+        x, y = chart.content_region.offset
+        chart.on_mouse_scroll_up(MouseScrollUp(chart, 30, 4, **scroll, screen_x=x + 29, screen_y=y + 3))
         await theatre.pilot.pause()
-        await theatre.pilot.pause()
-        assert theatre.stage.shown.seconds == 5.0
-        await theatre.press("u")
-        assert theatre.stage.shown.seconds is None
-        assert [each.message for each in theatre.app._notifications] == ["Undone: the window of the chart"]
+        await theatre.settled()
+        stretch = theatre.stage.shown.stretch
+        assert stretch.end - stretch.begin == pytest.approx(0.7 * 12, rel=0.01)
+        assert chart._plot.at(29).t == pytest.approx(t, abs=0.02)
+        assert str(chart.border_subtitle).startswith(f"{chart._plot.at(29).t:.2f} s:")
+        await theatre.run(2)  # the past stays there
+        assert theatre.stage.shown.stretch == stretch
+        assert chart.border_title == title(theatre.stage.shown, WHOLE.exact())
+        await theatre.press("z", "(")
+        await theatre.settled()
+        earlier = theatre.stage.shown.stretch
+        assert earlier.begin < earlier.end < stretch.end
+        await theatre.press("escape")
+        assert theatre.stage.shown == Shown()
+        await theatre.press("w", "z")
+        await theatre.press("w")
+        assert theatre.stage.shown == Shown(seconds=20.0)
 
 
 async def test_it_is_built_again_when_a_column_has_passed_and_at_once_where_one_asks():

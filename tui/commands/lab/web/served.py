@@ -17,6 +17,7 @@ from tui.playback.live import Live
 from tui.screens.app import PenduApp
 from tui.screens.launch import start_recording
 from tui.screens.live import LiveScreen
+from tui.screens.tour.touring import Touring
 from tui.views.keys import Key, bindings
 
 EXTRAS = {"describe", "events", "card", "copy_command", "go_to", "zoom"}
@@ -32,7 +33,7 @@ WATCH = 2.0  # s between looks at whether the server is still there
 class ServedScreen(LiveScreen, inherit_bindings=False):
     """The lab's screen without the keys that are kept out."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(*KEYS)
+    BINDINGS: ClassVar[list[BindingType]] = [*Screen.BINDINGS, *Touring.BINDINGS, *bindings(*KEYS)]
     KEYS: ClassVar[tuple[Key, ...]] = KEYS
 
 

@@ -11,11 +11,11 @@ from rich.terminal_theme import DEFAULT_TERMINAL_THEME, TerminalTheme
 from rich.text import Text
 
 from engine.methods import Method
-from engine.phase_space.section import OrbitKind, kind_of, orbit, pieces
+from engine.phase_space.section import OrbitKind, kind_of, least_lyapunov, orbit, pieces
 from engine.scenes import Scene
 from tui.cli.errors import Exit
 from tui.cli.files import whole_file
-from tui.cli.output import console, print_picture, print_table, progress, scene_line, write_json
+from tui.cli.output import console, print_lines, print_picture, print_table, progress, scene_line, write_json
 from tui.drawing.canvas import Picture
 from tui.drawing.palette import PALETTES
 from tui.terminal.options import TerminalOptions
@@ -111,11 +111,14 @@ def _title(study: Study) -> str:
 def _print_words(study: Study) -> None:
     """Print the orbits of the start as a table, and a sentence on that of the method that is drawn."""
     kinds = [(method, study.kind(method)) for method in study.scene.cast]
-    print(f"\n{scene_line(study.scene, 'h', 'z', degrees=study.degrees)}, {study.steps} steps")
+    print_lines("", f"{scene_line(study.scene, 'h', 'z', degrees=study.degrees)}, {study.steps} steps")
     rows = [(method.label, *cells(method, kind)) for method, kind in kinds]
     print_table("llrrrr", ("method", *HEADS), rows)
+    print_lines(
+        f"Lyapunov number: 0 within what {study.steps} steps can tell up to about {least_lyapunov(study.steps):.2g}."
+    )
     kind = next((kind for method, kind in kinds if method == study.method), None) or study.kind(study.method)
-    print(f"\n{study.method.label}: {sentence(study.method, kind)}")
+    print_lines("", f"{study.method.label}: {sentence(study.method, kind)}")
 
 
 def _lines(picture: Picture, display: TerminalOptions) -> list[Text]:

@@ -19,10 +19,10 @@ from engine.scenes import Scene
 from engine.stability.grid import Grid
 from engine.stability.linear import amplification
 from engine.stability.outcomes import BAND, CELL, CHAOTIC, FATES, UNKNOWN, Cells, is_lost
-from engine.stability.study import Row, StabilityStudy
+from engine.stability.study import Row, StabilityStudy, amplitude
 from tui.cli.errors import Exit
 from tui.cli.files import whole_file
-from tui.cli.output import console, print_picture, print_table, warn, write_csv, write_json
+from tui.cli.output import console, print_lines, print_picture, print_table, warn, write_csv, write_json
 from tui.drawing.palette import PALETTES
 from tui.views.stability.picture import picture
 from tui.views.stability.words import said
@@ -170,9 +170,18 @@ def _print_linear(scene: Scene) -> None:
 def _print_pendulum(rows: Sequence[Row], study: StabilityStudy) -> None:
     """Print where swings are lost, and how far from there the scene is."""
     scene, early, all_ = study.scene, f"{study.early:,}", f"{study.steps:,}"
-    print(f"\nPendulum: a swing counts as lost if within {all_} steps it goes over the top or becomes chaotic;")
-    print(f"without a symplectic method also if its energy leaves the linear oscillator's band by {100 * BAND:.0f} %.")
-    print(f"A limit holds for so many steps and moves down with more: compare that within {early}, or use --steps.")
+    print_lines(
+        "",
+        f"Pendulum: a swing counts as lost if within {all_} steps it goes over the top or becomes chaotic;",
+        f"without a symplectic method also if its energy leaves the linear oscillator's band by {100 * BAND:.0f} %.",
+        f"A limit holds for so many steps and moves down with more: compare that within {early}, or use --steps.",
+        f"Margin: the limit over the scene's z, {scene.z:.4g}; below 1 the scene's own swing is lost.",
+    )
+    start, swing = math.degrees(scene.theta), amplitude(scene)
+    if not 0 < start < 180 and swing is not None:
+        print_lines(
+            f"The start at {start:.4g} deg swings as far as one at {math.degrees(swing):.4g} deg: its amplitude."
+        )
     heads = "method", "amplitude", f"lost from z, {early} steps", f"{all_} steps", "h [s]", "failure", "at step"
     print_table("lrrrrlrlr", (*heads, f"at z = {scene.z:.4g}", "margin"), (_cells(row, scene) for row in rows))
 

@@ -1,0 +1,119 @@
+"""What a browser makes of the lab that `serve` shows, and of the film that `export --format cast` writes."""
+
+import asyncio
+import json
+import os
+import re
+from pathlib import Path
+
+import pyte
+import pytest
+
+from tests.tui.chromium import NEEDED, Page, chromium
+from tests.tui.commands.test_cast import cast
+from tests.tui.commands.test_serve import serving
+from tests.tui.harness import recorded
+from tui.drawing.palette import PALETTES
+
+pytestmark = NEEDED
+
+METHODS = [*PALETTES["dark"].methods[:4]]
+PLAYER = "ASCIINEMA_PLAYER"  # environment variable
+_LINES = "[...document.querySelectorAll('.ap-line')].map(line => line.textContent)"
+BLOCKS = re.compile("[▀-▟]")  # which the player draws, where it writes all else
+
+
+class Shown:
+    """The terminal of a page: what its websocket brought, as another terminal of its size would show it."""
+
+    def __init__(self, page: Page) -> None:
+        self.page, self._read = page, 0
+        self.screen = pyte.Screen(400, 120)
+
+    @property
+    def text(self) -> str:
+        for message in self.page.received[self._read :]:
+            pyte.ByteStream(self.screen).feed(message)
+        self._read = len(self.page.received)
+        return "\n".join(self.screen.display)
+
+    async def shows(self, *words: str) -> None:
+        await self.page.until(lambda: all(word in self.text for word in words))
+
+    async def resized(self, width: int, height: int) -> tuple[int, int]:
+        """Resize the page, whose lab is paused, and wait until that fits; columns and rows."""
+        count = len(self.page.sent)
+        await self.page.resize(width, height)
+        await self.page.until(lambda: any('"resize"' in said for said in self.page.sent[count:]))
+        size = json.loads(next(said for said in reversed(self.page.sent) if '"resize"' in said))[1]
+        self.screen = pyte.Screen(size["width"], size["height"])
+        await self.page.until(self._fits)
+        return size["width"], size["height"]
+
+    def _fits(self) -> bool:
+        first, second, *_, last = self.text.splitlines()
+        return "paused" in first and second[-1] == "╮" and last.startswith(" F2 Lab")
+
+
+async def test_a_lab_is_painted_takes_keys_and_the_mouse_fits_its_tab_and_ends_with_it_ten_at_once(tmp_path):
+    with serving("--at-most", "10") as server:
+        async with chromium(tmp_path / "profile") as browser:
+            page = await browser.open(server.address)
+            tab = Shown(page)
+            await tab.shows("LIVE", "scene drift", "RK4", "q Quit")
+            async with asyncio.timeout(60):
+                while min(await page.pixels(METHODS)) < 50:  # every method has its colour on the screen
+                    await asyncio.sleep(0.1)
+            await page.press(" ")
+            await tab.shows("paused")
+            lines = [line.rstrip() for line in tab.text.splitlines() if line.strip()]
+            columns, rows = max(map(len, lines)), len(lines)
+            left, bottom, width = await page.evaluate(
+                "(({x, bottom, width}) => [x, bottom, width])"
+                "(document.querySelector('.xterm-screen').getBoundingClientRect())"
+            )
+            await page.click(left + width * (lines[-1].index("Phase") + 0.5) / columns, bottom - 4)  # on its hint
+            await tab.shows("Ring")
+            fewer, lower = await tab.resized(800, 500)
+            assert (fewer < columns, lower < rows) == (True, True)
+            others = [await browser.open(server.address, 640, 360) for _ in range(9)]
+            await page.until(lambda: all(b"LIVE" in b"".join(other.received) for other in others))
+            assert len(server.labs) == 10
+            for other in others:
+                await other.close()
+            await server.until_labs(1)
+            await page.close()
+            await server.until_labs(0)
+            assert [each.thrown for each in (page, *others)] == [[]] * 10
+
+
+@pytest.fixture
+def film(tmp_path):
+    """3 s of a lab."""
+    return cast(recorded(tmp_path / "short.mcap", 3.0), "--size", "80x24")
+
+
+@pytest.mark.skipif(PLAYER not in os.environ, reason=f"{PLAYER} names no folder: see the test")
+async def test_asciinemas_own_player_plays_the_film(film, tmp_path):
+    """The player is brought by `npm install --prefix FOLDER asciinema-player`.
+
+    It is then in FOLDER/node_modules/asciinema-player/dist/bundle, which the variable is to name.
+    """
+    script, style = (Path(os.environ[PLAYER], f"asciinema-player.{kind}").read_text() for kind in ("min.js", "css"))
+    data = "\n".join(map(json.dumps, [film.head, *film.events]))
+    async with chromium(tmp_path / "profile") as browser:
+        page = await browser.open("about:blank")
+        await page.evaluate(f"document.head.append(document.createElement('style')); {script}")
+        await page.evaluate(f"document.querySelector('style').textContent = {json.dumps(style)}")
+        await page.evaluate(f"var player = AsciinemaPlayer.create({{data: {json.dumps(data)}}}, document.body); 0")
+        await page.evaluate("player.play()")
+        assert await page.evaluate("player.getDuration()") == film.events[-1][0]
+        await page.evaluate("player.pause()")
+        for seconds in (1.0, 2.0, 3.0):
+            await page.evaluate(f"player.seek({seconds})")
+            right = [BLOCKS.sub(" ", line) for line in film.at(seconds)]
+            async with asyncio.timeout(60):
+                while [line.rstrip() for line in await page.evaluate(_LINES)] != right:
+                    await asyncio.sleep(0.05)
+        assert min(await page.pixels(METHODS)) > 50
+        assert page.thrown == []
