@@ -9,7 +9,7 @@ from pathlib import Path
 import pyte
 import pytest
 
-from tests.tui.chromium import NEEDED, Page, chromium
+from tests.tui.chromium import NEEDED, Chromium, Page, chromium
 from tests.tui.commands.test_cast import cast
 from tests.tui.commands.test_serve import serving
 from tests.tui.harness import recorded
@@ -55,6 +55,14 @@ class Shown:
         return "paused" in first and second[-1] == "╮" and last.startswith(" F2 Lab")
 
 
+async def paused(browser: Chromium, address: str) -> Page:
+    """Another lab, which leaves the machine to the others as soon as it is there."""
+    page = await browser.open(address, 640, 360)
+    await page.until(lambda: b"LIVE" in b"".join(page.received))
+    await page.press(" ")
+    return page
+
+
 async def test_a_lab_is_painted_takes_keys_and_the_mouse_fits_its_tab_and_ends_with_it_ten_at_once(tmp_path):
     with serving("--at-most", "10") as server:
         async with chromium(tmp_path / "profile") as browser:
@@ -76,8 +84,7 @@ async def test_a_lab_is_painted_takes_keys_and_the_mouse_fits_its_tab_and_ends_w
             await tab.shows("Ring")
             fewer, lower = await tab.resized(800, 500)
             assert (fewer < columns, lower < rows) == (True, True)
-            others = [await browser.open(server.address, 640, 360) for _ in range(9)]
-            await page.until(lambda: all(b"LIVE" in b"".join(other.received) for other in others))
+            others = await asyncio.gather(*(paused(browser, server.address) for _ in range(9)))
             assert len(server.labs) == 10
             for other in others:
                 await other.close()
