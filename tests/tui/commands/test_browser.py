@@ -28,7 +28,7 @@ class Shown:
 
     def __init__(self, page: Page) -> None:
         self.page, self._read = page, 0
-        self.screen = pyte.Screen(400, 120)
+        self.screen = pyte.Screen(140, 50)
 
     @property
     def text(self) -> str:
