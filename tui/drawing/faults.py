@@ -2,8 +2,10 @@
 
 from dataclasses import dataclass
 
+from textual.events import Resize
 from textual.message import Message
 from textual.message_pump import MessagePump
+from textual.screen import Screen
 
 from engine.methods.own import OwnMethodError
 
@@ -31,6 +33,8 @@ class Guarded(MessagePump):
     """Textual ends the program at the first exception in a handler; here only that message is lost."""
 
     async def _dispatch_message(self, message: Message) -> None:
+        if isinstance(self, Screen) and isinstance(message, Resize) and message.size != self.app.size:
+            return  # the terminal has another size by now; two such could call each other up for ever
         try:
             await super()._dispatch_message(message)
         except Exception as error:

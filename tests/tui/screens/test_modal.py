@@ -5,6 +5,9 @@ import asyncio
 import pytest
 from textual.command import CommandList
 from textual.containers import VerticalScroll
+from textual.events import Resize
+from textual.geometry import Size
+from textual.screen import Screen
 from textual.system_commands import SystemCommandsProvider
 from textual.widgets import Input, OptionList
 from textual.widgets._toast import Toast
@@ -111,3 +114,24 @@ async def test_what_lies_over_the_lab_can_be_as_narrow_as_a_terminal(opening):
                 await theatre.pilot.resize_terminal(columns, rows)
         await theatre.press("escape")
         assert theatre.app.screen is theatre.stage
+
+
+async def test_two_sizes_in_flight_do_not_call_each_other_up_for_ever(monkeypatch: pytest.MonkeyPatch):
+    arranged, arrange = [], Screen._on_resize
+
+    async def counted(self: Screen, event: Resize) -> None:
+        arranged.append(event.size)
+        if len(arranged) < 100:  # else the test would not end either
+            await arrange(self, event)
+
+    async with lab() as theatre:
+        await theatre.press("i")
+        monkeypatch.setattr(Screen, "_on_resize", counted)
+        with theatre.app.batch_update():  # Textual then paints with a message of its own, between the sizes
+            theatre.app._size = Size(30, 12)
+            for size in (Size(70, 11), Size(30, 12)):
+                theatre.app.screen.post_message(Resize(size, size))
+                theatre.app.screen.call_later(lambda: None)
+            await asyncio.sleep(0.3)
+    assert set(arranged) == {Size(30, 12)}
+    assert len(arranged) < 10
