@@ -179,14 +179,10 @@ class ErrorTable(Pane, can_focus=True):
             self.styles.height = len(rows)  # hidden methods leave no gap
         self._head = [text for text, _ in rows[0]]
         if self._chosen is not None:
-            text, chosen = self._head[self._chosen], Style(reverse=True)
-            gap = len(text) - len(text.lstrip())
-            rows[0] = [
-                *rows[0][: self._chosen],
-                (text[:gap], QUIET),
-                (text[gap:], chosen),
-                *rows[0][self._chosen + 1 :],
-            ]
+            at = min(self._chosen, len(self._head) - 1)  # a narrower table has fewer
+            gap = len(text := self._head[at]) - len(text.lstrip())
+            chosen = (text[:gap], QUIET), (text[gap:], Style(reverse=True))
+            rows[0] = [*rows[0][:at], *chosen, *rows[0][at + 1 :]]
         self.show(rows)
 
     def on_focus(self) -> None:

@@ -56,3 +56,15 @@ def test_every_head_has_a_meaning():
 async def test_the_longest_name_is_written_in_full():
     async with lab(SCENES["stiff-limit"], (80, 24)) as theatre:
         assert " Implicit midpoint " in theatre.text(ErrorTable)
+
+
+async def test_a_head_that_is_left_out_in_a_narrow_terminal_hands_over_to_the_last_one():
+    async with lab(size=(80, 24)) as theatre:
+        table = theatre.stage.query_one(ErrorTable)
+        await theatre.press(*["tab"] * (len(table._head) - 1))
+        await theatre.pilot.resize_terminal(60, 16)
+        await theatre.pilot.pause()
+        assert table._chosen is not None
+        assert table._chosen >= len(table._head)
+        table.paint(theatre.source, theatre.source.sample)
+        assert theatre.text(ErrorTable).startswith("method")
