@@ -43,10 +43,11 @@ class Letters:
         return cls((rows, columns), codes.astype(np.uint32), owners.astype(np.int8), starts, lengths)
 
     def write(self, picture: Picture) -> None:
-        """Write all except those that would cover part of a point, a ring or an orbit."""
+        """Write all except those that would cover part of a point, a ring or an orbit; a blank covers no trail."""
         there = picture.owners[self.cells]
-        taken = (there >= EXACT) & (there < FAINT)
-        free = np.repeat(~np.logical_or.reduceat(taken, self.starts), self.lengths) if taken.any() else slice(None)
+        taken, free = (there >= EXACT) & (there < FAINT), (self.codes != ord(" ")) | (there < EXACT)
+        if taken.any():
+            free &= np.repeat(~np.logical_or.reduceat(taken, self.starts), self.lengths)
         cells = self.cells[0][free], self.cells[1][free]
         picture.characters[cells], picture.owners[cells] = self.codes[free], self.owners[free]
 
@@ -195,7 +196,7 @@ def _inside(name: str, region: NDArray[np.bool_], preferred: Sequence[NDArray[np
     middle = rows.mean(), columns.mean() - len(name) / 2 - 1
     for cells in preferred:
         if (place := _nearest(_windows(cells, len(name) + 2), *middle)) is not None:
-            return [(place[1] + 1, place[0], name, QUIET)]
+            return [(place[1], place[0], f" {name} ", QUIET)]
     return []
 
 
@@ -220,5 +221,7 @@ def axes(viewport: Viewport) -> list[Word]:
         left, right, min(columns // 9 + 1, 8), viewport.wrap
     ):
         column = math.floor((theta - left) / viewport.theta_per_dot / 2) - len(label) // 2
-        words.append((max(min(column, columns - len(label)), 0), bottom, label[:columns], TEXT))
+        begin = max(min(column, columns - len(label)), 0)
+        text = f" {label} " if begin else f"{label} "  # with blanks between it and the curves
+        words.append((max(begin - 1, 0), bottom, text[: columns - max(begin - 1, 0)], TEXT))
     return words

@@ -47,15 +47,15 @@ def test_the_separatrix_is_heavier_than_the_other_curves():
 def test_the_three_regimes_are_named_where_they_are(scene, size):
     viewport = Viewport.portrait(*size, scene)
     portrait = Portrait.of(viewport, scene.w0)
-    names = [word[2] for word in portrait.words]
+    names = [word[2].strip() for word in portrait.words]
     assert names.count("libration") == 1
     assert names.count("rotation") == 2  # one for each sense
     assert names.count("separatrix") == 1
     for column, row, text, _ in portrait.words:
-        if text in ("libration", "rotation"):
+        if text.strip() in ("libration", "rotation"):
             for at in range(column, column + len(text)):
                 value = separatrix_margin(scene.w0, viewport.theta_at(2.0 * at + 1), viewport.omega_at(4.0 * row + 2))
-                assert (value > 0) == (text == "libration")
+                assert (value > 0) == (text.strip() == "libration")
 
 
 @pytest.mark.parametrize("size", [(4, 2), (10, 3), (20, 6), (46, 15), (78, 17)])
