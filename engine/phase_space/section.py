@@ -115,7 +115,7 @@ def kind_of(method: Method, model: Model, h: float, points: Points) -> OrbitKind
 
 
 def least_lyapunov(steps: int) -> float:
-    """The Lyapunov number [a step] up to which so many steps tell an orbit from no regular one, away from upright."""
+    """The largest Lyapunov number [a step] that a regular orbit may show after so many steps, away from upright."""
     return (15 + math.log(max(steps, 1))) / max(steps, 1)
 
 

@@ -193,7 +193,10 @@ class CellWidget(Guarded, Widget):
         return [*pieces, (before, look)] if before else pieces
 
     def style_of(self, owner: int, base: Style) -> Style:
-        """How an owner's characters look; `base` is the widget's own style."""
+        """How an owner's characters look; `base` is the widget's own style.
+
+        In pictures and sketches only colours may differ: their rows join blanks to what is next to them.
+        """
         return base if owner == NOBODY else base + Style(color=palette(self.app.theme).colour(owner))
 
     def notify_style_update(self) -> None:

@@ -30,7 +30,10 @@ class Fault(Message):
 
 
 class Guarded(MessagePump):
-    """Textual ends the program at the first exception in a handler; here only that message is lost."""
+    """Textual ends the program at the first exception in a handler; here only that message is lost.
+
+    A size that the terminal no longer has is left out, too.
+    """
 
     async def _dispatch_message(self, message: Message) -> None:
         if isinstance(self, Screen) and isinstance(message, Resize) and message.size != self.app.size:

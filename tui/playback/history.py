@@ -12,7 +12,7 @@ from engine.run.observer import RunObserver
 from tui.playback.shown import Quantity
 
 if TYPE_CHECKING:
-    from tui.playback.levels import Floats, Levels, Window  # NumPy can wait for the first paint
+    from tui.playback.levels import Levels, Window  # NumPy can wait for the first paint
 
 RECENT = 16  # samples whose angles are at hand
 MOST_WAITING = 64  # rows
@@ -110,9 +110,6 @@ class ErrorHistory:
         """What lies between two moments [s] of simulated time run through, and half a swing before."""
         latest = self._latest[1] if self._latest else 0.0
         return self.window(latest - begin).cut(begin - self._repeats, end)
-
-    def trail(self, index: int, length: int) -> "tuple[Floats, Floats]":
-        return self.levels.trail(index, length)
 
     def thetas(self, index: int, length: int) -> list[float]:
         """theta [rad] of a method at the last `length` samples, RECENT at most, oldest first."""

@@ -183,10 +183,11 @@ class PenduApp(Guarded, App[Exit | OSError]):
                 escape(entry.title), escape(entry.about), partial(here.call_next, here.run_action, entry.action)
             )
 
-    def action_extra(self, name: str, *arguments: object) -> None:
+    def action_extra(self, name: str, argument: object = None) -> None:
+        """Textual passes no more arguments than are named here."""
         from tui.screens.extras import EXTRAS
 
-        EXTRAS[name](self.source_screen, *arguments)
+        EXTRAS[name](self.source_screen, *(() if argument is None else (argument,)))
 
     def action_command_palette(self) -> None:
         if not isinstance(self.screen, Commands):

@@ -136,7 +136,8 @@ class SourceScreen(Guarded, Screen[None]):
         if self.host.is_behind(urgent=self._late):
             return
         self._frames += 1
-        self._follow(sample, self._late or self._timer.is_turn(self._frames, READ), at_once=self._late)
+        read = self._late or self.source.is_at_rest or self._timer.is_turn(self._frames, READ)
+        self._follow(sample, read, at_once=self._late)
         self._late = False
 
     def _follow(self, sample: Sample, read: bool = True, at_once: bool = True) -> None:
@@ -157,9 +158,9 @@ class SourceScreen(Guarded, Screen[None]):
         self._undo.append(undo)
 
     def change_shown(self, shown: Shown) -> None:
-        before = self.shown
-        self.remember(lambda: setattr(self, "shown", before))
-        self.shown = shown
+        if (before := self.shown) != shown:
+            self.remember(lambda: setattr(self, "shown", before))
+            self.shown = shown
 
     def on_asked(self, message: Asked) -> None:
         self.call_next(self.run_action, message.action)
@@ -205,8 +206,7 @@ class SourceScreen(Guarded, Screen[None]):
         self.change_shown(self.shown.next_quantity(self.source.scene))
 
     def action_window(self, direction: int) -> None:
-        if (shown := self.shown.next_window(direction)) != self.shown:
-            self.change_shown(shown)
+        self.change_shown(self.shown.of(self.source.sample.run).next_window(direction))
 
     def on_zoomed(self, message: Zoomed) -> None:
         self.shown = self.shown.zoomed(message.stretch)  # `w` leads back; undoing every turn of the wheel would be long

@@ -43,9 +43,14 @@ def show_events(screen: SourceScreen) -> None:
     screen.app.push_screen(TextScreen("Events", "\n".join(numbered(event_lines(screen.source)))))
 
 
-def zoom(screen: SourceScreen, factor: float, shift: float = 0.0) -> None:
-    """Show `factor` times the stretch of time in the chart, or later by a `shift` of it."""
-    screen.query_one(f"#{screen.view}", View).zoom(factor, shift)
+def zoom(screen: SourceScreen, factor: float) -> None:
+    """Show `factor` times the stretch of time in the chart."""
+    screen.query_one(f"#{screen.view}", View).zoom(factor)
+
+
+def shift(screen: SourceScreen, share: float) -> None:
+    """Show a stretch of time in the chart that is later by a share of it."""
+    screen.query_one(f"#{screen.view}", View).zoom(1.0, share)
 
 
 def go_to(screen: SourceScreen, place: tuple[int, int]) -> None:
@@ -101,6 +106,7 @@ EXTRAS: dict[str, Callable[..., Any]] = {
     "card": show_card,
     "go_to": go_to,
     "zoom": zoom,
+    "shift": shift,
     "screenshot": take_screenshot,
     "copy_command": copy_command,
     "replay": replay,

@@ -71,7 +71,7 @@ class View(Box):
             for pane in self.query(Pane):
                 pane.border_subtitle = Content(sentence(error))
 
-    def zoom(self, factor: float, shift: float) -> None:
+    def zoom(self, factor: float, shift: float = 0.0) -> None:
         """Show `factor` times the stretch of time, or later by a `shift` of it, where the view has a chart of that."""
 
     def wake(self) -> None:
@@ -84,9 +84,9 @@ class View(Box):
         self._tell(self._late)
 
     def follow(self, sample: Sample, read: bool = True, at_once: bool = True) -> None:
-        """Show a sample where it moves, and perhaps where it is read: at once, or where it is due.
+        """Show a sample in the panes that move and, if it is time to `read`, in those that are due; `at_once`: in all.
 
-        What is read tells of more than the sample.
+        A pane that is read may show the same sample again, for what else has changed.
         """
         moved, self._followed = sample != self._followed, sample
         reading = self._read if at_once else [pane for pane in self._read if read and pane.is_due(sample)]
@@ -99,24 +99,24 @@ class View(Box):
 
 
 class Pane(CellWidget):
-    """Draws a source at one of its samples, again whenever one of the three values changes."""
+    """Draws a source at one of its samples: when it follows another one, and when source or shown change."""
 
     PAUSE: ClassVar[float] = 0.0
-    """For which a picture stands while its run goes on [s of the clock]."""
+    """The least time between two pictures while the run goes on [s of the clock]."""
 
     source: var[Source | None] = var(None)
     sample: Sample | None = None
     shown: var[Shown] = var(Shown())
-    _followed: float | None = None  # s, the clock
+    _shown_at: float | None = None  # s, the clock
 
     def is_due(self, sample: Sample) -> bool:
         """Whether it is time to show a sample, the last one having been shown for long enough."""
-        now, last = self.source.playhead.seen if self.source is not None else None, self._followed
+        now, last = self.source.playhead.seen if self.source is not None else None, self._shown_at
         return now is None or last is None or not 0 <= now - last < self.PAUSE
 
     def follow(self, sample: Sample) -> None:
         """Show a sample."""
-        self._followed = self.source.playhead.seen if self.source is not None else None
+        self._shown_at = self.source.playhead.seen if self.source is not None else None
         self.sample = sample
         self.draw()
 

@@ -151,4 +151,5 @@ def test_what_was_written_is_told_on_stderr_and_nothing_on_stdout(short, tmp_pat
         out := tmp_path / "x",
     )
     size = file_size(out.stat().st_size)
-    assert (outcome.out, outcome.err) == ("", f"pendu-tui: wrote 1 s of short.mcap, {size}: {out}\n")
+    what = "a layout for" if form == "foxglove" else "1 s of"
+    assert (outcome.out, outcome.err) == ("", f"pendu-tui: wrote {what} short.mcap, {size}: {out}\n")

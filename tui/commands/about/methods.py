@@ -51,8 +51,8 @@ def run(options: argparse.Namespace) -> int:
     usual = "; where they vary, the average of a minute of scene halving" * any(method.varies for method in cast)
     print_lines(
         "",
-        f"Found: the order as measured on theta over one swing of scene drift.  Forces: evaluations per step{usual}.",
-        "z limit, and as measured, found z: linear oscillator, z = h·w0; for the pendulum see pendu-tui stability.",
+        f"Found: the order measured on theta over one swing of scene drift.  Forces: evaluations per step{usual}.",
+        "z limit: of the linear oscillator, z = h·w0; found z: as measured; for the pendulum see pendu-tui stability.",
         f"Numba: used in runs of at least {COMPILED_FROM:,} steps." if available() else "Numba is not installed.",
     )
     return Exit.FINE

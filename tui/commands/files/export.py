@@ -78,7 +78,8 @@ def run(options: argparse.Namespace) -> int:
             warn(f"{printable(str(path))}: {recording.reason}; the rest is exported.")
     if options.output:
         size = file_size(options.output.stat().st_size)
-        warn(f"wrote {recording.length:g} s of {printable(path.name)}, {size}: {printable(str(options.output))}")
+        what = "a layout for" if options.format == "foxglove" else f"{recording.length:g} s of"
+        warn(f"wrote {what} {printable(path.name)}, {size}: {printable(str(options.output))}")
     return Exit.FINE
 
 

@@ -46,7 +46,7 @@ AT_ONCE = 1_000_000  # steps in a batch, about a second; Ctrl+C is only seen bet
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_scene_options(parser)
     parser.add_argument(
-        "--time", metavar="S", type=positive, help="simulated time in s, rounded to whole steps; needed"
+        "--time", metavar="S", type=positive, help="simulated time in s, rounded to whole steps; required"
     )
     add_file(parser, "--record", metavar="FILE", type=Path, help="record to FILE (identical runs give identical files)")
     parser.add_argument("--force", action="store_true", help="overwrite FILE")

@@ -47,7 +47,7 @@ class StartForm(Form[Scene | None]):
     ]
 
     def __init__(self, scene: Scene, backwards: bool = False) -> None:
-        """`backwards`: time does so now, which no run begins with."""
+        """`backwards`: time runs backwards now; a new run begins forwards."""
         super().__init__()
         self._backwards = backwards
         self._before = scene

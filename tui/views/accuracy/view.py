@@ -33,7 +33,6 @@ class AccuracyView(View):
         yield self.read(AccuracyPane())
 
     def on_mount(self) -> None:
-        super().on_mount()
         self._compute_missing()
 
     def on_show(self) -> None:

@@ -193,7 +193,7 @@ class ErrorTable(Pane, can_focus=True):
 
     def action_head(self, direction: int) -> None:
         """Go to the next head that has a meaning; beyond the last to the next pane."""
-        at = (self._chosen or 0) + direction
+        at = min(self._chosen or 0, len(self._head) - 1) + direction  # a narrower table has fewer
         if 0 < at < len(self._head):
             self._choose(at)
         elif direction > 0:

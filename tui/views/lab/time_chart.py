@@ -13,6 +13,7 @@ from textual.content import Content
 from engine.methods import Cast
 from engine.models.model import ExactMotion
 from engine.run.lockstep import Sample
+from tui.playback.history import ErrorHistory
 from tui.playback.shown import Quantity, Shown, Stretch
 from tui.playback.source import Source
 from tui.views.messages import Asked, Zoomed
@@ -31,6 +32,7 @@ NAMES: dict[Quantity, tuple[str, str]] = {
 }
 """Of the quantity itself, and of its magnitude for a logarithmic chart."""
 HELP, HELP_ZOOMED = "e: quantity, w: window, z: zoom, y: log", "z Z: zoom, ( ): earlier, later, w: back"
+LONGEST = 2.0  # s of the run for which a chart stands, though its last column be longer
 FEWEST = 8  # rows of the history in a stretch; an hour ago they are seconds apart
 LOGARITHM = ("ln(E/E_true)", "|ln(E/E_true)|")
 """The energy error where the true motion does not keep its energy."""
@@ -77,7 +79,7 @@ def read_out(reading: "Reading", letters: Sequence[str], percent: bool, room: in
 
 
 class TimeChart(Pane):
-    """Builds the chart in a thread, always from the newest data; samples that come too quickly are skipped.
+    """Builds the chart in a thread from the newest data, again when that makes a column more.
 
     The pointer reads out a moment, the wheel zooms there.
     """
@@ -93,12 +95,17 @@ class TimeChart(Pane):
         self._titles: object = None
         self._plot: TimePlot | None = None
         self._built: Sample | None = None  # what the plot shows, or the one being built
+        self._history: ErrorHistory | None = None  # that it shows; another one knows more of the past
         self._pointer: int | None = None  # the column under it
 
     @property
     def settled(self) -> bool:
-        """Whether the chart shows the newest data."""
+        """Whether no chart is being built or is wanted."""
         return not (self._building or self._wanted.is_set())
+
+    @property
+    def is_pointed_at(self) -> bool:
+        return self._pointer is not None
 
     def _look(self, source: Source) -> Shown:
         """What to show of the source here."""
@@ -133,10 +140,16 @@ class TimeChart(Pane):
         """Ask for `factor` times the stretch about the pointer, or a `shift` of it later, if that has FEWEST rows."""
         if (source := self.source) is None or (plot := self._plot) is None or plot.values is None:
             return
-        history, run = source.history, source.sample.run
+        history, run, stretch = source.history, source.sample.run, self._look(source).stretch
+        if stretch is not None:  # the plot may not show it yet
+            begin, end = stretch.begin, stretch.end
+            plot = replace(plot, ends=(math.log10(begin), math.log10(end)) if plot.log_time else (begin, end))
+        elif shift:
+            return
         ends = plot.zoomed(history.window(), factor, None if shift else self._pointer, shift)
         if ends is None:
-            self.post_message(Zoomed(None))
+            if stretch is not None:
+                self.post_message(Zoomed(None))
         elif factor >= 1 or len(history.between(*ends).x) >= FEWEST:
             self.post_message(Zoomed(Stretch(run, *ends, plot.log_time)))
 
@@ -148,11 +161,18 @@ class TimeChart(Pane):
         self.run_worker(self._build_on_demand(), group="chart")
 
     def is_due(self, sample: Sample) -> bool:
-        """Whether the sample is in a column of its own; of a run at rest, whether it is another one."""
-        built, plot, due = self._built, self._plot, sample != self.sample
-        if plot is not None and built is not None and self.source is not None and not self.source.is_at_rest:
-            due = sample.run != built.run or (abs(sample.t - built.t) >= plot.column and super().is_due(sample))
-        return due
+        """Whether another chart would show more: a column more, or more of the past."""
+        source, built, plot = self.source, self._built, self._plot
+        if source is None or built is None or plot is None or sample.run != built.run:
+            return True
+        if source.history is not self._history:
+            return True
+        stretch = self._look(source).stretch
+        if stretch is not None and min(built.t, sample.t) > stretch.end:
+            return False
+        if source.is_at_rest:
+            return sample != built
+        return abs(sample.t - built.t) >= min(plot.column, LONGEST) and super().is_due(sample)
 
     def paint(self, source: Source, sample: Sample) -> None:
         self._wanted.set()
@@ -185,7 +205,7 @@ class TimeChart(Pane):
             self._wanted.clear()
             if self.source is None or self.sample is None or not self.drawable:
                 continue
-            self._building, self._built = True, self.sample
+            self._building, self._built, self._history = True, self.sample, self.source.history
             shown, (width, height), ghost = self._look(self.source), self.room, self.source.ghost
             history, stretch, until, back = self.source.history, shown.stretch, self.sample.t, shown.seconds
             window = history.window(back) if stretch is None else history.between(*stretch[1:3])

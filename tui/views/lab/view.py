@@ -56,8 +56,8 @@ class LabView(View):
         yield self.read(ErrorTable())
         yield self.read(LargeTable())
 
-    def zoom(self, factor: float, shift: float) -> None:
-        self.chart.zoom(factor, shift)
+    def zoom(self, factor: float, shift: float = 0.0) -> None:
+        (self.second_chart if self.second_chart.is_pointed_at else self.chart).zoom(factor, shift)
 
     def regions(self, size: Size) -> dict[Widget, Region]:
         """Where each pane is on a stage of this size.  A method that is hidden leaves its room to the others."""

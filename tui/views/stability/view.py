@@ -32,7 +32,6 @@ class StabilityView(View):
 
     def on_mount(self) -> None:
         self.query_one(StabilityPane).focus()
-        super().on_mount()
         self._compute_missing()
 
     def follow(self, sample: Sample, read: bool = True, at_once: bool = True) -> None:

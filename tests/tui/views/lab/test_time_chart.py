@@ -2,11 +2,12 @@
 
 from itertools import product
 
+import numpy as np
 import pytest
 from textual.events import MouseScrollUp
 
 from engine.scenes import SCENES
-from tests.tui.harness import lab
+from tests.tui.harness import FPS, lab, player, recorded
 from tests.tui.playback.test_so_far import run
 from tui.drawing.time_chart import time_chart
 from tui.playback.shown import WINDOWS, Shown, Stretch, quantities
@@ -114,10 +115,12 @@ async def test_the_pointer_reads_the_chart_out_the_wheel_zooms_there_and_keys_le
         await theatre.run(2)  # the past stays there
         assert theatre.stage.shown.stretch == stretch
         assert chart.border_title == title(theatre.stage.shown, WHOLE.exact())
-        await theatre.press("z", "(")
-        await theatre.settled()
+        await theatre.press("z")
+        half = theatre.stage.shown.stretch
+        assert half.end - half.begin == pytest.approx((stretch.end - stretch.begin) / 2)
+        await theatre.press("(", "(", ")")  # at once: the chart need not have been built
         earlier = theatre.stage.shown.stretch
-        assert earlier.begin < earlier.end < stretch.end
+        assert earlier.end == pytest.approx(half.end - 0.25 * (half.end - half.begin))
         await theatre.press("escape")
         assert theatre.stage.shown == Shown()
         await theatre.press("w", "z")
@@ -138,3 +141,38 @@ async def test_it_is_built_again_when_a_column_has_passed_and_at_once_where_one_
         assert chart.is_due(theatre.source.sample)
         theatre.stage.show_now()
         assert not chart.settled
+
+
+async def test_a_stretch_of_the_past_is_not_built_again_while_the_run_goes_on():
+    async with lab() as theatre:
+        chart = theatre.stage.query_one(TimeChart)
+        await theatre.run(30)
+        await theatre.settled()
+        chart.zoom(0.3)
+        await theatre.pilot.pause()
+        await theatre.settled()
+        theatre.source.tick(theatre.now + 5)
+        assert theatre.stage.shown.stretch.end < theatre.source.sample.t
+        assert not chart.is_due(theatre.source.sample)
+
+
+async def test_a_shift_without_a_zoom_changes_nothing():
+    async with lab() as theatre:
+        await theatre.run(30)
+        await theatre.press("w")
+        await theatre.settled()
+        await theatre.press(")", "(")
+        assert theatre.stage.shown == Shown(seconds=20.0)
+
+
+async def test_after_a_jump_in_a_replay_the_chart_shows_the_past_as_soon_as_it_is_known(tmp_path):
+    async with player(recorded(tmp_path / "long.mcap", 100.0)) as theatre:
+        chart = theatre.stage.query_one(TimeChart)
+        theatre.stage.seek(90.0)
+        for _ in range(60):
+            theatre.now += 1 / FPS
+            theatre.stage.frame()
+            await theatre.pilot.pause(0)
+            await theatre.settled()
+        known = ~np.isnan(chart._plot.values).all(axis=1)
+        assert known.mean() > 0.8

@@ -115,7 +115,7 @@ def _print_words(study: Study) -> None:
     rows = [(method.label, *cells(method, kind)) for method, kind in kinds]
     print_table("llrrrr", ("method", *HEADS), rows)
     print_lines(
-        f"Lyapunov number: 0 within what {study.steps} steps can tell up to about {least_lyapunov(study.steps):.2g}."
+        f"{study.steps} steps cannot tell a Lyapunov number below about {least_lyapunov(study.steps):.2g} from 0."
     )
     kind = next((kind for method, kind in kinds if method == study.method), None) or study.kind(study.method)
     print_lines("", f"{study.method.label}: {sentence(study.method, kind)}")

@@ -175,13 +175,13 @@ def _print_pendulum(rows: Sequence[Row], study: StabilityStudy) -> None:
         f"Pendulum: a swing counts as lost if within {all_} steps it goes over the top or becomes chaotic;",
         f"without a symplectic method also if its energy leaves the linear oscillator's band by {100 * BAND:.0f} %.",
         f"A limit holds for so many steps and moves down with more: compare that within {early}, or use --steps.",
-        f"Margin: the limit over the scene's z, {scene.z:.4g}; below 1 the scene's own swing is lost.",
+        f"Margin: the limit over the scene's z, {scene.z:.4g}; below 1 a swing of that amplitude is past its limit.",
     )
-    start, swing = math.degrees(scene.theta), amplitude(scene)
-    if not 0 < start < 180 and swing is not None:
-        print_lines(
-            f"The start at {start:.4g} deg swings as far as one at {math.degrees(swing):.4g} deg: its amplitude."
-        )
+    swing = amplitude(scene)
+    if swing is not None and not math.isclose(swing, scene.theta):
+        speed, far = f" with {scene.omega:g} rad/s" if scene.omega else "", f"{math.degrees(swing):.4g} deg"
+        start = f"{math.degrees(scene.theta):.4g} deg{speed}"
+        print_lines(f"The start at {start} swings as far as one from rest at {far}: its amplitude.")
     heads = "method", "amplitude", f"lost from z, {early} steps", f"{all_} steps", "h [s]", "failure", "at step"
     print_table("lrrrrlrlr", (*heads, f"at z = {scene.z:.4g}", "margin"), (_cells(row, scene) for row in rows))
 
