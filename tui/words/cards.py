@@ -16,7 +16,7 @@ _HEAD = 14
 GLOSSARY = {
     "h": "the step size [s]: methods know the pendulum only at times 0, h, 2h, ...",
     "z": "h w0, the step in units of the swing; w0 = sqrt(g/L). Methods become unstable beyond a z of their own",
-    "theta, omega": "angle from the downward vertical [rad] and its speed [rad/s]",
+    "theta, omega": "angle from the downward vertical [rad], -5 t +0.89: five turns back and 0.89; its speed [rad/s]",
     "dE/E0": "the energy error over the start's energy. The exact pendulum keeps its energy, so all of it is error",
     "largest": "the largest |dE/E0| of the run so far",
     "trend": "the mean change of dE/E0 per second; a bounded error can be larger than one that grows",
@@ -29,6 +29,7 @@ GLOSSARY = {
     "too early": "not enough swings yet to tell",
     "! chaotic": "starts next to each other part exponentially",
     "colours": "each method keeps its own, and its letter, wherever it is shown; its digit is its place and its key",
+    "×": "in the chart: one error passes another, and stays above it",
     "dotted": "the exact motion",
     "dim": "a recording laid under the lab, maybe with another h: pendu-tui live --ghost FILE",
 }

@@ -20,7 +20,7 @@ def test_the_picture_is_as_wide_as_the_terminal_and_the_words_say_what_it_shows(
     assert max(map(len, lines[1 : end + 1])) == 90
     assert end == 28
     assert lines[-1] == "Velocity Verlet: A chain of islands: 1 turn in every 6 steps, 1:6."
-    assert lines[-3] == "Lyapunov number: 0 within what 4000 steps can tell up to about 0.0058."
+    assert lines[-3] == "4000 steps cannot tell a Lyapunov number below about 0.0058 from 0."
     rows = {line[:17].strip(): line[17:].split() for line in lines[end + 3 : -2]}
     assert rows["Velocity Verlet"][:5] == ["islands", "1:6", "0.1666667", "6", "1:6"]
     assert rows["RK4"][:2] == ["spirals", "inwards"]

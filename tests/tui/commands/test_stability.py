@@ -248,8 +248,8 @@ def test_what_is_only_about_a_pendulum_says_so_of_the_linear_oscillator(words):
 
 def test_the_words_above_the_table_say_what_a_margin_is_and_which_amplitude_a_start_has():
     out = pendu("stability", "--theta", "200deg", "--methods", "verlet", "--steps", 20).out
-    assert "The start at 200 deg swings as far as one at 160 deg: its amplitude." in out
-    assert "Margin: the limit over the scene's z, 0.1566; below 1 the scene's own swing is lost." in out
+    assert "The start at 200 deg swings as far as one from rest at 160 deg: its amplitude." in out
+    assert "Margin: the limit over the scene's z, 0.1566; below 1 a swing of that amplitude is past its limit." in out
     (row,) = (line.split() for line in out.splitlines() if " 160 deg " in line)
     assert float(row[-1]) == pytest.approx(float(row[5]) / 0.1566, rel=2e-3)
     assert "as far as" not in pendu("stability", "--methods", "verlet", "--steps", 20).out

@@ -71,7 +71,7 @@ COLUMNS = (
         8, ("verdict", 9), ("verdict", 9), lambda line, width: verdict_of(line.reading, line.judgement).rjust(width)
     ),
     Column(3, ("th.err", 7), ("theta error", 11), lambda line, width: scientific(theta_error(line), width, 1, "-")),
-    Column(1, ("f", 1), ("evals/step", 10), lambda line, width: str(line.method.force_evaluations).rjust(width)),
+    Column(1, ("f", 1), ("evals/step", 10), lambda line, width: evaluations(line.method, width)),
 )
 SPRING = (
     Column(8, ("length", 6), ("length", 7), lambda line, width: short(abs(line.reading.position or 0), width)),
@@ -86,6 +86,12 @@ _LOGARITHM = {"dE/E0": "ln E/Et", "dE/E0 now": "ln E/Etr"}  # to the true energy
 def share(line: TableLine, value: float, width: int, sign: str = "+") -> str:
     """An energy error, relative to the start's energy."""
     return relative(value, width, sign) if line.percent else scientific(value, width, 1, sign)
+
+
+def evaluations(method: Method, width: int) -> str:
+    """Force evaluations a step; "+" where they have more digits than there is room for."""
+    text = str(method.force_evaluations)
+    return text.rjust(width) if len(text) <= width else "+".rjust(width)
 
 
 def short(value: float, width: int) -> str:

@@ -175,6 +175,8 @@ class TimeChart(Pane):
         return abs(sample.t - built.t) >= min(plot.column, LONGEST) and super().is_due(sample)
 
     def paint(self, source: Source, sample: Sample) -> None:
+        if self._built is not None and sample.run != self._built.run:
+            self._plot = None
         self._wanted.set()
         self._tell()
 
@@ -222,10 +224,12 @@ class TimeChart(Pane):
                 ghost=behind,
                 degrees=shown.degrees and shown.quantity == "theta_error",
             )
+            run = self.sample.run
             try:
                 plot = await asyncio.to_thread(build, window, self.cast, shown.quantity, width, height)
-                self.show_picture(plot.picture)
-                self._plot = plot
+                if self.source.sample.run == run:  # else another one has begun, maybe with other methods
+                    self.show_picture(plot.picture)
+                    self._plot = plot
                 if self._pointer is not None:
                     self._tell()
             except Exception as error:

@@ -76,7 +76,9 @@ class PhaseView(View):
         facts, pane = self.query_one("#facts", CellWidget), self.query_one(SectionPane)
         if self.source is not None and facts.drawable:
             try:
-                facts.show(self._facts(pane, facts.size.width))
+                rows = self._facts(pane, facts.size.width)
+                facts.styles.height = len(rows)  # more methods, more rows
+                facts.show(rows)
             except Exception as error:
                 facts.fail(error)
 

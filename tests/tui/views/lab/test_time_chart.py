@@ -176,3 +176,15 @@ async def test_after_a_jump_in_a_replay_the_chart_shows_the_past_as_soon_as_it_i
             await theatre.settled()
         known = ~np.isnan(chart._plot.values).all(axis=1)
         assert known.mean() > 0.8
+
+
+async def test_the_pointer_reads_nothing_off_the_chart_of_a_run_that_is_over():
+    async with lab() as theatre:
+        chart = theatre.stage.query_one(TimeChart)
+        await theatre.run(12)
+        await theatre.settled()
+        await theatre.pilot.hover(chart, offset=(30, 4))
+        theatre.source.start(SCENES["stiff-limit"])
+        theatre.stage.show_now()
+        assert chart._plot is None
+        assert "wheel" in str(chart.border_subtitle) or "z: zoom" in str(chart.border_subtitle)
