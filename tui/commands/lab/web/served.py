@@ -20,7 +20,7 @@ from tui.screens.live import LiveScreen
 from tui.screens.tour.touring import Touring
 from tui.views.keys import Key, bindings
 
-EXTRAS = {"describe", "events", "card", "copy_command", "go_to", "zoom"}
+EXTRAS = {"describe", "events", "card", "copy_command", "go_to", "zoom", "shift"}
 """The rarely used actions that touch no file."""
 
 KEPT_OUT = {"app.extra('screenshot')", "app.suspend_process"}
