@@ -52,9 +52,9 @@ class ServedApp(PenduApp, inherit_bindings=False):
             return parameters[0] in EXTRAS
         return action not in ("suspend_process", "screenshot") and super().check_action(action, parameters)
 
-    def action_extra(self, name: str, *arguments: object) -> None:
+    def action_extra(self, name: str, argument: object = None) -> None:
         if name in EXTRAS:
-            super().action_extra(name, *arguments)
+            super().action_extra(name, argument)
 
     def action_suspend_process(self) -> None:
         """Do nothing: there is no shell."""
