@@ -177,7 +177,7 @@ class References:
 
     floor: float  # s, of the closed form
     taylor: Sequence[TaylorPoint] = ()
-    absent: str | None = None  # the reason, if there is no Taylor series
+    absent: str | None = None  # why there is no Taylor series, where there is none
 
 
 def references(scene: Scene, time: float, clock: Clock, fast: bool) -> References:

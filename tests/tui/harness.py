@@ -172,7 +172,7 @@ async def until(pilot: Pilot[Any], condition: Callable[[], object]) -> None:
 
 
 async def uncomputed(*_: object) -> AsyncIterator[object]:
-    """In place of tui.views.background.computed, where nobody looks at what it gives."""
+    """Replaces tui.views.background.computed in tests that do not look at the results: it yields none."""
     for item in ():
         yield item
 

@@ -49,7 +49,7 @@ def _value(name: str, value: Any) -> Any:
     """A field's value, as a Scene takes it."""
     if name not in FIELDS:
         advice = did_you_mean(name, FIELDS) or f"; choose from {', '.join(FIELDS)}."
-        raise UserError(f"there is no field {printable(name, 40)}{advice}")
+        raise UserError(f"a scene has no field {printable(name, 40)}{advice}")
     if name == "methods":
         if not isinstance(value, list) or not value or not all(isinstance(key, str) for key in value):
             raise UserError('methods is not a list of names; use for example ["velocity_verlet", "rk4"].')

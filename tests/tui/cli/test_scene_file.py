@@ -32,7 +32,7 @@ def test_without_methods_it_has_those_that_are_for_its_model(tmp_path, name):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("h = 0.1\nthetta = 1", "line 2: there is no field thetta: did you mean theta?"),
+        ("h = 0.1\nthetta = 1", "line 2: a scene has no field thetta: did you mean theta?"),
         ("h = 0.1\n\nlength = 'long'", "line 3: length is not a number"),
         ("h = -1", "line 1: h = -1 s is not a usable step"),
         ("h = 0.1\nspeed = 0", "line 2: speed = 0 is not usable"),

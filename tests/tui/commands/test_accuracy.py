@@ -281,7 +281,7 @@ SMALL = ("accuracy", "--all", "--cost", "seconds", "--time", "2", "--h-values", 
 
 @pytest.fixture
 def hurried(monkeypatch):
-    """Without the seconds that compiling and numbers take at which nobody looks."""
+    """Leave out the compiling and the results that these tests do not look at: they take seconds."""
     monkeypatch.setattr("engine.run.compiled.compiled", plain)
     monkeypatch.setattr("engine.accuracy.study.orders", lambda *_: [])
     monkeypatch.setattr("engine.accuracy.growth.growth", lambda _, method: Growth(method, [], [], None))

@@ -22,7 +22,7 @@ def words(theatre):
 
 
 @pytest.mark.parametrize("view", VIEWS)
-async def test_every_scene_runs_in_every_view(view, monkeypatch):
+async def test_every_scene_has_words_without_nan_in_every_view_before_anything_is_computed(view, monkeypatch):
     for each in ("accuracy", "phase", "stability"):
         monkeypatch.setattr(f"tui.views.{each}.view.computed", uncomputed)
     async with lab() as theatre:
