@@ -64,13 +64,17 @@ class CellWidget(Guarded, Widget):
 
     def on_show(self) -> None:
         self._visible = True
-        self._fit()
+        if not self._fit():
+            self.draw()
 
-    def _fit(self) -> None:
-        if self.room != self.size:
-            self.room = self.size
-            self.refresh()  # Textual may have painted it already, in the room that it had before
+    def _fit(self) -> bool:
+        """Draw in the room that there is now; whether it is another one than before."""
+        if self.room == self.size:
+            return False
+        self.room = self.size
+        self.refresh()
         self.draw()
+        return True
 
     def on_hide(self) -> None:
         self._visible = False
@@ -150,6 +154,9 @@ class CellWidget(Guarded, Widget):
             return [Strip.blank(crop.width, self.rich_style)] * crop.height
 
     def _lines(self, crop: Region) -> list[Strip]:
+        if self.room != self.size:  # Textual paints first and says later that a widget is on screen, and how large
+            self._visible = True
+            self._fit()
         painted = self._painted
         if crop != painted.crop:
             lines, gutter = super().render_lines(crop), self.gutter

@@ -1,5 +1,7 @@
 """Rows of characters on a screen: which of them are sent, and how thick lines are."""
 
+from typing import ClassVar
+
 from hypothesis import given
 from hypothesis import strategies as st
 from rich.style import Style
@@ -45,6 +47,29 @@ async def test_a_row_may_bring_its_own_style():
         x, y = list(app.cells.render_line(0))[:2]
         assert (x.text, x.style.color.name, x.style.reverse) == ("x", "#010203", True)
         assert x.style.bgcolor == y.style.bgcolor
+
+
+class Drawn(CellWidget):
+    """Tells its size; keeps what was painted of it."""
+
+    painted: ClassVar[list[str]] = []
+
+    def draw(self) -> None:
+        self.show([[(f"{self.room.width}x{self.room.height}", TEXT)]])
+
+    def render_lines(self, crop):
+        lines = super().render_lines(crop)
+        self.painted.append(lines[0].text.strip())
+        return lines
+
+
+async def test_what_is_painted_is_drawn_for_the_room_that_it_has_from_the_first_paint_on():
+    app = App()
+    app.compose = lambda: [Drawn()]
+    Drawn.painted.clear()
+    async with app.run_test(size=(8, 4)) as pilot:
+        await pilot.resize_terminal(9, 6)
+    assert list(dict.fromkeys(Drawn.painted)) == ["8x4", "9x6"]
 
 
 @given(st.sets(st.tuples(st.integers(0, 7), st.integers(0, 7))))
