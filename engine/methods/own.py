@@ -5,7 +5,6 @@ Another process receives the text and compiles it again.
 """
 
 import copyreg
-import hashlib
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -35,6 +34,8 @@ class OwnMethod(Method):
     @property
     def sha256(self) -> str:
         """Of the source in UTF-8, in hexadecimal."""
+        import hashlib  # takes longer than all of this module
+
         return hashlib.sha256(self.source.encode()).hexdigest()
 
 

@@ -13,7 +13,6 @@ from importlib.util import find_spec
 from typing import Any
 
 from engine.methods import Method
-from engine.methods.own import OwnMethod
 from engine.methods.splitting import COMPILABLE
 from engine.models.model import Model, Phase
 from engine.run import loops
@@ -36,6 +35,8 @@ def compiled(method: Method, model: Model) -> Loops:
     depends on the platform's libraries, bits would differ: there the plain loops are returned, and for a user's own
     method, which may hold anything, for one that is not general, and on a model that is not plain.
     """
+    from engine.methods.own import OwnMethod  # with all that measures one, which most runs do not need
+
     numba: Any = import_module("numba")
     general = method.general and model.plain and not isinstance(method, OwnMethod)
     if not general or not _same_sine(numba):

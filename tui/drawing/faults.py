@@ -7,14 +7,14 @@ from textual.message import Message
 from textual.message_pump import MessagePump
 from textual.screen import Screen
 
-from engine.methods.own import OwnMethodError
-
 LOG = "faults.log"
 """Where the app writes what failed, next to the recordings."""
 
 
 def sentence(error: BaseException) -> str:
     """The error as a sentence."""
+    from engine.methods.own import OwnMethodError  # not before there is an error
+
     if isinstance(error, OwnMethodError):
         return f"{error} The run stands still; p starts another."
     what = f"{type(error).__name__}: {error}".strip(": ")

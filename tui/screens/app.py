@@ -7,7 +7,6 @@ import time
 import traceback
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import ClassVar
@@ -30,7 +29,6 @@ from tui.drawing.cells import PRESENT
 from tui.drawing.faults import LOG, Fault, Guarded, sentence
 from tui.drawing.palette import PALETTES, Palette
 from tui.screens.base import SourceScreen
-from tui.screens.dialogs.modal import Commands, Modal
 from tui.terminal import fault_log
 from tui.terminal.character_sets import CharacterSetFilter
 from tui.terminal.check import is_gone
@@ -74,11 +72,18 @@ class PenduApp(Guarded, App[Exit | OSError]):
         self.fps = terminal.fps
         self.set_reactive(PenduApp.character_set, terminal.character_set)
         self.set_class(terminal.present, PRESENT)
-        screen.set_reactive(SourceScreen.shown, replace(screen.shown, degrees=terminal.degrees))
+        screen.set_reactive(SourceScreen.shown, screen.shown._replace(degrees=terminal.degrees))
         self.source_screens = [screen]
         self.throughput = Throughput()
         self._on_stage = False  # before that, what fails ends the program
         self._faults: set[object] = set()
+
+    def refresh_css(self, animate: bool = True) -> None:
+        """Apply the theme; before anything is mounted there is nothing to apply it to, and it waits for that."""
+        if self.is_running:
+            super().refresh_css(animate)
+        else:
+            self.stylesheet.set_variables(self.get_css_variables())
 
     def get_driver_class(self) -> type[Driver]:
         """Ours in place of Textual's for Linux and its kin, unless another was asked for."""
@@ -108,7 +113,7 @@ class PenduApp(Guarded, App[Exit | OSError]):
     def on_source_screen_began(self, message: SourceScreen.Began) -> None:
         self._on_stage = True
         if message.screen is not self.source_screen:
-            message.screen.shown = replace(message.screen.shown, degrees=self.source_screen.shown.degrees)
+            message.screen.shown = message.screen.shown._replace(degrees=self.source_screen.shown.degrees)
             self.source_screens.append(message.screen)
 
     def on_mount(self) -> None:
@@ -126,7 +131,7 @@ class PenduApp(Guarded, App[Exit | OSError]):
             return
         self.fail(error)
         widget = active_message_pump.get(None)
-        if isinstance(widget, Widget) and not isinstance(widget, Guarded) and isinstance(widget.screen, Modal):
+        if isinstance(widget, Widget) and not isinstance(widget, Guarded) and widget.screen.is_modal:
             self.call_later(widget.screen.dismiss)
 
     def on_fault(self, fault: Fault) -> None:
@@ -190,6 +195,8 @@ class PenduApp(Guarded, App[Exit | OSError]):
         EXTRAS[name](self.source_screen, *(() if argument is None else (argument,)))
 
     def action_command_palette(self) -> None:
+        from tui.screens.dialogs.modal import Commands
+
         if not isinstance(self.screen, Commands):
             self.push_screen(Commands())
 
