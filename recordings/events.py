@@ -11,20 +11,19 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
 from engine.methods import Method, method_of
-from engine.methods.own import OwnMethod
 from engine.models import MODELS, Model
 from engine.models.model import Energy, EnergyReference, ExactMotion, Force, Phase, Sine, State
 from engine.run.lockstep import Sample
 from engine.scenes import PARAMETERS, Scene
 
 if TYPE_CHECKING:
+    from engine.methods.own import OwnMethod
     from engine.run.observer import Milestone
 
 EventKind = Literal["start", "set_h", "mark", "pause", "resume", "speed", "stop", "noticed"]
 
 
-@dataclass(frozen=True, slots=True)
-class Event:
+class Event(NamedTuple):
     """Something done in the lab, or noticed by it.  It applies before `step` of `run`.
 
     Replay and verification need only events and samples: a `start` (the scene with its model and methods) and
@@ -66,10 +65,10 @@ def noticed(run: int, milestone: "Milestone") -> Event:
     return Event("noticed", run, milestone.step, milestone.t, milestone=milestone)
 
 
-_own: dict[str, OwnMethod] = {}
+_own: dict[str, "OwnMethod"] = {}
 
 
-def remember(own: Iterable[OwnMethod]) -> None:
+def remember(own: Iterable["OwnMethod"]) -> None:
     """Know these methods when a recording names them; nothing in a recording is ever executed."""
     _own.update({name_of(method): method for method in own})
 
@@ -169,8 +168,9 @@ class _UnknownModel(Model):
         return EnergyReference(0.0, 1.0)
 
 
-@dataclass(frozen=True, slots=True)
 class _UnknownScene(Scene):
+    __slots__ = ()
+
     @property
     def parameters(self) -> tuple[str, ...]:
         """Those that were recorded."""

@@ -6,7 +6,6 @@ Messages, their schemas, the columns of a CSV, `verify`, `run --json` and `--fai
 import math
 import struct
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import replace
 from operator import attrgetter
 from typing import Any, NamedTuple, get_args
 
@@ -214,5 +213,5 @@ def _ordinal(value: float) -> int:
 
 def without_extremes(sample: Sample) -> Sample:
     """The sample as the first of its run or the first after a gap, where the steps before it are unknown."""
-    readings = (replace(reading, **dict.fromkeys(EXTREMES, reading.energy_error)) for reading in sample.readings)
-    return replace(sample, readings=tuple(readings))
+    readings = (reading._replace(**dict.fromkeys(EXTREMES, reading.energy_error)) for reading in sample.readings)
+    return sample._replace(readings=tuple(readings))

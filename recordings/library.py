@@ -8,12 +8,11 @@ import os
 import time
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from difflib import get_close_matches
 from itertools import chain, count
 from os.path import lexists
 from pathlib import Path
-from typing import IO, Any, BinaryIO
+from typing import IO, Any, BinaryIO, NamedTuple
 
 import platformdirs
 
@@ -25,8 +24,7 @@ MARKS = ".marks.json"  # appended to the name of a recording: what was marked wh
 GOLDEN = Path(__file__).parent / "golden"
 
 
-@dataclass(frozen=True, slots=True)
-class Item:
+class Item(NamedTuple):
     """A finished recording in the library."""
 
     path: Path

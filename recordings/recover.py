@@ -149,7 +149,7 @@ class _Salvage:
                 if self._rerun is not None and value.run <= self._rerun.run:
                     raise RecordingError("its runs are not in order")
                 assert value.scene is not None
-                self._rerun = Rerun(replace(value, scene=replace(value.scene, cast=())))
+                self._rerun = Rerun(value._replace(scene=replace(value.scene, cast=())))
             if self._rerun is None or value.run != self._rerun.run:
                 self._runs_lost.add(value.run)
                 self._broken = True

@@ -1,14 +1,12 @@
 """The input of a Judge, a Look, and its output, a Judgement."""
 
-from dataclasses import dataclass
 from typing import Literal, NamedTuple, get_args
 
 Verdict = Literal["too early", "bounded", "loses", "grows", "chaotic", "caught", "wanders"]
 VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 
 
-@dataclass(frozen=True, slots=True)
-class Judgement:
+class Judgement(NamedTuple):
     """The verdict on an energy error so far; no slope before there are four bins."""
 
     verdict: Verdict = "too early"

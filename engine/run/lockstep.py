@@ -1,7 +1,7 @@
 """A scene's methods side by side, step by step."""
 
 import copy
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from engine.models.model import Phase
 from engine.run.loops import Advance, LoopsOf, advance_with_errors, plain
@@ -9,8 +9,7 @@ from engine.run.stepping import Stepping
 from engine.scenes import Scene, check_h
 
 
-@dataclass(frozen=True, slots=True)
-class Reading:
+class Reading(NamedTuple):
     """One method at one step.  Always finite: a method that diverges stays where it last was finite.
 
     Energies are per unit m·L² [s⁻²]; energy errors are relative, (E - E0)/E0, or to 2 w0² where E0 = 0, or with
@@ -35,8 +34,7 @@ class Reading:
         return (self.theta, self.omega) if self.position is None else (self.position, self.velocity)
 
 
-@dataclass(frozen=True, slots=True)
-class Sample:
+class Sample(NamedTuple):
     """All methods' readings at one step, in the order of the cast."""
 
     run: int  # counts from 1 within a recording

@@ -6,10 +6,9 @@ It follows from the samples.  A recording holds what the lab noticed, because a 
 import math
 from bisect import bisect_right, insort
 from collections import defaultdict
-from dataclasses import dataclass
 from itertools import islice
 from operator import attrgetter
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 from engine.methods import Method
 from engine.models.model import Phase
@@ -24,8 +23,7 @@ from engine.scenes import Scene
 MilestoneKind = Literal["over the top", "failed", "verdict", "errors cross"]
 
 
-@dataclass(frozen=True, slots=True)
-class Milestone:
+class Milestone(NamedTuple):
     """What a method did: it went over the top, its numbers ended, it earned a verdict, its error passed another's."""
 
     kind: MilestoneKind

@@ -25,7 +25,6 @@ The last three take 4096 steps or more, and 64 periods.
 """
 
 import math
-from dataclasses import replace
 from statistics import median
 
 from engine.methods import Method
@@ -99,7 +98,7 @@ class Judge:
         if full and len(self._energy.bins) >= LEAST_BINS:
             self._judge()
         if self._model.in_plane and look.error > GONE:
-            self.judgement = replace(self.judgement, verdict="grows")
+            self.judgement = self.judgement._replace(verdict="grows")
 
     def fail(self, steps: int) -> None:
         """The method's numbers have ended, so many steps after the first look."""

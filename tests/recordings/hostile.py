@@ -232,7 +232,7 @@ def far(_: int, step: int) -> Iterator[list[Message]]:
     """A run whose second sample claims to be many steps later."""
     yield event(start())
     yield sample(first_sample())
-    yield sample(replace(first_sample(), step=step, t=step * SCENE.h), 1.0)
+    yield sample(first_sample()._replace(step=step, t=step * SCENE.h), 1.0)
 
 
 def late(count: int) -> Iterator[list[Message]]:
@@ -240,16 +240,16 @@ def late(count: int) -> Iterator[list[Message]]:
     yield event(start())
     for number in range(count):
         clock = number * YEARS / count
-        yield sample(replace(first_sample(), step=number * 10_000, t=clock), clock)
+        yield sample(first_sample()._replace(step=number * 10_000, t=clock), clock)
 
 
 def flips(count: int) -> Iterator[list[Message]]:
     """Samples, many steps apart, that are below the pivot and over the top by turns."""
     yield event(start())
     for number in range(count):
-        value = replace(first_sample(), step=number * 20_000, t=number * 2000.0)
-        readings = [replace(each, theta=each.theta + 2.0 * (number % 2)) for each in value.readings]
-        yield sample(replace(value, readings=tuple(readings)), number / 30)
+        value = first_sample()._replace(step=number * 20_000, t=number * 2000.0)
+        readings = [each._replace(theta=each.theta + 2.0 * (number % 2)) for each in value.readings]
+        yield sample(value._replace(readings=tuple(readings)), number / 30)
 
 
 FILES: dict[str, Write] = {

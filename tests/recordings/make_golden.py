@@ -118,10 +118,10 @@ class Later:
         self._recorder, self._run, self._begin = recorder, run, recorder.seconds
 
     def event(self, event: Event, clock: float) -> None:
-        self._recorder.event(replace(event, run=self._run), self._begin + clock)
+        self._recorder.event(event._replace(run=self._run), self._begin + clock)
 
     def sample(self, sample: Sample, clock: float) -> None:
-        self._recorder.sample(replace(sample, run=self._run), self._begin + clock)
+        self._recorder.sample(sample._replace(run=self._run), self._begin + clock)
 
 
 def make(name: str, path: Path) -> None:

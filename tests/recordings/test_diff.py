@@ -1,5 +1,3 @@
-from dataclasses import replace
-
 import pytest
 
 from engine.run.lockstep import Sample
@@ -26,8 +24,8 @@ def changed(entries: list[Entry], step: int, **values: float) -> list[Entry]:
     place = next(at for at, (_, value) in enumerate(entries) if isinstance(value, Sample) and value.step == step)
     clock, sample = entries[place]
     readings = list(sample.readings)
-    readings[VERLET] = replace(readings[VERLET], **values)
-    return [*entries[:place], Entry(clock, replace(sample, readings=tuple(readings))), *entries[place + 1 :]]
+    readings[VERLET] = readings[VERLET]._replace(**values)
+    return [*entries[:place], Entry(clock, sample._replace(readings=tuple(readings))), *entries[place + 1 :]]
 
 
 @pytest.fixture

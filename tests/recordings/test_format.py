@@ -2,7 +2,7 @@
 
 import json
 import math
-from dataclasses import fields, replace
+from dataclasses import replace
 from typing import get_args
 
 import jsonschema
@@ -36,7 +36,14 @@ SAMPLE_SCHEMA, PLANE_SCHEMA = sample_schema("pendulum"), sample_schema("spring")
 EVENT_SCHEMA = event_schema(PARAMETERS)
 finite = st.floats(allow_nan=False, allow_infinity=False)
 counts = st.integers(0, 2**53 - 1)
-readings = st.builds(
+
+
+def made(kind, *values, **more):
+    """Like st.builds, which would also choose what has a default in a NamedTuple."""
+    return st.builds(lambda *some, **others: kind(*some, **others), *values, **more)
+
+
+readings = made(
     Reading,
     theta=finite,
     omega=finite,
@@ -49,15 +56,15 @@ readings = st.builds(
 )
 places = st.builds(complex, finite, finite)
 readings_in_plane = st.builds(
-    lambda reading, *plane: replace(
-        reading, **dict(zip(("position", "velocity", "spring_energy"), plane, strict=True))
+    lambda reading, *plane: reading._replace(
+        **dict(zip(("position", "velocity", "spring_energy"), plane, strict=True))
     ),
     readings,
     places,
     places,
     finite,
 )
-samples = st.builds(
+samples = made(
     Sample,
     run=counts,
     step=counts,
@@ -94,22 +101,22 @@ def scenes_of(model):
 
 
 scenes = (st.sampled_from([*MODELS]) | keys).flatmap(scenes_of)
-milestones = st.builds(
-    Milestone, st.sampled_from(["over the top", "failed"]), methods, counts, finite, finite
-) | st.builds(Milestone, st.just("verdict"), methods, counts, finite, finite, st.sampled_from(get_args(Verdict)))
-milestones |= st.builds(Milestone, st.just("errors cross"), methods, counts, finite, finite, other=methods)
+milestones = made(Milestone, st.sampled_from(["over the top", "failed"]), methods, counts, finite, finite) | made(
+    Milestone, st.just("verdict"), methods, counts, finite, finite, st.sampled_from(get_args(Verdict))
+)
+milestones |= made(Milestone, st.just("errors cross"), methods, counts, finite, finite, other=methods)
 events = st.one_of(
-    st.builds(Event, st.just("start"), counts, counts, finite, scene=scenes),
-    st.builds(Event, st.just("set_h"), counts, counts, finite, h=finite, equal_cost=st.booleans()),
-    st.builds(Event, st.just("speed"), counts, counts, finite, speed=finite),
-    st.builds(Event, st.just("mark"), counts, counts, finite, text=st.none() | texts.filter(bool)),
-    st.builds(Event, st.sampled_from(["pause", "resume", "stop"]), counts, counts, finite),
+    made(Event, st.just("start"), counts, counts, finite, scene=scenes),
+    made(Event, st.just("set_h"), counts, counts, finite, h=finite, equal_cost=st.booleans()),
+    made(Event, st.just("speed"), counts, counts, finite, speed=finite),
+    made(Event, st.just("mark"), counts, counts, finite, text=st.none() | texts.filter(bool)),
+    made(Event, st.sampled_from(["pause", "resume", "stop"]), counts, counts, finite),
     st.builds(noticed, counts, milestones),
 )
 
 
 def test_the_table_of_fields_has_every_value_of_a_reading_in_its_order():
-    names = [field.name for field in fields(Reading)]
+    names = list(Reading._fields)
     assert [*VALUES[: -len(IN_PLANE)], "position", "velocity", "spring_energy"] == names
     reading = Reading(0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8 + 9j, 10 + 11j, 12.0)
     assert values_of(reading) == tuple(map(float, range(len(VALUES))))
@@ -154,7 +161,7 @@ def test_a_nonfinite_number_is_never_written():
 def test_extremes_equal_to_the_energy_error_are_left_out():
     plain = Reading(1.0, 0.0, 4.0, 0.5, 0.5, 0.5, 0.5)
     assert b"low" not in encode_readings(Sample(1, 0, 0.0, (plain,)))[0]
-    wide = replace(plain, energy_error_low=-0.5)
+    wide = plain._replace(energy_error_low=-0.5)
     assert b"low" in encode_readings(Sample(1, 0, 0.0, (wide,)))[0]
     assert without_extremes(Sample(1, 0, 0.0, (wide,))).readings == (plain,)
 

@@ -10,7 +10,6 @@ import time
 import tracemalloc
 import zlib
 from contextlib import suppress
-from dataclasses import replace
 
 import pytest
 import zstandard
@@ -349,9 +348,9 @@ def test_a_recording_with_many_changes_and_many_steps_back_opens_completely(tmp_
     changes = [Event("set_h", 1, step, step / 10, h=0.1) for step in range(200)]
     with Recorder(path) as recorder:
         for run in range(1, 120):  # each going on from the past of the one before
-            for event in (start(run), *(replace(change, run=run) for change in changes)):
+            for event in (start(run), *(change._replace(run=run) for change in changes)):
                 recorder.event(event, run / 10)
-            recorder.sample(replace(two_runs()[1].value, run=run), run / 10)
+            recorder.sample(two_runs()[1].value._replace(run=run), run / 10)
     with Recording.open(path) as recording:
         assert recording.complete
         assert len(recording.events) == 119 * 201 + 1  # the stop

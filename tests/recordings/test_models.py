@@ -80,7 +80,7 @@ def test_a_change_in_the_plane_is_found_by_verify_and_diff(tmp_path, monkeypatch
         if sample.step != 50:
             return sample
         first, *others = sample.readings
-        return replace(sample, readings=(replace(first, **{field: getattr(first, field) * factor}), *others))
+        return sample._replace(readings=(first._replace(**{field: getattr(first, field) * factor}), *others))
 
     made(tmp_path / "a.mcap", SPRING)
     made(tmp_path / "b.mcap", SPRING, change=change)

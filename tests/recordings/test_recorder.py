@@ -144,7 +144,7 @@ def test_the_first_sample_of_a_run_has_no_extremes(tmp_path):
         recorder.sample(sample, 0.0)
     with Recording.open(tmp_path / "a.mcap") as recording:
         reading = recording.sample(recording.at(0.0)).value.readings[0]
-    assert reading == replace(sample.readings[0], energy_error_low=reading.energy_error)
+    assert reading == sample.readings[0]._replace(energy_error_low=reading.energy_error)
 
 
 @pytest.mark.parametrize(
@@ -177,7 +177,7 @@ def test_a_recording_begins_with_a_start_and_steps_ascend(tmp_path, recorder):
     lockstep.advance(2)
     recorder.sample(lockstep.sample(), 0.1)
     with pytest.raises(ValueError, match="step 1"):
-        recorder.sample(replace(lockstep.sample(), step=1), 0.2)
+        recorder.sample(lockstep.sample()._replace(step=1), 0.2)
 
 
 def test_a_recording_without_a_start_leaves_no_file(tmp_path):

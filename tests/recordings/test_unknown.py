@@ -34,7 +34,7 @@ def path(tmp_path, scene):
     samples = list(simulate(KNOWN, 6.0))
     entries = [Entry(0.0, Event("start", 1, 0, 0.0, scene=scene)), *(Entry(each.t, each) for each in samples)]
     entries += [Entry(6.0, Event("start", 2, 0, 0.0, scene=KNOWN))]
-    entries += [Entry(6.0 + each.t, replace(each, run=2)) for each in simulate(KNOWN, 1.0)]
+    entries += [Entry(6.0 + each.t, each._replace(run=2)) for each in simulate(KNOWN, 1.0)]
     return record(tmp_path / "later.mcap", entries)
 
 

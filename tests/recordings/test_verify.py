@@ -24,8 +24,8 @@ def altered(entries, at, method, **numbers):
     """The entries with other numbers in the sample there."""
     clock, sample = entries[at]
     readings = list(sample.readings)
-    readings[method] = replace(readings[method], **numbers)
-    return [*entries[:at], Entry(clock, replace(sample, readings=tuple(readings))), *entries[at + 1 :]]
+    readings[method] = readings[method]._replace(**numbers)
+    return [*entries[:at], Entry(clock, sample._replace(readings=tuple(readings))), *entries[at + 1 :]]
 
 
 def reading_of(entries, at, method):
@@ -78,7 +78,7 @@ def test_one_unit_in_the_last_place_is_found_and_reported_in_detail(tmp_path, fi
 def test_a_wrong_time_is_found(tmp_path):
     entries = two_runs()
     clock, sample = entries[3]
-    entries[3] = Entry(clock, replace(sample, t=0.61))
+    entries[3] = Entry(clock, sample._replace(t=0.61))
     difference = verify(record(tmp_path / "a.mcap", entries)).first_difference
     assert (difference.method, difference.field, difference.recorded) == ("", "t", 0.61)
 
@@ -124,11 +124,11 @@ def test_ulps_count_doubles_across_zero_too(value, n):
     ("entries", "why"),
     [
         (two_runs()[:1], "it has no samples"),
-        ([*two_runs()[:4], Entry(1.0, replace(two_runs()[3].value, run=7, step=9))], "data of run 7 lies outside"),
+        ([*two_runs()[:4], Entry(1.0, two_runs()[3].value._replace(run=7, step=9))], "data of run 7 lies outside"),
         ([*two_runs()[:4], Entry(1.0, Event("set_h", 1, 2, 0.2, h=0.2)), *two_runs()[4:5]], "not in order"),
         ([*two_runs()[:4], Entry(1.0, Event("set_h", 1, 6, 0.6, h=0.0))], "cannot have been recorded: h = 0 s"),
-        ([*two_runs()[:4], Entry(1.0, replace(two_runs()[3].value, step=10**15))], r"158 years, .* --max-steps 10+\.$"),
-        ([Entry(0.0, replace(start(), step=5)), *two_runs()[1:3]], "does not begin at its start"),
+        ([*two_runs()[:4], Entry(1.0, two_runs()[3].value._replace(step=10**15))], r"158 years, .* --max-steps 10+\.$"),
+        ([Entry(0.0, start()._replace(step=5)), *two_runs()[1:3]], "does not begin at its start"),
         ([*two_runs()[:4], Entry(1.0, start(1))], "runs are not in order"),
     ],
 )
@@ -204,7 +204,7 @@ def test_another_formula_is_found_even_if_sin_differs(tmp_path, monkeypatch):
     with monkeypatch.context() as elsewhere, Recorder(path, wall=None) as recorder:
         of_another_machine(elsewhere)
         for sample in simulate(SCENES["drift"], 2.0):
-            readings = tuple(replace(reading, theta=reading.theta * (1 + 1e-9)) for reading in sample.readings)
+            readings = tuple(reading._replace(theta=reading.theta * (1 + 1e-9)) for reading in sample.readings)
             if sample.step == 0:
                 recorder.event(start(scene=SCENES["drift"]), 0.0)
             recorder.sample(Sample(1, sample.step, sample.t, readings), sample.t)

@@ -4,7 +4,7 @@ Every character of a picture has an owner, a method or one of those below; only 
 a colour.  Colour is never alone: methods also have a digit and a letter.
 """
 
-from dataclasses import dataclass
+from typing import NamedTuple
 from zlib import crc32
 
 from engine.methods import METHODS, Method
@@ -19,8 +19,7 @@ FAINT = 64
 _SERIES = {method.key: number for number, method in enumerate(METHODS)}
 
 
-@dataclass(frozen=True, slots=True)
-class Palette:
+class Palette(NamedTuple):
     """The colours of a theme as #rrggbb, or as Rich's names of the terminal's own 16."""
 
     methods: tuple[str, ...]  # by series, which share them where there are more

@@ -3,7 +3,6 @@
 import time
 from collections.abc import Callable, Sequence
 from copy import copy
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from engine.run.lockstep import Sample
@@ -185,13 +184,13 @@ class Live(Source):
 
     def pause(self, paused: bool) -> None:
         if paused != self.playhead.paused:
-            self.playhead = replace(self.playhead, paused=paused)
-            self._recorded = replace(self._recorded, paused=paused)
+            self.playhead = self.playhead._replace(paused=paused)
+            self._recorded = self._recorded._replace(paused=paused)
             self._note_here("pause" if paused else "resume")
 
     def set_speed(self, speed: float) -> None:
         if speed != self.playhead.speed:
-            self.playhead = replace(self.playhead, speed=speed)
+            self.playhead = self.playhead._replace(speed=speed)
             self.pace = Pace()
             self._note_here("speed", speed=speed)
 

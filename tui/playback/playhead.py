@@ -1,11 +1,10 @@
 """Clock readings -> how far to go.  Pure: the clock's readings are passed in."""
 
 import math
-from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 
-@dataclass(frozen=True, slots=True)
-class Playhead:
+class Playhead(NamedTuple):
     """How far playback has come, in seconds of what is played."""
 
     position: float = 0.0  # s
@@ -19,11 +18,10 @@ class Playhead:
         return Playhead(self.position + elapsed * self.speed, self.speed, self.paused, now)
 
     def moved_to(self, position: float) -> "Playhead":
-        return replace(self, position=position)
+        return self._replace(position=position)
 
 
-@dataclass(frozen=True, slots=True)
-class Pace:
+class Pace(NamedTuple):
     """How much of what was due has been done, over about the last second of clock."""
 
     due: float = 0.0

@@ -3,7 +3,6 @@
 import time
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from operator import attrgetter
 from typing import TYPE_CHECKING
 
@@ -103,7 +102,7 @@ class Replay(Source):
         since = change_before(self.changes, self.sample.step).step
         said = {each.method: each.verdict for each in self.milestones if each.kind == "verdict" and each.step > since}
         return [
-            judgement if reading.diverged_at is not None else replace(judgement, verdict=said.get(method, "too early"))
+            judgement if reading.diverged_at is not None else judgement._replace(verdict=said.get(method, "too early"))
             for method, judgement, reading in zip(self.scene.cast, computed, self.sample.readings, strict=True)
         ]
 
@@ -151,14 +150,14 @@ class Replay(Source):
 
     def pause(self, paused: bool) -> None:
         """Pause or go on; from the end, go on from the start."""
-        self.playhead = replace(self.playhead, paused=paused)
+        self.playhead = self.playhead._replace(paused=paused)
         position, backwards = self.playhead.position, self.playhead.speed < 0
         if not paused and position == (0.0 if backwards else self.length):
             self.seek(self.length if backwards else 0.0)
 
     def set_speed(self, speed: float) -> None:
         """Play `speed` seconds of the recording for each second of the clock; a negative one plays backwards."""
-        self.playhead = replace(self.playhead, speed=speed)
+        self.playhead = self.playhead._replace(speed=speed)
 
     def step(self, n: int) -> Sample:
         self.pause(True)
@@ -221,4 +220,4 @@ class Replay(Source):
         if self.loop is not None:
             self.playhead = self.playhead.moved_to(end if backwards else start)
         elif backwards == (position < start):
-            self.playhead = replace(self.playhead, paused=True).moved_to(start if backwards else end)
+            self.playhead = self.playhead._replace(paused=True).moved_to(start if backwards else end)

@@ -1,6 +1,5 @@
 """Shown: which methods and quantities are on screen, and how.  Nothing in it changes a number."""
 
-from dataclasses import dataclass, replace
 from typing import Any, Literal, NamedTuple, get_args
 
 from engine.methods import Cast
@@ -30,8 +29,7 @@ class Stretch(NamedTuple):
     log_time: bool  # on a logarithmic axis of time
 
 
-@dataclass(frozen=True, slots=True)
-class Shown:
+class Shown(NamedTuple):
     """What is shown of a source, and how."""
 
     hidden: frozenset[str] = frozenset()  # keys of methods
@@ -53,23 +51,23 @@ class Shown:
     def toggled(self, place: int, cast: Cast) -> "Shown":
         """With one method of the cast shown or hidden; places after the last one are the exact motion's."""
         if place >= len(cast):
-            return replace(self, exact=not self.exact)
-        return replace(self, hidden=self.hidden ^ {cast[place].key})
+            return self._replace(exact=not self.exact)
+        return self._replace(hidden=self.hidden ^ {cast[place].key})
 
     def switched(self, name: str) -> "Shown":
         """With one of the settings that are on or off the other way."""
         changes: dict[str, Any] = {name: not getattr(self, name)}
-        return replace(self, **changes)
+        return self._replace(**changes)
 
     def alone(self, place: int, cast: Cast) -> "Shown":
         """With this method alone; with all of them, if it is alone already."""
         others = frozenset(method.key for at, method in enumerate(cast) if at != place)
-        return replace(self, hidden=frozenset() if self.places(cast) == [place] else others)
+        return self._replace(hidden=frozenset() if self.places(cast) == [place] else others)
 
     def next_alone(self, cast: Cast) -> "Shown":
         """With all methods if one is alone, else with one alone: the first, the next time the second, and so on."""
         if len(alone := self.places(cast)) == 1 < len(cast):
-            return replace(self.alone(alone[0], cast), turn=alone[0] + 1)
+            return self.alone(alone[0], cast)._replace(turn=alone[0] + 1)
         return self.alone(self.turn % len(cast), cast)
 
     def quantity_ahead(self, ahead: int, scene: Scene) -> Quantity:
@@ -79,18 +77,18 @@ class Shown:
         return known[(at + ahead) % len(known)]
 
     def next_quantity(self, scene: Scene) -> "Shown":
-        return replace(self, quantity=self.quantity_ahead(1, scene))
+        return self._replace(quantity=self.quantity_ahead(1, scene))
 
     def next_window(self, direction: int) -> "Shown":
         """With the window before the chart was zoomed; else with the next (1), the one before (-1), round and round."""
         if self.stretch is not None:
-            return replace(self, stretch=None)
-        return replace(self, seconds=WINDOWS[(WINDOWS.index(self.seconds) + direction) % len(WINDOWS)])
+            return self._replace(stretch=None)
+        return self._replace(seconds=WINDOWS[(WINDOWS.index(self.seconds) + direction) % len(WINDOWS)])
 
     def zoomed(self, stretch: Stretch | None) -> "Shown":
         """With this part of the run in the chart, or all of it."""
-        return replace(self, stretch=stretch, seconds=self.seconds if stretch else None)
+        return self._replace(stretch=stretch, seconds=self.seconds if stretch else None)
 
     def of(self, run: int) -> "Shown":
         """As it is for this run: another run's stretch says nothing about it."""
-        return self if self.stretch is None or self.stretch.run == run else replace(self, stretch=None)
+        return self if self.stretch is None or self.stretch.run == run else self._replace(stretch=None)

@@ -2,8 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
 
 from engine.models.model import ExactMotion
 from engine.run.lockstep import Sample
@@ -20,8 +19,7 @@ if TYPE_CHECKING:
     from tui.playback.ghost import Ghost
 
 
-@dataclass(frozen=True, slots=True)
-class RecordingStatus:
+class RecordingStatus(NamedTuple):
     """The recording that is being written, or replayed."""
 
     name: str

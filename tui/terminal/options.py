@@ -3,8 +3,7 @@
 import argparse
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import Literal, NamedTuple, get_args
 
 from tui.cli.options import add_degrees, count
 from tui.drawing.palette import PALETTES
@@ -18,8 +17,7 @@ SMALLEST = (60, 16)  # columns and rows of the smallest terminal on which the la
 LARGEST = (400, 200)
 
 
-@dataclass(frozen=True, slots=True)
-class TerminalOptions:
+class TerminalOptions(NamedTuple):
     """How the lab is shown on a terminal."""
 
     theme: str = "dark"

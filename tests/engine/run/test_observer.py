@@ -1,7 +1,6 @@
 """What is seen of a run, against the run looked at step by step."""
 
 import math
-from dataclasses import replace
 
 import pytest
 from hypothesis import given, settings
@@ -152,7 +151,7 @@ def test_a_method_fails_once_at_the_time_at_which_its_numbers_ended():
     observer = RunObserver(DRIFT)
     samples = [Lockstep(DRIFT).sample()]
     euler, *others = samples[0].readings
-    failed = (replace(euler, diverged_at=0.15), *others)
+    failed = (euler._replace(diverged_at=0.15), *others)
     samples += [Sample(1, step, step * 0.05, failed) for step in (4, 5, 6)]
     for sample in samples:
         observer.add(sample)

@@ -1,5 +1,4 @@
 import json
-from dataclasses import replace
 from io import BytesIO
 
 import pytest
@@ -18,9 +17,9 @@ def altered() -> list[Entry]:
     place = next(i for i, (_, value) in enumerate(entries) if isinstance(value, Sample) and value.step == 6)
     sample = entries[place].value
     reading = sample.readings[2]
-    changed = replace(reading, omega=reading.omega * (1 + 2**-52))
+    changed = reading._replace(omega=reading.omega * (1 + 2**-52))
     readings = (*sample.readings[:2], changed, sample.readings[3])
-    entries[place] = entries[place]._replace(value=replace(sample, readings=readings))
+    entries[place] = entries[place]._replace(value=sample._replace(readings=readings))
     return entries
 
 

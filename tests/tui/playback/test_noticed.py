@@ -68,7 +68,7 @@ def test_a_replay_says_what_was_said_and_not_what_would_be_said_today(lab, tmp_p
             if value.run > 1:
                 break
             if isinstance(value, Event) and value.milestone == said:
-                value = replace(value, milestone=replace(said, verdict="wanders"))
+                value = value._replace(milestone=said._replace(verdict="wanders"))
             recorder.event(value, clock) if isinstance(value, Event) else recorder.sample(value, clock)
     assert verify(tmp_path / "other.mcap").identical
     with Recording.open(tmp_path / "other.mcap") as recording:

@@ -1,7 +1,6 @@
 """The lab's lines, as pictures made of text."""
 
 import re
-from dataclasses import replace
 
 import pytest
 
@@ -68,7 +67,7 @@ def test_at_80_columns_it_says_which_run_it_is_at_which_step_and_whether_that_is
     live.set_stepping(Stepping(-0.2, equal_cost=True))
     live.set_speed(0.25)
     live.playhead = live.playhead.moved_to(0.0)
-    live.so_far.sample = replace(live.sample, t=725.0)
+    live.so_far.sample = live.sample._replace(t=725.0)
     assert text(status_row(live, 80)) == (
         " LIVE   backwards  1/4×  t 12 min 05 s  h -0.2 s equal cost  z 0.626  REC 1 min"
     )
@@ -87,7 +86,7 @@ def test_the_status_line_shows_a_low_pace_and_a_failed_recording():
     hopeless = taped(pace=Pace(due=1.0, done=0.011), playhead=Playhead(speed=2.0**18))
     assert "reached 2884× of 262144×" in text(status_row(hopeless, 120))
     assert "only" not in text(status_row(taped(pace=Pace(due=1.0, done=0.995)), 80))
-    broken = taped(recording_status=replace(Taped.recording_status, failed="the disk is full."))
+    broken = taped(recording_status=Taped.recording_status._replace(failed="the disk is full."))
     assert "NOT RECORDED" in text(status_row(broken, 80))
     assert "not recorded" in text(status_row(taped(recording_status=None), 80))
 
@@ -174,7 +173,7 @@ def test_every_table_is_rectangular_and_fits():
 def test_hidden_methods_are_not_in_the_table_and_failed_ones_are_called_so():
     live = lab(1.0)
     readings = live.sample.readings
-    live.so_far.sample = replace(live.sample, readings=(*readings[:3], replace(readings[3], diverged_at=0.8)))
+    live.so_far.sample = live.sample._replace(readings=(*readings[:3], readings[3]._replace(diverged_at=0.8)))
     lines = rows(live, 80, Shown(hidden=frozenset({"explicit_euler", "velocity_verlet"}))).splitlines()
     assert [line[0] for line in lines] == ["m", "2", "4"]
     assert "failed" in lines[2]

@@ -1,7 +1,6 @@
 """The insight when time has run back to the start."""
 
 import re
-from dataclasses import replace
 
 import pytest
 
@@ -54,5 +53,5 @@ def test_nothing_is_shown_before_time_is_back():
 def test_a_failed_method_has_no_distance():
     sample = there_and_back("drift", 10).sample
     euler, *others = sample.readings
-    sample = replace(sample, readings=(replace(euler, diverged_at=0.5), *others))
+    sample = sample._replace(readings=(euler._replace(diverged_at=0.5), *others))
     assert "by e failed, s 0." in return_text(SCENES["drift"], sample)

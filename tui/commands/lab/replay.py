@@ -1,7 +1,6 @@
 """A recording on the lab's screen: pause, step, seek, loop, play backwards, continue live from any moment."""
 
 import argparse
-from dataclasses import replace
 
 from engine.methods import METHODS
 from tui.cli.cast import add_cast_options, cast_of, own_methods
@@ -54,5 +53,5 @@ def run(options: argparse.Namespace) -> int:
     screen = launch.replay_screen(replay, options.no_record)
     if only is not None:
         hidden = {method.key for method in (*METHODS, *replay.scene.cast) if method not in only}
-        screen.shown = replace(screen.shown, hidden=frozenset(hidden))
+        screen.shown = screen.shown._replace(hidden=frozenset(hidden))
     return launch.show(screen, options)

@@ -2,7 +2,6 @@
 
 import argparse
 import os
-from dataclasses import replace
 from pathlib import Path
 
 from engine.methods import METHODS
@@ -68,5 +67,5 @@ def run(options: argparse.Namespace) -> int:
     if options.output:
         theme = "dark" if options.theme == "auto" else options.theme  # of a file, not of the terminal
         size = options.size or (120, 36)
-        return write_file(study, options.output, options.force, size, replace(display, theme=theme))
+        return write_file(study, options.output, options.force, size, display._replace(theme=theme))
     return print_text(study, options.size, display)

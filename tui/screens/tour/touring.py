@@ -1,7 +1,6 @@
 """Touring: what the tour adds to the lab's screen."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
 from textual.binding import Binding, BindingType
@@ -105,7 +104,7 @@ class Touring(SourceScreen):
 
     def _show_step(self) -> None:
         assert self._guide is not None
-        self.shown = replace(self.shown, hidden=frozenset(), quantity=Shown().quantity, seconds=None, stretch=None)
+        self.shown = self.shown._replace(hidden=frozenset(), quantity=Shown().quantity, seconds=None, stretch=None)
         if self.view != self._guide.step.view:
             self.action_view(self._guide.step.view)
         self._show_words()

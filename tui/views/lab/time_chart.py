@@ -110,7 +110,7 @@ class TimeChart(Pane):
     def _look(self, source: Source) -> Shown:
         """What to show of the source here."""
         shown = self.shown.of(source.sample.run)
-        return replace(shown, quantity=shown.quantity_ahead(self._ahead, source.scene))
+        return shown._replace(quantity=shown.quantity_ahead(self._ahead, source.scene))
 
     def on_click(self) -> None:
         self.post_message(Asked("quantity"))
