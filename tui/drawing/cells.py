@@ -154,11 +154,11 @@ class CellWidget(Guarded, Widget):
             return [Strip.blank(crop.width, self.rich_style)] * crop.height
 
     def _lines(self, crop: Region) -> list[Strip]:
-        if self.room != self.size:  # Textual paints first and says later that a widget is on screen, and how large
-            self._visible = True
-            self._fit()
         painted = self._painted
         if crop != painted.crop:
+            if self.room != self.size:  # Textual paints first and says later that a widget is on screen, and how large
+                self._visible = True
+                self._fit()
             lines, gutter = super().render_lines(crop), self.gutter
             if self.room and self.room == self.size and crop == Region(0, 0, *(self.room + gutter.totals)):
                 self._painted = Painted(lines, crop, gutter, self.background_colors[1], self.get_line_filters())
