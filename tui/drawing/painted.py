@@ -1,6 +1,6 @@
 """Painted: the rows of a widget as Textual has been given them, of which only those that change are made anew."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 from rich.segment import Segment
@@ -27,6 +27,17 @@ class _Looks(dict[Style, Style]):
             row = one.apply(row, self._background)
         self[style] = look = row[0].style or style
         return look
+
+
+class Line(Strip):
+    """A row that goes when it is replaced: one of Textual's remembers itself as its only part, for the collector."""
+
+    __slots__ = ()
+
+    def divide(self, cuts: Iterable[int]) -> Sequence[Strip]:
+        """Cut at these columns."""
+        cuts = [*cuts]
+        return [self] if cuts == [self.cell_length] else super().divide(cuts)
 
 
 @dataclass(slots=True)
@@ -57,4 +68,4 @@ class Painted:
         row = [Segment(text, looks[style]) for text, style in pieces]
         for one in self.filters:
             row = one.apply(row, self.background)
-        self.lines[self.gutter.top + y] = Strip([*self.left, *row, *self.right], self.crop.width)
+        self.lines[self.gutter.top + y] = Line([*self.left, *row, *self.right], self.crop.width)

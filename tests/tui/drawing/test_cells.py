@@ -1,15 +1,19 @@
 """Rows of characters on a screen: which of them are sent, and how thick lines are."""
 
+import gc
 from typing import ClassVar
 
 from hypothesis import given
 from hypothesis import strategies as st
+from rich.segment import Segment
 from rich.style import Style
 from textual.app import App, ComposeResult
+from textual.strip import Strip
 
 from tests.tui.drawing.test_canvas import dots
 from tui.drawing.canvas import Canvas
 from tui.drawing.cells import CellWidget
+from tui.drawing.painted import Line
 from tui.drawing.palette import NOBODY, TEXT
 
 
@@ -91,3 +95,19 @@ def test_thick_lines_leave_words_alone():
     canvas = Canvas(6, 1)
     canvas.label(0, 0, "wörd\u2802", TEXT)
     assert canvas.picture().thick().text[:4] == "wörd"
+
+
+def test_a_row_that_has_been_cut_leaves_nothing_to_the_collector():
+    def cut(kind):
+        gc.collect()
+        [kind([Segment("abc")], 3).divide(cuts) for cuts in ([3], [1, 3])]
+        return gc.collect()
+
+    assert cut(Strip) > 0
+    assert cut(Line) == 0
+
+
+def test_a_row_is_cut_like_any_strip():
+    row = [Segment("abc"), Segment("de")]
+    for cuts in ([5], [2, 5], [2], [1, 4, 9]):
+        assert Line(row, 5).divide(iter(cuts)) == Strip(row, 5).divide(cuts)
