@@ -15,7 +15,7 @@ from engine.run.lockstep import Sample
 from tui.drawing.palette import EXACT, FRAME, faint, mark, series
 from tui.drawing.sketch import Sketch
 from tui.playback.source import Source
-from tui.views.lab.reach import reach
+from tui.views.lab.reach import Reach
 from tui.views.messages import MethodChosen
 from tui.views.view import Pane
 
@@ -77,9 +77,10 @@ def pendulum_sketch(columns: int, rows: int, bobs: Sequence[Bob], reach: float =
 class Pendulum(Pane):
     """The pendulum of one method, or those of all that are shown, with their letters."""
 
-    def __init__(self, place: int | None = None, id: str | None = None) -> None:
-        """`place` in the cast; None: all."""
+    def __init__(self, reach: Reach, place: int | None = None, id: str | None = None) -> None:
+        """`place` in the cast; None: all.  Panes that share a `reach` show the same samples."""
         super().__init__(id)
+        self._reach = reach
         self._place = place
         self._titled: object = None
 
@@ -126,7 +127,7 @@ class Pendulum(Pane):
                     diverged=reading.diverged_at is not None,
                 )
             )
-        widest = reach(source.scene, source.stepping, sample, self.places)
+        widest = self._reach.of(source, sample, self.places)
         if ghost is not None:
             widest = max(widest, ghost.widest)
         self.show_sketch(pendulum_sketch(*self.room, bobs, widest))

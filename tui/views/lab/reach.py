@@ -8,6 +8,7 @@ from engine.models.model import Model
 from engine.run.lockstep import Sample
 from engine.run.stepping import Stepping
 from engine.scenes import Scene
+from tui.playback.source import Source
 
 REACHES = (0.5, 1.2, math.pi / 2)
 """rad; beyond the last one the pivot has to be in the middle.  So few, that the picture hardly ever changes."""
@@ -29,6 +30,20 @@ def reach(scene: Scene, stepping: Stepping, sample: Sample, shown: Sequence[int]
     largest = max([0.0, *(now.max_energy_error for _, _, now in each)])
     margins = _margins(scene.equations, scene.theta, scene.omega)
     return next((angle for angle, margin in zip(REACHES, margins, strict=True) if margin > largest), math.pi)
+
+
+class Reach:
+    """The reach of a sample, worked out once for all the panes that show it."""
+
+    def __init__(self) -> None:
+        self._of: object = None
+        self._angle = math.pi
+
+    def of(self, source: Source, sample: Sample, shown: Sequence[int]) -> float:
+        key = sample, source.scene, source.stepping, shown
+        if key != self._of:
+            self._of, self._angle = key, reach(source.scene, source.stepping, sample, shown)
+        return self._angle
 
 
 @lru_cache(maxsize=8)

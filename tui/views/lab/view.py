@@ -13,6 +13,7 @@ from tui.views.lab.event_list import EventList
 from tui.views.lab.large_table import LargeTable
 from tui.views.lab.layout import CellLayout, places
 from tui.views.lab.pendulums import Pendulum
+from tui.views.lab.reach import Reach
 from tui.views.lab.time_chart import TimeChart
 from tui.views.phase.keys import KEYS
 from tui.views.phase.pane import PhasePane
@@ -39,8 +40,9 @@ class LabView(View):
     def __init__(self, id: str | None = None) -> None:
         super().__init__(id)
         self._arranged_for: object = None
-        self.pendulums = [Pendulum(place) for place in range(MOST_METHODS)]
-        self.overlay = Pendulum(id="overlay")
+        reach = Reach()
+        self.pendulums = [Pendulum(reach, place) for place in range(MOST_METHODS)]
+        self.overlay = Pendulum(reach, id="overlay")
         self.chart, self.second_chart, self.phase = TimeChart(), TimeChart(ahead=1), PhasePane()
         self.events = EventList()
 
