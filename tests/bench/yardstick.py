@@ -2,17 +2,20 @@
 
 python tests/bench/yardstick.py [lab|phase|replay|paused|start] …    all of them by default
 
-The real program runs on a pseudo-terminal of 120×40 (phase view: 200×60), recording, everything moving; and in
-turns with it (A B A B) the app in painter.py, which shows a film of the lab.  Processor time is the process's own.
-A changed row is a piece of a row that is sent; a frame is a burst of output that redraws a pendulum.
+The real program runs on a pseudo-terminal of 120×40 (phase view: 200×60), recording, everything moving; and beside
+it, in the same seconds, the app in painter.py, which shows a film of the lab: one after the other, what the machine
+does besides is in the ratio.  Processor time is the process's own.  A changed row is a piece of a row that is sent;
+a frame is a burst of output that redraws a pendulum.
 """
 
 import itertools
 import json
 import re
+import select
 import sys
 import tempfile
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from statistics import mean, median
 
@@ -21,7 +24,7 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 from tests.bench import painter as film
 from tests.tui.pty_lab import PtyLab
 
-ROUNDS, SECONDS, KEYS, STARTS, MOVES = 3, float(film.SECONDS), 30, 9, 40
+ROUNDS, SECONDS, KEYS, STARTS, MOVES = 5, float(film.SECONDS), 30, 9, 40
 LAB = ("live", "--h", "0.01")  # more than one step a frame, so that every frame moves
 PAINTER = [sys.executable, str(Path(__file__).with_name("painter.py"))]
 SMALL, LARGE, F3 = (120, 40), (200, 60), "\x1bOR"
@@ -59,15 +62,27 @@ def painter(size: tuple[int, int] = SMALL, *key: str) -> PtyLab:
     return running
 
 
-def watched(program: PtyLab) -> Figures:
-    """What it takes and sends in a while."""
-    cpu, began, sent = program.cpu_seconds(), program.now, len(program.output)
-    times: list[float] = []
-    while program.now < began + SECONDS:
-        piece = program.read(began + SECONDS - program.now)
+def drain(programs: Sequence[PtyLab], seconds: float) -> Iterator[tuple[PtyLab, bytes]]:
+    """Read what each of some programs sends in a while, piece by piece."""
+    end = time.monotonic() + seconds
+    terminals = {program.terminal: program for program in programs}
+    while (left := end - time.monotonic()) > 0:
+        for terminal in select.select(list(terminals), [], [], left)[0]:
+            yield terminals[terminal], terminals[terminal].read(0.0)
+
+
+def watched(*programs: PtyLab) -> list[Figures]:
+    """What each takes and sends in the same while."""
+    before = [(program.cpu_seconds(), program.now, len(program.output)) for program in programs]
+    times: dict[PtyLab, list[float]] = {program: [] for program in programs}
+    for program, piece in drain(programs, SECONDS):
         moved = any(int(column) <= PENDULUMS and 1 < int(row) < 30 for row, column in CURSOR.findall(piece))
-        if moved and program.now - (times[-1] if times else 0.0) > BURST:
-            times.append(program.now)
+        if moved and program.now - (times[program][-1] if times[program] else 0.0) > BURST:
+            times[program].append(program.now)
+    return [_figures(program, *start, times[program]) for program, start in zip(programs, before, strict=True)]
+
+
+def _figures(program: PtyLab, cpu: float, began: float, sent: int, times: list[float]) -> Figures:
     elapsed = program.now - began
     gaps = sorted(after - before for before, after in itertools.pairwise(times)) or [elapsed]
     return {
@@ -119,42 +134,38 @@ def of_rounds(rounds: list[Figures]) -> Figures:
     }
 
 
-def beside(ours: Callable[[], Figures], theirs: Callable[[], Figures], names: tuple[str, str]) -> dict[str, Figures]:
-    """Two programs in turns, and the first one's figures over the second one's."""
-    rounds = [(ours(), theirs()) for _ in range(ROUNDS)]
+def beside(one_round: Callable[[], list[Figures]], names: tuple[str, str]) -> dict[str, Figures]:
+    """The figures of two programs beside each other, and the first one's over the second one's."""
+    rounds = [one_round() for _ in range(ROUNDS)]
     a, b = of_rounds([first for first, _ in rounds]), of_rounds([second for _, second in rounds])
     ratio = {name: round(a[name] / b[name], 2) for name in a if b.get(name)}
     each = [round(first["percent"] / second["percent"], 2) for first, second in rounds]
     return {names[0]: a, names[1]: b, "ratio": ratio | {"processor_each_round": each}}  # type: ignore[dict-item]
 
 
-def of_lab(size: tuple[int, int] = SMALL, key: str = "") -> Figures:
-    """The lab's figures."""
-    with tempfile.TemporaryDirectory() as folder, lab(folder, size=size) as program:
-        program.type(key)
-        program.run(film.BEGIN - 2.0)
-        figures = watched(program)
-        times = drag_times(program) if key else key_times(program)
-        end(program)
-    return figures | {("drag" if key else "key") + "_p95_ms": 1000 * times[int(0.95 * len(times))]}
-
-
-def of_painter(size: tuple[int, int] = SMALL, *key: str) -> Figures:
-    """Those of Textual alone, painting as much."""
-    with painter(size, *key) as program:
-        figures, times = watched(program), key_times(program)
-        end(program)
-    return figures | {("drag" if key else "key") + "_p95_ms": 1000 * times[int(0.95 * len(times))]}
+def of_lab_and_painter(size: tuple[int, int] = SMALL, *key: str) -> list[Figures]:
+    """Those of the lab, perhaps after F3, and of Textual alone painting as much."""
+    with tempfile.TemporaryDirectory() as folder, painter(size, *key) as textual, lab(folder, size=size) as ours:
+        ours.type(F3 if key else "")
+        for _ in drain([ours, textual], film.BEGIN - 2.0):
+            pass
+        both = watched(ours, textual)
+        for program, figures in zip((ours, textual), both, strict=True):
+            program.run(0.5)  # what has piled up meanwhile
+            times = drag_times(program) if key else key_times(program)
+            figures[("drag" if key else "key") + "_p95_ms"] = 1000 * times[int(0.95 * len(times))]
+            end(program)
+        return both
 
 
 def lab_beside_painter() -> dict[str, Figures]:
     """The lab at 120×40."""
-    return beside(of_lab, of_painter, ("lab", "textual_alone"))
+    return beside(of_lab_and_painter, ("lab", "textual_alone"))
 
 
 def phase_beside_painter() -> dict[str, Figures]:
     """The phase view at 200×60, with ring and trails."""
-    return beside(lambda: of_lab(LARGE, F3), lambda: of_painter(LARGE, "f3"), ("phase", "textual_alone"))
+    return beside(lambda: of_lab_and_painter(LARGE, "f3"), ("phase", "textual_alone"))
 
 
 def replay_beside_lab() -> dict[str, Figures]:
@@ -165,15 +176,18 @@ def replay_beside_lab() -> dict[str, Figures]:
             end(program)
         (recording,) = Path(folder).glob("*.mcap")
 
-        def of_replay() -> Figures:
-            with PtyLab("replay", str(recording), "--start-at", "2") as program:
-                program.wait_for("REPLAY")
-                program.run(2.0)
-                figures = watched(program)
-                end(program)
-            return figures
+        def of_both() -> list[Figures]:
+            with tempfile.TemporaryDirectory() as other, lab(other) as live:
+                with PtyLab("replay", str(recording), "--start-at", "2") as replay:
+                    replay.wait_for("REPLAY")
+                    for _ in drain([replay, live], 2.0):
+                        pass
+                    both = watched(replay, live)
+                    end(replay)
+                end(live)
+            return both
 
-        return beside(of_replay, of_lab, ("replay", "lab"))
+        return beside(of_both, ("replay", "lab"))
 
 
 def paused_lab() -> dict[str, Figures]:
@@ -182,7 +196,7 @@ def paused_lab() -> dict[str, Figures]:
         program.type(" ")
         program.run(2.0)
         before = program.wakes()
-        figures = watched(program)
+        (figures,) = watched(program)
         wakes = (program.wakes() - before) / SECONDS
         end(program)
     names = ("percent", "kilobytes_per_second")
