@@ -100,7 +100,7 @@ def main() -> None:
     random = np.random.default_rng(1)
     history, add = long_run()
     window, whole = history.window(20.0), history.window()
-    trail = history.levels.trail(0, 40)[0].tolist()
+    trail = history.levels.trails(40)[:, 0].T[0].tolist()
     chart = time_chart(window, USUAL_CAST, "energy_error", 160, 40, seconds=20.0).picture
     milliseconds = {
         "canvas_4x3000_points": least(scattered(random)),

@@ -4,7 +4,7 @@ import math
 from collections import deque
 from collections.abc import Sequence
 from itertools import islice
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 from engine.models.model import State
 from engine.run.lockstep import Sample
@@ -14,7 +14,7 @@ from tui.playback.shown import Quantity
 if TYPE_CHECKING:
     from tui.playback.levels import Levels, Window  # NumPy can wait for the first paint
 
-RECENT = 16  # samples whose angles are at hand
+RECENT = 16  # samples whose states are at hand
 MOST_WAITING = 64  # rows
 _UNKNOWN = State(math.nan, math.nan)
 
@@ -40,7 +40,7 @@ class ErrorHistory:
         self._capacity = capacity
         self._run = 0
         self._latest: tuple[int, float, float] | None = None  # step, x and t of the last row
-        self._recent: deque[list[float]] = deque(maxlen=RECENT)
+        self._recent: deque[Sequence[Sequence[float]]] = deque(maxlen=RECENT)  # theta and omega of each method
         self._waiting: list[_Row] = []
         self._levels: Levels | None = None
         self.added = self.rewound = 0  # samples so far, and how often some were taken back
@@ -67,7 +67,7 @@ class ErrorHistory:
                 self.returned = sample
         self.added += 1
         self._latest = sample.step, x, sample.t
-        self._recent.append([reading.theta for reading in sample.readings])
+        self._recent.append([(reading.theta, reading.omega) for reading in sample.readings])
         self._waiting.append(_Row(sample, x, exact or _UNKNOWN, modified))
         if len(self._waiting) >= MOST_WAITING:
             _ = self.levels
@@ -100,8 +100,7 @@ class ErrorHistory:
         levels = self.levels
         levels.rewind(step)
         self._latest = levels.latest()
-        thetas = [levels.trail(index, RECENT)[0].tolist() for index in range(self._methods)]
-        self._recent = deque(map(list, zip(*thetas, strict=True)), RECENT)
+        self._recent = deque(levels.trails(RECENT).tolist(), RECENT)
 
     def window(self, seconds: float | None = None) -> "Window":
         return self.levels.window(seconds)
@@ -111,6 +110,12 @@ class ErrorHistory:
         latest = self._latest[1] if self._latest else 0.0
         return self.window(latest - begin).cut(begin - self._repeats, end)
 
+    def states(self, length: int) -> Sequence[Sequence[Sequence[float]]]:
+        """theta [rad] and omega [rad/s] of each method at the last `length` samples, oldest first."""
+        if length > RECENT:
+            return cast(Sequence[Sequence[Sequence[float]]], self.levels.trails(length).tolist())
+        return list(islice(self._recent, max(len(self._recent) - length, 0), None))
+
     def thetas(self, index: int, length: int) -> list[float]:
-        """theta [rad] of a method at the last `length` samples, RECENT at most, oldest first."""
-        return [thetas[index] for thetas in islice(self._recent, max(len(self._recent) - length, 0), None)]
+        """theta [rad] of a method at the last `length` samples, oldest first."""
+        return [states[index][0] for states in self.states(length)]

@@ -171,12 +171,10 @@ class Levels:
         """Whether the level's rows reach back to x = start, or to the run's start."""
         return level.first == 0 or (level.count > level.first and level.times[level.first % level.capacity, 0] <= start)
 
-    def trail(self, index: int, length: int) -> tuple[Floats, Floats]:
-        """theta [rad] and omega [rad/s] of a method, or EXACT, at the last `length` samples, oldest first."""
-        states = self.trails(length)[:, index]
-        return states[:, 0], states[:, 1]
-
     def trails(self, length: int) -> Floats:
-        """theta and omega of every method and of the exact motion, (samples, methods + 1, 2), as trail."""
+        """theta [rad] and omega [rad/s] of every method and of the exact motion at the last `length` samples, oldest first.
+
+        Of shape (samples, methods + 1, 2).
+        """
         level = self.levels[0]
         return self._states[level.slots(level.count - length, level.count)]

@@ -107,7 +107,7 @@ def test_the_same_sample_again_changes_nothing():
 def test_an_earlier_sample_takes_back_what_came_after_it():
     history = filled(sample(step, step) for step in (*range(6), 3))
     assert history.window().high["energy_error"][:, 0].tolist() == [0, 1, 2, 3]
-    assert history.levels.trail(0, 10)[0].shape == (4,)
+    assert history.levels.trails(10)[:, 0].T[0].shape == (4,)
 
 
 def test_a_run_that_goes_on_from_the_past_keeps_that_past():
@@ -190,11 +190,11 @@ def test_trails_are_the_last_states_of_methods_and_of_the_exact_swing():
     history = ErrorHistory(RunObserver(DEFAULT_SCENE), CAPACITY)
     for step in range(20):
         history.add(sample(step, theta=step), State(-step, 0.5))
-    theta, omega = history.levels.trail(2, 3)
+    theta, omega = history.levels.trails(3)[:, 2].T
     assert theta.tolist() == [17, 18, 19]
     assert omega.tolist() == [-17, -18, -19]
-    assert history.levels.trail(EXACT, 2)[0].tolist() == [-18, -19]
-    assert len(history.levels.trail(0, 100)[0]) == CAPACITY
+    assert history.levels.trails(2)[:, EXACT].T[0].tolist() == [-18, -19]
+    assert len(history.levels.trails(100)[:, 0].T[0]) == CAPACITY
 
 
 def test_an_angle_in_the_plane_is_off_by_half_a_turn_at_most():
@@ -207,7 +207,7 @@ def test_an_angle_in_the_plane_is_off_by_half_a_turn_at_most():
 
 def test_an_empty_history_has_empty_windows_and_trails():
     history = ErrorHistory(RunObserver(DEFAULT_SCENE))
-    assert history.levels.trail(0, 5)[0].size == 0
+    assert history.levels.trails(5)[:, 0].T[0].size == 0
     assert all(
         history.window(seconds).low[quantity].shape == (0, 4)
         for quantity in quantities(DEFAULT_SCENE)

@@ -126,7 +126,7 @@ def test_after_a_jump_chart_and_trails_show_what_they_show_after_playing(sitting
     jumped.run(0.1)
     assert jumped.replay.sample == played.replay.sample
     for one, other in zip(
-        played.replay.history.levels.trail(3, 15), jumped.replay.history.levels.trail(3, 15), strict=True
+        played.replay.history.levels.trails(15)[:, 3].T, jumped.replay.history.levels.trails(15)[:, 3].T, strict=True
     ):
         np.testing.assert_array_equal(one, other)
     one, other = played.replay.history.window(), jumped.replay.history.window()
@@ -137,7 +137,7 @@ def test_after_a_jump_chart_and_trails_show_what_they_show_after_playing(sitting
 
 def test_right_after_a_jump_the_trails_are_there_before_the_rest_of_the_past(table):
     table.replay.seek(4.0)
-    assert len(table.replay.history.levels.trail(0, 15)[0]) == 15
+    assert len(table.replay.history.levels.trails(15)[:, 0].T[0]) == 15
 
 
 def test_stepping_back_takes_the_past_back(table):

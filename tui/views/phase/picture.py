@@ -51,7 +51,7 @@ class PhaseTrails:
         if self._trails is None or key != self._of or new > TRAIL:
             owners = [faint(series(source.scene.cast[place])) for place in places]
             self._of, self._trails, new = key, Trails(portrait.ground, owners, TRAIL), TRAIL
-        for states in history.levels.trails(new).tolist() if new else ():
+        for states in history.states(new):
             shown_states = [states[place] for place in places]
             self._trails.add([(viewport.x(theta), viewport.y(omega)) for theta, omega in shown_states])
         self._added = history.added
