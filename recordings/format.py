@@ -57,10 +57,11 @@ def encode_readings(sample: Sample) -> list[bytes]:
     """One message per method, in order, without the values of `left_out` and those it does not have."""
     messages = []
     for reading in sample.readings:
-        fields = {"run": sample.run, "step": sample.step, "t": sample.t}
-        values = zip(VALUES, values_of(reading), strict=True)
+        fields: dict[str, Any] = {"run": sample.run, "step": sample.step, "t": sample.t}
         absent = left_out(reading.energy_error)
-        fields |= ((name, value) for name, value in values if value is not None and value != absent.get(name))
+        for name, value in zip(VALUES, values_of(reading), strict=True):
+            if value is not None and value != absent.get(name):
+                fields[name] = value
         messages.append(_dumps(fields))
     return messages
 

@@ -172,9 +172,9 @@ class Levels:
         return level.first == 0 or (level.count > level.first and level.times[level.first % level.capacity, 0] <= start)
 
     def trails(self, length: int) -> Floats:
-        """theta [rad] and omega [rad/s] of every method and of the exact motion at the last `length` samples, oldest first.
+        """theta [rad] and omega [rad/s] of every method and the exact motion at the last `length` samples.
 
-        Of shape (samples, methods + 1, 2).
+        Of shape (samples, methods + 1, 2), oldest first.
         """
         level = self.levels[0]
         return self._states[level.slots(level.count - length, level.count)]

@@ -34,7 +34,7 @@ def test_a_frame_takes_as_much_after_eight_hours_as_after_one():
         for _ in range(FRAMES):
             now += 1 / 30
             live.tick(now)
-            live.history.levels.trails(300)[:, 0].T
+            live.history.states(300)
         live.history.window(20.0)
         live.history.window()
         _ = live.judgements, live.milestones
