@@ -68,6 +68,7 @@ class Recorder:
         self._flush_by_time = wall is not None and facts is None  # real time passes while it records
         self._last: Sample | None = None
         self._channels: dict[str, Channel] = {}
+        self._declared: set[str] = set()  # the names of those that the chunk being built begins with
         self._schemas: dict[str, int] = {}
         self._topics: list[str] = []  # of the run's methods
         self._digest = Digest()
@@ -133,6 +134,7 @@ class Recorder:
         self.bytes = self._file.tell()
         self._flushed_at, self._really_flushed_at = self.seconds, self._now
         self._unflushed, self._event_waits = 0, False
+        self._declared.clear()
 
     def close(self) -> None:
         """Finish the recording: a stop, the summary, and its final name.  Without a start, leave no file."""
@@ -196,7 +198,8 @@ class Recorder:
         for name in (EVENTS, SEALS, *self._topics):
             if name not in self._channels:
                 self._register(name, sample_schema(scene.model))
-            elif self.events:
+            elif name not in self._declared:
+                self._declared.add(name)
                 self._writer._Writer__chunk_builder.add_channel(self._channels[name])  # type: ignore[attr-defined]
                 self._digest.record(self._channels[name])
 
@@ -211,6 +214,7 @@ class Recorder:
         number = self._writer.register_channel(name, "json", known, claims)
         self._channels[name] = Channel(number, name, "json", claims, known)
         self._digest.record(self._channels[name])
+        self._declared.add(name)
 
     def _add(self, messages: list[tuple[str, bytes]], clock: float) -> None:
         """Hand messages to the writer.  All are checked first, because a rejected one spoils its chunk."""
