@@ -92,6 +92,10 @@ class Neighbours:
         self._taken: list[SteppingChange] = []  # the changes already applied
         self._ring: Neighbourhood | None = None
 
+    def ring_of(self, scene: Scene, run: int) -> Neighbourhood | None:
+        """The ring as far as it has been carried; None if it is not yet of this run."""
+        return self._ring if self._begun == (scene, run) else None
+
     def follow(self, scene: Scene, run: int, step: int, changes: Sequence[SteppingChange], most: int) -> Neighbourhood:
         """Carry the ring towards a step of a run, by at most `most` steps; `changes` are all of the run's, in order."""
         known = [change for change in changes if change.step < self.step]

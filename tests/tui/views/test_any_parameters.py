@@ -55,7 +55,7 @@ def on_screen(live) -> str:
         status_row(live, 120),
         *table(live, sample, Shown(), 120),
         *large_rows(live, sample, Shown(), 120),
-        *fact_rows(live, Shown(), None, None, 120),
+        *fact_rows(live, Shown(), None, 120),
     ]
     charts = [
         time_chart(history.window(), scene.cast, quantity, 60, 14, log=log).picture.text

@@ -4,7 +4,7 @@ import math
 from functools import lru_cache
 
 from engine.models.model import ExactMotion, State
-from engine.phase_space.area import Neighbourhood, Neighbours
+from engine.phase_space.area import Neighbours
 from engine.run.stepping import change_before
 from engine.scenes import Scene
 from tui.drawing.axes import in_pi
@@ -24,9 +24,7 @@ _NOT_CURVES = {
 """Captions for the models whose motion does not follow the curves."""
 
 
-def fact_rows(
-    source: Source, shown: Shown, neighbours: Neighbours | None, ring: Neighbourhood | None, width: int
-) -> list[list[Span]]:
+def fact_rows(source: Source, shown: Shown, neighbours: Neighbours | None, width: int) -> list[list[Span]]:
     """A line about the ring, the heads, and a row for each method; the first columns that fit."""
     exact, fit = source.exact.at(source.sample.t), max((width - _NAME) // _CELL, 0)
     error = "dE/E0" if source.scene.equations.conserved else "ln E/Etrue"
@@ -35,6 +33,7 @@ def fact_rows(
         [(_ring_text(source, neighbours, shown.degrees)[:width], TEXT)],
         [(" " * _NAME + "".join(head.rjust(_CELL) for head in heads), QUIET)],
     ]
+    ring = None if neighbours is None else neighbours.ring_of(source.scene, source.sample.run)
     for index in shown.places(source.scene.cast):
         method = source.scene.cast[index]
         reading = source.sample.readings[index]

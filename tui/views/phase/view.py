@@ -86,7 +86,7 @@ class PhaseView(View):
         assert self.source is not None
         scene = self.source.scene
         if not pane.shows_section:
-            return [*fact_rows(self.source, self.shown, pane.neighbours, pane.ring, width)]
+            return [*fact_rows(self.source, self.shown, pane.neighbours, width)]
         from tui.drawing.palette import TEXT
         from tui.words.orbit import kind_rows
 

@@ -4,6 +4,7 @@ import math
 
 import pytest
 
+from engine.methods import USUAL_CAST, method_of
 from engine.phase_space.area import Neighbours
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene
@@ -49,8 +50,8 @@ def test_an_area_has_digits_enough_to_tell_it_from_one(ratio, log, text):
 def test_the_table_shows_area_ratios_that_differ_from_one_only_by_rounding():
     live, neighbours = Live(Scene()), Neighbours(0.1)
     live.step(200)
-    ring = neighbours.follow(live.scene, live.sample.run, live.sample.step, live.changes, 200)
-    lines = ["".join(text for text, _ in row) for row in fact_rows(live, Shown(), neighbours, ring, 80)]
+    neighbours.follow(live.scene, live.sample.run, live.sample.step, live.changes, 200)
+    lines = ["".join(text for text, _ in row) for row in fact_rows(live, Shown(), neighbours, 80)]
     assert [line.split()[0] for line in lines[2:]] == ["1", "2", "3", "4"]
     assert "1 + " in lines[3] or "1 - " in lines[3] or " 1 " in lines[3]  # symplectic Euler, but for rounding
     assert " 0.99997" in lines[5]  # RK4: a loss that four digits would not show
@@ -62,8 +63,8 @@ def test_with_friction_conformal_verlet_leaves_the_expected_area_even_after_a_ch
     live.step(100)
     live.set_stepping(Stepping(0.05, cast=live.scene.cast))
     live.step(100)
-    ring = neighbours.follow(live.scene, live.sample.run, live.sample.step, live.changes, 200)
-    lines = ["".join(text for text, _ in row) for row in fact_rows(live, Shown(), neighbours, ring, 80)]
+    neighbours.follow(live.scene, live.sample.run, live.sample.step, live.changes, 200)
+    lines = ["".join(text for text, _ in row) for row in fact_rows(live, Shown(), neighbours, 80)]
     left = f"{math.exp(-0.05 * 7.5):.9f}"
     assert lines[0] == f" Ring, radius 0.1 rad: friction leaves exp(-gamma t) = {left} of it"
     assert [left in line for line in lines[2:]] == [False, False, True, False]
@@ -72,19 +73,27 @@ def test_with_friction_conformal_verlet_leaves_the_expected_area_even_after_a_ch
 def test_the_table_says_when_the_ring_is_behind_or_not_there():
     live, neighbours = Live(Scene()), Neighbours(0.1)
     live.step(200)
-    ring = neighbours.follow(live.scene, live.sample.run, live.sample.step, live.changes, 50)
-    assert "150 steps behind" in fact_rows(live, Shown(), neighbours, ring, 80)[0][0][0]
-    without = fact_rows(live, Shown(), None, None, 80)
+    neighbours.follow(live.scene, live.sample.run, live.sample.step, live.changes, 50)
+    assert "150 steps behind" in fact_rows(live, Shown(), neighbours, 80)[0][0][0]
+    without = fact_rows(live, Shown(), None, 80)
     assert "Press g" in without[0][0][0]
     assert len(without) == 6
+
+
+def test_a_ring_of_the_run_before_is_not_shown():
+    live, neighbours = Live(Scene()), Neighbours(0.1)
+    live.step(20)
+    neighbours.follow(live.scene, live.sample.run, live.sample.step, live.changes, 50)
+    live.start(live.scene.with_cast((*USUAL_CAST, method_of("forest_ruth"))))
+    assert [row[1][0].split()[:2] for row in fact_rows(live, Shown(), neighbours, 80)[2:]] == 5 * [["-", "-"]]
 
 
 @pytest.mark.parametrize("width", range(20, 90, 7))
 def test_a_number_that_does_not_fit_is_left_out_not_cut_off(width):
     live = Live(Scene())
     live.step(30)
-    wide = ["".join(text for text, _ in row) for row in fact_rows(live, Shown(), None, None, 80)]
-    rows = ["".join(text for text, _ in row) for row in fact_rows(live, Shown(), None, None, width)]
+    wide = ["".join(text for text, _ in row) for row in fact_rows(live, Shown(), None, 80)]
+    rows = ["".join(text for text, _ in row) for row in fact_rows(live, Shown(), None, width)]
     for whole, row in zip(wide[1:], rows[1:], strict=True):
         assert len(row) <= max(width, 22)  # the names stay
         assert whole.startswith(row)
