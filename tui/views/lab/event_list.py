@@ -23,12 +23,17 @@ class EventList(Pane):
         super().__init__()
         self.border_title = "Events (E)"
         self._listed: list[EventLine] = []
+        self._listed_for: object = None
 
     def paint(self, source: Source, sample: Sample) -> None:
+        listed_for = [*source.events], [*source.later_marks], [*source.milestones], sample.run, self.room
+        if listed_for == self._listed_for:  # to put them into words takes long
+            return
         lines = event_lines(source)
         last = [*zip(lines, numbered(lines), strict=True)][-self.room.height :]
         self._listed = [line for line, _ in last]
         self.show([[(self._fitted(text, line), owner_of(line))] for line, text in last])
+        self._listed_for = listed_for
 
     def _fitted(self, text: str, line: EventLine) -> str:
         """A milestone's text; where it is too long, methods go by their letters."""
