@@ -159,7 +159,7 @@ class PenduApp(Guarded, App[Exit | OSError]):
         markup: bool = True,
     ) -> None:
         """Show a notice in place of an equal one: a key held down is to cover no more than a line."""
-        for notice in [*self._notifications]:
+        for notice in list(iter(self._notifications)):  # their number would take out what has expired meanwhile
             if notice.message == message:
                 self._unnotify(notice, refresh=False)
         super().notify(message, title=title, severity=severity, timeout=timeout, markup=markup)

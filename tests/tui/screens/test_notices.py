@@ -1,7 +1,9 @@
 """Notices lie where they cover no number."""
 
 import asyncio
+import itertools
 
+from textual.notifications import Notification
 from textual.widgets._toast import Toast
 
 from engine.scenes import DEFAULT_SCENE
@@ -33,6 +35,20 @@ async def test_equal_notices_replace_each_other():
                 await pilot.pause(0.01)
         await pilot.press("m")
         assert len(app._notifications) == 2
+
+
+async def test_a_notice_may_expire_while_another_is_about_to_be_shown(monkeypatch):
+    app = PenduApp(LiveScreen(Live(DEFAULT_SCENE, clock=lambda: 0.0), lambda: 0.0))
+    async with app.run_test(size=(80, 24), notifications=True) as pilot:
+        app.notify("one")
+        await pilot.pause()
+        assert app._notifications
+        expires = itertools.chain([False], itertools.repeat(True))
+        monkeypatch.setattr(Notification, "has_expired", property(lambda self: next(expires)))
+        app.notify("another")
+        monkeypatch.undo()
+        await pilot.pause()
+        assert "another" in [notice.message for notice in app._notifications]
 
 
 async def test_a_moment_is_marked_only_once_and_the_second_time_a_notice_says_so():
