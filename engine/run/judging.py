@@ -14,10 +14,6 @@ MOST_STEPS = 20_000
 """Steps between two samples that are taken again, 20 ms at worst; after more, the sample itself is looked at."""
 
 
-FEW_STEPS = 64
-"""Steps from look to look that are all taken again; with more, only those between samples that a look lies between."""
-
-
 class Seen(NamedTuple):
     """One look at a method."""
 
@@ -54,8 +50,8 @@ class Judging:
         self._judge = Judge(judged, model, reference.scale, self._h, period)
         self._advance = loops(method, model).advance
         self._stride = stride(period, h)
-        self._step = -1  # from which steps are taken again, of the lockstep since the first sample; -1: there was none
-        self._phase: Phase = (0.0, 0.0)  # there
+        self._step = -1  # of the lockstep, since the first sample; -1: there was none
+        self._phase: Phase = (0.0, 0.0)
         self._low = self._high = self._peak = 0.0  # relative energy errors since the last look; largest of all
 
     @property
@@ -71,35 +67,30 @@ class Judging:
         elif self._step < 0:
             self._judge.look(0, Look(*self._model.seen(phase), error, error, error))
             self._low = self._high = error
-            self._step, self._phase = step, phase
-        else:
-            first = (self._step // self._stride + 1) * self._stride
-            if first > step or not self._is_taken_again(first, step, seen):
-                self._low = min(self._low, reading.energy_error_low)
-                self._high = max(self._high, reading.energy_error_high)
-                if first <= step:
-                    self._look(step, phase, error, seen)
-                elif self._stride > FEW_STEPS:
-                    self._step, self._phase = step, phase
+        elif not self._is_taken_again(step, seen):
+            self._low, self._high = min(self._low, reading.energy_error_low), max(self._high, reading.energy_error_high)
+            if step // self._stride > self._step // self._stride:
+                self._look(step, phase, error, seen)
+        self._step, self._phase = step, phase
         return seen
 
-    def _is_taken_again(self, first: int, step: int, seen: list[Seen]) -> bool:
-        """Take the steps up to each look that is due again; False if it cannot."""
-        if step - self._step > MOST_STEPS:
+    def _is_taken_again(self, step: int, seen: list[Seen]) -> bool:
+        """Take the steps since the last reading again, and look on the way; False if none is due, or it cannot."""
+        first = (self._step // self._stride + 1) * self._stride
+        if first >= step or step - self._step > MOST_STEPS:
             return False
-        stops = [*range(first, step + 1, self._stride)]
-        if self._stride > FEW_STEPS and stops[-1] < step:
-            stops.append(step)
-        for stop in stops:
-            n, begin = (stop - self._step) * self._parts, (self._t, self._step * self._parts)
-            went = advance_with_errors(self._advance, self._reference, self._phase, self._h, n, math.inf, begin)
+        at, phase = self._step, self._phase
+        for stop in [*range(first, step, self._stride), step]:
+            n = (stop - at) * self._parts
+            begin = self._t, at * self._parts
+            went = advance_with_errors(self._advance, self._reference, phase, self._h, n, math.inf, begin)
             if went.done < n:
                 return False
+            phase = went.phase
             self._low, self._high = min(self._low, went.low), max(self._high, went.high)
             if stop % self._stride == 0:
-                self._look(stop, went.phase, went.error, seen)
-            else:
-                self._step, self._phase = stop, went.phase
+                self._look(stop, phase, went.error, seen)
+            at = stop
         return True
 
     def _look(self, step: int, phase: Phase, error: float, seen: list[Seen]) -> None:
@@ -107,6 +98,5 @@ class Judging:
         self._judge.look(step * self._parts, Look(*self._model.seen(phase), error, self._low, self._high))
         self._peak = max(self._peak, -self._low, self._high)
         self._low = self._high = error
-        self._step, self._phase = step, phase
         verdict = self.judgement.verdict
         seen.append(Seen(step, error, self._peak, verdict, verdict != known))

@@ -56,7 +56,8 @@ async def film(size: tuple[int, int], key: str | None) -> list[Pane]:
                 continue
             for widget in stage.walk_children(Widget):
                 if not widget.children and widget.is_on_screen and widget.region:
-                    strips = list(widget.render_lines(Region(0, 0, *widget.region.size)))
+                    lines = widget.render_lines(Region(0, 0, *widget.region.size))
+                    strips = [Strip([*line], line.cell_length) for line in lines]
                     panes.setdefault(widget, Pane(widget.region, [])).frames.append(strips)
     return list(panes.values())
 

@@ -3,9 +3,9 @@
 python tests/bench/yardstick.py [lab|phase|replay|paused|start] …    all of them by default
 
 The real program runs on a pseudo-terminal of 120×40 (phase view: 200×60), recording, everything moving; and beside
-it, in the same seconds, the app in painter.py, which shows a film of the lab: one after the other, what the machine
-does besides is in the ratio.  Processor time is the process's own.  A changed row is a piece of a row that is sent;
-a frame is a burst of output that redraws a pendulum.
+it, in the same seconds, the app in painter.py, which shows a film of the lab: if they were watched in turns, what else
+the machine does would be in the ratio.  Keys are timed one after the other.  Processor time is the process's own.
+A changed row is a piece of a row that is sent; a frame is a burst of output that redraws a pendulum.
 """
 
 import itertools

@@ -8,8 +8,8 @@ from dataclasses import replace
 import jsonschema
 import pytest
 from mcap.reader import make_reader
-from mcap.records import Chunk, DataEnd, Footer, Message, Metadata, Statistics
-from mcap.stream_reader import StreamReader
+from mcap.records import Channel, Chunk, DataEnd, Footer, Message, Metadata, Statistics
+from mcap.stream_reader import StreamReader, breakup_chunk
 
 from engine.run.lockstep import Lockstep
 from engine.run.stepping import Stepping
@@ -20,6 +20,7 @@ from recordings.headless import simulate
 from recordings.library import free_path, in_use, part_of
 from recordings.recorder import FLUSH_EVERY, Recorder
 from recordings.recording import Recording
+from recordings.summary import facts_of
 from recordings.verify import verify
 from tests.recordings.examples import SCENE, record, start, tiny, two_runs
 
@@ -86,6 +87,20 @@ def test_every_message_is_valid_against_its_schema_and_found_through_the_index(t
     assert events[:-1] == [entry.value for entry in entries if isinstance(entry.value, Event)]
     assert events[-1].kind == "stop"
     assert [json.loads(message.data)["step"] for _, _, message in window] == [9, 12]  # at 1.5 and 2.0 s
+
+
+def test_each_chunk_in_which_a_run_begins_declares_its_channels_once(tmp_path):
+    with Recorder(tmp_path / "a.mcap", facts=facts_of(SCENE, None)) as recorder:  # a copy, where runs share chunks
+        for run in range(1, 7):
+            recorder.event(start(run), run)
+            recorder.sample(Lockstep(SCENE).sample()._replace(run=run), run)
+            if run == 3:
+                recorder.flush()
+    with recorder.path.open("rb") as file:
+        chunks = [record for record in StreamReader(file, emit_chunks=True).records if isinstance(record, Chunk)]
+    declared = [[each.topic for each in breakup_chunk(chunk) if isinstance(each, Channel)] for chunk in chunks]
+    topics = sorted(["/pendu/events", "/pendu/seals", *(f"/pendu/{method.key}" for method in SCENE.cast)])
+    assert [sorted(each) for each in declared[:2]] == [topics, topics]
 
 
 def test_log_times_never_decrease_and_are_never_zero_even_if_the_clock_jumps_back(tmp_path):

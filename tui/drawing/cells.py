@@ -150,7 +150,7 @@ class CellWidget(Guarded, Widget):
         try:
             return self._lines(crop)
         except Exception as error:
-            self.call_later(self.fail, error)  # nothing is to change while it is painted
+            self.call_later(self.fail, error)  # it is being painted
             return [Strip.blank(crop.width, self.rich_style)] * crop.height
 
     def _lines(self, crop: Region) -> list[Strip]:

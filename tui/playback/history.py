@@ -100,7 +100,7 @@ class ErrorHistory:
         levels = self.levels
         levels.rewind(step)
         self._latest = levels.latest()
-        self._recent = deque(levels.trails(RECENT).tolist(), RECENT)
+        self._recent = deque(levels.trails(RECENT)[:, :-1].tolist(), RECENT)
 
     def window(self, seconds: float | None = None) -> "Window":
         return self.levels.window(seconds)
@@ -113,7 +113,7 @@ class ErrorHistory:
     def states(self, length: int) -> Sequence[Sequence[Sequence[float]]]:
         """theta [rad] and omega [rad/s] of each method at the last `length` samples, oldest first."""
         if length > RECENT:
-            return cast(Sequence[Sequence[Sequence[float]]], self.levels.trails(length).tolist())
+            return cast(Sequence[Sequence[Sequence[float]]], self.levels.trails(length)[:, :-1].tolist())
         return list(islice(self._recent, max(len(self._recent) - length, 0), None))
 
     def thetas(self, index: int, length: int) -> list[float]:

@@ -137,6 +137,10 @@ async def test_the_pane_shows_the_newest_last_and_only_where_there_is_room():
         app.source_screen.show_now()
         assert pane.text.splitlines() == [str(line) for line in event_lines(live)][-pane.size.height :]
         assert pane.size.height >= 4
+        pane.fail(ValueError("torn"))
+        assert "torn" in pane.text
+        app.source_screen.show_now()
+        assert pane.text.splitlines() == [str(line) for line in event_lines(live)][-pane.size.height :]
         await pilot.resize_terminal(80, 24)
         await pilot.pause()
         assert not pane.is_on_screen

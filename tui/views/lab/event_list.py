@@ -25,6 +25,10 @@ class EventList(Pane):
         self._listed: list[EventLine] = []
         self._listed_for: object = None
 
+    def fail(self, error: BaseException) -> None:
+        self._listed_for = None
+        super().fail(error)
+
     def paint(self, source: Source, sample: Sample) -> None:
         listed_for = [*source.events], [*source.later_marks], [*source.milestones], sample.run, self.room
         if listed_for == self._listed_for:  # to put them into words takes long

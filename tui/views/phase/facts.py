@@ -50,10 +50,11 @@ def _ring_text(source: Source, neighbours: Neighbours | None, degrees: bool) -> 
         return f" {why}"
     if neighbours is None:
         return " Press g to draw a ring of neighbouring starts and measure its area."
-    behind = source.sample.step - neighbours.step
+    step = neighbours.step if neighbours.ring_of(source.scene, source.sample.run) else 0
+    behind = source.sample.step - step
     if friction := source.scene.friction:
-        change = change_before(source.changes, neighbours.step)
-        t = change.t + (neighbours.step - change.step) * change.stepping.h
+        change = change_before(source.changes, step)
+        t = change.t + (step - change.step) * change.stepping.h
         left = math.exp(-friction * t)
         return f" Ring, radius {neighbours.radius:g} rad: friction leaves exp(-gamma t) = {left:.9f} of it"
     radius = f"{measured(neighbours.radius, degrees):.4g}{'°' if degrees else ' rad'}"

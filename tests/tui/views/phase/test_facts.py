@@ -85,7 +85,10 @@ def test_a_ring_of_the_run_before_is_not_shown():
     live.step(20)
     neighbours.follow(live.scene, live.sample.run, live.sample.step, live.changes, 50)
     live.start(live.scene.with_cast((*USUAL_CAST, method_of("forest_ruth"))))
-    assert [row[1][0].split()[:2] for row in fact_rows(live, Shown(), neighbours, 80)[2:]] == 5 * [["-", "-"]]
+    live.step(7)
+    rows = fact_rows(live, Shown(), neighbours, 80)
+    assert "7 steps behind" in rows[0][0][0]
+    assert [row[1][0].split()[:2] for row in rows[2:]] == 5 * [["-", "-"]]
 
 
 @pytest.mark.parametrize("width", range(20, 90, 7))
