@@ -116,6 +116,14 @@ async def test_what_lies_over_the_lab_can_be_as_narrow_as_a_terminal(opening):
         assert theatre.app.screen is theatre.stage
 
 
+async def test_a_page_of_scenes_can_be_asked_for_where_there_is_room_for_none():
+    async with lab(size=(3, 2)) as theatre:
+        theatre.stage.action_scenes()
+        await theatre.pilot.pause()
+        assert theatre.app.screen.query_one(OptionList).highlighted
+        await theatre.press("pagedown", "pageup")
+
+
 async def test_two_sizes_in_flight_do_not_call_each_other_up_for_ever(monkeypatch: pytest.MonkeyPatch):
     arranged, arrange = [], Screen._on_resize
 

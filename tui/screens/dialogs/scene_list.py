@@ -1,5 +1,6 @@
 """SceneList: the scenes in their groups, to start one."""
 
+from contextlib import suppress
 from typing import ClassVar
 
 from rich.table import Table
@@ -13,6 +14,18 @@ from engine.scenes import GROUPS, SCENES
 from tui.screens.dialogs.modal import Form
 
 
+class _Listed(OptionList):
+    """Textual 8.2's knows no pages before its first paint, nor where the terminal is too small for any."""
+
+    def action_page_up(self) -> None:
+        with suppress(KeyError):
+            super().action_page_up()  # type: ignore[no-untyped-call]
+
+    def action_page_down(self) -> None:
+        with suppress(KeyError):
+            super().action_page_down()  # type: ignore[no-untyped-call]
+
+
 class SceneList(Form[str | None]):
     """Returns the name of the scene to start, or None."""
 
@@ -23,7 +36,7 @@ class SceneList(Form[str | None]):
         self._current = current
 
     def compose(self) -> ComposeResult:
-        listed = OptionList(id="scenes", markup=False)
+        listed = _Listed(id="scenes", markup=False)
         listed.border_title = "Scenes, with what to watch"
         listed.border_subtitle = "Enter starts, Esc cancels"
         for group, scenes in GROUPS.items():
