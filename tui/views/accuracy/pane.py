@@ -1,6 +1,7 @@
 """AccuracyPane: charts of error over cost and over time; h is chosen on the first, with keyboard or mouse."""
 
 import asyncio
+from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 from textwrap import wrap
 from typing import ClassVar
@@ -196,9 +197,8 @@ class AccuracyPane(Chooser[int]):
     def _note(self, point: AnyPoint) -> str:
         if self.pointer is None and self.cursor is None:
             return "current h"
-        if not self.is_live or not isinstance(point, Point):
-            return ""
-        return f"{'click' if self.pointer else 'Enter'}: use this h"
+        takes = self.is_live and isinstance(point, Point)
+        return f"{'click' if self.pointer else 'Enter'}: use this h" if takes else ""
 
     def action_chart(self) -> None:
         """The next chart: error over time, theta error over cost, energy error over cost."""
@@ -218,8 +218,8 @@ class AccuracyPane(Chooser[int]):
     def action_move(self, right: int) -> None:
         """Move the cursor along the method's points; those to the right cost more."""
         if self.rungs:
-            steps = self.here[self.index] if self.index < len(self.here) else self.rungs[0]
-            at = min(range(len(self.rungs)), key=lambda rung: abs(self.rungs[rung] - steps))
+            here = self.here[self.index] if self.index < len(self.here) else self.rungs[0]
+            at = bisect_right(self.rungs, here) if right > 0 else bisect_left(self.rungs, here) - 1
             self.cursor = min(max(at if self.cursor is None else self.cursor + right, 0), len(self.rungs) - 1)
             self.draw()
 

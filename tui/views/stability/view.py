@@ -31,8 +31,10 @@ class StabilityView(View):
         yield self.read(StabilityPane(_grid(())))
 
     def on_mount(self) -> None:
-        self.query_one(StabilityPane).focus()
         self._compute_missing()
+
+    def on_show(self) -> None:
+        self.query_one(StabilityPane).focus()
 
     def follow(self, sample: Sample, read: bool = True, at_once: bool = True) -> None:
         if read:

@@ -228,6 +228,15 @@ async def test_all_methods_and_the_reference_lines_are_charted_over_seconds(monk
         assert pane.cast == USUAL_CAST
 
 
+async def test_the_first_arrow_leads_where_it_points():
+    async with accuracy_view() as (pilot, pane, _live):
+        here = pane.here[pane.index]
+        await pilot.press("right")
+        assert pane.rungs[pane.cursor] > here
+        await pilot.press("escape", "left")
+        assert pane.rungs[pane.cursor] < here
+
+
 async def test_the_cursor_stays_on_the_ladder_and_esc_leaves_it():
     async with accuracy_view() as (pilot, pane, _live):
         await pilot.press(*["left"] * 9)

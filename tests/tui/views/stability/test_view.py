@@ -95,6 +95,14 @@ async def test_the_cursor_stays_on_the_map_and_esc_leaves_it(monkeypatch: pytest
         assert pane.aim(VERLET) == before
 
 
+async def test_it_takes_the_keys_whenever_it_is_shown(monkeypatch: pytest.MonkeyPatch):
+    async with stability_view(monkeypatch) as (pilot, pane, _live):
+        await pilot.press("f2", "f5")
+        await pilot.pause()
+        await pilot.press("right")
+        assert pane.cursor is not None
+
+
 async def test_tab_goes_through_the_methods_in_words(monkeypatch: pytest.MonkeyPatch):
     async with stability_view(monkeypatch) as (pilot, pane, _):
         for label in ("RK4 at", "Explicit Euler at", "Symplectic Euler at", "Velocity Verlet at"):
@@ -160,5 +168,5 @@ async def test_a_larger_step_beyond_a_limit_is_warned_of_and_taken(monkeypatch: 
         assert "beyond" not in status.text
         await pilot.press("plus")
         assert live.stepping.h == 5.0
-        assert "z 5  unstable: s v (z > 2), r (z > 2.83)" in status.text
+        assert "z 5  unstable: e, s v (z > 2), r (z > 2.83)" in status.text
         assert pane.aim(VERLET) is None  # it is beyond the map, too
