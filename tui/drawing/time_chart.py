@@ -29,10 +29,9 @@ from tui.drawing.loglog import ROOM, Series, row_at
 from tui.drawing.palette import TEXT, faint
 from tui.drawing.palette import series as series_of
 from tui.playback.levels import Window
-from tui.playback.shown import Quantity, Stretch
+from tui.playback.shown import LARGEST, Quantity, Stretch
 
 FLOOR = 1e-17  # below the resolution of doubles; zeros are drawn here
-TOP = 1e6  # larger magnitudes are drawn here, so that a failing method leaves room for the others
 FEW = 0.05  # of the columns of an error, which may lie below the axis
 LABEL = 5  # columns of a label of decades
 LASTS = 0.1  # of the columns, before and after two errors cross for good
@@ -173,7 +172,7 @@ def time_chart(
 def _part(
     window: Window, cast: Cast, quantity: Quantity, places: Sequence[int], scale: float, is_ghost: bool = False
 ) -> _Part:
-    low, high = (np.clip(scale * side[quantity][:, places], -TOP, TOP) for side in (window.low, window.high))
+    low, high = (np.clip(scale * side[quantity][:, places], -LARGEST, LARGEST) for side in (window.low, window.high))
     owners = [series_of(cast[place]) for place in places]
     if is_ghost:
         return _Part(window, [faint(owner) for owner in owners], [""] * len(owners), low, high)

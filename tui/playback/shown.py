@@ -29,6 +29,10 @@ class Stretch(NamedTuple):
     log_time: bool  # on a logarithmic axis of time
 
 
+LARGEST = 1e6
+"""Larger errors are drawn here, so that a method that fails leaves room for the others."""
+
+
 class Shown(NamedTuple):
     """What is shown of a source, and how."""
 

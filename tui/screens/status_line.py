@@ -60,7 +60,7 @@ def status_row(source: Source, width: int, frames: int | None = None, degrees: b
     if frames is not None:
         parts.append(_Part(9, f"{frames} frames/s", WARN))
     if recording is None:
-        parts.append(_Part(8, "not recorded", QUIET))
+        parts += [_Part(8, "not recorded", QUIET)] if playhead.seen is not None else []  # else it is yet to begin
     elif recording.failed:
         parts.append(_Part(10, "NOT RECORDED", WARN))
     else:

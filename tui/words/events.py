@@ -56,24 +56,25 @@ def numbered(lines: Sequence[EventLine]) -> list[str]:
 
 
 def _inputs(source: Source) -> Iterator[EventLine]:
-    marks = 0
+    marks, backwards = 0, False
     for event in [*source.events, *source.later_marks]:
         where = event.run, event.step, event.t
         if event.kind == "mark":
             marks += 1
             yield EventLine(*where, f"mark {marks}" + (f": {event.text}" if event.text else ""), "mark")
         elif event.kind in ("start", "set_h"):
-            yield EventLine(*where, change_text(event), "change")
+            yield EventLine(*where, change_text(event, backwards), "change")
+            backwards = event.h is not None and event.h < 0
 
 
-def change_text(event: Event) -> str:
-    """A start, or a change of the step size."""
+def change_text(event: Event, was_backwards: bool = False) -> str:
+    """A start, or a change of the step size, after which time may run forwards again."""
     if event.scene is not None:
         scene = event.scene
         return f"start {start(scene.theta, scene.omega) if scene.name == 'custom' else scene.name}, h {scene.h:.4g} s"
     assert event.h is not None
-    backwards, equal = "time reversed, " if event.h < 0 else "", ", equal cost" if event.equal_cost else ""
-    return f"{backwards}h {abs(event.h):.4g} s{equal}"
+    way = "time reversed, " if event.h < 0 else "time forwards again, " if was_backwards else ""
+    return f"{way}h {abs(event.h):.4g} s{', equal cost' if event.equal_cost else ''}"
 
 
 def milestone_text(milestone: Milestone, conserved: bool = True) -> str:

@@ -1,6 +1,7 @@
 """Which scenes a map, a ring or a chart of cost is for, and why it leaves others out."""
 
 from engine.scenes import Scene
+from tui.words.findings import short_name
 
 
 def left_out(scene: Scene, what: str) -> str:
@@ -19,4 +20,6 @@ def ring_left_out(scene: Scene) -> str:
     """Why there is no ring; "" if there may be one."""
     if scene.model == "spring":
         return "Angle and angular velocity of the swing: a projection of four dimensions, without curves or ring."
-    return "" if has_ring(scene) else left_out(scene, "The ring of neighbours")
+    if has_ring(scene):
+        return ""
+    return f"No ring with {', '.join(short_name(each) for each in scene.cast if not each.general)} in the cast."

@@ -88,7 +88,9 @@ def test_the_status_line_shows_a_low_pace_and_a_failed_recording():
     assert "only" not in text(status_row(taped(pace=Pace(due=1.0, done=0.995)), 80))
     broken = taped(recording_status=Taped.recording_status._replace(failed="the disk is full."))
     assert "NOT RECORDED" in text(status_row(broken, 80))
-    assert "not recorded" in text(status_row(taped(recording_status=None), 80))
+    begun = Playhead(seen=0.0)
+    assert "not recorded" in text(status_row(taped(recording_status=None, playhead=begun), 80))
+    assert "record" not in text(status_row(taped(recording_status=None), 80))  # before the first frame
 
 
 def test_speeds_are_read_as_people_say_them():

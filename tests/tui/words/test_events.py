@@ -58,7 +58,7 @@ def test_changes_and_marks_are_listed_and_pauses_are_not():
         "h 0.1 s",
         "mark 2: question 2",
         "time reversed, h 0.1 s",
-        "h 0.4 s, equal cost",
+        "time forwards again, h 0.4 s, equal cost",
         "start 114.6° 0 rad/s, h 0.05 s",
         "h 0.2 s, equal cost",
     ]

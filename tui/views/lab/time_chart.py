@@ -14,7 +14,7 @@ from engine.methods import Cast
 from engine.models.model import ExactMotion
 from engine.run.lockstep import Sample
 from tui.playback.history import ErrorHistory
-from tui.playback.shown import Quantity, Shown, Stretch
+from tui.playback.shown import LARGEST, Quantity, Shown, Stretch
 from tui.playback.source import Source
 from tui.views.messages import Asked, Zoomed
 from tui.views.view import Pane
@@ -67,7 +67,11 @@ def span_text(begin: float, end: float) -> str:
 def read_out(reading: "Reading", letters: Sequence[str], percent: bool, room: int) -> str:
     """All methods at a moment, as far as there is room: "12.35 s: e 3.3, s 0.079, v 0.0057, r 3.8e-5"."""
     numbers = [
-        relative(value, 8, "-").strip() if percent and abs(value) >= 0.01 else f"{value:.2g}".replace("e-0", "e-")
+        f"{'<' if value < 0 else '>'} {value:.0e}".replace("e+0", "e")
+        if abs(value) >= LARGEST  # which is drawn at the edge
+        else relative(value, 8, "-").strip()
+        if percent and abs(value) >= 0.01
+        else f"{value:.2g}".replace("e-0", "e-")
         for value in reading.values
     ]
     text = f"{seconds(reading.t)}:"

@@ -9,9 +9,9 @@ from textual.events import MouseScrollUp
 from engine.scenes import SCENES
 from tests.tui.harness import FPS, lab, player, recorded
 from tests.tui.playback.test_so_far import run
-from tui.drawing.time_chart import time_chart
-from tui.playback.shown import WINDOWS, Shown, Stretch, quantities
-from tui.views.lab.time_chart import TimeChart, modified_energy_of, title
+from tui.drawing.time_chart import Reading, time_chart
+from tui.playback.shown import LARGEST, WINDOWS, Shown, Stretch, quantities
+from tui.views.lab.time_chart import TimeChart, modified_energy_of, read_out, title
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -176,6 +176,12 @@ async def test_after_a_jump_in_a_replay_the_chart_shows_the_past_as_soon_as_it_i
             await theatre.settled()
         known = ~np.isnan(chart._plot.values).all(axis=1)
         assert known.mean() > 0.8
+
+
+def test_what_is_drawn_at_the_edge_is_read_out_as_larger():
+    assert read_out(Reading(1.0, [LARGEST, -LARGEST, 0.5, 1e-5]), "esvr", True, 60) == (
+        "1.00 s: e > 1e6 s < -1e6 v 50.0 % r 1e-5"
+    )
 
 
 async def test_the_pointer_reads_nothing_off_the_chart_of_a_run_that_is_over():

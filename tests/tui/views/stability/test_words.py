@@ -63,9 +63,9 @@ def test_a_symplectic_swing_wobbles_at_a_resonance_or_is_chaotic(theta: float, z
     [
         (0.5, ""),
         (2.0, ""),
-        (2.05, "unstable: s v (z > 2)"),
-        (2.82, "unstable: s v (z > 2)"),
-        (2.9, "unstable: s v (z > 2), r (z > 2.83)"),
+        (2.05, "unstable: e, s v (z > 2)"),
+        (2.82, "unstable: e, s v (z > 2)"),
+        (2.9, "unstable: e, s v (z > 2), r (z > 2.83)"),
     ],
 )
 def test_a_step_beyond_a_linear_limit_is_warned_of(z: float, warning: str):
@@ -74,4 +74,4 @@ def test_a_step_beyond_a_linear_limit_is_warned_of(z: float, warning: str):
 
 def test_at_equal_cost_only_the_dearest_method_may_be_beyond_its_limit():
     assert limit_warning(USUAL_CAST, [0.7, 0.7, 0.7, 2.8]) == ""
-    assert limit_warning(USUAL_CAST, [0.725, 0.725, 0.725, 2.9]) == "unstable: r (z > 2.83)"
+    assert limit_warning(USUAL_CAST, [0.725, 0.725, 0.725, 2.9]) == "unstable: e, r (z > 2.83)"
