@@ -101,6 +101,11 @@ class ReplayCursor:
         while self._filling is not None and is_time_left():
             if next(self._filling, None) is None:
                 self._filling = None
+        return self.knows_past
+
+    @property
+    def knows_past(self) -> bool:
+        """Whether the past of the sample is known as far as it can be."""
         return self._filling is None and not self._stale
 
     def milestone_times(self) -> Iterator[list[float]]:

@@ -95,8 +95,8 @@ class Replay(Source):
 
     @property
     def judgements(self) -> Sequence[Judgement]:
-        """The verdicts that the lab gave; the trends follow from the samples."""
-        computed = super().judgements
+        """The verdicts that the lab gave; the trends follow from the samples, once all those before have been read."""
+        computed = super().judgements if self._cursor.knows_past else [Judgement()] * len(self.scene.cast)
         if not self._said:
             return computed
         since = change_before(self.changes, self.sample.step).step

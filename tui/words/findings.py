@@ -108,7 +108,7 @@ def staying(source: Source, hidden: Collection[str] = ()) -> str:
     seconds = min(judgement.periods for _, judgement in bounded) * period
     *names, last = [short_name(method) for method, _ in bounded]
     who = f"{', '.join(names)} and {last} stay" if names else f"{last} stays"
-    return f"{who} bounded; no trend over {about(seconds)}."
+    return f"{who} bounded; no trend over {about(seconds)}." if seconds else f"{who} bounded."
 
 
 def astray(name: str, judgement: Judgement, error: float) -> str:

@@ -20,6 +20,7 @@ from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
 from tui.words.events import event_lines
+from tui.words.findings import staying
 
 NANOSECOND = 1e-9  # what clocks in a file are rounded to
 LENGTH = 12.0  # s, of the eventful sitting
@@ -133,6 +134,16 @@ def test_after_a_jump_chart_and_trails_show_what_they_show_after_playing(sitting
     np.testing.assert_array_equal(one.t, other.t)
     np.testing.assert_array_equal(one.low["energy_error"], other.low["energy_error"])
     assert jumped.replay.judgements == played.replay.judgements
+
+
+def test_a_trend_is_told_only_when_all_that_it_rests_on_has_been_read(tmp_path):
+    table = Table(recorded(tmp_path / "drift.mcap", 25.0))
+    table.replay.seek(24.0)
+    assert all(judgement.slope is None for judgement in table.replay.judgements)
+    assert staying(table.replay) == "Symplectic Euler and Verlet stay bounded."
+    while not table.replay.fill():
+        pass
+    assert any(judgement.slope is not None for judgement in table.replay.judgements)
 
 
 def test_right_after_a_jump_the_trails_are_there_before_the_rest_of_the_past(table):
