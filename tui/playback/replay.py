@@ -96,7 +96,7 @@ class Replay(Source):
     @property
     def judgements(self) -> Sequence[Judgement]:
         """The verdicts that the lab gave; the trends follow from the samples, once all those before have been read."""
-        computed = super().judgements if self._cursor.knows_past else [Judgement()] * len(self.scene.cast)
+        computed = super().judgements if self.knows_past else [Judgement()] * len(self.scene.cast)
         if not self._said:
             return computed
         since = change_before(self.changes, self.sample.step).step
@@ -117,6 +117,10 @@ class Replay(Source):
     @property
     def stepping(self) -> Stepping:
         return self._cursor.changes(self.playhead.position)[-1].stepping
+
+    @property
+    def knows_past(self) -> bool:
+        return self._cursor.knows_past
 
     @property
     def is_at_rest(self) -> bool:

@@ -106,6 +106,11 @@ class Source(ABC):
         return None
 
     @property
+    def knows_past(self) -> bool:
+        """Whether all of the past of the sample is at hand, as far as it can be; a replay reads it bit by bit."""
+        return True
+
+    @property
     def is_at_rest(self) -> bool:
         """Whether the clock alone changes nothing."""
         return self.playhead.paused

@@ -31,6 +31,7 @@ NAMES: dict[Quantity, tuple[str, str]] = {
     "spring_energy": ("energy in the spring, 1 at the start", "spring energy (1 at start)"),
 }
 """Of the quantity itself, and of its magnitude for a logarithmic chart."""
+READING = "reading what came before …"
 HELP, HELP_ZOOMED = "e: quantity, w: window, z: zoom, y: log", "z Z: zoom, ( ): earlier, later, w: back"
 LONGEST = 2.0  # s of the run for which a chart stands, though its last column be longer
 FEWEST = 8  # rows of the history in a stretch; an hour ago they are seconds apart
@@ -100,6 +101,7 @@ class TimeChart(Pane):
         self._plot: TimePlot | None = None
         self._built: Sample | None = None  # what the plot shows, or the one being built
         self._history: ErrorHistory | None = None  # that it shows; another one knows more of the past
+        self._knew_past = True
         self._pointer: int | None = None  # the column under it
 
     @property
@@ -169,7 +171,7 @@ class TimeChart(Pane):
         source, built, plot = self.source, self._built, self._plot
         if source is None or built is None or plot is None or sample.run != built.run:
             return True
-        if source.history is not self._history:
+        if source.history is not self._history or source.knows_past != self._knew_past:
             return True
         stretch = self._look(source).stretch
         if stretch is not None and min(built.t, sample.t) > stretch.end:
@@ -188,6 +190,7 @@ class TimeChart(Pane):
         """Say in the title what is shown, and below what is under the pointer, or how to change it."""
         if (source := self.source) is None:
             return
+        self._knew_past = source.knows_past
         look, plot, room = self._look(source), self._plot, self.room.width - 6
         above = title(look, source.exact, source.scene.equations.conserved)
         reading = plot.at(self._pointer) if plot is not None and self._pointer is not None else None
@@ -197,7 +200,7 @@ class TimeChart(Pane):
             below = read_out(reading, letters, percent, room)
         else:
             below = modified_energy_of(self.cast) if look.quantity == "shadow_error" else ""
-            help_text = HELP if look.stretch is None else HELP_ZOOMED
+            help_text = READING if not self._knew_past else HELP if look.stretch is None else HELP_ZOOMED
             below = below or (source.ghost.label(room) if source.ghost else help_text)
         if (above, below) != self._titles:  # setting them paints all of the pane
             self._titles = above, below

@@ -169,11 +169,13 @@ async def test_after_a_jump_in_a_replay_the_chart_shows_the_past_as_soon_as_it_i
     async with player(recorded(tmp_path / "long.mcap", 100.0)) as theatre:
         chart = theatre.stage.query_one(TimeChart)
         theatre.stage.seek(90.0)
+        assert "reading" in str(chart.border_subtitle)
         for _ in range(60):
             theatre.now += 1 / FPS
             theatre.stage.frame()
             await theatre.pilot.pause(0)
             await theatre.settled()
+        assert "quantity" in str(chart.border_subtitle)
         known = ~np.isnan(chart._plot.values).all(axis=1)
         assert known.mean() > 0.8
 
