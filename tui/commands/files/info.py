@@ -82,7 +82,7 @@ def _print(recording: "Recording", size: int, degrees: bool) -> None:
     print_table("ll", ("", ""), facts.items())
     print()
     angular = ("theta [deg]", "omega [deg/s]") if degrees else ("theta [rad]", "omega [rad/s]")
-    headers = ("run", "scene", *angular, "h [s]", "steps", "simulated s", "recorded s", "events")
+    headers = ("run", "scene", *angular, "h [s]", "steps", "simulated s", "recorded s", "inputs")
     rows = []
     for run in islice(recording.runs, RUNS_SHOWN):
         angles = (measured(value, degrees) for value in (run.scene.theta, run.scene.omega))
