@@ -110,11 +110,14 @@ def _described(method: Method) -> str:
     )
 
 
-@dataclass(frozen=True, slots=True)
 class _Unknown(Method):
-    """A method of which only what was recorded is known."""
+    """A method of which only what was recorded is known: of a user's own, the SHA-256 of its text is its reference."""
 
-    sha256: str = ""  # of a user's own
+    __slots__ = ()
+
+    @property
+    def sha256(self) -> str:
+        return self.reference
 
 
 def _no_phases(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
@@ -135,10 +138,9 @@ def _unknown_method(key: str, sha256: str) -> Method:
         order=1,
         force_evaluations=1,
         linear_limit=0.0,
-        reference="",
+        reference=sha256,
         used=None,
         models=tuple(MODELS),
-        sha256=sha256,
     )
 
 

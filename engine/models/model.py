@@ -3,7 +3,6 @@
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any, ClassVar, Literal, NamedTuple
 
 Number = Any  # float, complex, NumPy array or mpmath number: one definition of a method serves them all
@@ -50,8 +49,7 @@ def _log(energy: float) -> float:
 Regime = Literal["libration", "rotation", "separatrix", "equilibrium"]
 
 
-@dataclass(frozen=True, slots=True)
-class ExactMotion:
+class ExactMotion(NamedTuple):
     """The exact motion from one start."""
 
     at: Callable[[float], State]

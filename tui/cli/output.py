@@ -1,7 +1,5 @@
 """What commands print: JSON, CSV, tables and pictures on stdout; warnings and progress on stderr."""
 
-import csv
-import json
 import math
 import shutil
 import sys
@@ -42,6 +40,8 @@ def write_json(name: str, fields: Mapping[str, Any]) -> None:
 
     An iterator becomes a list, written item by item: it may be long.
     """
+    import json  # here and below, because the lab needs neither for its first paint
+
     encode = json.JSONEncoder(allow_nan=False, indent=2).encode
     lists = [key for key, value in fields.items() if isinstance(value, Iterator)]
     rest = encode({"schema": f"pendu.{name}/1", **fields, **{key: [] for key in lists}})
@@ -58,6 +58,8 @@ def write_json(name: str, fields: Mapping[str, Any]) -> None:
 
 def write_csv(out: TextIO, header: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
     """Write rows so that every number reads back the same; None is an empty field."""
+    import csv
+
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(header)
     writer.writerows(rows)
