@@ -10,7 +10,6 @@ varies, the usual cost counts: measured at each h and phase it would change the 
 import math
 from bisect import bisect_left
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 from functools import cache
 from operator import attrgetter
 from typing import NamedTuple, Self
@@ -19,8 +18,7 @@ from engine.methods import USUAL_CAST, Cast, Method
 from engine.scenes import check_h
 
 
-@dataclass(frozen=True, slots=True)
-class Stepping:
+class Stepping(NamedTuple):
     """How a run steps: its step size, whether at equal cost, and the methods that share it."""
 
     h: float  # s, of the lockstep, and so of the method that is not cut; negative: time runs backwards
@@ -45,7 +43,7 @@ class Stepping:
     def with_own(self, method: Method, h: float) -> Self:
         """With |h| [s] as this method's own step size, in the same direction; or as h, if it is not in the cast."""
         parts = self.parts[self.cast.index(method)] if method in self.cast else 1
-        return replace(self, h=math.copysign(h * parts, self.h))
+        return self._replace(h=math.copysign(h * parts, self.h))
 
     def next(self, up: bool) -> Self:
         """With the smallest own step size at the next rung of 1, 2, 5, 10, …, or at the one before."""
@@ -53,15 +51,15 @@ class Stepping:
 
     def with_smallest(self, h: float) -> Self:
         """With |h| [s] as the smallest own step size, in the same direction."""
-        return replace(self, h=math.copysign(h * max(self.parts), self.h))
+        return self._replace(h=math.copysign(h * max(self.parts), self.h))
 
     def reversed(self) -> Self:
         """With time running the other way."""
-        return replace(self, h=-self.h)
+        return self._replace(h=-self.h)
 
     def toggled(self) -> Self:
         """With equal cost switched on, or off; the smallest own step size stays."""
-        return replace(self, equal_cost=not self.equal_cost).with_smallest(self.smallest)
+        return self._replace(equal_cost=not self.equal_cost).with_smallest(self.smallest)
 
     def check(self, w0: float) -> None:
         """Raise SceneError unless a pendulum of natural frequency w0 [rad/s] can be given each method's own step."""

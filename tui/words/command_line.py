@@ -1,7 +1,6 @@
 """The shell command that brings back what is on the screen."""
 
 import shlex
-from dataclasses import replace
 
 from engine.methods.own import OwnMethod
 from engine.scenes import LIMITS, SCENES, Scene
@@ -41,7 +40,7 @@ def _start_h(source: Source) -> float | None:
         return None
     stepping = source.stepping
     candidates = source.scene.h, stepping.smallest  # a scene's h is positive: time does not run back from its start
-    return next((h for h in candidates if replace(stepping, h=1.0).with_smallest(h) == stepping), None)
+    return next((h for h in candidates if stepping._replace(h=1.0).with_smallest(h) == stepping), None)
 
 
 def _moment(file: str, position: float) -> str:

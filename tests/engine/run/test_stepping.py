@@ -15,7 +15,9 @@ from engine.run.stepping import Stepping, SteppingChange, change_before
 from engine.scenes import DEFAULT_SCENE, Scene, SceneError
 
 STEPPINGS = st.builds(
-    Stepping, st.floats(1e-9, 1e3).flatmap(lambda size: st.sampled_from([size, -size])), st.booleans()
+    lambda h, equal_cost: Stepping(h, equal_cost),  # st.builds would also choose the cast
+    st.floats(1e-9, 1e3).flatmap(lambda size: st.sampled_from([size, -size])),
+    st.booleans(),
 )
 EQUAL = Stepping(0.2, equal_cost=True)
 

@@ -1,7 +1,5 @@
 """What the lab noticed is recorded, and a replay says the same, whatever this version would say."""
 
-from dataclasses import replace
-
 import pytest
 
 from engine.scenes import SCENES
@@ -23,7 +21,7 @@ def lab(tmp_path):
     live = bench.live
     first = list(live.milestones)
     live.step(-(live.sample.step - 200))
-    live.set_stepping(replace(live.stepping, h=0.02))
+    live.set_stepping(live.stepping._replace(h=0.02))
     live.pause(False)
     bench.run(8.0)
     live.close()

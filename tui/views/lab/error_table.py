@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from itertools import accumulate
 from typing import ClassVar, NamedTuple
 
@@ -38,8 +37,7 @@ class TableLine(NamedTuple):
     degrees: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class Column:
+class Column(NamedTuple):
     """A column: its head and width where room is scarce and where it is not, and how its cells are made."""
 
     keep: int  # columns with the smallest numbers go first where there is no room

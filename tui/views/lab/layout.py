@@ -1,8 +1,8 @@
 """Where the lab's panes go, by the free cells: pure arithmetic, and Textual's Layout that follows it."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from itertools import pairwise
+from typing import NamedTuple
 
 from textual.geometry import NULL_OFFSET, NULL_SPACING, Region, Size
 from textual.layout import ArrangeResult, Layout, WidgetPlacement
@@ -16,8 +16,7 @@ TWO_ROWS = 20  # rows from which on there are events, and phase space below the 
 THREE_ROWS = 45  # rows from which on there are two charts
 
 
-@dataclass(frozen=True, slots=True)
-class Places:
+class Places(NamedTuple):
     """The region of each pane, None where it is not shown."""
 
     pendulums: tuple[Region, ...] = ()  # of the methods that are shown, in order; none if they share one

@@ -5,8 +5,8 @@ the middle, since explicit Euler goes over the top; where no method can, it is a
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import cos, isfinite, pi, sin
+from typing import NamedTuple
 
 from textual.content import Content
 
@@ -24,8 +24,7 @@ STRETCHED, LONGEST = 1.1, 4.0  # rods of a spring, over that at rest: what there
 TRAIL = 15  # samples, half a second at 30 frames a second
 
 
-@dataclass(frozen=True, slots=True)
-class Bob:
+class Bob(NamedTuple):
     """One pendulum to draw."""
 
     theta: float  # rad from the downward vertical

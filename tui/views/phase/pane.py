@@ -1,6 +1,5 @@
 """PhasePane: phase space, the methods in it, and a start to choose with the mouse or the keyboard."""
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import events
@@ -91,7 +90,7 @@ class PhasePane(Chooser[State]):
         else:
             found = Viewport.portrait(*self.cells, self.source.scene, self.wrap).steadied(self._whole)
             self._whole = found
-        return found if found.degrees == self.shown.degrees else replace(found, degrees=self.shown.degrees)
+        return found if found.degrees == self.shown.degrees else found._replace(degrees=self.shown.degrees)
 
     @property
     def aim(self) -> State | None:

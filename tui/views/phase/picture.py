@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,8 +25,7 @@ Floats = NDArray[np.float64]
 Track = tuple[Floats, Floats]  # theta [rad], omega [rad/s]
 
 
-@dataclass(frozen=True, slots=True)
-class PhasePoint:
+class PhasePoint(NamedTuple):
     """Where a method is, and its ring of neighbouring starts."""
 
     theta: float  # rad

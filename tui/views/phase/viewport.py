@@ -5,8 +5,7 @@ The viewport's middle is the centre of its middle cell, so that theta = 0 and om
 """
 
 import math
-from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 from engine.models.model import State
 from engine.scenes import Scene
@@ -14,8 +13,7 @@ from engine.scenes import Scene
 NARROWEST, WIDEST = 1e-6, 200 * math.pi  # rad of theta from the left edge to the right one
 
 
-@dataclass(frozen=True, slots=True)
-class Viewport:
+class Viewport(NamedTuple):
     """A stretch of phase space on `columns` × `rows` cells."""
 
     columns: int
@@ -100,8 +98,7 @@ class Viewport:
         if abs(factor - 1) < 1e-9:
             return self
         right, down = x - self.middle[0], y - self.middle[1]
-        return replace(
-            self,
+        return self._replace(
             theta=self.theta + right * self.theta_per_dot * (1 - factor),
             omega=self.omega - down * self.omega_per_dot * (1 - factor),
             theta_per_dot=self.theta_per_dot * factor,
@@ -113,7 +110,7 @@ class Viewport:
         theta = self.theta - right * self.theta_per_dot
         if self.wrap and abs(theta) > math.pi:
             theta = math.remainder(theta, math.tau)
-        return replace(self, theta=theta, omega=self.omega + down * self.omega_per_dot)
+        return self._replace(theta=theta, omega=self.omega + down * self.omega_per_dot)
 
     def stepped(self, start: State, right: float, up: float) -> tuple[State, "Viewport"]:
         """A state so many dots from another one, or from the middle if that is out of view; and a viewport with it."""
@@ -135,8 +132,7 @@ class Viewport:
         """The same stretch of phase space on another rectangle."""
         if (columns, rows) == (self.columns, self.rows):
             return self
-        return replace(
-            self,
+        return self._replace(
             columns=columns,
             rows=rows,
             theta_per_dot=self.theta_per_dot * self.columns / columns,

@@ -2,7 +2,7 @@
 
 import io
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 from rich.console import Console
@@ -41,7 +41,7 @@ class Study:
 
     def picture(self, columns: int, rows: int) -> Picture:
         model, h, start = self.scene.equations, self.scene.h, (self.scene.theta, self.scene.omega)
-        viewport = replace(Viewport.portrait(columns, rows, self.scene, wrap=model.turns), degrees=self.degrees)
+        viewport = Viewport.portrait(columns, rows, self.scene, wrap=model.turns)._replace(degrees=self.degrees)
         section, done = Section(viewport, model, self.method), 0
         with progress("section") as show:
             for piece in pieces(self.method, model, h, starts(viewport, self.starts), self.steps):
