@@ -80,11 +80,11 @@ class Painting(Widget):
 
 
 class Painter(App[None]):
-    """Shows the film to and fro.  + and - change a word at once, as in the lab."""
+    """Shows the film to and fro, with r from its start.  + and - change a word at once, as in the lab."""
 
     ALLOW_SELECT = False
     CSS = "Screen { overflow: hidden; } #told { dock: bottom; height: 1; width: 10; }"
-    BINDINGS: ClassVar[Any] = [("+", "tell(0)"), ("-", "tell(1)"), ("q", "quit")]
+    BINDINGS: ClassVar[Any] = [("+", "tell(0)"), ("-", "tell(1)"), ("r", "rewind"), ("q", "quit")]
 
     def __init__(self, panes: list[Pane]) -> None:
         super().__init__()
@@ -126,6 +126,13 @@ class Painter(App[None]):
             if regions := changes[min(before, self._at)]:
                 painting.strips = pane.frames[self._at]
                 painting.refresh(*regions)
+
+    def action_rewind(self) -> None:
+        """Begin anew."""
+        self._at, self._step = 0, 1
+        for painting, pane in zip(self._paintings, self._panes, strict=True):
+            painting.strips = pane.frames[0]
+            painting.refresh()
 
     def action_tell(self, number: int) -> None:
         """Show what a key changes."""

@@ -149,6 +149,7 @@ def of_lab_and_painter(size: tuple[int, int] = SMALL, *key: str) -> list[Figures
         ours.type(F3 if key else "")
         for _ in drain([ours, textual], film.BEGIN - 2.0):
             pass
+        textual.type("r")  # the film is of the seconds that the lab is at
         both = watched(ours, textual)
         for program, figures in zip((ours, textual), both, strict=True):
             program.run(0.5)  # what has piled up meanwhile
