@@ -68,7 +68,7 @@ class Recorder:
         self._flush_by_time = wall is not None and facts is None  # real time passes while it records
         self._last: Sample | None = None
         self._channels: dict[str, Channel] = {}
-        self._declared: set[str] = set()  # the names of those that the chunk being built declares
+        self._declared: set[str] = set()  # names of channels, in the chunk being built
         self._schemas: dict[str, int] = {}
         self._topics: list[str] = []  # of the run's methods
         self._digest = Digest()

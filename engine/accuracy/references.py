@@ -177,7 +177,7 @@ class References:
 
     floor: float  # s, of the closed form
     taylor: Sequence[TaylorPoint] = ()
-    absent: str | None = None  # why there is no Taylor series, where there is none
+    absent: str | None = None  # the reason why there is no Taylor series
 
 
 def references(scene: Scene, time: float, clock: Clock, fast: bool) -> References:

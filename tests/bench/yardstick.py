@@ -2,9 +2,9 @@
 
 python tests/bench/yardstick.py [lab|phase|replay|paused|start] …    all of them by default
 
-The real program runs on a pseudo-terminal of 120×40 (phase view: 200×60), recording, everything moving; and beside
-it, in the same seconds, the app in painter.py, which shows a film of the lab: if they were watched in turns, what else
-the machine does would be in the ratio.  Keys are timed one after the other.  Processor time is the process's own.
+The real program runs on a pseudo-terminal of 120×40 (phase view: 200×60), recording, with everything moving.  The app
+in painter.py shows a film of the lab in the same seconds, so that other work of the machine slows both alike.  Keys
+are timed for one program at a time.  Processor time is the process's own.
 A changed row is a piece of a row that is sent; a frame is a burst of output that redraws a pendulum.
 """
 
@@ -135,7 +135,7 @@ def of_rounds(rounds: list[Figures]) -> Figures:
 
 
 def beside(one_round: Callable[[], list[Figures]], names: tuple[str, str]) -> dict[str, Figures]:
-    """The figures of two programs beside each other, and the first one's over the second one's."""
+    """The mean figures of two programs that ran at the same time, and their ratios."""
     rounds = [one_round() for _ in range(ROUNDS)]
     a, b = of_rounds([first for first, _ in rounds]), of_rounds([second for _, second in rounds])
     ratio = {name: round(a[name] / b[name], 2) for name in a if b.get(name)}

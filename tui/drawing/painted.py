@@ -30,7 +30,7 @@ class _Looks(dict[Style, Style]):
 
 
 class Line(Strip):
-    """A row that goes when it is replaced: one of Textual's remembers itself as its only part, for the collector."""
+    """A row that is freed when it is replaced.  A Strip cut at its own width keeps itself in its cache."""
 
     __slots__ = ()
 

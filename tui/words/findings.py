@@ -166,12 +166,12 @@ def so_far(source: Source, hidden: Collection[str] = ()) -> str:
 def limit_warning(cast: Cast, zs: Sequence[float]) -> str:
     """As "unstable: e, s v (z > 2), r (z > 2.83)", the methods by their letters; "" below all limits.
 
-    `zs` are in the order of the cast.  Explicit Euler, which is never stable, is named beside others only.
+    `zs` are in the order of the cast.  Explicit Euler is never stable, so it is named only beside others.
     """
     letters: dict[float, list[str]] = {}
     for method, z in zip(cast, zs, strict=True):
         if method.linear_limit and method.linear_limit < z:
             letters.setdefault(method.linear_limit, []).append(method.letter)
     each = ", ".join(f"{' '.join(who)} (z > {limit:.3g})" for limit, who in letters.items())
-    always = " ".join(method.letter for method in cast if method.linear_limit == 0.0)
-    return f"unstable: {f'{always}, ' * bool(always)}{each}" if each else ""
+    always = [method.letter for method in cast if method.linear_limit == 0.0]
+    return f"unstable: {', '.join([*always, each])}" if each else ""

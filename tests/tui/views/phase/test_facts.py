@@ -11,6 +11,7 @@ from engine.scenes import SCENES, Scene
 from tui.playback.live import Live
 from tui.playback.shown import Shown
 from tui.views.phase.facts import area_text, fact_rows, place_text
+from tui.words.scope import ring_left_out
 
 W0 = Scene().w0
 
@@ -89,6 +90,13 @@ def test_a_ring_of_the_run_before_is_not_shown():
     rows = fact_rows(live, Shown(), neighbours, 80)
     assert "7 steps behind" in rows[0][0][0]
     assert [row[1][0].split()[:2] for row in rows[2:]] == 5 * [["-", "-"]]
+
+
+def test_where_there_is_no_ring_it_says_which_method_has_none():
+    assert ring_left_out(SCENES["drift"]) == ring_left_out(SCENES["damped"]) == ""
+    halving = SCENES["drift"].with_cast((*USUAL_CAST, method_of("halving_verlet")))
+    assert ring_left_out(halving) == "No ring with Step doubling in the cast."
+    assert "four dimensions" in ring_left_out(SCENES["stiff-limit"])
 
 
 @pytest.mark.parametrize("width", range(20, 90, 7))
