@@ -53,12 +53,6 @@ def test_the_import_contracts_hold():
     assert "0 broken" in done.stdout
 
 
-@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(ROOT)))
-def test_a_module_is_one_idea_on_at_most_250_lines(path):
-    lines = path.read_text(encoding="utf-8").splitlines()
-    assert len(lines) <= 250
-
-
 PACKAGES = sorted({path.parent.relative_to(ROOT) for path in MODULES})
 
 
