@@ -14,6 +14,7 @@ KEYS = {1.5: b"+", 2.5: b"v", 4.0: b"q"}  # s after the first output: key
 
 
 def main() -> int:
+    """Return 1 unless the program ended with code 0 after painting."""
     pid, terminal = pty.fork()
     if pid == 0:
         fcntl.ioctl(0, termios.TIOCSWINSZ, struct.pack("HHHH", 30, 100, 0, 0))
