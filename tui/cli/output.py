@@ -6,14 +6,11 @@ import sys
 import textwrap
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from operator import sub
 from time import monotonic
 from typing import TYPE_CHECKING, Any, TextIO
 
 from engine.scenes import LIMITS, Scene
-from recordings.errors import printable
 
-SENTENCE = 24  # columns; a longer cell may be wrapped
 LONG = 120.0  # s of work that are announced where there is no bar
 
 if TYPE_CHECKING:
@@ -88,40 +85,6 @@ def scene_line(scene: Scene, *more: str, degrees: bool = False) -> str:
     return f"{scene.name}{model}: {', '.join(f'{name} {value:g}' for name, value in numbers.items())} ({units})"
 
 
-def print_table(align: str, headers: Sequence[str], rows: Iterable[Iterable[str]]) -> None:
-    """Print a table; `align` has an l or an r for each column.
-
-    No word is broken, and only a SENTENCE is wrapped: where the columns do not fit, the last ones are left out, which
-    a line below says.
-    """
-    from rich.cells import cell_len
-    from rich.table import Table
-
-    lines = [[printable(cell, limit=1000) for cell in row] for row in rows]  # no text is to steer the terminal
-    on, count = console(240), len(headers)  # a file or a pipe has room for every column
-    columns = [[line[at] for line in lines] for at in range(count)]
-
-    def least(at: int) -> int:
-        whole = [text for text in columns[at] if not at or cell_len(text) <= SENTENCE]
-        words = [word for text in (headers[at], *columns[at]) for word in text.split()]
-        return max(map(cell_len, (*whole, *words)), default=0)
-
-    leasts = [least(at) for at in range(count)]
-    widths = [max(map(cell_len, (headers[at], *columns[at]))) for at in range(count)]
-    while count > 2 and sum(leasts[:count]) + 2 * (count - 1) > on.width:
-        count -= 1
-    while sum(widths[:count]) + 2 * (count - 1) > on.width and (slack := max(map(sub, widths[:count], leasts))) > 0:
-        widths[[width - least for width, least in zip(widths[:count], leasts, strict=False)].index(slack)] -= 1
-    table = Table(box=None, pad_edge=False, header_style="bold", show_header=any(headers))
-    for side, header, width in zip(align, headers[:count], widths, strict=False):
-        table.add_column(header, justify="left" if side == "l" else "right", width=width, overflow="fold")
-    for line in lines:
-        table.add_row(*line[:count])
-    _print(on, [table])
-    if left := ", ".join(headers[count:]):
-        print_lines(f"Only in a wider terminal, or with --json: {left}.")
-
-
 def print_lines(*lines: str) -> None:
     """Print sentences, wrapped between words where the terminal is narrower."""
     for line in lines:
@@ -130,7 +93,7 @@ def print_lines(*lines: str) -> None:
 
 def print_picture(on: "Console", lines: "Iterable[Text]") -> None:
     """Print lines of coloured characters, cropped to the width of the console."""
-    _print(on, lines, no_wrap=True, overflow="crop")
+    draw(on, lines, no_wrap=True, overflow="crop")
 
 
 def console(piped_width: int | None = None) -> "Console":
@@ -140,7 +103,8 @@ def console(piped_width: int | None = None) -> "Console":
     return Console(width=None if sys.stdout.isatty() else piped_width, markup=False, emoji=False, highlight=False)
 
 
-def _print(on: "Console", renderables: "Iterable[RenderableType]", **how: Any) -> None:
+def draw(on: "Console", renderables: "Iterable[RenderableType]", **how: Any) -> None:
+    """Print what Rich draws."""
     with on.capture() as drawn:  # or Rich ends the process when the reader of a pipe is gone
         for renderable in renderables:
             on.print(renderable, **how)

@@ -13,7 +13,8 @@ from pathlib import Path
 from tempfile import TemporaryFile
 
 from tui.cli.errors import Exit, UserError
-from tui.cli.output import print_table, write_json
+from tui.cli.output import write_json
+from tui.cli.report import print_table
 from tui.terminal.options import SMALLEST, colours, is_utf8
 from tui.words.numbers import file_size
 

@@ -9,7 +9,8 @@ from engine.methods import METHODS, Cast, Method
 from engine.scenes import DEFAULT_SCENE
 from tui.cli.cast import add_cast_options, cast_of
 from tui.cli.errors import Exit
-from tui.cli.output import fields_of, print_lines, print_table, write_json
+from tui.cli.output import fields_of, print_lines, write_json
+from tui.cli.report import print_table
 
 EXAMPLES = """\
 examples:

@@ -4,7 +4,8 @@ import argparse
 
 from engine.scenes import GROUPS, LEFT_OUT, SCENES
 from tui.cli.errors import Exit
-from tui.cli.output import print_lines, print_table, write_json
+from tui.cli.output import print_lines, write_json
+from tui.cli.report import print_table
 
 EXAMPLES = """\
 examples:

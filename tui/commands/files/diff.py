@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 from recordings.errors import printable
 from tui.cli.errors import Exit
 from tui.cli.options import add_recording
-from tui.cli.output import difference_fields, fields_of, print_table, progress, warn, write_json
+from tui.cli.output import difference_fields, fields_of, progress, warn, write_json
+from tui.cli.report import print_table
 from tui.words.numbers import counted, scientific, seconds
 
 if TYPE_CHECKING:

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 from recordings.errors import printable
 from tui.cli.errors import Exit
 from tui.cli.options import add_degrees, add_recording
-from tui.cli.output import fields_of, print_table, progress, write_json
+from tui.cli.output import fields_of, progress, write_json
+from tui.cli.report import print_table
 from tui.words.numbers import counted, file_size, measured, seconds
 
 if TYPE_CHECKING:

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 from recordings.errors import RecordingError, printable
 from tui.cli.errors import Exit, UserError
 from tui.cli.options import count
-from tui.cli.output import print_table, write_json
+from tui.cli.output import write_json
+from tui.cli.report import print_table
 from tui.words.numbers import file_size, seconds
 
 if TYPE_CHECKING:

@@ -15,7 +15,8 @@ from tui.cli.errors import Exit, UserError
 from tui.cli.fail_if import FIELDS, parse
 from tui.cli.files import check_free, stop_requests
 from tui.cli.options import Suggestions, add_degrees, add_file, count, positive
-from tui.cli.output import fields_of, print_lines, print_table, progress, scene_line, warn, write_json
+from tui.cli.output import fields_of, print_lines, progress, scene_line, warn, write_json
+from tui.cli.report import print_table
 from tui.cli.scene import add_scene_options, scene_of
 from tui.words.numbers import file_size, measured, z_name
 

@@ -14,7 +14,8 @@ from engine.accuracy.references import TAYLOR_20, AnyPoint, Reference, Reference
 from engine.accuracy.study import REASONS, ErrorKind, Order, Point
 from engine.methods import Method
 from engine.scenes import Scene
-from tui.cli.output import console, fields_of, print_picture, print_table, scene_line, write_csv, write_json
+from tui.cli.output import console, fields_of, print_picture, scene_line, write_csv, write_json
+from tui.cli.report import print_table
 from tui.commands.studies.reports.orders import claimed, order_remarks
 from tui.commands.studies.reports.references import print_references, rows_of
 from tui.drawing.palette import PALETTES

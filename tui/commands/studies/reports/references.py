@@ -5,7 +5,7 @@ from typing import Any
 
 from engine.accuracy.references import CLOSED_FORM, TAYLOR_20, AnyPoint, References
 from engine.accuracy.study import REASONS, ErrorKind, Point
-from tui.cli.output import print_table
+from tui.cli.report import print_table
 from tui.views.accuracy.chart import MARKS
 from tui.words.accuracy import length
 

@@ -15,7 +15,8 @@ from engine.phase_space.section import OrbitKind, kind_of, least_lyapunov, orbit
 from engine.scenes import Scene
 from tui.cli.errors import Exit
 from tui.cli.files import whole_file
-from tui.cli.output import console, print_lines, print_picture, print_table, progress, scene_line, write_json
+from tui.cli.output import console, print_lines, print_picture, progress, scene_line, write_json
+from tui.cli.report import print_table
 from tui.drawing.canvas import Picture
 from tui.drawing.palette import PALETTES
 from tui.terminal.options import TerminalOptions

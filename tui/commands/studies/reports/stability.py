@@ -22,7 +22,8 @@ from engine.stability.outcomes import BAND, CELL, CHAOTIC, FATES, UNKNOWN, Cells
 from engine.stability.study import Row, StabilityStudy, amplitude
 from tui.cli.errors import Exit
 from tui.cli.files import whole_file
-from tui.cli.output import console, print_lines, print_picture, print_table, warn, write_csv, write_json
+from tui.cli.output import console, print_lines, print_picture, warn, write_csv, write_json
+from tui.cli.report import print_table
 from tui.drawing.palette import PALETTES
 from tui.views.stability.picture import picture
 from tui.views.stability.words import said

@@ -1,0 +1,150 @@
+"""A report: the result of a command, printed as a table, as JSON or as CSV.
+
+A command makes one from the rows that it computed, and every form follows from the same rows:
+
+    report = Report(
+        name="run",
+        title="drift: 600 steps to t = 30 s",
+        columns=(Column("method", "method"), Column("largest", "max_energy_error", ".2e")),
+        rows=[{"method": "rk4", "max_energy_error": 3.1e-7}],
+        fields={"time": 30.0, "methods": rows},
+        notes=["Errors are relative to the first energy."],
+    )
+    report.show(form_of(options))
+"""
+
+import argparse
+import csv
+import json
+import sys
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import chain
+from operator import itemgetter
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TextIO
+
+from recordings.errors import printable
+from tui.cli.output import console, draw, print_lines
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+    from rich.table import Table as RichTable
+
+Form = Literal["table", "json", "csv"]
+MAX_CELL = 1000  # characters
+WIDTH_OF_FILES = 240  # columns of a table where the output is no terminal
+
+
+class Column(NamedTuple):
+    """A column of a table: its head, and how the cell of a row is written."""
+
+    head: str
+    cell: str | Callable[[Any], str | None]  # the name of a field, or a function of the row
+    form: str = ""  # a format specification; cells written with one are aligned right
+    right: bool = False
+
+    def text(self, row: Any) -> str:
+        """Return the cell of a row; a dash where there is no value."""
+        value = row[self.cell] if isinstance(self.cell, str) else self.cell(row)
+        text = "-" if value is None else format(value, self.form)
+        return printable(text, MAX_CELL)  # no text may steer the terminal
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """Rows in columns, folded to the width of the terminal."""
+
+    columns: Sequence[Column]
+    rows: Iterable[Any]
+
+    def show(self) -> None:
+        draw(console(WIDTH_OF_FILES), [self.drawn()])
+
+    def drawn(self) -> "RichTable":
+        """Return the table as Rich draws it."""
+        from rich.table import Table as RichTable
+
+        headed = any(column.head for column in self.columns)
+        table = RichTable(box=None, pad_edge=False, header_style="bold", show_header=headed)
+        for number, column in enumerate(self.columns):
+            side: Literal["left", "right"] = "right" if column.right or column.form else "left"
+            table.add_column(column.head, justify=side, overflow="fold", no_wrap=number == 0)
+        for row in self.rows:
+            table.add_row(*(column.text(row) for column in self.columns))
+        return table
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Report:
+    """The result of a command.
+
+    The table shows `rows` in `columns`, below `title` and above `notes`: sentences, more tables, and pictures.
+    JSON is the one object of `fields`, CSV a line for each of `records`, which are the rows by default.
+    """
+
+    name: str  # of the schema
+    version: int = 1
+    title: str = ""
+    columns: Sequence[Column] = ()
+    rows: Sequence[Any] = ()
+    fields: Mapping[str, Any]
+    records: Iterable[Mapping[str, Any]] | None = None
+    notes: Sequence["str | Table | RenderableType"] = ()
+
+    def show(self, form: Form = "table", out: TextIO | None = None) -> None:
+        """Print the report on `out` (default: stdout).  Raises ValueError for JSON of nan or inf."""
+        if form == "json":
+            schema = f"pendu.{self.name}/{self.version}"
+            text = json.dumps({"schema": schema, **self.fields}, indent=2, allow_nan=False)
+            print(text, file=out)
+        elif form == "csv":
+            write_records(self.rows if self.records is None else self.records, out or sys.stdout)
+        else:
+            self._show_table()
+
+    def _show_table(self) -> None:
+        if self.title:
+            print_lines(self.title)
+        if self.columns:
+            Table(self.columns, self.rows).show()
+        for note in self.notes:
+            if isinstance(note, str):
+                print_lines(note)
+            elif isinstance(note, Table):
+                note.show()
+            else:
+                draw(console(WIDTH_OF_FILES), [note], no_wrap=True, overflow="crop")
+
+
+def print_table(align: str, headers: Sequence[str], rows: Iterable[Iterable[str]]) -> None:
+    """Print a table of texts; `align` has an l or an r for each column."""
+    columns = [
+        Column(head, itemgetter(at), right=side == "r")
+        for at, (side, head) in enumerate(zip(align, headers, strict=True))
+    ]
+    Table(columns, [list(row) for row in rows]).show()
+
+
+def write_records(records: Iterable[Mapping[str, Any]], out: TextIO) -> None:
+    """Write CSV headed by the fields of the first record; numbers read back the same, None is an empty field."""
+    rest = iter(records)
+    first = next(rest, None)
+    if first is not None:
+        writer = csv.DictWriter(out, list(first), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(chain([first], rest))
+
+
+def add_report_options(parser: argparse._ActionsContainer, *, csv: bool = False) -> None:
+    """Add --json and, where the rows make a table of numbers, --csv; `form_of` reads them."""
+    forms = parser.add_mutually_exclusive_group()
+    forms.add_argument("--json", action="store_true", help="one JSON object, SI units")
+    if csv:
+        forms.add_argument("--csv", action="store_true", help="a line of CSV for each row")
+
+
+def form_of(options: argparse.Namespace) -> Form:
+    """Return the form that the options ask for."""
+    if options.json:
+        return "json"
+    return "csv" if getattr(options, "csv", False) else "table"
