@@ -13,7 +13,7 @@ from engine.run.observer import Milestone
 from engine.scenes import Scene
 from recordings.errors import RecordingError, printable, printable_items
 from recordings.events import Entry, Seal
-from recordings.fields import in_plane
+from recordings.fields import extra_names
 from recordings.format import (
     CLOCK_OFFSET,
     EVENTS,
@@ -86,7 +86,7 @@ class Layout:
                     raise RecordingError("a milestone is of a method that the file does not have")
                 yield [message], Entry(clock_of(message), event)
             elif message.channel in self.methods and not only_events:
-                run, step, t, reading = decode_reading(message.data, in_plane(self.methods[message.channel][0]))
+                run, step, t, reading = decode_reading(message.data, extra_names(self.methods[message.channel][0]))
                 if not readings:
                     head = run, step, t
                     if run != run_before:

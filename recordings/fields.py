@@ -51,16 +51,13 @@ READING = (
     Field("energy_error_high", about="since the sample before", required=False),
     Field("diverged_at", "s", required=False),
 )
-"""One method in a sample: the attributes of a Reading, in order.  `verify` compares all of them."""
+"""One method in a sample: the attributes of a Reading but `extra`, in order.  `verify` compares all of them."""
 
-PLANE = (
-    Field("x", about="over the length at rest", required=False),
-    Field("y", about="likewise, upwards from the pivot", required=False),
-    Field("vx", "s^-1", required=False),
-    Field("vy", "s^-1", required=False),
-    Field("spring_energy", about="over that at the start", required=False),
-)
-"""What follows of a model in the plane: position, velocity, and the energy in the spring; all of them or none."""
+EXTRA = {
+    key: tuple(Field(each.name, each.unit, each.about, required=False) for each in model.variables)
+    for key, model in MODELS.items()
+}
+"""What follows of a model with variables of its own; all of them."""
 
 SCENE_NUMBERS = ("theta", "omega", "length", "gravity", "h")
 """The attributes of a Scene that are numbers, besides its model's parameters."""
@@ -98,36 +95,31 @@ SEAL = (
 )
 """The last message of a chunk."""
 
-VALUES = tuple(field.name for field in (*READING, *PLANE))
-IN_PLANE = tuple(field.name for field in PLANE)
+EXTRA_NAMES = tuple(dict.fromkeys(field.name for fields in EXTRA.values() for field in fields))
+VALUES = (*(field.name for field in READING), *EXTRA_NAMES)
 NUMBERS = tuple(field.name for field in READING if field.required)
-PHASE = ("theta", "omega", "x", "y", "vx", "vy")
+PHASE = ("theta", "omega", *(each.name for model in MODELS.values() for each in model.variables if each.is_state))
 EXTREMES = ("energy_error_low", "energy_error_high")
 
 numbers_of = attrgetter(*NUMBERS)
 """The values of a Reading that are always there."""
 _scalars_of = attrgetter(*(field.name for field in READING))
-_NOWHERE = (None,) * len(PLANE)
 
 
 def values_of(reading: Reading) -> tuple[float | None, ...]:
     """The values of a Reading, in the order of VALUES; None for those that it does not have."""
-    return *_scalars_of(reading), *_plane_of(reading)
+    return *_scalars_of(reading), *map(reading.extra.get, EXTRA_NAMES)
 
 
-def _plane_of(reading: Reading) -> tuple[float | None, ...]:
-    z, w = reading.position, reading.velocity
-    return _NOWHERE if z is None or w is None else (z.real, z.imag, w.real, w.imag, reading.spring_energy)
-
-
-def in_plane(model: str) -> bool:
-    """Whether the readings of a model have a place in the plane."""
-    return model in MODELS and MODELS[model].in_plane
+def extra_names(model: str) -> tuple[str, ...]:
+    """The names of the variables that the readings of a model have besides the common ones."""
+    return tuple(field.name for field in EXTRA.get(model, ()))
 
 
 def reading_fields(*models: str) -> tuple[Field, ...]:
     """What the readings of these models have."""
-    return (*READING, *(PLANE if any(map(in_plane, models)) else ()))
+    extra = (field for key, fields in EXTRA.items() if key in models for field in fields)
+    return *READING, *dict.fromkeys(extra)
 
 
 def numbers_in(scene: Scene) -> dict[str, float]:
@@ -140,7 +132,7 @@ COLUMNS = ("clock_s", *(field.column for field in MOMENT), "method", *(field.col
 
 
 def columns(*models: str) -> tuple[str, ...]:
-    """Those of a table of these models: in the plane there are some more."""
+    """Those of a table of these models: some have more."""
     return (*COLUMNS, *(field.column for field in reading_fields(*models)[len(READING) :]))
 
 
@@ -183,7 +175,6 @@ def sample_schema(model: str) -> dict[str, Any]:
 
 
 _pack = struct.Struct(f"<{len(NUMBERS)}d").pack
-_pack_plane = struct.Struct(f"<{len(PLANE)}d").pack
 
 
 def same_bits(a: Reading, b: Reading) -> bool:
@@ -191,7 +182,7 @@ def same_bits(a: Reading, b: Reading) -> bool:
     return (
         a == b
         and _pack(*numbers_of(a)) == _pack(*numbers_of(b))
-        and (a.position is None or _pack_plane(*_plane_of(a)) == _pack_plane(*_plane_of(b)))
+        and all(value.hex() == b.extra[name].hex() for name, value in a.extra.items())
     )
 
 
@@ -213,5 +204,8 @@ def _ordinal(value: float) -> int:
 
 def without_extremes(sample: Sample) -> Sample:
     """The sample as the first of its run or the first after a gap, where the steps before it are unknown."""
-    readings = (reading._replace(**dict.fromkeys(EXTREMES, reading.energy_error)) for reading in sample.readings)
+    readings = (
+        reading._replace(energy_error_low=reading.energy_error, energy_error_high=reading.energy_error)
+        for reading in sample.readings
+    )
     return sample._replace(readings=tuple(readings))

@@ -7,6 +7,7 @@ Reading checks every field; anything that is not written here raises RecordingEr
 
 import json
 import math
+from collections.abc import Collection
 from typing import Any, NoReturn, get_args
 
 from engine.methods import Cast, Method
@@ -16,7 +17,7 @@ from engine.run.observer import Milestone, MilestoneKind
 from engine.scenes import MOST_METHODS, PARAMETERS, Scene, SceneError
 from recordings.errors import RecordingError, printable
 from recordings.events import Event, Seal, method_named, name_of, noticed, scene_named
-from recordings.fields import IN_PLANE, NUMBERS, SCENE_NUMBERS, VALUES, left_out, numbers_in, values_of
+from recordings.fields import NUMBERS, SCENE_NUMBERS, VALUES, left_out, numbers_in, values_of
 
 FORMAT_VERSION = 2
 PROFILE = "pendu"  # in the file's header
@@ -66,8 +67,8 @@ def encode_readings(sample: Sample) -> list[bytes]:
     return messages
 
 
-def decode_reading(data: bytes, plane: bool = False) -> tuple[int, int, float, Reading]:
-    """(run, step, t, reading) of one message; `plane`: of a model in the plane."""
+def decode_reading(data: bytes, extra: Collection[str] = ()) -> tuple[int, int, float, Reading]:
+    """(run, step, t, reading) of one message, with the values of its model's own variables."""
     fields = _loads(data)
     values: list[Any] = [fields.get(name) for name in _NUMBERS]
     for value in values:
@@ -76,9 +77,8 @@ def decode_reading(data: bytes, plane: bool = False) -> tuple[int, int, float, R
     t, *values = values
     absent = left_out(values[_ENERGY_ERROR])
     values += [_number(fields, name) if name in fields else value for name, value in absent.items()]
-    if plane:
-        x, y, vx, vy, spring_energy = (_number(fields, name) for name in IN_PLANE)
-        values += [complex(x, y), complex(vx, vy), spring_energy]
+    if extra:
+        values.append({name: _number(fields, name) for name in extra})
     return _count(fields, "run"), _count(fields, "step"), t, Reading(*values)
 
 

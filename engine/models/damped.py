@@ -38,7 +38,7 @@ class DampedPendulum(Pendulum):
         """By the reference; it swings down to rest, and turns before if its energy is enough."""
 
         def at(t: float) -> State:
-            return self.seen(_reference(self, theta, omega).at(t))
+            return State(*_reference(self, theta, omega).at(t))
 
         energy = self.energy()((theta, omega))
         if energy == 0:

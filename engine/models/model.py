@@ -2,7 +2,7 @@
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, ClassVar, Literal, NamedTuple
 
 Number = Any  # float, complex, NumPy array or mpmath number: one definition of a method serves them all
@@ -24,6 +24,29 @@ class State(NamedTuple):
 
     theta: float  # rad from the downward vertical, unwrapped
     omega: float  # rad/s
+
+
+class Variable(NamedTuple):
+    """A number that a model's readings have besides angle, angular velocity and energy."""
+
+    name: str  # in recordings, JSON and --fail-if
+    unit: str = ""
+    about: str = ""
+    is_state: bool = True
+    """Whether it is a part of the phase.  Any other is a quantity of the phase, which charts can show."""
+    relative: bool = False  # readings have it over its value at the start of the run
+
+
+NO_EXTRA: Mapping[str, float] = {}
+
+
+class Observation(NamedTuple):
+    """A phase as floats by name."""
+
+    theta: float  # rad from the downward vertical, unwrapped
+    omega: float  # rad/s
+    extra: Mapping[str, float] = NO_EXTRA
+    """The values of the model's own variables, in the order of `Model.variables`."""
 
 
 class EnergyReference(NamedTuple):
@@ -69,7 +92,8 @@ class Model(ABC):
     key: ClassVar[str]  # in scenes, recordings and on the command line
     equation: ClassVar[str]  # for people
     turns: ClassVar[bool]  # whether theta + 2 pi is the same place, and it can go over the top
-    in_plane: ClassVar[bool] = False  # positions are complex numbers, and theta and omega only a part of the phase
+    variables: ClassVar[tuple[Variable, ...]] = ()  # what its readings have besides theta, omega and energy
+    rigid: ClassVar[bool] = True  # whether the bob stays at one distance from the pivot
     parameters: ClassVar[tuple[str, ...]] = ()  # fields of a scene, besides length and gravity
     plain: ClassVar[bool] = True  # theta'' = force(theta): it can be compiled and mapped, and its energy is conserved
     conserved: ClassVar[bool] = True  # whether the true motion keeps its energy
@@ -95,18 +119,22 @@ class Model(ABC):
         """The phase of least energy at an angle [rad]: at rest."""
         return theta, 0.0
 
-    def seen(self, phase: Phase) -> State:
-        """Angle and angular velocity of a phase."""
+    def observe(self, phase: Phase) -> Observation:
+        """Return angle, angular velocity and the model's own variables of a phase."""
         theta, omega = phase
-        return State(float(theta), float(omega))  # a method may carry other numbers
+        return Observation(float(theta), float(omega))  # a method may carry other numbers
+
+    def phase_of(self, theta: float, omega: float, extra: Mapping[str, float]) -> Phase:
+        """Return the phase from which a method goes on after a reading with these values."""
+        return theta, omega
 
     def theta_error(self, theta: float, exact: float) -> float:
-        """theta - exact theta [rad]; where theta is known within ±pi only, the shorter way round."""
-        return math.remainder(theta - exact, math.tau) if self.in_plane else theta - exact
+        """Return theta - exact theta [rad]."""
+        return theta - exact
 
-    def spring_energy(self, phase: Phase) -> float | None:
-        """The energy in the spring [s⁻²]; None: it has none."""
-        return None
+    def length(self, extra: Mapping[str, float]) -> float:
+        """Return the distance of the bob from the pivot, over the length at rest."""
+        return 1.0
 
     @abstractmethod
     def force(self, sin: Sine = math.sin) -> Force:

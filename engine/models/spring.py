@@ -6,11 +6,12 @@ z'' = -k (1 - 1/|z|) z - i w0².  So every method that has only + and * on the p
 
 import cmath
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, ClassVar
 
-from engine.models.model import Energy, ExactMotion, Force, Model, Phase, Sine, State
+from engine.models.model import Energy, ExactMotion, Force, Model, Observation, Phase, Sine, State, Variable
 from engine.models.reference import Reference
 
 STRETCH = 0.04  # of its length, beyond equilibrium: how far the spring is stretched at a start
@@ -29,7 +30,14 @@ class Spring(Model):
     key: ClassVar[str] = "spring"
     equation: ClassVar[str] = "z'' = -k (1 - 1/|z|) z - i w0², z = x + iy"
     turns: ClassVar[bool] = False  # its angle is known from its place only, so it is within ±pi
-    in_plane: ClassVar[bool] = True
+    variables: ClassVar[tuple[Variable, ...]] = (
+        Variable("x", about="over the length at rest"),
+        Variable("y", about="likewise, upwards from the pivot"),
+        Variable("vx", "s^-1"),
+        Variable("vy", "s^-1"),
+        Variable("spring_energy", about="over that at the start", is_state=False, relative=True),
+    )
+    rigid: ClassVar[bool] = False
     parameters: ClassVar[tuple[str, ...]] = ("stiffness",)
     plain: ClassVar[bool] = False
 
@@ -48,8 +56,23 @@ class Spring(Model):
         """At rest, as long as without a weight."""
         return -1j * cmath.exp(1j * theta), 0j
 
-    def seen(self, phase: Phase) -> State:
-        """The swing's angle, within ±pi, and angular velocity: a projection."""
+    def observe(self, phase: Phase) -> Observation:
+        """Return the swing's angle, within ±pi, and angular velocity, place, velocity, and the spring's energy."""
+        z, w = phase
+        extra = {"x": z.real, "y": z.imag, "vx": w.real, "vy": w.imag, "spring_energy": self.spring_energy(phase)}
+        return Observation(*self._swing(phase), extra)
+
+    def phase_of(self, theta: float, omega: float, extra: Mapping[str, float]) -> Phase:
+        return complex(extra["x"], extra["y"]), complex(extra["vx"], extra["vy"])
+
+    def theta_error(self, theta: float, exact: float) -> float:
+        """Return theta - exact theta [rad], the shorter way round: theta is known within ±pi only."""
+        return math.remainder(theta - exact, math.tau)
+
+    def length(self, extra: Mapping[str, float]) -> float:
+        return abs(complex(extra["x"], extra["y"]))
+
+    def _swing(self, phase: Phase) -> State:
         z, w = phase
         return State(cmath.phase(1j * z), (z.conjugate() * w).imag / (abs(z) ** 2 or 1.0))
 
@@ -106,7 +129,7 @@ class Spring(Model):
         """By the reference, as the swing's angle and angular velocity; nan where the spring is too fast for it."""
 
         def at(t: float) -> State:
-            return self.seen(self.place(theta, omega, t))
+            return self._swing(self.place(theta, omega, t))
 
         return ExactMotion(at, "libration", accuracy=ACCURACY)
 

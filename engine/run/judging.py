@@ -60,12 +60,13 @@ class Judging:
 
     def follow(self, step: int, reading: Reading) -> list[Seen]:
         """Take in the reading `step` steps after the first; the looks on the way to it."""
-        error, phase = reading.energy_error, reading.phase
+        error = reading.energy_error
+        phase = self._model.phase_of(reading.theta, reading.omega, reading.extra)
         seen: list[Seen] = []
         if reading.diverged_at is not None:
             self._judge.fail(step * self._parts)
         elif self._step < 0:
-            self._judge.look(0, Look(*self._model.seen(phase), error, error, error))
+            self._judge.look(0, Look(*self._model.observe(phase)[:2], error, error, error))
             self._low = self._high = error
         elif not self._is_taken_again(step, seen):
             self._low, self._high = min(self._low, reading.energy_error_low), max(self._high, reading.energy_error_high)
@@ -95,7 +96,7 @@ class Judging:
 
     def _look(self, step: int, phase: Phase, error: float, seen: list[Seen]) -> None:
         known = self.judgement.verdict
-        self._judge.look(step * self._parts, Look(*self._model.seen(phase), error, self._low, self._high))
+        self._judge.look(step * self._parts, Look(*self._model.observe(phase)[:2], error, self._low, self._high))
         self._peak = max(self._peak, -self._low, self._high)
         self._low = self._high = error
         verdict = self.judgement.verdict

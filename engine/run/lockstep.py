@@ -1,9 +1,10 @@
 """A scene's methods side by side, step by step."""
 
 import copy
+from collections.abc import Mapping
 from typing import NamedTuple
 
-from engine.models.model import Phase
+from engine.models.model import NO_EXTRA
 from engine.run.loops import Advance, LoopsOf, advance_with_errors, plain
 from engine.run.stepping import Stepping
 from engine.scenes import Scene, check_h
@@ -13,7 +14,7 @@ class Reading(NamedTuple):
     """One method at one step.  Always finite: a method that diverges stays where it last was finite.
 
     Energies are per unit m·L² [s⁻²]; energy errors are relative, (E - E0)/E0, or to 2 w0² where E0 = 0, or with
-    friction ln(E/E_true).  Of a bob on a spring, theta and omega are the swing's, which do not tell the whole phase.
+    friction ln(E/E_true).
     """
 
     theta: float  # rad, unwrapped
@@ -24,14 +25,7 @@ class Reading(NamedTuple):
     energy_error_low: float  # smallest and largest energy error over the steps since the previous sample,
     energy_error_high: float  # so that a chart of samples loses no extreme
     diverged_at: float | None = None  # s; first time at which the method's numbers were not finite
-    position: complex | None = None  # x + iy over the length at rest, y upwards; only in the plane
-    velocity: complex | None = None  # s⁻¹
-    spring_energy: float | None = None  # over that at the start
-
-    @property
-    def phase(self) -> Phase:
-        """The phase from which the method goes on."""
-        return (self.theta, self.omega) if self.position is None else (self.position, self.velocity)
+    extra: Mapping[str, float] = NO_EXTRA  # the values of the model's own variables, `Model.variables`
 
 
 class Sample(NamedTuple):
@@ -76,7 +70,8 @@ class Lockstep:
         self.stepping = Stepping(scene.h, cast=scene.cast)
         self._t_base, self._base_step = 0.0, 0
         self._reference = scene.equations.reference(scene.theta, scene.omega)
-        self._spring_start = scene.equations.spring_energy(scene.equations.start(scene.theta, scene.omega)) or 1.0
+        start = scene.equations.observe(scene.equations.start(scene.theta, scene.omega)).extra
+        self._scales = {each.name: start[each.name] or 1.0 for each in scene.equations.variables if each.relative}
         self._limit = min(1.0, self._reference.scale) * 1e300  # so that relative errors are finite, too
         self._tracks = [
             _Track(loops(method, scene.equations).advance, scene, self._reference.start) for method in scene.cast
@@ -123,19 +118,19 @@ class Lockstep:
 
     def _read(self, track: _Track) -> Reading:
         track.run_low, track.run_high = min(track.run_low, track.low), max(track.run_high, track.high)
-        model, low, high = self.scene.equations, track.low, track.high
+        low, high = track.low, track.high
         track.low = track.high = track.error
-        spring = model.spring_energy(track.phase)
-        position, velocity = track.phase if isinstance(track.phase[0], complex) else (None, None)
+        theta, omega, extra = self.scene.equations.observe(track.phase)
+        if self._scales:
+            extra = {**extra, **{name: extra[name] / scale for name, scale in self._scales.items()}}
         return Reading(
-            *model.seen(track.phase),
+            theta=theta,
+            omega=omega,
             energy=track.energy,
             energy_error=track.error,
             max_energy_error=max(track.run_high, -track.run_low),
             energy_error_low=low,
             energy_error_high=high,
             diverged_at=track.diverged_at,
-            position=position,
-            velocity=velocity,
-            spring_energy=None if spring is None else spring / self._spring_start,
+            extra=extra,
         )

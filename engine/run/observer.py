@@ -189,7 +189,8 @@ class RunObserver:
     def _phases(self, method: Method, reading: Reading, h: float, steps: int) -> list[Phase]:
         """The phases after so many steps from a reading; none if they end before."""
         model = self.scene.equations
+        phase = model.phase_of(reading.theta, reading.omega, reading.extra)
         try:
-            return list(islice(method.on(model).phases(model.force(), reading.phase, h), steps))
+            return list(islice(method.on(model).phases(model.force(), phase, h), steps))
         except OVERFLOW:
             return []

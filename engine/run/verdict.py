@@ -97,7 +97,7 @@ class Judge:
             self._modified.add(steps, value, value, value)
         if full and len(self._energy.bins) >= LEAST_BINS:
             self._judge()
-        if self._model.in_plane and look.error > GONE:
+        if not self._model.rigid and look.error > GONE:
             self.judgement = self.judgement._replace(verdict="grows")
 
     def fail(self, steps: int) -> None:

@@ -18,7 +18,7 @@ from engine.run.verdict import Verdict
 from engine.scenes import LIMITS, PARAMETERS
 from recordings.errors import TEXT_LIMIT, RecordingError, printable
 from recordings.events import Event, Seal, method_named, noticed, scene_named, unknown_in
-from recordings.fields import IN_PLANE, SEAL_SCHEMA, VALUES, event_schema, sample_schema, values_of, without_extremes
+from recordings.fields import EXTRA_NAMES, SEAL_SCHEMA, VALUES, event_schema, sample_schema, values_of, without_extremes
 from recordings.format import (
     decode_event,
     decode_reading,
@@ -54,15 +54,10 @@ readings = made(
     energy_error_high=finite,
     diverged_at=st.none() | finite,
 )
-places = st.builds(complex, finite, finite)
 readings_in_plane = st.builds(
-    lambda reading, *plane: reading._replace(
-        **dict(zip(("position", "velocity", "spring_energy"), plane, strict=True))
-    ),
+    lambda reading, extra: reading._replace(extra=extra),
     readings,
-    places,
-    places,
-    finite,
+    st.fixed_dictionaries(dict.fromkeys(EXTRA_NAMES, finite)),
 )
 samples = made(
     Sample,
@@ -117,8 +112,8 @@ events = st.one_of(
 
 def test_the_table_of_fields_has_every_value_of_a_reading_in_its_order():
     names = list(Reading._fields)
-    assert [*VALUES[: -len(IN_PLANE)], "position", "velocity", "spring_energy"] == names
-    reading = Reading(0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8 + 9j, 10 + 11j, 12.0)
+    assert [*VALUES[: -len(EXTRA_NAMES)], "extra"] == names
+    reading = Reading(0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, {name: 8.0 + n for n, name in enumerate(EXTRA_NAMES)})
     assert values_of(reading) == tuple(map(float, range(len(VALUES))))
 
 
@@ -126,13 +121,12 @@ def test_the_table_of_fields_has_every_value_of_a_reading_in_its_order():
 def test_every_finite_double_of_a_sample_reads_back_with_the_same_bits(sample):
     messages = encode_readings(sample)
     for message, reading in zip(messages, sample.readings, strict=True):
-        plane = reading.position is not None
-        run, step, t, again = decode_reading(message, plane)
+        run, step, t, again = decode_reading(message, tuple(reading.extra))
         assert (run, step, t) == (sample.run, sample.step, sample.t)
         assert again == reading
         assert repr(values_of(again)) == repr(values_of(reading))  # -0.0 == 0.0, but their texts differ
-        jsonschema.validate(json.loads(message), PLANE_SCHEMA if plane else SAMPLE_SCHEMA)
-        assert set(IN_PLANE) & set(json.loads(message)) == (set(IN_PLANE) if plane else set())
+        jsonschema.validate(json.loads(message), PLANE_SCHEMA if reading.extra else SAMPLE_SCHEMA)
+        assert set(EXTRA_NAMES) & set(json.loads(message)) == set(reading.extra)
 
 
 @given(events)

@@ -46,7 +46,7 @@ class Ghost:
             self._times.append(latest)
             self._history.add(value, exact.at(latest))
             for reading in value.readings:
-                length = 1.0 if reading.position is None else abs(reading.position)
+                length = run.scene.equations.length(reading.extra)
                 self._rods.extend((reading.theta if reading.diverged_at is None else math.nan, length))
         thetas = [abs(theta) for theta in self._rods[::2] if not math.isnan(theta)]
         self.widest = max(thetas, default=0.0)

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 from engine.models.model import State
 from engine.run.lockstep import Sample
 from engine.run.observer import RunObserver
-from tui.playback.shown import Quantity
 
 if TYPE_CHECKING:
     from tui.playback.levels import Levels, Window  # NumPy can wait for the first paint
@@ -32,9 +31,8 @@ class ErrorHistory:
     def __init__(self, observer: RunObserver, capacity: int = 2048) -> None:
         exact, self._reference, self._methods = observer.exact, observer.reference, len(observer.scene.cast)
         model = observer.scene.equations
-        self._others: list[Quantity] = [] if model.conserved else ["energy"]
-        if model.in_plane:
-            self._others.append("spring_energy")
+        self._energy = [] if model.conserved else ["energy"]
+        self._extra = [each.name for each in model.variables if not each.is_state]
         self._theta_error = model.theta_error
         self._repeats = (exact.period or 0.0) / (2 if exact.regime == "libration" else 1)
         self._capacity = capacity
@@ -77,11 +75,14 @@ class ErrorHistory:
         if self._levels is None:
             from tui.playback.levels import Levels
 
-            self._levels = Levels(self._repeats, self._reference[:2], self._others, self._methods, self._capacity)
+            self._levels = Levels(
+                self._repeats, self._reference[:2], [*self._energy, *self._extra], self._methods, self._capacity
+            )
         for sample, x, exact, modified in self._waiting:
             states = [State(reading.theta, reading.omega) for reading in sample.readings]
             theta_errors = [self._theta_error(theta, exact.theta) for theta, _ in states]
-            others = [[getattr(reading, name) for reading in sample.readings] for name in self._others]
+            others = [[reading.energy for reading in sample.readings]] if self._energy else []
+            others += [[reading.extra[name] for reading in sample.readings] for name in self._extra]
             low, high = (
                 (errors, theta_errors, modified or [math.nan] * len(states), *others)
                 for errors in zip(

@@ -1,23 +1,24 @@
 """Shown: which methods and quantities are on screen, and how.  Nothing in it changes a number."""
 
-from typing import Any, Literal, NamedTuple, get_args
+from typing import Any, NamedTuple
 
 from engine.methods import Cast
 from engine.scenes import Scene
 
-Quantity = Literal["energy_error", "theta_error", "shadow_error", "energy", "spring_energy"]
-QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
+Quantity = str
+"""The name of what a chart shows: one of QUANTITIES, or a variable of the model that is not a part of its state."""
+QUANTITIES: tuple[Quantity, ...] = ("energy_error", "theta_error", "shadow_error", "energy")
 
 WINDOWS: tuple[float | None, ...] = (None, 20.0, 60.0, 300.0, 1800.0, 5.0)
 """How much of the past the chart shows [s]; None: the whole run."""
 
 
 def quantities(scene: Scene) -> tuple[Quantity, ...]:
-    """What a chart can show of a scene: only some models and methods have a modified energy, only some a spring."""
+    """Return what a chart can show of a scene: only some models and methods have a modified energy."""
     model = scene.equations
     missing = {"shadow_error"} - {"shadow_error" for method in scene.cast if method.modified_energy and model.plain}
-    missing |= set() if model.in_plane else {"spring_energy"}
-    return tuple(quantity for quantity in QUANTITIES if quantity not in missing)
+    common = (quantity for quantity in QUANTITIES if quantity not in missing)
+    return *common, *(each.name for each in model.variables if not each.is_state)
 
 
 class Stretch(NamedTuple):

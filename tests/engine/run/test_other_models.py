@@ -46,16 +46,16 @@ def test_the_same_bits_however_the_steps_are_cut(scene: Scene, cuts: list[int]) 
 
 
 @each_scene
-def test_readings_are_finite_floats_and_have_a_spring_only_on_that_model(scene: Scene) -> None:
-    lockstep = Lockstep(scene)
+def test_readings_are_finite_floats_and_hold_the_whole_phase(scene: Scene) -> None:
+    lockstep, model = Lockstep(scene), scene.equations
     for n in (0, 1, 1000):
         lockstep.advance(n)
         for reading in lockstep.sample().readings:
             assert {type(reading.theta), type(reading.omega), type(reading.energy)} == {float}
             assert math.isfinite(reading.theta + reading.omega + reading.energy_error)
-            spring = scene.model == "spring"
-            assert (reading.position is not None) == (reading.spring_energy is not None) == spring
-            assert reading.phase == ((reading.position, reading.velocity) if spring else (reading.theta, reading.omega))
+            assert list(reading.extra) == [variable.name for variable in model.variables]
+            phase = model.phase_of(reading.theta, reading.omega, reading.extra)
+            assert model.observe(phase)[:2] == (reading.theta, reading.omega)
 
 
 @each_scene

@@ -182,8 +182,9 @@ def test_energies_are_those_of_the_readings_also_where_friction_takes_them_and_i
             abs(low), abs(high), energy(scene.w0_squared, scene.theta, scene.omega)
         )  # there and back
         assert low - tolerance <= reading.energy <= high + tolerance
-        if reading.spring_energy is not None:
-            assert window.high["spring_energy"][-1, index] == reading.spring_energy
+        for variable in scene.equations.variables:
+            if not variable.is_state:
+                assert window.high[variable.name][-1, index] == reading.extra[variable.name]
 
 
 def test_trails_are_the_last_states_of_methods_and_of_the_exact_swing():
@@ -200,7 +201,7 @@ def test_trails_are_the_last_states_of_methods_and_of_the_exact_swing():
 def test_an_angle_in_the_plane_is_off_by_half_a_turn_at_most():
     scene = SCENES["stiff-slow"]
     history = ErrorHistory(RunObserver(scene))
-    reading = Reading(3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, None, 1j, 0j, 1.0)
+    reading = Reading(3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, None, {"spring_energy": 1.0})
     history.add(Sample(1, 0, 0.0, (reading,) * len(scene.cast)), State(-3.0, 0.0))
     assert history.window().low["theta_error"][0, 0] == pytest.approx(6 - math.tau)
 

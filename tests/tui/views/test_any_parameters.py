@@ -62,7 +62,7 @@ def on_screen(live) -> str:
         for quantity in quantities(scene)
         for log in (True, False)
     ]
-    lengths = [1.0 if reading.position is None else abs(reading.position) for reading in sample.readings]
+    lengths = [scene.equations.length(reading.extra) for reading in sample.readings]
     bobs = [Bob(reading.theta, 0, length=length) for reading, length in zip(sample.readings, lengths, strict=True)]
     picture = Picture.of_sketch(pendulum_sketch(40, 12, bobs)).text
     sentences = [*description(live), insight(live), *lasting(live)]

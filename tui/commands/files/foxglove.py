@@ -5,7 +5,7 @@ from typing import Any
 
 from engine.methods import METHODS
 from engine.models import MODELS
-from recordings.fields import in_plane
+from recordings.fields import extra_names
 from recordings.format import EVENTS, topic
 from tui.drawing.palette import palette
 
@@ -22,7 +22,7 @@ def layout(keys: Iterable[tuple[str, str]]) -> Layout:
     conserved = all(MODELS[model].conserved for model, _ in keys if model in MODELS)
     error = "Energy error (E - E0) / E0" if conserved else "Energy error (E - E0) / E0, with friction ln(E/E_true)"
     upper = {"Plot!energyerror": _plot(error, [_path(*each, "energy_error") for each in keys])}
-    if springs := [each for each in keys if in_plane(each[0])]:
+    if springs := [each for each in keys if "spring_energy" in extra_names(each[0])]:
         upper["Plot!springenergy"] = _plot(
             "Energy in the spring, 1 at the start", [_path(*each, "spring_energy") for each in springs]
         )
@@ -73,7 +73,7 @@ def _plot(title: str, paths: Sequence[Layout], **other: Any) -> Layout:
 
 def _plane(model: str, method: str) -> Layout:
     """Where the bob goes in the plane, or else in phase space."""
-    across, up, units = ("x", "y", "") if in_plane(model) else ("theta", "omega", " [rad/s] over theta [rad]")
+    across, up, units = ("x", "y", "") if "x" in extra_names(model) else ("theta", "omega", " [rad/s] over theta [rad]")
     title = f"{_LABELS.get(method, method)}: {up}{units or ' over x'}"
     path = {"value": f"{topic(method, model)}.{across}", "enabled": True}
     return _plot(title, [_path(model, method, up)], isSynced=False, xAxisVal="custom", xAxisPath=path)

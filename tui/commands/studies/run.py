@@ -152,7 +152,7 @@ def _rows(scene: Scene, sample: "Sample", observer: "RunObserver", stopped: bool
                 "method": method.key,
                 **fields_of(reading, *NUMBERS),
                 "log_energy_error": None if scene.equations.conserved else reading.energy_error,
-                "spring_energy": reading.spring_energy,
+                "spring_energy": reading.extra.get("spring_energy"),
                 "theta_error": None if math.isnan(off) or end is not None else abs(off),
                 "drift_per_second": judgement.slope,
                 "verdict": judgement.verdict,

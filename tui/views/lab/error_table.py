@@ -1,6 +1,5 @@
 """ErrorTable: each method's state and energy error now, and the verdict on its error so far."""
 
-import math
 from collections.abc import Callable, Sequence
 from itertools import accumulate
 from typing import ClassVar, NamedTuple
@@ -12,7 +11,7 @@ from textual.geometry import Offset
 from textual.widgets import Tooltip
 
 from engine.methods import Method
-from engine.models.model import State
+from engine.models.model import Model, State
 from engine.run.lockstep import Reading, Sample
 from engine.run.verdict import Judgement
 from tui.drawing.cells import Row
@@ -28,6 +27,7 @@ from tui.words.numbers import angle, decimal, in_unit, measured, relative, scien
 class TableLine(NamedTuple):
     """What the cells of a line are made from."""
 
+    model: Model
     method: Method
     reading: Reading
     judgement: Judgement
@@ -72,8 +72,8 @@ COLUMNS = (
     Column(1, ("f", 1), ("evals/step", 10), lambda line, width: evaluations(line.method, width)),
 )
 SPRING = (
-    Column(8, ("length", 6), ("length", 7), lambda line, width: short(abs(line.reading.position or 0), width)),
-    Column(8, ("spring", 7), ("spring E", 8), lambda line, width: short(line.reading.spring_energy or 0, width)),
+    Column(8, ("length", 6), ("length", 7), lambda line, width: short(line.model.length(line.reading.extra), width)),
+    Column(8, ("spring", 7), ("spring E", 8), lambda line, width: short(line.reading.extra["spring_energy"], width)),
 )
 """Of a bob on a spring: its length over that at rest, and the energy in it over that at the start."""
 NAME = 20  # columns of a name and its mark, or as many as the longest takes
@@ -100,8 +100,7 @@ def short(value: float, width: int) -> str:
 
 def theta_error(line: TableLine) -> float:
     """|theta - exact theta|."""
-    error = line.reading.theta - line.exact.theta
-    error = error if line.reading.position is None else math.remainder(error, math.tau)
+    error = line.model.theta_error(line.reading.theta, line.exact.theta)
     return measured(abs(error), line.degrees)
 
 
@@ -133,9 +132,10 @@ def chosen(columns: Sequence[Column], room: int) -> list[tuple[str, int, Callabl
 def table(source: Source, sample: Sample, shown: Shown, width: int) -> list[Row]:
     """The table's rows, its head first; each method's own step size where they differ."""
     cast, judgements, h = source.scene.cast, source.judgements, source.stepping.own
-    exact, conserved = source.exact.at(sample.t), source.scene.equations.conserved
+    model, exact = source.scene.equations, source.exact.at(sample.t)
+    conserved = model.conserved
     every = COLUMNS[len(set(h)) == 1 :]
-    if any(reading.position is not None for reading in sample.readings):
+    if not model.rigid:
         every = (*every[:-1], *SPRING, every[-1])
     room = max([NAME, *(len(f"{mark(place, method)} {method.label}") for place, method in enumerate(cast))])
     columns = chosen(every, width - room)
@@ -147,7 +147,9 @@ def table(source: Source, sample: Sample, shown: Shown, width: int) -> list[Row]
     for place in shown.places(cast):
         method = cast[place]
         percent = shown.percent and conserved
-        line = TableLine(method, sample.readings[place], judgements[place], exact, h[place], percent, shown.degrees)
+        line = TableLine(
+            model, method, sample.readings[place], judgements[place], exact, h[place], percent, shown.degrees
+        )
         failed = line.reading.diverged_at is not None
         name = f"{mark(place, method)} {method.label}".ljust(room)
         rows.append([(name, series(method))])

@@ -104,7 +104,8 @@ class Pendulum(Pane):
         if self._place is not None and self._place >= len(self.cast):
             return
         self._retitle()
-        length = TRAIL if self.shown.trails and sample.readings[0].position is None else 0  # a rod has had many lengths
+        model = source.scene.equations
+        length = TRAIL if self.shown.trails and model.rigid else 0  # other rods have had many lengths
         bobs = []
         if self.shown.exact or self._place is None:
             bobs += _exact(source, sample.t)
@@ -121,7 +122,7 @@ class Pendulum(Pane):
                     reading.theta,
                     series(method),
                     trail=source.history.thetas(place, length),
-                    length=1.0 if reading.position is None else abs(reading.position),
+                    length=model.length(reading.extra),
                     letter=method.letter if self._place is None else "",
                     diverged=reading.diverged_at is not None,
                 )
