@@ -1,10 +1,10 @@
 """The command line, from the arguments to what is printed.
 
-`dispatch` finds the command and its parser; `options` reads the options that several commands share, `scene` those
-that describe a scene, `scene_file` a scene in a file, and `cast` those that choose its methods, the user's own among
-them; `fail_if` reads the expression of --fail-if, and `columns` two columns of a foreign table; `report` prints
-the result of a command as a table, JSON or CSV, `output` sentences, pictures and progress, `junit` writes checks as XML; `files` writes whole files and takes requests to
-stop; `errors` makes one sentence and an exit code of whatever goes wrong.
+`dispatch` finds the command and its parser.  `options` has the options that several commands share, `scene` those
+that describe a scene, `scene_file` a scene in a file, and `cast` those that choose its methods.  `fail_if` reads the
+expression of --fail-if, `columns` two columns of a foreign table.  `report` prints the result of a command as a table,
+JSON or CSV, `output` sentences, pictures and progress, and `junit` writes checks as XML.  `files` writes whole files
+and takes requests to stop; `errors` makes one sentence and an exit code of whatever goes wrong.
 """
 
 from tui.cli.dispatch import main

@@ -4,7 +4,7 @@ from engine.methods import METHODS
 from engine.run.compiled import available
 from engine.scenes import GROUPS, LEFT_OUT, SCENES
 from tests.tui.command_line import pendu
-from tui.cli.output import print_table
+from tui.cli.report import print_table
 from tui.commands.about.methods import MEASURED
 
 
