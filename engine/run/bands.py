@@ -96,3 +96,14 @@ def steady(bins: list[Bin]) -> bool:
     if len(moves) < 2 or not all(map(math.isfinite, moves)):
         return False
     return abs(fmean(moves)) * math.sqrt(len(moves)) > 5 * stdev(moves)
+
+
+def sigmas(ratio: float, freedom: int) -> float:
+    """Convert a value of Student's t to standard deviations of the normal distribution, to 2 %.
+
+    Wallace, Ann. Math. Statist. 30 (1959) 1121.
+    """
+    if not math.isfinite(ratio):
+        return math.inf
+    tail = math.sqrt(freedom * math.log1p(ratio * ratio / freedom))
+    return (8 * freedom + 1) / (8 * freedom + 3) * tail

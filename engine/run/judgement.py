@@ -1,34 +1,76 @@
-"""The input of a Judge, a Look, and its output, a Judgement."""
+"""The vocabulary of judging: verdicts with their definitions, what a judge is fed, and what it returns."""
 
 from typing import Literal, NamedTuple, get_args
 
-Verdict = Literal["too early", "bounded", "loses", "grows", "chaotic", "caught", "wanders"]
+from engine.methods import Method
+
+Verdict = Literal["bounded", "grows", "loses", "chaotic", "caught", "wanders", "failed", "too early"]
 VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
+
+DEFINITIONS: dict[Verdict, str] = {
+    "bounded": "the energy stays in a band around its start, without a trend",
+    "grows": "the energy rises and no longer comes back to its start",
+    "loses": "the energy falls and no longer comes back to its start",
+    "chaotic": "nearby starts separate exponentially, and the energy stays in a band",
+    "caught": "the energy has left its start and stays in another band",
+    "wanders": "the energy goes far up and down, without a trend and in no band",
+    "failed": "the numbers have ended: nan, infinite, or too large for a double",
+    "too early": "the data do not support one of these yet",
+}
+"""One definition of each verdict, for the help, the README and every judge."""
+
+
+class LookPoint(NamedTuple):
+    """The energy error of a method, or of any program, at a step where its judge looks."""
+
+    step: int  # own steps (or samples) since judging began
+    error: float  # relative, signed
+    low: float  # the smallest and the largest since the look point before
+    high: float
+    theta: float = 0.0  # rad, unwrapped; of a method only, as are the others
+    omega: float = 0.0  # rad/s
+    energy: float = 1.0  # s⁻²
+
+
+class Progress(NamedTuple):
+    """How far it is to a verdict: "4 of 8 swings"."""
+
+    have: int
+    need: int
+    unit: str  # "swings", "steps", "independent samples"
 
 
 class Judgement(NamedTuple):
-    """The verdict on an energy error so far; no slope before there are four bins."""
+    """The verdict on an energy error up to a look point, and its slope as far as there is evidence for one."""
 
     verdict: Verdict = "too early"
-    slope: float | None = None  # recent mean change of the relative energy error [1/s]
-    uncertainty: float | None = None  # standard deviation of the slope [1/s]
-    periods: float = 0.0  # how many periods this rests on
-    lyapunov: float | None = None  # 1/s; given where the verdict rests on it
-    seconds: float = 0.0  # for which the slope was measured
+    slope: float | None = None  # mean change of the relative energy error per unit of time [1/s]
+    uncertainty: float | None = None  # standard deviation of the slope
+    significant: bool = False  # the slope differs from 0 by the test of Student's t
+    periods: float = 0.0  # how many periods the verdict rests on
+    lyapunov: float | None = None  # 1/s; only where the verdict rests on it
+    progress: Progress | None = None  # only while it is too early
 
     @property
     def trend(self) -> float | None:
-        """The slope where it is significant; what stays in a band, or wanders about, has none."""
-        if self.slope is None or self.uncertainty is None or self.verdict not in ("too early", "grows", "loses"):
+        """The slope where it is significant; what stays in a band, or wanders, has none."""
+        if self.verdict not in ("too early", "grows", "loses") or not self.significant:
             return None
-        return self.slope if abs(self.slope) > 3 * self.uncertainty else None
+        return self.slope
 
 
-class Look(NamedTuple):
-    """A method at one step."""
+MilestoneKind = Literal["over the top", "failed", "verdict", "errors cross"]
 
-    theta: float  # rad
-    omega: float  # rad/s
-    error: float  # relative, of the energy
-    low: float  # the smallest and the largest since the look before
-    high: float
+
+class Milestone(NamedTuple):
+    """A method went over the top, failed, was given a verdict, or its error passed another's for good."""
+
+    kind: MilestoneKind
+    method: Method
+    step: int
+    t: float  # s, simulated
+    energy_error: float  # relative, at this step
+    verdict: Verdict = "too early"
+    other: Method | None = None  # the method whose error was passed
+    trend: float | None = None  # 1/s; with a verdict, as are the others
+    lyapunov: float | None = None  # 1/s

@@ -8,32 +8,19 @@ from bisect import bisect_right, insort
 from collections import defaultdict
 from itertools import islice
 from operator import attrgetter
-from typing import Any, Literal, NamedTuple
+from typing import Any
 
 from engine.methods import Method
 from engine.models.model import Phase
 from engine.run.crossing import Crossings
+from engine.run.judgement import Milestone as Milestone
+from engine.run.judgement import MilestoneKind as MilestoneKind
 from engine.run.judging import MOST_STEPS, Judging, Seen
 from engine.run.lockstep import Reading, Sample
 from engine.run.loops import OVERFLOW, LoopsOf, plain
 from engine.run.stepping import Stepping, SteppingChange
-from engine.run.verdict import Judgement, Verdict
+from engine.run.verdict import Judgement
 from engine.scenes import Scene
-
-MilestoneKind = Literal["over the top", "failed", "verdict", "errors cross"]
-
-
-class Milestone(NamedTuple):
-    """What a method did: it went over the top, its numbers ended, it earned a verdict, its error passed another's."""
-
-    kind: MilestoneKind
-    method: Method
-    step: int
-    t: float  # s, simulated
-    energy_error: float  # relative, at this step
-    verdict: Verdict = "too early"
-    other: Method | None = None  # whose error this one's has passed for good
-
 
 _step = attrgetter("step")
 

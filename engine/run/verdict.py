@@ -26,14 +26,25 @@ The last three take 4096 steps or more, and 64 periods.
 
 import math
 from statistics import median
+from typing import NamedTuple
 
 from engine.methods import Method
 from engine.models.model import Model, Phase
 from engine.run.bands import FLOOR, MOST_BINS, Bands, hull, rising, steady
 from engine.run.judgement import Judgement as Judgement
-from engine.run.judgement import Look as Look
 from engine.run.judgement import Verdict as Verdict
 from engine.run.tangent import Stretching, conserved_ellipse
+
+
+class Look(NamedTuple):
+    """A method at one step."""
+
+    theta: float  # rad
+    omega: float  # rad/s
+    error: float  # relative, of the energy
+    low: float  # the smallest and the largest since the look before
+    high: float
+
 
 LOOKS = 8  # a period
 LEAST_PERIODS = 8  # for `bounded`
@@ -102,7 +113,7 @@ class Judge:
 
     def fail(self, steps: int) -> None:
         """The method's numbers have ended, so many steps after the first look."""
-        self.judgement = Judgement("grows", periods=steps * abs(self._h) / self._period)
+        self.judgement = Judgement("failed", periods=steps * abs(self._h) / self._period)
 
     def _follow(self, phase: Phase, steps: int) -> None:
         """Follow neighbouring starts and the ellipse of small swings, for symplectic methods only."""
@@ -134,13 +145,18 @@ class Judge:
         slope, uncertainty = (abs(1 / self._h) * value for value in bands.line(recent))
         periods = self._steps * abs(self._h) / self._period
         verdict = self._symplectic(flat, periods) if self._method.symplectic else self._other(whole, periods)
-        seconds = (recent[-1].step - recent[0].step) * abs(self._h)
         finite = math.isfinite(slope) and math.isfinite(uncertainty)
         lyapunov = None
         if verdict in ("chaotic", "wanders") and self._neighbours.steps:
             lyapunov = self._neighbours.log / self._neighbours.steps / abs(self._h)
+        significant = abs(slope) > 3 * uncertainty
         self.judgement = Judgement(
-            verdict, slope if finite else None, uncertainty if finite else None, periods, lyapunov, seconds
+            verdict,
+            slope if finite else None,
+            uncertainty if finite else None,
+            significant=significant,
+            periods=periods,
+            lyapunov=lyapunov,
         )
 
     def _is_conserved(self) -> bool:

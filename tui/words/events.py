@@ -19,6 +19,7 @@ VERDICTS: dict[Verdict, str] = {
     "chaotic": "turns chaotic",
     "caught": "is caught",
     "wanders": "wanders",
+    "failed": "failed",
 }
 
 
@@ -88,4 +89,4 @@ def milestone_text(milestone: Milestone, conserved: bool = True) -> str:
     if milestone.other:
         other = short_name(milestone.other)
         return f"{name}'s error {'passes' if len(name + other) < 22 else '>'} {other}'s"
-    return f"{name} {'failed' if milestone.kind == 'failed' else VERDICTS[milestone.verdict]}"
+    return f"{name} {VERDICTS['failed' if milestone.kind == 'failed' else milestone.verdict]}"
