@@ -4,7 +4,8 @@
 that describe a scene, `scene_file` a scene in a file, and `cast` those that choose its methods.  `fail_if` reads the
 expression of --fail-if, `columns` two columns of a foreign table.  `report` prints the result of a command as a table,
 JSON or CSV, `output` sentences, pictures and progress, and `junit` writes checks as XML.  `files` writes whole files
-and takes requests to stop; `errors` makes one sentence and an exit code of whatever goes wrong.
+and takes requests to stop, `install` advises on optional packages, and `errors` makes one sentence and an exit code of
+whatever goes wrong.
 """
 
 from tui.cli.dispatch import main

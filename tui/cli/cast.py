@@ -2,6 +2,7 @@
 
 import argparse
 import io
+import re
 import signal
 import string
 import threading
@@ -14,36 +15,25 @@ from typing import TYPE_CHECKING
 from engine.methods import METHODS, Cast, Method
 from engine.scenes import MOST_METHODS
 from tui.cli.errors import Exit, UserError
-from tui.cli.options import add_file, did_you_mean
+from tui.cli.options import Suggestions, add_file, did_you_mean
 
 if TYPE_CHECKING:
     from engine.methods.own import OwnMethod
 
-MOST_SECONDS = 10.0  # of computing, to load and measure a method; a fiftieth is usual
-LONGEST_NAME = 30  # characters of a method's key
+MAX_SECONDS = 10.0  # to load and measure a method; a fiftieth of it is typical
+MAX_NAME = 30  # characters of a method's key
 
-KEYS = " ".join(method.key for method in METHODS)
-COMPLETE_KEYS = {  # the last of a list with commas, in the words of each shell, for shtab
-    "bash": "_pendu_tui_methods",
-    "zsh": "_pendu_tui_methods",
-    "fish": f"(__fish_append , {KEYS})",
-    "preamble": {
-        "bash": f"""_pendu_tui_methods() {{
-  local head=""; [[ $1 == *,* ]] && head="${{1%,*}},"
-  compgen -P "$head" -W '{KEYS}' -- "${{1##*,}}"
-}}""",
-        "zsh": f"_pendu_tui_methods() {{ _values -s , method {KEYS}; }}",
-    },
-}
+KEYS = [method.key for method in METHODS]
 
 
-def add_cast_options(parser: argparse._ActionsContainer, usual: str = "the scene's") -> None:
-    """Add the options that choose methods; `cast_of` reads them.  `usual`: the methods without --methods, in words."""
+def add_cast_options(parser: argparse._ActionsContainer, default: str = "the scene's") -> None:
+    """Add the options that choose methods, by default those in words; `cast_of` reads them."""
     parser.add_argument(
         "--methods",
         metavar="KEY,KEY",
-        help=f"these methods, 1 to {MOST_METHODS}, in this order (default: {usual}); the start of a name is enough",
-    ).complete = COMPLETE_KEYS  # type: ignore[attr-defined]
+        choices=Suggestions(KEYS),
+        help=f"these methods, 1 to {MOST_METHODS}, in this order (default: {default}); the start of a name is enough",
+    )
     add_file(
         parser,
         "--method",
@@ -55,47 +45,51 @@ def add_cast_options(parser: argparse._ActionsContainer, usual: str = "the scene
     )
 
 
-def cast_of(options: argparse.Namespace, usual: Cast, most: int | None = MOST_METHODS) -> Cast:
-    """The methods that the options choose; `usual` are those where --methods is not given.
+def cast_of(options: argparse.Namespace, default: Cast, most: int | None = MOST_METHODS) -> Cast:
+    """Return the methods that the options choose, `default` without --methods.
 
     The user's own that --methods does not name come last.  Raises UserError and OwnMethodError.
     """
     own = own_methods(options)
-    cast = usual if options.methods is None else _named(options.methods, (*METHODS, *own))
+    cast = default if options.methods is None else _named(options.methods, (*METHODS, *own))
     cast = (*cast, *(method for method in own if method not in cast))
     if most is not None and len(cast) > most:
-        raise UserError(f"{len(cast)} methods are too many for one stage; choose at most {most} with --methods.")
+        raise UserError(f"{len(cast)} methods are too many; name those to show, at most {most}, with --methods.")
     return cast
 
 
 def own_methods(options: argparse.Namespace) -> tuple["OwnMethod", ...]:
-    """The user's own methods, in the order given, examined and measured.  Raises UserError and OwnMethodError."""
+    """Return the user's own methods, in the order given, examined and measured.
+
+    Raises UserError and OwnMethodError.
+    """
     own: list[OwnMethod] = []
     for text in options.method:
         own.append(_own(text, own))
     return tuple(own)
 
 
-def _named(text: str, known: Sequence[Method]) -> Cast:
+def _named(text: str, methods: Sequence[Method]) -> Cast:
     cast: list[Method] = []
     for name in text.split(","):
-        method = find(name.strip(), known)
+        method = find(name.strip(), methods)
         if method in cast:
             raise UserError(f"--methods: {method.key} is there twice; name each method once.")
         cast.append(method)
     return tuple(cast)
 
 
-def find(name: str, known: Sequence[Method], option: str = "--methods") -> Method:
-    """The method of a key or a label, of the start of a key, or of the start of a word in one, general methods first.
+def find(name: str, methods: Sequence[Method], option: str = "--methods") -> Method:
+    """Return the method of a name, of the start of a key, or of the start of a word in one.
 
-    Raises UserError for the option.
+    General methods come before the others.  Raises UserError for the option.
     """
-    by_key = {method.key: method for method in known}
-    for method in known:
-        if name == method.key or name.lower() == method.label.lower():
-            return method
+    by_key = {method.key: method for method in methods}
     name = name.lower()
+    for method in methods:
+        names = (method.key, method.label, *method.other_names)
+        if name in (each.lower() for each in names):
+            return method
     for keys in ([key for key, method in by_key.items() if method.general], list(by_key)):
         for begins in (str.startswith, lambda key, start: f"_{start}" in key):
             found = [key for key in keys if name and begins(key, name)]
@@ -108,25 +102,25 @@ def find(name: str, known: Sequence[Method], option: str = "--methods") -> Metho
 
 
 def _own(text: str, others: Sequence[Method]) -> "OwnMethod":
-    """The method of FILE.py:FUNCTION[,letter=m]."""
-    place, *settings = text.split(",")
-    file, _, key = place.rpartition(":")
-    letter = settings[0].removeprefix("letter=") if settings else ""
-    if not file or not key or len(settings) > 1 or (settings and not settings[0].startswith("letter=")):
+    """Return the method of FILE.py:FUNCTION[,letter=m]."""
+    match = re.fullmatch(r"(?P<file>[^,]+):(?P<key>[^,:]+)(,letter=(?P<letter>[^,]*))?", text)
+    if match is None:
         raise UserError(f"--method: {text!r} is not FILE.py:FUNCTION or FILE.py:FUNCTION,letter=m.")
-    if not (key.isidentifier() and key.isascii() and len(key) <= LONGEST_NAME):
+    file, key, letter = match["file"], match["key"], match["letter"]
+    if not (key.isidentifier() and key.isascii() and len(key) <= MAX_NAME):
         raise UserError(
-            f"--method: {key!r} cannot be a method's name; use a function's with at most {LONGEST_NAME} ASCII letters."
+            f"--method: {key!r} cannot be a method's name; use a function's with at most {MAX_NAME} ASCII letters."
         )
     taken = {method.letter: method for method in (*METHODS, *others)}
     if key in {method.key for method in taken.values()}:
         raise UserError(f"--method: there is a method {key} already; give your function another name.")
-    if settings and not (len(letter) == 1 and letter in string.ascii_letters + string.digits):
+    if letter is None:
+        letter = next(each for each in (*key.lower(), *string.ascii_letters) if each.isalpha() and each not in taken)
+    if not re.fullmatch(r"[A-Za-z0-9]", letter):
         raise UserError(f"--method: {letter!r} is not a letter; use for example letter=m.")
     if letter in taken:
         raise UserError(f"--method: {letter} is the letter of {taken[letter].key}; choose another.")
-    free = [each for each in (*key.lower(), *string.ascii_letters) if each.isalpha() and each not in taken]
-    return _loaded(Path(file), key, letter or free[0])
+    return _loaded(Path(file), key, letter)
 
 
 def _loaded(path: Path, key: str, letter: str) -> "OwnMethod":
@@ -137,11 +131,11 @@ def _loaded(path: Path, key: str, letter: str) -> "OwnMethod":
         raise UserError(f"--method: {path} cannot be read: {why}.", Exit.INPUT_UNREADABLE) from None
     from engine.methods.examine import load
 
-    with _limited(f"{path}: {key} takes more than {MOST_SECONDS:g} s for a few steps; does it ever yield?"):
-        said = io.StringIO()
-        with redirect_stdout(said):
+    with _limited(f"{path}: {key} takes more than {MAX_SECONDS:g} s for a few steps; does it ever yield?"):
+        output = io.StringIO()
+        with redirect_stdout(output):
             method = load(source, key, letter, str(path))
-    if said.getvalue():
+    if output.getvalue():
         raise UserError(f"{path}: {key} writes to stdout, which is for results; write to stderr instead.")
     return method
 
@@ -152,7 +146,7 @@ class _TooLongError(BaseException):
 
 @contextmanager
 def _limited(sentence: str) -> Iterator[None]:
-    """Raise UserError after MOST_SECONDS of computing, where the platform can interrupt it."""
+    """Raise UserError after MAX_SECONDS, where the platform can interrupt the block."""
     if not hasattr(signal, "setitimer") or threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -160,12 +154,12 @@ def _limited(sentence: str) -> Iterator[None]:
     def stop(number: int, frame: FrameType | None) -> None:
         raise _TooLongError
 
-    before = signal.signal(signal.SIGVTALRM, stop)
-    signal.setitimer(signal.ITIMER_VIRTUAL, MOST_SECONDS, 0.1)  # again, should the first be swallowed
+    before = signal.signal(signal.SIGALRM, stop)
+    signal.setitimer(signal.ITIMER_REAL, MAX_SECONDS, 0.1)  # again, should the first be swallowed
     try:
         yield
     except _TooLongError:
         raise UserError(sentence) from None
     finally:
-        signal.setitimer(signal.ITIMER_VIRTUAL, 0)
-        signal.signal(signal.SIGVTALRM, before)
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)

@@ -3,6 +3,7 @@
 import io
 import os
 import sys
+from argparse import ArgumentParser, RawDescriptionHelpFormatter
 from collections.abc import Sequence
 from importlib import import_module
 from types import ModuleType
@@ -32,41 +33,46 @@ GROUPS = {
     },
     "files": {
         "verify": "re-simulate recordings and compare every bit",
-        "info": "show what is in a recording, whole or damaged",
         "diff": "compare two recordings: scene, changes, every number",
-        "recover": "salvage a damaged recording",
         "export": "convert a recording to CSV, or to a film (asciicast)",
+        "info": "show what is in a recording, whole or damaged",
+        "recover": "salvage a damaged recording",
         "recordings": "list the recordings, or prune them",
     },
     "about": {
         "scenes": "list the scenes, with what to watch",
         "methods": "list the methods with claimed and measured properties",
         "doctor": "check the environment and suggest fixes",
-        "completion": "print a shell completion script",
     },
 }
 """Folder of tui.commands -> name of a command in it -> what it does."""
 
-COMMANDS = {name: does for group in GROUPS.values() for name, does in group.items()}
+COMMANDS = {name: about for group in GROUPS.values() for name, about in group.items()}
+
+RENAMED = {
+    "completion": "--print-completion SHELL",
+}
 
 USAGE = """\
-usage: pendu-tui [COMMAND] [OPTIONS]
+usage: pendu-tui [COMMAND | SCENE | FILE] [OPTIONS]
 
 Four integrators simulate the same pendulum in your terminal: see which gains, conserves or slowly loses energy.
 
 commands (pendu-tui COMMAND --help shows details):
 {commands}
 
-Without a command: live.  pendu-tui --version prints the version.
+Without a command: live.  A scene or a scene file opens in the lab, a recording is replayed.
+--version prints the version, --print-completion bash|zsh|tcsh|fish a script for the tab key.
 
 exit codes: 0 fine, 1 a check failed, 2 usage error, 3 unreadable input, 4 unsuitable terminal, 5 disk error, \
 130 interrupted.
 
 examples:
   pendu-tui
+  pendu-tui crossover
   pendu-tui --theta 170deg --h 0.02
   pendu-tui replay latest
-  pendu-tui run --scene crossover --time 100
+  pendu-tui run crossover --time 100
 """
 
 
@@ -105,49 +111,69 @@ def _drop_output() -> None:
 def _dispatch(arguments: list[str]) -> int:
     match arguments:
         case ["-h" | "--help", *_] | ["help"]:
-            print(USAGE.format(commands="\n".join(f"  {name:<12}{does}" for name, does in COMMANDS.items())), end="")
+            commands = "\n".join(f"  {name:<12}{about}" for name, about in COMMANDS.items())
+            print(USAGE.format(commands=commands), end="")
             return Exit.FINE
         case ["help", name, *_]:
-            return _run(name, ["--help"])
+            return _run([name, "--help"])
         case ["--version", *_]:
             from importlib.metadata import version
 
             print(f"pendu-tui {version('pendu-tui')}")
             return Exit.FINE
-        case [name, *rest] if not name.startswith("-"):
-            return _run(name, rest)
-    return _run("live", arguments)
+        case ["--print-completion", *_]:
+            return _parsed(completion_parser(), arguments)
+    return _run(arguments)
 
 
-def _run(name: str, arguments: list[str]) -> int:
+def _run(arguments: list[str]) -> int:
+    name, arguments = _command(arguments)
     parser, command = command_of(name)
+    return _parsed(parser, arguments, command)
+
+
+def _command(arguments: list[str]) -> tuple[str, list[str]]:
+    """Return the command and its arguments: a recording is replayed, anything else but a command is of the lab."""
+    first = arguments[0] if arguments else "-"
+    if first in COMMANDS or first in RENAMED:
+        return first, arguments[1:]
+    if first.endswith((".mcap", ".mcap.part")):
+        return "replay", arguments
+    if first.startswith("-") or first.endswith(".toml"):
+        return "live", arguments
+    from engine.scenes import SCENES
+
+    return ("live", arguments) if first in SCENES else (first, [])
+
+
+def _parsed(parser: "Parser", arguments: list[str], command: ModuleType | None = None) -> int:
+    """Parse the arguments and run the command with them."""
     try:
         options = parser.parse_args(arguments)
-    except SystemExit:  # --help, printed
+    except SystemExit:  # --help or --print-completion, printed
         return Exit.FINE
     except UserError as error:
-        late = parser.stray(arguments, COMMANDS) if name == "live" else None
-        if late:  # a command after its options, which made it live
-            raise UserError(f"put the command first: pendu-tui {late}.") from None
         raise parser.unknown_option(arguments) or error from None
+    if command is None:
+        return Exit.FINE
+    late = getattr(options, "scene", None)
+    if late in COMMANDS:  # after its options, which made it live
+        raise UserError(f"put the command first: pendu-tui {late}.")
     code: int = command.run(options)
     return code
 
 
 def command_of(name: str) -> tuple["Parser", ModuleType]:
-    """A command's parser and module.  Raises UserError if there is none."""
-    from argparse import RawDescriptionHelpFormatter
-
-    from engine.scenes import SCENES
+    """Return a command's parser and module.  Raises UserError if there is none."""
     from tui.cli.options import Parser, did_you_mean
 
+    if name in RENAMED:
+        raise UserError(f"{name} has moved; use: pendu-tui {RENAMED[name]}.")
     if name not in COMMANDS:
-        hint = did_you_mean(name, COMMANDS) or "; pendu-tui --help lists them."
-        if name in SCENES:
-            hint = f"; for the scene use: pendu-tui --scene {name}"
-        elif name.endswith(".mcap"):
-            hint = f"; to play the recording use: pendu-tui replay {name}"
-        raise UserError(f"there is no command {name!r}{hint}")
+        from engine.scenes import SCENES
+
+        hint = did_you_mean(name, (*COMMANDS, *SCENES)) or "; pendu-tui --help lists them."
+        raise UserError(f"there is no command, scene or file {name!r}{hint}")
     command = module_of(name)
     parser = Parser(
         prog=f"pendu-tui {name}",
@@ -161,6 +187,21 @@ def command_of(name: str) -> tuple["Parser", ModuleType]:
 
 
 def module_of(name: str) -> ModuleType:
-    """A command's module."""
+    """Return a command's module."""
     group = next(group for group, names in GROUPS.items() if name in names)
     return import_module(f"tui.commands.{group}.{name}")
+
+
+def completion_parser() -> "Parser":
+    """Return one parser of all commands, whose --print-completion prints a script for the tab key."""
+    import shtab
+
+    from tui.cli.options import Parser
+
+    parser = Parser(prog="pendu-tui")
+    shtab.add_argument_to(parser, "--print-completion")
+    parser.add_argument("--version", action="store_true", help="print the version")
+    commands = parser.add_subparsers(parser_class=ArgumentParser)
+    for name, about in COMMANDS.items():
+        module_of(name).add_options(commands.add_parser(name, help=about, description=about))
+    return parser

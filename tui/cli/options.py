@@ -5,11 +5,9 @@ import difflib
 import math
 import re
 from collections.abc import Iterable, Sequence
-from itertools import pairwise
 from typing import Any, NoReturn
 
 from engine.scenes import LIMITS
-from recordings.library import golden_names
 from tui.cli.errors import UserError
 from tui.cli.output import warn
 
@@ -24,12 +22,15 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         raise UserError(f"{message.removeprefix('argument ')}; {self.prog} --help shows the options.")
 
-    def stray(self, arguments: Sequence[str], words: Iterable[str]) -> str | None:
-        """The first argument that is one of these words, and not the value of an option."""
-        options = {name for name, action in self._option_string_actions.items() if action.nargs != 0}
-        return next(
-            (word for before, word in pairwise(["", *arguments]) if word in words and before not in options), None
-        )
+    def parse_args(self, arguments: Sequence[str], namespace: Any = None) -> Any:  # type: ignore[override]
+        """Parse the arguments; a SCENE may also follow options."""
+        for argument in arguments:
+            if re.fullmatch(r"(--?[\w-]+=|-\w)--", argument):  # Python 3.11 makes a list of it
+                self.error(f"{argument.removesuffix('--').removesuffix('=')}: expected one argument")
+        takes_scene = any(action.dest == "scene" for action in self._actions)
+        if takes_scene and not {"-h", "--help"} & {*arguments}:  # whose text intermixing changes
+            return self.parse_intermixed_args(arguments, namespace)
+        return super().parse_args(arguments, namespace)
 
     def unknown_option(self, arguments: Sequence[str]) -> UserError | None:
         """The error for the first option that does not exist; argparse would complain about a missing one first."""
@@ -60,22 +61,10 @@ def add_recording(
     name: str = "file",
     metavar: str = "FILE",
     help: str = "a file, latest, or a name such as drift",
-    offered: Sequence[str] = (),
     **settings: Any,
 ) -> None:
-    """Add an argument for `recordings.library.resolve`; the tab key offers files, known names, and those `offered`."""
-    words = " ".join(("latest", *golden_names(), *offered))
-    function = f"_pendu_tui_file_{len(words.split())}"
-    action = parser.add_argument(name, metavar=metavar, help=help, **settings)
-    action.complete = {  # type: ignore[attr-defined]  # in the words of each shell, for shtab
-        "bash": function,
-        "zsh": function,
-        "fish": f"{words} (__fish_complete_path (commandline -ct))",
-        "preamble": {
-            "bash": f'{function}() {{ compgen -W \'{words}\' -- "$1"; compgen -f -- "$1"; }}',
-            "zsh": f"{function}() {{ _alternative 'names:recording:({words})' 'files:file:_files'; }}",
-        },
-    }
+    """Add an argument for `recordings.library.resolve`."""
+    add_file(parser, name, metavar=metavar, help=help, **settings)
 
 
 def add_degrees(parser: argparse._ActionsContainer) -> None:

@@ -11,8 +11,6 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 from engine.scenes import LIMITS, Scene
 
-LONG = 120.0  # s of work that are announced where there is no bar
-
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
     from rich.text import Text
@@ -115,23 +113,15 @@ def draw(on: "Console", renderables: "Iterable[RenderableType]", **how: Any) -> 
 def progress(what: str) -> Iterator[Callable[[float, float], None]]:
     """Yield a function to call with how much is done and how much there is in all.
 
-    On stderr it shows a bar and an estimate of the time left if the work takes over a second; where that is no
-    terminal it says in a sentence what takes over two minutes.
+    A terminal shows a bar and an estimate of the time left once the work takes over a second.
     """
     began = monotonic()
     bar: Any = None
-    said = False
 
     def show(done: float, total: float) -> None:
-        nonlocal bar, said
+        nonlocal bar
         if bar is None:
-            if (elapsed := monotonic() - began) < 1 or not done:
-                return
-            if not sys.stderr.isatty():
-                if not said and elapsed > 5 and (left := elapsed * (total / done - 1)) > LONG:
-                    size = f"{left / 86400:,.1f} days" if left > 172_800 else f"{left / 60:.0f} minutes"
-                    warn(f"{what} will take about {size} more; an interrupt (Ctrl+C) ends it.")
-                    said = True
+            if not done or monotonic() - began < 1 or not sys.stderr.isatty():
                 return
             from rich.console import Console
             from rich.progress import Progress

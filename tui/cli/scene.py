@@ -12,12 +12,10 @@ from tui.cli.options import Suggestions, angle, did_you_mean, number, start_angl
 def add_scene_options(parser: argparse.ArgumentParser) -> None:
     """Add the options that determine a scene; `scene_of` reads them."""
     group = parser.add_argument_group("scene", "options override the values of the scene")
-    group.add_argument(
-        "--scene",
-        metavar="NAME|FILE.toml",
-        choices=Suggestions(SCENES),
-        help=f"see pendu-tui scenes ({DEFAULT_SCENE.name}), or a file with the fields of scenes --json",
-    )
+    meaning = f"see pendu-tui scenes ({DEFAULT_SCENE.name}), or a file with the fields of scenes --json"
+    names = Suggestions(SCENES)
+    group.add_argument("scene", metavar="SCENE", nargs="?", choices=names, help="the scene, as --scene")
+    group.add_argument("--scene", dest="scene_option", metavar="NAME|FILE.toml", choices=names, help=meaning)
     for name, metavar, read, meaning in (
         ("theta", "RAD|DEGdeg", start_angle, "start angle from straight down, in rad, or in degrees (115deg)"),
         ("omega", "RAD_S", angle, "start angular velocity in rad/s, or in degrees per second (30deg)"),
@@ -31,20 +29,22 @@ def add_scene_options(parser: argparse.ArgumentParser) -> None:
     add_cast_options(group)
 
 
-def scene_of(options: argparse.Namespace, usual: Scene | None = None) -> Scene:
-    """The scene that the options describe, with its cast; without --scene they change the `usual` one.
+def scene_of(options: argparse.Namespace, default: Scene | None = None) -> Scene:
+    """Return the scene that the options describe, with its cast; without a name they change the `default`.
 
     Raises UserError for an unknown name, SceneError for bad numbers, OwnMethodError for a bad function.
     """
     given = {name: getattr(options, name) for name in (*LIMITS, *PARAMETERS, "h")}
     changes = {name: value for name, value in given.items() if value is not None}
-    scene = _named(options.scene, usual or DEFAULT_SCENE).altered(**changes)
+    if options.scene and options.scene_option:
+        raise UserError(f"there are two scenes, {options.scene} and {options.scene_option}; leave one out.")
+    name = options.scene or options.scene_option
+    scene = (scene_named(name) if name else default or DEFAULT_SCENE).altered(**changes)
     return scene.with_cast(cast_of(options, scene.cast))
 
 
-def _named(name: str | None, usual: Scene) -> Scene:
-    if name is None:
-        return usual
+def scene_named(name: str) -> Scene:
+    """Return a listed scene, or that of a file.  Raises UserError."""
     if name.endswith(".toml"):
         from tui.cli.scene_file import read_scene
 

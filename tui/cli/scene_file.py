@@ -1,5 +1,6 @@
 """A scene of the user's own from a TOML file, with the fields that `scenes --json` prints."""
 
+import argparse
 import re
 import tomllib
 from dataclasses import fields
@@ -8,26 +9,29 @@ from typing import Any
 
 from engine.methods import METHODS
 from engine.models import MODELS
-from engine.scenes import SCENES, Scene, SceneError
+from engine.scenes import DEFAULT_SCENE, SCENES, Scene, SceneError
 from recordings.errors import printable
 from tui.cli.cast import find
 from tui.cli.errors import Exit, UserError
-from tui.cli.options import did_you_mean
+from tui.cli.options import angle, did_you_mean
 
 TEXTS = ("name", "watch", "model")
 FIELDS = (*(field.name for field in fields(Scene) if field.name != "cast"), "methods")
-LARGEST = 100_000  # bytes
+MAX_BYTES = 100_000
 
 
 def read_scene(path: Path) -> Scene:
-    """The scene in a file.  Raises UserError with line and field."""
+    """Return the scene in a file.  Raises UserError with line and field."""
     try:
-        raw = path.read_bytes()[:LARGEST]
-        text = raw.decode()
+        with path.open("rb") as file:
+            raw = file.read(MAX_BYTES + 1)
+        if len(raw) > MAX_BYTES:
+            raise UserError(f"{path} is longer than {MAX_BYTES} bytes; is it a scene?", Exit.INPUT_UNREADABLE)
+        text = raw.decode("utf-8-sig")
         given = tomllib.loads(text)
     except OSError as error:
         raise UserError(f"cannot read {path}: {error.strerror}.", Exit.INPUT_UNREADABLE) from None
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # ValueError: no text, no TOML, or an integer of 5,000 digits
         raise UserError(f"{path} is not TOML: {printable(str(error), 200)}.", Exit.INPUT_UNREADABLE) from None
     values: dict[str, Any] = {"name": path.stem}
     for name, value in given.items():
@@ -46,7 +50,7 @@ def read_scene(path: Path) -> Scene:
 
 
 def _value(name: str, value: Any) -> Any:
-    """A field's value, as a Scene takes it."""
+    """Return a field's value, as a Scene takes it."""
     if name not in FIELDS:
         advice = did_you_mean(name, FIELDS) or f"; choose from {', '.join(FIELDS)}."
         raise UserError(f"a scene has no field {printable(name, 40)}{advice}")
@@ -61,8 +65,14 @@ def _value(name: str, value: Any) -> Any:
             allowed = f"one of {', '.join(MODELS)}" if name == "model" else "a text"
             raise UserError(f"{name} is not {allowed}.")
         return printable(value, 200)
+    if name in ("theta", "omega") and isinstance(value, str):
+        try:
+            return angle(value)
+        except argparse.ArgumentTypeError as error:
+            raise UserError(f"{name}: {error}.") from None
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise UserError(f"{name} is not a number; use for example {name} = 1.0.")
+        example = getattr(DEFAULT_SCENE, name)
+        raise UserError(f"{name} is not a number; use for example {name} = {example}.")
     try:
         return float(value)
     except OverflowError:
@@ -70,6 +80,6 @@ def _value(name: str, value: Any) -> Any:
 
 
 def _line(text: str, name: str) -> int:
-    """The line that a field is on, from 1."""
+    """Return the line that a field is on, from 1."""
     lines = text.splitlines()
     return next((n for n, line in enumerate(lines, 1) if re.match(rf"\s*[\"'\[]*{re.escape(name)}\b", line)), 1)

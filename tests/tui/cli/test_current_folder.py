@@ -30,7 +30,6 @@ ARGUMENTS: dict[str, list[tuple[str, ...]]] = {
     "scenes": [()],
     "methods": [()],
     "doctor": [()],
-    "completion": [("bash",), ("zsh",)],
 }
 """Of every command without a screen."""
 

@@ -6,6 +6,7 @@ import pytest
 
 from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PENDU
+from tui.cli.dispatch import RENAMED
 
 
 @pytest.mark.parametrize("arguments", [("scnes",), ("scenes", "--jsn"), ("scenes", "extra"), ("--nonsense",)])
@@ -17,8 +18,9 @@ def test_a_mistyped_command_is_answered_with_the_nearest_one():
     assert pendu("scenez").refused(2, "did you mean scenes?")
 
 
-def test_a_scene_given_as_a_command_is_answered_with_how_to_see_it():
-    assert pendu("crossover").refused(2, "for the scene use: pendu-tui --scene crossover")
+@pytest.mark.parametrize("name", RENAMED)
+def test_an_old_command_is_answered_with_the_new_one(name):
+    assert pendu(name, "x", "--json").refused(2, f"use: pendu-tui {RENAMED[name]}")
 
 
 @pytest.mark.parametrize(
@@ -40,7 +42,7 @@ def test_an_unknown_option_is_named_before_one_that_is_missing(arguments, words)
         (("judge", "x.csv"), "required: --time, --energy"),
         (("run", "--time", "1", "--theta", "-abc"), "has no option -a"),
         (("run", "--time", "--h", "0.1"), "--time: expected one argument"),
-        (("run", "--time", "1", "more"), "unrecognized arguments: more"),
+        (("run", "--time", "1", "drift", "more"), "unrecognized arguments: more"),
     ],
 )
 def test_a_mistake_with_known_options_is_reported_by_argparse(arguments, words):
@@ -48,8 +50,14 @@ def test_a_mistake_with_known_options_is_reported_by_argparse(arguments, words):
 
 
 def test_a_command_after_its_options_is_refused_with_the_right_order():
-    assert pendu("--scene", "drift", "run", "--time", "10").refused(2, "put the command first: pendu-tui run.")
+    assert pendu("--h", "0.1", "run").refused(2, "put the command first: pendu-tui run.")
     assert pendu("--record", "run", "--nope").refused(2, "live has no option --nope")
+
+
+@pytest.mark.parametrize("argument", ["--theta=--", "--record=--", "--scene=--"])
+def test_two_hyphens_are_no_value(argument):
+    assert pendu(argument).refused(2, argument.removesuffix("=--"))
+    assert pendu("snapshot", "-o--").refused(2, "-o")
 
 
 def test_a_bug_is_not_hidden_behind_a_sentence(monkeypatch):

@@ -43,13 +43,6 @@ def test_in_a_pipe_there_is_no_bar(monkeypatch):
     assert shown(io.StringIO(), 10.0, monkeypatch) == ""
 
 
-def test_where_there_is_no_terminal_a_sentence_says_what_takes_over_two_minutes_and_only_once(monkeypatch):
-    assert shown(io.StringIO(), 20.0, monkeypatch) == (
-        "pendu-tui: working will take about 3 minutes more; an interrupt (Ctrl+C) ends it.\n"
-    )
-    assert shown(io.StringIO(), 2.0, monkeypatch) == ""
-
-
 def test_a_sentence_on_a_terminal_is_wrapped_between_words_and_whole_elsewhere(monkeypatch, capsys):
     sentence = "the recording will be about 30 MB; --sample-every 4 would reduce it to a quarter of that."
     monkeypatch.setenv("COLUMNS", "30")

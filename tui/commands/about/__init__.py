@@ -1,1 +1,1 @@
-"""Lists and help: `scenes`, `methods`, `doctor`, `completion`."""
+"""Lists and help: `scenes`, `methods`, `doctor`."""

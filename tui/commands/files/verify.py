@@ -32,9 +32,7 @@ Exit 0: all are identical; 1: at least one differs or is incomplete (a .part may
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    add_recording(
-        parser, "files", nargs="+", help="a file, a folder, latest, or a name such as drift", offered=["golden"]
-    )
+    add_recording(parser, "files", nargs="+", help="a file, a folder, latest, or a name such as drift")
     add_cast_options(parser, "all of a recording's")
     parser.add_argument(
         "--max-steps",

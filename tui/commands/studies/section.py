@@ -28,7 +28,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--method-key",
         metavar="KEY",
-        choices=Suggestions(KEYS.split()),
+        choices=Suggestions(KEYS),
         help="the method whose map is drawn (velocity_verlet, or the first of the scene's)",
     )
     parser.add_argument("--starts", metavar="N", type=count, default=300, help="orbits tried (%(default)s)")

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from engine.scenes import Z_LIMITS
 from tui.cli.errors import Exit, UserError
+from tui.cli.install import install_advice
 from tui.cli.options import add_file, angle, count, number
 from tui.cli.output import progress
 from tui.cli.scene import add_scene_options, general_scene_of
@@ -144,6 +145,6 @@ def _dask(address: str) -> Any:
 
         return distributed.Client(address, timeout="10s")
     except ImportError:
-        raise UserError("--dask needs the extra cluster: pip install '.[cluster]' in the clone.") from None
+        raise UserError(f"--dask needs the package distributed: {install_advice('distributed', 'cluster')}.") from None
     except (OSError, ValueError) as error:
         raise UserError(f"no Dask scheduler answers at {address!r}: {type(error).__name__}; is it running?") from None

@@ -1,0 +1,14 @@
+"""How to install an optional package beside pendu-tui."""
+
+import sys
+from pathlib import Path
+
+
+def install_advice(package: str, extra: str) -> str:
+    """Return the command that adds a package, which an extra names, by the tool that installed pendu-tui."""
+    environment = Path(sys.prefix)
+    if (environment / "uv-receipt.toml").exists():
+        return f"uv tool install --with {package} pendu-tui"
+    if (environment / "pipx_metadata.json").exists():
+        return f"pipx inject pendu-tui {package}"
+    return f"pip install 'pendu-tui[{extra}]'"
