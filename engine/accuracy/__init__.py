@@ -6,5 +6,5 @@ the cheapest step size that reaches a target, and for the most accurate one with
 recommendation of that.  `growth` fits the power of time with which the error in theta grows.
 
 `references` measures two solutions that have no step size, and can be compared in seconds only (`timing`): the
-`taylor` series of the motion, at a ladder of tolerances, and its `closed_form`.
+`taylor` series of the motion, at a ladder of tolerances, and the closed form.
 """

@@ -12,7 +12,6 @@ from engine.accuracy.recommend import (
     reach,
     spend,
 )
-from engine.accuracy.references import AnyPoint, Reached, TaylorStudy
 from engine.accuracy.study import Clock, ErrorKind, Point, Study, timed
 from engine.methods.runge_kutta import RK4
 from engine.run.loops import LoopsOf, plain
@@ -24,14 +23,13 @@ class Advice:
 
     time: float  # s
     attempts: Sequence[Attempt]
-    point: AnyPoint | None  # None: nothing reaches the target
-    series: Reached | None = None  # what Taylor's series reached; None: not tried
+    point: Point | None  # None: nothing reaches the target
     rk4: Point | None = None  # RK4's cheapest run within the same error; None: not tried, or there is none
 
     @property
     def saves(self) -> float | None:
         """RK4's force evaluations over those of the recommended method; None where one of them is unknown."""
-        if self.rk4 is None or not isinstance(self.point, Point):
+        if self.rk4 is None or self.point is None:
             return None
         return self.rk4.force_evaluations / self.point.force_evaluations
 
@@ -64,26 +62,17 @@ def least_seconds(
     show: Callable[[float], None],
     clock: Clock,
     loops: LoopsOf = plain,
-    series: bool = False,
 ) -> Advice:
-    """The fastest run that reaches a target, timed by `clock` with these loops; `series`: try Taylor's series, too."""
+    """The fastest run that reaches a target, timed by `clock` with these loops."""
     attempts: list[Attempt] = []
     for attempt in reach(study, kind, target, budget or MOST_EVALUATIONS, SECONDS_SLACK):
         if attempt.point and attempt.succeeded:
             attempt = replace(attempt, point=timed(attempt.point, study.scene, clock, loops))
         attempts.append(attempt)
         show(len(attempts) / len(study.scene.cast))
-    reached = None
-    if series:
-        taylor = TaylorStudy(study.scene, study.time)
-        reached = taylor.reach(kind, target)
-        if reached.point:
-            reached = replace(reached, point=taylor.timed(reached.point, clock))
-    points: list[AnyPoint] = [each.point for each in attempts if each.point and each.succeeded]
-    if reached and reached.point:
-        points.append(reached.point)
+    points = [each.point for each in attempts if each.point and each.succeeded]
     best = min(points, key=lambda point: point.seconds or 0.0, default=None)
-    return Advice(study.time, attempts, best, reached)
+    return Advice(study.time, attempts, best)
 
 
 def with_saving_over_rk4(advice: Advice, study: Study, kind: ErrorKind, target: float) -> Advice:

@@ -15,7 +15,7 @@ def at(method, steps, error, seconds=None, flaw=None):
 
 
 def series(steps, error, seconds):
-    return TaylorPoint(10.0, 1e-9, steps, error, error, error, Flaws(None, None, None), seconds)
+    return TaylorPoint(1e-9, steps, error, error, error, Flaws(None, None, None), seconds, 0.0)
 
 
 LINES = [at(RK4, 10**n, 10.0 ** (4 - 4 * n), 1e-4 * 10**n) for n in range(1, 5)] + [

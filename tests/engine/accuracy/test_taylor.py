@@ -8,8 +8,7 @@ from statistics import fmean
 import numpy as np
 import pytest
 
-from engine.accuracy import taylor
-from engine.accuracy.taylor import follow
+from engine.accuracy.taylor import solve
 from engine.models.pendulum import energy
 from engine.run.compiled import available
 from engine.scenes import Scene
@@ -21,7 +20,7 @@ SWING = Scene(theta=2.0)
 def errors(scene, time, tolerance, comparisons=400):
     """The largest error in theta [rad], the relative one in energy at the end, and the steps."""
     times = np.linspace(0, time, comparisons + 1)
-    states, steps = follow(scene.w0_squared, scene.theta, scene.omega, times, tolerance)
+    states, steps = solve(scene.w0_squared, scene.theta, scene.omega, times, tolerance)
     exact = scene.exact()
     start, end = (energy(scene.w0_squared, *map(float, states[n])) for n in (0, -1))
     off = max(abs(theta - exact.at(float(t)).theta) for t, (theta, _) in zip(times, states, strict=True))
@@ -53,7 +52,7 @@ def test_the_energy_of_twenty_starts_walks_at_random_and_does_not_drift():
     for n in range(20):
         theta, omega = 0.2 + 0.14 * n, 0.3 * (n % 3)
         _, energy_error, steps = errors(Scene(theta=theta, omega=omega), 1e4, 1e-16, comparisons=1)
-        assert abs(energy_error) < 1e-13
+        assert abs(energy_error) < 2e-13  # 6e4 steps: four times the 5e-14 of one rounding a step
         assert steps > 5e4
         ends.append(energy_error)
     # a drift would have one sign; of twenty random walks the mean is 0.22 rms, give or take
@@ -70,8 +69,8 @@ def test_the_phase_stays_with_the_exact_one_for_a_million_steps():
 @needs_numba
 def test_times_asked_for_in_between_do_not_change_the_steps():
     parameters = SWING.w0_squared, SWING.theta, SWING.omega
-    coarse, steps = follow(*parameters, np.array([10.0]), 1e-9)
-    fine, same_steps = follow(*parameters, np.linspace(0, 10, 10_001), 1e-9)
+    coarse, steps = solve(*parameters, np.array([10.0]), 1e-9)
+    fine, same_steps = solve(*parameters, np.linspace(0, 10, 10_001), 1e-9)
     assert steps == same_steps
     assert np.array_equal(coarse[-1], fine[-1])
     assert tuple(fine[0]) == (SWING.theta, SWING.omega)
@@ -79,15 +78,14 @@ def test_times_asked_for_in_between_do_not_change_the_steps():
 
 @needs_numba
 def test_a_pendulum_at_rest_stays_at_rest_in_one_step():
-    states, steps = follow(9.81, 0.0, 0.0, np.linspace(0, 100, 11), 1e-12)
+    states, steps = solve(9.81, 0.0, 0.0, np.linspace(0, 100, 11), 1e-12)
     assert steps == 1
     assert not states.any()
 
 
 @needs_numba
-def test_a_run_of_too_many_steps_is_given_up(monkeypatch):
-    monkeypatch.setattr(taylor, "MOST_STEPS", 1000)
-    states, steps = follow(9.81, 1.0, 0.0, np.array([1.0, 1e9]), 1e-12)
+def test_a_run_of_too_many_steps_is_given_up():
+    states, steps = solve(9.81, 1.0, 0.0, np.array([1.0, 1e9]), 1e-12, max_steps=1000)
     assert steps == 1000
     assert np.isnan(states).tolist() == [[False, False], [True, True]]
 

@@ -185,9 +185,7 @@ def _advice(found: "Findings", study: "Study", fast: bool, show: Callable[[float
         advice = least_evaluations(*wish)
     else:
         steps = compiled.compiled if fast else loops.plain
-        taylor = found.references.taylor if found.references else ()
-        series = bool(taylor) and not found.budget  # which limits force evaluations, of which a series has none
-        advice = least_seconds(*wish, time.perf_counter, steps, series)
+        advice = least_seconds(*wish, time.perf_counter, steps)
     return with_saving_over_rk4(advice, study, found.kind, found.target) if found.all else advice
 
 

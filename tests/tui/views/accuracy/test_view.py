@@ -195,7 +195,7 @@ async def test_all_methods_and_the_reference_lines_are_charted_over_seconds(monk
             yield found
 
     def run(tolerance: float, seconds: float) -> TaylorPoint:
-        return TaylorPoint(5.0, tolerance, 50, *[100 * tolerance] * 3, Flaws(None, None, None), seconds)
+        return TaylorPoint(tolerance, 50, *[100 * tolerance] * 3, Flaws(None, None, None), seconds, 0.0)
 
     def points(scene: Scene, time: float, rungs: list[int], *_clock: Callable[[], float]) -> Iterator[Point]:
         return (replace(p, seconds=1e-7 * p.force_evaluations) for p in Study(scene, time).points(rungs))

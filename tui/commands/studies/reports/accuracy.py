@@ -10,7 +10,7 @@ from rich.text import Text
 from engine.accuracy.advice import Advice
 from engine.accuracy.front import Cheapest, Cost, front
 from engine.accuracy.growth import Growth
-from engine.accuracy.references import TAYLOR_20, AnyPoint, Reference, References
+from engine.accuracy.references import AnyPoint, Reference, References
 from engine.accuracy.study import REASONS, ErrorKind, Order, Point
 from engine.methods import Method
 from engine.scenes import Scene
@@ -157,12 +157,8 @@ def _print_advice(found: Findings, advice: Advice) -> None:
         print(f"No method reaches the target over {advice.time:g} s: {found.wish}")
     else:
         seconds = "" if point.seconds is None else f" in {length(point.seconds)}"
-        if isinstance(point, Point):
-            how, cost = f"h = {point.h:.5g} s", f"{point.force_evaluations} force evaluations"
-        else:
-            how, cost = f"a tolerance of {point.tolerance:.3g} rad/s", f"{point.steps} steps"
-        print(f"Over {advice.time:g} s, {found.wish}: {point.method.label} at {how}")
-        print(f"{cost}{seconds}, {kind} error {point.error(kind):.2e}, confirmed")
+        print(f"Over {advice.time:g} s, {found.wish}: {point.method.label} at h = {point.h:.5g} s")
+        print(f"{point.force_evaluations} force evaluations{seconds}, {kind} error {point.error(kind):.2e}, confirmed")
         if advice.rk4 and advice.saves and advice.saves >= WORTH_SAYING:
             print(f"RK4 takes {advice.saves:.2g} times as many force evaluations, {advice.rk4.force_evaluations}")
     timed = any(attempt.point and attempt.point.seconds is not None for attempt in advice.attempts)
@@ -181,9 +177,8 @@ def _print_advice(found: Findings, advice: Advice) -> None:
 
 
 def _tries(advice: Advice) -> list[tuple[Method | Reference, AnyPoint | None, str | None]]:
-    """What was tried: a method or the series, its run, and why it will not do."""
-    series = [(TAYLOR_20, advice.series.point, advice.series.why_not)] if advice.series else []
-    return [*((each.method, each.point, each.why_not) for each in advice.attempts), *series]
+    """The methods that were tried, each with its run and the reason why it will not do."""
+    return [(each.method, each.point, each.why_not) for each in advice.attempts]
 
 
 def winners(advice: Sequence[Advice]) -> str:
