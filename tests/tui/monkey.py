@@ -62,7 +62,6 @@ BATCH, EPISODE = 10, 60  # presses at once; and until what lies over the lab is 
 PAUSE = 0.03  # s after a batch
 ESCDELAY = "20"  # ms; Textual's name for how long it waits after an escape, which may begin something longer
 ESC, PALETTE = "\x1b", "\x10"
-PRESENT = "--present"
 OVERLAYS = ("?", "i", "d", "E", PALETTE)
 GARBAGE = "aeq0.-~\t\r\n\x00\x07\x1b[]{}()\\/%<>|\xa0\u2067é漢🙂\u0301\udc80"  # of which pasted text is made
 ESCAPE = 0.15  # s after one; Textual looks every 0.1 s whether there is more to come
@@ -117,7 +116,7 @@ def wild_presses(number: int, seed: int) -> Iterator[str | tuple[int, int]]:
     for done in range(number):
         if done % EPISODE == 0:
             yield from (ESC, ESC)
-        match chance.choices(("press", "over", "type", "enter", "paste", "size", "present"), (70, 6, 8, 4, 3, 8, 1))[0]:
+        match chance.choices(("press", "over", "type", "enter", "paste", "size"), (70, 6, 8, 4, 3, 9))[0]:
             case "press":
                 yield press(chance, size)
             case "over":
@@ -133,8 +132,6 @@ def wild_presses(number: int, seed: int) -> Iterator[str | tuple[int, int]]:
                 largest = (12, 12) if narrow else LARGEST
                 size = SIZE if chance.random() < 0.3 else (chance.randint(1, largest[0]), chance.randint(1, largest[1]))
                 yield size
-            case _:
-                yield PRESENT
 
 
 def play(pendu: PtyLab, number: int, seed: int) -> int:
@@ -163,8 +160,6 @@ async def play_on_stage(theatre: Theatre, what: Iterable[str | tuple[int, int]],
         if isinstance(did, tuple):
             driver._size = did
             app.post_message(Resize(Size(*did), Size(*did)))
-        elif did == PRESENT:
-            app.call_later(app.action_present)
         else:
             for message in [Key("escape", None)] if did == ESC else parser.feed(did):
                 driver.process_message(message)

@@ -67,11 +67,6 @@ def add_recording(
     add_file(parser, name, metavar=metavar, help=help, **settings)
 
 
-def add_degrees(parser: argparse._ActionsContainer) -> None:
-    """Add the option for angles in degrees."""
-    parser.add_argument("--degrees", action="store_true", help="angles in degrees instead of radians")
-
-
 def angle(text: str) -> float:
     """An angle [rad] from `2`, `2rad`, `115deg` or `115°`."""
     try:

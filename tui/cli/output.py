@@ -1,6 +1,5 @@
 """What commands print: JSON, CSV, tables and pictures on stdout; warnings and progress on stderr."""
 
-import math
 import shutil
 import sys
 import textwrap
@@ -73,14 +72,11 @@ def difference_fields(difference: Any, place: Sequence[str], values: Sequence[st
     return {**fields_of(difference, *place), **named, **numbers, **hexes, "ulps": difference.ulps}
 
 
-def scene_line(scene: Scene, *more: str, degrees: bool = False) -> str:
+def scene_line(scene: Scene, *more: str) -> str:
     """The scene's name and numbers, and `more` of its attributes."""
     numbers = fields_of(scene, *LIMITS, *more)
-    if degrees:
-        numbers |= {name: math.degrees(numbers[name]) for name in ("theta", "omega")}
-    units = "SI units, degrees" if degrees else "SI units"
     model = "" if scene.model == "pendulum" else f" ({scene.equations.equation})"
-    return f"{scene.name}{model}: {', '.join(f'{name} {value:g}' for name, value in numbers.items())} ({units})"
+    return f"{scene.name}{model}: {', '.join(f'{name} {value:g}' for name, value in numbers.items())} (SI units)"
 
 
 def print_lines(*lines: str) -> None:

@@ -148,16 +148,6 @@ def theta_ticks(low: float, high: float, most: int, wrap: bool) -> Ticks:
     return _around(anchor, low, high, step)
 
 
-def degree_ticks(low: float, high: float, most: int, wrap: bool) -> Ticks:
-    """As theta_ticks, labelled in degrees."""
-    if high - low <= 0.02 * math.pi:
-        return [(math.radians(at), text) for at, text in omega_ticks(math.degrees(low), math.degrees(high), most)]
-    angles = [(theta, math.degrees(theta)) for theta, _ in theta_ticks(low, high, most, wrap)]
-    return [
-        (at, f"{math.remainder(turned, 360) if wrap and abs(turned) > 180 else turned:.5g}") for at, turned in angles
-    ]
-
-
 def _multiples(low: float, high: float, step: float, slack: float = 1e-6) -> range:
     return range(math.ceil(low / step - slack), math.floor(high / step + slack) + 1)
 

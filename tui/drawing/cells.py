@@ -23,9 +23,6 @@ if TYPE_CHECKING:
 Row = Sequence[tuple[str, int | Style]]
 """Words next to each other, and whose they are; or how they look, where that is not an owner's colour."""
 
-PRESENT = "-present"
-"""The app's class where pictures have thick lines."""
-
 
 class CellWidget(Guarded, Widget):
     """Shows rows, a picture or a sketch; what is missing is blank, what is too long is cut off."""
@@ -95,18 +92,11 @@ class CellWidget(Guarded, Widget):
         return not wait
 
     def show_picture(self, picture: "Picture") -> None:
-        if self.app.has_class(PRESENT):
-            picture = picture.thick()
         changed, self._picture, self._sketch = picture.changed_rows(self._picture), picture, None
         self._picture_width = picture.characters.shape[1]
         self._replace_rows(changed, picture.row, len(picture.characters))
 
     def show_sketch(self, sketch: Sketch) -> None:
-        if self.app.has_class(PRESENT):
-            from tui.drawing.canvas import Picture
-
-            self.show_picture(Picture.of_sketch(sketch))
-            return
         changed, self._picture, self._sketch = sketch.changed_rows(self._sketch), None, sketch
         self._picture_width = sketch.columns
         self._replace_rows(changed, sketch.row, sketch.rows)

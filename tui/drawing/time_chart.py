@@ -1,6 +1,5 @@
 """A quantity of all methods over time, as a chart that can be read out at each column."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
@@ -111,7 +110,6 @@ def time_chart(
     stretch: Stretch | None = None,
     shown: Sequence[int] | None = None,
     ghost: tuple[Window, Cast] | None = None,
-    degrees: bool = False,
 ) -> TimePlot:
     """A quantity of a cast over a `stretch`, the last `seconds`, or the whole run; `shown`: only those at these places.
 
@@ -125,12 +123,11 @@ def time_chart(
     if width < SMALLEST[0] or height < SMALLEST[1]:
         return TimePlot(too_small(width, height, *SMALLEST))
     places, rows = list(range(len(cast)) if shown is None else shown), height - 2
-    scale = 180 / math.pi if degrees else 1.0
-    parts = [_part(window, cast, quantity, places, scale)]
+    parts = [_part(window, cast, quantity, places)]
     if ghost is not None:
         keys = {cast[place].key for place in places}
         behind = [place for place, method in enumerate(ghost[1]) if method.key in keys]
-        parts.append(_part(*ghost, quantity, behind, scale, is_ghost=True))
+        parts.append(_part(*ghost, quantity, behind, is_ghost=True))
     note = " run" if window.turned else ""
     log_time = log and seconds is None and time_span(window.x, seconds, 1)[1] > LONG
     log_time = log and stretch.log_time if stretch is not None else log_time
@@ -169,10 +166,8 @@ def time_chart(
     return TimePlot(picture, places, left, times, values, (x_axis.low, x_axis.high), log_time)
 
 
-def _part(
-    window: Window, cast: Cast, quantity: Quantity, places: Sequence[int], scale: float, is_ghost: bool = False
-) -> _Part:
-    low, high = (np.clip(scale * side[quantity][:, places], -LARGEST, LARGEST) for side in (window.low, window.high))
+def _part(window: Window, cast: Cast, quantity: Quantity, places: Sequence[int], is_ghost: bool = False) -> _Part:
+    low, high = (np.clip(side[quantity][:, places], -LARGEST, LARGEST) for side in (window.low, window.high))
     owners = [series_of(cast[place]) for place in places]
     if is_ghost:
         return _Part(window, [faint(owner) for owner in owners], [""] * len(owners), low, high)

@@ -43,8 +43,6 @@ class Shown(NamedTuple):
     trails: bool = True
     quantity: Quantity = "energy_error"  # of the chart
     log: bool = True
-    percent: bool = True  # errors from 1 % on
-    degrees: bool = False  # angles, in place of radians
     seconds: float | None = None  # of the chart, one of WINDOWS
     stretch: Stretch | None = None  # in place of that
     turn: int = 0  # place of the method that is to be alone next

@@ -25,7 +25,6 @@ from textual.widget import Widget
 
 from recordings import library
 from tui.cli.errors import Exit
-from tui.drawing.cells import PRESENT
 from tui.drawing.faults import LOG, Fault, Guarded, sentence
 from tui.drawing.palette import PALETTES, Palette
 from tui.screens.base import SourceScreen
@@ -71,8 +70,6 @@ class PenduApp(Guarded, App[Exit | OSError]):
         self.theme = terminal.theme
         self.fps = terminal.fps
         self.set_reactive(PenduApp.character_set, terminal.character_set)
-        self.set_class(terminal.present, PRESENT)
-        screen.set_reactive(SourceScreen.shown, screen.shown._replace(degrees=terminal.degrees))
         self.source_screens = [screen]
         self.throughput = Throughput()
         self._on_stage = False  # before that, what fails ends the program
@@ -113,7 +110,6 @@ class PenduApp(Guarded, App[Exit | OSError]):
     def on_source_screen_began(self, message: SourceScreen.Began) -> None:
         self._on_stage = True
         if message.screen is not self.source_screen:
-            message.screen.shown = message.screen.shown._replace(degrees=self.source_screen.shown.degrees)
             self.source_screens.append(message.screen)
 
     def on_mount(self) -> None:
@@ -202,21 +198,6 @@ class PenduApp(Guarded, App[Exit | OSError]):
 
     def action_use_theme(self, name: str) -> None:
         self.theme = name
-
-    def action_present(self) -> None:
-        """Toggle large numbers and thick lines."""
-        self.toggle_class(PRESENT)
-        self.source_screen.show_now()
-
-    def action_next_character_set(self) -> None:
-        self.character_set = CHARACTER_SETS[(CHARACTER_SETS.index(self.character_set) + 1) % len(CHARACTER_SETS)]
-
-    def watch_character_set(self) -> None:
-        """Draw everything again: no widget knows that its characters have changed."""
-        self.refresh_css(animate=False)
-        for screen in self.screen_stack:
-            for node in screen.walk_children(with_self=True):
-                node.refresh()
 
     def get_line_filters(self) -> Sequence[LineFilter]:
         return [*super().get_line_filters(), *(one for one in (_FILTERS[self.character_set],) if one.enabled)]

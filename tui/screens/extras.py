@@ -138,8 +138,6 @@ def palette_entries(keys: Iterable[Key], live: bool, recordings: Iterable[Path])
         ),
         *(entry(f"method {method.label}", "details", f"app.extra('card', {method.key!r})") for method in METHODS),
         *(entry(f"theme {name}", "", f"app.use_theme({name!r})") for name in PALETTES),
-        entry("toggle degrees", "angles in degrees or radians", "switch('degrees')"),
-        entry("toggle projector mode", "large numbers, thick lines", "app.present"),
         *(entry(f"replay {path.stem}", str(path), f"app.extra('replay', {str(path)!r})") for path in recordings),
         entry("copy the command for this moment", "to the clipboard", "app.extra('copy_command')"),
     ]

@@ -3,10 +3,7 @@
 import textwrap
 from functools import lru_cache
 
-from rich.style import Style
-
 from engine.run.lockstep import Sample
-from tui.drawing.cells import PRESENT
 from tui.drawing.palette import TEXT, WARN
 from tui.playback.source import Source
 from tui.views.view import Pane
@@ -30,8 +27,7 @@ class InsightLine(Pane):
             text, owner = f"Not recording: {status.failed}", WARN
         else:
             text, owner = self._hint(source) or insight(source, self.shown.hidden), TEXT
-        look = owner if not self.app.has_class(PRESENT) else Style(bold=True)  # for the last row of a class
-        self.show([[(f" {line}", look)] for line in fitted(text, self.room.width - 2, self.room.height)])
+        self.show([[(f" {line}", owner)] for line in fitted(text, self.room.width - 2, self.room.height)])
 
     def _hint(self, source: Source) -> str:
         """The hint that is due after some time in the lab; none where time that ran backwards is back at 0."""

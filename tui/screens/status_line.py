@@ -36,7 +36,7 @@ def coarse(value: float) -> str:
     return f"{int(value)} s" if value < 60 else f"{int(value / 60)} min" if value < 3600 else seconds(value)
 
 
-def status_row(source: Source, width: int, frames: int | None = None, degrees: bool = False) -> Row:
+def status_row(source: Source, width: int, frames: int | None = None) -> Row:
     """The line, as far as there is room; `frames` a second where the machine is too slow for more."""
     scene, playhead, pace, recording = source.scene, source.playhead, source.pace, source.recording_status
     z, live, named = abs(source.stepping.h) * scene.equations.fastest, source.kind == "LIVE", bool(scene.watch)
@@ -49,7 +49,7 @@ def status_row(source: Source, width: int, frames: int | None = None, degrees: b
         _Part(10, f"{'h·omega_s' if scene.model == 'spring' else 'z'} {z:.3g}", WARN if warning else TEXT),
         *([_Part(9, warning, WARN)] if warning else []),
         _Part(6 if named else 3, f"scene {scene.name}" if named else f"{scene.name} scene", QUIET),
-        _Part(4 if named else 6, start(scene.theta, scene.omega, degrees)),
+        _Part(4 if named else 6, start(scene.theta, scene.omega)),
     ]
     if pace.share < 0.99:
         reached = playhead.speed * pace.share
@@ -80,7 +80,7 @@ class StatusLine(Pane):
     frames: var[int | None] = var(None)
 
     def paint(self, source: Source, sample: Sample) -> None:
-        self.show([status_row(source, self.room.width, self.frames, self.shown.degrees)])
+        self.show([status_row(source, self.room.width, self.frames)])
 
     def style_of(self, owner: int, base: Style) -> Style:
         if owner == BADGE:

@@ -5,7 +5,7 @@ import re
 from collections.abc import Mapping
 from typing import Literal, NamedTuple, get_args
 
-from tui.cli.options import add_degrees, count
+from tui.cli.options import count
 from tui.drawing.palette import PALETTES
 
 CharacterSet = Literal["braille", "half", "ascii"]
@@ -24,8 +24,6 @@ class TerminalOptions(NamedTuple):
     character_set: CharacterSet = "braille"
     mouse: bool = True
     fps: int = FPS
-    present: bool = False  # large numbers and thick lines, for a projector
-    degrees: bool = False  # angles, in place of radians
 
 
 USUAL = TerminalOptions()
@@ -52,8 +50,6 @@ def add_picture_options(parser: argparse.ArgumentParser, theme: str, character_s
     group.add_argument(
         "--pixels", choices=("auto", *CHARACTER_SETS), default=character_set, help="what to draw with (%(default)s)"
     )
-    group.add_argument("--present", action="store_true", help="large numbers and thick lines, for a projector")
-    add_degrees(group)
     return group
 
 
@@ -82,8 +78,6 @@ def terminal_options_of(options: argparse.Namespace, environment: Mapping[str, s
         ("braille" if is_utf8(encoding) else "ascii") if options.pixels == "auto" else options.pixels,
         not options.no_mouse,
         options.fps or (CALM_FPS if calm else FPS),
-        options.present,
-        options.degrees,
     )
 
 

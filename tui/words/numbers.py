@@ -33,38 +33,19 @@ def scientific(value: float | None, width: int, digits: int = 1, sign: str = "+"
     return "#" * width  # as spreadsheets do
 
 
-def relative(value: float | None, width: int, sign: str = "+") -> str:
-    """An error relative to 1: from 1 % to 10 000 % as "-4.2 %" or "+633 %"."""
-    if value is None or not math.isfinite(value) or not 0.01 <= abs(value) < 100:
-        return scientific(value, width, 1, sign)
-    whole = f"{100 * value:{sign}.0f} %"
-    fine = whole if abs(value) >= 1 else f"{100 * value:{sign}.1f} %"
-    return next((text.rjust(width) for text in (fine, whole) if len(text) <= width), scientific(value, width, 1, sign))
-
-
-def angle(theta: float, width: int, decimals: int, degrees: bool = False) -> str:
+def angle(theta: float, width: int, decimals: int) -> str:
     """An angle [rad]; beyond a turn, where there is room, as turns and the rest: "-5 t +0.89"."""
     turns = round(theta / math.tau) if math.isfinite(theta) else 0
-    rest = measured(theta - turns * math.tau, degrees)
-    text = f"{turns:+d} t {rest:+.{0 if degrees else 2}f}"
+    rest = theta - turns * math.tau
+    text = f"{turns:+d} t {rest:+.2f}"
     if abs(theta) > math.tau and len(text) <= width:
         return text.rjust(width)
-    return decimal(measured(theta, degrees), width, max(decimals - 2 * degrees, 1))
+    return decimal(theta, width, max(decimals, 1))
 
 
-def in_unit(text: str, degrees: bool) -> str:
-    """A head or a title of angles, in degrees if need be: "theta [rad]" as "theta [°]"."""
-    return text.replace("[rad", "[°") if degrees else text
-
-
-def measured(value: float, degrees: bool) -> float:
-    """An angle [rad], or an angular velocity, in degrees if need be."""
-    return math.degrees(value) if degrees else value
-
-
-def start(theta: float, omega: float, degrees: bool = False) -> str:
-    """Start values: "57.3° 0 rad/s", or with degrees per second."""
-    return f"{math.degrees(theta):.4g}° {measured(omega, degrees):.4g}{'°/s' if degrees else ' rad/s'}"
+def start(theta: float, omega: float) -> str:
+    """Start values: "57.3° 0 rad/s"."""
+    return f"{math.degrees(theta):.4g}° {omega:.4g} rad/s"
 
 
 def seconds(value: float) -> str:

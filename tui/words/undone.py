@@ -14,10 +14,8 @@ _NAMES = {
     "trails": "trails",
     "quantity": "the quantity of the chart",
     "log": "log or linear",
-    "percent": "percent or powers of ten",
     "seconds": "the window of the chart",
     "stretch": "the zoom of the chart",
-    "degrees": "degrees or radians",
 }
 
 

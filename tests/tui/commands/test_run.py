@@ -228,17 +228,6 @@ def test_the_step_of_a_stiff_scene_is_given_in_units_of_its_springs_frequency():
     assert "h·omega_s = 1\n" in pendu("run", "--scene", "stiff-slow", "--time", "1").out
 
 
-def test_degrees_are_for_people_and_json_stays_in_radians():
-    short = ("run", "--time", "5", "--methods", "rk4")
-    radians, degrees = pendu(*short).out, pendu(*short, "--degrees").out
-    assert "theta error [rad]" in radians
-    assert "theta 57.2958" in degrees
-    assert "theta error [deg]" in degrees
-    with_flag, without = pendu(*short, "--json", "--degrees").json, pendu(*short, "--json").json
-    assert with_flag["methods"] == without["methods"]
-    assert with_flag["scene"] == without["scene"]
-
-
 def test_other_mistakes_are_told_before_a_missing_time():
     assert pendu("run").refused(2, "--time is missing")
     assert pendu("run", "--fail-if", "rk5.verdict == grows").refused(2, "rk5")

@@ -1,6 +1,5 @@
 """Themes and pixels change while the lab runs, and everything is drawn anew."""
 
-import math
 import re
 
 import pytest
@@ -10,12 +9,7 @@ from tests.tui.conftest import lines_of
 from tests.tui.harness import key_of, lab
 from tests.tui.monkey import small_studies
 from tui.drawing.palette import PALETTES, TEXT
-from tui.screens.status_line import StatusLine
-from tui.terminal.options import CHARACTER_SETS
 from tui.views import VIEWS
-from tui.views.lab.error_table import ErrorTable
-from tui.views.lab.time_chart import TimeChart
-from tui.views.phase.pane import PhasePane
 
 
 @pytest.fixture(autouse=True)
@@ -47,24 +41,6 @@ async def test_a_theme_changes_all_colours_and_no_character(theme, view):
         old, new = PALETTES["dark"], PALETTES[theme]
         assert not colours & {old.colour(owner).upper() for owner in (0, 1, 2, 3, TEXT)} - set(new.methods)
         assert colours >= {new.colour(owner).upper() for owner in (0, 1, 2, 3, TEXT)}
-
-
-async def test_a_draws_with_half_blocks_then_ascii_then_braille_again_in_every_view():
-    async with lab() as theatre:
-        await theatre.run(1)
-        await theatre.press("space")
-        for name in VIEWS:
-            await theatre.press(key_of(name))
-            before = "".join(lines_of(await picture(theatre)))
-            await theatre.press("a")
-            half = "".join(lines_of(await picture(theatre)))
-            await theatre.press("a")
-            plain = "".join(lines_of(await picture(theatre)))
-            await theatre.press("a")
-            assert theatre.app.character_set == CHARACTER_SETS[0]
-            assert not re.search("[⠀-⣿]", half)
-            assert plain.isascii()
-            assert not before.isascii()
 
 
 async def test_forms_help_and_the_palette_are_ascii_too():
@@ -108,23 +84,3 @@ async def test_an_empty_no_color_means_nothing(monkeypatch):
     monkeypatch.setenv("NO_COLOR", "")
     async with lab() as theatre:
         assert not theatre.app.no_color
-
-
-async def test_degrees_are_in_the_table_the_chart_phase_space_and_the_status_line():
-    async with lab() as theatre:
-        await theatre.run(3)
-        theatre.stage.action_switch("degrees")
-        await theatre.press("e")
-        await theatre.run(0.1)
-        await theatre.settled()
-        assert "theta [°]" in theatre.text(ErrorTable)
-        assert "57.3° 0°/s" in theatre.text(StatusLine)
-        chart, phase = theatre.stage.query(TimeChart).first(), theatre.stage.query(PhasePane).first()
-        assert "[°]" in str(chart.border_title)
-        assert str(phase.border_title).endswith("theta [°], omega [°/s]")
-        assert "-180" in phase.text
-        assert "pi" not in phase.text
-        reading = theatre.source.sample.readings[1]
-        assert f"{math.degrees(reading.theta):+.3f}" in theatre.text(ErrorTable)
-        await theatre.press("u", "u")
-        assert "theta [rad]" in theatre.text(ErrorTable)

@@ -73,13 +73,3 @@ async def test_the_replay_has_one_row_more_at_every_size(tmp_path):
             ((_, _, bar, one),) = on_screen(theatre, SeekBar)
             assert (bar, one) == (width, 1)
             assert len(theatre.text(SeekBar).rstrip()) <= width
-
-
-async def test_in_presentation_mode_any_size_is_drawn_or_refused_in_a_message():
-    async with lab() as theatre:
-        theatre.app.action_present()
-        for size in [(50, 12), (40, 40), (120, 10), (1, 1), (300, 90), (60, 16), (3, 50), (120, 40)]:
-            await theatre.pilot.resize_terminal(*size)
-            await theatre.run(0.1)
-        await theatre.settled()
-        assert "Explicit Euler" in theatre.text("LargeTable")

@@ -24,7 +24,6 @@ VIEWS = {"lab": [], "phase": ["f3", "5"], "accuracy": ["f4"], "stability": ["f5"
 DISPLAYS = {
     "high-contrast": TerminalOptions("high-contrast"),
     "ascii": TerminalOptions(character_set="ascii"),
-    "present": TerminalOptions(present=True),
 }
 
 

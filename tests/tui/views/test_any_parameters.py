@@ -18,7 +18,6 @@ from tui.drawing.time_chart import time_chart
 from tui.playback.shown import Shown, quantities
 from tui.screens.status_line import status_row
 from tui.views.lab.error_table import table
-from tui.views.lab.large_table import large_rows
 from tui.views.lab.pendulums import Bob, pendulum_sketch
 from tui.views.phase.facts import fact_rows
 from tui.words.command_line import scene_arguments
@@ -54,7 +53,6 @@ def on_screen(live) -> str:
     rows = [
         status_row(live, 120),
         *table(live, sample, Shown(), 120),
-        *large_rows(live, sample, Shown(), 120),
         *fact_rows(live, Shown(), None, 120),
     ]
     charts = [

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 from recordings.errors import printable
 from tui.cli.errors import Exit
-from tui.cli.options import add_degrees, add_recording
+from tui.cli.options import add_recording
 from tui.cli.output import fields_of, progress, write_json
 from tui.cli.report import print_table
-from tui.words.numbers import counted, file_size, measured, seconds
+from tui.words.numbers import counted, file_size, seconds
 
 if TYPE_CHECKING:
     from recordings.recording import Recording
@@ -26,7 +26,6 @@ examples:
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_recording(parser)
     parser.add_argument("--json", action="store_true", help="one JSON object")
-    add_degrees(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -38,7 +37,7 @@ def run(options: argparse.Namespace) -> int:
         if options.json:
             write_json("info", _fields(recording, path.stat().st_size))
         else:
-            _print(recording, path.stat().st_size, options.degrees)
+            _print(recording, path.stat().st_size)
     return Exit.FINE
 
 
@@ -69,7 +68,7 @@ def _digest(recording: "Recording") -> str:
     return f"sha256 {recording.seal.sha256}{end}" if recording.sealed and recording.seal else "does not match"
 
 
-def _print(recording: "Recording", size: int, degrees: bool) -> None:
+def _print(recording: "Recording", size: int) -> None:
     health = "complete" if recording.complete else f"{recording.reason}"
     facts = {
         "file": str(recording.path),
@@ -82,12 +81,10 @@ def _print(recording: "Recording", size: int, degrees: bool) -> None:
     }
     print_table("ll", ("", ""), facts.items())
     print()
-    angular = ("theta [deg]", "omega [deg/s]") if degrees else ("theta [rad]", "omega [rad/s]")
-    headers = ("run", "scene", *angular, "h [s]", "steps", "simulated s", "recorded s", "inputs")
+    headers = ("run", "scene", "theta [rad]", "omega [rad/s]", "h [s]", "steps", "simulated s", "recorded s", "inputs")
     rows = []
     for run in islice(recording.runs, RUNS_SHOWN):
-        angles = (measured(value, degrees) for value in (run.scene.theta, run.scene.omega))
-        start = (f"{value:g}" for value in (*angles, run.scene.h))
+        start = (f"{value:g}" for value in (run.scene.theta, run.scene.omega, run.scene.h))
         lengths = (str(run.steps), f"{run.t:g}", f"{run.end - run.begin:.2f}")
         rows.append((str(run.number), run.scene.name, *start, *lengths, str(run.events)))
     print_table("rlrrrrrrr", headers, rows)

@@ -23,7 +23,6 @@ examples:
   pendu-tui live --theta 170deg --h 0.02 --record swing.mcap
   pendu-tui live --ghost swing.mcap --h 0.05
   pendu-tui live --scene crossover --equal-cost
-  pendu-tui live --present
   pendu-tui live --plain --no-record
 """
 

@@ -8,7 +8,6 @@ from tui.terminal.options import add_terminal_options
 EXAMPLES = """\
 examples:
   pendu-tui tour
-  pendu-tui tour --present
   pendu-tui tour --plain --no-record
 
 enter or space goes on, backspace goes back, esc leaves for the lab, where T returns.

@@ -14,11 +14,11 @@ from recordings.errors import printable
 from tui.cli.errors import Exit, UserError
 from tui.cli.fail_if import FIELDS, parse
 from tui.cli.files import check_free, stop_requests
-from tui.cli.options import Suggestions, add_degrees, add_file, count, positive
+from tui.cli.options import Suggestions, add_file, count, positive
 from tui.cli.output import fields_of, print_lines, progress, scene_line, warn, write_json
 from tui.cli.report import print_table
 from tui.cli.scene import add_scene_options, scene_of
-from tui.words.numbers import file_size, measured, z_name
+from tui.words.numbers import file_size, z_name
 
 if TYPE_CHECKING:
     from engine.run.lockstep import Sample
@@ -60,7 +60,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--no-compiled", action="store_true", help="do not use Numba (results are identical)")
     parser.add_argument("--json", action="store_true", help="one JSON object, SI units")
-    add_degrees(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -90,7 +89,7 @@ def run(options: argparse.Namespace) -> int:
         fields = {"scene": scene.fields(), "time": sample.t, "steps": sample.step, "wall_seconds": wall_seconds}
         write_json("run", {**fields, "methods": rows})
     else:
-        _print(scene, sample, wall_seconds, rows, observer, options.degrees)
+        _print(scene, sample, wall_seconds, rows, observer)
     if stopped:
         warn(f"interrupted at t = {sample.t:g} s, showing the results up to then.")
         return Exit.INTERRUPTED
@@ -170,9 +169,8 @@ def _print(
     wall_seconds: float,
     rows: list[dict[str, Any]],
     observer: "RunObserver",
-    degrees: bool,
 ) -> None:
-    print_lines(f"{scene_line(scene, 'h', degrees=degrees)}, {z_name(scene.model)} = {scene.z:.4g}")
+    print_lines(f"{scene_line(scene, 'h')}, {z_name(scene.model)} = {scene.z:.4g}")
     pace = f", {sample.step / wall_seconds / 1e6:.3g} million a second" if wall_seconds > 1 else ""
     print(f"{sample.step} steps to t = {sample.t:g} s in {wall_seconds:.2f} s{pace}\n")
     from tui.words.findings import astray, ending, passing
@@ -182,15 +180,12 @@ def _print(
     table = []
     for method, row, judgement in zip(scene.cast, rows, observer.judgements, strict=True):
         end, row = row["diverged_at"], row | {"drift_per_second": judgement.trend}
-        if row["theta_error"] is not None:
-            row["theta_error"] = measured(row["theta_error"], degrees)
         numbers = ("-" if row[name] is None else format(row[name], form) for name, form in forms.items())
         verdict = row["verdict"] if end is None else f"diverged at {end:g} s"
         table.append((method.label, verdict, *numbers, str(row["force_evaluations"])))
     error = "energy error" if scene.equations.conserved else "ln(E/E_true)"
     spring = ("in the spring",) if scene.model == "spring" else ()
-    theta = f"theta error [{'deg' if degrees else 'rad'}]"
-    headers = (*spring, error, "largest", "per second", theta, "force evaluations")
+    headers = (*spring, error, "largest", "per second", "theta error [rad]", "force evaluations")
     print_table("ll" + "r" * len(headers), ("method", "verdict", *headers), table)
     for each in observer.milestones(sample.step):
         if each.other:

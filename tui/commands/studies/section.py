@@ -60,7 +60,7 @@ def run(options: argparse.Namespace) -> int:
     usual = next((method for method in scene.cast if method.key == DESCRIBED_FIRST), scene.cast[0])
     known = dict.fromkeys((*METHODS, *scene.cast))
     method = find(options.method_key, [*known], "--method-key") if options.method_key else usual
-    study = Study(scene, method, options.starts, options.steps, options.degrees)
+    study = Study(scene, method, options.starts, options.steps)
     if options.json:
         return print_json(study)
     display = terminal_options_of(options, os.environ, "utf-8")

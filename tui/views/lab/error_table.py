@@ -21,7 +21,7 @@ from tui.playback.source import Source
 from tui.views.keys import Key, bindings
 from tui.views.messages import MethodChosen
 from tui.views.view import Pane
-from tui.words.numbers import angle, decimal, in_unit, measured, relative, scientific
+from tui.words.numbers import angle, decimal, scientific
 
 
 class TableLine(NamedTuple):
@@ -33,8 +33,6 @@ class TableLine(NamedTuple):
     judgement: Judgement
     exact: State
     h: float  # s, its own step size
-    percent: bool = False
-    degrees: bool = False
 
 
 class Column(NamedTuple):
@@ -52,17 +50,17 @@ COLUMNS = (
         4,
         ("theta", 6),
         ("theta [rad]", 11),
-        lambda line, width: angle(line.reading.theta, width, max(width - 6, 3), line.degrees),
+        lambda line, width: angle(line.reading.theta, width, max(width - 6, 3)),
     ),
     Column(
         2,
         ("omega", 6),
         ("omega [rad/s]", 13),
-        lambda line, width: decimal(measured(line.reading.omega, line.degrees), width, max(width - 8, 3)),
+        lambda line, width: decimal(line.reading.omega, width, max(width - 8, 3)),
     ),
-    Column(7, ("dE/E0", 8), ("dE/E0 now", 9), lambda line, width: share(line, line.reading.energy_error, width)),
+    Column(7, ("dE/E0", 8), ("dE/E0 now", 9), lambda line, width: scientific(line.reading.energy_error, width)),
     Column(
-        6, ("largest", 7), ("largest", 8), lambda line, width: share(line, line.reading.max_energy_error, width, "-")
+        6, ("largest", 7), ("largest", 8), lambda line, width: scientific(line.reading.max_energy_error, width, 1, "-")
     ),
     Column(5, ("per s", 8), ("trend per s", 11), lambda line, width: scientific(line.judgement.trend, width)),
     Column(
@@ -81,11 +79,6 @@ MOST_GAP = 3
 _LOGARITHM = {"dE/E0": "ln E/Et", "dE/E0 now": "ln E/Etr"}  # to the true energy
 
 
-def share(line: TableLine, value: float, width: int, sign: str = "+") -> str:
-    """An energy error, relative to the start's energy."""
-    return relative(value, width, sign) if line.percent else scientific(value, width, 1, sign)
-
-
 def evaluations(method: Method, width: int) -> str:
     """Force evaluations a step; "+" where they have more digits than there is room for."""
     text = str(method.force_evaluations)
@@ -101,7 +94,7 @@ def short(value: float, width: int) -> str:
 def theta_error(line: TableLine) -> float:
     """|theta - exact theta|."""
     error = line.model.theta_error(line.reading.theta, line.exact.theta)
-    return measured(abs(error), line.degrees)
+    return abs(error)
 
 
 SIGNS = {"bounded": "=", "grows": "+", "loses": "-", "caught": "=", "chaotic": "!", "wanders": "~", "failed": "!"}
@@ -142,14 +135,11 @@ def table(source: Source, sample: Sample, shown: Shown, width: int) -> list[Row]
     spare = width - room - sum(size + 1 for _, size, _ in columns)
     gap = " " * (1 + min(spare // max(len(columns), 1), MOST_GAP))
     heads = [(head if conserved else _LOGARITHM.get(head, head), size) for head, size, _ in columns]
-    names = [(gap + in_unit(head, shown.degrees).rjust(size), QUIET) for head, size in heads]
+    names = [(gap + head.rjust(size), QUIET) for head, size in heads]
     rows: list[Row] = [[("method".ljust(room), QUIET), *names]]
     for place in shown.places(cast):
         method = cast[place]
-        percent = shown.percent and conserved
-        line = TableLine(
-            model, method, sample.readings[place], judgements[place], exact, h[place], percent, shown.degrees
-        )
+        line = TableLine(model, method, sample.readings[place], judgements[place], exact, h[place])
         failed = line.reading.diverged_at is not None
         name = f"{mark(place, method)} {method.label}".ljust(room)
         rows.append([(name, series(method))])

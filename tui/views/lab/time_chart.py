@@ -18,7 +18,7 @@ from tui.playback.shown import LARGEST, Quantity, Shown, Stretch
 from tui.playback.source import Source
 from tui.views.messages import Asked, Zoomed
 from tui.views.view import Pane
-from tui.words.numbers import about, in_unit, relative, seconds
+from tui.words.numbers import about, seconds
 
 if TYPE_CHECKING:
     from tui.drawing.time_chart import Reading, TimePlot
@@ -51,7 +51,6 @@ def title(shown: Shown, exact: ExactMotion, conserved: bool = True) -> str:
     span = "all" if shown.seconds is None else about(shown.seconds)
     if shown.stretch is not None:
         span = span_text(shown.stretch.begin, shown.stretch.end)
-    name, magnitude = in_unit(name, shown.degrees), in_unit(magnitude, shown.degrees)
     if not shown.log:
         return f"{name}, {span}"
     each = {"libration": " per half swing", "rotation": " per turn"}.get(exact.regime, "")
@@ -65,13 +64,11 @@ def span_text(begin: float, end: float) -> str:
     return f"{begin:.{before}f} to {end:.{after}f} s"
 
 
-def read_out(reading: "Reading", letters: Sequence[str], percent: bool, room: int) -> str:
+def read_out(reading: "Reading", letters: Sequence[str], room: int) -> str:
     """All methods at a moment, as far as there is room: "12.35 s: e 3.3, s 0.079, v 0.0057, r 3.8e-5"."""
     numbers = [
         f"{'<' if value < 0 else '>'} {value:.0e}".replace("e+0", "e")
         if abs(value) >= LARGEST  # which is drawn at the edge
-        else relative(value, 8, "-").strip()
-        if percent and abs(value) >= 0.01
         else f"{value:.2g}".replace("e-0", "e-")
         for value in reading.values
     ]
@@ -196,8 +193,7 @@ class TimeChart(Pane):
         reading = plot.at(self._pointer) if plot is not None and self._pointer is not None else None
         if plot is not None and reading is not None:
             letters = [self.cast[place].letter for place in plot.places if place < len(self.cast)]
-            percent = look.percent and look.quantity == "energy_error" and source.scene.equations.conserved
-            below = read_out(reading, letters, percent, room)
+            below = read_out(reading, letters, room)
         else:
             below = modified_energy_of(self.cast) if look.quantity == "shadow_error" else ""
             help_text = READING if not self._knew_past else HELP if look.stretch is None else HELP_ZOOMED
@@ -229,7 +225,6 @@ class TimeChart(Pane):
                 stretch=stretch,
                 shown=self.places,
                 ghost=behind,
-                degrees=shown.degrees and shown.quantity == "theta_error",
             )
             run = self.sample.run
             try:

@@ -10,7 +10,6 @@ from tui.playback.source import Source
 from tui.views.lab import error_table
 from tui.views.lab.error_table import ErrorTable
 from tui.views.lab.event_list import EventList
-from tui.views.lab.large_table import LargeTable
 from tui.views.lab.layout import CellLayout, places
 from tui.views.lab.pendulums import Pendulum
 from tui.views.lab.reach import Reach
@@ -56,7 +55,6 @@ class LabView(View):
         panes = self.overlay, self.events, self.chart, self.second_chart, self.phase
         yield Stage(self, *self.pendulums, *panes)
         yield self.read(ErrorTable())
-        yield self.read(LargeTable())
 
     def zoom(self, factor: float, shift: float = 0.0) -> None:
         (self.second_chart if self.second_chart.is_pointed_at else self.chart).zoom(factor, shift)

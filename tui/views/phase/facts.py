@@ -13,7 +13,7 @@ from tui.drawing.palette import QUIET, TEXT, mark, series
 from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.words.motion import energy_share, motion_text, regime
-from tui.words.numbers import measured, scientific
+from tui.words.numbers import scientific
 from tui.words.scope import has_ring, ring_left_out
 
 _NAME, _CELL = 22, 14
@@ -28,16 +28,16 @@ def fact_rows(source: Source, shown: Shown, neighbours: Neighbours | None, width
     """A line about the ring, the heads, and a row for each method; the first columns that fit."""
     exact, fit = source.exact.at(source.sample.t), max((width - _NAME) // _CELL, 0)
     error = "dE/E0" if source.scene.equations.conserved else "ln E/Etrue"
-    heads = ("ln area ratio", "area/area0", "theta err [°]" if shown.degrees else "theta error", error)[:fit]
+    heads = ("ln area ratio", "area/area0", "theta error", error)[:fit]
     rows: list[list[Span]] = [
-        [(_ring_text(source, neighbours, shown.degrees)[:width], TEXT)],
+        [(_ring_text(source, neighbours)[:width], TEXT)],
         [(" " * _NAME + "".join(head.rjust(_CELL) for head in heads), QUIET)],
     ]
     ring = None if neighbours is None else neighbours.ring_of(source.scene, source.sample.run)
     for index in shown.places(source.scene.cast):
         method = source.scene.cast[index]
         reading = source.sample.readings[index]
-        off = measured(source.scene.equations.theta_error(reading.theta, exact.theta), shown.degrees)
+        off = source.scene.equations.theta_error(reading.theta, exact.theta)
         area = ("-", "-") if ring is None or not has_ring(source.scene) else area_text(ring.area_ratios[index])
         cells = (*area, scientific(off, _CELL, 3), scientific(reading.energy_error, _CELL, 3))
         name = f" {mark(index, method)} {method.label}".ljust(_NAME)
@@ -45,7 +45,7 @@ def fact_rows(source: Source, shown: Shown, neighbours: Neighbours | None, width
     return rows
 
 
-def _ring_text(source: Source, neighbours: Neighbours | None, degrees: bool) -> str:
+def _ring_text(source: Source, neighbours: Neighbours | None) -> str:
     if why := ring_left_out(source.scene):
         return f" {why}"
     if neighbours is None:
@@ -57,35 +57,30 @@ def _ring_text(source: Source, neighbours: Neighbours | None, degrees: bool) -> 
         t = change.t + (step - change.step) * change.stepping.h
         left = math.exp(-friction * t)
         return f" Ring, radius {neighbours.radius:g} rad: friction leaves exp(-gamma t) = {left:.9f} of it"
-    radius = f"{measured(neighbours.radius, degrees):.4g}{'°' if degrees else ' rad'}"
-    text = f" Ring of neighbouring starts, radius {radius}"
-    return f"{text}: {behind} steps behind" if behind else f"{text} (g: larger, G: smaller)"
+    text = f" Ring of neighbouring starts, radius {neighbours.radius:.4g} rad"
+    return f"{text}: {behind} steps behind" if behind else f"{text} (g: another)"
 
 
-def captioned(plot: Picture, scene: Scene, exact: ExactMotion, aim: State | None, degrees: bool = False) -> Picture:
+def captioned(plot: Picture, scene: Scene, exact: ExactMotion, aim: State | None) -> Picture:
     """The portrait, and a line below it: a state, if one is aimed at, and the exact motion as far as there is room."""
-    return Picture.stacked(plot, _caption(scene, exact, aim, plot.characters.shape[1], degrees))
+    return Picture.stacked(plot, _caption(scene, exact, aim, plot.characters.shape[1]))
 
 
 @lru_cache(maxsize=8)  # it changes with the run and with what is aimed at only
-def _caption(scene: Scene, exact: ExactMotion, aim: State | None, width: int, degrees: bool) -> Picture:
+def _caption(scene: Scene, exact: ExactMotion, aim: State | None, width: int) -> Picture:
     motion = _NOT_CURVES.get(scene.model) or motion_text(scene, exact)
     line = Canvas(width, 1).picture()
     if aim is None:
         line.write(0, 0, motion, QUIET)
         return line
     room = width - len(motion) - 2
-    line.write(0, 0, _place(scene, *aim, room if room >= 60 else width, degrees), TEXT)
+    line.write(0, 0, _place(scene, *aim, room if room >= 60 else width), TEXT)
     if room >= 60:
         line.write(0, width - len(motion), motion, QUIET)
     return line
 
 
-def _place(scene: Scene, theta: float, omega: float, width: int, degrees: bool) -> str:
-    if degrees:
-        motion = f"  E/Es {energy_share(scene.w0, theta, omega)}  {regime(scene.w0, theta, omega)}"
-        place = f"theta {math.degrees(theta):.12g}°  omega {math.degrees(omega):.12g}°/s"
-        return (place + (motion if scene.model == "pendulum" else ""))[:width]
+def _place(scene: Scene, theta: float, omega: float, width: int) -> str:
     if scene.model == "pendulum":
         return place_text(scene.w0, theta, omega, width)
     return f"theta {theta:.15g} rad  omega {omega:.15g} rad/s"[:width]

@@ -17,7 +17,6 @@ from tui.views.messages import Asked, SceneChosen
 from tui.views.phase.keys import KEYS
 from tui.views.phase.viewport import Viewport
 from tui.views.view import Chooser
-from tui.words.numbers import in_unit
 from tui.words.scope import has_ring
 
 if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
@@ -61,7 +60,7 @@ class PhasePane(Chooser[State]):
         return self.sample is not None and not (self.drawable and self._catching_up)
 
     def watch_source(self) -> None:
-        self.border_title = Content(in_unit(TITLE, self.shown.degrees))
+        self.border_title = Content(TITLE)
         self.border_subtitle = f"{'click: start, ' if self.is_live else ''}wheel: zoom"
         super().watch_source()
 
@@ -90,7 +89,7 @@ class PhasePane(Chooser[State]):
         else:
             found = Viewport.portrait(*self.cells, self.source.scene, self.wrap).steadied(self._whole)
             self._whole = found
-        return found if found.degrees == self.shown.degrees else found._replace(degrees=self.shown.degrees)
+        return found
 
     @property
     def aim(self) -> State | None:
@@ -129,7 +128,7 @@ class PhasePane(Chooser[State]):
         if self.source is not None and self._plot is not None:
             from tui.views.phase.facts import captioned
 
-            self.show_picture(captioned(self._plot, self.source.scene, self.source.exact, self.aim, self.shown.degrees))
+            self.show_picture(captioned(self._plot, self.source.scene, self.source.exact, self.aim))
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         return (action == "cancel" and self.aiming) or super().check_action(action, parameters)

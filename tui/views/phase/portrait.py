@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engine.models.pendulum import separatrix_margin
-from tui.drawing.axes import degree_ticks, nice, omega_ticks, theta_ticks
+from tui.drawing.axes import nice, omega_ticks, theta_ticks
 from tui.drawing.canvas import Canvas, Picture
 from tui.drawing.palette import EXACT, FAINT, FRAME, QUIET, TEXT
 from tui.views.phase.viewport import Viewport
@@ -208,18 +208,15 @@ def _beside(name: str, curve: NDArray[np.bool_], free: NDArray[np.bool_]) -> lis
 
 
 def axes(viewport: Viewport) -> list[Word]:
-    """Numbers along the left edge (rad/s) and the lower one (pi or rad), or degrees."""
+    """Numbers along the left edge (rad/s) and the lower one (pi or rad)."""
     columns, bottom = viewport.columns, viewport.rows - 1
-    unit = math.pi / 180 if viewport.degrees else 1.0
-    low, high = viewport.omega_at(4.0 * bottom) / unit, viewport.omega_at(0.0) / unit
+    low, high = viewport.omega_at(4.0 * bottom), viewport.omega_at(0.0)
     words: list[Word] = [
-        (0, math.floor(viewport.y(omega * unit) / 4), label[:columns], TEXT)
+        (0, math.floor(viewport.y(omega) / 4), label[:columns], TEXT)
         for omega, label in omega_ticks(low, high, max(bottom // 3, 1))
     ]
     left, right = viewport.theta_at(0.0), viewport.theta_at(2.0 * columns + 1)  # pi may be at the very edge
-    for theta, label in (degree_ticks if viewport.degrees else theta_ticks)(
-        left, right, min(columns // 9 + 1, 8), viewport.wrap
-    ):
+    for theta, label in theta_ticks(left, right, min(columns // 9 + 1, 8), viewport.wrap):
         column = math.floor((theta - left) / viewport.theta_per_dot / 2) - len(label) // 2
         begin = max(min(column, columns - len(label)), 0)
         text = f" {label} " if begin else f"{label} "  # with blanks between it and the curves

@@ -23,7 +23,6 @@ class Viewport(NamedTuple):
     theta_per_dot: float  # rad
     omega_per_dot: float  # rad/s
     wrap: bool = True  # every angle is shown, in the one turn that is there
-    degrees: bool = False  # along the axes
 
     @classmethod
     def portrait(cls, columns: int, rows: int, scene: Scene, wrap: bool = True) -> "Viewport":

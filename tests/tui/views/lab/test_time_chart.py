@@ -181,8 +181,8 @@ async def test_after_a_jump_in_a_replay_the_chart_shows_the_past_as_soon_as_it_i
 
 
 def test_what_is_drawn_at_the_edge_is_read_out_as_larger():
-    assert read_out(Reading(1.0, [LARGEST, -LARGEST, 0.5, 1e-5]), "esvr", True, 60) == (
-        "1.00 s: e > 1e6 s < -1e6 v 50.0 % r 1e-5"
+    assert read_out(Reading(1.0, [LARGEST, -LARGEST, 0.5, 1e-5]), "esvr", 60) == (
+        "1.00 s: e > 1e6 s < -1e6 v 0.5 r 1e-5"
     )
 
 

@@ -33,7 +33,6 @@ class Study:
     method: Method  # whose map is drawn
     starts: int
     steps: int
-    degrees: bool = False
 
     def kind(self, method: Method) -> OrbitKind:
         """The orbit of the scene's start."""
@@ -42,7 +41,7 @@ class Study:
 
     def picture(self, columns: int, rows: int) -> Picture:
         model, h, start = self.scene.equations, self.scene.h, (self.scene.theta, self.scene.omega)
-        viewport = Viewport.portrait(columns, rows, self.scene, wrap=model.turns)._replace(degrees=self.degrees)
+        viewport = Viewport.portrait(columns, rows, self.scene, wrap=model.turns)
         section, done = Section(viewport, model, self.method), 0
         with progress("section") as show:
             for piece in pieces(self.method, model, h, starts(viewport, self.starts), self.steps):
@@ -59,7 +58,7 @@ def print_text(study: Study, size: tuple[int, int] | None, display: TerminalOpti
     picture = study.picture(columns, rows)
     print(_title(study))
     characters = display.character_set if "utf" in on.encoding else "ascii"
-    print_picture(on, _lines(picture, TerminalOptions(display.theme, characters, present=display.present)))
+    print_picture(on, _lines(picture, TerminalOptions(display.theme, characters)))
     _print_words(study)
     return Exit.FINE
 
@@ -112,7 +111,7 @@ def _title(study: Study) -> str:
 def _print_words(study: Study) -> None:
     """Print the orbits of the start as a table, and a sentence on that of the method that is drawn."""
     kinds = [(method, study.kind(method)) for method in study.scene.cast]
-    print_lines("", f"{scene_line(study.scene, 'h', 'z', degrees=study.degrees)}, {study.steps} steps")
+    print_lines("", f"{scene_line(study.scene, 'h', 'z')}, {study.steps} steps")
     rows = [(method.label, *cells(method, kind)) for method, kind in kinds]
     print_table("llrrrr", ("method", *HEADS), rows)
     print_lines(
@@ -125,8 +124,6 @@ def _print_words(study: Study) -> None:
 def _lines(picture: Picture, display: TerminalOptions) -> list[Text]:
     """The rows of a picture in the colours and characters of a display."""
     palette = PALETTES[display.theme]
-    if display.present:
-        picture = picture.thick()
     rows = [[Segment(text, None) for text, _ in picture.row(y)] for y in range(len(picture.characters))]
     if display.character_set != "braille":
         from textual.color import Color
