@@ -17,16 +17,6 @@ CELL = 12.2  # units of a picture, across
 Hold = Callable[[str, str], None]
 
 
-@pytest.fixture(autouse=True)
-def faults(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[BaseException]]:
-    """What failed in the lab without ending it: a test that means it to takes it out, any other fails."""
-    found: list[BaseException] = []
-    monkeypatch.setattr("tui.terminal.fault_log.append", lambda path, error: found.append(error))
-    yield found
-    if found:
-        raise found[0]
-
-
 _computed: dict[bytes, list[object]] = {}
 
 

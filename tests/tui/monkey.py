@@ -127,7 +127,7 @@ def wild_presses(number: int, seed: int) -> Iterator[str | tuple[int, int]]:
                 yield "\r"
             case "paste":
                 yield f"\x1b[200~{''.join(chance.choices(GARBAGE, k=chance.choice((1, 9, 999))))}\x1b[201~"
-            case "size":
+            case _:
                 narrow = chance.random() < 0.3
                 largest = (12, 12) if narrow else LARGEST
                 size = SIZE if chance.random() < 0.3 else (chance.randint(1, largest[0]), chance.randint(1, largest[1]))

@@ -34,7 +34,7 @@ GROUPS = {
     "files": {
         "verify": "re-simulate recordings and compare every bit",
         "diff": "compare two recordings: scene, changes, every number",
-        "export": "convert a recording to CSV, or to a film (asciicast)",
+        "export": "convert a recording to CSV",
         "info": "show what is in a recording, whole or damaged",
         "recover": "salvage a damaged recording",
         "recordings": "list the recordings, or prune them",

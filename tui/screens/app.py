@@ -1,46 +1,43 @@
-"""PenduApp: themes, signals, and the screens of lab and replay."""
+"""PenduApp: themes, signals, errors, and the screens of lab and replay."""
 
 import asyncio
 import os
-import signal
-import time
-import traceback
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import ClassVar
 
 from rich.markup import escape
-from textual._context import active_message_pump
-from textual.app import App, ScreenStackError, SystemCommand
+from textual.app import App, SystemCommand
 from textual.binding import Binding, BindingType
-from textual.driver import Driver
 from textual.filter import LineFilter
 from textual.notifications import SeverityLevel
 from textual.reactive import var
 from textual.screen import Screen
 from textual.theme import BUILTIN_THEMES, Theme
-from textual.widget import Widget
 
 from recordings import library
 from tui.cli.errors import Exit
-from tui.drawing.faults import LOG, Fault, Guarded, sentence
 from tui.drawing.palette import PALETTES, Palette
 from tui.screens.base import SourceScreen
-from tui.terminal import fault_log
 from tui.terminal.character_sets import CharacterSetFilter
 from tui.terminal.check import is_gone
-from tui.terminal.options import CHARACTER_SETS, SMALLEST, USUAL, CharacterSet, TerminalOptions
-from tui.terminal.throughput import Throughput
+from tui.terminal.options import (
+    CHARACTER_SETS,
+    SMALLEST,
+    USUAL,
+    CharacterSet,
+    TerminalOptions,
+)
+from tui.terminal.signals import Job, SignalThread
 
 WIDTHS = [(0, "-tiny"), (SMALLEST[0], "-narrow"), (80, "-normal"), (120, "-wide")]
 HEIGHTS = [(0, "-flat"), (SMALLEST[1], "-low"), (24, "-middle"), (36, "-high")]
 """The classes of a terminal's size in the style sheet, each from so many columns or rows on."""
 
 
-class PenduApp(Guarded, App[Exit | OSError]):
-    """Shows the lab or a replay.  Returns the exit code, or an error that ended it; None if the user quit."""
+class PenduApp(App[Exit | BaseException]):
+    """Shows the lab or a replay.  Returns the exit code, or the error that ended it; None if the user quit."""
 
     HORIZONTAL_BREAKPOINTS = WIDTHS
     VERTICAL_BREAKPOINTS = HEIGHTS
@@ -63,7 +60,7 @@ class PenduApp(Guarded, App[Exit | OSError]):
         """`open_replay` makes the screen for a recording; it may raise an exception with a sentence."""
         if not os.environ.get("NO_COLOR", "?"):
             del os.environ["NO_COLOR"]  # no-color.org: empty means nothing
-        super().__init__(ansi_color=True if "NO_COLOR" in os.environ else None)  # else Textual would make greys of it
+        super().__init__(ansi_color=True if "NO_COLOR" in os.environ else None)  # else Textual greys
         self.open_replay = open_replay
         for name, colours in PALETTES.items():
             self.register_theme(_theme(name, colours))
@@ -71,9 +68,8 @@ class PenduApp(Guarded, App[Exit | OSError]):
         self.fps = terminal.fps
         self.set_reactive(PenduApp.character_set, terminal.character_set)
         self.source_screens = [screen]
-        self.throughput = Throughput()
-        self._on_stage = False  # before that, what fails ends the program
-        self._faults: set[object] = set()
+        self._last_notice = ""
+        self._job = Job(self.suspend)
 
     def refresh_css(self, animate: bool = True) -> None:
         """Apply the theme; before anything is mounted there is nothing to apply it to, and it waits for that."""
@@ -81,23 +77,6 @@ class PenduApp(Guarded, App[Exit | OSError]):
             super().refresh_css(animate)
         else:
             self.stylesheet.set_variables(self.get_css_variables())
-
-    def get_driver_class(self) -> type[Driver]:
-        """Ours in place of Textual's for Linux and its kin, unless another was asked for."""
-        usual = super().get_driver_class()
-        if usual.__module__ != "textual.drivers.linux_driver":
-            return usual
-        from tui.terminal.driver import LabDriver
-
-        return LabDriver
-
-    def is_behind(self, urgent: bool = False) -> bool:
-        """Whether frames are still on their way: on a slow line one more only adds to the delay.
-
-        An urgent frame need not wait for what the system's buffer holds.
-        """
-        self.throughput.tick(time.monotonic())
-        return self.throughput.is_full if urgent else self.throughput.is_busy
 
     @property
     def source_screen(self) -> SourceScreen:
@@ -108,42 +87,22 @@ class PenduApp(Guarded, App[Exit | OSError]):
         return self.source_screen
 
     def on_source_screen_began(self, message: SourceScreen.Began) -> None:
-        self._on_stage = True
         if message.screen is not self.source_screen:
             self.source_screens.append(message.screen)
 
     def on_mount(self) -> None:
-        """Exit cleanly on a signal, and paint everything again after Ctrl+Z."""
+        """Hear signals from now on, and paint everything again after a stop."""
         self.app_resume_signal.subscribe(self, lambda _: self.refresh())
-        loop = asyncio.get_running_loop()
-        with suppress(NotImplementedError, RuntimeError):  # Windows, or not in the main thread
-            for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-                loop.add_signal_handler(number, self.interrupt)
+        if not self.is_headless:
+            job = None if self.is_web else self._job
+            SignalThread(asyncio.get_running_loop(), self.interrupt, self.finish, job).start()
 
     def _handle_exception(self, error: Exception) -> None:
-        """Go on: Textual would end the program.  It has stopped the widget, and a dialog that is deaf is closed."""
-        if not self._on_stage:
+        """End with this error, in place of Textual's traceback; a test raises it."""
+        if self.is_headless:
             super()._handle_exception(error)
-            return
-        self.fail(error)
-        widget = active_message_pump.get(None)
-        if isinstance(widget, Widget) and not isinstance(widget, Guarded) and widget.screen.is_modal:
-            self.call_later(widget.screen.dismiss)
-
-    def on_fault(self, fault: Fault) -> None:
-        self.fail(fault.error, fault.shown)
-
-    def fail(self, error: BaseException, shown: bool = False) -> None:
-        """Write to the log what failed, and say so unless it is shown; both once for each place in the program."""
-        if isinstance(error, ScreenStackError):
-            return  # a key that came when the screens were gone
-        where = [(frame.f_code, line) for frame, line in traceback.walk_tb(error.__traceback__)]
-        if (type(error), *where[-1:]) in self._faults:
-            return
-        self._faults.add((type(error), *where[-1:]))
-        fault_log.append(library.folder() / LOG, error)
-        if not shown:
-            self.notify(sentence(error), severity="warning", timeout=15, markup=False)
+        elif self.return_code is None:  # else the program is leaving
+            self.exit(error)
 
     def notify(
         self,
@@ -155,15 +114,16 @@ class PenduApp(Guarded, App[Exit | OSError]):
         markup: bool = True,
     ) -> None:
         """Show a notice in place of an equal one: a key held down is to cover no more than a line."""
-        for notice in list(iter(self._notifications)):  # their number would take out what has expired meanwhile
-            if notice.message == message:
-                self._unnotify(notice, refresh=False)
+        if message == self._last_notice:
+            self.clear_notifications()
+        self._last_notice = message
         super().notify(message, title=title, severity=severity, timeout=timeout, markup=markup)
 
     def action_interrupt(self) -> None:
         self.interrupt()
 
     def finish(self) -> None:
+        """Finish the recording."""
         self.source_screen.source.close()
 
     def interrupt(self) -> None:
@@ -172,6 +132,11 @@ class PenduApp(Guarded, App[Exit | OSError]):
         if is_gone():
             os._exit(Exit.INTERRUPTED)
         self.exit(Exit.INTERRUPTED)
+
+    def action_suspend_process(self) -> None:
+        if not self.is_web:
+            self._job.ask()
+            self._job.stop()
 
     def get_system_commands(self, screen: Screen[object]) -> Iterable[SystemCommand]:
         from tui.screens.extras import palette_entries

@@ -9,14 +9,14 @@ from typing import Any, ClassVar, cast
 
 from textual.app import ComposeResult
 from textual.binding import BindingType
+from textual.events import Resize
 from textual.message import Message
 from textual.reactive import Initialize, var
 from textual.screen import Screen
+from textual.timer import Timer
 from textual.widget import Widget
 
 from engine.run.lockstep import Sample
-from tui.drawing.faults import Guarded
-from tui.playback.frame_rate import FrameTimer
 from tui.playback.playhead import doubled
 from tui.playback.shown import Shown
 from tui.playback.source import Source
@@ -26,19 +26,20 @@ from tui.screens.key_line import KeyLine
 from tui.screens.keys import COMMON, hinted
 from tui.screens.status_line import StatusLine
 from tui.screens.too_small import TooSmall
+from tui.terminal.writer import is_writing
 from tui.views import create, following
 from tui.views.keys import Key, bindings
 from tui.views.messages import Asked, MethodChosen, Zoomed
 from tui.views.view import Box, Pane, View
 from tui.words.undone import State, undone
 
-READ = 5  # updates a second of what people read
+READ_RATE = 5  # updates a second of what people read
 STALL = 1.0  # s; a longer gap between frames does not count as time: Ctrl+Z, a computer asleep, a dead line
 UNDOS = 30  # changes; each may hold a run
 ALREADY = "Already marked"
 
 
-class SourceScreen(Guarded, Screen[None]):
+class SourceScreen(Screen[None]):
     """Shows a source, following a clock that is passed in."""
 
     BLANK = True  # everything on it is covered
@@ -70,11 +71,11 @@ class SourceScreen(Guarded, Screen[None]):
         self._notices = notices
         self.first_source = source
         self.clock = clock
-        self._frames = 0
         self._on_stage: View = create(self.view)
-        self._timer = FrameTimer(lambda seconds: self.set_interval(seconds, self.frame))
+        self._timer: Timer | None = None  # of the frames
+        self._frames = 0
         self._missed = 0.0  # s of the clock while the program was stopped
-        self._late = False  # the next frame shows everything
+        self._is_late = False  # the next frame shows everything
         self._undo: deque[Callable[[], object]] = deque(maxlen=UNDOS)
         self._lines: list[Pane] = []
 
@@ -101,6 +102,11 @@ class SourceScreen(Guarded, Screen[None]):
         """The widgets above the insight line."""
         return ()
 
+    def on_resize(self, event: Resize) -> None:
+        """Leave out a size that the terminal no longer has: two could call each other up for ever."""
+        if event.size != self.app.size:
+            event.prevent_default()
+
     def on_mount(self) -> None:
         self.call_after_refresh(self._begin)
 
@@ -114,44 +120,41 @@ class SourceScreen(Guarded, Screen[None]):
         gc.freeze()  # what exists now stays: collecting it again and again would cost frames
         gc.enable()
         self.post_message(self.Began(self))
-        self._timer.begin(self.host.fps)
+        self._timer = self.set_interval(1 / self.host.fps, self.frame)
         for notice in self._notices:
             self.notify(notice, timeout=15, markup=False)
 
     def end(self) -> None:
         """Stop following the clock: another screen takes over."""
-        self._timer.stop()
+        if self._timer is not None:
+            self._timer.stop()
         self.source.close()
 
     def frame(self) -> None:
-        """One frame: the source always follows the clock, the screen as far as the line can carry it."""
+        """Follow the clock, and show where it has led unless the terminal is behind."""
         now, seen = self.clock() - self._missed, self.source.playhead.seen
         if seen is not None and now - seen > STALL:
             self._missed += now - seen
             now = seen
         sample = self.source.tick(now)
-        if self._timer.frame(self.clock(), time.process_time()):
-            self.query_one(StatusLine).frames = self._timer.lowered
-        self._timer.rest(self.source.is_at_rest)
-        if self.host.is_behind(urgent=self._late):
+        if is_writing(self.app):
             return
         self._frames += 1
-        read = self._late or self.source.is_at_rest or self._timer.is_turn(self._frames, READ)
-        self._follow(sample, read, at_once=self._late)
-        self._late = False
+        turn = self._frames % max(self.host.fps // READ_RATE, 1) == 0
+        self._follow(sample, read=turn or self._is_late)
+        self._is_late = False
 
-    def _follow(self, sample: Sample, read: bool = True, at_once: bool = True) -> None:
-        self._on_stage.follow(sample, read, at_once)
+    def _follow(self, sample: Sample, read: bool = True) -> None:
+        self._on_stage.follow(sample, read)
         if read:
             for line in self._lines:
                 line.follow(sample)
 
     def show_now(self) -> None:
-        """Show everything at once; on a busy line, with the next frame that it can carry."""
-        self._late = self.host.is_behind(urgent=True)
-        if not self._late:
+        """Show everything now, or with the next frame if the terminal is behind."""
+        self._is_late = is_writing(self.app)
+        if not self._is_late:
             self._follow(self.source.sample)
-        self._timer.rest(self.source.is_at_rest)
 
     def remember(self, undo: Callable[[], object]) -> None:
         """Keep the function that undoes a change."""
@@ -166,7 +169,7 @@ class SourceScreen(Guarded, Screen[None]):
         self.call_next(self.run_action, message.action)
 
     def action_pause(self) -> None:
-        self.frame()  # so that the clock goes on from here, and not from the last of the few frames of a lab at rest
+        self.frame()  # the clock goes on from here, not from the last frame
         self.source.pause(not self.source.playhead.paused)
         self.show_now()
 
@@ -246,5 +249,5 @@ class SourceScreen(Guarded, Screen[None]):
         self.app.exit()
 
     def _bound(self, view: View) -> View:
-        view.follow(self.source.sample, read=False, at_once=False)
+        view.follow(self.source.sample, read=False)
         return view.data_bind(SourceScreen.source, SourceScreen.shown)

@@ -1,4 +1,4 @@
-"""Host: what a screen needs of the app that shows it."""
+"""Host: the parts of the app that a screen uses."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -8,11 +8,8 @@ from textual.screen import Screen
 
 
 class Host(Protocol):
-    """What the screen needs of the app that shows it."""
+    """The app, as its screens see it."""
 
     fps: int
     open_replay: Callable[[Path], Screen[None]] | None
     """Makes the screen for a recording; may raise an exception with a sentence."""
-
-    def is_behind(self, urgent: bool = False) -> bool:
-        """Whether frames are still on their way, so that the terminal should get no more of them now."""

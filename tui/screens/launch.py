@@ -7,10 +7,11 @@ import sys
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
+from traceback import walk_tb
 from typing import TYPE_CHECKING
 
 from engine.models import MODELS
-from tui.cli.errors import Exit, UserError
+from tui.cli.errors import Exit, UserError, explained
 from tui.cli.output import progress, warn
 
 if TYPE_CHECKING:  # Textual is imported only where there is a screen, NumPy and mcap only when they are needed
@@ -118,13 +119,29 @@ def show(screen: "SourceScreen", options: argparse.Namespace) -> int:
     assert sys.__stderr__ is not None  # where Textual draws
     terminal = terminal_options_of(options, os.environ, sys.__stderr__.encoding)
     app = PenduApp(screen, lambda path: replay_screen(open_replay(path), options.no_record), terminal)
-    result = app.run(mouse=terminal.mouse)
-    app.source_screen.source.close()
-    if isinstance(result, OSError):
-        raise result
+    try:
+        result = app.run(mouse=terminal.mouse)
+    finally:
+        app.finish()
     for each in app.source_screens:
         say_goodbye(each.source)
+    if isinstance(result, BaseException):
+        raise _sentence(result)
     return app.return_code or Exit.FINE if result is None else result
+
+
+def _sentence(error: BaseException) -> UserError:
+    """Return the error as a sentence; of a bug it names the place."""
+    error = getattr(error, "error", error)  # a worker's
+    try:
+        return explained(error)
+    except BaseException:
+        code, line = [(frame.f_code, line) for frame, line in walk_tb(error.__traceback__)][-1]
+        return UserError(
+            f"an error in this program ended the lab: {type(error).__name__}: {error}"
+            f" ({Path(code.co_filename).name}:{line}); please report it.",
+            Exit.CHECK_FAILED,
+        )
 
 
 def print_sentences(source: "Source", only: "Cast | None" = None) -> int:

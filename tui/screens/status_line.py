@@ -3,7 +3,6 @@
 from typing import NamedTuple
 
 from rich.style import Style
-from textual.reactive import var
 
 from engine.run.lockstep import Sample
 from recordings.errors import printable
@@ -36,8 +35,8 @@ def coarse(value: float) -> str:
     return f"{int(value)} s" if value < 60 else f"{int(value / 60)} min" if value < 3600 else seconds(value)
 
 
-def status_row(source: Source, width: int, frames: int | None = None) -> Row:
-    """The line, as far as there is room; `frames` a second where the machine is too slow for more."""
+def status_row(source: Source, width: int) -> Row:
+    """The line, as far as there is room."""
     scene, playhead, pace, recording = source.scene, source.playhead, source.pace, source.recording_status
     z, live, named = abs(source.stepping.h) * scene.equations.fastest, source.kind == "LIVE", bool(scene.watch)
     warning = limit_warning(source.scene.cast, [abs(h) * scene.equations.fastest for h in source.stepping.own])
@@ -57,8 +56,6 @@ def status_row(source: Source, width: int, frames: int | None = None) -> Row:
         parts.insert(2, _Part(10, f"{share} {speed_text(playhead.speed)}", WARN))
     if not playhead.paused and abs(source.stepping.h / playhead.speed) >= SLOW and source.next_step is not None:
         parts.append(_Part(9, f"next step in {coarse(max(source.next_step, 0.0))}"))
-    if frames is not None:
-        parts.append(_Part(9, f"{frames} frames/s", WARN))
     if recording is None:
         parts += [_Part(8, "not recorded", QUIET)] if playhead.seen is not None else []  # else it is yet to begin
     elif recording.failed:
@@ -77,10 +74,8 @@ def status_row(source: Source, width: int, frames: int | None = None) -> Row:
 class StatusLine(Pane):
     """The line; LIVE and REPLAY stand out."""
 
-    frames: var[int | None] = var(None)
-
     def paint(self, source: Source, sample: Sample) -> None:
-        self.show([status_row(source, self.room.width, self.frames)])
+        self.show([status_row(source, self.room.width)])
 
     def style_of(self, owner: int, base: Style) -> Style:
         if owner == BADGE:

@@ -1,10 +1,8 @@
-"""The terminal, below Textual: what it can do, and what is sent to it.
+"""The terminal: what it can do, and when it is gone.
 
-Before the screen: `options` reads theme, characters, mouse and frames from the command line and the environment;
-`check` tests whether the lab can be shown, and later whether the terminal is still there; `watchdog` ends the lab
-where it is not.
-Each frame: Textual -> `character_sets` (braille to half blocks or ASCII) -> `driver` -> terminal.  The driver handles
-stop and continue, and measures its writes for `throughput`; on a slow line it sends `sgr`'s shorter form.
-`screenshot` saves the screen as SVG and text, `asciicast` encodes a film for a terminal, `fault_log` keeps the errors
-that did not end the lab.
+`options` reads theme, characters, mouse and frames from the command line and the environment;
+`check` tests whether the lab can be shown; `signals` ends and stops the lab when it is asked to,
+and when its terminal is gone; `writer` tells how far the terminal is behind; `character_sets`
+turns braille into half blocks or ASCII; `screenshot` saves the screen as SVG and text.
+Textual's own driver does all else.
 """

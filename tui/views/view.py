@@ -9,9 +9,9 @@ from textual.reactive import var
 from textual.worker import Worker, WorkerState
 
 from engine.methods import Cast
+from engine.methods.own import OwnMethodError
 from engine.run.lockstep import Sample
 from tui.drawing.cells import CellWidget
-from tui.drawing.faults import Guarded, sentence
 from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.views.keys import Key
@@ -21,7 +21,7 @@ Place = TypeVar("Place")
 DESCRIBED_FIRST = "velocity_verlet"
 
 
-class Box(Guarded, Container):
+class Box(Container):
     """A container that its children cover, so that Textual need not ask the sheet how it looks with every paint."""
 
     BLANK = True
@@ -65,11 +65,12 @@ class View(Box):
         return self.run_worker(work, group=group, exclusive=True, exit_on_error=False)
 
     def on_worker_state_changed(self, event: Worker.StateChanged) -> None:
-        """Say at the panes why nothing more is computed."""
+        """Show at the panes what is wrong with a method of one's own; any other error ends the program."""
         if (error := event.worker.error) is not None and event.state is WorkerState.ERROR:
-            self.fail(error)
+            if not isinstance(error, OwnMethodError):
+                raise error
             for pane in self.query(Pane):
-                pane.border_subtitle = Content(sentence(error))
+                pane.border_subtitle = Content(str(error))
 
     def zoom(self, factor: float, shift: float = 0.0) -> None:
         """Show `factor` times the stretch of time, or later by a `shift` of it, where the view has a chart of that."""
@@ -83,13 +84,13 @@ class View(Box):
         self._moving += self._late
         self._tell(self._late)
 
-    def follow(self, sample: Sample, read: bool = True, at_once: bool = True) -> None:
-        """Show a sample in the panes that move and, if it is time to `read`, in those that are due; `at_once`: in all.
+    def follow(self, sample: Sample, read: bool = True) -> None:
+        """Show a sample in the panes that move and, if it is time to `read`, in those that are due.
 
         A pane that is read may show the same sample again, for what else has changed.
         """
         moved, self._followed = sample != self._followed, sample
-        reading = self._read if at_once else [pane for pane in self._read if read and pane.is_due(sample)]
+        reading = [pane for pane in self._read if read and pane.is_due(sample)]
         self._tell([*(self._moving if moved else ()), *reading])
 
     def _tell(self, panes: Iterable["Pane"]) -> None:
@@ -145,10 +146,7 @@ class Pane(CellWidget):
         if source is not None and sample is not None and self.drawable:
             if sample.run != source.sample.run:  # another run has just begun, maybe with other methods
                 return
-            try:
-                self.paint(source, sample)
-            except Exception as error:
-                self.fail(error)
+            self.paint(source, sample)
 
     def paint(self, source: Source, sample: Sample) -> None:
         """Show the sample; called when there is one, and room to show it."""

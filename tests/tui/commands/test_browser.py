@@ -1,26 +1,17 @@
-"""What a browser makes of the lab that `serve` shows, and of the film that `export --format cast` writes."""
+"""What a browser makes of the lab that `serve` shows."""
 
 import asyncio
 import json
-import os
-import re
-from pathlib import Path
 
 import pyte
-import pytest
 
 from tests.tui.chromium import NEEDED, Chromium, Page, chromium
-from tests.tui.commands.test_cast import cast
 from tests.tui.commands.test_serve import serving
-from tests.tui.harness import recorded
 from tui.drawing.palette import PALETTES
 
 pytestmark = NEEDED
 
 METHODS = [*PALETTES["dark"].methods[:4]]
-PLAYER = "ASCIINEMA_PLAYER"  # environment variable
-_LINES = "[...document.querySelectorAll('.ap-line')].map(line => line.textContent)"
-BLOCKS = re.compile("[▀-▟]")  # which the player draws, where it writes all else
 
 
 class Shown:
@@ -92,35 +83,3 @@ async def test_a_lab_is_painted_takes_keys_and_the_mouse_fits_its_tab_and_ends_w
             await page.close()
             await server.until_labs(0)
             assert [each.thrown for each in (page, *others)] == [[]] * 10
-
-
-@pytest.fixture
-def film(tmp_path):
-    """3 s of a lab."""
-    return cast(recorded(tmp_path / "short.mcap", 3.0), "--size", "80x24")
-
-
-@pytest.mark.skipif(PLAYER not in os.environ, reason=f"{PLAYER} names no folder: see the test")
-async def test_asciinemas_own_player_plays_the_film(film, tmp_path):
-    """The player is brought by `npm install --prefix FOLDER asciinema-player`.
-
-    It is then in FOLDER/node_modules/asciinema-player/dist/bundle, which the variable is to name.
-    """
-    script, style = (Path(os.environ[PLAYER], f"asciinema-player.{kind}").read_text() for kind in ("min.js", "css"))
-    data = "\n".join(map(json.dumps, [film.head, *film.events]))
-    async with chromium(tmp_path / "profile") as browser:
-        page = await browser.open("about:blank")
-        await page.evaluate(f"document.head.append(document.createElement('style')); {script}")
-        await page.evaluate(f"document.querySelector('style').textContent = {json.dumps(style)}")
-        await page.evaluate(f"var player = AsciinemaPlayer.create({{data: {json.dumps(data)}}}, document.body); 0")
-        await page.evaluate("player.play()")
-        assert await page.evaluate("player.getDuration()") == film.events[-1][0]
-        await page.evaluate("player.pause()")
-        for seconds in (1.0, 2.0, 3.0):
-            await page.evaluate(f"player.seek({seconds})")
-            right = [BLOCKS.sub(" ", line) for line in film.at(seconds)]
-            async with asyncio.timeout(60):
-                while [line.rstrip() for line in await page.evaluate(_LINES)] != right:
-                    await asyncio.sleep(0.05)
-        assert min(await page.pixels(METHODS)) > 50
-        assert page.thrown == []

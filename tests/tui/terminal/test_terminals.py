@@ -58,11 +58,9 @@ def test_without_utf_8_the_whole_lab_is_ascii(tmp_path):
     assert b"-----" in output  # a frame
 
 
-def test_pixels_can_be_chosen_and_changed_with_a(tmp_path):
-    output = seen(tmp_path, "live", "--pixels", "ascii", keys="aa").decode()
-    assert any(0x2800 < ord(character) < 0x28FF for character in output)  # braille
-    assert "▀" in output
-    assert output[: output.index(RECORDING)].isascii()
+def test_pixels_can_be_chosen(tmp_path):
+    assert seen(tmp_path, "live", "--pixels", "ascii").decode().isascii()
+    assert "▀" in seen(tmp_path, "live", "--pixels", "half").decode()
 
 
 def test_no_color_is_no_colour_at_all_and_no_mouse_leaves_the_mouse_alone(tmp_path):
@@ -98,20 +96,6 @@ def test_frames_come_as_often_as_is_asked_for(tmp_path):
 
 def state(pid: int) -> str:
     return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
-
-
-def test_over_a_slow_line_no_colour_is_sent_twice_and_time_goes_on(tmp_path):
-    with PtyLab("--h", "0.01", rate=64 * 1024, PENDU_RECORDINGS=str(tmp_path)) as pendu:
-        pendu.wait_for("REC ")
-        pendu.run(2.0)  # it is found out
-        start, began = len(pendu.output), pendu.now
-        while len(times := [float(t) for t in T.findall(pendu.output, start)]) < 2 or times[-1] - times[0] < 2:
-            pendu.read(0.1)
-            assert pendu.now - began < 30
-        assert abs(pendu.now - began - (times[-1] - times[0])) < 1.5  # the line alone would make it three times as long
-        assert pendu.output.count(b"\x1b[0m", start) < (len(pendu.output) - start) / 500  # else one in 50 bytes
-        pendu.type("q")
-        assert pendu.end() == 0
 
 
 def test_a_lab_that_was_stopped_goes_on_where_it_was(tmp_path):
@@ -173,8 +157,7 @@ def standing(pendu: PtyLab) -> list[str]:
     pendu.wait_for("REC 1 s")
     pendu.type(" ")
     pendu.wait_for("paused")
-    emulator = Emulator(pendu)
-    pendu.type("aaa")  # three kinds of pixels, painted anew each time
+    emulator = painted_anew(pendu)
     lines = still(emulator)
     quiet_since = pendu.now
     while pendu.now < quiet_since + QUIET:
@@ -182,6 +165,15 @@ def standing(pendu: PtyLab) -> list[str]:
         if (now := still(emulator)) != lines:
             lines, quiet_since = now, pendu.now
     return lines
+
+
+def painted_anew(pendu: PtyLab) -> Emulator:
+    """An emulator of the screen, all of which is painted after a change of size."""
+    pendu.resize(121, 41)
+    pendu.run(0.3)
+    emulator = Emulator(pendu)
+    pendu.resize(120, 40)
+    return emulator
 
 
 def still(emulator: Emulator) -> list[str]:
@@ -201,8 +193,7 @@ def standing_part(lines: list[str]) -> list[str]:
 def test_what_stood_on_the_screen_stands_there_again_to_the_letter(tmp_path):
     with session(tmp_path) as pendu:
         before = standing(pendu)
-        emulator = Emulator(pendu)
-        pendu.type("aaa")
+        emulator = painted_anew(pendu)
         emulator.wait_until(lambda lines: standing_part(lines) == before)
         for stop in (lambda: pendu.type("\x1a"), lambda: pendu.signal(signal.SIGSTOP)):
             stop()

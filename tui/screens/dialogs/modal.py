@@ -9,16 +9,19 @@ from textual.css.query import NoMatches
 from textual.screen import ModalScreen, Screen, ScreenResultType
 from textual.widgets import Input
 
-from tui.drawing.faults import Guarded
 
-
-class _Once(Guarded, Screen[ScreenResultType]):
+class _Once(Screen[ScreenResultType]):
     _dismissed = False
 
     def on_mount(self) -> None:
         """With reduced motion no cursor blinks; Textual lets it."""
         for field in self.query(Input):
             field.cursor_blink = self.app.animation_level != "none"
+
+    def on_resize(self, event: events.Resize) -> None:
+        """Leave out a size that the terminal no longer has: two could call each other up for ever."""
+        if event.size != self.app.size:
+            event.prevent_default()
 
     def dismiss(self, result: ScreenResultType | None = None) -> AwaitComplete:
         """Close with a result; a second call, or one from below another screen, would close that one."""

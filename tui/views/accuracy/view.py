@@ -38,10 +38,10 @@ class AccuracyView(View):
     def on_show(self) -> None:
         self.query_one(AccuracyPane).focus()
 
-    def follow(self, sample: Sample, read: bool = True, at_once: bool = True) -> None:
+    def follow(self, sample: Sample, read: bool = True) -> None:
         if read:
             self._compute_missing()
-        super().follow(sample, read, at_once)
+        super().follow(sample, read)
 
     def _compute_missing(self) -> None:
         """Compute what is missing for the run on screen, if the view is shown."""

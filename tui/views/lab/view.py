@@ -82,10 +82,10 @@ class LabView(View):
     def watch_source(self, source: Source | None) -> None:
         self._arrange()
 
-    def follow(self, sample: Sample, read: bool = True, at_once: bool = True) -> None:
+    def follow(self, sample: Sample, read: bool = True) -> None:
         if read:
             self._arrange()
-        super().follow(sample, read, at_once)
+        super().follow(sample, read)
 
     def _arrange(self) -> None:
         """Have Textual arrange the stage again, where that would change anything."""

@@ -40,9 +40,9 @@ class PhaseView(View):
         self.query_one("#facts", CellWidget).wake()
         self._write_facts()
 
-    def follow(self, sample: Sample, read: bool = True, at_once: bool = True) -> None:
+    def follow(self, sample: Sample, read: bool = True) -> None:
         """Follow h, too: another one brings no other sample."""
-        super().follow(sample, read, at_once)
+        super().follow(sample, read)
         if not read:
             return
         for pane in self.query(SectionPane):

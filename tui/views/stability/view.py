@@ -36,10 +36,10 @@ class StabilityView(View):
     def on_show(self) -> None:
         self.query_one(StabilityPane).focus()
 
-    def follow(self, sample: Sample, read: bool = True, at_once: bool = True) -> None:
+    def follow(self, sample: Sample, read: bool = True) -> None:
         if read:
             self._compute_missing()
-        super().follow(sample, read, at_once)
+        super().follow(sample, read)
 
     def _compute_missing(self) -> None:
         """Compute the map for the methods on screen."""

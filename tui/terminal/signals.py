@@ -1,0 +1,137 @@
+"""Signals and a lost terminal, heard even where the event loop does not turn."""
+
+import os
+import select
+import signal
+import time
+from asyncio import AbstractEventLoop
+from collections.abc import Callable
+from contextlib import AbstractContextManager, suppress
+from threading import Thread
+
+from tui.cli.errors import Exit
+from tui.terminal.check import is_gone
+
+MARGIN = 0.1  # s; of two signals that come closer than that, the order is unknown
+LOOK_INTERVAL = 1.0  # s between looks at the terminal
+MAX_LEAVE_TIME = 5.0  # s that the event loop has to end the program
+MAX_CLOSE_TIME = 3.0  # s to finish the recording and give the terminal back without the loop
+GIVE_BACK = "\x1b[<u\x1b[?1049l\x1b[?25h\x1b[?7h\x1b[?1000l\x1b[?1003l\x1b[?1006l\x1b[?1004l\x1b[?2004l"
+"""Leave the alternate screen, show the cursor, report no more mouse, focus and paste."""
+
+
+class Job:
+    """The program as a job of a shell, which stops and continues it."""
+
+    def __init__(self, suspend: Callable[[], AbstractContextManager[None]]) -> None:
+        """`suspend` gives the terminal back while its context lasts."""
+        self._suspend = suspend
+        self._asked_at = 0.0  # s, to stop
+        self._continued_at = 0.0  # s
+        self._taken_at = 0.0  # s, the terminal
+
+    def ask(self, *_: object) -> None:
+        """Note a request to stop."""
+        self._asked_at = time.monotonic()
+
+    def go_on(self, *_: object) -> None:
+        """Note that the program has been continued."""
+        self._continued_at = time.monotonic()
+
+    def stop(self) -> None:
+        """Stop, unless somebody has already continued the program, and then take the terminal."""
+        with self._suspend():
+            if self._continued_at + MARGIN < self._asked_at:
+                os.kill(os.getpid(), signal.SIGSTOP)
+        self._taken_at = time.monotonic()
+
+    def take_terminal(self) -> None:
+        """Take the whole terminal after a stop that nobody announced: a shell may have used it."""
+        if self._continued_at > self._taken_at:
+            with self._suspend():
+                pass
+            self._taken_at = time.monotonic()
+
+
+class SignalThread(Thread):
+    """A thread that passes signals on to the event loop, and ends a program whose loop is stuck.
+
+    Textual's own handlers run wherever a signal interrupts Python, which may be in the middle of a
+    write to the terminal; what they write would then wait for that write for ever.
+    """
+
+    def __init__(
+        self,
+        loop: AbstractEventLoop,
+        leave: Callable[[], object],
+        close: Callable[[], object],
+        job: Job | None,
+    ) -> None:
+        """`leave` ends the program in the loop; `close` finishes the recording, in any thread."""
+        super().__init__(name="signals", daemon=True)
+        self._loop = loop
+        self._leave = leave
+        self._close = close
+        self._has_terminal = not is_gone()
+        self._server = os.getppid()
+        self._pipe, written = os.pipe()
+        os.set_blocking(written, False)
+        signal.set_wakeup_fd(written, warn_on_full_buffer=False)
+        self._handlers: dict[int, Callable[[], object]] = {}
+        for number in ending_signals():
+            if signal.getsignal(number) != signal.SIG_IGN:  # as under nohup
+                self._handlers[number] = leave
+                signal.signal(number, lambda *_: None)
+        if job is not None:
+            self._handlers |= {signal.SIGTSTP: job.stop, signal.SIGCONT: job.take_terminal}
+            signal.signal(signal.SIGTSTP, job.ask)
+            signal.signal(signal.SIGCONT, job.go_on)
+
+    def run(self) -> None:
+        while True:
+            ready, _, _ = select.select([self._pipe], [], [], LOOK_INTERVAL)
+            numbers = os.read(self._pipe, 4096) if ready else b""
+            called = [self._handlers[number] for number in numbers if number in self._handlers]
+            if self._is_alone:
+                called.append(self._leave)
+            with suppress(RuntimeError):  # the loop is closed: the program is leaving
+                for handler in called:
+                    self._loop.call_soon_threadsafe(handler)
+            if self._leave in called:
+                time.sleep(MAX_LEAVE_TIME)
+                self._end()
+
+    @property
+    def _is_alone(self) -> bool:
+        """Whether the terminal is gone, or the web server that started this program."""
+        return is_gone() if self._has_terminal else os.getppid() != self._server
+
+    def _end(self) -> None:
+        closing = Thread(target=self._finish, daemon=True)  # which may need what the loop holds
+        closing.start()
+        closing.join(MAX_CLOSE_TIME)
+        os._exit(Exit.INTERRUPTED)
+
+    def _finish(self) -> None:
+        try:
+            self._close()
+        finally:
+            if self._has_terminal:
+                give_terminal_back()
+
+
+def ending_signals() -> list[int]:
+    """Return the signals that ask for an end."""
+    return [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+
+
+def give_terminal_back() -> None:
+    """Set the terminal to lines and echo, as a shell expects it."""
+    import termios
+
+    with suppress(termios.error, OSError):
+        attributes = termios.tcgetattr(0)
+        attributes[0] |= termios.ICRNL | termios.IXON
+        attributes[3] |= termios.ECHO | termios.ICANON | termios.IEXTEN | termios.ISIG
+        termios.tcsetattr(0, termios.TCSANOW, attributes)
+        os.write(2, GIVE_BACK.encode())
