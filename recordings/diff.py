@@ -10,8 +10,9 @@ from dataclasses import dataclass, field, replace
 from math import isclose
 from typing import Any, NamedTuple
 
+from engine.models import PARAMETERS
 from engine.run.lockstep import Reading, Sample
-from engine.scenes import PARAMETERS, Scene
+from engine.scenes import Scene
 from recordings.events import Event
 from recordings.fields import EXTREMES, VALUES, distance, same_bits, ulps, values_of
 from recordings.recording import Recording
@@ -123,7 +124,7 @@ def compare(a: Recording, b: Recording, progress: ShowProgress | None = None) ->
 
 def _fields(scene: Scene) -> dict[str, Any]:
     """The start of a run, as numbers and texts."""
-    parameters = {name: getattr(scene, name) for name in PARAMETERS}  # 0.0 of models without
+    parameters = {name: scene.parameters.get(name, 0.0) for name in PARAMETERS}  # 0.0 of models without
     return scene.fields() | parameters | {"methods": ", ".join(method.key for method in scene.cast)}
 
 

@@ -11,10 +11,10 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
 from engine.methods import Method, method_of
-from engine.models import MODELS, Model
+from engine.models import MODELS, PARAMETERS, Model
 from engine.models.model import Energy, EnergyReference, ExactMotion, Force, Phase, Sine, State
 from engine.run.lockstep import Sample
-from engine.scenes import PARAMETERS, Scene
+from engine.scenes import Scene
 
 if TYPE_CHECKING:
     from engine.methods.own import OwnMethod
@@ -90,7 +90,9 @@ def method_named(name: str) -> Method:
 
 def scene_named(name: str, **fields: Any) -> Scene:
     """The scene of these fields; its model may be a stand-in."""
-    return (Scene if fields["model"] in MODELS else _UnknownScene)(name, **fields)
+    parameters = {each: value for each in PARAMETERS if (value := fields.pop(each, 0.0))}
+    kind = Scene if fields["model"] in MODELS else _UnknownScene
+    return kind(name, parameters=parameters, **fields)
 
 
 def unknown_in(scene: Scene, only: Collection[str] | None = None) -> str | None:
@@ -172,11 +174,6 @@ class _UnknownModel(Model):
 
 class _UnknownScene(Scene):
     __slots__ = ()
-
-    @property
-    def parameters(self) -> tuple[str, ...]:
-        """Those that were recorded."""
-        return tuple(name for name in PARAMETERS if getattr(self, name))
 
     @property
     def equations(self) -> Model:

@@ -9,7 +9,7 @@ from collections.abc import Collection, Iterator, Sequence
 from operator import attrgetter
 from typing import Any, NamedTuple, get_args
 
-from engine.models import MODELS
+from engine.models import MODELS, PARAMETERS
 from engine.run.lockstep import Reading, Sample
 from engine.scenes import Scene
 from recordings.events import EventKind
@@ -38,6 +38,11 @@ class Field(NamedTuple):
         return {"type": self.type, **({"description": about} if about else {}), **items}
 
 
+def _ascii(unit: str) -> str:
+    """Return a unit without superscripts: "s^-1" for "s⁻¹"."""
+    return unit.replace("⁻", "^-").replace("¹", "1").replace("²", "2")
+
+
 MOMENT = (Field("run", type="integer"), Field("step", type="integer"), Field("t", "s"))
 """Where in a recording a message belongs; in every message."""
 
@@ -54,7 +59,7 @@ READING = (
 """One method in a sample: the attributes of a Reading but `extra`, in order.  `verify` compares all of them."""
 
 EXTRA = {
-    key: tuple(Field(each.name, each.unit, each.about, required=False) for each in model.variables)
+    key: tuple(Field(each.name, _ascii(each.unit), each.about, required=False) for each in model.variables)
     for key, model in MODELS.items()
 }
 """What follows of a model with variables of its own; all of them."""
@@ -62,7 +67,7 @@ EXTRA = {
 SCENE_NUMBERS = ("theta", "omega", "length", "gravity", "h")
 """The attributes of a Scene that are numbers, besides its model's parameters."""
 
-PARAMETER = (Field("friction", "s^-1", required=False), Field("stiffness", "s^-2", required=False))
+PARAMETER = tuple(Field(each.name, _ascii(each.unit), required=False) for each in PARAMETERS.values())
 """Parameters of models; only in starts, and only of those that have them."""
 
 EVENT = (
@@ -124,7 +129,7 @@ def reading_fields(*models: str) -> tuple[Field, ...]:
 
 def numbers_in(scene: Scene) -> dict[str, float]:
     """The numbers of a scene, with the parameters that its model has."""
-    return {name: float(getattr(scene, name)) for name in (*SCENE_NUMBERS, *scene.parameters)}
+    return {name: float(value) for name, value in scene.numbers.items()}
 
 
 COLUMNS = ("clock_s", *(field.column for field in MOMENT), "method", *(field.column for field in READING))

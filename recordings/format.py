@@ -11,10 +11,11 @@ from collections.abc import Collection
 from typing import Any, NoReturn, get_args
 
 from engine.methods import Cast, Method
+from engine.models import PARAMETERS
 from engine.run.judgement import VERDICTS
 from engine.run.lockstep import Reading, Sample
 from engine.run.observer import Milestone, MilestoneKind
-from engine.scenes import MOST_METHODS, PARAMETERS, Scene, SceneError
+from engine.scenes import MOST_METHODS, Scene, SceneError
 from recordings.errors import RecordingError, printable
 from recordings.events import Event, Seal, method_named, name_of, noticed, scene_named
 from recordings.fields import NUMBERS, SCENE_NUMBERS, VALUES, left_out, numbers_in, values_of

@@ -189,7 +189,7 @@ class Recorder:
                 self._writer.add_metadata(OWN_METHOD, own)
                 self._digest.record(Metadata(OWN_METHOD, own))
         facts = {name: metadata[name] for name in ("format", *FUNCTIONS) if name in metadata}
-        self._register(EVENTS, event_schema(scene.parameters), facts)
+        self._register(EVENTS, event_schema(tuple(scene.parameters)), facts)
         self._register(SEALS, SEAL_SCHEMA)
 
     def _declare(self, scene: Scene) -> None:

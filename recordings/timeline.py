@@ -15,9 +15,10 @@ from math import nan
 from typing import Any, TypeVar, get_args, overload
 
 from engine.methods import Method
+from engine.models import PARAMETERS
 from engine.run.lockstep import Sample
 from engine.run.observer import Milestone
-from engine.scenes import PARAMETERS, Scene
+from engine.scenes import Scene
 from recordings.events import Entry, Event, EventKind, method_named, name_of, noticed, scene_named
 from recordings.fields import SCENE_NUMBERS
 
@@ -91,7 +92,7 @@ class Events(_Rows[tuple[float, Event]]):
         extra, value = _NOTHING, event.speed if event.h is None else event.h
         if (scene := event.scene) is not None:
             extra = len(self._cast_ends) - 1
-            self._scenes.extend(getattr(scene, name) for name in _NUMBERS)
+            self._scenes.extend(scene.numbers.get(name, 0.0) for name in _NUMBERS)
             self._names.extend(map(self._number, (scene.name, scene.watch)))
             self._casts.append(self._models.setdefault(scene.model, len(self._models)))
             self._casts.extend(self._methods.setdefault(name_of(method), len(self._methods)) for method in scene.cast)

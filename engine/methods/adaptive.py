@@ -6,6 +6,7 @@ nor reversible, whatever the method inside.  Hairer, Lubich & Wanner (2006), VII
 
 import math
 from collections.abc import Iterator
+from typing import Any
 
 from engine.methods.method import Method, Phases
 from engine.methods.verlet import velocity_verlet
@@ -40,29 +41,40 @@ def halving(phases: Phases, tolerance: float, richardson: bool = False) -> Phase
     return halved
 
 
-def _halving(richardson: bool, key: str, label: str, letter: str, ends: str, order: int, evaluations: int) -> Method:
+def _halving(*, richardson: bool, ends: str, **fields: Any) -> Method:
     return Method(
-        key=key,
-        label=label,
-        letter=letter,
+        **fields,
         phases=halving(velocity_verlet, TOLERANCE, richardson),
         formula=f"a step of velocity Verlet, and two halves: if they differ by more than {TOLERANCE}, halve h; {ends}",
-        order=order,
-        force_evaluations=evaluations,
         other_names=("adaptive Verlet",),
         reference="Press et al., Numerical Recipes, 2nd edition (1992), 16.2",
         used=None,
         note="Its force evaluations are those of a minute of scene halving, on average, and equal cost goes by them; "
         "a step that is not divided takes six, and of this order it is as long as none is.",
         models=("pendulum", "linear"),
-        general=False,
+        any_numbers=False,
         varies=True,
     )
 
 
-HALVING_VERLET = _halving(False, "halving_verlet", "Step doubling", "h", "the halves count", 2, 8)
+HALVING_VERLET = _halving(
+    key="halving_verlet",
+    label="Step doubling",
+    letter="h",
+    richardson=False,
+    ends="the halves count",
+    order=2,
+    force_evaluations=8,
+)
+
 HALVING_RICHARDSON = _halving(
-    True, "halving_richardson", "Richardson Verlet", "a", "they are extrapolated to h = 0", 4, 7
+    key="halving_richardson",
+    label="Richardson Verlet",
+    letter="a",
+    richardson=True,
+    ends="they are extrapolated to h = 0",
+    order=4,
+    force_evaluations=7,
 )
 
 FAMILY = (HALVING_VERLET, HALVING_RICHARDSON)

@@ -1,56 +1,48 @@
 """Friction: where in a step it acts decides the order, and whether area shrinks as it should.
 
-These ask the force for its `friction`, gamma [s⁻¹].
+These take the pendulum's force and its friction, gamma [s⁻¹], apart.
 """
 
 import math
 from collections.abc import Iterator
-from typing import Any
 
-from engine.methods.method import Method, Phases
-from engine.methods.verlet import velocity_verlet
-from engine.models.model import Number, Phase
+from engine.methods.method import Method
+from engine.models.damped import DampedParts
+from engine.models.model import Phase
 
 
-def damped(phases: Phases) -> Phases:
-    """The method with friction: omega times exp(-gamma h/2) before and after each of its steps.
+def conformal_verlet(parts: DampedParts, phase: Phase, h: float) -> Iterator[Phase]:
+    """Velocity Verlet, with omega times exp(-gamma h/2) before and after each step.
 
-    Around a symplectic method, area shrinks by exp(-gamma h) exactly, and a method of order 2 keeps its order.
+    Order 2; around a symplectic method, area shrinks by exp(-gamma h) exactly.
     Bhatt, Floyd & Moore, J. Sci. Comput. 66 (2016) 1234.
     """
-
-    def conformal(force: Any, phase: Phase, h: float) -> Iterator[Phase]:
-        """Damp, step, damp."""
-        theta, omega = phase
-        damping, known = math.exp(-force.friction * h / 2), (theta, force(theta))
-
-        def remembered(theta: Number) -> Number:
-            """The force; the last one of a step is the next one's first."""
-            nonlocal known
-            if theta is not known[0]:
-                known = theta, force(theta)
-            return known[1]
-
-        while True:
-            theta, omega = next(phases(remembered, (theta, omega * damping), h))
-            omega = omega * damping
-            yield theta, omega
-
-    return conformal
+    force, friction = parts
+    theta, omega = phase
+    half = h / 2
+    damping = math.exp(-friction * h / 2)
+    a = force(theta)
+    while True:
+        omega_half = omega * damping + half * a
+        theta = theta + h * omega_half
+        a = force(theta)
+        omega = (omega_half + half * a) * damping
+        yield theta, omega
 
 
-def lagged_verlet(force: Any, phase: Phase, h: float) -> Iterator[Phase]:
+def lagged_verlet(parts: DampedParts, phase: Phase, h: float) -> Iterator[Phase]:
     """Velocity Verlet with friction taken from the omega before each half kick.
 
     Order 1 only: the second half kick should know the omega that it leads to.
     """
+    force, friction = parts
     theta, omega = phase
     a = force(theta)
     while True:
-        omega_half = omega + h / 2 * (a - force.friction * omega)
+        omega_half = omega + h / 2 * (a - friction * omega)
         theta = theta + h * omega_half
         a = force(theta)
-        omega = omega_half + h / 2 * (a - force.friction * omega_half)
+        omega = omega_half + h / 2 * (a - friction * omega_half)
         yield theta, omega
 
 
@@ -68,14 +60,14 @@ LAGGED_VERLET = Method(
     used=None,
     note="Without friction it is velocity Verlet, of order 2.",
     models=("damped",),
-    general=False,
+    takes_parts=True,
 )
 
 CONFORMAL_VERLET = Method(
     key="conformal_verlet",
     label="Conformal Verlet",
     letter="c",
-    phases=damped(velocity_verlet),
+    phases=conformal_verlet,
     formula="omega times exp(-gamma h/2), a step of velocity Verlet, omega times exp(-gamma h/2)",
     order=2,
     force_evaluations=1,
@@ -85,7 +77,7 @@ CONFORMAL_VERLET = Method(
     used=None,
     note="It shrinks area by exp(-gamma h), as the motion does, wherever it is.",
     models=("damped",),
-    general=False,
+    takes_parts=True,
 )
 
 FAMILY = (LAGGED_VERLET, CONFORMAL_VERLET)

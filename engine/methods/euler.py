@@ -1,10 +1,9 @@
 """The Euler methods: one force a step, order 1."""
 
 from collections.abc import Iterator
-from typing import Any
 
 from engine.methods.method import Method
-from engine.models.model import Force, Phase
+from engine.models.model import Force, Phase, Rates
 from engine.models.modified_energy import symplectic_euler_modified_energy
 
 
@@ -19,15 +18,11 @@ def explicit_euler(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
         yield theta, omega
 
 
-def explicit_euler_with_friction(force: Any, phase: Phase, h: float) -> Iterator[Phase]:
-    """Explicit Euler where -gamma omega is added to the force; gamma is `force.friction`.
-
-    Small swings gain energy from h = gamma/w0² on.
-    """
-    theta, omega = phase
+def explicit_euler_on_rates(rates: Rates, phase: Phase, h: float) -> Iterator[Phase]:
+    """Explicit Euler on a first-order system.  With friction, small swings gain energy from h = gamma/w0² on."""
     while True:
-        theta, omega = theta + h * omega, omega + h * (force(theta) - force.friction * omega)
-        yield theta, omega
+        phase = tuple(value + h * rate for value, rate in zip(phase, rates(phase), strict=True))
+        yield phase
 
 
 def symplectic_euler(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
@@ -54,7 +49,7 @@ EXPLICIT_EULER = Method(
     other_names=("forward Euler",),
     reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), I.1.2",
     used="equations with additive noise (Euler-Maruyama): Brian 2 [brian2.readthedocs.io, Numerical integration]",
-    with_friction=explicit_euler_with_friction,
+    on_rates=explicit_euler_on_rates,
     models=("pendulum", "linear", "damped"),
 )
 

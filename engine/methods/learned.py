@@ -6,12 +6,14 @@ These methods know no other pendulum than the one that was measured, and never a
 """
 
 import math
+from collections.abc import Iterator
 from functools import cache
+from typing import Any
 
 from engine.methods.learned_numbers import FEATURES, FIELD, HAMILTONIAN
 from engine.methods.method import Method
-from engine.methods.runge_kutta import Field, rk4_on
-from engine.models.model import Number
+from engine.methods.runge_kutta import rk4_on_rates
+from engine.models.model import Phase, Rates
 
 W0_SQUARED = 9.81  # s⁻², of the pendulum that was measured
 
@@ -21,12 +23,13 @@ def _rows(numbers: str) -> list[tuple[float, ...]]:
 
 
 @cache
-def learned_field() -> Field:
-    """(theta, omega) -> (theta', omega') with a sum for each."""
+def learned_field() -> Rates:
+    """Return (theta, omega) -> (theta', omega') with a sum for each."""
     w0 = math.sqrt(W0_SQUARED)
     rows = [(*feature, *sums) for feature, sums in zip(_rows(FEATURES), _rows(FIELD), strict=True)]
 
-    def field(theta: Number, omega: Number) -> tuple[Number, Number]:
+    def field(phase: Phase) -> Phase:
+        theta, omega = phase
         drift = kick = 0.0
         for a, b, c, to_theta, to_omega in rows:
             feature = math.tanh(a * theta + b / w0 * omega + c)
@@ -38,12 +41,13 @@ def learned_field() -> Field:
 
 
 @cache
-def learned_hamiltonian() -> Field:
-    """(theta, omega) -> (dH/d omega, -dH/d theta) of one sum H(theta, omega)."""
+def learned_hamiltonian() -> Rates:
+    """Return (theta, omega) -> (dH/d omega, -dH/d theta) of one sum H(theta, omega)."""
     w0 = math.sqrt(W0_SQUARED)
     rows = [(*feature, *sums) for feature, sums in zip(_rows(FEATURES), _rows(HAMILTONIAN), strict=True)]
 
-    def field(theta: Number, omega: Number) -> tuple[Number, Number]:
+    def field(phase: Phase) -> Phase:
+        theta, omega = phase
         drift = kick = 0.0
         for a, b, c, coefficient in rows:
             feature = math.tanh(a * theta + b / w0 * omega + c)
@@ -56,13 +60,19 @@ def learned_hamiltonian() -> Field:
 
 
 def _learned(
-    key: str, label: str, letter: str, field: Field, formula: str, note: str, used: str | None = None
+    key: str, label: str, letter: str, field: Rates, formula: str, note: str, used: str | None = None
 ) -> Method:
+    def phases(parts: Any, phase: Phase, h: float) -> Iterator[Phase]:
+        """RK4 on what was learned, whatever the model."""
+        return rk4_on_rates(field, phase, h)
+
     return Method(
         key=key,
         label=label,
         letter=letter,
-        phases=rk4_on(lambda force: field),
+        phases=phases,
+        takes_parts=True,
+        any_numbers=False,
         formula=formula,
         order=4,
         force_evaluations=4,
@@ -71,7 +81,6 @@ def _learned(
         used=used,
         note=f"{note} Of this order in what was learned; counted are evaluations of that.",
         models=("pendulum",),
-        general=False,
     )
 
 

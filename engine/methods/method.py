@@ -1,13 +1,25 @@
 """A method and its claims."""
 
+import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
-from engine.models.model import Force, Model, Phase
+from engine.models.model import Model, Phase, Rates, Sine
 from engine.models.modified_energy import ModifiedEnergy
 
-Phases = Callable[[Force, Phase, float], Iterator[Phase]]
-"""(force, phase, h) -> the phases after one step of h [s], after two, and so on without end."""
+Phases = Callable[[Any, Phase, float], Iterator[Phase]]
+"""(force, phase, h) -> the phases after one step of h [s], after two, and so on without end.
+
+Methods made for one model take its `parts` in place of the force.
+"""
+
+RatePhases = Callable[[Rates, Phase, float], Iterator[Phase]]
+"""The same of a first-order system: (rates, phase, h) -> phases."""
+
+BoundPhases = Callable[[Phase, float], Iterator[Phase]]
+"""The same of a method on a model: (phase, h) -> phases."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,16 +44,26 @@ class Method:
     used: str | None  # a program that uses it, with its page in brackets; None if we know of none
     note: str = ""  # what else to know; also tested
     modified_energy: ModifiedEnergy | None = None  # conserved up to O(h⁴); None if none is known
-    with_friction: Phases | None = None  # the same where the force has `friction`, if `phases` does not ask for it
+    takes_parts: bool = False  # `phases` takes the parts of its model, not any force
+    on_rates: RatePhases | None = None  # the same method for first-order systems
     models: tuple[str, ...] = ("pendulum", "linear")  # keys of the models that it integrates
-    general: bool = True  # takes any force, also on arrays, complex and mpmath numbers; maps and areas need that
+    any_numbers: bool = True  # also arrays, complex and mpmath numbers
     varies: bool = False  # its evaluations depend on the phase; `force_evaluations` is then an average
 
-    def on(self, model: Model) -> "Method":
-        """This method for a model: with its friction, if it has any."""
-        return replace(self, phases=self.with_friction) if model.friction and self.with_friction else self
+    @property
+    def general(self) -> bool:
+        """Whether it takes any force and any numbers, as maps and studies need."""
+        return self.any_numbers and not self.takes_parts
 
-    def step(self, force: Force, phase: Phase, h: float) -> Phase:
+    def on(self, model: Model, sin: Sine = math.sin) -> BoundPhases:
+        """Return the method's phases on a model, for the numbers of this sine."""
+        if self.takes_parts:
+            return partial(self.phases, model.parts(sin))
+        if not model.second_order and self.on_rates is not None:
+            return partial(self.on_rates, model.rates(sin))
+        return partial(self.phases, model.force(sin))
+
+    def step(self, force: Any, phase: Phase, h: float) -> Phase:
         """The phase after one step of h [s]."""
         return next(self.phases(force, phase, h))
 

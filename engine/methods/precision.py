@@ -7,12 +7,12 @@ import struct
 from collections.abc import Iterator
 from typing import Any
 
-from engine.methods.method import Method, Phases
+from engine.methods.method import Method
 from engine.methods.verlet import velocity_verlet
 from engine.models.model import Force, Phase
 
 
-class Single(float):
+class Float32(float):
     """A number of 32 bits, IEEE binary32.
 
     A sum or product of two, rounded to a double and then to 32 bits, is the same as rounded once: a double has more
@@ -21,15 +21,15 @@ class Single(float):
 
     __slots__ = ()
 
-    def __new__(cls, value: float) -> "Single":
+    def __new__(cls, value: float) -> "Float32":
         """Rounded to 32 bits.  Raises OverflowError beyond 3.4e38."""
         return super().__new__(cls, _BINARY32.unpack(_BINARY32.pack(value))[0])
 
-    def __add__(self, other: float) -> "Single":
-        return Single(float(self) + float(other))
+    def __add__(self, other: float) -> "Float32":
+        return Float32(float(self) + float(other))
 
-    def __mul__(self, other: float) -> "Single":
-        return Single(float(self) * float(other))
+    def __mul__(self, other: float) -> "Float32":
+        return Float32(float(self) * float(other))
 
     __rmul__ = __mul__
 
@@ -37,24 +37,24 @@ class Single(float):
 _BINARY32 = struct.Struct("<f")
 
 
-class Kept(float):
+class Compensated(float):
     """A double that keeps what its last addition lost, and gives it to the next.
 
     Compensated summation: Kahan, Comm. ACM 8 (1965) 40; Hairer, Lubich & Wanner (2006), VIII.5.
     """
 
-    __slots__ = ("lost",)
-    lost: float
+    __slots__ = ("compensation",)
+    compensation: float
 
-    def __new__(cls, value: float, lost: float = 0.0) -> "Kept":
-        kept = super().__new__(cls, value)
-        kept.lost = lost
-        return kept
+    def __new__(cls, value: float, compensation: float = 0.0) -> "Compensated":
+        compensated = super().__new__(cls, value)
+        compensated.compensation = compensation
+        return compensated
 
-    def __add__(self, other: float) -> "Kept":
-        increment = float(other) + self.lost
+    def __add__(self, other: float) -> "Compensated":
+        increment = float(other) + self.compensation
         total = float(self) + increment
-        return Kept(total, increment - (total - float(self)))
+        return Compensated(total, increment - (total - float(self)))
 
 
 def verlet_float32(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
@@ -63,65 +63,59 @@ def verlet_float32(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
     It yields doubles, which hold the 32 bits exactly.
     """
 
-    def rounded(theta: Any) -> Single:
-        return Single(force(float(theta)))
+    def rounded(theta: Any) -> Float32:
+        return Float32(force(float(theta)))
 
-    start = Single(phase[0]), Single(phase[1])
-    for theta, omega in velocity_verlet(rounded, start, Single(h)):
+    start = Float32(phase[0]), Float32(phase[1])
+    for theta, omega in velocity_verlet(rounded, start, Float32(h)):
         yield float(theta), float(omega)
 
 
 def verlet_compensated(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
     """Velocity Verlet that keeps what its additions round off.
 
-    It yields Kept numbers, which are doubles: what is lost stays in the phase, so a run may be cut anywhere.
+    It yields Compensated numbers, which are doubles: what is lost stays in the phase, so a run may be cut anywhere.
     """
-    theta, omega = (x if isinstance(x, Kept) else Kept(x) for x in phase)
+    theta, omega = (x if isinstance(x, Compensated) else Compensated(x) for x in phase)
     return velocity_verlet(force, (theta, omega), h)
 
 
-def _verlet(
-    phases: Phases, key: str, label: str, letter: str, numbers: str, keeps: bool, note: str, used: str | None = None
-) -> Method:
+def _verlet(*, numbers: str, keeps_area: bool, **fields: Any) -> Method:
     return Method(
-        key=key,
-        label=label,
-        letter=letter,
-        phases=phases,
+        **fields,
         formula=f"velocity Verlet, {numbers}",
         order=2,
         force_evaluations=1,
         first_same_as_last=True,
-        symplectic=keeps,
-        reversible=keeps,
+        symplectic=keeps_area,
+        reversible=keeps_area,
         linear_limit=2.0,
         other_names=("velocity Verlet",),
         reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), VIII.5",
-        used=used,
-        note=note,
         models=("pendulum",),
-        general=False,
+        any_numbers=False,
     )
 
 
 VERLET_FLOAT32 = _verlet(
-    verlet_float32,
-    "verlet_float32",
-    "Single Verlet",
-    "n",
-    "all numbers rounded to 32 bits",
-    keeps=False,
+    phases=verlet_float32,
+    key="verlet_float32",
+    label="Single Verlet",
+    letter="n",
+    numbers="all numbers rounded to 32 bits",
+    keeps_area=False,
     note="Rounding is not symplectic: the modified energy walks, by 1e-5 in 10 000 steps.",
     used="molecular dynamics: positions and velocities in GROMACS [manual.gromacs.org, Definitions and Units]",
 )
 
 VERLET_COMPENSATED = _verlet(
-    verlet_compensated,
-    "verlet_compensated",
-    "Kahan Verlet",
-    "k",
-    "each sum keeps what it rounds off for the next",
-    keeps=True,
+    phases=verlet_compensated,
+    key="verlet_compensated",
+    label="Kahan Verlet",
+    letter="k",
+    numbers="each sum keeps what it rounds off for the next",
+    keeps_area=True,
+    used=None,
     note="It takes three additions more for each sum, and no more memory than two numbers.",
 )
 

@@ -1,14 +1,10 @@
 """The classical Runge-Kutta method."""
 
 import math
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Iterator
 
-from engine.methods.method import Method, Phases
-from engine.models.model import Force, Number, Phase
-
-Field = Callable[[Number, Number], tuple[Number, Number]]
-"""(theta, omega) -> (theta', omega')."""
+from engine.methods.method import Method
+from engine.models.model import Force, Phase, Rates
 
 
 def rk4(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
@@ -32,27 +28,20 @@ def rk4(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
         yield theta, omega
 
 
-def rk4_on(field: Callable[[Any], Field]) -> Phases:
-    """The classical Runge-Kutta method on y' = field(force)(theta, omega), for more than theta'' = force(theta)."""
-
-    def rk4_on_a_field(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
-        """The classical Runge-Kutta method of order 4 on any field.  Hairer, Lubich & Wanner (2006), II.1.1."""
-        rate = field(force)
-        theta, omega = phase
-        while True:
-            v1, a1 = rate(theta, omega)
-            v2, a2 = rate(theta + h / 2 * v1, omega + h / 2 * a1)
-            v3, a3 = rate(theta + h / 2 * v2, omega + h / 2 * a2)
-            v4, a4 = rate(theta + h * v3, omega + h * a3)
-            theta = theta + h / 6 * (v1 + 2 * v2 + 2 * v3 + v4)
-            omega = omega + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4)
-            yield theta, omega
-
-    return rk4_on_a_field
+def rk4_on_rates(rates: Rates, phase: Phase, h: float) -> Iterator[Phase]:
+    """The classical Runge-Kutta method on a first-order system.  Hairer, Lubich & Wanner (2006), II.1.1."""
+    while True:
+        k1 = rates(phase)
+        k2 = rates(_moved(phase, h / 2, k1))
+        k3 = rates(_moved(phase, h / 2, k2))
+        k4 = rates(_moved(phase, h, k3))
+        slopes = zip(k1, k2, k3, k4, strict=True)
+        phase = _moved(phase, h / 6, tuple(a + 2 * b + 2 * c + d for a, b, c, d in slopes))
+        yield phase
 
 
-def _with_friction(force: Any) -> Field:
-    return lambda theta, omega: (omega, force(theta) - force.friction * omega)
+def _moved(phase: Phase, h: float, rates: Phase) -> Phase:
+    return tuple(value + h * rate for value, rate in zip(phase, rates, strict=True))
 
 
 RK4 = Method(
@@ -67,7 +56,7 @@ RK4 = Method(
     other_names=("classical Runge-Kutta",),
     reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), II.1.1",
     used="energy-conserving systems in MuJoCo, integrator RK4 [mujoco.readthedocs.io, Computation]",
-    with_friction=rk4_on(_with_friction),
+    on_rates=rk4_on_rates,
     models=("pendulum", "linear", "damped", "spring"),
 )
 

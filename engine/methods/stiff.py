@@ -1,15 +1,15 @@
-"""Methods for two time scales: the force says what is fast, what is slow, and solves for its fast part.
+"""Methods for two time scales, made for the parts of a spring: a fast force, a slow one, and a solution of the fast.
 
-They ask the force for `fast`, `slow` and `solve(b, c)`, the solution of z = b + c fast(z); `slow` is a constant here.
+`solve(b, c)` is the solution of z = b + c fast(z); `slow` is a constant here.
 """
 
 from collections.abc import Iterator
 from itertools import islice
-from typing import Any
 
 from engine.methods.method import Method, Phases
 from engine.methods.verlet import velocity_verlet
 from engine.models.model import Phase
+from engine.models.spring import SpringParts
 
 
 def respa(inner: Phases, n: int) -> Phases:
@@ -18,33 +18,33 @@ def respa(inner: Phases, n: int) -> Phases:
     Tuckerman, Berne & Martyna, J. Chem. Phys. 97 (1992) 1990.
     """
 
-    def impulse(force: Any, phase: Phase, h: float) -> Iterator[Phase]:
+    def impulse(parts: SpringParts, phase: Phase, h: float) -> Iterator[Phase]:
         """Half a slow kick, n fast steps, half a slow kick."""
         z, w = phase
-        slow = force.slow(z)
+        slow = parts.slow(z)
         while True:
             w = w + h / 2 * slow
-            z, w = next(islice(inner(force.fast, (z, w), h / n), n - 1, None))
-            slow = force.slow(z)
+            z, w = next(islice(inner(parts.fast, (z, w), h / n), n - 1, None))
+            slow = parts.slow(z)
             w = w + h / 2 * slow
             yield z, w
 
     return impulse
 
 
-def implicit_midpoint(force: Any, phase: Phase, h: float) -> Iterator[Phase]:
+def implicit_midpoint(parts: SpringParts, phase: Phase, h: float) -> Iterator[Phase]:
     """The implicit midpoint rule: z' = z + h (w + w')/2, w' = w + h a((z + z')/2), solved for the middle.
 
     Order 2, symplectic and reversible, stable at any h.  Hairer, Lubich & Wanner (2006), II.1.1 and VI.4.
     """
     z, w = phase
     while True:
-        middle = force.solve(z + h / 2 * w + h * h / 4 * force.slow(z), h * h / 4)
+        middle = parts.solve(z + h / 2 * w + h * h / 4 * parts.slow(z), h * h / 4)
         z, w = 2 * middle - z, 4 * (middle - z) / h - w
         yield z, w
 
 
-def imex_euler(force: Any, phase: Phase, h: float) -> Iterator[Phase]:
+def imex_euler(parts: SpringParts, phase: Phase, h: float) -> Iterator[Phase]:
     """Implicit-explicit Euler: the fast force at the end of the step, the slow one at its start.
 
     Order 1, stable at any h because it damps whatever it does not resolve, and what it does.
@@ -52,7 +52,7 @@ def imex_euler(force: Any, phase: Phase, h: float) -> Iterator[Phase]:
     """
     z, w = phase
     while True:
-        following = force.solve(z + h * (w + h * force.slow(z)), h * h)
+        following = parts.solve(z + h * (w + h * parts.slow(z)), h * h)
         z, w = following, (following - z) / h
         yield z, w
 
@@ -72,9 +72,9 @@ RESPA = Method(
     other_names=("impulse method", "IVI"),
     reference="Tuckerman, Berne & Martyna, J. Chem. Phys. 97 (1992) 1990",
     used="molecular dynamics: LAMMPS, run_style respa, OpenMM, MTSIntegrator [docs.openmm.org, MTSIntegrator]",
-    note="Its kicks resonate where h is a period of the fast motion, or several. Counted are evaluations of its force.",
+    note="Its kicks resonate where h is a period of the fast motion, or several. Counted are evaluations of its parts.",
     models=("spring",),
-    general=False,
+    takes_parts=True,
 )
 
 IMPLICIT_MIDPOINT = Method(
@@ -92,7 +92,7 @@ IMPLICIT_MIDPOINT = Method(
     used="Markov chain Monte Carlo: BlackJAX, implicit_midpoint [blackjax-devs.github.io, blackjax.mcmc.integrators]",
     note="Small vibrations are stable at any h, with a phase that is wrong where h is long. Counted are its solutions.",
     models=("spring",),
-    general=False,
+    takes_parts=True,
 )
 
 IMEX_EULER = Method(
@@ -108,7 +108,7 @@ IMEX_EULER = Method(
     used="equations with a stiff part: OrdinaryDiffEq.jl, IMEXEuler [docs.sciml.ai, IMEX SDIRK Methods]",
     note="Stable at any h; it takes the energy out of the spring within a period, and then out of the swing.",
     models=("spring",),
-    general=False,
+    takes_parts=True,
 )
 
 FAMILY = (RESPA, IMPLICIT_MIDPOINT, IMEX_EULER)

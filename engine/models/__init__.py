@@ -7,11 +7,13 @@ is what symplectic methods conserve instead of the energy.
 """
 
 from engine.models.damped import DampedPendulum
-from engine.models.linear import LinearOscillator
+from engine.models.linear import LinearOscillator as LinearOscillator
 from engine.models.model import Model as Model
-from engine.models.pendulum import Pendulum
+from engine.models.model import Parameter as Parameter
+from engine.models.pendulum import Pendulum as Pendulum
 from engine.models.spring import Spring
 
-MODELS: dict[str, type[Pendulum | LinearOscillator | Spring]] = {
-    model.key: model for model in (Pendulum, LinearOscillator, DampedPendulum, Spring)
-}
+MODELS: dict[str, type[Model]] = {model.key: model for model in (Pendulum, LinearOscillator, DampedPendulum, Spring)}
+
+PARAMETERS: dict[str, Parameter] = {each.name: each for model in MODELS.values() for each in model.parameters}
+"""The parameters that models have besides length and gravity, by name."""

@@ -6,14 +6,33 @@ Energy only decreases: dE/dt = -gamma omega².  Area shrinks alike everywhere, b
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
-from engine.models.model import EnergyReference, ExactMotion, Force, Phase, Regime, Sine, State
+from engine.models.model import (
+    EnergyError,
+    EnergyReference,
+    ExactMotion,
+    Force,
+    Parameter,
+    Phase,
+    Rates,
+    Regime,
+    Sine,
+    State,
+)
 from engine.models.pendulum import Pendulum, separatrix_energy
 from engine.models.reference import Reference
 
 STEP = 0.05  # of the reference, times the larger of w0 and gamma
 ACCURACY = 1e-10  # rad
+MAX_FRICTION = 100  # over w0: beyond, the pendulum creeps, and its reference takes too many steps
+
+
+class DampedParts(NamedTuple):
+    """What methods made for friction take."""
+
+    force: Force  # gravity's
+    friction: float  # gamma [s⁻¹]
 
 
 @dataclass(frozen=True)
@@ -24,15 +43,31 @@ class DampedPendulum(Pendulum):
 
     key: ClassVar[str] = "damped"
     equation: ClassVar[str] = "theta'' = -w0² sin theta - gamma omega"
-    parameters: ClassVar[tuple[str, ...]] = ("friction",)
-    plain: ClassVar[bool] = False
-    conserved: ClassVar[bool] = False
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("friction", "s⁻¹", "friction", 0.0, 100.0, max_over_w0=MAX_FRICTION),
+    )
+    second_order: ClassVar[bool] = False
+    has_separatrix: ClassVar[bool] = False
+    energy_error: ClassVar[EnergyError] = EnergyError(
+        conserved=False,
+        symbol="ln E/Et",
+        name="ln(E/E_true)",
+        about="the logarithm of the energy over that of the exact motion, which loses energy, too",
+    )
+    caption: ClassVar[str] = "curves of equal energy, which friction makes it cross inwards"
+    without_force: ClassVar[str] = "Maps and studies are for a pendulum that keeps its energy; friction takes it."
 
-    def force(self, sin: Sine = math.sin) -> Force:
-        """Gravity's; its attribute `friction` is gamma [s⁻¹]."""
-        force = super().force(sin)
-        force.friction = self.friction  # type: ignore[attr-defined]
-        return force
+    def rates(self, sin: Sine = math.sin) -> Rates:
+        force, friction = self.parts(sin)
+
+        def damped_rates(phase: Phase) -> Phase:
+            theta, omega = phase
+            return omega, force(theta) - friction * omega
+
+        return damped_rates
+
+    def parts(self, sin: Sine = math.sin) -> DampedParts:
+        return DampedParts(self.force(sin), self.friction)
 
     def exact(self, theta: float, omega: float) -> ExactMotion:
         """By the reference; it swings down to rest, and turns before if its energy is enough."""
@@ -48,13 +83,16 @@ class DampedPendulum(Pendulum):
 
     def reference(self, theta: float, omega: float) -> EnergyReference:
         """The energy of the motion by the reference; errors are ln(E/E_true)."""
-        energy, start = self.energy(), super().reference(theta, omega)
+        energy = self.energy()
 
         def true(t: float) -> float:
             value: float = energy(_reference(self, theta, omega).at(t))
             return value
 
-        return start._replace(true=true)
+        return super().reference(theta, omega)._replace(true=true)
+
+    def area_share(self, t: float) -> float:
+        return math.exp(-self.friction * t)
 
 
 @lru_cache(maxsize=16)

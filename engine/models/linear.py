@@ -48,3 +48,7 @@ class LinearOscillator(Model):
 
         rests = theta == 0 == omega
         return ExactMotion(at, "equilibrium" if rests else "libration", None if rests else math.tau / w0)
+
+    def level(self, theta: Any, omega: Any, cos: Sine = math.cos) -> Any:
+        """Return minus a quarter of the squared amplitude: its curves are ellipses."""
+        return -(theta * theta + omega * omega / self.w0**2) / 4

@@ -7,14 +7,20 @@ from typing import Any, ClassVar, Literal, NamedTuple
 
 Number = Any  # float, complex, NumPy array or mpmath number: one definition of a method serves them all
 
-Phase = tuple[Number, Number]
-"""(theta, omega) as a method takes and yields it: a bare tuple, the quickest value CPython builds."""
+Phase = tuple[Number, ...]
+"""(theta, omega) as a method takes and yields it: a bare tuple, the quickest value CPython builds.
+
+Some models have other numbers, or more of them; `Model.observe` reads angle and angular velocity from any phase.
+"""
 
 Force = Callable[[Number], Number]
 """theta in rad -> theta'' in rad/s²."""
 
 Energy = Callable[[Phase], Number]
 """(theta, omega) -> energy [s⁻²], per unit m·L²."""
+
+Rates = Callable[[Phase], Phase]
+"""A phase -> the time derivative of each of its numbers."""
 
 Sine = Callable[[Any], Any]
 
@@ -32,9 +38,31 @@ class Variable(NamedTuple):
     name: str  # in recordings, JSON and --fail-if
     unit: str = ""
     about: str = ""
+    label: str = ""  # the title of its chart, if it is not a part of the state
     is_state: bool = True
     """Whether it is a part of the phase.  Any other is a quantity of the phase, which charts can show."""
     relative: bool = False  # readings have it over its value at the start of the run
+
+
+class Parameter(NamedTuple):
+    """A number in a model's equations, besides length and gravity."""
+
+    name: str  # of the model's field, in scenes, recordings and on the command line
+    unit: str
+    about: str
+    min: float  # inclusive
+    max: float  # inclusive; a larger value is a typing error
+    default: float = 0.0
+    max_over_w0: float = math.inf
+
+
+class ExtraColumn(NamedTuple):
+    """A column that tables of a model's readings have besides the common ones."""
+
+    head: str
+    wide_head: str  # where there is room
+    about: str
+    value: Callable[[Mapping[str, float]], float]  # of Reading.extra
 
 
 NO_EXTRA: Mapping[str, float] = {}
@@ -82,24 +110,46 @@ class ExactMotion(NamedTuple):
     accuracy: float = 0.0  # rad; largest error of theta in the first minute; 0 where the motion has a closed form
 
 
-class Model(ABC):
-    """Equations of motion theta'' = force(theta): a frozen dataclass of their parameters.
+class EnergyError(NamedTuple):
+    """What energy errors of a model are, and their names on screen."""
 
-    With friction the right side has a velocity as well, and in the plane a position is a complex number; the force
-    then has attributes for the methods that need more than its value.
+    conserved: bool = True  # the true motion keeps its energy, and errors are shares of the start's
+    symbol: str = "dE/E0"
+    name: str = "energy error"
+    about: str = "the energy error over the start's energy. The exact pendulum keeps its energy, so all of it is error"
+
+
+class Model(ABC):
+    """A frozen dataclass of the parameters of some equations of motion, and whatever differs between models.
+
+    Most models are theta'' = force(theta).  Where that is not all of the right side, `second_order` is False, and
+    methods integrate `rates`; methods made for one model take its `parts`, such as exact parts of the flow.
     """
 
     key: ClassVar[str]  # in scenes, recordings and on the command line
     equation: ClassVar[str]  # for people
+    parameters: ClassVar[tuple[Parameter, ...]] = ()  # the dataclass' fields after w0_squared, in order
     turns: ClassVar[bool]  # whether theta + 2 pi is the same place, and it can go over the top
-    variables: ClassVar[tuple[Variable, ...]] = ()  # what its readings have besides theta, omega and energy
+    second_order: ClassVar[bool] = True  # theta'' = force(theta), in whatever numbers
+    counted_parts: ClassVar[tuple[str, ...]] = ("force",)  # of `parts`, those that cost a force evaluation
     rigid: ClassVar[bool] = True  # whether the bob stays at one distance from the pivot
-    parameters: ClassVar[tuple[str, ...]] = ()  # fields of a scene, besides length and gravity
-    plain: ClassVar[bool] = True  # theta'' = force(theta): it can be compiled and mapped, and its energy is conserved
-    conserved: ClassVar[bool] = True  # whether the true motion keeps its energy
+    variables: ClassVar[tuple[Variable, ...]] = ()  # what its readings have besides theta, omega and energy
+    extra_columns: ClassVar[tuple[ExtraColumn, ...]] = ()
+    energy_error: ClassVar[EnergyError] = EnergyError()
+    frequency_symbol: ClassVar[str] = "w0"  # of `fastest`
+    has_separatrix: ClassVar[bool] = False  # where `level` is 0
+    caption: ClassVar[str] = ""  # of its phase portrait, if the motion does not follow curves of equal energy
+    without_force: ClassVar[str] = ""
+    """Why studies and maps, made for one angle and a force that keeps the energy, do not apply; "": they do."""
+    without_ring: ClassVar[str] = ""
+    """Why a ring of neighbouring starts does not apply; "": it does."""
 
     w0_squared: float  # the square of the frequency of small swings [s⁻²]
-    friction: float = 0.0  # s⁻¹
+
+    @property
+    def has_force(self) -> bool:
+        """Whether it is one angle and a force that keeps energy: studies, maps and modified energies apply."""
+        return not self.without_force
 
     @property
     def w0(self) -> float:
@@ -112,11 +162,11 @@ class Model(ABC):
         return self.w0
 
     def start(self, theta: float, omega: float) -> Phase:
-        """The phase that a run from theta [rad] and omega [rad/s] starts with."""
+        """Return the phase that a run from theta [rad] and omega [rad/s] starts with."""
         return theta, omega
 
-    def still(self, theta: float) -> Phase:
-        """The phase of least energy at an angle [rad]: at rest."""
+    def rest_phase(self, theta: float) -> Phase:
+        """Return the phase of least energy at an angle [rad]: at rest."""
         return theta, 0.0
 
     def observe(self, phase: Phase) -> Observation:
@@ -136,23 +186,52 @@ class Model(ABC):
         """Return the distance of the bob from the pivot, over the length at rest."""
         return 1.0
 
-    @abstractmethod
     def force(self, sin: Sine = math.sin) -> Force:
-        """The force.  Pass the `sin` of your numbers: NumPy's, cmath's, mpmath's."""
+        """Return the force.  Pass the `sin` of your numbers: NumPy's, cmath's, mpmath's."""
+        raise NotImplementedError(f"the model {self.key} is not described by a force")
 
-    @abstractmethod
     def slope(self, theta: float) -> float:
-        """d force / d theta [s⁻²]."""
+        """Return d force / d theta [s⁻²]."""
+        raise NotImplementedError(f"the model {self.key} is not described by a force")
+
+    def rates(self, sin: Sine = math.sin) -> Rates:
+        """Return the equations as a first-order system, for the same numbers."""
+        force = self.force(sin)
+
+        def second_order_rates(phase: Phase) -> Phase:
+            theta, omega = phase
+            return omega, force(theta)
+
+        return second_order_rates
+
+    def parts(self, sin: Sine = math.sin) -> Any:
+        """Return the parts of the equations that methods made for this model take; by default the model itself."""
+        return self
 
     @abstractmethod
     def energy(self, sin: Sine = math.sin) -> Energy:
-        """The energy, for the same numbers."""
+        """Return the energy, for the same numbers."""
 
     @abstractmethod
     def exact(self, theta: float, omega: float) -> ExactMotion:
-        """The exact motion from theta [rad] and omega [rad/s]."""
+        """Return the exact motion from theta [rad] and omega [rad/s]."""
 
     def reference(self, theta: float, omega: float) -> EnergyReference:
-        """What the energy errors of a run from theta [rad] and omega [rad/s] are relative to."""
+        """Return what the energy errors of a run from theta [rad] and omega [rad/s] are relative to."""
         start: float = self.energy()(self.start(theta, omega))
         return EnergyReference(start, start if start > 0 else 2 * self.w0_squared)
+
+    def exact_length(self, theta: float, omega: float, t: float) -> float:
+        """Return the exact distance of the bob from the pivot at a time [s], over the length at rest."""
+        return 1.0
+
+    def area_share(self, t: float) -> float:
+        """Return the share of an area in phase space that the true motion leaves after a time [s]."""
+        return 1.0
+
+    def level(self, theta: Any, omega: Any, cos: Sine = math.cos) -> Any:
+        """Return a number that is equal along curves of equal energy; 1 - E/E_separatrix if there is a separatrix.
+
+        Pass the `cos` of your numbers.  A model without curves has one level.
+        """
+        return 0 * (theta + omega)

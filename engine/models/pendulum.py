@@ -21,6 +21,7 @@ class Pendulum(Model):
     key: ClassVar[str] = "pendulum"
     equation: ClassVar[str] = "theta'' = -w0² sin theta"
     turns: ClassVar[bool] = True
+    has_separatrix: ClassVar[bool] = True
 
     def force(self, sin: Sine = math.sin) -> Force:
         return acceleration(self.w0_squared, sin)
@@ -33,6 +34,10 @@ class Pendulum(Model):
 
     def exact(self, theta: float, omega: float) -> ExactMotion:
         return exact_pendulum(self.w0_squared, theta, omega)
+
+    def level(self, theta: Any, omega: Any, cos: Sine = math.cos) -> Any:
+        """Return 1 - E/E_separatrix: 1 at rest, 0 on the separatrix, negative in rotation."""
+        return separatrix_margin(self.w0, theta, omega, cos)
 
 
 def acceleration(w0_squared: float, sin: Sine = math.sin) -> Force:

@@ -6,18 +6,43 @@ z'' = -k (1 - 1/|z|) z - i w0².  So every method that has only + and * on the p
 
 import cmath
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, ClassVar
+from operator import itemgetter
+from typing import Any, ClassVar, NamedTuple
 
-from engine.models.model import Energy, ExactMotion, Force, Model, Observation, Phase, Sine, State, Variable
+from engine.models.model import (
+    Energy,
+    ExactMotion,
+    ExtraColumn,
+    Force,
+    Model,
+    Observation,
+    Parameter,
+    Phase,
+    Sine,
+    State,
+    Variable,
+)
 from engine.models.reference import Reference
 
 STRETCH = 0.04  # of its length, beyond equilibrium: how far the spring is stretched at a start
 STEP = 0.1  # of the reference, times the spring's frequency
 ACCURACY = 1e-10  # rad
 STIFFEST = 320  # times the swing's frequency; a faster spring would take the reference more time than it saves
+
+
+class SpringParts(NamedTuple):
+    """What methods for two time scales take; methods for a force take the sum of fast and slow."""
+
+    fast: Callable[[Any], Any]  # the spring's force on a place
+    slow: Callable[[Any], Any]  # gravity's
+    solve: Callable[[Any, float], Any]  # (b, c) -> the solution of z = b + c fast(z)
+
+
+def _length(extra: Mapping[str, float]) -> float:
+    return abs(complex(extra["x"], extra["y"]))
 
 
 @dataclass(frozen=True)
@@ -30,16 +55,36 @@ class Spring(Model):
     key: ClassVar[str] = "spring"
     equation: ClassVar[str] = "z'' = -k (1 - 1/|z|) z - i w0², z = x + iy"
     turns: ClassVar[bool] = False  # its angle is known from its place only, so it is within ±pi
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("stiffness", "s⁻²", "spring constant over mass", 1.0, 1e18),
+    )
     variables: ClassVar[tuple[Variable, ...]] = (
         Variable("x", about="over the length at rest"),
         Variable("y", about="likewise, upwards from the pivot"),
-        Variable("vx", "s^-1"),
-        Variable("vy", "s^-1"),
-        Variable("spring_energy", about="over that at the start", is_state=False, relative=True),
+        Variable("vx", "s⁻¹"),
+        Variable("vy", "s⁻¹"),
+        Variable(
+            "spring_energy",
+            about="over that at the start",
+            label="spring energy (1 at start)",
+            is_state=False,
+            relative=True,
+        ),
     )
+    extra_columns: ClassVar[tuple[ExtraColumn, ...]] = (
+        ExtraColumn("length", "length", "the length of the rod over its length at rest", _length),
+        ExtraColumn(
+            "spring", "spring E", "the energy in the spring over that at the start", itemgetter("spring_energy")
+        ),
+    )
+    counted_parts: ClassVar[tuple[str, ...]] = ("fast", "solve")
     rigid: ClassVar[bool] = False
-    parameters: ClassVar[tuple[str, ...]] = ("stiffness",)
-    plain: ClassVar[bool] = False
+    frequency_symbol: ClassVar[str] = "omega_s"
+    caption: ClassVar[str] = "a projection: angle and angular velocity of the swing"
+    without_force: ClassVar[str] = "Maps and studies are for one angle; the bob on a spring has two coordinates."
+    without_ring: ClassVar[str] = (
+        "Angle and angular velocity of the swing: a projection of four dimensions, without curves or ring."
+    )
 
     @property
     def fastest(self) -> float:
@@ -52,7 +97,7 @@ class Spring(Model):
         down = -1j * cmath.exp(1j * theta)
         return length * down, 1j * length * omega * down
 
-    def still(self, theta: float) -> Phase:
+    def rest_phase(self, theta: float) -> Phase:
         """At rest, as long as without a weight."""
         return -1j * cmath.exp(1j * theta), 0j
 
@@ -70,33 +115,39 @@ class Spring(Model):
         return math.remainder(theta - exact, math.tau)
 
     def length(self, extra: Mapping[str, float]) -> float:
-        return abs(complex(extra["x"], extra["y"]))
+        return _length(extra)
+
+    def exact_length(self, theta: float, omega: float, t: float) -> float:
+        z, _ = self.place(theta, omega, t)
+        return float(abs(z))
 
     def _swing(self, phase: Phase) -> State:
         z, w = phase
         return State(cmath.phase(1j * z), (z.conjugate() * w).imag / (abs(z) ** 2 or 1.0))
 
     def force(self, sin: Sine = math.sin) -> Force:
-        """The force on a position; methods for two time scales also use its attributes.
-
-        `fast` is the spring's, `slow` gravity's, and `solve(b, c)` is the solution of z = b + c fast(z), which is
-        b (|b| + c k)/((1 + c k) |b|).
-        """
-        k, gravity = self.stiffness, -1j * self.w0_squared
+        fast, slow, _ = self.parts(sin)
 
         def spring_force(z: Any) -> Any:
-            return fast(z) + gravity
+            return fast(z) + slow(z)
+
+        return spring_force
+
+    def parts(self, sin: Sine = math.sin) -> SpringParts:
+        """Return the spring's force, gravity's, and z = b (|b| + c k)/((1 + c k) |b|)."""
+        k, gravity = self.stiffness, -1j * self.w0_squared
 
         def fast(z: Any) -> Any:
             return -k * (1 - 1 / abs(z)) * z
+
+        def slow(z: Any) -> Any:
+            return gravity
 
         def solve(b: Any, c: float) -> Any:
             length = abs(b)
             return b * ((length + c * k) / ((1 + c * k) * length))
 
-        force: Any = spring_force
-        force.fast, force.slow, force.solve = fast, lambda z: gravity, solve
-        return spring_force
+        return SpringParts(fast, slow, solve)
 
     def slope(self, theta: float) -> float:
         """Of the swing, as if the rod were rigid."""

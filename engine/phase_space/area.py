@@ -62,12 +62,12 @@ class Neighbourhood:
 
     def _carry(self, carried: _Carried, steps: int, h: float) -> None:
         method, model = carried.method, self._model
-        method = method.on(model)
-        phases = method.phases(model.force(), carried.phase, h)
-        rings = method.phases(model.force(np.sin), carried.ring, h)
+        phases = method.on(model)(carried.phase, h)
+        rings = method.on(model, np.sin)(carried.ring, h)
         try:
             for _ in range(steps):
-                determinant = jacobian(method, model, *carried.phase, h).determinant
+                theta, omega = carried.phase
+                determinant = jacobian(method, model, theta, omega, h).determinant
                 phase, ring = next(phases), next(rings)
                 log_area = carried.log_area + math.log(abs(determinant))
                 if not (all(map(math.isfinite, (*phase, log_area))) and np.isfinite(ring).all()):

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from engine.methods import Method
 from engine.models.model import Model, Phase
-from engine.models.pendulum import separatrix_margin
 from engine.run.loops import OVERFLOW
 from engine.run.tangent import Stretching
 
@@ -94,7 +93,7 @@ def kind_of(method: Method, model: Model, h: float, points: Points) -> OrbitKind
     for at in range(0, steps - _CHUNK + 1, _CHUNK):
         neighbours.carry((float(theta[at]), float(omega[at])), _CHUNK)
     # Regular orbits part in proportion to the steps, beside upright with a large factor: engine.stability.chaos.
-    slack = -math.log(max(abs(separatrix_margin(model.w0, *start)), 1e-16)) if model.turns else 0.0
+    slack = -math.log(max(abs(model.level(*start)), 1e-16)) if model.turns else 0.0
     parted = neighbours.log > least_lyapunov(steps) * max(steps, 1) + max(slack, 0.0)
     chaotic = method.symplectic and parted  # else neighbours part while they spiral outwards, too
     rotation = None if chaotic or not moves else rotation_number(theta, omega, model.w0, spins)

@@ -38,7 +38,7 @@ def compiled(method: Method, model: Model) -> Loops:
     from engine.methods.own import OwnMethod  # with all that measures one, which most runs do not need
 
     numba: Any = import_module("numba")
-    general = method.general and model.plain and not isinstance(method, OwnMethod)
+    general = method.general and model.has_force and not isinstance(method, OwnMethod)
     if not general or not _same_sine(numba):
         return plain(method, model)
     inner = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)  # never called by Python: compiles twice as fast

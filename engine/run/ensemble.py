@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from engine.methods import Method
 from engine.methods.splitting import COMPILABLE
-from engine.models.model import Energy, Force, Model, Phase
-from engine.models.pendulum import Pendulum
+from engine.models import Pendulum
+from engine.models.model import Energy, Force, Phase
 
 Floats = NDArray[np.float64]
 Arrays = tuple[Floats, Floats]  # theta [rad] and omega [rad/s], a swing each
@@ -94,12 +94,12 @@ _C3, _C5, _C7, _C9, _C11, _C13, _C15, _C17, _C19, _C21 = ((-1) ** k / math.facto
 
 
 @cache
-def plain(method: Method, model: Model) -> Watch:
+def plain(method: Method, model: Pendulum) -> Watch:
     """The loop in NumPy."""
     phases, force, energy = method.phases, model.force(np.sin), model.energy(np.sin)
 
     def watch(phase: Arrays, h: Floats, watched: Watched, n: int) -> Iterator[tuple[int, Arrays]]:
-        shares = isinstance(model, Pendulum) and method.force_evaluations == 1  # the force at the same angles
+        shares = method.force_evaluations == 1  # the force at the same angles as the energy
         pull, value = sharing(model.w0_squared) if shares else (force, energy)
         start, band, top, off, worst, width = watched
         size, bounded = np.empty_like(off), np.isfinite(band).any()
@@ -115,7 +115,7 @@ def plain(method: Method, model: Model) -> Watch:
 
 
 @cache
-def compiled(method: Method, model: Model) -> Watch:
+def compiled(method: Method, model: Pendulum) -> Watch:
     """The loop with the steps and what is watched compiled, which takes a second.  Raises ImportError without Numba."""
     numba: Any = import_module("numba")
     inner = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)  # never called by Python: compiles twice as fast

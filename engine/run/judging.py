@@ -43,7 +43,7 @@ class Judging:
     ) -> None:
         """`h` [s] is the lockstep's step, of which the method takes so many `parts`; `t` [s] is where it begins."""
         self._h, self._parts, self._reference, self._t, self._model = h / parts, parts, reference, t, model
-        if not (method.general and model.plain):  # neighbours cannot be followed: it is judged by its energy alone
+        if not (method.general and model.has_force):  # neighbours cannot be followed: it is judged by its energy alone
             judged = replace(method, symplectic=False, modified_energy=None)
         else:
             judged = method

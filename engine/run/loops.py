@@ -70,16 +70,16 @@ def _advance_all(phases: Iterator[Phase], energy: Energy, n: int, limit: float) 
 @cache
 def plain(method: Method, model: Model) -> Loops:
     """The loops in Python."""
-    phases, force, energy = method.on(model).phases, model.force(), model.energy()
+    phases, energy = method.on(model), model.energy()
 
     def travelling(phase: Phase, h: float, n: int) -> Phase:
-        return next(islice(phases(force, phase, h), n - 1, None))
+        return next(islice(phases(phase, h), n - 1, None))
 
     def advancing(phase: Phase, h: float, n: int, limit: float) -> Advanced:
         try:
-            return _advance_all(phases(force, phase, h), energy, n, limit)
+            return _advance_all(phases(phase, h), energy, n, limit)
         except OVERFLOW:
-            return advance(_to_overflow(phases(force, phase, h), energy), energy, phase, n, limit)
+            return advance(_to_overflow(phases(phase, h), energy), energy, phase, n, limit)
 
     return Loops(travelling, advancing)
 
@@ -116,27 +116,35 @@ def advance_with_errors(
     return Errors(n, phase, energy, error, low, high)
 
 
+class _Counted:
+    """A function that counts its calls."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self._function = function
+        self.calls = 0
+
+    def __call__(self, *arguments: Any) -> Any:
+        self.calls += 1
+        return self._function(*arguments)
+
+
 def count_evaluations(method: Method, model: Model, phase: Phase, h: float, n: int) -> int:
-    """How often a run of n >= 1 steps evaluates the force, by taking them; `Method.evaluations` where that is fixed.
+    """Count force evaluations of an n-step run by running it, n >= 1; `Method.evaluations` where that is fixed.
 
-    If the force has a fast part, the evaluations of that part count, and the times it is solved for.
+    Of a method that takes the parts of its model, the parts in `Model.counted_parts` count.
     """
-    count = 0
-
-    def counting(function: Callable[..., Any]) -> Callable[..., Any]:
-        def counted(*arguments: Any) -> Any:
-            nonlocal count
-            count += 1
-            return function(*arguments)
-
-        return counted
-
-    force = model.force()
-    counted = counting(force)
-    for name, value in vars(force).items():
-        setattr(counted, name, counting(value) if name in ("fast", "solve") else value)
-    next(islice(method.on(model).phases(counted, phase, h), n - 1, None))
-    return count
+    if method.takes_parts:
+        parts = model.parts()
+        counted = {name: _Counted(getattr(parts, name)) for name in model.counted_parts}
+        phases = method.phases(parts._replace(**counted), phase, h)
+    elif not model.second_order and method.on_rates is not None:
+        counted = {"rates": _Counted(model.rates())}
+        phases = method.on_rates(counted["rates"], phase, h)
+    else:
+        counted = {"force": _Counted(model.force())}
+        phases = method.phases(counted["force"], phase, h)
+    next(islice(phases, n - 1, None))
+    return sum(each.calls for each in counted.values())
 
 
 OVERFLOW = (ValueError, ArithmeticError)

@@ -142,7 +142,7 @@ class RunObserver:
     def _modified_energies(self, sample: Sample, stepping: Stepping) -> list[float]:
         energies = [
             method.modified_energy(self.scene.equations, (reading.theta, reading.omega), h)
-            if method.modified_energy and self.scene.equations.plain
+            if method.modified_energy and self.scene.equations.has_force
             else math.nan
             for method, reading, h in zip(self.scene.cast, sample.readings, stepping.own, strict=True)
         ]
@@ -178,6 +178,6 @@ class RunObserver:
         model = self.scene.equations
         phase = model.phase_of(reading.theta, reading.omega, reading.extra)
         try:
-            return list(islice(method.on(model).phases(model.force(), phase, h), steps))
+            return list(islice(method.on(model)(phase, h), steps))
         except OVERFLOW:
             return []

@@ -9,18 +9,20 @@ from itertools import islice
 from typing import Any, NamedTuple
 
 from engine.methods import Method
-from engine.models.linear import LinearOscillator
-from engine.models.model import Force, Model, Phase
+from engine.methods.method import BoundPhases
+from engine.models import LinearOscillator
+from engine.models.model import Model, Phase
 
 _TINY = 1e-100  # a complex step has no subtraction, so it may be as small as one likes
 
 
-def tangent_map(
-    method: Method, force: Force, phase: Phase, along: Phase, h: Any, steps: int = 1
-) -> tuple[Phase, Phase]:
-    """The phase after some steps, and what a small displacement `along` has become; `force` takes complexes."""
+def tangent_map(phases: BoundPhases, phase: Phase, along: Phase, h: Any, steps: int = 1) -> tuple[Phase, Phase]:
+    """Return the phase after some steps, and what a small displacement `along` has become.
+
+    `phases` takes complex numbers.
+    """
     displaced = phase[0] + 1j * (_TINY * along[0]), phase[1] + 1j * (_TINY * along[1])
-    theta, omega = next(islice(method.phases(force, displaced, h), steps - 1, None))
+    theta, omega = next(islice(phases(displaced, h), steps - 1, None))
     return (theta.real, omega.real), (theta.imag / _TINY, omega.imag / _TINY)
 
 
@@ -40,10 +42,9 @@ class Jacobian(NamedTuple):
 
 def jacobian(method: Method, model: Model, theta: float, omega: float, h: float) -> Jacobian:
     """The step's Jacobian at (theta, omega), exact to rounding."""
-    force = model.force(cmath.sin)
-    method = method.on(model)
-    _, by_theta = tangent_map(method, force, (theta, omega), (1.0, 0.0), h)
-    _, by_omega = tangent_map(method, force, (theta, omega), (0.0, 1.0), h)
+    phases = method.on(model, cmath.sin)
+    _, by_theta = tangent_map(phases, (theta, omega), (1.0, 0.0), h)
+    _, by_omega = tangent_map(phases, (theta, omega), (0.0, 1.0), h)
     return Jacobian(by_theta[0], by_omega[0], by_theta[1], by_omega[1])
 
 
@@ -56,7 +57,8 @@ class Stretching:
     """The logarithm of how much longer a displacement has become since the start of a run."""
 
     def __init__(self, method: Method, model: Model, h: float) -> None:
-        self._method, self._force, self._h = method, model.force(cmath.sin), h
+        self._phases = method.on(model, cmath.sin)
+        self._h = h
         self._w0 = model.w0
         self._along: Phase = (1.0, 0.0)
         self.log = 0.0
@@ -64,7 +66,7 @@ class Stretching:
 
     def carry(self, phase: Phase, steps: int) -> None:
         """Carry it forward, from this phase, by some steps; few enough that its length stays a double."""
-        _, (theta, omega) = tangent_map(self._method, self._force, phase, self._along, self._h, steps)
+        _, (theta, omega) = tangent_map(self._phases, phase, self._along, self._h, steps)
         length = math.hypot(theta, omega / self._w0)
         if 0 < length < math.inf:
             self._along = theta / length, omega / length

@@ -6,7 +6,6 @@ from engine.scenes.listed import LEFT_OUT as LEFT_OUT
 from engine.scenes.listed import SCENES as SCENES
 from engine.scenes.scene import LIMITS as LIMITS
 from engine.scenes.scene import MOST_METHODS as MOST_METHODS
-from engine.scenes.scene import PARAMETERS as PARAMETERS
 from engine.scenes.scene import UNITS as UNITS
 from engine.scenes.scene import Z_LIMITS as Z_LIMITS
 from engine.scenes.scene import Scene as Scene

@@ -141,7 +141,7 @@ _STRUCTURE = (
         "damped",
         theta=2.0,
         model="damped",
-        friction=0.05,
+        parameters={"friction": 0.05},
         h=0.025,
         cast=_cast("explicit_euler", "lagged_verlet", "conformal_verlet", "rk4"),
         speed=2.0,
@@ -161,7 +161,7 @@ _STIFFNESS = (
     Scene(
         "stiff-slow",
         model="spring",
-        stiffness=_STIFF,
+        parameters={"stiffness": _STIFF},
         h=0.02,
         cast=_SPRING,
         speed=0.5,
@@ -170,7 +170,7 @@ _STIFFNESS = (
     Scene(
         "stiff-limit",
         model="spring",
-        stiffness=_STIFF,
+        parameters={"stiffness": _STIFF},
         h=0.05,
         cast=_SPRING,
         speed=0.25,
@@ -179,7 +179,7 @@ _STIFFNESS = (
     Scene(
         "stiff-resonance",
         model="spring",
-        stiffness=_STIFF,
+        parameters={"stiffness": _STIFF},
         h=0.125,
         cast=_SPRING,
         speed=0.5,

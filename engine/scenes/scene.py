@@ -1,12 +1,13 @@
 """Scene: everything that determines a run."""
 
 import math
-from dataclasses import dataclass, field, fields, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Any
 
 from engine.methods import USUAL_CAST, Cast
-from engine.models import MODELS
+from engine.models import MODELS, PARAMETERS
 from engine.models.model import ExactMotion, Model
 
 LIMITS = {  # inclusive; a value beyond them is a typing error
@@ -15,19 +16,13 @@ LIMITS = {  # inclusive; a value beyond them is a typing error
     "length": (1e-6, 1e6),
     "gravity": (1e-6, 1e6),
 }
-PARAMETERS = {  # likewise, of models that have them; 0 in the scenes of other models
-    "friction": (0.0, 100.0),
-    "stiffness": (1.0, 1e18),
-}
-MOST_DAMPED = 100  # friction over w0: beyond, the pendulum creeps, and its reference takes too many steps
 UNITS = {
     "theta": "rad",
     "omega": "rad/s",
     "length": "m",
     "gravity": "m/s²",
     "h": "s",
-    "friction": "s⁻¹",
-    "stiffness": "s⁻²",
+    **{name: parameter.unit for name, parameter in PARAMETERS.items()},
 }
 MOST_METHODS = 6  # of a cast: more cannot be told apart on a screen
 Z_LIMITS = (1e-9, 1e3)  # z = h·w0; the methods' own limits lie at 2 and 2√2
@@ -46,6 +41,12 @@ def check_h(h: float, w0: float) -> None:
         )
 
 
+def _check_range(name: str, value: float, low: float, high: float) -> None:
+    if not low <= value <= high:  # also refuses nan
+        unit = UNITS[name]
+        raise SceneError(f"{name} = {value:g} {unit} is out of range; use {low:g} to {high:g} {unit}.")
+
+
 @dataclass(frozen=True, slots=True)
 class Scene:
     """Everything that determines a run, with a name and what to watch."""
@@ -59,21 +60,15 @@ class Scene:
     watch: str = ""
     model: str = "pendulum"  # a key of MODELS
     cast: Cast = USUAL_CAST  # the methods, in order
-    friction: float = 0.0  # gamma [s⁻¹], of the model damped
-    stiffness: float = 0.0  # spring constant over mass [s⁻²], of the model spring
+    parameters: Mapping[str, float] = field(default_factory=dict, hash=False)  # the model's own, such as friction
     speed: float = field(default=1.0, compare=False)  # times real time, at which a lab starts: it changes no number
 
     def __post_init__(self) -> None:
-        parameters = self.parameters
-        for name in PARAMETERS:
-            if name not in parameters and getattr(self, name):
-                raise SceneError(f"the model {self.model} has no {name}; leave it out, or use a model that has.")
-        for name, (low, high) in (LIMITS | {name: PARAMETERS[name] for name in parameters}).items():
-            value, unit = getattr(self, name), UNITS[name]
-            if name == "friction":
-                high = min(high, MOST_DAMPED * self.w0)
-            if not low <= value <= high:  # also refuses nan
-                raise SceneError(f"{name} = {value:g} {unit} is out of range; use {low:g} to {high:g} {unit}.")
+        object.__setattr__(self, "parameters", self._complete(self.parameters))
+        for name, (low, high) in LIMITS.items():
+            _check_range(name, getattr(self, name), low, high)
+        for each in MODELS[self.model].parameters if self.model in MODELS else ():
+            _check_range(each.name, self.parameters[each.name], each.min, min(each.max, each.max_over_w0 * self.w0))
         if self.h <= 0:
             raise SceneError(
                 f"h = {self.h:g} s is not a usable step; use a positive one, for example {0.15 / self.w0:.1g}."
@@ -87,15 +82,26 @@ class Scene:
                     f"{method.label} is not for the model {self.model}; it is for {' and '.join(method.models)}."
                 )
 
+    def _complete(self, given: Mapping[str, float]) -> dict[str, float]:
+        """Return the model's parameters in its order, with their defaults; of an unknown model those given."""
+        if self.model not in MODELS:
+            return dict(given)
+        own = {each.name: each.default for each in MODELS[self.model].parameters}
+        for name, value in given.items():
+            if name not in own and value:
+                raise SceneError(f"the model {self.model} has no {name}; leave it out, or use a model that has.")
+        return {name: given.get(name, default) for name, default in own.items()}
+
     @property
     def equations(self) -> Model:
         """The model with this scene's parameters."""
-        return _equations(self.model, self.w0_squared, *(getattr(self, name) for name in self.parameters))
+        return _equations(self.model, self.w0_squared, *self.parameters.values())
 
     @property
-    def parameters(self) -> tuple[str, ...]:
-        """The names of the model's own parameters, such as friction; none for an unknown model."""
-        return MODELS[self.model].parameters if self.model in MODELS else ()
+    def numbers(self) -> dict[str, float]:
+        """The numbers that determine the run, the model's parameters last."""
+        common = {"theta": self.theta, "omega": self.omega, "length": self.length, "gravity": self.gravity, "h": self.h}
+        return common | dict(self.parameters)
 
     def exact(self) -> ExactMotion:
         """The exact motion from this scene's start."""
@@ -113,23 +119,45 @@ class Scene:
 
     @property
     def z(self) -> float:
-        """h·w0, the only number that linear stability depends on; of a spring h times its frequency."""
+        """The step in units of the highest frequency, h·w0 as a rule: what linear stability depends on."""
         return self.h * self.equations.fastest
 
     @property
     def general(self) -> bool:
         """Whether model and methods take any force and numbers, as maps, areas and error-cost charts need."""
-        return self.equations.plain and all(method.general for method in self.cast)
+        return not self.why_not_mapped
+
+    @property
+    def why_not_mapped(self) -> str:
+        """Why studies and maps do not apply to this scene, as a sentence; "" if they do."""
+        if why := self.equations.without_force:
+            return why
+        special = [method.label for method in self.cast if not method.general]
+        return f"Maps and studies are for methods that take any force, not for {', '.join(special)}." if special else ""
+
+    @property
+    def why_no_ring(self) -> str:
+        """Why the cast cannot carry a ring of neighbouring starts, as a sentence; "" if it can."""
+        if why := self.equations.without_ring:
+            return why
+        special = [method.label for method in self.cast if not method.any_numbers]
+        return f"No ring with {', '.join(special)} in the cast." if special else ""
 
     def fields(self) -> dict[str, Any]:
         """All fields that determine the run, with its name, as JSON shows them."""
-        others = {"cast", "speed"} | set(PARAMETERS) - set(self.parameters)
-        named = {each.name: getattr(self, each.name) for each in fields(self) if each.name not in others}
+        named = {"name": self.name, **self.numbers, "watch": self.watch, "model": self.model}
         return named | {"methods": [method.key for method in self.cast]}
 
     def altered(self, **changes: Any) -> "Scene":
-        """This scene with other numbers; it keeps its name only if nothing changes."""
-        other = replace(self, **changes)
+        """This scene with other numbers, parameters by name; it keeps its name only if nothing changes."""
+        fields = {name: value for name, value in changes.items() if name in self.__slots__}
+        others = {name: value for name, value in changes.items() if name not in fields}
+        if "model" in fields:
+            own = {each.name for each in MODELS[fields["model"]].parameters}
+            fields["parameters"] = {name: value for name, value in self.parameters.items() if name in own}
+        if others:
+            fields["parameters"] = {**fields.get("parameters", self.parameters), **others}
+        other = replace(self, **fields)
         return self if other == self else replace(other, name="custom", watch="")
 
     def with_cast(self, cast: Cast) -> "Scene":
@@ -139,4 +167,4 @@ class Scene:
 
 @cache
 def _equations(model: str, w0_squared: float, *parameters: float) -> Model:
-    return MODELS[model](w0_squared, *parameters)
+    return MODELS[model](w0_squared, *parameters)  # type: ignore[call-arg]

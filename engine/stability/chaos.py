@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from engine.methods import Method
-from engine.models.pendulum import Pendulum
+from engine.models import Pendulum
 from engine.run.tangent import tangent_map
 
 GREENE_K = 0.971635
@@ -25,10 +25,10 @@ def parting(method: Method, theta: Any, omega: Any, z: Any, steps: int) -> Any:
     regular orbits it grows in proportion to the steps, on chaotic ones exponentially.  Divided by the steps the
     logarithm tends to the largest Lyapunov exponent; for K >= 10 that is ln(K/2): Chirikov, Phys. Rep. 52 (1979) 263.
     """
-    force = Pendulum(1.0).force(np.sin)
+    phases = method.on(Pendulum(1.0), np.sin)
     along, across, total = 1.0 + 0.0 * theta, 0.0 * theta, 0.0 * theta
     for _ in range(steps):
-        (theta, omega), (along, across) = tangent_map(method, force, (theta, omega), (along, across), z)
+        (theta, omega), (along, across) = tangent_map(phases, (theta, omega), (along, across), z)
         growth = np.hypot(along, across)
         along, across, total = along / growth, across / growth, total + np.log(growth)
     return total

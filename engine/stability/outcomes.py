@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engine.methods import Method
-from engine.models.pendulum import Pendulum
+from engine.models import Pendulum
 from engine.run.ensemble import Floats as Floats
 from engine.run.ensemble import Watched, compiled, plain
 from engine.stability.chaos import is_chaotic

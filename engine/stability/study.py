@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from engine.methods import Method
-from engine.models.pendulum import energy
 from engine.scenes import Scene
 from engine.stability.grid import Grid, default_grid
 from engine.stability.outcomes import Cells, Failure, first_failure, is_lost
@@ -43,7 +42,7 @@ def amplitude(scene: Scene) -> float | None:
     """How far the scene's pendulum swings [rad]; None where it spins or rests."""
     if scene.omega == 0 and 0 < abs(scene.theta) < math.pi:
         return abs(scene.theta)
-    share = energy(scene.w0_squared, scene.theta, scene.omega) / (2 * scene.w0_squared)
+    share = scene.equations.energy()((scene.theta, scene.omega)) / (2 * scene.w0_squared)
     angle = 2 * math.asin(math.sqrt(share)) if share < 1 else math.pi
     return angle if 0 < angle < math.pi else None
 

@@ -11,11 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.methods import METHODS
-from engine.models import MODELS
+from engine.models import MODELS, PARAMETERS
 from engine.run.lockstep import Reading, Sample
 from engine.run.observer import Milestone
 from engine.run.verdict import Verdict
-from engine.scenes import LIMITS, PARAMETERS
+from engine.scenes import LIMITS
 from recordings.errors import TEXT_LIMIT, RecordingError, printable
 from recordings.events import Event, Seal, method_named, noticed, scene_named, unknown_in
 from recordings.fields import EXTRA_NAMES, SEAL_SCHEMA, VALUES, event_schema, sample_schema, values_of, without_extremes
@@ -74,7 +74,7 @@ methods = st.sampled_from(METHODS) | keys.map(method_named)
 
 def scenes_of(model):
     suited = st.sampled_from([each for each in METHODS if model not in MODELS or model in each.models])
-    parameters = MODELS[model].parameters if model in MODELS else PARAMETERS
+    parameters = [each.name for each in MODELS[model].parameters] if model in MODELS else PARAMETERS
     return st.builds(
         scene_named,
         name=texts,

@@ -3,7 +3,8 @@
 import argparse
 from pathlib import Path
 
-from engine.scenes import DEFAULT_SCENE, LIMITS, PARAMETERS, SCENES, Scene
+from engine.models import PARAMETERS
+from engine.scenes import DEFAULT_SCENE, LIMITS, SCENES, Scene
 from tui.cli.cast import add_cast_options, cast_of
 from tui.cli.errors import UserError
 from tui.cli.options import Suggestions, angle, did_you_mean, number, start_angle
@@ -21,8 +22,7 @@ def add_scene_options(parser: argparse.ArgumentParser) -> None:
         ("omega", "RAD_S", angle, "start angular velocity in rad/s, or in degrees per second (30deg)"),
         ("length", "M", number, "length in m"),
         ("gravity", "M_S2", number, "gravity in m/s²"),
-        ("friction", "PER_S", number, "friction in 1/s, of the scene damped"),
-        ("stiffness", "PER_S2", number, "spring constant over mass in 1/s², of the stiff scenes"),
+        *((each.name, "NUMBER", number, f"{each.about} in {each.unit}") for each in PARAMETERS.values()),
         ("h", "S", number, "step size in s"),
     ):
         group.add_argument(f"--{name}", metavar=metavar, type=read, help=meaning)
@@ -58,8 +58,6 @@ def scene_named(name: str) -> Scene:
 def general_scene_of(options: argparse.Namespace) -> Scene:
     """The scene that the options describe, if it can be mapped and its errors charted.  Raises UserError as well."""
     scene = scene_of(options)
-    if not scene.general:
-        others = [method.label for method in scene.cast if not method.general]
-        why = f"not for {', '.join(others)}" if others else f"not for the model {scene.model}"
-        raise UserError(f"this is for methods that take any force, on a pendulum without friction, {why}.")
+    if why := scene.why_not_mapped:
+        raise UserError(why)
     return scene

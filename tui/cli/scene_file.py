@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from engine.methods import METHODS
-from engine.models import MODELS
+from engine.models import MODELS, PARAMETERS
 from engine.scenes import DEFAULT_SCENE, SCENES, Scene, SceneError
 from recordings.errors import printable
 from tui.cli.cast import find
@@ -16,7 +16,7 @@ from tui.cli.errors import Exit, UserError
 from tui.cli.options import angle, did_you_mean
 
 TEXTS = ("name", "watch", "model")
-FIELDS = (*(field.name for field in fields(Scene) if field.name != "cast"), "methods")
+FIELDS = (*(field.name for field in fields(Scene) if field.name not in ("cast", "parameters")), *PARAMETERS, "methods")
 MAX_BYTES = 100_000
 
 
@@ -41,8 +41,9 @@ def read_scene(path: Path) -> Scene:
             raise UserError(f"{path}, line {_line(text, name)}: {error}", Exit.INPUT_UNREADABLE) from None
     model = values.get("model", "pendulum")
     values.setdefault("cast", next(scene.cast for scene in SCENES.values() if scene.model == model))
+    parameters = {name: values.pop(name) for name in PARAMETERS if name in values}
     try:
-        return Scene(**values)
+        return Scene(parameters=parameters, **values)
     except SceneError as error:
         named = next((name for name in given if re.search(rf"\b{re.escape(name)}\b", str(error))), None)
         where = "" if named is None else f", line {_line(text, named)}"

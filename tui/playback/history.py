@@ -31,7 +31,7 @@ class ErrorHistory:
     def __init__(self, observer: RunObserver, capacity: int = 2048) -> None:
         exact, self._reference, self._methods = observer.exact, observer.reference, len(observer.scene.cast)
         model = observer.scene.equations
-        self._energy = [] if model.conserved else ["energy"]
+        self._energy = [] if model.energy_error.conserved else ["energy"]
         self._extra = [each.name for each in model.variables if not each.is_state]
         self._theta_error = model.theta_error
         self._repeats = (exact.period or 0.0) / (2 if exact.regime == "libration" else 1)

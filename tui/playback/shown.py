@@ -16,8 +16,8 @@ WINDOWS: tuple[float | None, ...] = (None, 20.0, 60.0, 300.0, 1800.0, 5.0)
 def quantities(scene: Scene) -> tuple[Quantity, ...]:
     """Return what a chart can show of a scene: only some models and methods have a modified energy."""
     model = scene.equations
-    missing = {"shadow_error"} - {"shadow_error" for method in scene.cast if method.modified_energy and model.plain}
-    common = (quantity for quantity in QUANTITIES if quantity not in missing)
+    has_shadow = model.has_force and any(method.modified_energy for method in scene.cast)
+    common = (quantity for quantity in QUANTITIES if has_shadow or quantity != "shadow_error")
     return *common, *(each.name for each in model.variables if not each.is_state)
 
 

@@ -6,6 +6,6 @@ From these, `insight` picks the one sentence of the moment, `events` makes the l
 what an undo took back, `describe` puts the whole state into sentences, and `plain_text` prints it all where there is
 no screen.  `cards` describes methods and scenes, `command_line` gives the command that shows a moment again, and
 `recovered` reports recordings that were left unfinished.  `accuracy` names the cheapest method at each
-accuracy and the growth of errors; `scope` says why a scene has no map, ring or chart of cost.  `tour` has the steps
+accuracy and the growth of errors; `tour` has the steps
 of the tour.
 """

@@ -107,7 +107,7 @@ def scene_card(scene: Scene, now: str = "") -> str:
             "often said": OFTEN_SAID.get(scene.name),
             "start": f"theta {math.degrees(scene.theta):.5g}°, omega {scene.omega:.5g} rad/s",
             "pendulum": f"length {scene.length:.5g} m, gravity {scene.gravity:.5g} m/s², w0 = {scene.w0:.4g} 1/s",
-            **{name: f"{getattr(scene, name):.5g} {UNITS[name]}" for name in scene.parameters},
+            **{name: f"{value:.5g} {UNITS[name]}" for name, value in scene.parameters.items()},
             "step": f"h = {scene.h:.5g} s, {z_name(scene.model)} = {scene.z:.4g}",
             "now": now,
             "motion": motion_text(scene, exact),

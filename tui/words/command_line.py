@@ -3,7 +3,7 @@
 import shlex
 
 from engine.methods.own import OwnMethod
-from engine.scenes import LIMITS, SCENES, Scene
+from engine.scenes import SCENES, Scene
 from tui.playback.live import Live
 from tui.playback.replay import Replay
 from tui.playback.source import Source
@@ -57,8 +57,8 @@ def scene_arguments(scene: Scene) -> list[str]:
     """The options that reproduce a scene to the last bit, a user's own methods from their files."""
     base = _listed(scene)
     arguments = ["--scene", base.name]
-    for name in (*LIMITS, "h", *scene.parameters):
-        if (value := getattr(scene, name)) != getattr(base, name):
+    for name, value in scene.numbers.items():
+        if value != base.numbers[name]:
             arguments += [f"--{name}", repr(value)]
     if scene.cast != base.cast:
         arguments += ["--methods", ",".join(method.key for method in scene.cast)]

@@ -43,7 +43,7 @@ def method_sentence(source: Source, index: int) -> str:
     """Whether a method failed or went over the top; if not, its verdict or its error so far."""
     method, reading = source.scene.cast[index], source.sample.readings[index]
     if milestone := endings(source).get(index):
-        said = ending(milestone, source.scene.equations.conserved)
+        said = ending(milestone, source.scene.equations.energy_error.conserved)
         return f"{said} {astray(method.label, source.judgements[index], reading.energy_error)}".strip()
     if source.judgements[index].verdict == "bounded":
         return f"{method.label} stays bounded: its largest energy error is {reading.max_energy_error:.2g}."

@@ -43,7 +43,7 @@ def event_lines(source: Source) -> list[EventLine]:
     Pauses and speeds are not listed: they change no number.
     """
     run = source.sample.run
-    conserved = source.scene.equations.conserved
+    conserved = source.scene.equations.energy_error.conserved
     milestones = [
         EventLine(run, m.step, m.t, milestone_text(m, conserved), "milestone", m.method) for m in source.milestones
     ]

@@ -130,7 +130,7 @@ def leaving(source: Source, index: int) -> str:
     """The sentence on a method that is not bounded; "" if that is not known."""
     method, judgement = source.scene.cast[index], source.judgements[index]
     name, error = short_name(method), source.sample.readings[index].energy_error
-    conserved = source.scene.equations.conserved
+    conserved = source.scene.equations.energy_error.conserved
     if text := astray(name, judgement, error):
         return text
     if conserved and judgement.verdict == "loses" and -error > MOSTLY:

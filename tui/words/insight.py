@@ -67,7 +67,7 @@ def _sentence(source: Source, milestone: Milestone, hidden: Collection[str]) -> 
     if milestone.other:
         return passing(milestone, milestone.other)
     if milestone.kind != "verdict":
-        return ending(milestone, source.scene.equations.conserved)
+        return ending(milestone, source.scene.equations.energy_error.conserved)
     index = source.scene.cast.index(milestone.method)
     return staying(source, hidden) if milestone.verdict == "bounded" else leaving(source, index)
 
@@ -77,7 +77,7 @@ def lasting(source: Source, hidden: Collection[str] = ()) -> list[str]:
     shown = [index for index, method in enumerate(source.scene.cast) if method.key not in hidden]
     ended = {index: each for index, each in endings(source).items() if index in shown}
     ends = sorted(ended.values(), key=lambda each: (each.kind != "failed", each.step))
-    over = [ending(each, source.scene.equations.conserved) for each in ends]
+    over = [ending(each, source.scene.equations.energy_error.conserved) for each in ends]
     cast, judgements, readings = source.scene.cast, source.judgements, source.sample.readings
     moves = [
         astray(short_name(cast[at]), judgements[at], readings[at].energy_error) if at in ended else leaving(source, at)

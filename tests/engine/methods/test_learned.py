@@ -17,7 +17,8 @@ from engine.methods.learned import (
     learned_hamiltonian,
 )
 from engine.methods.learned_numbers import FEATURES, FIELD, HAMILTONIAN
-from engine.methods.runge_kutta import Field, rk4_on
+from engine.methods.runge_kutta import rk4_on_rates
+from engine.models.model import Phase
 from engine.models.pendulum import Pendulum
 from engine.run.loops import plain
 from tests.bench import learn
@@ -47,7 +48,7 @@ def test_both_fields_are_about_as_far_from_the_true_one() -> None:
     states, rates = learn.measurements(np.random.default_rng(7), 500, 0.0)
     w0 = math.sqrt(W0_SQUARED)
     for field in (learned_field(), learned_hamiltonian()):
-        found = np.array([field(theta, w0 * omega) for theta, omega in states]) / (w0, W0_SQUARED)
+        found = np.array([field((theta, w0 * omega)) for theta, omega in states]) / (w0, W0_SQUARED)
         error = math.sqrt(((found - rates) ** 2).mean() / (rates**2).mean())
         assert 0.005 < error < 0.008  # .0064 and .0062, of measurements with 2 % noise
 
@@ -80,7 +81,7 @@ def test_the_learned_energy_is_conserved_but_for_rk4s_own_loss(start: float) -> 
 
 @given(theta=st.floats(-2.4, 2.4), omega=st.floats(-5, 5))
 def test_the_learned_hamiltonians_field_is_made_of_its_slopes(theta: float, omega: float) -> None:
-    drift, kick = learned_hamiltonian()(theta, omega)
+    drift, kick = learned_hamiltonian()((theta, omega))
     d = 1e-5
     assert drift == pytest.approx(
         (learned_energy(theta, omega + d) - learned_energy(theta, omega - d)) / 2 / d, abs=1e-5
@@ -107,14 +108,11 @@ def test_it_has_the_claimed_order_on_the_learned_field_and_never_asks_for_the_fo
 def test_rk4_on_a_field_asks_it_four_times_a_step_and_on_the_pendulums_is_rk4() -> None:
     count, force = 0, PENDULUM.force()
 
-    def field(asked: object) -> Field:
-        def rate(theta: float, omega: float) -> tuple[float, float]:
-            nonlocal count
-            count += 1
-            return omega, force(theta)
+    def rates(phase: Phase) -> Phase:
+        nonlocal count
+        count += 1
+        return phase[1], force(phase[0])
 
-        return rate
-
-    phase = next(islice(rk4_on(field)(force, (1.0, 0.5), 0.05), 9, None))
+    phase = next(islice(rk4_on_rates(rates, (1.0, 0.5), 0.05), 9, None))
     assert count == 10 * RK4_LEARNED_FIELD.force_evaluations
     assert phase == pytest.approx(plain(RK4, PENDULUM).travel((1.0, 0.5), 0.05, 10), abs=1e-14)

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.methods import VELOCITY_VERLET, Method
-from engine.methods.precision import VERLET_COMPENSATED, VERLET_FLOAT32, Kept, Single
+from engine.methods.precision import VERLET_COMPENSATED, VERLET_FLOAT32, Compensated, Float32
 from engine.models.model import Phase
 from engine.models.pendulum import Pendulum
 from engine.run.loops import count_evaluations, plain
@@ -24,25 +24,25 @@ ordinary = st.floats(-1e15, 1e15).filter(lambda x: x == 0 or abs(x) > 1e-15)
 @given(a=ordinary, b=ordinary)
 def test_a_number_of_32_bits_is_numpys_float32(a: float, b: float) -> None:
     x, y = np.float32(a), np.float32(b)
-    assert Single(a) == x
-    assert Single(a) + Single(b) == x + y
-    assert Single(a) * Single(b) == x * y
-    assert isinstance(a * Single(b), Single)
+    assert Float32(a) == x
+    assert Float32(a) + Float32(b) == x + y
+    assert Float32(a) * Float32(b) == x * y
+    assert isinstance(a * Float32(b), Float32)
 
 
 def test_a_number_too_large_for_32_bits_raises_overflow_error() -> None:
     with pytest.raises(OverflowError):
-        Single(1e39)
+        Float32(1e39)
 
 
 @given(increments=st.lists(st.floats(-1, 1), max_size=50))
 def test_a_sum_is_rounded_as_its_increments_are_not_as_itself(increments: list[float]) -> None:
-    total, exact = Kept(1e6), Fraction(10**6)
+    total, exact = Compensated(1e6), Fraction(10**6)
     for increment in increments:
         total, exact = total + increment, exact + Fraction(increment)
     # What an addition rounds off is half a unit in the last place of 1, or of 1e6, kept: no more than 1e-10 itself.
-    assert abs(Fraction(float(total)) + Fraction(total.lost) - exact) <= len(increments) * 2.0**-53
-    assert abs(total.lost) <= math.ulp(1e6) / 2
+    assert abs(Fraction(float(total)) + Fraction(total.compensation) - exact) <= len(increments) * 2.0**-53
+    assert abs(total.compensation) <= math.ulp(1e6) / 2
 
 
 @pytest.mark.parametrize("method", [VERLET_FLOAT32, VERLET_COMPENSATED], ids=lambda m: m.key)
@@ -59,7 +59,7 @@ def test_however_a_run_is_cut_the_bits_are_the_same(method: Method, cuts: list[i
 
 def test_every_phase_of_32_bits_is_a_double_that_32_bits_hold() -> None:
     for phase in islice(VERLET_FLOAT32.phases(FORCE, (2.0, 0.3), 0.05), 100):
-        assert all(type(x) is float and Single(x) == x for x in phase)
+        assert all(type(x) is float and Float32(x) == x for x in phase)
 
 
 @pytest.mark.parametrize(("method", "rounding"), [(VERLET_FLOAT32, 1e-4), (VERLET_COMPENSATED, 1e-12)])

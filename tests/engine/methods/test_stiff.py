@@ -43,7 +43,7 @@ def test_respa_with_one_inner_step_is_verlet_but_for_rounding() -> None:
     one = respa(velocity_verlet, 1)
     phase = START
     for _ in range(500):
-        phase = next(one(SPRING.force(), phase, 0.01))
+        phase = next(one(SPRING.parts(), phase, 0.01))
     expected = plain(VELOCITY_VERLET, SPRING).travel(START, 0.01, 500)
     assert phase == pytest.approx(expected, abs=1e-11)
     assert phase != expected
@@ -78,7 +78,7 @@ def determinant(method: Method) -> float:
     z, w = 0.8 - 0.6j, 1.0 + 0.5j
     columns = []
     for dz, dw in ((1, 0), (1j, 0), (0, 1), (0, 1j)):
-        ends = [next(method.phases(SPRING.force(), (z + s * 1e-6 * dz, w + s * 1e-6 * dw), 0.02)) for s in (1, -1)]
+        ends = [next(method.on(SPRING)((z + s * 1e-6 * dz, w + s * 1e-6 * dw), 0.02)) for s in (1, -1)]
         (za, wa), (zb, wb) = ends
         columns.append([(za - zb).real, (za - zb).imag, (wa - wb).real, (wa - wb).imag])
     return float(np.linalg.det(np.array(columns) / 2e-6))

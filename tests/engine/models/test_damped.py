@@ -71,10 +71,10 @@ def test_far_back_in_time_where_it_was_infinitely_fast_there_are_still_numbers()
 
 def test_friction_is_for_the_model_that_has_it_and_within_limits() -> None:
     with pytest.raises(SceneError, match=r"^the model pendulum has no friction; "):
-        Scene(friction=0.1)
+        Scene(parameters={"friction": 0.1})
     with pytest.raises(SceneError, match=r"^friction = -1 s⁻¹ is out of range; use 0 to 100 s⁻¹\.$"):
-        Scene(model="damped", friction=-1.0, cast=())
-    scene = Scene(model="damped", friction=0.1, cast=())
+        Scene(model="damped", parameters={"friction": -1.0}, cast=())
+    scene = Scene(model="damped", parameters={"friction": 0.1}, cast=())
     assert scene.equations == DampedPendulum(9.81, 0.1)
     assert scene.fields()["friction"] == 0.1
     assert "friction" not in Scene().fields()
@@ -83,4 +83,4 @@ def test_friction_is_for_the_model_that_has_it_and_within_limits() -> None:
 
 def test_friction_far_above_w0_is_refused_with_what_is_not() -> None:
     with pytest.raises(SceneError, match=r"^friction = 2 s⁻¹ is out of range; use 0 to 1 s⁻¹\.$"):
-        Scene(model="damped", friction=2.0, length=1e4, gravity=1.0, h=1.0, cast=(RK4,))
+        Scene(model="damped", parameters={"friction": 2.0}, length=1e4, gravity=1.0, h=1.0, cast=(RK4,))

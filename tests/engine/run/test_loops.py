@@ -15,7 +15,7 @@ from engine.run.loops import plain
 
 each_method = pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
 each_model = pytest.mark.parametrize(
-    "model", [kind(9.81) for kind in MODELS.values() if kind.plain], ids=lambda model: model.key
+    "model", [kind(9.81) for kind in MODELS.values() if not kind.without_force], ids=lambda model: model.key
 )
 angles = st.floats(-10, 10)
 steps = st.floats(1e-3, 3) | st.floats(-3, -1e-3)

@@ -15,7 +15,7 @@ from engine.run.observer import RunObserver
 from engine.run.stepping import Stepping, SteppingChange
 from engine.scenes import SCENES, Scene, SceneError
 
-NAMES = [n for n, s in SCENES.items() if not (s.equations.plain and all(method.general for method in s.cast))]
+NAMES = [n for n, s in SCENES.items() if not s.general]
 each_scene = pytest.mark.parametrize("scene", [SCENES[name] for name in NAMES], ids=NAMES)
 PARAMETERS = {"friction": 0.1, "stiffness": 100.0}
 
@@ -89,7 +89,7 @@ def test_there_is_no_modified_energy_but_on_plain_models(scene: Scene) -> None:
     lockstep.advance(10)
     change = SteppingChange(0, 0.0, lockstep.stepping)
     errors = observer.modified_energy_errors(before, lockstep.sample(), change)
-    expected = [bool(method.modified_energy) and scene.equations.plain for method in scene.cast]
+    expected = [bool(method.modified_energy) and scene.equations.has_force for method in scene.cast]
     assert [not math.isnan(error) for error in errors] == expected
 
 
@@ -97,7 +97,7 @@ def test_there_is_no_modified_energy_but_on_plain_models(scene: Scene) -> None:
 @each_scene
 def test_where_numba_would_not_give_the_same_bits_the_plain_loops_are_used(scene: Scene) -> None:
     for method in scene.cast:
-        general = method.general and scene.equations.plain
+        general = method.general and scene.equations.has_force
         assert (compiled(method, scene.equations) is plain(method, scene.equations)) == (not general)
 
 
@@ -123,10 +123,10 @@ def test_any_scene_within_the_limits_gives_finite_numbers(
     model: str, theta: float, omega: float, friction: float, stiffness: float, h: float
 ) -> None:
     given_values = {"friction": friction, "stiffness": stiffness}
-    own = {name: given_values[name] for name in MODELS[model].parameters}
+    own = {each.name: given_values[each.name] for each in MODELS[model].parameters}
     cast = tuple(method for method in METHODS if model in method.models)
     h = min(h, 1.0) if model == "damped" else h  # the reference takes steps of 0.5 ms where friction is 100
-    lockstep = Lockstep(Scene(theta=theta, omega=omega, h=h, model=model, cast=cast, **own))
+    lockstep = Lockstep(Scene(theta=theta, omega=omega, h=h, model=model, cast=cast, parameters=own))
     lockstep.advance(3)
     for reading in lockstep.sample().readings:
         assert math.isfinite(reading.theta + reading.omega + reading.energy + reading.energy_error)
@@ -134,13 +134,13 @@ def test_any_scene_within_the_limits_gives_finite_numbers(
 
 @pytest.mark.parametrize("model", MODELS)
 def test_a_model_refuses_a_method_that_is_not_for_it(model: str) -> None:
-    own = {name: PARAMETERS[name] for name in MODELS[model].parameters}
+    own = {each.name: PARAMETERS[each.name] for each in MODELS[model].parameters}
     for method in METHODS:
         if model in method.models:
-            assert Scene(model=model, cast=(method,), **own).cast == (method,)
+            assert Scene(model=model, cast=(method,), parameters=own).cast == (method,)
         else:
             with pytest.raises(SceneError, match=rf"is not for the model {model}; it is for \w+"):
-                Scene(model=model, cast=(method,), **own)
+                Scene(model=model, cast=(method,), parameters=own)
 
 
 def test_a_bob_that_is_gone_gains_energy_within_half_a_second_and_not_too_early_to_say() -> None:

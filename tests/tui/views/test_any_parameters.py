@@ -8,9 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from engine.models import MODELS
-from engine.scenes import LIMITS, PARAMETERS, SCENES, Scene
-from engine.scenes.scene import MOST_DAMPED
+from engine.models import MODELS, PARAMETERS
+from engine.scenes import LIMITS, SCENES, Scene
 from tests.tui.command_line import pendu
 from tests.tui.harness import Lab
 from tui.drawing.canvas import Picture
@@ -34,13 +33,13 @@ def numbers(low: float, high: float) -> st.SearchStrategy[float]:
 
 def scenes(model: str) -> st.SearchStrategy[Scene]:
     base = next(scene for scene in SCENES.values() if scene.model == model)
-    limits = LIMITS | {name: PARAMETERS[name] for name in base.parameters}
+    limits = LIMITS | {name: PARAMETERS[name][3:5] for name in base.parameters}
     values = st.fixed_dictionaries({name: numbers(*each) for name, each in limits.items()} | {"z": numbers(1e-8, 2.5)})
 
     def scene(given: dict[str, float]) -> Scene:
         w0 = math.sqrt(given["gravity"] / given["length"])
-        if "friction" in given:
-            given["friction"] = min(given["friction"], MOST_DAMPED * w0)
+        for name in base.parameters:
+            given[name] = min(given[name], PARAMETERS[name].max_over_w0 * w0)
         z = given.pop("z")
         return base.altered(h=z / w0, **given)
 

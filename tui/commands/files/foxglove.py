@@ -19,7 +19,7 @@ Layout = dict[str, Any]
 def layout(keys: Iterable[tuple[str, str]]) -> Layout:
     """The layout for the readings of these models and methods: their keys, as `topic` takes them."""
     keys = list(keys)
-    conserved = all(MODELS[model].conserved for model, _ in keys if model in MODELS)
+    conserved = all(MODELS[model].energy_error.conserved for model, _ in keys if model in MODELS)
     error = "Energy error (E - E0) / E0" if conserved else "Energy error (E - E0) / E0, with friction ln(E/E_true)"
     upper = {"Plot!energyerror": _plot(error, [_path(*each, "energy_error") for each in keys])}
     if springs := [each for each in keys if "spring_energy" in extra_names(each[0])]:

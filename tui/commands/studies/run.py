@@ -150,7 +150,7 @@ def _rows(scene: Scene, sample: "Sample", observer: "RunObserver", stopped: bool
             {
                 "method": method.key,
                 **fields_of(reading, *NUMBERS),
-                "log_energy_error": None if scene.equations.conserved else reading.energy_error,
+                "log_energy_error": None if scene.equations.energy_error.conserved else reading.energy_error,
                 "spring_energy": reading.extra.get("spring_energy"),
                 "theta_error": None if math.isnan(off) or end is not None else abs(off),
                 "drift_per_second": judgement.slope,
@@ -183,7 +183,7 @@ def _print(
         numbers = ("-" if row[name] is None else format(row[name], form) for name, form in forms.items())
         verdict = row["verdict"] if end is None else f"diverged at {end:g} s"
         table.append((method.label, verdict, *numbers, str(row["force_evaluations"])))
-    error = "energy error" if scene.equations.conserved else "ln(E/E_true)"
+    error = "energy error" if scene.equations.energy_error.conserved else "ln(E/E_true)"
     spring = ("in the spring",) if scene.model == "spring" else ()
     headers = (*spring, error, "largest", "per second", "theta error [rad]", "force evaluations")
     print_table("ll" + "r" * len(headers), ("method", "verdict", *headers), table)
@@ -191,7 +191,7 @@ def _print(
         if each.other:
             print(passing(each, each.other))
         elif each.kind == "over the top":
-            print(ending(each, scene.equations.conserved))
+            print(ending(each, scene.equations.energy_error.conserved))
     for method, judgement in zip(scene.cast, observer.judgements, strict=True):
         if judgement.lyapunov:
             print(astray(method.label, judgement, 0.0))

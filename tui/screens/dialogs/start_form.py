@@ -10,7 +10,8 @@ from textual.binding import Binding, BindingType
 from textual.containers import Container, Horizontal
 from textual.widgets import Input, Label
 
-from engine.scenes import PARAMETERS, UNITS, Scene
+from engine.models import PARAMETERS
+from engine.scenes import Scene
 from tui.cli.options import angle, number
 from tui.screens.dialogs.modal import Form
 from tui.words.numbers import z_name
@@ -21,7 +22,7 @@ FIELDS: dict[str, tuple[str, Callable[[str], float]]] = {
     "h": ("s, the step size", number),
     "length": ("m", number),
     "gravity": ("m/s²", number),
-    **{name: (f"{UNITS[name]}, {low:g} to {high:g}", number) for name, (low, high) in PARAMETERS.items()},
+    **{each.name: (f"{each.unit}, {each.min:g} to {each.max:g}", number) for each in PARAMETERS.values()},
 }
 """What may be typed in, and how it is read; of PARAMETERS those that the scene's model has."""
 
@@ -62,7 +63,7 @@ class StartForm(Form[Scene | None]):
                 unit, _ = FIELDS[name]
                 with Horizontal():
                     yield Label(name)
-                    yield Input(f"{getattr(self._before, name)!r}", id=name, compact=True, select_on_focus=True)
+                    yield Input(f"{self._before.numbers[name]!r}", id=name, compact=True, select_on_focus=True)
                     yield Label(unit, classes="unit")
             yield Label(self._summary(), id="verdict", markup=False)
 

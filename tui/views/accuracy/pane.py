@@ -25,7 +25,6 @@ from tui.views.accuracy.words import front_lines, growth_lines, point_words
 from tui.views.keys import Key, bindings
 from tui.views.messages import StepSizeChosen
 from tui.views.view import Chooser
-from tui.words.scope import left_out
 
 WORDS, MOST_WORDS, ROOMY = 2, 4, 18  # lines of words; as many as that in so many rows
 MOST_STEPS = 2_000_000  # of a run for the mark at the present h: some seconds
@@ -136,7 +135,7 @@ class AccuracyPane(Chooser[int]):
 
     def paint(self, source: Source, sample: Sample) -> None:
         """Build a chart of what is new in a thread, unless one is being built; the next sample asks again."""
-        if why := left_out(source.scene, "The accuracy chart"):
+        if why := source.scene.why_not_mapped:
             self.border_title, self.border_subtitle, self._drawn = "Accuracy (F4)", "", None
             self.show([[(f" {line}", TEXT)] for line in wrap(why, max(self.room.width - 2, 1))])
             return

@@ -126,7 +126,7 @@ def table(source: Source, sample: Sample, shown: Shown, width: int) -> list[Row]
     """The table's rows, its head first; each method's own step size where they differ."""
     cast, judgements, h = source.scene.cast, source.judgements, source.stepping.own
     model, exact = source.scene.equations, source.exact.at(sample.t)
-    conserved = model.conserved
+    conserved = model.energy_error.conserved
     every = COLUMNS[len(set(h)) == 1 :]
     if not model.rigid:
         every = (*every[:-1], *SPRING, every[-1])

@@ -10,7 +10,6 @@ from typing import NamedTuple
 
 from textual.content import Content
 
-from engine.models.spring import Spring
 from engine.run.lockstep import Sample
 from tui.drawing.palette import EXACT, FRAME, faint, mark, series
 from tui.drawing.sketch import Sketch
@@ -136,6 +135,6 @@ class Pendulum(Pane):
 def _exact(source: Source, t: float) -> list[Bob]:
     """The exact motion at a time [s], where it is known."""
     scene, model = source.scene, source.scene.equations
-    length = abs(model.place(scene.theta, scene.omega, t)[0]) if isinstance(model, Spring) else 1.0
+    length = model.exact_length(scene.theta, scene.omega, t)
     theta = source.exact.at(t).theta
     return [Bob(theta, EXACT, ghost=True, length=length)] if isfinite(theta) else []

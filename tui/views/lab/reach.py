@@ -50,4 +50,4 @@ class Reach:
 def _margins(model: Model, theta: float, omega: float) -> list[float]:
     """The energy error with which a pendulum from a start comes to rest at each of REACHES."""
     energy, reference = model.energy(), model.reference(theta, omega)
-    return [reference.error(energy(model.still(angle))) for angle in REACHES]
+    return [reference.error(energy(model.rest_phase(angle))) for angle in REACHES]

@@ -189,7 +189,7 @@ class TimeChart(Pane):
             return
         self._knew_past = source.knows_past
         look, plot, room = self._look(source), self._plot, self.room.width - 6
-        above = title(look, source.exact, source.scene.equations.conserved)
+        above = title(look, source.exact, source.scene.equations.energy_error.conserved)
         reading = plot.at(self._pointer) if plot is not None and self._pointer is not None else None
         if plot is not None and reading is not None:
             letters = [self.cast[place].letter for place in plot.places if place < len(self.cast)]

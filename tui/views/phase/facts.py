@@ -14,7 +14,6 @@ from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.words.motion import energy_share, motion_text, regime
 from tui.words.numbers import scientific
-from tui.words.scope import has_ring, ring_left_out
 
 _NAME, _CELL = 22, 14
 _NOT_CURVES = {
@@ -27,7 +26,7 @@ _NOT_CURVES = {
 def fact_rows(source: Source, shown: Shown, neighbours: Neighbours | None, width: int) -> list[list[Span]]:
     """A line about the ring, the heads, and a row for each method; the first columns that fit."""
     exact, fit = source.exact.at(source.sample.t), max((width - _NAME) // _CELL, 0)
-    error = "dE/E0" if source.scene.equations.conserved else "ln E/Etrue"
+    error = "dE/E0" if source.scene.equations.energy_error.conserved else "ln E/Etrue"
     heads = ("ln area ratio", "area/area0", "theta error", error)[:fit]
     rows: list[list[Span]] = [
         [(_ring_text(source, neighbours)[:width], TEXT)],
@@ -38,7 +37,7 @@ def fact_rows(source: Source, shown: Shown, neighbours: Neighbours | None, width
         method = source.scene.cast[index]
         reading = source.sample.readings[index]
         off = source.scene.equations.theta_error(reading.theta, exact.theta)
-        area = ("-", "-") if ring is None or not has_ring(source.scene) else area_text(ring.area_ratios[index])
+        area = ("-", "-") if ring is None or source.scene.why_no_ring else area_text(ring.area_ratios[index])
         cells = (*area, scientific(off, _CELL, 3), scientific(reading.energy_error, _CELL, 3))
         name = f" {mark(index, method)} {method.label}".ljust(_NAME)
         rows.append([(name, series(method)), ("".join(cell.rjust(_CELL) for cell in cells[:fit]), TEXT)])
@@ -46,17 +45,16 @@ def fact_rows(source: Source, shown: Shown, neighbours: Neighbours | None, width
 
 
 def _ring_text(source: Source, neighbours: Neighbours | None) -> str:
-    if why := ring_left_out(source.scene):
+    if why := source.scene.why_no_ring:
         return f" {why}"
     if neighbours is None:
         return " Press g to draw a ring of neighbouring starts and measure its area."
     step = neighbours.step if neighbours.ring_of(source.scene, source.sample.run) else 0
     behind = source.sample.step - step
-    if friction := source.scene.friction:
-        change = change_before(source.changes, step)
-        t = change.t + (step - change.step) * change.stepping.h
-        left = math.exp(-friction * t)
-        return f" Ring, radius {neighbours.radius:g} rad: friction leaves exp(-gamma t) = {left:.9f} of it"
+    change = change_before(source.changes, step)
+    left = source.scene.equations.area_share(change.t + (step - change.step) * change.stepping.h)
+    if left != 1:
+        return f" Ring, radius {neighbours.radius:g} rad: the true motion leaves {left:.9f} of its area"
     text = f" Ring of neighbouring starts, radius {neighbours.radius:.4g} rad"
     return f"{text}: {behind} steps behind" if behind else f"{text} (g: another)"
 

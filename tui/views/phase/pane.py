@@ -17,7 +17,6 @@ from tui.views.messages import Asked, SceneChosen
 from tui.views.phase.keys import KEYS
 from tui.views.phase.viewport import Viewport
 from tui.views.view import Chooser
-from tui.words.scope import has_ring
 
 if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
     from engine.phase_space.area import Neighbourhood, Neighbours
@@ -109,7 +108,7 @@ class PhasePane(Chooser[State]):
 
     def _follow(self, source: Source, sample: Sample) -> None:
         """Let the ring keep up; where it has not, go on without waiting for the next sample."""
-        if self.radius is not None and has_ring(source.scene):
+        if self.radius is not None and not source.scene.why_no_ring:
             from engine.phase_space.area import Neighbours
 
             self.neighbours = self.neighbours or Neighbours(self.radius)

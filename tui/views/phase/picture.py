@@ -17,7 +17,6 @@ from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.views.phase.portrait import Portrait
 from tui.views.phase.viewport import Viewport
-from tui.words.scope import has_ring
 
 TRAIL = 300  # samples, ten seconds at 30 frames a second
 _BESIDE = ((2, 0), (-2, 0), (0, -1), (0, 1), (2, -1), (-2, 1))  # columns, rows from a point to its letter
@@ -68,7 +67,7 @@ def source_picture(
 ) -> Picture:
     """What is to be shown of a sample, with the crosshair and the state whose orbit is shown, if any."""
     portrait = Portrait.of(viewport, source.scene.w0, source.scene.model)
-    around = ring if has_ring(source.scene) else None
+    around = None if source.scene.why_no_ring else ring
     ground = trails.follow(portrait, source, shown) if shown.trails else portrait.ground
     return phase_picture(portrait, ground, method_points(source, sample, shown, around), *aims)
 

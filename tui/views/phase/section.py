@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engine.methods import Method
-from engine.models.model import Model, Phase
+from engine.models.model import Model, Phase, State
 from engine.phase_space.section import Points, spread
 from tui.drawing.canvas import Canvas, Picture
 from tui.drawing.palette import FRAME, TEXT, faint, series
@@ -49,7 +49,7 @@ class Section:
                     for down in range(2 * GAP + 1):
                         self._near[j + down, i + right] = True
 
-    def picture(self, orbit: Points, start: Phase, crosshair: Phase | None = None) -> Picture:
+    def picture(self, orbit: Points, start: State, crosshair: Phase | None = None) -> Picture:
         """All that was drawn, one orbit in thick dots or, if it is a spiral, joined; its start, perhaps a crosshair."""
         viewport, canvas, owner = self.viewport, self._ground.copy(), series(self.method)
         if self.method.symplectic:

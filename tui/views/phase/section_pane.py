@@ -16,7 +16,6 @@ from tui.views.keys import Key, bindings
 from tui.views.phase.keys import KEYS as PORTRAIT_KEYS
 from tui.views.phase.pane import PhasePane
 from tui.views.phase.viewport import Viewport
-from tui.words.scope import left_out
 
 if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
     from engine.phase_space.section import OrbitKind, Points
@@ -78,7 +77,7 @@ class SectionPane(PhasePane):
         self.draw()
 
     def paint(self, source: Source, sample: Sample) -> None:
-        if self.shows_section and (why := left_out(source.scene, "A method's own map")):
+        if self.shows_section and (why := source.scene.why_not_mapped):
             self.notify(why, severity="warning")
             self.shows_section = False
             return

@@ -18,7 +18,6 @@ from tui.views.messages import SceneChosen
 from tui.views.stability.picture import MARGIN, Segments, legend, panel, place_at, side_by_side, title
 from tui.views.stability.words import note, verdict
 from tui.views.view import Chooser
-from tui.words.scope import left_out
 
 WORDS = 2  # lines
 SOME = 6  # rows of what was computed that are sent with a sample: a key waits for what is on its way
@@ -87,7 +86,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
 
     def paint(self, source: Source, sample: Sample) -> None:
         """Show at once what the user has changed, and a few rows at a time what has been computed."""
-        if why := left_out(source.scene, "The map of stability"):
+        if why := source.scene.why_not_mapped:
             self._panels, self._drawn_for, self.cursor = {}, None, None
             lines = textwrap.wrap(why, max(self.room.width - 2, 1))
             self.show([[(f" {line}", NOBODY)] for line in lines])

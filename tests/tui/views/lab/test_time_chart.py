@@ -19,7 +19,7 @@ def test_a_title_says_what_the_chart_shows_with_its_unit_and_fits_above_the_narr
     scene = SCENES[name]
     exact, model = scene.exact(), scene.equations
     for quantity, log, seconds in product(quantities(scene), (True, False), WINDOWS):
-        text = title(Shown(quantity=quantity, log=log, seconds=seconds), exact, model.conserved)
+        text = title(Shown(quantity=quantity, log=log, seconds=seconds), exact, model.energy_error.conserved)
         assert len(text) + 6 <= 52  # of 80 columns the pendulums have 28; two corners, two lines, two spaces
         cycle = {"libration": "per half swing", "rotation": "per turn"}[exact.regime] if log and exact.period else "per"
         assert cycle in text or cycle == "per"

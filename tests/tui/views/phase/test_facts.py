@@ -11,7 +11,6 @@ from engine.scenes import SCENES, Scene
 from tui.playback.live import Live
 from tui.playback.shown import Shown
 from tui.views.phase.facts import area_text, fact_rows, place_text
-from tui.words.scope import ring_left_out
 
 W0 = Scene().w0
 
@@ -67,7 +66,7 @@ def test_with_friction_conformal_verlet_leaves_the_expected_area_even_after_a_ch
     neighbours.follow(live.scene, live.sample.run, live.sample.step, live.changes, 200)
     lines = ["".join(text for text, _ in row) for row in fact_rows(live, Shown(), neighbours, 80)]
     left = f"{math.exp(-0.05 * 7.5):.9f}"
-    assert lines[0] == f" Ring, radius 0.1 rad: friction leaves exp(-gamma t) = {left} of it"
+    assert lines[0] == f" Ring, radius 0.1 rad: the true motion leaves {left} of its area"
     assert [left in line for line in lines[2:]] == [False, False, True, False]
 
 
@@ -93,10 +92,10 @@ def test_a_ring_of_the_run_before_is_not_shown():
 
 
 def test_where_there_is_no_ring_it_says_which_method_has_none():
-    assert ring_left_out(SCENES["drift"]) == ring_left_out(SCENES["damped"]) == ""
+    assert SCENES["drift"].why_no_ring == SCENES["damped"].why_no_ring == ""
     halving = SCENES["drift"].with_cast((*USUAL_CAST, method_of("halving_verlet")))
-    assert ring_left_out(halving) == "No ring with Step doubling in the cast."
-    assert "four dimensions" in ring_left_out(SCENES["stiff-limit"])
+    assert halving.why_no_ring == "No ring with Step doubling in the cast."
+    assert "four dimensions" in SCENES["stiff-limit"].why_no_ring
 
 
 @pytest.mark.parametrize("width", range(20, 90, 7))

@@ -11,6 +11,7 @@ from rich.terminal_theme import DEFAULT_TERMINAL_THEME, TerminalTheme
 from rich.text import Text
 
 from engine.methods import Method
+from engine.models.model import State
 from engine.phase_space.section import OrbitKind, kind_of, least_lyapunov, orbit, pieces
 from engine.scenes import Scene
 from tui.cli.errors import Exit
@@ -36,11 +37,11 @@ class Study:
 
     def kind(self, method: Method) -> OrbitKind:
         """The orbit of the scene's start."""
-        model, h, start = self.scene.equations, self.scene.h, (self.scene.theta, self.scene.omega)
+        model, h, start = self.scene.equations, self.scene.h, State(self.scene.theta, self.scene.omega)
         return kind_of(method, model, h, orbit(method, model, h, start, self.steps))
 
     def picture(self, columns: int, rows: int) -> Picture:
-        model, h, start = self.scene.equations, self.scene.h, (self.scene.theta, self.scene.omega)
+        model, h, start = self.scene.equations, self.scene.h, State(self.scene.theta, self.scene.omega)
         viewport = Viewport.portrait(columns, rows, self.scene, wrap=model.turns)
         section, done = Section(viewport, model, self.method), 0
         with progress("section") as show:
