@@ -43,7 +43,7 @@ def test_a_method_card_has_every_claim(method):
 def test_a_scene_card_has_what_to_watch_and_the_numbers(scene):
     card = words(scene_card(scene))
     assert words(scene.watch) in card
-    for number in (scene.omega, scene.length, scene.gravity, scene.h, *(getattr(scene, p) for p in scene.parameters)):
+    for number in (scene.omega, scene.length, scene.gravity, scene.h, *scene.parameters.values()):
         assert f"{number:.5g}" in card
 
 
