@@ -91,7 +91,7 @@ class References:
 
 def references(scene: Scene, time: float, clock: Clock, fast: bool) -> References:
     """Time the reference lines over `time` [s]; `fast`: compiled, next to compiled methods."""
-    if scene.model != "pendulum":
+    if not scene.equations.has_separatrix:
         return References(closed_form_seconds(scene.exact().at, time, clock), absent=OTHER_MODEL)
     if not fast:
         seconds = closed_form_seconds(scene.exact().at, time, clock)
