@@ -25,7 +25,7 @@ COMMANDS = {
     "stability": ["stability", "--steps", "30", "--z-values", "0.5,2.5", "--theta-values", "1,2", "--json"],
     "stability --scene linear": ["stability", "--scene", "linear", "--json"],
     "stability --map": ["stability", "--steps", "9", "--z-values", "0.5,2.5", "--theta-values", "1", "--map", "--json"],
-    "section": ["section", "--theta", "1.25", "--h", "0.348011", "--steps", "3000", "--json"],
+    "stability --section": ["stability", "--section", "--theta", "1.25", "--h", "0.348", "--steps", "3000", "--json"],
     "run": ["run", "--time", "2", "--json"],
     "run of a method that diverges": ["run", "--h", "2", "--length", "0.1", "--time", "4000", "--json"],
     "judge": ["judge", "energies.csv", "--time", "t", "--energy", "E", "--json"],
@@ -88,7 +88,8 @@ def test_every_json_field_is_there_with_its_kind(name, request):
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_the_schema_is_that_of_the_command(name):
-    assert pendu(*COMMANDS[name]).json["schema"] == f"pendu.{COMMANDS[name][0]}/1"
+    schema = "section" if "--section" in COMMANDS[name] else COMMANDS[name][0]
+    assert pendu(*COMMANDS[name]).json["schema"] == f"pendu.{schema}/1"
 
 
 @pytest.mark.parametrize(

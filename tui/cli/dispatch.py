@@ -26,8 +26,7 @@ GROUPS = {
     },
     "studies": {
         "accuracy": "speed against accuracy: which method, which h, at what cost",
-        "stability": "where each method becomes unstable: theory and measurement",
-        "section": "phase portrait of a method's own map: islands, chaos, spirals",
+        "stability": "where each method becomes unstable; phase portrait of its own map",
         "run": "run a scene without the screen and judge each method; for CI",
         "judge": "judge the energies of another program, from a file or stdin; for CI",
     },
@@ -50,6 +49,7 @@ GROUPS = {
 COMMANDS = {name: about for group in GROUPS.values() for name, about in group.items()}
 
 RENAMED = {
+    "section": "stability --section",
     "completion": "--print-completion SHELL",
 }
 

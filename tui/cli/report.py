@@ -21,9 +21,12 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
 from operator import itemgetter
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TextIO
 
 from recordings.errors import printable
+from tui.cli.files import text_file
+from tui.cli.options import add_file
 from tui.cli.output import console, draw, print_lines
 
 if TYPE_CHECKING:
@@ -135,12 +138,31 @@ def write_records(records: Iterable[Mapping[str, Any]], out: TextIO) -> None:
         writer.writerows(chain([first], rest))
 
 
-def add_report_options(parser: argparse._ActionsContainer, *, csv: bool = False) -> None:
-    """Add --json and, where the rows make a table of numbers, --csv; `form_of` reads them."""
+def add_report_options(parser: argparse._ActionsContainer, *, csv: bool = False, files: Sequence[str] = ()) -> None:
+    """Add --json, --csv where the rows are a table of numbers, and -o for files with these suffixes."""
     forms = parser.add_mutually_exclusive_group()
     forms.add_argument("--json", action="store_true", help="one JSON object, SI units")
     if csv:
         forms.add_argument("--csv", action="store_true", help="a line of CSV for each row")
+    if files:
+        names = "|".join(files)
+        what = f"write FILE, in the form of its suffix: {', '.join(files)}"
+        add_file(forms, "-o", "--output", metavar=f"FILE{names}", type=file_type(files), help=what)
+        parser.add_argument("--force", action="store_true", help="overwrite FILE")
+
+
+def file_type(suffixes: Sequence[str]) -> Callable[[str], Path]:
+    """Return a reader of the name of a file with one of these suffixes, or of a device or pipe."""
+
+    def read(text: str) -> Path:
+        path = Path(text)
+        is_device = path.exists() and not path.is_file() and not path.is_dir()
+        if path.suffix.lower() not in suffixes and not is_device:
+            named = " or ".join(f"{path.stem}{suffix}" for suffix in suffixes)
+            raise argparse.ArgumentTypeError(f"{text!r} has another suffix; use {named}")
+        return path
+
+    return read
 
 
 def form_of(options: argparse.Namespace) -> Form:
@@ -148,3 +170,13 @@ def form_of(options: argparse.Namespace) -> Form:
     if options.json:
         return "json"
     return "csv" if getattr(options, "csv", False) else "table"
+
+
+def publish(report: Report, options: argparse.Namespace) -> None:
+    """Print the report in the form that the options ask for, or write it to their file of CSV or JSON."""
+    path: Path | None = getattr(options, "output", None)
+    if path is None:
+        report.show(form_of(options))
+        return
+    with text_file(path, options.force) as out:
+        report.show("json" if path.suffix.lower() == ".json" else "csv", out)

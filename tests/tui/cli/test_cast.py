@@ -253,7 +253,7 @@ def test_workers_and_this_process_agree_about_ones_own_method(mine):
     assert pendu(*command, *own).out == pendu(*command, *own, "--workers", "2").out
 
 
-@pytest.mark.parametrize("command", ["live", "run", "accuracy", "stability", "section", "methods", "snapshot"])
+@pytest.mark.parametrize("command", ["live", "run", "accuracy", "stability", "methods", "snapshot"])
 def test_the_help_says_whose_rights_the_code_has(command):
     assert "with your rights" in " ".join(pendu(command, "--help").out.split())
 

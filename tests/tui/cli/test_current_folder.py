@@ -13,12 +13,16 @@ from tests.tui.pty_lab import ROOT, PtyLab
 from tui.cli.dispatch import COMMANDS
 
 SMALL_MAP = ("--map", "--theta-values", "1", "--z-values", "0.1:2:4", "--steps", "20")
+SECTION = ("--section", "--starts", "9", "--steps", "50", "-o", "map.svg")
 ARGUMENTS: dict[str, list[tuple[str, ...]]] = {
     "snapshot": [("--time", "0.1", "-o", "out.svg")],
     "keys": [()],
     "accuracy": [("--time", "1")],
-    "stability": [(*SMALL_MAP, "--workers", "2"), ("--theta-values", "1", "--z-values", "1:2:3", "--steps", "20")],
-    "section": [("--starts", "9", "--steps", "50"), ("--starts", "9", "--steps", "50", "-o", "map.svg")],
+    "stability": [
+        (*SMALL_MAP, "--workers", "2"),
+        ("--theta-values", "1", "--z-values", "1:2:3", "--steps", "20"),
+        SECTION,
+    ],
     "run": [("--time", "1", "--record", "run.mcap"), ("--time", "1", "--json")],
     "verify": [("drift.mcap",)],
     "judge": [("energies.csv", "--time", "1", "--energy", "2")],

@@ -2,7 +2,8 @@ import csv
 import io
 import math
 import sys
-import tracemalloc
+from concurrent.futures import CancelledError
+from concurrent.futures.process import BrokenProcessPool
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from engine.methods import USUAL_CAST
 from engine.scenes import SCENES, Scene
 from engine.stability.grid import Grid
 from engine.stability.outcomes import FATES, UNKNOWN
-from engine.stability.study import StabilityStudy, amplitude
+from engine.stability.study import amplitude
 from tests.tui.command_line import pendu
 
 SMALL = ("--steps", 300, "--z-values", "0.1:3:12", "--theta-values", "0.5,2")
@@ -30,13 +31,12 @@ def interrupted(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_the_tables_show_theory_next_to_measurement():
-    out = pendu("stability", *SMALL).out
-    assert "RK4                         2.828427125  2.828427125" in out
-    assert "Explicit Euler                     none         none" in out
-    (row,) = (line for line in out.splitlines() if line.startswith("Velocity Verlet") and "28.65 deg" in line)
+    lines = pendu("stability", *SMALL).out.splitlines()
+    (linear,) = (line.split() for line in lines if line.startswith("RK4") and "deg" not in line)
+    assert linear[1:3] == ["2.828427125", "2.828427125"]
+    (row,) = (line.split()[2:] for line in lines if line.startswith("Velocity Verlet") and "28.65 deg" in line)
     # The scene's z = 0.1566 holds; the first rung beyond the limit is 2.209, 14.1 times that.
-    expected = "Velocity Verlet 28.65 deg 2.473 2.209 0.705 over the top 59 held 14.1"  # 59: steps survived
-    assert " ".join(row.split()) == expected
+    assert [*row[:4], row[-1]] == ["28.65", "deg", "2.473", "2.209", "14.1"]
 
 
 def test_the_limit_for_a_tenth_of_the_steps_shows_how_it_moves_with_them():
@@ -44,9 +44,6 @@ def test_the_limit_for_a_tenth_of_the_steps_shows_how_it_moves_with_them():
     long, short = (pendu(*asked, "--steps", steps, "--json").json["pendulum"] for steps in (2000, 200))
     assert [row["first_failure_z_early"] for row in long] == [row["first_failure_z"] for row in short]
     assert long[1]["first_failure_z"] < long[1]["first_failure_z_early"]  # RK4 loses more in more steps
-    out = pendu(*asked, "--steps", 2000).out
-    assert "within 2,000 steps it goes over the top" in out
-    assert "lost from z, 200 steps  2,000 steps" in out
 
 
 def test_json_has_the_fields_of_the_design():
@@ -89,13 +86,16 @@ def test_the_map_as_json_repeats_the_engine():
         assert [[FATES.index(fate) for fate in row] for row in told["fate"]] == expected["fate"][:, index].tolist()
 
 
-def test_csv_has_a_line_for_each_amplitude_or_with_the_map_for_each_swing():
-    rows = list(csv.DictReader(io.StringIO(pendu("stability", *SMALL, "--csv").out)))
-    assert len(rows) == 4 * 2
-    rows = list(csv.DictReader(io.StringIO(pendu("stability", *SMALL, "--csv", "--map").out)))
-    assert len(rows) == 4 * 12 * 2
-    assert {row["fate"] for row in rows} <= set(FATES)
-    assert rows[0]["method"] == "explicit_euler"
+@pytest.mark.parametrize("to_file", [False, True])
+def test_csv_has_a_line_for_each_amplitude_or_with_the_map_for_each_swing(to_file, tmp_path):
+    def rows(*more: str) -> list[dict[str, str]]:
+        file = tmp_path / f"rows{len(more)}.csv"
+        out = pendu("stability", *SMALL, *more, *(("-o", file) if to_file else ("--csv",))).out
+        return list(csv.DictReader(io.StringIO(file.read_text() if to_file else out)))
+
+    assert len(rows()) == 4 * 2
+    assert len(rows("--map")) == 4 * 12 * 2
+    assert {row["fate"] for row in rows("--map", "--force")} <= set(FATES)
 
 
 def test_the_map_is_drawn_in_characters_where_there_is_no_colour():
@@ -144,46 +144,38 @@ def test_ctrl_c_keeps_the_part_of_a_map_that_is_done(interrupted, tmp_path):
     file = tmp_path / "map.npz"
     outcome = pendu("stability", *SMALL, "-o", file)
     assert outcome.code == 130
-    assert "5 of the map's 12 z" in outcome.err
+    assert "5 of 12 z" in outcome.err
     with np.load(file) as map_:
         assert (map_["cells"]["fate"][:5] != UNKNOWN).all()
         assert (map_["cells"]["fate"][5:] == UNKNOWN).all()
-    outcome = pendu("stability", *SMALL, "--csv", "--map")
-    assert outcome.code == 130
-    assert len(outcome.out.splitlines()) == 1 + 4 * 5 * 2
 
 
-def test_ctrl_c_during_the_tables_keeps_the_swings_already_lost(interrupted):
+def test_ctrl_c_during_the_table_keeps_the_swings_already_lost(interrupted):
     outcome = pendu("stability", *SMALL, "--json")
     assert outcome.code == 130
-    assert "interrupted; swings already found lost are kept." in outcome.err
     assert outcome.json["interrupted"]
     rows = outcome.json["pendulum"]
     assert {(row["method"], row["theta"]) for row in rows} >= {("explicit_euler", 0.5), ("explicit_euler", 2.0)}
     assert all(row["first_failure_z"] < 1 for row in rows)
-    assert all(row["at_scene"]["fate"] in FATES for row in rows)
     table = pendu("stability", *SMALL)
-    assert (table.code, table.err) == (130, outcome.err)
-    assert table.out.count(" deg ") == len(rows)
-    listed = pendu("stability", *SMALL, "--csv")
-    assert (listed.code, len(listed.out.splitlines())) == (130, 1 + len(rows))
+    assert (table.code, table.out.count(" deg ")) == (130, len(rows))
 
 
 def test_interrupted_before_the_scenes_z_its_cell_is_null(interrupted):
     late = ("--h", "0.9", *SMALL)
     assert {row["at_scene"] for row in pendu("stability", *late, "--json").json["pendulum"]} == {None}
-    assert pendu("stability", *late).out.splitlines()[-1].split()[-2] == "-"
 
 
-def test_a_table_of_many_amplitudes_takes_the_memory_of_a_strip():
-    tracemalloc.start()
-    rows, whole = StabilityStudy(Scene(), np.linspace(0.1, 3, 1000).tolist(), steps=1).table()
-    peak = tracemalloc.get_traced_memory()[1]
-    tracemalloc.stop()
-    assert whole
-    assert len(rows) == 4000
-    # The cells of all 813 z would be 813 * 4 * 1000 * 16 bytes = 52 MB, and twice that when they are joined.
-    assert peak < 12e6
+@pytest.mark.parametrize("error", [BrokenProcessPool, CancelledError, ConnectionError])
+def test_lost_workers_end_with_exit_3_and_what_is_done_is_kept(error, monkeypatch):
+    def compute(grid: Grid, executor: object = None):
+        yield Grid(grid.theta, grid.z[:5], grid.steps).cells()
+        raise error
+
+    monkeypatch.setattr(Grid, "compute", compute)
+    outcome = pendu("stability", *SMALL, "--json")
+    assert (outcome.code, outcome.json["interrupted"]) == (3, True)
+    assert "5 of 13 z" in outcome.err
 
 
 @pytest.mark.parametrize(
@@ -204,7 +196,11 @@ def test_a_table_of_many_amplitudes_takes_the_memory_of_a_strip():
         (("--json", "--csv"), ("not allowed",)),
         (("--workers", "2", "--dask", "tcp://x:1"), ("not allowed",)),
         (("--map", "--z-values", "0.1:3:2000", "--theta-values", "0.1:3:2000"), ("16000000", "-o FILE.npz")),
-        (("--theta-values", "0.1:3:10001"), ("10001 amplitudes", "-o FILE.npz")),
+        (("--theta-values", "0.1:3:1001"), ("1001 amplitudes", "-o FILE.npz")),
+        (("--section", "--csv"), (".svg",)),
+        (("-o", "map.svg"), ("--section",)),
+        (("-o", "map.pdf"), ("map.npz",)),
+        (("--map", "--section"), ("not allowed",)),
         (("--h", "0"), ("h = 0",)),
     ],
 )
@@ -214,7 +210,7 @@ def test_impossible_values_are_refused_in_one_sentence(arguments, words):
 
 def test_dask_without_its_package_says_what_to_install(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
-    assert pendu("stability", "--dask", "tcp://127.0.0.1:1").refused(2, ".[cluster]")
+    assert pendu("stability", "--dask", "tcp://127.0.0.1:1").refused(2, "pendu-tui[cluster]")
 
 
 def test_the_amplitude_of_a_scene_is_how_far_it_swings():
@@ -232,8 +228,7 @@ def test_of_the_linear_oscillator_there_are_the_lines_of_theory_and_a_sentence()
         (line,) = (line for line in out.splitlines() if line.startswith(method.label))
         limit = f"{method.linear_limit:.9f}" if method.linear_limit else "none"
         assert line.split()[-3:-1] == [limit, limit]
-    assert "the linear oscillator itself: these limits hold at every amplitude" in out
-    assert "Pendulum:" not in out
+    assert " deg" not in out
     answer = pendu("stability", "--scene", "linear", "--json").json
     assert (answer["pendulum"], answer["map"]) == ([], None)
     assert [row["limit_z"] for row in answer["linear"]] == pytest.approx([m.linear_limit for m in USUAL_CAST], abs=1e-9)
@@ -246,10 +241,8 @@ def test_what_is_only_about_a_pendulum_says_so_of_the_linear_oscillator(words):
     assert pendu("stability", "--scene", "linear", *words).refused(2, f"{words[0]} is about a pendulum", "leave out")
 
 
-def test_the_words_above_the_table_say_what_a_margin_is_and_which_amplitude_a_start_has():
+def test_a_start_that_is_no_amplitude_is_given_one():
     out = pendu("stability", "--theta", "200deg", "--methods", "verlet", "--steps", 20).out
-    assert "The start at 200 deg swings as far as one from rest at 160 deg: its amplitude." in out
-    assert "Margin: the limit over the scene's z, 0.1566; below 1 a swing of that amplitude is past its limit." in out
+    assert "200 deg swings as far as one from rest at 160 deg" in out
     (row,) = (line.split() for line in out.splitlines() if " 160 deg " in line)
-    assert float(row[-1]) == pytest.approx(float(row[5]) / 0.1566, rel=2e-3)
-    assert "as far as" not in pendu("stability", "--methods", "verlet", "--steps", 20).out
+    assert float(row[-1]) == pytest.approx(float(row[5]) / 0.1566, rel=2e-3)  # the margin

@@ -1,43 +1,57 @@
-"""Find where each method becomes unstable: theory next to measurement, for the linear oscillator and the pendulum."""
+"""Find where each method becomes unstable: theory next to measurement, for the linear oscillator and the pendulum.
+
+--section draws the phase portrait of a method's own map, and describes the orbit of the scene's start.
+"""
 
 import argparse
 import math
 import os
 import signal
 from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError
 from contextlib import contextmanager
-from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from engine.scenes import Z_LIMITS
+from engine.scenes import Z_LIMITS, Scene
 from tui.cli.errors import Exit, UserError
 from tui.cli.install import install_advice
-from tui.cli.options import add_file, angle, count, number
-from tui.cli.output import progress
+from tui.cli.options import angle, count, number
+from tui.cli.output import progress, warn
+from tui.cli.report import add_report_options, publish
 from tui.cli.scene import add_scene_options, general_scene_of
+from tui.terminal.options import add_picture_options, cells
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
+
+    from engine.stability.grid import Grid
+    from engine.stability.outcomes import Cells
 
 EXAMPLES = """\
 examples:
   pendu-tui stability
   pendu-tui stability --theta 120deg --h 0.3
-  pendu-tui stability --scene linear
+  pendu-tui stability linear
   pendu-tui stability --method mine.py:my_step
   pendu-tui stability --map --workers 4
   pendu-tui stability --json | jq '.pendulum[] | select(.method == "velocity_verlet")'
   pendu-tui stability --z-values 0.005:3:600 --theta-values 1deg:179deg:300 --workers 8 -o map.npz
+  pendu-tui stability --section --theta 1.25 --h 0.348 --methods rk4
+  pendu-tui stability --section --h 0.35 --theme light -o section.svg
 """
 
-LONGEST = 1_000_000  # values of an axis
-MOST_ROWS = 10_000  # amplitudes of a table
-LARGEST = 2_000_000  # swings of a map that is kept in memory
+MAX_VALUES = 1_000_000  # of an axis
+MAX_AMPLITUDES = 1000  # of a table
+MAX_SHOWN = 2_000_000  # swings of a map that is printed
+MAX_SWINGS = 20_000_000  # of a map in a file: 320 MB in memory
+STEPS, SECTION_STEPS = 10_000, 4000
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_scene_options(parser)
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument("--map", action="store_true", help="draw the map: z on x, amplitude on y")
+    what.add_argument("--section", action="store_true", help="draw the phase portrait of the first of the methods")
     parser.add_argument(
         "--theta-values",
         metavar="LIST",
@@ -51,28 +65,32 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         type=values(number),
         help="z = h·w0, for example 0.01:3:300 (default: one every 1 %% up to 3.2; with --map: 200 up to 3)",
     )
-    parser.add_argument("--steps", metavar="N", type=count, default=10_000, help="steps of each swing (%(default)s)")
-    parser.add_argument("--map", action="store_true", help="draw the map: z on x, amplitude on y")
-    form = parser.add_mutually_exclusive_group()
-    form.add_argument("--json", action="store_true", help="one JSON object; with --map every swing of it")
-    form.add_argument("--csv", action="store_true", help="a row for each amplitude; with --map for each swing")
-    add_file(form, "-o", metavar="FILE.npz", dest="file", type=Path, help="write the map to a file (any size)")
-    parser.add_argument("--force", action="store_true", help="overwrite FILE.npz")
+    parser.add_argument(
+        "--steps",
+        metavar="N",
+        type=count,
+        help=f"steps of each swing ({STEPS}; of an orbit of --section {SECTION_STEPS})",
+    )
+    parser.add_argument("--starts", metavar="N", type=count, default=300, help="orbits of --section (%(default)s)")
+    parser.add_argument("--size", metavar="CxR", type=cells, help="columns x rows of --section (the terminal's)")
+    add_report_options(parser, csv=True, files=(".npz", ".csv", ".json", ".svg", ".txt"))
     where = parser.add_mutually_exclusive_group()
     where.add_argument("--workers", metavar="N", type=count, default=1, help="processes on this machine (%(default)s)")
     where.add_argument("--dask", metavar="ADDRESS", help="a Dask scheduler, such as tcp://10.0.0.1:8786")
+    add_picture_options(parser, "auto", "auto")
 
 
 def values(element: Callable[[str], float]) -> Callable[[str], list[float]]:
-    """A reader of values, `1,2,3` or FIRST:LAST:HOW_MANY, each read by `element`."""
+    """Return a reader of values, `1,2,3` or FIRST:LAST:HOW_MANY, each read by `element`."""
 
     def read(text: str) -> list[float]:
         match text.split(":"):
             case [_]:
                 return sorted({element(part) for part in text.split(",")})
-            case [first, last, many] if 2 <= count(many) <= LONGEST and element(first) < element(last):
-                low, high, gaps = element(first), element(last), count(many) - 1
-                return [low + (high - low) * i / gaps for i in range(gaps)] + [high]
+            case [first, last, many] if 2 <= count(many) <= MAX_VALUES and element(first) < element(last):
+                low = element(first)
+                gaps = count(many) - 1
+                return [low + (element(last) - low) * i / gaps for i in range(gaps)] + [element(last)]
         raise argparse.ArgumentTypeError(
             f"{text!r} is not a list of values; use for example 0.5,1,2 or 0.1:3:30 (FIRST:LAST:HOW_MANY)"
         )
@@ -82,47 +100,105 @@ def values(element: Callable[[str], float]) -> Callable[[str], list[float]]:
 
 def run(options: argparse.Namespace) -> int:
     scene = general_scene_of(options)
-    asked = {"--map": options.map, "--csv": options.csv, "-o": options.file}
+    suffix = "" if options.output is None else options.output.suffix.lower()
+    if options.section:
+        if options.csv or suffix in (".npz", ".csv"):
+            raise UserError("--section is a picture; write it to a file that ends in .svg or .txt, or use --json.")
+        from tui.commands.studies.reports import section
+
+        return section.run(scene, options, options.steps or SECTION_STEPS)
+    if suffix in (".svg", ".txt"):
+        raise UserError(f"only --section writes {suffix} files; use .npz, .csv or .json.")
+    steps = options.steps or STEPS
+    _check(scene, options, steps)
+    from engine.stability.study import ladder_of, map_of
+    from tui.commands.studies.reports import stability
+
+    request = (scene, options.theta_values, options.z_values, steps)
+    with _workers(options) as executor:
+        if suffix == ".npz":
+            grid = map_of(*request)
+            _check_size(grid, MAX_SWINGS)
+            with stability.map_file(options.output, options.force) as write:
+                computed, ended = compute(grid, executor)
+                write(grid, computed)
+            return _end(ended)
+        studied = stability.Studied(scene, steps)
+        ended = None
+        if options.map:
+            studied.grid = map_of(*request)
+            _check_size(studied.grid, MAX_SHOWN)
+        if scene.equations.turns:
+            studied.ladder = ladder_of(*request)
+            studied.cells, ended = compute(studied.ladder, executor)
+        if studied.grid is not None and ended is None:
+            studied.map, ended = compute(studied.grid, executor)
+    studied.interrupted = ended is not None
+    publish(stability.report(studied), options)
+    return _end(ended)
+
+
+def _end(ended: UserError | None) -> int:
+    if ended is None:
+        return Exit.FINE
+    warn(str(ended))
+    return ended.code
+
+
+def compute(grid: "Grid", executor: "Executor | None") -> "tuple[Cells, UserError | None]":
+    """Return the cells of a grid, and why some of them are unknown.  Raises UserError if all are."""
+    computed = grid.unknown()
+    done = 0
+    try:
+        with progress("stability") as show:
+            for strip in grid.compute(executor):
+                computed[done : done + len(strip)] = strip
+                done += len(strip)
+                show(done, len(grid.z))
+        return computed, None
+    except KeyboardInterrupt:
+        why, code = "interrupted", Exit.INTERRUPTED
+    except (CancelledError, OSError, RuntimeError) as error:  # of a cluster, or of worker processes
+        why, code = f"workers are lost ({type(error).__name__})", Exit.INPUT_UNREADABLE
+    ended = UserError(f"{why}; {done} of {len(grid.z)} z are computed and kept.", code)
+    if not done:
+        raise ended
+    return computed, ended
+
+
+def _check(scene: Scene, options: argparse.Namespace, steps: int) -> None:
+    """Refuse what is not about this scene, or out of range."""
+    asked = {"--map": options.map, "--csv": options.csv, "-o": options.output}
     asked |= {"--theta-values": options.theta_values, "--z-values": options.z_values}
-    if scene.model == "linear" and (given := [name for name, value in asked.items() if value]):
+    given = [name for name, value in asked.items() if value]
+    if not scene.equations.turns and given:
         raise UserError(
             f"{given[0]} is about a pendulum, and this scene is the linear oscillator, whose limit is the same at every"
-            f" amplitude; leave out {given[0]}, or choose another --scene."
+            f" amplitude; leave out {given[0]}, or choose another scene."
         )
-    _check("amplitude", options.theta_values, 0, math.pi)
-    if len(options.theta_values or ()) > MOST_ROWS and not options.file:
-        raise UserError(
-            f"{len(options.theta_values)} amplitudes are too many to show; use at most {MOST_ROWS}, or -o FILE.npz."
-        )
-    _check("z", options.z_values, *Z_LIMITS)
-    _check("number of steps", [options.steps], 0, 2**31)
-    from concurrent.futures import BrokenExecutor
-
-    from engine.stability.study import StabilityStudy
-    from tui.commands.studies.reports.stability import print_csv, print_json, print_text, write_file
-
-    bar = partial(progress, "stability")
-    with _workers(options) as executor:
-        study = StabilityStudy(scene, options.theta_values, options.z_values, options.steps, executor, bar)
-        if options.map and not options.file and (swings := math.prod(study.grid().shape)) > LARGEST:
-            raise UserError(f"a map of {swings} swings is too large to show; write it with -o FILE.npz.")
-        try:
-            if options.file:
-                return write_file(study, options.file, options.force)
-            return (print_json if options.json else print_csv if options.csv else print_text)(study, options.map)
-        except BrokenExecutor as error:
-            raise UserError(f"a worker process died ({error}); use fewer --workers.", Exit.CHECK_FAILED) from None
+    for what, numbers, (low, high) in (
+        ("amplitude", options.theta_values or (), (0, math.pi)),
+        ("z", options.z_values or (), Z_LIMITS),
+        ("number of steps", [steps], (0, 2**31)),
+    ):
+        for value in numbers:
+            if not low < value < high:  # also refuses nan
+                raise UserError(f"{what} {value:g} is out of range; it must lie between {low:g} and {high:g}.")
+    amplitudes = len(options.theta_values or ())
+    if amplitudes > MAX_AMPLITUDES and not (options.output or options.map):
+        raise UserError(f"{amplitudes} amplitudes are too many to show; use at most {MAX_AMPLITUDES}, or -o FILE.npz.")
 
 
-def _check(what: str, given: list[float] | None, low: float, high: float) -> None:
-    for value in given or ():
-        if not low < value < high:  # also refuses nan
-            raise UserError(f"{what} {value:g} is out of range; it must lie between {low:g} and {high:g}.")
+def _check_size(grid: "Grid", limit: int) -> None:
+    swings = math.prod(grid.shape)
+    if swings > limit:
+        advice = f"use at most {limit}" + (", or write it with -o FILE.npz" if limit == MAX_SHOWN else "")
+        raise UserError(f"a map of {swings} swings is too large; {advice}.")
 
 
 @contextmanager
 def _workers(options: argparse.Namespace) -> "Iterator[Executor | None]":
-    """What computes the strips; None: this process.  Only this process sees Ctrl+C, the workers do not."""
+    """Yield the executor of the strips; None is this process.  Only this process takes Ctrl+C."""
     if options.dask:
         with _dask(options.dask) as client:
             yield client.get_executor()
@@ -145,6 +221,7 @@ def _dask(address: str) -> Any:
 
         return distributed.Client(address, timeout="10s")
     except ImportError:
-        raise UserError(f"--dask needs the package distributed: {install_advice('distributed', 'cluster')}.") from None
+        advice = install_advice("distributed", "cluster")
+        raise UserError(f"--dask needs the package distributed: {advice}.") from None
     except (OSError, ValueError) as error:
         raise UserError(f"no Dask scheduler answers at {address!r}: {type(error).__name__}; is it running?") from None

@@ -1,9 +1,11 @@
-"""What the section command prints: the portrait of a method's map, and the orbits of the scene's start in words."""
+"""The report of `stability --section`: the portrait of a method's map, and the orbits of the scene's start."""
 
+import argparse
 import io
 import math
-from dataclasses import dataclass
-from pathlib import Path
+import os
+from operator import itemgetter
+from typing import Any
 
 from rich.console import Console
 from rich.segment import Segment
@@ -14,134 +16,158 @@ from engine.methods import Method
 from engine.models.model import State
 from engine.phase_space.section import OrbitKind, kind_of, least_lyapunov, orbit, pieces
 from engine.scenes import Scene
-from tui.cli.errors import Exit
+from tui.cli.errors import Exit, UserError
 from tui.cli.files import whole_file
-from tui.cli.output import console, print_lines, print_picture, progress, scene_line, write_json
-from tui.cli.report import print_table
+from tui.cli.output import console, progress, scene_line
+from tui.cli.report import Column, Report, Table, publish
 from tui.drawing.canvas import Picture
 from tui.drawing.palette import PALETTES
-from tui.terminal.options import TerminalOptions
+from tui.terminal.options import CharacterSet, TerminalOptions, terminal_options_of
 from tui.views.phase.section import Section, starts
 from tui.views.phase.viewport import Viewport
+from tui.views.view import DESCRIBED_FIRST
 from tui.words.orbit import HEADS, cells, fraction, sentence
 
-
-@dataclass(frozen=True, slots=True)
-class Study:
-    """What was asked for."""
-
-    scene: Scene
-    method: Method  # whose map is drawn
-    starts: int
-    steps: int
-
-    def kind(self, method: Method) -> OrbitKind:
-        """The orbit of the scene's start."""
-        model, h, start = self.scene.equations, self.scene.h, State(self.scene.theta, self.scene.omega)
-        return kind_of(method, model, h, orbit(method, model, h, start, self.steps))
-
-    def picture(self, columns: int, rows: int) -> Picture:
-        model, h, start = self.scene.equations, self.scene.h, State(self.scene.theta, self.scene.omega)
-        viewport = Viewport.portrait(columns, rows, self.scene, wrap=model.turns)
-        section, done = Section(viewport, model, self.method), 0
-        with progress("section") as show:
-            for piece in pieces(self.method, model, h, starts(viewport, self.starts), self.steps):
-                section.add(piece)
-                done += piece[0].shape[1]
-                show(done, self.starts)
-        return section.picture(orbit(self.method, model, h, start, self.steps), start)
+MAX_STARTS = 10_000
+MAX_STEPS = 100_000  # of an orbit
+FILE_SIZE = (120, 36)  # columns, rows
 
 
-def print_text(study: Study, size: tuple[int, int] | None, display: TerminalOptions) -> int:
-    """Print the picture, as wide as the terminal, and below it the words."""
-    on = console()
-    columns, rows = size or (max(on.width, 40), max(on.width, 40) * 5 // 16)
-    picture = study.picture(columns, rows)
-    print(_title(study))
-    characters = display.character_set if "utf" in on.encoding else "ascii"
-    print_picture(on, _lines(picture, TerminalOptions(display.theme, characters)))
-    _print_words(study)
+def run(scene: Scene, options: argparse.Namespace, steps: int) -> int:
+    """Draw the portrait of the first of --methods, and describe the orbit of the start under each method."""
+    for name, value, limit in (("starts", options.starts, MAX_STARTS), ("steps", steps, MAX_STEPS)):
+        if value > limit:
+            raise UserError(f"--{name} {value} is too many; use at most {limit}.")
+    method = drawn(scene, options)
+    title = f"{method.label}, h {scene.h:g} s (z = {scene.z:.4g}): its own phase portrait"
+    display = terminal_options_of(options, os.environ, "utf-8")
+    path = options.output
+    if path is not None and path.suffix.lower() != ".json":
+        theme = "dark" if options.theme == "auto" else options.theme  # of a file, not of the terminal
+        size = options.size or FILE_SIZE
+        with whole_file(path, options.force) as part:
+            lines = [Text(title), *portrait(scene, method, options.starts, steps, size, display._replace(theme=theme))]
+            part.write_text(_svg(lines, size, theme) if path.suffix.lower() == ".svg" else _plain(lines), "utf-8")
+        print(f"{path}: {title}")
+        return Exit.FINE
+    lines = []
+    if path is None and not options.json:
+        on = console()
+        characters = display.character_set if "utf" in on.encoding else "ascii"
+        width = max(on.width, 40)
+        size = options.size or (width, width * 5 // 16)
+        lines = portrait(scene, method, options.starts, steps, size, display._replace(character_set=characters))
+    publish(report(scene, method, steps, title, lines), options)
     return Exit.FINE
 
 
-def print_json(study: Study) -> int:
-    """Print one object: the orbit of the scene's start under each method's map."""
-    orbits = [
-        {
-            "method": method.key,
-            "rotation": kind.rotation,
-            "fraction": None if kind.fraction is None else fraction(kind),
-            "island": kind.island,
-            "lyapunov": _finite(kind.lyapunov),
-            "chaotic": kind.chaotic,
-            "over_the_top": kind.spins,
-            "energy_error": _finite(kind.energy_error),
-            "steps": kind.steps,
-            "text": sentence(method, kind),
-        }
-        for method, kind in ((method, study.kind(method)) for method in study.scene.cast)
-    ]
-    write_json("section", {"scene": study.scene.fields(), "z": study.scene.z, "steps": study.steps, "orbits": orbits})
-    return Exit.FINE
+def drawn(scene: Scene, options: argparse.Namespace) -> Method:
+    """Return the method whose map is drawn: the first that --methods names, else velocity Verlet."""
+    if options.methods is None:
+        for method in scene.cast:
+            if method.key == DESCRIBED_FIRST:
+                return method
+    return scene.cast[0]
 
 
-def write_file(study: Study, path: Path, force: bool, size: tuple[int, int], display: TerminalOptions) -> int:
-    """Write the picture, with its title, as SVG or as text; the same bytes every time."""
-    with whole_file(path, force) as part:
-        picture = study.picture(*size)
-        lines = [Text(_title(study)), *_lines(picture, display)]
-        if path.suffix.lower() == ".svg":
-            on = Console(file=io.StringIO(), record=True, width=size[0], height=size[1] + 1, color_system="truecolor")
-            on.print(*lines, sep="\n", no_wrap=True, overflow="crop")
-            text = on.export_svg(title="pendu-tui section", theme=_theme(display.theme), unique_id="terminal")
-        else:
-            text = "\n".join(line.plain.rstrip() for line in lines) + "\n"
-        part.write_text(text, encoding="utf-8")
-    print(f"{path}: {_title(study)}")
-    return Exit.FINE
+def portrait(
+    scene: Scene, method: Method, count: int, steps: int, size: tuple[int, int], display: TerminalOptions
+) -> list[Text]:
+    """Return the lines of the phase portrait of a method's map, of so many starts."""
+    model = scene.equations
+    start = State(scene.theta, scene.omega)
+    viewport = Viewport.portrait(*size, scene, wrap=model.turns)
+    section = Section(viewport, model, method)
+    done = 0
+    with progress("section") as show:
+        for piece in pieces(method, model, scene.h, starts(viewport, count), steps):
+            section.add(piece)
+            done += piece[0].shape[1]
+            show(done, count)
+    return _lines(section.picture(orbit(method, model, scene.h, start, steps), start), display)
+
+
+def report(scene: Scene, method: Method, steps: int, title: str, picture: list[Text]) -> Report:
+    """Return the report of the orbits of the scene's start, below the picture."""
+    model, h, start = scene.equations, scene.h, State(scene.theta, scene.omega)
+    kinds = [(each, kind_of(each, model, h, orbit(each, model, h, start, steps))) for each in scene.cast]
+    (words,) = (sentence(each, kind) for each, kind in kinds if each == method)
+    heads = [Column("method", lambda row: row[0]), Column(HEADS[0], lambda row: row[1])]
+    heads += [Column(head, itemgetter(at), right=True) for at, head in enumerate(HEADS[1:], 2)]
+    return Report(
+        name="section",
+        title=title,
+        notes=[
+            *picture,
+            f"\n{scene_line(scene, 'h', 'z')}, {steps} steps",
+            Table(heads, [(each.label, *cells(each, kind)) for each, kind in kinds]),
+            f"{steps} steps cannot tell a Lyapunov number below about {least_lyapunov(steps):.2g} from 0.",
+            f"\n{method.label}: {words}",
+        ],
+        fields={
+            "scene": scene.fields(),
+            "z": scene.z,
+            "steps": steps,
+            "orbits": [_fields(each, kind) for each, kind in kinds],
+        },
+    )
+
+
+def _fields(method: Method, kind: OrbitKind) -> dict[str, Any]:
+    return {
+        "method": method.key,
+        "rotation": kind.rotation,
+        "fraction": None if kind.fraction is None else fraction(kind),
+        "island": kind.island,
+        "lyapunov": _finite(kind.lyapunov),
+        "chaotic": kind.chaotic,
+        "over_the_top": kind.spins,
+        "energy_error": _finite(kind.energy_error),
+        "steps": kind.steps,
+        "text": sentence(method, kind),
+    }
 
 
 def _finite(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def _title(study: Study) -> str:
-    return f"{study.method.label}, h {study.scene.h:g} s (z = {study.scene.z:.4g}): its own phase portrait"
-
-
-def _print_words(study: Study) -> None:
-    """Print the orbits of the start as a table, and a sentence on that of the method that is drawn."""
-    kinds = [(method, study.kind(method)) for method in study.scene.cast]
-    print_lines("", f"{scene_line(study.scene, 'h', 'z')}, {study.steps} steps")
-    rows = [(method.label, *cells(method, kind)) for method, kind in kinds]
-    print_table("llrrrr", ("method", *HEADS), rows)
-    print_lines(
-        f"{study.steps} steps cannot tell a Lyapunov number below about {least_lyapunov(study.steps):.2g} from 0."
-    )
-    kind = next((kind for method, kind in kinds if method == study.method), None) or study.kind(study.method)
-    print_lines("", f"{study.method.label}: {sentence(study.method, kind)}")
-
-
 def _lines(picture: Picture, display: TerminalOptions) -> list[Text]:
-    """The rows of a picture in the colours and characters of a display."""
+    """Return the rows of a picture in the colours and characters of a display."""
     palette = PALETTES[display.theme]
-    rows = [[Segment(text, None) for text, _ in picture.row(y)] for y in range(len(picture.characters))]
-    if display.character_set != "braille":
-        from textual.color import Color
+    lines = []
+    for y in range(len(picture.characters)):
+        spans = picture.row(y)
+        segments = [Segment(text, None) for text, _ in spans]
+        if display.character_set != "braille":
+            segments = _in_characters(segments, display.character_set)
+        colours = [palette.colour(owner) for _, owner in spans]
+        coloured = zip((segment.text for segment in segments), colours, strict=True)
+        lines.append(Text.assemble(*coloured))
+    return lines
 
-        from tui.terminal.character_sets import CharacterSetFilter
 
-        characters = CharacterSetFilter(display.character_set)
-        rows = [characters.apply(row, Color(0, 0, 0)) for row in rows]
-    owners = [[palette.colour(owner) for _, owner in picture.row(y)] for y in range(len(rows))]
-    return [
-        Text.assemble(*((segment.text, colour) for segment, colour in zip(row, colours, strict=True)))
-        for row, colours in zip(rows, owners, strict=True)
-    ]
+def _in_characters(row: list[Segment], character_set: CharacterSet) -> list[Segment]:
+    from textual.color import Color
+
+    from tui.terminal.character_sets import CharacterSetFilter
+
+    return CharacterSetFilter(character_set).apply(row, Color(0, 0, 0))
+
+
+def _plain(lines: list[Text]) -> str:
+    return "\n".join(line.plain.rstrip() for line in lines) + "\n"
+
+
+def _svg(lines: list[Text], size: tuple[int, int], theme: str) -> str:
+    """Return an SVG of the lines, byte-identical every time."""
+    on = Console(file=io.StringIO(), record=True, width=size[0], height=size[1] + 1, color_system="truecolor")
+    on.print(*lines, sep="\n", no_wrap=True, overflow="crop")
+    return on.export_svg(title="pendu-tui stability --section", theme=_theme(theme), unique_id="terminal")
 
 
 def _theme(name: str) -> TerminalTheme:
-    """The theme's background and text for an SVG; the 16 colours are Rich's."""
+    """Return the theme's background and text for an SVG; the 16 colours are Rich's."""
     palette = PALETTES[name]
     if not palette.background.startswith("#"):
         return DEFAULT_TERMINAL_THEME
