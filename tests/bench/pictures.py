@@ -14,11 +14,12 @@ from engine.methods import USUAL_CAST
 from engine.run.lockstep import Lockstep
 from engine.run.observer import RunObserver
 from engine.scenes import DEFAULT_SCENE
-from tui.drawing.canvas import Canvas, Picture
+from tui.drawing.canvas import Canvas
+from tui.drawing.picture import Picture
 from tui.drawing.time_chart import time_chart
 from tui.playback.history import ErrorHistory
 from tui.playback.levels import Window
-from tui.views.lab.pendulums import Bob, pendulum_sketch
+from tui.views.lab.pendulums import Bob, pendulum_picture
 
 REACH = {  # times a plain loop in the same run, as milliseconds differ from machine to machine and from hour to hour
     "canvas_4x3000_points": 2.0,
@@ -46,8 +47,8 @@ def scattered(random: np.random.Generator) -> Callable[[], Picture]:
 
     def draw() -> Picture:
         canvas = Canvas(120, 40)
-        for owner in range(4):
-            canvas.points(x[owner], y[owner], owner)
+        for ink in range(4):
+            canvas.scatter(x[ink], y[ink], ink)
         return canvas.picture()
 
     return draw
@@ -90,9 +91,7 @@ def fuzz(random: np.random.Generator, builds: int) -> None:
             bool(random.integers(2)),
             None if random.integers(3) == 0 else float(10.0 ** random.uniform(-1, 6)),
         )
-        assert time_chart(
-            window, USUAL_CAST, "energy_error", width, height, log=log, seconds=seconds
-        ).picture.characters.size
+        assert time_chart(window, USUAL_CAST, "energy_error", width, height, log=log, seconds=seconds).picture.rows
 
 
 def main() -> None:
@@ -101,7 +100,6 @@ def main() -> None:
     history, add = long_run()
     window, whole = history.window(20.0), history.window()
     trail = history.levels.trails(40)[:, 0].T[0].tolist()
-    chart = time_chart(window, USUAL_CAST, "energy_error", 160, 40, seconds=20.0).picture
     milliseconds = {
         "canvas_4x3000_points": least(scattered(random)),
         "chart_80x20": least(lambda: time_chart(window, USUAL_CAST, "energy_error", 80, 20, seconds=20.0)),
@@ -110,8 +108,7 @@ def main() -> None:
         "chart_160x40_linear": least(
             lambda: time_chart(window, USUAL_CAST, "energy_error", 160, 40, seconds=20.0, log=False)
         ),
-        "chart_160x40_as_runs": least(lambda: [chart.row(y) for y in range(40)]),
-        "pendulum_23x18": least(lambda: pendulum_sketch(23, 18, [Bob(1.0, 0, trail=trail)])),
+        "pendulum_23x18": least(lambda: pendulum_picture(23, 18, [Bob(1.0, 0, trail=trail)])),
         "history_add": add,
         "history_window_20_s": least(lambda: history.window(20.0)),
         "history_window_whole_run": least(lambda: history.window()),

@@ -1,9 +1,7 @@
-"""Numbers -> characters with colours.
+"""Numbers -> characters in colours.
 
-`canvas` draws dots and lines in braille and yields a Picture, characters with whose they are; `axes` finds round
-labels, and what of a series falls into each column; `loglog` places points between two logarithmic axes, `chart` has
-plotext draw curves along axes, `time_chart` those of a run; `palette` gives the colours of a theme; `sketch` is a
-canvas for few dots that are drawn anew with every frame, `trails` keep many from frame to frame; `cells` shows a
-Picture, a Sketch or rows of text in a widget, `painted` keeps what Textual has been given of them, and `faults`
-reports errors there.
+`picture` is what a widget shows: rows of characters with inks, which `palette` turns into the colours of a theme.
+`canvas` draws dots, lines and words in braille and yields a Picture; `cells` is the widget that shows one; `axes` finds
+round labels, and what of a series falls into each column; `loglog` places points between two logarithmic axes, `chart`
+has plotext draw curves along axes, `time_chart` those of a run.
 """

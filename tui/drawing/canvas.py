@@ -1,218 +1,156 @@
-"""Points and lines -> characters.
+"""Points, lines and words -> characters.
 
 A canvas has 2×4 dots in every cell.  Coordinates are in dots, x to the right and y downwards from
-the upper left corner; dot (i, j) covers [i, i+1) × [j, j+1).  Dots of several owners can share a cell,
-which has the colour of the last one drawn.  Points outside or not finite are not drawn.
+the upper left corner; dot (i, j) covers [i, i+1) × [j, j+1).  Dots of several inks can share a cell,
+which has the ink of the last one drawn.  Points outside or not finite are not drawn.
+
+Frames of the lab have a few hundred dots: plain integers are faster than NumPy for so few, and the first paint
+need not wait for NumPy.
 """
 
+import codecs
 import copy
-import itertools
-import textwrap
-from array import array
-from dataclasses import dataclass
-
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+import re
+from collections.abc import Iterable
+from itertools import pairwise
+from math import floor, isfinite
+from typing import TYPE_CHECKING, Self
 
 from tui.drawing.palette import NOBODY
-from tui.drawing.sketch import ORDER, Sketch, disc
+from tui.drawing.picture import Picture, Row
 
-Span = tuple[str, int]
-"""Adjacent characters with the same owner."""
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
-_ORDER = np.array(ORDER)
-_BLANK = ord(" ")
-_GLYPHS = np.array([ord(" "), *range(0x2801, 0x2900)], np.uint32)
+    Numbers = NDArray[np.float64] | NDArray[np.intp]
 
-
-def _grown(bits: int) -> int:
-    """The dots of a braille cell, each as wide as the cell and two rows high."""
-    rows = (0x09, 0x12, 0x24, 0xC0)  # two dots each, from the top
-    neighbours = (*rows[1:], rows[2])
-    return sum({dots for row, other in zip(rows, neighbours, strict=True) if bits & row for dots in (row, other)})
-
-
-_THICK = np.array([0x2800 + _grown(bits) for bits in range(256)], np.uint32)
-
-
-@dataclass(frozen=True, slots=True)
-class Picture:
-    """Characters and their owners, ready for a screen."""
-
-    characters: NDArray[np.uint32]  # code points, (rows, columns)
-    owners: NDArray[np.int8]  # (rows, columns)
-
-    def row(self, y: int) -> list[Span]:
-        """The spans of row y, from the left; blanks belong to the span before them, or to the first one."""
-        codes = self.characters[y]
-        text = codes.astype("<u4", copy=False).tobytes().decode("utf-32-le")
-        there = (codes != _BLANK).nonzero()[0]
-        if not len(there):
-            return [(text, NOBODY)] if text else []
-        owners = self.owners[y][there]
-        turns = (owners[1:] != owners[:-1]).nonzero()[0] + 1
-        starts = [0, *there[turns].tolist(), len(text)]
-        whose = [int(owners[0]), *owners[turns].tolist()]
-        return [(text[start:end], owner) for (start, end), owner in zip(itertools.pairwise(starts), whose, strict=True)]
-
-    @property
-    def text(self) -> str:
-        """The characters alone, one line per row, without trailing blanks."""
-        return "\n".join("".join(text for text, _ in self.row(y)).rstrip() for y in range(len(self.characters)))
-
-    def write(self, row: int, column: int, text: str, owner: int) -> None:
-        """Replace characters, beginning at a cell; text beyond the edges is cut off."""
-        for at, character in enumerate(text, column):
-            if 0 <= at < self.characters.shape[1]:
-                self.characters[row, at], self.owners[row, at] = ord(character), owner
-
-    @classmethod
-    def stacked(cls, *pictures: "Picture") -> "Picture":
-        """Pictures of one width, one below the other."""
-        return cls(
-            np.concatenate([picture.characters for picture in pictures]),
-            np.concatenate([picture.owners for picture in pictures]),
-        )
-
-    def thick(self) -> "Picture":
-        """The picture with thick lines; words stay as they are."""
-        codes = self.characters
-        return Picture(np.where(codes & ~np.uint32(0xFF) == 0x2800, _THICK[codes & 0xFF], codes), self.owners)
-
-    @classmethod
-    def of_sketch(cls, sketch: Sketch) -> "Picture":
-        """The same as a picture."""
-        picture = Canvas(sketch.columns, sketch.rows).picture()
-        for cell, code, owner in sketch.letters:
-            at = divmod(cell, sketch.columns)
-            picture.characters[at], picture.owners[at] = code, owner
-        return picture
-
-    def changed_rows(self, before: "Picture | None") -> list[int]:
-        """The rows that differ from those of a picture before; all of them where there is nothing to compare with."""
-        if before is None or before.characters.shape != self.characters.shape:
-            return list(range(len(self.characters)))
-        changed = (before.characters != self.characters) | (before.owners != self.owners)
-        return np.flatnonzero(changed.any(axis=1)).tolist()
-
-    @classmethod
-    def of_text(cls, text: str, columns: int, rows: int, owner: int) -> "Picture":
-        """A text wrapped and centred; lines that do not fit are cut off."""
-        lines = textwrap.wrap(text, max(columns, 1))[:rows]
-        canvas = Canvas(columns, rows)
-        for row, line in enumerate(lines, (rows - len(lines)) // 2):
-            canvas.label((columns - len(line)) // 2, row, line, owner)
-        return canvas.picture()
+_BITS = (0x01, 0x08, 0x02, 0x10, 0x04, 0x20, 0x40, 0x80)
+"""Unicode's bits of the dots of a cell, row by row."""
+_BRAILLE = " " + "".join(map(chr, range(0x2801, 0x2900)))
+_SPANS = re.compile(rb"\0*([^\0])(?:\1|\0)*|\0+", re.DOTALL)
+"""Cells of one ink; blank ones look the same in any ink, so they belong to what is before them."""
+_FAR = 1e6  # dots; nothing so far away is visible
 
 
 class Canvas:
     """A drawing area of `columns` × `rows` cells."""
 
     def __init__(self, columns: int, rows: int) -> None:
-        self.columns, self.rows = columns, rows
-        self.width, self.height = 2 * columns, 4 * rows  # dots
-        self._dots = bytearray(8 * rows * columns)  # cell by cell, in Unicode's order
-        self._owners = array("b", [NOBODY]) * (rows * columns)
-        self._labels: dict[tuple[int, int], tuple[str, int]] = {}  # (row, column) -> character, owner
+        self.columns = columns
+        self.rows = rows
+        self.width = 2 * columns  # dots
+        self.height = 4 * rows
+        self._bits = bytearray(columns * rows)  # the dots of each cell
+        self._inks = bytearray(columns * rows)  # counted from NOBODY
+        self._letters: dict[int, tuple[str, int]] = {}  # by row * columns + column
 
-    def copy(self) -> "Canvas":
-        """The same dots, to draw more on; labels are not copied."""
+    def copy(self) -> Self:
+        """Return another canvas with the same dots and words, to draw more on."""
         copied = copy.copy(self)
-        copied._dots, copied._owners, copied._labels = self._dots[:], self._owners[:], {}
+        copied._bits = self._bits[:]
+        copied._inks = self._inks[:]
+        copied._letters = self._letters.copy()
         return copied
 
-    def points(self, x: ArrayLike, y: ArrayLike, owner: ArrayLike) -> None:
-        """Set the dots at x, y (numbers or arrays of one shape); `owner` is one, or one for each."""
-        with np.errstate(invalid="ignore"):
-            i = np.floor(np.atleast_1d(np.asarray(x, np.float64)))
-            j = np.floor(np.atleast_1d(np.asarray(y, np.float64)))
-            inside = (i >= 0) & (i < self.width) & (j >= 0) & (j < self.height)
-        i, j = i[inside].astype(np.intp), j[inside].astype(np.intp)
+    def points(self, points: Iterable[tuple[float, float]], ink: int) -> None:
+        """Set the dots at (x, y)."""
+        columns, width, height = self.columns, self.width, self.height
+        bits, inks = self._bits, self._inks
+        colour = ink - NOBODY
+        for x, y in points:
+            if 0 <= x < width and 0 <= y < height:
+                i, j = int(x), int(y)
+                cell = (j >> 2) * columns + (i >> 1)
+                bits[cell] |= _BITS[(j & 3) << 1 | i & 1]
+                inks[cell] = colour
+
+    def scatter(self, x: "Numbers", y: "Numbers", ink: int) -> None:
+        """Set the dots at x, y, which are arrays of the same shape: quicker than `points` for many of them."""
+        import numpy as np
+
+        inside = (x >= 0) & (x < self.width) & (y >= 0) & (y < self.height)
+        i = x[inside].astype(np.intp)
+        j = y[inside].astype(np.intp)
         cells = (j >> 2) * self.columns + (i >> 1)
-        np.frombuffer(self._dots, np.uint8)[8 * cells + _ORDER[(j & 3) << 1 | i & 1]] = 1
-        np.frombuffer(self._owners, np.int8)[cells] = owner[inside] if isinstance(owner, np.ndarray) else owner
+        bits = np.array(_BITS, np.uint8)[(j & 3) << 1 | i & 1]
+        np.bitwise_or.at(np.frombuffer(self._bits, np.uint8), cells, bits)
+        np.frombuffer(self._inks, np.uint8)[cells] = ink - NOBODY
 
-    def line(self, x: ArrayLike, y: ArrayLike, owner: ArrayLike, dotted: bool = False) -> None:
-        """Join the points x, y (arrays of n) with straight lines, broken where a point is not finite.
+    def line(self, x0: float, y0: float, x1: float, y1: float, ink: int, dotted: bool = False) -> None:
+        """Draw a straight line: a dot in each column of dots, or row where it is steep; dotted: every third of them."""
+        dx = x1 - x0
+        dy = y1 - y0
+        if not (isfinite(dx) and isfinite(dy)):
+            return
+        steep = abs(dy) > abs(dx)
+        start, step, size = (y0, dy, self.height) if steep else (x0, dx, self.width)
+        sign = -1 if step < 0 else 1
+        first = min(max(floor(start), -1), size)  # one beyond an edge is enough to draw nothing
+        last = min(max(floor(start + step), -1), size)
+        begin, end = (max(first, 0), min(last, size - 1)) if sign > 0 else (min(first, size - 1), max(last, 0))
+        dots = range(begin, end + sign, 3 * sign if dotted else sign)
+        shares = [(at + 0.5 - start) / step for at in dots] if step else [0.0] * len(dots)
+        if shares:  # the line may begin and end before or beyond the middle of a dot
+            shares[0] = max(shares[0], 0.0)
+            shares[-1] = min(shares[-1], 1.0)
+        if steep:
+            self.points([(x0 + share * dx, at) for at, share in zip(dots, shares, strict=True)], ink)
+        else:
+            self.points([(at, y0 + share * dy) for at, share in zip(dots, shares, strict=True)], ink)
 
-        `owner` is one, or an array of n with that of the line from each point on.
-        """
-        i, j, segment = _along(np.asarray(x, np.float64), np.asarray(y, np.float64), self.width, self.height)
-        every = 3 if dotted else 1
-        self.points(i[::every], j[::every], owner[segment][::every] if isinstance(owner, np.ndarray) else owner)
+    def path(self, points: Iterable[tuple[float, float]], ink: int) -> None:
+        """Join points with lines; there is none to or from a point that is not finite."""
+        for (x0, y0), (x1, y1) in pairwise(points):
+            self.line(x0, y0, x1, y1, ink)
 
-    def disc(self, x: float, y: float, radius: float, owner: int, hollow: bool = False) -> None:
+    def disc(self, x: float, y: float, radius: float, ink: int, hollow: bool = False) -> None:
         """Set the dots whose centres are within `radius` of (x, y); hollow: only the rim, one dot wide."""
-        if abs(x) < 1e6 and abs(y) < 1e6:  # not elsewhere, and finite
-            for i, j in disc(x, y, radius, hollow):  # so few, that NumPy would take longer
-                if (dot := self.dot(i, j)) is not None:
-                    self.put(dot, True, owner)
+        if not (abs(x) < _FAR and abs(y) < _FAR):
+            return
+        most = radius * radius
+        least = (radius - 1) ** 2 if hollow and radius > 1 else -1.0
+        across = [(i, (i + 0.5 - x) ** 2) for i in range(floor(x - radius), floor(x + radius) + 2)]
+        down = [(j, (j + 0.5 - y) ** 2) for j in range(floor(y - radius), floor(y + radius) + 2)]
+        self.points([(i, j) for j, dy in down for i, dx in across if least < dx + dy <= most], ink)
 
-    def dot(self, x: float, y: float) -> int | None:
-        """The number of the dot at x, y, eight to a cell; None outside."""
-        if 0 <= x < self.width and 0 <= y < self.height:
-            i, j = int(x), int(y)
-            return 8 * ((j >> 2) * self.columns + (i >> 1)) + ORDER[(j & 3) << 1 | i & 1]
-        return None
-
-    def at(self, dot: int) -> tuple[bool, int]:
-        """Whether a dot is set, and the owner of its cell."""
-        return self._dots[dot] == 1, self._owners[dot >> 3]
-
-    def put(self, dot: int, on: bool, owner: int) -> None:
-        """Set a dot or take it away, and give its cell an owner."""
-        self._dots[dot], self._owners[dot >> 3] = on, owner
-
-    def label(self, column: int, row: int, text: str, owner: int) -> None:
+    def label(self, column: int, row: int, text: str, ink: int) -> None:
         """Write text over any dots, beginning at a cell; text beyond the edges is cut off."""
-        for at, character in enumerate(text, column):
-            if 0 <= at < self.columns and 0 <= row < self.rows:
-                self._labels[row, at] = character, owner
+        if 0 <= row < self.rows:
+            for at, character in enumerate(text, column):
+                if 0 <= at < self.columns:
+                    self._letters[row * self.columns + at] = character, ink
 
     def is_free(self, column: int, row: int) -> bool:
-        """Whether a cell is on the canvas and has no label yet."""
-        return 0 <= column < self.columns and 0 <= row < self.rows and (row, column) not in self._labels
+        """Return whether a cell is on the canvas and has no letter yet."""
+        inside = 0 <= column < self.columns and 0 <= row < self.rows
+        return inside and row * self.columns + column not in self._letters
+
+    def ink_at(self, column: int, row: int) -> int:
+        """Return the ink of a cell, NOBODY where it is blank."""
+        cell = row * self.columns + column
+        letter = self._letters.get(cell)
+        return self._inks[cell] + NOBODY if letter is None else letter[1]
 
     def picture(self) -> Picture:
-        """The characters and owners drawn so far."""
-        bits = np.packbits(np.frombuffer(self._dots, np.uint8), bitorder="little")
-        shape = self.rows, self.columns
-        characters = _GLYPHS[bits].reshape(shape)
-        owners = np.frombuffer(self._owners, np.int8).reshape(shape).copy()
-        for place, (character, owner) in self._labels.items():
-            characters[place], owners[place] = ord(character), owner
-        return Picture(characters, owners)
-
-
-def _all_inside(values: NDArray[np.float64], size: int) -> bool:
-    """Whether nothing is outside [0, size), which is clear at once from the extremes."""
-    return bool(np.fmin.reduce(values, initial=0.0) >= 0 and np.fmax.reduce(values, initial=0.0) < size)
-
-
-def _along(
-    x: NDArray[np.float64], y: NDArray[np.float64], width: int, height: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.intp]]:
-    """Points along the visible part of a polyline: one per column of dots, or per row where it is steep."""
-    with np.errstate(all="ignore"):
-        x0, y0, dx, dy = x[:-1], y[:-1], np.diff(x), np.diff(y)
-        # Liang and Barsky (1984): the part [first, last] of each segment that is inside, as fractions of it.
-        first, last = np.zeros(len(dx)), np.ones(len(dx))
-        sides = ((x0, dx, width), (y0, dy, height))
-        for start, step, size in () if _all_inside(x, width) and _all_inside(y, height) else sides:
-            low, high = np.sort([-start / step, (size - start) / step], axis=0)
-            level, inside = step == 0, (start >= 0) & (start < size)
-            first = np.maximum(first, np.where(level, np.where(inside, 0.0, 2.0), low))
-            last = np.minimum(last, np.where(level, 1.0, high))
-        drawn = (first <= last) & np.isfinite(dx) & np.isfinite(dy)
-        x0, y0, dx, dy, first, last = (part[drawn] for part in (x0, y0, dx, dy, first, last))
-        steep = abs(dy) > abs(dx)
-        start, step = np.where(steep, y0, x0), np.where(steep, dy, dx)
-        begin, end = np.floor(start + first * step), np.floor(start + last * step)
-        # From very far away, rounding could ask for more points than the canvas has dots.
-        counts = np.minimum(abs(end - begin) + 1, max(width, height) + 2).astype(np.intp)
-        segment = np.repeat(np.arange(len(counts)), counts)
-        nth = np.arange(len(segment)) - np.repeat(np.cumsum(counts) - counts, counts)
-        centre = begin[segment] + np.sign(step)[segment] * nth + 0.5
-        share = np.where(step[segment] == 0, 0.0, np.clip((centre - start[segment]) / step[segment], 0.0, 1.0))
-        x, y = x0[segment] + share * dx[segment], y0[segment] + share * dy[segment]
-        return x, y, np.flatnonzero(drawn)[segment]
+        """Return what has been drawn so far."""
+        text, _ = codecs.charmap_decode(self._bits, "strict", _BRAILLE)
+        inks = self._inks
+        if self._letters:
+            characters = list(text)
+            inks = inks[:]
+            for cell, (letter, ink) in self._letters.items():
+                characters[cell] = letter
+                inks[cell] = 0 if letter == " " else ink - NOBODY
+            text = "".join(characters)
+        begins = range(0, len(text), self.columns) if self.columns else ()
+        rows: list[Row] = [
+            tuple(
+                [
+                    (text[span.start() : span.end()], NOBODY if span[1] is None else span[1][0] + NOBODY)
+                    for span in _SPANS.finditer(inks, begin, begin + self.columns)
+                ]
+            )
+            for begin in begins
+        ]
+        return Picture(tuple(rows) or ((),) * self.rows)

@@ -16,7 +16,7 @@ ROOM = 4  # columns for the letters at the right end
 class Series:
     """Points with marks, joined by lines; or a dotted reference line with its mark at the end."""
 
-    owner: int
+    ink: int
     mark: str  # a letter; a few for a reference
     x: Floats | Sequence[float]  # (n,)
     y: Floats | Sequence[float]  # (n,); in what is plotted, x and y are in characters from the lower left corner

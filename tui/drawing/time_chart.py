@@ -22,11 +22,12 @@ from tui.drawing.axes import (
     time_axis,
     time_span,
 )
-from tui.drawing.canvas import Picture
+from tui.drawing.canvas import Canvas
 from tui.drawing.chart import SMALLEST, first_free, plot, too_small
 from tui.drawing.loglog import ROOM, Series, row_at
 from tui.drawing.palette import TEXT, faint
 from tui.drawing.palette import series as series_of
+from tui.drawing.picture import Picture
 from tui.playback.levels import Window
 from tui.playback.shown import LARGEST, Quantity, Stretch
 
@@ -92,7 +93,7 @@ class _Part:
     """The curves of a run, or of a ghost behind it."""
 
     window: Window
-    owners: list[int]
+    inks: list[int]
     letters: list[str]
     low: Floats  # (rows, methods), and later (columns, methods)
     high: Floats
@@ -142,36 +143,37 @@ def time_chart(
         x_axis = _time_axis(window, stretch, seconds, columns, note, log_time)
         sides = [per_column(part.window.x, part.low, part.high, x_axis.low, x_axis.high, columns) for part in parts]
     curves = [
-        _outline(owner, letter, *heights)
+        _outline(ink, letter, *heights)
         for part, ends in reversed([*zip(parts, sides, strict=True)])
-        for owner, letter, *heights in zip(
-            part.owners, part.letters, *((rows * y_axis.share(end)).T for end in ends), strict=True
+        for ink, letter, *heights in zip(
+            part.inks, part.letters, *((rows * y_axis.share(end)).T for end in ends), strict=True
         )
     ]
-    picture, left = plot(curves, x_axis, y_axis, width, height), width - columns - ROOM
+    canvas, left = Canvas(width, height), width - columns - ROOM
+    plot(canvas, curves, x_axis, y_axis, 0, height)
     if log:
         for column, value in _crossings(sides[0][0]):
             row = row_at(float(rows * y_axis.share(value)), rows)
-            picture.write(row, left + column, CROSSING, TEXT)
+            canvas.label(left + column, row, CROSSING, TEXT)
     for curve in curves:
         if curve.mark and len(curve.x):
             row, column = row_at(curve.y[-1], rows), left + int(curve.x[-1]) + 1
             near = [(row + down, column + right) for down in (0, 1, -1, 2, -2) for right in range(ROOM)]
-            if (free := first_free(picture, near, 1, 0, rows, (-1, 0)))[0] >= 0:
-                picture.write(*free, curve.mark, curve.owner)
+            if free := first_free(canvas, near, 1, 0, rows):
+                canvas.label(free[1], free[0], curve.mark, curve.ink)
     middles = x_axis.low + (np.arange(columns) + 0.5) / columns * (x_axis.high - x_axis.low)
     low, high = sides[0]
     values = 10.0**high if log else np.where(abs(low) > abs(high), low, high)
     times = (10.0**middles if log_time else middles).tolist()
-    return TimePlot(picture, places, left, times, values, (x_axis.low, x_axis.high), log_time)
+    return TimePlot(canvas.picture(), places, left, times, values, (x_axis.low, x_axis.high), log_time)
 
 
 def _part(window: Window, cast: Cast, quantity: Quantity, places: Sequence[int], is_ghost: bool = False) -> _Part:
     low, high = (np.clip(side[quantity][:, places], -LARGEST, LARGEST) for side in (window.low, window.high))
-    owners = [series_of(cast[place]) for place in places]
+    inks = [series_of(cast[place]) for place in places]
     if is_ghost:
-        return _Part(window, [faint(owner) for owner in owners], [""] * len(owners), low, high)
-    return _Part(window, owners, [cast[place].letter for place in places], low, high)
+        return _Part(window, [faint(ink) for ink in inks], [""] * len(inks), low, high)
+    return _Part(window, inks, [cast[place].letter for place in places], low, high)
 
 
 def _log_span(window: Window) -> tuple[float, float]:
@@ -229,7 +231,7 @@ def _linear_y_axis(low: Sequence[Floats], high: Sequence[Floats], rows: int) -> 
     return linear_axis(float(np.nanmin(lowest)), float(np.nanmax(highest)), rows)
 
 
-def _outline(owner: int, letter: str, low: Floats, high: Floats) -> Series:
+def _outline(ink: int, letter: str, low: Floats, high: Floats) -> Series:
     """A line through the lows and highs of all columns, in the order that keeps it short, but for what is flat."""
     known = np.flatnonzero(~np.isnan(low))
     low, high = low[known], high[known]
@@ -238,4 +240,4 @@ def _outline(owner: int, letter: str, low: Floats, high: Floats) -> Series:
     distinct = np.stack([np.full(len(low), True), low != high], axis=1).ravel()
     x, y = np.repeat(known + 0.5, 2)[distinct], heights[distinct]
     bends = np.concatenate([[True], (y[1:-1] != y[:-2]) | (y[1:-1] != y[2:]), [True]])[: len(y)]
-    return Series(owner, letter, x[bends], y[bends])
+    return Series(ink, letter, x[bends], y[bends])

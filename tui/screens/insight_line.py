@@ -5,6 +5,7 @@ from functools import lru_cache
 
 from engine.run.lockstep import Sample
 from tui.drawing.palette import TEXT, WARN
+from tui.drawing.picture import Picture
 from tui.playback.source import Source
 from tui.views.view import Pane
 from tui.words.insight import hint, insight
@@ -27,7 +28,8 @@ class InsightLine(Pane):
             text, owner = f"Not recording: {status.failed}", WARN
         else:
             text, owner = self._hint(source) or insight(source, self.shown.hidden), TEXT
-        self.show([[(f" {line}", owner)] for line in fitted(text, self.room.width - 2, self.room.height)])
+        lines = fitted(text, self.room.width - 2, self.room.height)
+        self.show(Picture([[(f" {line}", owner)] for line in lines]))
 
     def _hint(self, source: Source) -> str:
         """The hint that is due after some time in the lab; none where time that ran backwards is back at 0."""

@@ -5,8 +5,9 @@ from collections.abc import Sequence
 from textual import events
 from textual.reactive import var
 
-from tui.drawing.cells import CellWidget, Row
+from tui.drawing.cells import CellWidget
 from tui.drawing.palette import QUIET, TEXT
+from tui.drawing.picture import Picture, Row
 from tui.views.keys import Key
 from tui.views.messages import Asked
 
@@ -39,7 +40,7 @@ class KeyLine(CellWidget):
 
     def draw(self) -> None:
         row, self._places = key_row(self.keys, self.room.width)
-        self.show([row])
+        self.show(Picture([row]))
 
     def on_click(self, event: events.Click) -> None:
         for first, end, action in self._places:

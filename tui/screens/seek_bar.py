@@ -9,8 +9,8 @@ from textual import events
 from textual.message import Message
 
 from engine.run.lockstep import Sample
-from tui.drawing.cells import Row
 from tui.drawing.palette import FRAME, TEXT, WARN
+from tui.drawing.picture import Picture, Row
 from tui.playback.replay import Replay
 from tui.playback.source import Source
 from tui.views.view import Pane
@@ -87,7 +87,7 @@ class SeekBar(Pane):
         self._columns = max(self.room.width - len(text) - 3, 1)
         ends = [(clock, letter) for clock, letter in zip(replay.ends, "AB", strict=True) if clock is not None]
         row = bar(replay.playhead.position, replay.length, replay.ticks, ends, self._columns)
-        self.show([[(" ", TEXT), *row, ("  " + text, TEXT)]])
+        self.show(Picture([[(" ", TEXT), *row, ("  " + text, TEXT)]]))
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
         self._dragging = True

@@ -6,8 +6,8 @@ from rich.style import Style
 
 from engine.run.lockstep import Sample
 from recordings.errors import printable
-from tui.drawing.cells import Row
 from tui.drawing.palette import QUIET, TEXT, WARN
+from tui.drawing.picture import Picture, Row
 from tui.playback.source import Source
 from tui.views.view import Pane
 from tui.words.findings import limit_warning
@@ -75,7 +75,7 @@ class StatusLine(Pane):
     """The line; LIVE and REPLAY stand out."""
 
     def paint(self, source: Source, sample: Sample) -> None:
-        self.show([status_row(source, self.room.width)])
+        self.show(Picture([status_row(source, self.room.width)]))
 
     def style_of(self, owner: int, base: Style) -> Style:
         if owner == BADGE:

@@ -78,7 +78,7 @@ class View(Box):
     def wake(self) -> None:
         """Draw what is on screen again: the view was hidden."""
         for pane in self.query(Pane):
-            pane.wake()
+            pane.draw()
 
     def _begin(self) -> None:
         self._moving += self._late

@@ -10,10 +10,11 @@ from hypothesis.extra.numpy import arrays
 
 from engine.methods import USUAL_CAST
 from tests.tui.drawing.test_canvas import dots
+from tests.tui.drawn import cells, inks, size
 from tui.drawing.axes import held, per_column, time_span
 from tui.drawing.chart import SMALLEST, loglog_chart
 from tui.drawing.loglog import Series
-from tui.drawing.palette import EXACT, FAINT, FRAME, NOBODY, TEXT
+from tui.drawing.palette import EXACT, FAINT, FRAME, TEXT
 from tui.drawing.time_chart import CROSSING, time_chart
 from tui.playback.levels import Window
 
@@ -44,7 +45,7 @@ def plotted(picture, log):
         value, other_value = np.log10(value), np.log10(other_value)
     per_row = (value - other_value) / (other_row - row)
     inside = [(x // 2 - left, y) for x, y in dots(picture) if x // 2 >= left and y < 4 * (len(lines) - 2)]
-    columns = picture.characters.shape[1] - left - ROOM
+    columns = size(picture)[0] - left - ROOM
     return {(column, value + per_row * (row + 0.5 - (y + 0.5) / 4)) for column, y in inside}, per_row / 4, columns
 
 
@@ -94,7 +95,7 @@ def test_any_numbers_and_any_size_make_a_chart(data):
         seconds=data.draw(st.none() | st.floats(0.1, 1e6)),
         shown=data.draw(st.lists(st.integers(0, COUNT - 1), unique=True)),
     )
-    assert picture.characters.shape == picture.owners.shape == (height, width)
+    assert size(picture) == (width, height)
     assert "nan" not in picture.text
     assert "inf" not in picture.text
 
@@ -107,11 +108,11 @@ def test_any_numbers_and_any_size_make_a_chart(data):
 )
 def test_any_points_make_a_loglog_chart(data, width, height):
     series = [
-        Series(owner, "esvr?"[owner], [x for x, _ in points], [y for _, y in points], dotted)
-        for owner, (points, dotted) in enumerate(data)
+        Series(ink, "esvr?"[ink], [x for x, _ in points], [y for _, y in points], dotted)
+        for ink, (points, dotted) in enumerate(data)
     ]
     picture = loglog_chart(series, width, height, x_label="h [s]", y_label="error")
-    assert picture.characters.shape == (height, width)
+    assert size(picture) == (width, height)
 
 
 def test_the_largest_errors_of_half_a_swing_over_decades():
@@ -172,7 +173,7 @@ def test_speed_against_accuracy():
         "      10         100          1e3         1e4\n"
         "                               force evaluations"
     )
-    assert {0, 3, EXACT, FRAME, TEXT, NOBODY} == set(picture.owners.ravel().tolist())
+    assert inks(picture) == {0, 3, EXACT, FRAME, TEXT}
 
 
 @given(st.sets(st.integers(0, COUNT - 1)))
@@ -190,9 +191,9 @@ def test_zeros_are_drawn_at_the_floor():
     assert "⣀" in picture.text or "⠤" in picture.text
 
 
-def test_a_line_is_owned_by_its_method():
+def test_a_line_has_the_ink_of_its_method():
     picture = chart(window([1, 2, 3], [1, 1, 1]), shown=[2])
-    assert set(picture.owners.ravel().tolist()) == {2, FRAME, TEXT, NOBODY}
+    assert inks(picture) == {2, FRAME, TEXT}
 
 
 def test_a_failed_method_leaves_room_for_the_others():
@@ -259,11 +260,11 @@ def test_where_one_error_passes_another_for_good_there_is_a_cross_and_a_ghost_is
     t = np.linspace(0, 20, 400)
     errors = np.stack([1e-3 * t, np.full(400, 0.01)] * 2, axis=1)
     plot = time_chart(window(t, errors), USUAL_CAST, "energy_error", 60, 14, seconds=20, shown=[0, 1])
-    ((_, column),) = zip(*np.nonzero(plot.picture.characters == ord(CROSSING)), strict=True)
+    ((_, column),) = (place for place, (character, _) in cells(plot.picture).items() if character == CROSSING)
     assert plot.at(column).t == pytest.approx(10, abs=0.6)
     assert plot.at(column).values == pytest.approx([0.01, 0.01], rel=0.1)
     assert plot.at(plot.left - 1) is None
     ghost = window(t, 10 * errors), USUAL_CAST
     behind = time_chart(window(t, errors), USUAL_CAST, "energy_error", 60, 14, seconds=20, shown=[0], ghost=ghost)
-    assert {0, FAINT} < set(behind.picture.owners.ravel().tolist())
-    assert FAINT + 1 not in behind.picture.owners
+    assert {0, FAINT} < inks(behind.picture)
+    assert FAINT + 1 not in inks(behind.picture)

@@ -6,6 +6,7 @@ import pytest
 from engine.scenes import DEFAULT_SCENE, SCENES
 from recordings.recording import Recording
 from tests.tui.command_line import pendu
+from tests.tui.drawn import inks
 from tests.tui.harness import after, lab, recorded
 from tui.drawing.palette import faint, series
 from tui.playback.ghost import Ghost
@@ -67,11 +68,11 @@ async def test_it_is_faint_behind_the_same_methods_and_says_which_step_size_it_h
         await theatre.settled()
         first = theatre.stage.query_one(LabView).pendulums[1]
         colour = faint(series(DEFAULT_SCENE.cast[1]))
-        assert colour in {owner for row in first._rows for _, owner in row}
+        assert colour in inks(first._picture)
         assert first.border_subtitle == "dim: h 0.1 s" or "dim: swing, h 0.1 s" in first.border_subtitle
         chart = theatre.stage.query(TimeChart).first()
         assert chart._plot is not None
-        assert colour in set(chart._plot.picture.owners.ravel().tolist())
+        assert colour in inks(chart._picture)
         assert "dim: swing, h 0.1 s" in str(chart.border_subtitle)
         theatre.stage.start(SCENES["stiff-slow"])
         assert theatre.source.ghost is None  # another model

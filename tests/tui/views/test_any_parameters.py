@@ -12,12 +12,11 @@ from engine.models import MODELS, PARAMETERS
 from engine.scenes import LIMITS, SCENES, Scene
 from tests.tui.command_line import pendu
 from tests.tui.harness import Lab
-from tui.drawing.canvas import Picture
 from tui.drawing.time_chart import time_chart
 from tui.playback.shown import Shown, quantities
 from tui.screens.status_line import status_row
 from tui.views.lab.error_table import table
-from tui.views.lab.pendulums import Bob, pendulum_sketch
+from tui.views.lab.pendulums import Bob, pendulum_picture
 from tui.views.phase.facts import fact_rows
 from tui.words.command_line import scene_arguments
 from tui.words.describe import description
@@ -61,7 +60,7 @@ def on_screen(live) -> str:
     ]
     lengths = [scene.equations.length(reading.extra) for reading in sample.readings]
     bobs = [Bob(reading.theta, 0, length=length) for reading, length in zip(sample.readings, lengths, strict=True)]
-    picture = Picture.of_sketch(pendulum_sketch(40, 12, bobs)).text
+    picture = pendulum_picture(40, 12, bobs).text
     sentences = [*description(live), insight(live), *lasting(live)]
     return "\n".join(["".join(text for text, _ in row) for row in rows] + charts + [picture] + sentences)
 

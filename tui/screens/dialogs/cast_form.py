@@ -12,8 +12,9 @@ from textual.geometry import Region
 
 from engine.methods import METHODS, Cast, Method
 from engine.scenes import MOST_METHODS, Scene
-from tui.drawing.cells import CellWidget, Row
+from tui.drawing.cells import CellWidget
 from tui.drawing.palette import TEXT, series
+from tui.drawing.picture import Picture, Row
 from tui.screens.dialogs.modal import Form
 from tui.words.numbers import counted
 
@@ -63,7 +64,7 @@ class MethodList(CellWidget, can_focus=True):
         self.styles.height = len(self.methods)
 
     def draw(self) -> None:
-        self.show(method_rows(self.methods, self.cast, self.cursor, self.room.width))
+        self.show(Picture(method_rows(self.methods, self.cast, self.cursor, self.room.width)))
         self.screen.query_one("#cast").border_subtitle = (
             "Space takes or leaves a method, Enter starts, Esc cancels" if self.cast else "At least one method"
         )

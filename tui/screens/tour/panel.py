@@ -4,8 +4,9 @@ import textwrap
 
 from rich.style import Style
 
-from tui.drawing.cells import CellWidget, Row
+from tui.drawing.cells import CellWidget
 from tui.drawing.palette import EXACT, TEXT, WARN
+from tui.drawing.picture import Picture, Row
 from tui.views.messages import Asked
 from tui.words.tour.guide import Guide
 
@@ -30,7 +31,7 @@ class TourPanel(CellWidget):
 
     def draw(self) -> None:
         if self.guide is not None and self.drawable:
-            self.show(tour_rows(self.guide.title, _keys(self.guide), self.guide.said, *self.room))
+            self.show(Picture(tour_rows(self.guide.title, _keys(self.guide), self.guide.said, *self.room)))
 
     def on_click(self) -> None:
         self.post_message(Asked("tour_forward"))

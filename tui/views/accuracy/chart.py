@@ -7,11 +7,11 @@ from engine.accuracy.front import Cost, cost_of
 from engine.accuracy.growth import Growth
 from engine.accuracy.references import CLOSED_FORM, TAYLOR_20, AnyPoint, References
 from engine.accuracy.study import ErrorKind, Flaw, Point
-from tui.drawing.canvas import Picture
 from tui.drawing.chart import SMALLEST, loglog_chart
 from tui.drawing.loglog import LogLog, Series
 from tui.drawing.palette import EXACT, FRAME, TEXT
 from tui.drawing.palette import series as series_of
+from tui.drawing.picture import Picture
 from tui.words.accuracy import COSTS
 
 MARKS: dict[Flaw, str] = {"lost": "x", "diverged": "x", "rounding": "~"}
@@ -75,8 +75,8 @@ def accuracy_series(
     are Taylor's series and, upright, what the closed form takes.
     """
 
-    def series(owner: int, some: Sequence[AnyPoint], mark: str) -> Series:
-        return Series(owner, mark, [cost_of(p, cost) for p in some], [p.error(kind) for p in some])
+    def series(ink: int, some: Sequence[AnyPoint], mark: str) -> Series:
+        return Series(ink, mark, [cost_of(p, cost) for p in some], [p.error(kind) for p in some])
 
     methods = dict.fromkeys(point.method for point in points)
     by_method = [[point for point in points if point.method == method] for method in methods]
@@ -101,9 +101,9 @@ def growth_chart(found: Sequence[Growth], width: int, height: int) -> Picture:
     lines: list[Series] = []
     slopes: dict[int, Series] = {}
     for growth in found:
-        owner, times, errors = series_of(growth.method), growth.times, growth.errors
+        ink, times, errors = series_of(growth.method), growth.times, growth.errors
         some = sorted({round(len(times) ** (n / MARKED)) - 1 for n in range(MARKED + 1)}) if times else []
-        lines.append(Series(owner, growth.method.letter, [times[n] for n in some], [errors[n] for n in some]))
+        lines.append(Series(ink, growth.method.letter, [times[n] for n in some], [errors[n] for n in some]))
         if growth.power is not None:
             power, ends = round(growth.power), [times[0], times[-1]]
             slope = [BESIDE * errors[-1] * (t / times[-1]) ** power for t in ends]

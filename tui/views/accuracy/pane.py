@@ -8,7 +8,6 @@ from typing import ClassVar
 
 from textual import events
 from textual.binding import BindingType
-from textual.worker import Worker, WorkerState
 
 from engine.accuracy.front import Cost
 from engine.accuracy.growth import Growth
@@ -16,9 +15,8 @@ from engine.accuracy.references import AnyPoint, References, with_all_methods
 from engine.accuracy.study import ErrorKind, Point
 from engine.methods import Cast
 from engine.run.lockstep import Sample
-from tui.drawing.canvas import Picture
-from tui.drawing.cells import Row
 from tui.drawing.palette import TEXT
+from tui.drawing.picture import Picture, Row
 from tui.playback.source import Source
 from tui.views.accuracy.chart import Placed, accuracy_series, charted, growth_chart, nearest, raised
 from tui.views.accuracy.words import front_lines, growth_lines, point_words
@@ -137,23 +135,17 @@ class AccuracyPane(Chooser[int]):
         """Build a chart of what is new in a thread, unless one is being built; the next sample asks again."""
         if why := source.scene.why_not_mapped:
             self.border_title, self.border_subtitle, self._drawn = "Accuracy (F4)", "", None
-            self.show([[(f" {line}", TEXT)] for line in wrap(why, max(self.room.width - 2, 1))])
+            self.show(Picture([[(f" {line}", TEXT)] for line in wrap(why, max(self.room.width - 2, 1))]))
             return
         if self._drawn != self._state and not self._building:
             self._building = True
-            self.run_worker(self._build(), group="chart", exit_on_error=False)
-
-    def on_worker_state_changed(self, event: Worker.StateChanged) -> None:
-        """Say what failed; the next change asks for another chart."""
-        if event.state is WorkerState.ERROR and event.worker.error is not None:
-            self._drawn, self._building = self._state, False
-            self.fail(event.worker.error)
+            self.run_worker(self._build(), group="chart")
 
     async def _build(self) -> None:
         state, lines = self._state, MOST_WORDS if self.room.height >= ROOMY else WORDS
         draw = self._growth if self.over_time else self._accuracy
         picture, self._cells = await asyncio.to_thread(draw, self.room.width, max(self.room.height - lines, 1))
-        self._chart = [picture.row(y) for y in range(len(picture.characters))]
+        self._chart = [*picture.rows]
         left = f", {self.missing} points left" if self.missing else ""
         over_cost = f"Accuracy (F4) over {self.time:g} s: {self.kind} error{left}"
         self.border_title = "Theta error over time, at each method's h" if self.over_time else over_cost
@@ -163,7 +155,7 @@ class AccuracyPane(Chooser[int]):
     def tell(self) -> None:
         """Show the chart, and words below it."""
         lines = [line for words in self._words() for line in wrap(words, max(self.room.width - 2, 1))]
-        self.show([*self._chart, *([(f" {line}", TEXT)] for line in lines)][: self.room.height])
+        self.show(Picture([*self._chart, *([(f" {line}", TEXT)] for line in lines)][: self.room.height]))
 
     def _accuracy(self, width: int, height: int) -> tuple[Picture, list[Placed]]:
         """The chart of error over cost, and where the points are on it."""

@@ -14,8 +14,8 @@ from engine.methods import Method
 from engine.models.model import Model, State
 from engine.run.lockstep import Reading, Sample
 from engine.run.verdict import Judgement
-from tui.drawing.cells import Row
 from tui.drawing.palette import GOOD, QUIET, TEXT, WARN, mark, series
+from tui.drawing.picture import Picture, Row
 from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.views.keys import Key, bindings
@@ -179,7 +179,7 @@ class ErrorTable(Pane, can_focus=True):
             gap = len(text := self._head[at]) - len(text.lstrip())
             chosen = (text[:gap], QUIET), (text[gap:], Style(reverse=True))
             rows[0] = [*rows[0][:at], *chosen, *rows[0][at + 1 :]]
-        self.show(rows)
+        self.show(Picture(rows))
 
     def on_focus(self) -> None:
         self._choose(1)

@@ -4,6 +4,7 @@ from textual import events
 
 from engine.run.lockstep import Sample
 from tui.drawing.palette import QUIET, TEXT, series
+from tui.drawing.picture import Picture
 from tui.playback.source import Source
 from tui.views.messages import Asked
 from tui.views.view import Pane
@@ -11,7 +12,7 @@ from tui.words.events import EventLine, event_lines, numbered
 from tui.words.findings import short_name
 
 
-def owner_of(line: EventLine) -> int:
+def ink_of(line: EventLine) -> int:
     """A milestone has its method's colour."""
     return series(line.method) if line.method is not None else TEXT if line.kind == "mark" else QUIET
 
@@ -25,10 +26,6 @@ class EventList(Pane):
         self._listed: list[EventLine] = []
         self._listed_for: object = None
 
-    def fail(self, error: BaseException) -> None:
-        self._listed_for = None
-        super().fail(error)
-
     def paint(self, source: Source, sample: Sample) -> None:
         listed_for = [*source.events], [*source.later_marks], [*source.milestones], sample.run, self.room
         if listed_for == self._listed_for:  # to put them into words takes long
@@ -36,7 +33,7 @@ class EventList(Pane):
         lines = event_lines(source)
         last = [*zip(lines, numbered(lines), strict=True)][-self.room.height :]
         self._listed = [line for line, _ in last]
-        self.show([[(self._fitted(text, line), owner_of(line))] for line, text in last])
+        self.show(Picture([[(self._fitted(text, line), ink_of(line))] for line, text in last]))
         self._listed_for = listed_for
 
     def _fitted(self, text: str, line: EventLine) -> str:

@@ -11,8 +11,9 @@ from typing import NamedTuple
 from textual.content import Content
 
 from engine.run.lockstep import Sample
+from tui.drawing.canvas import Canvas
 from tui.drawing.palette import EXACT, FRAME, faint, mark, series
-from tui.drawing.sketch import Sketch
+from tui.drawing.picture import Picture
 from tui.playback.source import Source
 from tui.views.lab.reach import Reach
 from tui.views.messages import MethodChosen
@@ -27,7 +28,7 @@ class Bob(NamedTuple):
     """One pendulum to draw."""
 
     theta: float  # rad from the downward vertical
-    owner: int
+    ink: int
     trail: Sequence[float] = ()  # rad; where it was, drawn faintly
     letter: str = ""  # written next to it, so that colour is not alone
     ghost: bool = False  # the exact swing: dotted and hollow
@@ -35,17 +36,17 @@ class Bob(NamedTuple):
     diverged: bool = False  # its numbers ended here: crossed out
 
 
-def pendulum_sketch(columns: int, rows: int, bobs: Sequence[Bob], reach: float = pi) -> Sketch:
+def pendulum_picture(columns: int, rows: int, bobs: Sequence[Bob], reach: float = pi) -> Picture:
     """Pendulums on one pivot in `columns` × `rows` cells; later ones in front.
 
     The pivot is in the middle, or at the top if they stay within a `reach` [rad] of a quarter turn.
     """
-    sketch = Sketch(columns, rows)
-    x0, y0 = sketch.width / 2, sketch.height / 2
+    canvas = Canvas(columns, rows)
+    x0, y0 = canvas.width / 2, canvas.height / 2
     room = min(x0, y0)
     if reach <= pi / 2:
         y0 = float(TOP)
-        room = min(sketch.height - y0, x0 / sin(reach))
+        room = min(canvas.height - y0, x0 / sin(reach))
     bob_radius = min(max(room / 9, 1.5), 3.0)
     room_for_letters = 4 if any(bob.letter for bob in bobs) else 0
     length = max(room - bob_radius - room_for_letters, 1.0)  # of the rod, in dots
@@ -53,23 +54,23 @@ def pendulum_sketch(columns: int, rows: int, bobs: Sequence[Bob], reach: float =
     if any(bob.length != 1 for bob in bobs):
         length /= STRETCHED
     for bob in bobs:
-        sketch.points([(x0 + length * sin(theta), y0 + length * cos(theta)) for theta in bob.trail], faint(bob.owner))
+        canvas.points([(x0 + length * sin(theta), y0 + length * cos(theta)) for theta in bob.trail], faint(bob.ink))
     for bob in bobs:
         right, down = sin(bob.theta), cos(bob.theta)
         rod = length * min(bob.length, LONGEST)
         x, y = x0 + rod * right, y0 + rod * down
-        sketch.line(x0, y0, x, y, bob.owner, dotted=bob.ghost or bob.diverged)
+        canvas.line(x0, y0, x, y, bob.ink, dotted=bob.ghost or bob.diverged)
         if bob.diverged:
             size = bob_radius + 1
-            sketch.line(x - size, y - size, x + size, y + size, bob.owner)
-            sketch.line(x - size, y + size, x + size, y - size, bob.owner)
+            canvas.line(x - size, y - size, x + size, y + size, bob.ink)
+            canvas.line(x - size, y + size, x + size, y - size, bob.ink)
         else:
-            sketch.disc(x, y, bob_radius, bob.owner, hollow=bob.ghost)
+            canvas.disc(x, y, bob_radius, bob.ink, hollow=bob.ghost)
         column, row = int(x + (bob_radius + 2) * right) // 2, int(y + (bob_radius + 3) * down) // 4
         beside = (*range(column, column + len(bobs)), *range(column - 1, column - len(bobs), -1))
-        sketch.label(next((at for at in beside if sketch.is_free(at, row)), column), row, bob.letter, bob.owner)
-    sketch.points([(x0 - 1, y0 - 1), (x0, y0 - 1), (x0 - 1, y0), (x0, y0)], FRAME)
-    return sketch
+        canvas.label(next((at for at in beside if canvas.is_free(at, row)), column), row, bob.letter, bob.ink)
+    canvas.points([(x0 - 1, y0 - 1), (x0, y0 - 1), (x0 - 1, y0), (x0, y0)], FRAME)
+    return canvas.picture()
 
 
 class Pendulum(Pane):
@@ -129,7 +130,7 @@ class Pendulum(Pane):
         widest = self._reach.of(source, sample, self.places)
         if ghost is not None:
             widest = max(widest, ghost.widest)
-        self.show_sketch(pendulum_sketch(*self.room, bobs, widest))
+        self.show(pendulum_picture(*self.room, bobs, widest))
 
 
 def _exact(source: Source, t: float) -> list[Bob]:

@@ -227,13 +227,10 @@ class TimeChart(Pane):
                 ghost=behind,
             )
             run = self.sample.run
-            try:
-                plot = await asyncio.to_thread(build, window, self.cast, shown.quantity, width, height)
-                if self.source.sample.run == run:  # else another one has begun, maybe with other methods
-                    self.show_picture(plot.picture)
-                    self._plot = plot
-                if self._pointer is not None:
-                    self._tell()
-            except Exception as error:
-                self.fail(error)
+            plot = await asyncio.to_thread(build, window, self.cast, shown.quantity, width, height)
+            if self.source.sample.run == run:  # else another one has begun, maybe with other methods
+                self.show(plot.picture)
+                self._plot = plot
+            if self._pointer is not None:
+                self._tell()
             self._building = False

@@ -8,8 +8,8 @@ from engine.phase_space.area import Neighbours
 from engine.run.stepping import change_before
 from engine.scenes import Scene
 from tui.drawing.axes import in_pi
-from tui.drawing.canvas import Canvas, Picture, Span
 from tui.drawing.palette import QUIET, TEXT, mark, series
+from tui.drawing.picture import Picture, Row
 from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.words.motion import energy_share, motion_text, regime
@@ -23,12 +23,12 @@ _NOT_CURVES = {
 """Captions for the models whose motion does not follow the curves."""
 
 
-def fact_rows(source: Source, shown: Shown, neighbours: Neighbours | None, width: int) -> list[list[Span]]:
+def fact_rows(source: Source, shown: Shown, neighbours: Neighbours | None, width: int) -> list[Row]:
     """A line about the ring, the heads, and a row for each method; the first columns that fit."""
     exact, fit = source.exact.at(source.sample.t), max((width - _NAME) // _CELL, 0)
     error = "dE/E0" if source.scene.equations.energy_error.conserved else "ln E/Etrue"
     heads = ("ln area ratio", "area/area0", "theta error", error)[:fit]
-    rows: list[list[Span]] = [
+    rows: list[Row] = [
         [(_ring_text(source, neighbours)[:width], TEXT)],
         [(" " * _NAME + "".join(head.rjust(_CELL) for head in heads), QUIET)],
     ]
@@ -59,23 +59,21 @@ def _ring_text(source: Source, neighbours: Neighbours | None) -> str:
     return f"{text}: {behind} steps behind" if behind else f"{text} (g: another)"
 
 
-def captioned(plot: Picture, scene: Scene, exact: ExactMotion, aim: State | None) -> Picture:
+def captioned(plot: Picture, scene: Scene, exact: ExactMotion, aim: State | None, width: int) -> Picture:
     """The portrait, and a line below it: a state, if one is aimed at, and the exact motion as far as there is room."""
-    return Picture.stacked(plot, _caption(scene, exact, aim, plot.characters.shape[1]))
+    return Picture.stacked(plot, _caption(scene, exact, aim, width))
 
 
 @lru_cache(maxsize=8)  # it changes with the run and with what is aimed at only
 def _caption(scene: Scene, exact: ExactMotion, aim: State | None, width: int) -> Picture:
     motion = _NOT_CURVES.get(scene.model) or motion_text(scene, exact)
-    line = Canvas(width, 1).picture()
     if aim is None:
-        line.write(0, 0, motion, QUIET)
-        return line
+        return Picture.of_line(motion, QUIET)
     room = width - len(motion) - 2
-    line.write(0, 0, _place(scene, *aim, room if room >= 60 else width), TEXT)
-    if room >= 60:
-        line.write(0, width - len(motion), motion, QUIET)
-    return line
+    if room < 60:
+        return Picture.of_line(_place(scene, *aim, width), TEXT)
+    place = _place(scene, *aim, room)
+    return Picture((((place.ljust(room + 2), TEXT), (motion, QUIET)),))
 
 
 def _place(scene: Scene, theta: float, omega: float, width: int) -> str:

@@ -20,8 +20,7 @@ from tui.views.view import Chooser
 
 if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
     from engine.phase_space.area import Neighbourhood, Neighbours
-    from tui.drawing.canvas import Picture
-    from tui.views.phase.picture import PhaseTrails
+    from tui.drawing.picture import Picture
 
 TITLE = "Phase space (F3): theta [rad], omega [rad/s]"
 RING_STEPS = 100  # a frame; 52 µs each, so a ring that has to catch up costs 5 ms of a frame at most
@@ -50,7 +49,6 @@ class PhasePane(Chooser[State]):
         self.zoomed: Viewport | None = None  # None: the whole portrait
         self._whole: Viewport | None = None
         self._plot: Picture | None = None
-        self._trails: PhaseTrails | None = None
         self._panning: tuple[int, int] | None = None  # the cell where the picture was last moved to
 
     @property
@@ -96,14 +94,11 @@ class PhasePane(Chooser[State]):
         return self.cursor or (None if self.pointer is None else self.viewport.at_cell(*self.pointer))
 
     def paint(self, source: Source, sample: Sample) -> None:
-        from tui.views.phase.picture import PhaseTrails, source_picture
+        from tui.views.phase.picture import source_picture
 
-        self._trails = self._trails or PhaseTrails()
         orbit = self.aim if self.aiming or self.cursor is not None else None
         self._follow(source, sample)
-        self._plot = source_picture(
-            self.viewport, source, sample, self.shown, self._trails, self.ring, self.cursor, orbit
-        )
+        self._plot = source_picture(self.viewport, source, sample, self.shown, self.ring, self.cursor, orbit)
         self.tell()
 
     def _follow(self, source: Source, sample: Sample) -> None:
@@ -127,7 +122,8 @@ class PhasePane(Chooser[State]):
         if self.source is not None and self._plot is not None:
             from tui.views.phase.facts import captioned
 
-            self.show_picture(captioned(self._plot, self.source.scene, self.source.exact, self.aim))
+            scene, exact, width = self.source.scene, self.source.exact, self.room.width
+            self.show(captioned(self._plot, scene, exact, self.aim, width))
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         return (action == "cancel" and self.aiming) or super().check_action(action, parameters)

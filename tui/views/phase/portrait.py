@@ -11,45 +11,14 @@ from numpy.typing import NDArray
 
 from engine.models.pendulum import separatrix_margin
 from tui.drawing.axes import nice, omega_ticks, theta_ticks
-from tui.drawing.canvas import Canvas, Picture
+from tui.drawing.canvas import Canvas
 from tui.drawing.palette import EXACT, FAINT, FRAME, QUIET, TEXT
 from tui.views.phase.viewport import Viewport
 
 Dots = tuple[NDArray[np.intp], NDArray[np.intp]]  # x, y
 Cells = NDArray[np.bool_]  # (rows, columns)
-Word = tuple[int, int, str, int]  # column, row, text, owner
+Word = tuple[int, int, str, int]  # column, row, text, ink
 _CURVES = 8  # about so many energies are in view
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Letters:
-    """The portrait's words, letter by letter."""
-
-    cells: tuple[NDArray[np.intp], NDArray[np.intp]]  # row, column
-    codes: NDArray[np.uint32]
-    owners: NDArray[np.int8]
-    starts: NDArray[np.intp]  # of each word
-    lengths: NDArray[np.intp]
-
-    @classmethod
-    def of(cls, words: tuple[Word, ...]) -> "Letters":
-        """Spell them."""
-        letters = [
-            (row, column + n, ord(one), owner) for column, row, text, owner in words for n, one in enumerate(text)
-        ]
-        rows, columns, codes, owners = np.array(letters, np.intp).reshape(-1, 4).T
-        lengths = np.array([len(text) for *_, text, _ in words], np.intp)
-        starts = np.cumsum(lengths) - lengths
-        return cls((rows, columns), codes.astype(np.uint32), owners.astype(np.int8), starts, lengths)
-
-    def write(self, picture: Picture) -> None:
-        """Write all except those that would cover part of a point, a ring or an orbit; a blank covers no trail."""
-        there = picture.owners[self.cells]
-        taken, free = (there >= EXACT) & (there < FAINT), (self.codes != ord(" ")) | (there < EXACT)
-        if taken.any():
-            free &= np.repeat(~np.logical_or.reduceat(taken, self.starts), self.lengths)
-        cells = self.cells[0][free], self.cells[1][free]
-        picture.characters[cells], picture.owners[cells] = self.codes[free], self.owners[free]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -64,7 +33,6 @@ class Portrait:
     separatrix: Dots
     ground: Canvas  # with both
     words: tuple[Word, ...]
-    letters: Letters
 
     @classmethod
     @lru_cache(maxsize=2)  # for the lab's pane and the view's
@@ -85,9 +53,12 @@ class Portrait:
             words = tuple(axes(viewport))
         shown = _dots(curves), _dots(separatrix)
         ground = Canvas(viewport.columns, viewport.rows)
-        ground.points(*shown[0], FRAME)
-        ground.points(*shown[1], TEXT)
-        return cls(viewport, w0, model, field, *shown, ground, words, Letters.of(words))
+        ground.scatter(*shown[0], FRAME)
+        ground.scatter(*shown[1], TEXT)
+        return cls(viewport, w0, model, field, *shown, ground, words)
+
+    def write_words(self, canvas: Canvas) -> None:
+        write_words(canvas, self.words)
 
     def orbit(self, theta: float, omega: float) -> Dots:
         """The exact orbit through a state, where it is a curve of equal energy."""
@@ -101,6 +72,17 @@ class Portrait:
             rows = self.viewport.omega_at(np.arange(len(curve)) + 0.5)
             curve &= (rows > 0)[:, None] if omega > 0 else (rows < 0)[:, None]
         return _dots(curve)
+
+
+def write_words(canvas: Canvas, words: Sequence[Word]) -> None:
+    """Write words, except those that would cover part of a point, a ring or an orbit; a blank covers no trail."""
+    for column, row, text, ink in words:
+        below = [canvas.ink_at(at, row) for at in range(column, column + len(text))]
+        if any(EXACT <= one < FAINT for one in below):
+            continue
+        for at, character in enumerate(text):
+            if character != " " or below[at] < EXACT:
+                canvas.label(column + at, row, character, ink)
 
 
 def _field(model: str, w0: float, theta: Any, omega: Any) -> Any:

@@ -6,10 +6,11 @@ from numpy.typing import NDArray
 from engine.methods import Method
 from engine.models.model import Model, Phase, State
 from engine.phase_space.section import Points, spread
-from tui.drawing.canvas import Canvas, Picture
-from tui.drawing.palette import FRAME, TEXT, faint, series
-from tui.views.phase.picture import PhasePoint, letter, on_screen
-from tui.views.phase.portrait import Letters, Portrait, axes
+from tui.drawing.canvas import Canvas
+from tui.drawing.palette import FRAME, faint, series
+from tui.drawing.picture import Picture
+from tui.views.phase.picture import PhasePoint, draw_crosshair, letter, on_screen
+from tui.views.phase.portrait import Portrait, axes, write_words
 from tui.views.phase.viewport import Viewport
 
 GAP = 2  # dots between orbits
@@ -32,9 +33,9 @@ class Section:
         self.viewport, self.method = viewport, method
         self._ground = Canvas(viewport.columns, viewport.rows)
         if model.key == "pendulum":
-            self._ground.points(*Portrait.of(viewport, model.w0).separatrix, FRAME)
+            self._ground.scatter(*Portrait.of(viewport, model.w0).separatrix, FRAME)
         self._near = np.zeros((4 * viewport.rows + 2 * GAP, 2 * viewport.columns + 2 * GAP), np.bool_)
-        self._axes = Letters.of(tuple(axes(viewport)))
+        self._axes = axes(viewport)
 
     def add(self, points: Points) -> None:
         """Draw those orbits, a column each, that leave a gap to those before."""
@@ -44,31 +45,28 @@ class Section:
             at = inside[:, each]
             i, j = np.unique(np.stack([x[at, each], y[at, each]]).astype(np.intp), axis=1)
             if len(i) and self._near[j + GAP, i + GAP].mean() <= TAKEN[self.method.symplectic]:
-                self._ground.points(i, j, faint(series(self.method)))
+                self._ground.scatter(i, j, faint(series(self.method)))
                 for right in range(2 * GAP + 1):
                     for down in range(2 * GAP + 1):
                         self._near[j + down, i + right] = True
 
     def picture(self, orbit: Points, start: State, crosshair: Phase | None = None) -> Picture:
         """All that was drawn, one orbit in thick dots or, if it is a spiral, joined; its start, perhaps a crosshair."""
-        viewport, canvas, owner = self.viewport, self._ground.copy(), series(self.method)
+        viewport, canvas, ink = self.viewport, self._ground.copy(), series(self.method)
         if self.method.symplectic:
             x, y = self._dots(orbit)
             for right, down in ((0, 0), (1, 0), (0, 1)):
-                canvas.points(x + right, y + down, owner)
+                canvas.scatter(x + right, y + down, ink)
         else:
             theta, omega = orbit[0][:SPIRAL], orbit[1][:SPIRAL]
-            canvas.line(*on_screen(viewport, theta, omega, np.full(len(theta), owner, np.int8)))
+            canvas.path(on_screen(viewport, theta, omega), ink)
         if crosshair is not None:
-            at_x, at_y = viewport.x(crosshair[0]), viewport.y(crosshair[1])
-            canvas.line([0, canvas.width], [at_y, at_y], TEXT, dotted=True)
-            canvas.line([at_x, at_x], [0, canvas.height], TEXT, dotted=True)
+            draw_crosshair(canvas, float(viewport.x(crosshair[0])), float(viewport.y(crosshair[1])))
         at_x, at_y = float(viewport.x(start[0])), float(viewport.y(start[1]))
-        canvas.disc(at_x, at_y, 1.6, owner)
-        letter(canvas, at_x, at_y, PhasePoint(*start, owner, self.method.letter))
-        picture = canvas.picture()
-        self._axes.write(picture)
-        return picture
+        canvas.disc(at_x, at_y, 1.6, ink)
+        letter(canvas, at_x, at_y, PhasePoint(*start, ink, self.method.letter))
+        write_words(canvas, self._axes)
+        return canvas.picture()
 
     @np.errstate(all="ignore")  # a method may be farther out than dots can be counted
     def _dots(self, points: Points) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -123,17 +123,16 @@ class SectionPane(PhasePane):
         if not self.shows_section or self.wanted is None:
             super().tell()
         elif self.source is not None and self._plot is not None:
-            from tui.drawing.canvas import Canvas, Picture
             from tui.drawing.palette import TEXT
+            from tui.drawing.picture import Picture
             from tui.words.orbit import sentence
 
             method, model, h, _ = self.wanted
             scene, aim = self.source.scene, self.aim
             where = "start" if aim is None else f"{aim.theta:g}, {aim.omega:g}"
             _, kind = followed(method, model, h, aim or State(scene.theta, scene.omega))
-            line = Canvas(self._plot.characters.shape[1], 1).picture()
-            line.write(0, 0, f"{where}: {sentence(method, kind)}", TEXT)
-            self.show_picture(Picture.stacked(self._plot, line))
+            line = Picture.of_line(f"{where}: {sentence(method, kind)}", TEXT)
+            self.show(Picture.stacked(self._plot, line))
 
     def action_section(self) -> None:
         self.shows_section = not self.shows_section

@@ -6,7 +6,8 @@ from functools import partial
 from textual.app import ComposeResult
 
 from engine.run.lockstep import Sample
-from tui.drawing.cells import CellWidget, Row
+from tui.drawing.cells import CellWidget
+from tui.drawing.picture import Picture, Row
 from tui.views.background import computed
 from tui.views.phase.facts import fact_rows
 from tui.views.phase.section_pane import KEYS, SectionPane, Wanted, followed
@@ -37,7 +38,6 @@ class PhaseView(View):
 
     def wake(self) -> None:
         super().wake()
-        self.query_one("#facts", CellWidget).wake()
         self._write_facts()
 
     def follow(self, sample: Sample, read: bool = True) -> None:
@@ -75,12 +75,9 @@ class PhaseView(View):
     def _write_facts(self) -> None:
         facts, pane = self.query_one("#facts", CellWidget), self.query_one(SectionPane)
         if self.source is not None and facts.drawable:
-            try:
-                rows = self._facts(pane, facts.size.width)
-                facts.styles.height = len(rows)  # more methods, more rows
-                facts.show(rows)
-            except Exception as error:
-                facts.fail(error)
+            rows = self._facts(pane, facts.size.width)
+            facts.styles.height = len(rows)  # more methods, more rows
+            facts.show(Picture(rows))
 
     def _facts(self, pane: SectionPane, width: int) -> list[Row]:
         assert self.source is not None

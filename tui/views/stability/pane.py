@@ -10,8 +10,8 @@ from engine.run.lockstep import Sample
 from engine.stability.grid import Grid
 from engine.stability.outcomes import Cells
 from engine.stability.study import amplitude
-from tui.drawing.cells import Row
 from tui.drawing.palette import NOBODY, Palette, palette
+from tui.drawing.picture import Picture, Row
 from tui.playback.source import Source
 from tui.views.keys import Key, arrows, bindings
 from tui.views.messages import SceneChosen
@@ -20,7 +20,6 @@ from tui.views.stability.words import note, verdict
 from tui.views.view import Chooser
 
 WORDS = 2  # lines
-SOME = 6  # rows of what was computed that are sent with a sample: a key waits for what is on its way
 ROOMY = 28  # rows from which on there is room for all of the legend
 BIG_STEP = 5  # cells of the map
 
@@ -56,14 +55,13 @@ class StabilityPane(Chooser[tuple[int, int]]):
         self._panels: dict[int, list[Segments]] = {}  # by method, as they were last drawn
         self._drawn_for: object = None
         self._is_filled = False  # there are cells that the panels do not show yet
-        self._is_shown = True  # as far as it was drawn
 
     @property
     def settled(self) -> bool:
         """Whether the map is complete, and shown if there is room."""
         if self.source is not None and not self.source.scene.general:
             return True
-        return self.complete and not (self.drawable and (self._is_filled or not self._is_shown))
+        return self.complete and not (self.drawable and self._is_filled)
 
     def fill(self, z: slice, method: int, cells: Cells) -> None:
         """Take in some of the map; it is drawn with one of the next samples."""
@@ -85,19 +83,17 @@ class StabilityPane(Chooser[tuple[int, int]]):
         return int(abs(self.grid.z - here[0]).argmin()), int(abs(self.grid.theta - here[1]).argmin())
 
     def paint(self, source: Source, sample: Sample) -> None:
-        """Show at once what the user has changed, and a few rows at a time what has been computed."""
         if why := source.scene.why_not_mapped:
             self._panels, self._drawn_for, self.cursor = {}, None, None
             lines = textwrap.wrap(why, max(self.room.width - 2, 1))
-            self.show([[(f" {line}", NOBODY)] for line in lines])
+            self.show(Picture([[(f" {line}", NOBODY)] for line in lines]))
             return
         columns, rows = self.panel_size()
         if columns <= 2 * MARGIN or self.grid.methods != self.cast:
             return
         drawn_for = source.scene, source.stepping.own, self.shown, self.app.theme, self.room, self.cursor, self.index
-        changed = drawn_for != self._drawn_for
-        if changed or (self._is_filled and self._is_shown):
-            self._drawn_for, self._is_filled, self._is_shown = drawn_for, False, False
+        if drawn_for != self._drawn_for or self._is_filled:
+            self._drawn_for, self._is_filled = drawn_for, False
             cursor = (self.grid.z[self.cursor[0]], self.grid.theta[self.cursor[1]]) if self.cursor else None
             for index in self.places:
                 self._panels[index] = panel(
@@ -110,11 +106,10 @@ class StabilityPane(Chooser[tuple[int, int]]):
                     here=cursor or self.here(index),
                     w0=source.scene.w0,
                 )
-        if not self._is_shown:
-            self.tell(None if changed else SOME)
+            self.tell()
 
-    def tell(self, at_once: int | None = None) -> None:
-        """Describe a swing above each panel and below all; show that and the panels, or so many rows of them."""
+    def tell(self) -> None:
+        """Describe a swing above each panel and below all, and show that and the panels."""
         if not self._panels or not self.drawable:
             return
         columns = self.panel_size()[0]
@@ -125,7 +120,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
         said = [*textwrap.wrap(self._verdict(), max(self.room.width - 1, 1)), "", ""][:WORDS]
         words: list[Row] = [[(f" {line}", NOBODY)] for line in said]
         rows = [*map(_row, side_by_side(panels, 2)), *words, *map(_row, self._legend())]
-        self._is_shown = self.show(rows, at_once)
+        self.show(Picture(rows))
 
     @property
     def _colours(self) -> Palette | None:

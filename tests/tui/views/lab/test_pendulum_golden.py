@@ -5,12 +5,13 @@ from pathlib import Path
 
 import numpy as np
 
-from tui.drawing.canvas import Picture
-from tui.drawing.palette import EXACT, FAINT, FRAME, NOBODY
-from tui.views.lab.pendulums import Bob, pendulum_sketch
+from tests.tui.drawn import cells
+from tui.drawing.palette import EXACT, FAINT, FRAME
+from tui.drawing.picture import Picture
+from tui.views.lab.pendulums import Bob, pendulum_picture
 
 GOLDEN = Path(__file__).with_name("pendulums.txt")
-OWNERS = {NOBODY: " ", FRAME: "+", EXACT: "x"} | dict(enumerate("0123")) | dict(enumerate("abcd", FAINT))
+INKS = {FRAME: "+", EXACT: "x"} | dict(enumerate("0123")) | dict(enumerate("abcd", FAINT))
 
 
 def drawn() -> list[str]:
@@ -23,17 +24,22 @@ def drawn() -> list[str]:
         for index in range(count):
             theta = chance.uniform(-7, 7)
             trail = theta - chance.uniform(0.0, 0.2) * np.arange(chance.choice((0, 15)))[::-1]
-            owner, letter = (index, "esvr"[index]) if count > 1 else (chance.randrange(4), "")
-            bobs.append(Bob(theta, owner, trail, letter, diverged=chance.random() < 0.1))
-        picture = Picture.of_sketch(pendulum_sketch(columns, rows, bobs))
-        pictures.append(f"{number}: {columns}x{rows}\n{as_text(picture)}")
+            ink, letter = (index, "esvr"[index]) if count > 1 else (chance.randrange(4), "")
+            bobs.append(Bob(theta, ink, trail, letter, diverged=chance.random() < 0.1))
+        picture = pendulum_picture(columns, rows, bobs)
+        pictures.append(f"{number}: {columns}x{rows}\n{as_text(picture, columns, rows)}")
     return pictures
 
 
-def as_text(picture: Picture) -> str:
-    """Characters, and whose they are."""
-    rows = zip(picture.characters.tolist(), picture.owners.tolist(), strict=True)
-    lines = (f"{''.join(map(chr, codes))}|{''.join(OWNERS[owner] for owner in owners)}" for codes, owners in rows)
+def as_text(picture: Picture, columns: int, rows: int) -> str:
+    """Characters and their inks."""
+    shown = cells(picture)
+    lines = (
+        "".join(shown[y, x][0] if (y, x) in shown else " " for x in range(columns))
+        + "|"
+        + "".join(INKS[shown[y, x][1]] if (y, x) in shown else " " for x in range(columns))
+        for y in range(rows)
+    )
     return "".join(f"{line.rstrip()}\n" for line in lines)
 
 

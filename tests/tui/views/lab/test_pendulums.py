@@ -6,19 +6,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.tui.drawing.test_canvas import dots
-from tui.drawing.canvas import Picture
+from tests.tui.drawn import cells, inks, size
 from tui.drawing.palette import EXACT, FAINT, FRAME
-from tui.views.lab.pendulums import Bob, pendulum_sketch
+from tui.views.lab.pendulums import Bob, pendulum_picture
 
 ANGLE = st.integers(1, 10_000).map(lambda number: number * 0.6180339887)  # never a tie between two dots
 
 
 def picture(columns, rows, *bobs):
-    return Picture.of_sketch(pendulum_sketch(columns, rows, bobs))
-
-
-def owners(picture):
-    return set(picture.owners[picture.characters != ord(" ")].tolist())
+    return pendulum_picture(columns, rows, bobs)
 
 
 def test_a_pendulum_at_one_radian_that_came_from_the_other_side():
@@ -73,14 +69,14 @@ def test_a_full_turn_is_a_circle_because_both_directions_have_one_scale():
 
 def test_trails_are_faint_and_bobs_lie_in_front_of_them():
     drawn = picture(16, 8, Bob(0.5, 0, trail=[0.5, 3.0]), Bob(2.0, 1, trail=[2.0, 0.4]))
-    assert owners(drawn) == {0, 1, 0 + FAINT, FRAME}
-    assert owners(picture(16, 8, Bob(0.5, EXACT, trail=[0.5, 3.0], ghost=True))) == {EXACT, FRAME}
+    assert inks(drawn) == {0, 1, 0 + FAINT, FRAME}
+    assert inks(picture(16, 8, Bob(0.5, EXACT, trail=[0.5, 3.0], ghost=True))) == {EXACT, FRAME}
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False), st.integers(1, 40), st.integers(1, 20))
 def test_any_angle_fits_any_pane(theta, columns, rows):
     drawn = picture(columns, rows, Bob(theta, 0, trail=[theta, math.nan], letter="e"), Bob(theta, 1, diverged=True))
-    assert drawn.characters.shape == (rows, columns)
+    assert size(drawn) == (columns, rows)
 
 
 def test_a_bob_on_a_spring_hangs_at_the_end_of_its_rod():
@@ -94,8 +90,7 @@ def test_a_bob_on_a_spring_hangs_at_the_end_of_its_rod():
 
 def test_a_bob_on_a_spring_is_as_far_from_the_pivot_as_its_rod_is_long():
     def lowest(length):
-        sketch = pendulum_sketch(40, 20, [Bob(0.0, 2, length=length)])
-        return max(cell // sketch.columns for cell in sketch.cells)
+        return max(row for row, _ in cells(picture(40, 20, Bob(0.0, 2, length=length))))
 
     assert lowest(0.5) < lowest(0.9) < lowest(1.08)
     assert lowest(1e300) <= 20

@@ -7,8 +7,9 @@ import pytest
 from engine.methods import USUAL_CAST
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES
+from tests.tui.drawn import cells
 from tests.tui.harness import Lab
-from tui.views.lab.pendulums import TOP, Bob, pendulum_sketch
+from tui.views.lab.pendulums import TOP, Bob, pendulum_picture
 from tui.views.lab.reach import REACHES, reach
 
 SMALL, MIDDLE, QUARTER = REACHES
@@ -55,9 +56,9 @@ def test_a_method_beyond_its_limit_gets_all_the_room_at_once():
 def test_hung_from_the_top_a_pendulum_within_its_reach_stays_in_its_pane_and_is_no_shorter(size, angle):
     columns, rows = size
     for theta in (-angle, 0.0, angle):
-        cells = pendulum_sketch(columns, rows, [Bob(theta, 0)], angle).cells
-        assert min(cell // columns for cell in cells) * 4 <= TOP
-        x = [cell % columns for cell in cells]
+        shown = cells(pendulum_picture(columns, rows, [Bob(theta, 0)], angle))
+        assert min(row for row, _ in shown) * 4 <= TOP
+        x = [column for _, column in shown]
         assert max(x) - min(x) + 1 < columns or not theta
     assert span(size, angle) >= span(size, math.pi)
 
@@ -65,5 +66,5 @@ def test_hung_from_the_top_a_pendulum_within_its_reach_stays_in_its_pane_and_is_
 def span(size, angle):
     """Rows from the pivot to the bob of a pendulum at rest."""
     columns, rows = size
-    found = [cell // columns for cell in pendulum_sketch(columns, rows, [Bob(0.0, 0)], angle).cells]
+    found = [row for row, _ in cells(pendulum_picture(columns, rows, [Bob(0.0, 0)], angle))]
     return max(found) - min(found)

@@ -8,6 +8,7 @@ import pytest
 from engine.methods import USUAL_CAST, VELOCITY_VERLET
 from engine.phase_space.section import iterate, orbit, pieces
 from engine.scenes import SCENES, Scene
+from tests.tui import drawn
 from tests.tui.harness import Theatre, lab, until
 from tui.drawing.cells import CellWidget
 from tui.drawing.palette import FRAME, faint, series
@@ -21,8 +22,8 @@ VIEWPORT = Viewport.portrait(70, 24, SCENE)
 MINE, OTHERS = series(VELOCITY_VERLET), faint(series(VELOCITY_VERLET))
 
 
-def cells(picture, owner: int) -> set[tuple[int, int]]:
-    return {(int(column), int(row)) for row, column in zip(*np.nonzero(picture.owners == owner), strict=True)}
+def cells(picture, ink: int) -> set[tuple[int, int]]:
+    return {(column, row) for (row, column), (_, colour) in drawn.cells(picture).items() if colour == ink}
 
 
 def test_the_starts_are_all_over_the_viewport():
@@ -51,10 +52,10 @@ def test_an_orbit_is_drawn_where_its_points_are_with_the_angle_within_a_turn():
 def test_an_orbit_that_leaves_no_gap_to_those_before_is_not_drawn():
     section = Section(VIEWPORT, MODEL, VELOCITY_VERLET)
     rest = orbit(VELOCITY_VERLET, MODEL, H, (0.0, 0.0), 1)
-    for theta, drawn in ((1.6, True), (1.61, False), (2.0, True), (0.3, True)):
+    for theta, is_drawn in ((1.6, True), (1.61, False), (2.0, True), (0.3, True)):
         before = cells(section.picture(rest, (0.0, 0.0)), OTHERS)
         section.add(iterate(VELOCITY_VERLET, MODEL, 0.05, (np.array([theta]), np.zeros(1)), 500))
-        assert (cells(section.picture(rest, (0.0, 0.0)), OTHERS) != before) == drawn
+        assert (cells(section.picture(rest, (0.0, 0.0)), OTHERS) != before) == is_drawn
 
 
 def test_the_starts_orbit_stands_out_and_the_separatrix_lies_underneath():
@@ -78,7 +79,7 @@ def test_it_fits_every_size_and_method(method, size):
     section = Section(viewport, MODEL, method)
     section.add(iterate(method, MODEL, 50.0, starts(viewport, 20), 300))
     picture = section.picture(orbit(method, MODEL, 50.0, START, 300), START, (0.5, 0.5))
-    assert picture.characters.shape == size[::-1]
+    assert drawn.size(picture) == size
 
 
 async def section_of(theatre: Theatre, *keys: str) -> SectionPane:

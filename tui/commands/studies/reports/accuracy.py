@@ -145,7 +145,9 @@ def _print_chart(found: Findings) -> None:
     width = min(on.width, CHART_SIZE[0])
     series = accuracy_series(found.points, found.kind, found.cost, references=found.references)
     chart = accuracy_chart(series, found.kind, found.cost, width, rows)
-    lines = [Text.assemble(*((text, palette.colour(owner)) for text, owner in chart.row(y))) for y in range(rows)]
+    lines = [
+        Text.assemble(*((text, palette.colour(ink)) for text, ink in row if isinstance(ink, int))) for row in chart.rows
+    ]
     for line in lines:
         line.rstrip()
     print_picture(on, lines)

@@ -20,8 +20,8 @@ from tui.cli.errors import Exit, UserError
 from tui.cli.files import whole_file
 from tui.cli.output import console, progress, scene_line
 from tui.cli.report import Column, Report, Table, publish
-from tui.drawing.canvas import Picture
 from tui.drawing.palette import PALETTES
+from tui.drawing.picture import Picture
 from tui.terminal.options import CharacterSet, TerminalOptions, terminal_options_of
 from tui.views.phase.section import Section, starts
 from tui.views.phase.viewport import Viewport
@@ -136,12 +136,11 @@ def _lines(picture: Picture, display: TerminalOptions) -> list[Text]:
     """Return the rows of a picture in the colours and characters of a display."""
     palette = PALETTES[display.theme]
     lines = []
-    for y in range(len(picture.characters)):
-        spans = picture.row(y)
+    for spans in picture.rows:
         segments = [Segment(text, None) for text, _ in spans]
         if display.character_set != "braille":
             segments = _in_characters(segments, display.character_set)
-        colours = [palette.colour(owner) for _, owner in spans]
+        colours = [palette.colour(ink) for _, ink in spans if isinstance(ink, int)]
         coloured = zip((segment.text for segment in segments), colours, strict=True)
         lines.append(Text.assemble(*coloured))
     return lines

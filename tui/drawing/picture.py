@@ -1,0 +1,53 @@
+"""Picture: rows of characters with inks, ready for a screen."""
+
+import textwrap
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import chain, zip_longest
+from typing import Self
+
+from rich.style import Style
+
+from tui.drawing.palette import NOBODY
+
+Ink = int | Style
+"""What colours a character: a number that the palette of the theme knows, or a style of its own."""
+
+Row = Sequence[tuple[str, Ink]]
+"""Characters next to each other, each piece in one ink."""
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """Rows from the top.  A row may be shorter than the widget that shows it."""
+
+    rows: Sequence[Row] = ()
+
+    @property
+    def text(self) -> str:
+        """The characters alone, one line per row, without trailing blanks."""
+        return "\n".join("".join(text for text, _ in row).rstrip() for row in self.rows)
+
+    def changed_rows(self, before: "Picture") -> list[int]:
+        """Return the rows that differ from those of another picture."""
+        pairs = zip_longest(before.rows, self.rows)
+        return [y for y, (old, new) in enumerate(pairs) if old != new]
+
+    @classmethod
+    def stacked(cls, *pictures: "Picture") -> Self:
+        """Put pictures below each other."""
+        return cls(tuple(chain.from_iterable(picture.rows for picture in pictures)))
+
+    @classmethod
+    def of_line(cls, text: str, ink: Ink = NOBODY) -> Self:
+        """Return a single row in one ink."""
+        return cls((((text, ink),),))
+
+    @classmethod
+    def of_text(cls, text: str, columns: int, rows: int, ink: Ink) -> Self:
+        """Wrap and centre a text; lines that do not fit are cut off."""
+        lines = textwrap.wrap(text, max(columns, 1))[:rows]
+        above = [""] * ((rows - len(lines)) // 2)
+        below = [""] * (rows - len(lines) - len(above))
+        centred = [" " * ((columns - len(line)) // 2) + line for line in lines]
+        return cls(tuple(((line.ljust(columns), ink),) for line in (*above, *centred, *below)))
