@@ -16,7 +16,7 @@ from engine.run.stepping import Stepping
 from engine.scenes import DEFAULT_SCENE
 from recordings.fields import COLUMNS
 from tests.tui.command_line import pendu
-from tui.cli.dispatch import COMMANDS, command_of
+from tui.cli.dispatch import COMMANDS, command_of, split
 from tui.screens.keys import COMMON, LIVE
 
 ROOT = Path(__file__).parent.parent
@@ -56,7 +56,7 @@ def test_every_command_that_is_mentioned_exists_with_its_options(command):
     words = [word for word in shlex.split(command)[1:] if word != "FOLDER"]
     if "COMMAND" in words:
         return
-    name = words.pop(0) if words and not words[0].startswith("-") else "live"
+    name, words = split(words)
     parser, _ = command_of(name)
     parser.parse_args(words + ["."] * (name == "verify"))
 
@@ -165,7 +165,7 @@ def test_a_method_of_ones_own_is_measured_and_put_on_stage_as_described(shell, t
     commands = re.findall(r"`(pendu-tui [^`]*--method mine[^`]*)`", README)
     told, on_stage = (shell(command) for command in commands)
     (words,) = (line.split() for line in told.splitlines() if line.startswith("position_verlet"))
-    assert words[1:-2] == ["-", words[2], "1", "yes", "yes", "-", "2.000"]
+    assert words[1:] == ["-", words[2], "1", "yes", "yes", "2.000"]
     assert float(words[2]) == pytest.approx(2, abs=0.01)
     assert re.search(r"Position verlet +bounded", on_stage)
     beside = shell(f"{commands[1]} --methods rk4")

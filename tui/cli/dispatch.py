@@ -127,13 +127,13 @@ def _dispatch(arguments: list[str]) -> int:
 
 
 def _run(arguments: list[str]) -> int:
-    name, arguments = _command(arguments)
+    name, arguments = split(arguments)
     parser, command = command_of(name)
     return _parsed(parser, arguments, command)
 
 
-def _command(arguments: list[str]) -> tuple[str, list[str]]:
-    """Return the command and its arguments: a recording is replayed, anything else but a command is of the lab."""
+def split(arguments: list[str]) -> tuple[str, list[str]]:
+    """Return the command and its arguments; a scene or a file as the first word stands for a command, too."""
     first = arguments[0] if arguments else "-"
     if first in COMMANDS or first in RENAMED:
         return first, arguments[1:]

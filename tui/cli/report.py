@@ -42,7 +42,7 @@ class Column(NamedTuple):
     """A column of a table: its head, and how the cell of a row is written."""
 
     head: str
-    cell: str | Callable[[Any], str | None]  # the name of a field, or a function of the row
+    cell: str | Callable[[Any], Any]  # the name of a field, or a function of the row
     form: str = ""  # a format specification; cells written with one are aligned right
     right: bool = False
 

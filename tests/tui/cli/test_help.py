@@ -4,7 +4,7 @@ import shlex
 import pytest
 
 from tests.tui.command_line import pendu
-from tui.cli.dispatch import COMMANDS, command_of
+from tui.cli.dispatch import COMMANDS, command_of, split
 from tui.cli.errors import Exit
 
 
@@ -37,8 +37,7 @@ def test_the_help_of_a_command_ends_with_examples_that_its_parser_takes(name):
     examples = [example for example in examples if example.startswith("pendu-tui")]
     assert examples
     for example in examples:
-        words = shlex.split(example.split("|")[0])[1:]
-        command = words.pop(0) if words and not words[0].startswith("-") else "live"
+        command, words = split(shlex.split(example.split("|")[0])[1:])
         command_of(command)[0].parse_args(words)
 
 

@@ -3,14 +3,14 @@ from types import SimpleNamespace
 import pytest
 
 from tests.tui.command_line import pendu
-from tui.commands.about.doctor import colour, encoding, folder, mouse, size, unfinished
+from tui.commands.about.doctor import colour, encoding, folder, size
 
 
 def test_doctor_reports_and_never_fails():
     outcome = pendu("doctor")
     assert (outcome.code, outcome.err) == (0, "")
     lines = outcome.out.splitlines()
-    for what in ("lab", "size", "encoding", "colours", "mouse", "recordings", "unfinished", "sin", "python", "numba"):
+    for what in ("lab", "size", "encoding", "colours", "recordings", "sin", "python", "numba"):
         assert any(line.startswith(what) for line in lines), what
 
 
@@ -87,16 +87,6 @@ def test_doctor_reports_the_rest_if_the_folder_cannot_be_read(monkeypatch, tmp_p
     assert (outcome.code, outcome.err) == (0, "")
     assert "cannot be written" in outcome.out
     assert "numba" in outcome.out
-
-
-def test_without_a_mouse_there_are_keys():
-    assert "key" in mouse({"TERM": "linux"}).advice
-    assert not mouse({"TERM": "xterm-256color"}).advice
-
-
-def test_leftovers_are_counted_and_answered_with_what_saves_them():
-    assert not unfinished(0).advice
-    assert "recover" in unfinished(2).advice
 
 
 def test_without_a_terminal_the_lab_does_not_start_and_doctor_says_so():

@@ -2,9 +2,8 @@ import pytest
 
 from engine.methods import METHODS
 from engine.run.compiled import available
-from engine.scenes import GROUPS, LEFT_OUT, SCENES
+from engine.scenes import GROUPS, SCENES
 from tests.tui.command_line import pendu
-from tui.cli.report import print_table
 from tui.commands.about.methods import MEASURED
 
 
@@ -27,7 +26,22 @@ def test_methods_lists_every_method_its_claims_and_what_is_measured():
         (words,) = (line.split() for line in lines if line.startswith(f"{method.key} "))
         assert str(method.order) in words
         limit = method.linear_limit
-        assert ("-" if limit is None else f"{limit:.3f}" if limit else "none") in words
+        assert ("-" if limit is None else f"{limit:.3f}" if limit else "none") == words[-1]
+
+
+def test_methods_that_are_named_are_listed_alone():
+    for arguments in (("rk4", "verlet"), ("--methods", "rk4,verlet")):
+        listed = pendu("methods", *arguments, "--json").json["methods"]
+        assert [method["key"] for method in listed] == ["rk4", "velocity_verlet"]
+    assert METHODS[0].reference in pendu("methods", METHODS[0].key).out
+    assert pendu("methods", "rk5").refused(2, "rk4")
+
+
+def test_a_scene_that_is_named_is_shown_with_its_numbers():
+    scene = SCENES["crossover"]
+    assert pendu("scenes", "crossover", "--json").json["scenes"] == [scene.fields() | {"speed": scene.speed}]
+    assert scene.watch in pendu("scenes", "crossover").out
+    assert pendu("scenes", "crosover").refused(2, "crossover")
 
 
 def test_methods_as_json_repeat_the_engine_and_what_is_measured_agrees():
@@ -47,19 +61,9 @@ def test_methods_as_json_repeat_the_engine_and_what_is_measured_agrees():
         assert told["measured_linear_limit"] == pytest.approx(method.linear_limit, abs=1e-9)  # it is bisected so far
 
 
-def test_text_from_a_file_does_not_steer_the_terminal(capsys):
-    print_table("l", ("name",), [("\x1b[31mred\n[bold]big[/bold] \u202e",)])
-    out = capsys.readouterr().out
-    assert "\x1b" not in out
-    assert "\u202e" not in out
-    assert "[bold]big[/bold]" in out
-    assert out.count("\n") == 2
-
-
-def test_scenes_are_listed_in_groups_and_the_last_line_says_what_is_left_out():
+def test_scenes_are_listed_in_groups():
     lines = pendu("scenes").out.splitlines()
     names = [line.split("  ")[0].strip().casefold() for line in lines]
     for group, scenes in GROUPS.items():
         at = names.index(group)
         assert names[at + 1 : at + 1 + len(scenes)] == [scene.name for scene in scenes]
-    assert lines[-1] == LEFT_OUT

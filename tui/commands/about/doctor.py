@@ -6,15 +6,14 @@ import platform
 import shutil
 import sys
 from collections.abc import Iterator, Mapping
-from contextlib import suppress
-from dataclasses import asdict, dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from tempfile import TemporaryFile
+from typing import NamedTuple
 
 from tui.cli.errors import Exit, UserError
-from tui.cli.output import write_json
-from tui.cli.report import print_table
+from tui.cli.install import install_advice
+from tui.cli.report import Column, Report, add_report_options, publish
 from tui.terminal.options import SMALLEST, colours, is_utf8
 from tui.words.numbers import file_size
 
@@ -28,8 +27,7 @@ PACKAGES = ("pendu-tui", "textual", "rich", "plotext", "numpy", "mcap")
 ROOMY = 1_000_000_000  # bytes free: a day of recordings
 
 
-@dataclass(frozen=True, slots=True)
-class Check:
+class Check(NamedTuple):
     """One property of the environment.  No advice: it is fine."""
 
     what: str
@@ -38,15 +36,17 @@ class Check:
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--json", action="store_true", help="one JSON object")
+    add_report_options(parser)
 
 
 def run(options: argparse.Namespace) -> int:
-    checks = list(_checks())
-    if options.json:
-        write_json("doctor", {"findings": [asdict(check) for check in checks]})
-    else:
-        print_table("lll", ("", "found", "advice"), ((c.what, c.found, c.advice or "fine") for c in checks))
+    checks = [check._asdict() for check in _checks()]
+    columns = (
+        Column("", "what"),
+        Column("found", "found"),
+        Column("advice", lambda check: check["advice"] or "fine"),
+    )
+    publish(Report(name="doctor", columns=columns, rows=checks, fields={"findings": checks}), options)
     return Exit.FINE
 
 
@@ -58,10 +58,7 @@ def _checks() -> Iterator[Check]:
     yield size(columns, rows) if sys.stdout.isatty() else Check("size", "unknown: the output is a file or a pipe")
     yield encoding(sys.stdout.encoding)
     yield colour(os.environ)
-    yield mouse(os.environ)
     yield folder(library.folder())
-    with suppress(OSError):  # which the check of the folder shows
-        yield unfinished(len(library.leftovers()))
     yield sine(library.resolve("drift"))
     yield Check("python", f"{platform.python_version()}, {platform.system()} {platform.machine()}")
     yield Check("versions", ", ".join(f"{package} {version(package)}" for package in PACKAGES))
@@ -79,10 +76,11 @@ def lab() -> Check:
 
 
 def size(columns: int, rows: int) -> Check:
-    advice = "" if columns >= 120 and rows >= 40 else "120x40 or larger shows all panes"
+    advice = ""
     if columns < SMALLEST[0] or rows < SMALLEST[1]:
-        limit = f"{SMALLEST[0]}x{SMALLEST[1]}"
-        advice = f"too small: the lab needs {limit}, better 80x24"
+        advice = f"too small: the lab needs {SMALLEST[0]}x{SMALLEST[1]}, better 80x24"
+    elif columns < 120 or rows < 40:
+        advice = "120x40 or larger shows all panes"
     return Check("size", f"{columns}x{rows}", advice)
 
 
@@ -91,26 +89,23 @@ def encoding(name: str) -> Check:
 
 
 def colour(environment: Mapping[str, str]) -> Check:
-    term, many = environment.get("TERM", ""), colours(environment)
-    found, advice = str(many), "if your terminal supports true colour, set COLORTERM=truecolor"
+    number = colours(environment)
+    found = str(number)
+    advice = "if your terminal supports true colour, set COLORTERM=truecolor"
     if environment.get("NO_COLOR"):
-        found, advice = "NO_COLOR", "off, as requested; methods keep their digits and letters"
-    elif not many:
-        found, advice = "none", "set TERM correctly, e.g. xterm-256color"
-    elif many > 256:
-        found, advice = "16 million", ""
-    return Check("colours", f"TERM={term}, {found}", advice)
-
-
-def mouse(environment: Mapping[str, str]) -> Check:
-    """Whether a mouse can be expected: only the terminal's name gives a hint."""
-    if environment.get("TERM", "") in ("", "dumb", "linux", "vt100", "vt220"):
-        return Check("mouse", "probably not supported", "every mouse action has a key")
-    return Check("mouse", "enabled if the terminal supports it; --no-mouse disables it")
+        found = "NO_COLOR"
+        advice = "off, as requested; methods keep their digits and letters"
+    elif not number:
+        found = "none"
+        advice = "set TERM correctly, e.g. xterm-256color"
+    elif number > 256:
+        found = "16 million"
+        advice = ""
+    return Check("colours", f"TERM={environment.get('TERM', '')}, {found}", advice)
 
 
 def folder(path: Path) -> Check:
-    """Whether recordings can be kept: tried in the folder or its nearest parent, since permissions are not enough."""
+    """Try whether a file can be made in the folder or its nearest parent, since permissions are not enough."""
     try:
         there = next(each for each in (path, *path.parents) if each.exists() or each.is_symlink())
         with TemporaryFile(dir=there):
@@ -122,13 +117,8 @@ def folder(path: Path) -> Check:
     return Check("recordings", f"{path}, {file_size(free)} free", advice)
 
 
-def unfinished(count: int) -> Check:
-    advice = "recovered at the next start of the lab; listed by pendu-tui recordings" if count else ""
-    return Check("unfinished", str(count or "none"), advice)
-
-
 def sine(golden: Path) -> Check:
-    """Whether this machine's sin() gives the same bits as the one of the bundled recordings."""
+    """Compare this machine's sin() with that of the bundled recordings."""
     from recordings.recording import Recording
     from recordings.summary import fingerprint
 
@@ -142,4 +132,4 @@ def numba() -> Check:
     try:
         return Check("numba", version("numba"))
     except PackageNotFoundError:
-        return Check("numba", "not installed", "speeds up long runs: pip install '.[fast]' in the clone")
+        return Check("numba", "not installed", f"speeds up long runs: {install_advice('numba', 'fast')}")

@@ -2,20 +2,20 @@
 
 import argparse
 import math
-from collections.abc import Iterator
 from typing import Any
 
 from engine.methods import METHODS, Cast, Method
 from engine.scenes import DEFAULT_SCENE
-from tui.cli.cast import add_cast_options, cast_of
+from tui.cli.cast import KEYS, add_cast_options, cast_of
 from tui.cli.errors import Exit
-from tui.cli.output import fields_of, print_lines, write_json
-from tui.cli.report import print_table
+from tui.cli.options import Suggestions
+from tui.cli.output import fields_of
+from tui.cli.report import Column, Report, add_report_options, publish
 
 EXAMPLES = """\
 examples:
   pendu-tui methods
-  pendu-tui methods --methods rk4,verlet
+  pendu-tui methods rk4 verlet
   pendu-tui methods --method mine.py:my_step
   pendu-tui methods --json | jq '.methods[] | select(.symplectic) | .key'
 """
@@ -24,56 +24,63 @@ CLAIMS = (
     *("key", "label", "letter", "formula", "order", "force_evaluations", "symplectic", "reversible", "linear_limit"),
     *("other_names", "reference", "used"),
 )
-
 MEASURED = (
     *("measured_order", "measured_linear_limit", "measured_symplectic", "measured_reversible"),
     "measured_force_evaluations",
 )
+NOTE = """
+found: the order of the theta error over one swing of scene drift.
+evals: force evaluations per step, in the average where they vary.
+z limit: of the linear oscillator, z = h·w0; for the pendulum see pendu-tui stability."""
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("keys", metavar="KEY", nargs="*", choices=Suggestions(KEYS), help="the methods, as --methods")
     add_cast_options(parser, "all")
-    parser.add_argument("--json", action="store_true", help="one JSON object")
+    add_report_options(parser)
 
 
 def run(options: argparse.Namespace) -> int:
-    from engine.run.compiled import COMPILED_FROM, available
+    from engine.run.compiled import available
 
-    cast = cast_of(options, METHODS, most=None)
-    methods = _measured(cast)
-    if options.json:
-        write_json("methods", {"methods": methods, "compiled": available()})
-        return Exit.FINE
-    print_table(
-        "lrrrllrrl",
-        ("method", "order", "found", "forces", "symplectic", "reversible", "z limit", "found z", "also called"),
-        map(_row, methods),
+    if options.keys:
+        options.methods = ",".join((*options.keys, *filter(None, [options.methods])))
+    methods = _measured(cast_of(options, METHODS, most=None))
+    columns = (
+        Column("method", "key"),
+        Column("order", "order", "d"),
+        Column("found", "measured_order", ".3f"),
+        Column("evals", lambda method: _known(method, "force_evaluations"), ".3g"),
+        Column("symplectic", lambda method: "yes" if _known(method, "symplectic") else "no"),
+        Column("reversible", lambda method: "yes" if _known(method, "reversible") else "no"),
+        Column("z limit", _limit, right=True),
     )
-    usual = "; where they vary, the average of a minute of scene halving" * any(method.varies for method in cast)
-    print_lines(
-        "",
-        f"Found: the order measured on theta over one swing of scene drift.  Forces: evaluations per step{usual}.",
-        "z limit: of the linear oscillator, z = h·w0; found z: as measured; for the pendulum see pendu-tui stability.",
-        f"Numba: used in runs of at least {COMPILED_FROM:,} steps." if available() else "Numba is not installed.",
-    )
+    notes = [NOTE, *(_about(method) for method in methods if options.keys)]
+    fields = {"methods": methods, "compiled": available()}
+    publish(Report(name="methods", columns=columns, rows=methods, notes=notes, fields=fields), options)
     return Exit.FINE
 
 
-def _row(method: dict[str, Any]) -> Iterator[str]:
-    own, order, forces = method["order"] is None, method["measured_order"], method["measured_force_evaluations"]
-    measured = forces is not None
-    yield from (method["key"], "-" if own else str(method["order"]))
-    yield "-" if not measured else "none" if order is None else f"{order:.3f}"
-    yield f"{forces if measured else method['force_evaluations']:g}"
-    claims = (f"measured_{claim}" if measured else claim for claim in ("symplectic", "reversible"))
-    yield from ("yes" if method[claim] else "no" for claim in claims)
-    limits = method["linear_limit"], method["measured_linear_limit"]
-    yield from ("-" if z is None else f"{z:.3f}" if z else "none" for z in limits)
-    yield ", ".join(method["other_names"] or ["your own"] * own)
+def _known(method: dict[str, Any], name: str) -> Any:
+    """Return a property as measured, or as claimed where it is not measured."""
+    measured = method[f"measured_{name}"]
+    return method[name] if measured is None else measured
+
+
+def _limit(method: dict[str, Any]) -> str | None:
+    z = _known(method, "linear_limit")
+    if z is None:
+        return None
+    return f"{z:.3f}" if z else "none"
+
+
+def _about(method: dict[str, Any]) -> str:
+    names = ", ".join((method["label"], *method["other_names"]))
+    return "\n".join(["", f"{names} ({method['letter']})", *filter(None, (method["formula"], method["reference"]))])
 
 
 def _measured(cast: Cast) -> list[dict[str, Any]]:
-    """The methods with the order that their errors show on the default scene, and what else is measured."""
+    """Return the methods with the order that their errors show on the default scene, and what else is measured."""
     from engine.accuracy.study import orders
 
     general = tuple(method for method in cast if method.general)
@@ -82,7 +89,7 @@ def _measured(cast: Cast) -> list[dict[str, Any]]:
 
 
 def _claims(method: Method) -> dict[str, Any]:
-    """What is claimed; of a user's own method nothing is."""
+    """Return what is claimed; of a user's own method nothing is."""
     from engine.methods.own import OwnMethod
 
     claims = fields_of(method, *CLAIMS)
@@ -96,10 +103,11 @@ def _properties(method: Method, order: float | None) -> dict[str, Any]:
 
     if not method.general:  # it is for a scene of its own, and measured there by the tests
         return dict.fromkeys(MEASURED)
-    return {
-        "measured_order": order,
-        "measured_linear_limit": measure.linear_limit(method.phases),
-        "measured_symplectic": measure.is_symplectic(method.phases),
-        "measured_reversible": measure.is_reversible(method.phases),
-        "measured_force_evaluations": measure.evaluations(method.phases)[0],
-    }
+    values = (
+        order,
+        measure.linear_limit(method.phases),
+        measure.is_symplectic(method.phases),
+        measure.is_reversible(method.phases),
+        measure.evaluations(method.phases)[0],
+    )
+    return dict(zip(MEASURED, values, strict=True))
