@@ -22,7 +22,6 @@ GROUPS = {
         "replay": "play a recording on the same screen",
         "snapshot": "save the lab as an SVG image",
         "serve": "the lab in a browser",
-        "keys": "list all keys and mouse actions",
     },
     "studies": {
         "accuracy": "speed against accuracy: which method, which h, at what cost",
@@ -49,6 +48,7 @@ GROUPS = {
 COMMANDS = {name: about for group in GROUPS.values() for name, about in group.items()}
 
 RENAMED = {
+    "keys": "live, and there the key ?",
     "section": "stability --section",
     "completion": "--print-completion SHELL",
 }

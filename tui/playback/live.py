@@ -15,6 +15,7 @@ from tui.playback.compiler import patient
 from tui.playback.playhead import Pace, Playhead
 from tui.playback.so_far import RunSoFar
 from tui.playback.source import RecordingStatus, Source
+from tui.playback.state import RunState
 
 if TYPE_CHECKING:
     from recordings.live_recorder import LiveRecorder
@@ -145,19 +146,18 @@ class Live(Source):
         if stepping.equal_cost:
             self.set_stepping(stepping)
 
-    def way_back(self) -> Callable[[], None]:
-        """What brings the run back to where it is now, after other runs: as one more, which shares its past."""
-        run, so_far = self._run, self._so_far
+    @property
+    def run_state(self) -> RunState:
+        return RunState(self._run, self._so_far)
 
-        def bring_back() -> None:
-            self._run, self._so_far = run, so_far
-            self._runs += 1
-            run.branch(self._runs)
-            self.playhead = self.playhead.moved_to(run.x)
-            self._note_start()
-            self._take_sample()
-
-        return bring_back
+    def return_to(self, state: RunState) -> None:
+        """Go on with an earlier run where it was left: as one more run, which shares its past."""
+        self._run, self._so_far = state
+        self._runs += 1
+        self._run.branch(self._runs)
+        self.playhead = self.playhead.moved_to(self._run.x)
+        self._note_start()
+        self._take_sample()
 
     def _enter(self, run: RewindableRun, so_far: RunSoFar | None = None) -> None:
         self._run, self._so_far = run, copy(so_far) if so_far else RunSoFar(run.scene, run.changes)

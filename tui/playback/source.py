@@ -17,6 +17,7 @@ from tui.playback.so_far import RunSoFar
 
 if TYPE_CHECKING:
     from tui.playback.ghost import Ghost
+    from tui.playback.state import RunState
 
 
 class RecordingStatus(NamedTuple):
@@ -98,6 +99,11 @@ class Source(ABC):
     @property
     def ghost(self) -> "Ghost | None":
         """The recording that is laid under the run."""
+        return None
+
+    @property
+    def run_state(self) -> "RunState | None":
+        """The run as an undo can bring it back; None in a replay, which cannot change it."""
         return None
 
     @property

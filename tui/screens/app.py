@@ -2,13 +2,11 @@
 
 import asyncio
 import os
-from collections.abc import Callable, Iterable, Sequence
-from functools import partial
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import ClassVar
 
-from rich.markup import escape
-from textual.app import App, SystemCommand
+from textual.app import App
 from textual.binding import Binding, BindingType
 from textual.filter import LineFilter
 from textual.notifications import SeverityLevel
@@ -16,7 +14,6 @@ from textual.reactive import var
 from textual.screen import Screen
 from textual.theme import BUILTIN_THEMES, Theme
 
-from recordings import library
 from tui.cli.errors import Exit
 from tui.drawing.palette import PALETTES, Palette
 from tui.screens.base import SourceScreen
@@ -138,28 +135,12 @@ class PenduApp(App[Exit | BaseException]):
             self._job.ask()
             self._job.stop()
 
-    def get_system_commands(self, screen: Screen[object]) -> Iterable[SystemCommand]:
-        from tui.screens.extras import palette_entries
-
-        folders = (None, library.GOLDEN) if self.open_replay else ()
-        recordings = [item.path for folder in folders for item in library.listing(folder)]
-        here = self.source_screen
-        for entry in palette_entries(here.KEYS, here.source.kind == "LIVE", recordings):
-            yield SystemCommand(
-                escape(entry.title), escape(entry.about), partial(here.call_next, here.run_action, entry.action)
-            )
-
-    def action_extra(self, name: str, argument: object = None) -> None:
-        """Textual passes no more arguments than are named here."""
-        from tui.screens.extras import EXTRAS
-
-        EXTRAS[name](self.source_screen, *(() if argument is None else (argument,)))
-
     def action_command_palette(self) -> None:
         from tui.screens.dialogs.modal import Commands
+        from tui.screens.palette import LabCommands
 
         if not isinstance(self.screen, Commands):
-            self.push_screen(Commands())
+            self.push_screen(Commands([LabCommands], placeholder="scene, theme, key, recording, method …"))
 
     def action_use_theme(self, name: str) -> None:
         self.theme = name

@@ -1,14 +1,16 @@
-"""SourceScreen: what the lab's screen and the replay's share: the clock of the frames, the views, the settings."""
+"""SourceScreen: the frame, the views, the settings and the undo that the lab and a replay share."""
 
 import gc
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, ClassVar, cast
 
-from textual.app import ComposeResult
-from textual.binding import BindingType
+from textual.app import ComposeResult, SystemCommand
+from textual.binding import Binding, BindingType
+from textual.content import Content
 from textual.events import Resize
 from textual.message import Message
 from textual.reactive import Initialize, var
@@ -17,32 +19,37 @@ from textual.timer import Timer
 from textual.widget import Widget
 
 from engine.run.lockstep import Sample
+from engine.scenes import MOST_METHODS
 from tui.playback.playhead import doubled
 from tui.playback.shown import Shown
 from tui.playback.source import Source
+from tui.playback.state import State
 from tui.screens.host import Host
 from tui.screens.insight_line import InsightLine
 from tui.screens.key_line import KeyLine
-from tui.screens.keys import COMMON, hinted
 from tui.screens.status_line import StatusLine
 from tui.screens.too_small import TooSmall
 from tui.terminal.writer import is_writing
-from tui.views import create, following
-from tui.views.keys import Key, bindings
+from tui.views import VIEWS, create, following
 from tui.views.messages import Asked, MethodChosen, Zoomed
 from tui.views.view import Box, Pane, View
-from tui.words.undone import State, undone
+from tui.words.undone import undone
 
 READ_RATE = 5  # updates a second of what people read
-STALL = 1.0  # s; a longer gap between frames does not count as time: Ctrl+Z, a computer asleep, a dead line
-UNDOS = 30  # changes; each may hold a run
+STALL = 1.0  # s; a longer gap between frames is no simulated time: Ctrl+Z, sleep, a dead line
+MAX_UNDOS = 30  # each may hold a run
+FOOTER = ("Step", "Scene", "Pause", "View", "Help", "Find", "", "Back", "Tour", "Undo")
 ALREADY = "Already marked"
+
+_SPEED = Binding.Group("half, double speed")
+_STEPS = Binding.Group("one step back, forward")
+_EVENTS = Binding.Group("previous, next event")
+_METHODS = Binding.Group("show or hide a method")
+_VIEWS = Binding.Group(", ".join(entry.title.lower() for entry in VIEWS.values()))
 
 
 class SourceScreen(Screen[None]):
     """Shows a source, following a clock that is passed in."""
-
-    BLANK = True  # everything on it is covered
 
     @dataclass
     class Began(Message):
@@ -50,9 +57,44 @@ class SourceScreen(Screen[None]):
 
         screen: "SourceScreen"
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(*COMMON)
+    BLANK = True  # everything on it is covered
     AUTO_FOCUS = ""  # keys belong to the screen until a pane is clicked
-    KEYS: ClassVar[tuple[Key, ...]] = COMMON
+    HELP = "Click a key on the last line, an event, a row or a pane; the wheel zooms the chart."
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("space", "pause", "Pause", tooltip="pause, go on"),
+        Binding("less_than_sign", "speed(-1)", "half speed", False, "<", group=_SPEED),
+        Binding("greater_than_sign", "speed(1)", "double speed", False, ">", group=_SPEED),
+        Binding("comma", "step(-1)", "one step back", False, ",", group=_STEPS),
+        Binding("full_stop", "step(1)", "one step forward", False, ".", group=_STEPS),
+        Binding("left_square_bracket", "event(-1)", "previous event", False, "[", group=_EVENTS),
+        Binding("right_square_bracket", "event(1)", "next event", False, "]", group=_EVENTS),
+        Binding("m", "mark", "mark this moment", show=False),
+        *(
+            Binding(f"{n}", f"show({n - 1})", f"show or hide method {n}", False, group=_METHODS)
+            for n in range(1, MOST_METHODS + 1)
+        ),
+        Binding(f"{MOST_METHODS + 1}", f"show({MOST_METHODS})", "the exact motion", show=False),
+        Binding("X,shift+x", "alone", "one method alone, or all", show=False),
+        Binding("t", "switch('trails')", "trails", show=False),
+        Binding("e", "quantity", "chart: next quantity", show=False),
+        Binding("y", "switch('log')", "chart: log or linear", show=False),
+        Binding("w", "window(1)", "chart: last 20 s, 60 s, … all", show=False),
+        Binding("z", "zoom(0.5)", "chart: zoom in", show=False),
+        Binding("escape", "window(0)", "chart: back from the zoom", False, "esc"),
+        Binding("v", "view", "View", tooltip="next view"),
+        *(
+            Binding(f"f{n}", f"view({name!r})", f"view: {VIEWS[name].title}", False, f"F{n}", group=_VIEWS)
+            for n, name in enumerate(VIEWS, 2)
+        ),
+        Binding("E,shift+e", "events", "list all events", show=False),
+        Binding("d", "describe", "describe the screen in words", show=False),
+        Binding("s", "screenshot", "save a screenshot", show=False),
+        Binding("u", "undo", "Undo", tooltip="undo the last change"),
+        Binding("question_mark", "help", "Help", True, "?", tooltip="this help"),
+        Binding("ctrl+p", "app.command_palette", "Find", True, "ctrl+p", True, "find scenes, themes, …"),
+        Binding("ctrl+z", "app.suspend_process", "suspend to the shell", show=False),
+        Binding("q", "quit", "Quit", tooltip="finish the recording, quit"),
+    ]
 
     source: var[Source] = var(Initialize(lambda screen: cast(Source, cast(Any, screen).first_source)))
     shown: var[Shown] = var(Shown())
@@ -71,41 +113,56 @@ class SourceScreen(Screen[None]):
         self._notices = notices
         self.first_source = source
         self.clock = clock
-        self._on_stage: View = create(self.view)
+        self._view_in_front: View = create(self.view)
+        self._lines: list[Pane] = []
         self._timer: Timer | None = None  # of the frames
         self._frames = 0
         self._missed = 0.0  # s of the clock while the program was stopped
         self._is_late = False  # the next frame shows everything
-        self._undo: deque[Callable[[], object]] = deque(maxlen=UNDOS)
-        self._lines: list[Pane] = []
+        self._paused_by_dialog = False
+        self._undo: deque[State] = deque(maxlen=MAX_UNDOS)
 
     @property
     def host(self) -> Host:
         return cast(Host, self.app)
 
+    # What is on the screen
+
     def compose(self) -> ComposeResult:
         yield self.line(StatusLine())
         with Box(id="views"):
-            yield self._bound(self._on_stage)
+            yield self._bound(self._view_in_front)
         yield TooSmall()
         yield from self.more()
         yield self.line(InsightLine())
-        yield KeyLine(hinted(self.KEYS))
-
-    def line(self, line: Pane) -> Pane:
-        """Let a line of this screen follow the samples, as often as people can read it."""
-        self._lines.append(line)
-        line.sample = self.source.sample
-        return line.data_bind(SourceScreen.source, SourceScreen.shown)
+        yield KeyLine(FOOTER)
 
     def more(self) -> Iterable[Widget]:
         """The widgets above the insight line."""
         return ()
 
+    def line(self, line: Pane) -> Pane:
+        """Register a line of this screen; it is refreshed five times a second."""
+        self._lines.append(line)
+        line.sample = self.source.sample
+        return line.data_bind(SourceScreen.source, SourceScreen.shown)
+
     def on_resize(self, event: Resize) -> None:
         """Leave out a size that the terminal no longer has: two could call each other up for ever."""
         if event.size != self.app.size:
             event.prevent_default()
+
+    def _bound(self, view: View) -> View:
+        view.follow(self.source.sample, read=False)
+        return view.data_bind(SourceScreen.source, SourceScreen.shown)
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Keep the visitor of a browser from this computer's files and shell."""
+        if self.app.is_web and action in ("screenshot", "replay"):
+            return False
+        return super().check_action(action, parameters)
+
+    # Frames, from the clock to the panes
 
     def on_mount(self) -> None:
         self.call_after_refresh(self._begin)
@@ -124,15 +181,10 @@ class SourceScreen(Screen[None]):
         for notice in self._notices:
             self.notify(notice, timeout=15, markup=False)
 
-    def end(self) -> None:
-        """Stop following the clock: another screen takes over."""
-        if self._timer is not None:
-            self._timer.stop()
-        self.source.close()
-
     def frame(self) -> None:
         """Follow the clock, and show where it has led unless the terminal is behind."""
-        now, seen = self.clock() - self._missed, self.source.playhead.seen
+        now = self.clock() - self._missed
+        seen = self.source.playhead.seen
         if seen is not None and now - seen > STALL:
             self._missed += now - seen
             now = seen
@@ -144,33 +196,43 @@ class SourceScreen(Screen[None]):
         self._follow(sample, read=turn or self._is_late)
         self._is_late = False
 
-    def _follow(self, sample: Sample, read: bool = True) -> None:
-        self._on_stage.follow(sample, read)
-        if read:
-            for line in self._lines:
-                line.follow(sample)
-
     def show_now(self) -> None:
         """Show everything now, or with the next frame if the terminal is behind."""
         self._is_late = is_writing(self.app)
         if not self._is_late:
             self._follow(self.source.sample)
 
-    def remember(self, undo: Callable[[], object]) -> None:
-        """Keep the function that undoes a change."""
-        self._undo.append(undo)
+    def _follow(self, sample: Sample, read: bool = True) -> None:
+        self._view_in_front.follow(sample, read)
+        if read:
+            for line in self._lines:
+                line.follow(sample)
 
-    def change_shown(self, shown: Shown) -> None:
-        if (before := self.shown) != shown:
-            self.remember(lambda: setattr(self, "shown", before))
-            self.shown = shown
+    def end(self) -> None:
+        """Stop following the clock: another screen takes over."""
+        if self._timer is not None:
+            self._timer.stop()
+        self.source.close()
 
-    def on_asked(self, message: Asked) -> None:
-        self.call_next(self.run_action, message.action)
+    # Time
+
+    def on_screen_suspend(self) -> None:
+        """Pause while a dialog lies over this screen."""
+        if not self.source.playhead.paused:
+            self._paused_by_dialog = True
+            self._pause(True)
+
+    def on_screen_resume(self) -> None:
+        if self._paused_by_dialog:
+            self._paused_by_dialog = False
+            self._pause(False)
 
     def action_pause(self) -> None:
+        self._pause(not self.source.playhead.paused)
+
+    def _pause(self, paused: bool) -> None:
         self.frame()  # the clock goes on from here, not from the last frame
-        self.source.pause(not self.source.playhead.paused)
+        self.source.pause(paused)
         self.show_now()
 
     def action_step(self, n: int) -> None:
@@ -182,16 +244,27 @@ class SourceScreen(Screen[None]):
         self.source.seek_event(direction)
         self.show_now()
 
+    def action_go_to(self, run: int, step: int) -> None:
+        if self.source.go_to(run, step):
+            self.show_now()
+        else:
+            self.notify(f"That event belongs to run {run}; replay the recording to see it.", markup=False)
+
     def action_speed(self, doublings: int) -> None:
         self.action_set_speed(doubled(self.source.playhead.speed, doublings))
 
     def action_set_speed(self, speed: float) -> None:
-        """Set the speed; `u` undoes it."""
-        before = self.source.playhead.speed
-        if speed != before:
-            self.remember(lambda: self.source.set_speed(before))
+        if speed != self.source.playhead.speed:
+            self.keep(self.state)
             self.source.set_speed(speed)
             self.show_now()
+
+    # Settings
+
+    def change_shown(self, shown: Shown) -> None:
+        if shown != self.shown:
+            self.keep(self.state)
+            self.shown = shown
 
     def action_show(self, number: int) -> None:
         self.change_shown(self.shown.toggled(number, self.source.scene.cast))
@@ -211,15 +284,50 @@ class SourceScreen(Screen[None]):
     def action_window(self, direction: int) -> None:
         self.change_shown(self.shown.of(self.source.sample.run).next_window(direction))
 
+    def action_zoom(self, factor: float) -> None:
+        """Show `factor` times the range of time in the chart."""
+        self._view_in_front.zoom(factor)
+
     def on_zoomed(self, message: Zoomed) -> None:
-        self.shown = self.shown.zoomed(message.stretch)  # `w` leads back; undoing every turn of the wheel would be long
+        self.shown = self.shown.zoomed(message.stretch)  # w leads back: no undo of every turn of the wheel
+
+    # Undo
+
+    @property
+    def state(self) -> State:
+        """What an undo would bring back."""
+        source = self.source
+        sample = source.sample
+        return State(
+            scene=source.scene,
+            t=sample.t,
+            number=sample.run,
+            stepping=source.stepping,
+            speed=source.playhead.speed,
+            shown=self.shown,
+            run=source.run_state,
+        )
+
+    def keep(self, state: State) -> None:
+        """Keep a state for the next undo."""
+        self._undo.append(state)
+
+    def restore(self, state: State) -> None:
+        """Bring a state back."""
+        self.source.set_speed(state.speed)
+        self.shown = state.shown
 
     def action_undo(self) -> None:
         if self._undo:
-            before = State.of(self.source, self.shown)
-            self._undo.pop()()
+            before = self.state
+            self.restore(self._undo.pop())
             self.show_now()
-            self.notify(undone(before, State.of(self.source, self.shown)), timeout=3, markup=False)
+            self.notify(undone(before, self.state), timeout=3, markup=False)
+
+    # Views and dialogs
+
+    def on_asked(self, message: Asked) -> None:
+        self.call_next(self.run_action, message.action)
 
     def action_view(self, name: str = "") -> None:
         """Show a view, or the next one."""
@@ -231,23 +339,91 @@ class SourceScreen(Screen[None]):
             await views.mount(self._bound(create(name)))
         for each in views.children:
             each.display = each.id == name
-        self.view, view = name, self.query_one(f"#{name}", View)
-        self._on_stage = view
-        self.query_one(KeyLine).keys = hinted(self.KEYS, name, view.KEYS)
-        self.call_after_refresh(view.wake)
+        self.view = name
+        self._view_in_front = self.query_one(f"#{name}", View)
+        self.call_after_refresh(self._view_in_front.wake)
+        self.refresh_bindings()
         self.show_now()
 
-    def action_help(self) -> None:
-        """Show the help, with the keys of a focused pane first."""
-        from tui.screens.dialogs.text import TextScreen, help_text
+    def commands(self) -> Iterator[SystemCommand]:
+        """Yield what the command palette offers beside the keys."""
+        yield SystemCommand("copy the command for this moment", "", self.action_copy_command)
+        yield SystemCommand("normal speed (1×)", "", lambda: self.action_set_speed(1.0))
+        yield SystemCommand("all pendulums on one pivot, or one pane each", "", lambda: self.action_switch("overlay"))
+        yield from self._view_in_front.commands()
 
-        panes = self.query_one(f"#{self.view}", View).KEYS
-        keys = (*panes, *self.KEYS) if self.focused is not None else (*self.KEYS, *panes)
-        self.app.push_screen(TextScreen("Help", help_text(keys, self.source)))
+    def action_help(self) -> None:
+        """Show the keys of the view in front, the others, and what the words mean."""
+        from tui.screens.dialogs.text import TextScreen
+        from tui.screens.help import help_text
+
+        panes = dict.fromkeys(type(pane) for pane in self._view_in_front.query(Pane))
+        owners = [pane for pane in panes if pane.BINDING_GROUP_TITLE]
+        order = [type(self), *owners] if self.view == "lab" else [*owners, type(self)]
+        width = TextScreen.width_of(self.app.size)
+        self.app.push_screen(TextScreen("Help", help_text(order, self.source, width)))
+
+    def action_events(self) -> None:
+        """List all events."""
+        from tui.screens.dialogs.text import TextScreen
+        from tui.words.events import event_lines, numbered
+
+        self.app.push_screen(TextScreen("Events", "\n".join(numbered(event_lines(self.source)))))
+
+    def action_describe(self) -> None:
+        """Describe in words what runs and what is on screen."""
+        from tui.screens.dialogs.text import TextScreen
+        from tui.words.describe import description
+        from tui.words.orbit import period_sentence  # with NumPy
+
+        titles = [pane.border_title for pane in self.query(Pane) if pane.is_on_screen]
+        panes = "; ".join(Content.from_markup(title).plain for title in titles if title)
+        view = f"On screen: {VIEWS[self.view].title}; {panes}."
+        lines = [*description(self.source), period_sentence(self.source), view]
+        self.app.push_screen(TextScreen("In words", "\n".join(filter(None, lines))))
+
+    def action_card(self, key: str) -> None:
+        """Show a method's card."""
+        from engine.methods import method_of
+        from tui.screens.dialogs.text import TextScreen
+        from tui.words.cards import method_card
+
+        self.app.push_screen(TextScreen("Method", method_card(method_of(key))))
+
+    def action_screenshot(self) -> None:
+        """Save the screen next to the recordings."""
+        from recordings import library
+        from tui.cli.errors import explained
+        from tui.terminal.screenshot import save_screenshot
+
+        try:
+            picture, text = save_screenshot(self.app.export_screenshot(), library.folder())
+        except OSError as error:
+            self.notify(f"Screenshot failed: {explained(error)}", severity="warning", markup=False)
+        else:
+            self.notify(f"Saved {picture} and {text.name}", markup=False)
+
+    def action_copy_command(self) -> None:
+        """Copy the command that shows this again, and show it: not every terminal has a clipboard."""
+        from tui.words.command_line import command, reproduces
+
+        text = command(self.source)
+        self.app.copy_to_clipboard(text)
+        rest = "" if reproduces(self.source) else " (start values only; later changes of h are in the recording)"
+        self.notify(f"Copied: {text}{rest}", markup=False, timeout=15)
+
+    def action_replay(self, path: str) -> None:
+        """Finish what is on the screen and replay a recording."""
+        from tui.cli.errors import explained
+
+        assert self.host.open_replay is not None
+        try:
+            other = self.host.open_replay(Path(path))
+        except Exception as error:
+            self.notify(str(explained(error)), severity="warning", markup=False)
+            return
+        self.end()
+        self.app.push_screen(other)
 
     def action_quit(self) -> None:
         self.app.exit()
-
-    def _bound(self, view: View) -> View:
-        view.follow(self.source.sample, read=False)
-        return view.data_bind(SourceScreen.source, SourceScreen.shown)

@@ -150,11 +150,11 @@ def print_sentences(source: "Source", only: "Cast | None" = None) -> int:
     That is how it should end.
     """
     from tui.cli.files import stop_requests
-    from tui.words.plain_text import plain
+    from tui.words.plain_text import print_run
 
     try:
         with stop_requests() as stopped:
-            plain(source, partial(print, flush=True), stopped, only=only)
+            print_run(source, partial(print, flush=True), stopped, only=only)
     finally:
         source.close()
     say_goodbye(source)

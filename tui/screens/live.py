@@ -3,25 +3,42 @@
 from collections.abc import Callable
 from typing import ClassVar
 
-from textual.binding import BindingType
+from textual.binding import Binding, BindingType
 
 from engine.methods import Cast
+from engine.run.lockstep import Sample
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene, SceneError
 from tui.playback.live import Live
-from tui.screens.base import ALREADY
-from tui.screens.keys import COMMON, LIVE
-from tui.screens.tour.touring import Touring
-from tui.views.keys import Key, bindings
+from tui.playback.state import State
+from tui.screens.base import ALREADY, SourceScreen
+from tui.screens.tour import TOUR_BINDINGS, TourGuide
 from tui.views.messages import SceneChosen, StepSizeChosen
 from tui.words.insight import return_text
 
+_STEP = Binding.Group("larger, smaller step h")
 
-class LiveScreen(Touring):
+
+class LiveScreen(SourceScreen):
     """Shows a live source and changes it."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(*LIVE)
-    KEYS: ClassVar[tuple[Key, ...]] = (*LIVE, *COMMON)
+    BINDING_GROUP_TITLE = "Lab"
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("plus,equals_sign", "larger_h(1)", "Step", True, "+", tooltip="larger step h", group=_STEP),
+        Binding("minus", "larger_h(-1)", "Step", True, "-", tooltip="smaller step h", group=_STEP),
+        Binding("p", "next_scene", "Scene", tooltip="next scene"),
+        Binding("P,shift+p", "scenes", "choose a scene", show=False),
+        Binding("i", "start_values", "Edit", tooltip="edit start values"),
+        Binding("M,shift+m", "methods", "Methods", True, "M", tooltip="choose methods"),
+        Binding("r", "restart", "Restart", tooltip="restart"),
+        Binding("b", "reverse", "Back", tooltip="run back in time"),
+        Binding("n", "equal_cost", "Equal cost", tooltip="equal cost for all methods"),
+        Binding("T,shift+t", "tour", "Tour", True, "T", tooltip="tour: begin, leave, go on"),
+        *TOUR_BINDINGS,
+    ]
+
+    begins_with_tour = False
+    tour: TourGuide | None = None
 
     @property
     def live(self) -> Live:
@@ -29,43 +46,51 @@ class LiveScreen(Touring):
         return self.source
 
     def frame(self) -> None:
-        """Pause where time that runs backwards is back at 0, and keep what each method misses its start by."""
+        """Pause where time that runs backwards is back at 0, and keep each method's distance from its start."""
         before = self.source.history.returned
         super().frame()
         returned = self.source.history.returned
-        if returned is None or returned is before or self.source.playhead.paused:
-            return
-        if returned.step == self.source.sample.step and not self.live.is_marked:
+        if returned is not None and returned is not before:
+            self._stop_at_start(returned)
+        if self.tour is not None:
+            self.tour.follow()
+
+    def _stop_at_start(self, returned: Sample) -> None:
+        is_here = returned.step == self.source.sample.step
+        if is_here and not self.source.playhead.paused and not self.live.is_marked:
             self.live.pause(True)
             self.live.mark(return_text(self.live.scene, returned))
             self.show_now()
 
+    # Changes of the run
+
     def start(self, scene: Scene, speed: float | None = None) -> None:
-        """Start a new run, perhaps at another speed; `u` goes back to the one before, where it was."""
-        back, before = self.live.way_back(), self.live.playhead.speed
-
-        def undo() -> None:
-            self.live.set_speed(before)
-            self._do(back)
-
-        if self._do(lambda: self.live.start(scene)):
-            self.live.set_speed(speed or before)
-            self.remember(undo)
+        """Start a new run, perhaps at another speed."""
+        before = self.state
+        if self._changed(lambda: self.live.start(scene)):
+            self.live.set_speed(speed or before.speed)
 
     def set_stepping(self, stepping: Stepping) -> None:
-        before = self.live.stepping
-        if self._do(lambda: self.live.set_stepping(stepping)):
-            self.remember(lambda: self._do(lambda: self.live.set_stepping(before)))
+        self._changed(lambda: self.live.set_stepping(stepping))
 
-    def _do(self, change: Callable[[], None]) -> bool:
-        """Change the run, or notify why not."""
+    def _changed(self, change: Callable[[], None]) -> bool:
+        """Change the run so that it can be undone, or notify why not."""
+        before = self.state
         try:
             change()
         except SceneError as error:
             self.notify(str(error), severity="warning", markup=False)
             return False
+        self.keep(before)
         self.show_now()
         return True
+
+    def restore(self, state: State) -> None:
+        if state.run is not None and state.run.run is not self.live.run_state.run:
+            self.live.return_to(state.run)
+        if state.stepping != self.live.stepping:
+            self.live.set_stepping(state.stepping)
+        super().restore(state)
 
     def on_scene_chosen(self, choice: SceneChosen) -> None:
         self.start(choice.scene)
@@ -74,10 +99,7 @@ class LiveScreen(Touring):
         self.set_stepping(choice.stepping)
 
     def action_restart(self) -> None:
-        back = self.live.way_back()
-        self.live.restart()
-        self.remember(lambda: self._do(back))
-        self.show_now()
+        self._changed(self.live.restart)
 
     def action_larger_h(self, direction: int) -> None:
         """Take the next larger or smaller h of 1, 2, 5, 10, ..."""
@@ -91,8 +113,20 @@ class LiveScreen(Touring):
         self.set_stepping(self.live.stepping.toggled())
 
     def action_next_scene(self) -> None:
-        names, name = list(SCENES), self.live.scene.name
-        self.action_start_scene(names[(names.index(name) + 1) % len(names) if name in SCENES else 0])
+        names = list(SCENES)
+        name = self.live.scene.name
+        following = names.index(name) + 1 if name in SCENES else 0
+        self.action_start_scene(names[following % len(names)])
+
+    def action_start_scene(self, name: str) -> None:
+        self.start(SCENES[name], SCENES[name].speed)
+
+    def action_mark(self) -> None:
+        text = ALREADY if self.live.is_marked else f"Mark at {self.live.sample.t:.2f} s"
+        self.live.mark()
+        self.notify(text, timeout=2)
+
+    # Forms; they are imported when they are needed
 
     def action_scenes(self) -> None:
         from tui.screens.dialogs.scene_list import SceneList
@@ -103,23 +137,21 @@ class LiveScreen(Touring):
 
         self.app.push_screen(SceneList(self.live.scene.name), chosen)
 
-    def action_start_scene(self, name: str) -> None:
-        self.start(SCENES[name], SCENES[name].speed)
-
     def action_start_values(self) -> None:
-        from tui.screens.dialogs.start_form import StartForm  # Textual's input field is imported when it is needed
+        from tui.screens.dialogs.start_form import StartForm
 
         def chosen(scene: Scene | None) -> None:
             if scene is not None:
                 self.start(scene)
 
         stepping = self.live.stepping
-        self.app.push_screen(StartForm(self.live.scene.altered(h=stepping.smallest), stepping.h < 0), chosen)
+        scene = self.live.scene.altered(h=stepping.smallest)
+        self.app.push_screen(StartForm(scene, stepping.h < 0), chosen)
 
     def action_methods(self) -> None:
         from tui.screens.dialogs.cast_form import CastForm
 
-        scene = self.live.scene.altered(h=self.live.stepping.smallest)  # by the answer, another may be on
+        scene = self.live.scene.altered(h=self.live.stepping.smallest)  # another may run by the answer
 
         def chosen(cast: Cast | None) -> None:
             if cast:
@@ -127,7 +159,23 @@ class LiveScreen(Touring):
 
         self.app.push_screen(CastForm(scene), chosen)
 
-    def action_mark(self) -> None:
-        text = ALREADY if self.live.is_marked else f"Mark at {self.live.sample.t:.2f} s"
-        self.live.mark()
-        self.notify(text, timeout=2)
+    # The tour
+
+    def on_source_screen_began(self) -> None:
+        if self.begins_with_tour:
+            self.action_tour()
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        if action == "on_tour":
+            return self.tour is not None and self.tour.takes(*parameters)
+        return super().check_action(action, parameters)
+
+    def action_tour(self) -> None:
+        """Begin the tour, go on where it was left, or leave it."""
+        if self.tour is None:
+            self.tour = TourGuide(self)
+        self.tour.toggle()
+
+    def action_on_tour(self, key: str) -> None:
+        assert self.tour is not None
+        self.tour.press(key)

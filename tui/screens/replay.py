@@ -5,30 +5,41 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from typing import ClassVar
 
-from textual import events
-from textual.binding import BindingType
+from textual.binding import Binding, BindingType
 from textual.widget import Widget
 
 from tui.cli.errors import UserError, explained
 from tui.playback.live import Live
 from tui.playback.replay import Replay
 from tui.screens.base import ALREADY, SourceScreen
-from tui.screens.keys import COMMON, LIVE, REPLAY
 from tui.screens.seek_bar import SeekBar
-from tui.views.keys import Key, bindings
 
 NO_LENGTH = "A loop cannot start and end at the same moment: move along the recording, then set the other end."
 LONG = 100_000  # steps; a quarter of a second
-_OF_THE_LAB = {name for key in LIVE for name in key.names.split(",")} - {
-    name for key in (*REPLAY, *COMMON) for name in key.names.split(",")
-}
+_SECONDS = Binding.Group("back, forward 1 s")
+_ENDS = Binding.Group("go to the start, to the end")
+_TENTHS = Binding.Group("back, forward 10 %")
+_LOOP = Binding.Group("loop: start here, end here, on or off")
 
 
 class ReplayScreen(SourceScreen):
     """Shows a replay.  `go_live` makes the screen for a lab that continues from the replayed moment."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(*REPLAY)
-    KEYS: ClassVar[tuple[Key, ...]] = (*REPLAY, *COMMON)
+    BINDING_GROUP_TITLE = "Replay"
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("left", "seek(-1)", "-1 s", True, "left", tooltip="back 1 s", group=_SECONDS),
+        Binding("right", "seek(1)", "+1 s", True, "right", tooltip="forward 1 s", group=_SECONDS),
+        Binding("home", "part(-1)", "go to the start", False, group=_ENDS),
+        Binding("end", "part(1)", "go to the end", False, group=_ENDS),
+        Binding("pageup", "part(-0.1)", "back 10 %", False, "pgup", group=_TENTHS),
+        Binding("pagedown", "part(0.1)", "forward 10 %", False, "pgdn", group=_TENTHS),
+        Binding("b", "reverse", "Back", tooltip="play back in time"),
+        Binding("A,shift+a", "loop_end(0)", "loop: start here", False, "A", group=_LOOP),
+        Binding("B,shift+b", "loop_end(1)", "loop: end here", False, "B", group=_LOOP),
+        Binding("L,shift+l", "loop", "loop: on or off", False, "L", group=_LOOP),
+        Binding("f", "live", "Live", tooltip="continue live from here"),
+        Binding("plus,equals_sign,minus,p,P,shift+p,i,M,shift+m,r,n,T,shift+t", "change"),
+    ]
 
     def __init__(
         self,
@@ -51,10 +62,9 @@ class ReplayScreen(SourceScreen):
     def on_seek_bar_sought(self, message: SeekBar.Sought) -> None:
         self.seek(message.position)
 
-    def on_key(self, event: events.Key) -> None:
-        """Say why a key of the lab does nothing here."""
-        if event.key in _OF_THE_LAB:
-            self.notify("A recording cannot be changed: f continues it live, and then it can.", timeout=4)
+    def action_change(self) -> None:
+        """Answer a key of the lab."""
+        self.notify("A recording cannot be changed: f continues it live, and then it can.", timeout=4)
 
     def seek(self, position: float) -> None:
         self.replay.seek(position)

@@ -1,74 +1,134 @@
-"""StatusLine: what runs, how fast, from which start, and the state of the recording."""
+"""StatusLine: the run, its speed, its start, and the state of the recording."""
 
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
+from rich.cells import cell_len
 from rich.style import Style
 
+from engine.methods import Cast
 from engine.run.lockstep import Sample
 from recordings.errors import printable
 from tui.drawing.palette import QUIET, TEXT, WARN
 from tui.drawing.picture import Picture, Row
 from tui.playback.source import Source
 from tui.views.view import Pane
-from tui.words.findings import limit_warning
 from tui.words.numbers import factor, file_size, percent, seconds, start, two_digits
 
 SLOW = 1.0  # s of the clock from step to step: without a word, the lab would seem to stand still
 BADGE = -10
-"""The owner of LIVE and REPLAY."""
+"""The ink of LIVE and REPLAY."""
 
 
-class _Part(NamedTuple):
-    keep: int  # the smallest go first where there is no room
+class Segment(NamedTuple):
+    """A part of the line; where there is no room the smallest priority goes first."""
+
+    priority: int
     text: str
-    owner: int = TEXT
+    style: int = TEXT
 
 
 def speed_text(speed: float) -> str:
-    """As "1×", "1/8×", "1024×", "-2×"."""
-    sign, size = "-" if speed < 0 else "", abs(speed)
+    """Return as "1×", "1/8×", "1024×", "-2×"."""
+    sign = "-" if speed < 0 else ""
+    size = abs(speed)
     return f"{sign}{factor(size)}×" if size >= 1 else f"{sign}1/{factor(1 / size)}×"
 
 
 def coarse(value: float) -> str:
-    """As "12 s", "3 min", "1 h 02 min"."""
-    return f"{int(value)} s" if value < 60 else f"{int(value / 60)} min" if value < 3600 else seconds(value)
+    """Return as "12 s", "3 min", "1 h 02 min"."""
+    if value < 60:
+        return f"{int(value)} s"
+    return f"{int(value / 60)} min" if value < 3600 else seconds(value)
+
+
+def limit_warning(cast: Cast, zs: Sequence[float]) -> str:
+    """Return as "unstable: e, s v (z > 2), r (z > 2.83)"; "" below all limits.
+
+    `zs` are in the order of the cast.  Explicit Euler is never stable, so it is named only beside others.
+    """
+    letters: dict[float, list[str]] = {}
+    for method, z in zip(cast, zs, strict=True):
+        if method.linear_limit and method.linear_limit < z:
+            letters.setdefault(method.linear_limit, []).append(method.letter)
+    if not letters:
+        return ""
+    always = [method.letter for method in cast if method.linear_limit == 0.0]
+    beyond = [f"{' '.join(each)} (z > {limit:.3g})" for limit, each in letters.items()]
+    return f"unstable: {', '.join([*always, *beyond])}"
+
+
+def segments(source: Source) -> Iterator[Segment]:
+    """Yield the parts of the line, from left to right."""
+    yield from _time(source)
+    yield from _stepping(source)
+    scene = source.scene
+    if scene.watch:
+        yield Segment(6, f"scene {scene.name}", QUIET)
+        yield Segment(4, start(scene.theta, scene.omega))
+    else:
+        yield Segment(3, f"{scene.name} scene", QUIET)
+        yield Segment(6, start(scene.theta, scene.omega))
+    yield from _recording(source)
+
+
+def _time(source: Source) -> Iterator[Segment]:
+    playhead = source.playhead
+    state = "backwards" if source.stepping.h < 0 else "running"
+    yield Segment(12, "paused " if playhead.paused else state)
+    speed = speed_text(playhead.speed)
+    yield Segment(7, speed)
+    share = source.pace.share
+    if share < 0.99:
+        reached = two_digits(abs(playhead.speed * share))
+        text = f"only {percent(share)} of" if share >= 0.095 else f"reached {reached}× of"
+        yield Segment(10, f"{text} {speed}", WARN)
+    yield Segment(11, f"t {seconds(source.sample.t)}")
+
+
+def _stepping(source: Source) -> Iterator[Segment]:
+    stepping = source.stepping
+    fastest = source.scene.equations.fastest
+    warning = limit_warning(source.scene.cast, [abs(h) * fastest for h in stepping.own])
+    yield Segment(11, f"h {stepping.h:.4g} s{' equal cost' if stepping.equal_cost else ''}")
+    name = "h·omega_s" if source.scene.model == "spring" else "z"
+    yield Segment(10, f"{name} {abs(stepping.h) * fastest:.3g}", WARN if warning else TEXT)
+    if warning:
+        yield Segment(9, warning, WARN)
+    is_slow = abs(stepping.h / source.playhead.speed) >= SLOW
+    if is_slow and not source.playhead.paused and source.next_step is not None:
+        yield Segment(9, f"next step in {coarse(max(source.next_step, 0.0))}")
+
+
+def _recording(source: Source) -> Iterator[Segment]:
+    status = source.recording_status
+    if status is None:
+        if source.playhead.seen is not None:  # else it is yet to begin
+            yield Segment(8, "not recorded", QUIET)
+    elif status.failed:
+        yield Segment(10, "NOT RECORDED", WARN)
+    else:
+        if source.kind == "LIVE":
+            yield Segment(8, f"REC {coarse(status.seconds)}")
+        yield Segment(1, printable(status.name), QUIET)
+        yield Segment(2, file_size(status.bytes), QUIET)
+
+
+def fit(parts: list[Segment], width: int) -> list[Segment]:
+    """Return the segments that fit, with two blanks before each."""
+    kept = list(parts)
+    while kept and sum(cell_len(part.text) + 2 for part in kept) > width:
+        kept.remove(min(kept))
+    return kept
 
 
 def status_row(source: Source, width: int) -> Row:
-    """The line, as far as there is room."""
-    scene, playhead, pace, recording = source.scene, source.playhead, source.pace, source.recording_status
-    z, live, named = abs(source.stepping.h) * scene.equations.fastest, source.kind == "LIVE", bool(scene.watch)
-    warning = limit_warning(source.scene.cast, [abs(h) * scene.equations.fastest for h in source.stepping.own])
-    parts = [
-        _Part(12, "paused " if playhead.paused else "backwards" if source.stepping.h < 0 else "running"),
-        _Part(7, speed_text(playhead.speed)),
-        _Part(11, f"t {seconds(source.sample.t)}"),
-        _Part(11, f"h {source.stepping.h:.4g} s{' equal cost' if source.stepping.equal_cost else ''}"),
-        _Part(10, f"{'h·omega_s' if scene.model == 'spring' else 'z'} {z:.3g}", WARN if warning else TEXT),
-        *([_Part(9, warning, WARN)] if warning else []),
-        _Part(6 if named else 3, f"scene {scene.name}" if named else f"{scene.name} scene", QUIET),
-        _Part(4 if named else 6, start(scene.theta, scene.omega)),
-    ]
-    if pace.share < 0.99:
-        reached = playhead.speed * pace.share
-        share = f"only {percent(pace.share)} of" if pace.share >= 0.095 else f"reached {two_digits(abs(reached))}× of"
-        parts.insert(2, _Part(10, f"{share} {speed_text(playhead.speed)}", WARN))
-    if not playhead.paused and abs(source.stepping.h / playhead.speed) >= SLOW and source.next_step is not None:
-        parts.append(_Part(9, f"next step in {coarse(max(source.next_step, 0.0))}"))
-    if recording is None:
-        parts += [_Part(8, "not recorded", QUIET)] if playhead.seen is not None else []  # else it is yet to begin
-    elif recording.failed:
-        parts.append(_Part(10, "NOT RECORDED", WARN))
-    else:
-        if live:
-            parts.append(_Part(8, f"REC {coarse(recording.seconds)}"))
-        parts.append(_Part(2, file_size(recording.bytes), QUIET))
-        parts.append(_Part(1, printable(recording.name), QUIET))
+    """Return the line, as far as there is room."""
     badge = f" {source.kind} "
-    while parts and len(badge) + sum(len(part.text) + 2 for part in parts) > width:
-        parts.remove(min(parts))
-    return [(badge, BADGE), *((text, owner) for part in parts for text, owner in (("  ", TEXT), part[1:]))]
+    row: list[tuple[str, int]] = [(badge, BADGE)]
+    for part in fit(list(segments(source)), width - len(badge)):
+        row += [("  ", TEXT), (part.text, part.style)]
+    return row
 
 
 class StatusLine(Pane):

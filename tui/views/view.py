@@ -3,6 +3,7 @@
 from collections.abc import Callable, Coroutine, Iterable
 from typing import ClassVar, Generic, TypeVar
 
+from textual.app import SystemCommand
 from textual.containers import Container
 from textual.content import Content
 from textual.reactive import var
@@ -14,7 +15,6 @@ from engine.run.lockstep import Sample
 from tui.drawing.cells import CellWidget
 from tui.playback.shown import Shown
 from tui.playback.source import Source
-from tui.views.keys import Key
 
 Place = TypeVar("Place")
 
@@ -32,9 +32,6 @@ class View(Box):
 
     Samples come directly: data_bind would take longer than drawing.
     """
-
-    KEYS: ClassVar[tuple[Key, ...]] = ()
-    """The keys of its panes, for the help."""
 
     source: var[Source | None] = var(None)
     shown: var[Shown] = var(Shown())
@@ -74,6 +71,10 @@ class View(Box):
 
     def zoom(self, factor: float, shift: float = 0.0) -> None:
         """Show `factor` times the stretch of time, or later by a `shift` of it, where the view has a chart of that."""
+
+    def commands(self) -> Iterable[SystemCommand]:
+        """Return what the command palette offers here beside the keys."""
+        return ()
 
     def wake(self) -> None:
         """Draw what is on screen again: the view was hidden."""

@@ -4,7 +4,7 @@ import math
 
 from engine.methods import Cast
 from tui.playback.source import Source
-from tui.words.findings import astray, ending, endings, leaving
+from tui.words.insight import drift, endings, irregular, milestone_insight, sentence
 from tui.words.numbers import about, seconds
 
 
@@ -43,13 +43,15 @@ def method_sentence(source: Source, index: int) -> str:
     """Whether a method failed or went over the top; if not, its verdict or its error so far."""
     method, reading = source.scene.cast[index], source.sample.readings[index]
     if milestone := endings(source).get(index):
-        said = ending(milestone, source.scene.equations.energy_error.conserved)
-        return f"{said} {astray(method.label, source.judgements[index], reading.energy_error)}".strip()
+        parts = [milestone_insight(milestone, source.scene.equations.energy_error.conserved), irregular(source, index)]
+        return " ".join(sentence(each) for each in parts if each)
     if source.judgements[index].verdict == "bounded":
         return f"{method.label} stays bounded: its largest energy error is {reading.max_energy_error:.2g}."
     known = source.judgements[index].verdict
     verdict = "it is too early for a verdict" if known == "too early" else f"verdict: {known}"
-    return leaving(source, index) or f"{method.label} has an energy error of {reading.energy_error:+.2g}; {verdict}."
+    if found := drift(source, index):
+        return sentence(found)
+    return f"{method.label} has an energy error of {reading.energy_error:+.2g}; {verdict}."
 
 
 def _recording(source: Source) -> str:

@@ -9,7 +9,7 @@ from engine.run.observer import Milestone
 from engine.run.verdict import Verdict
 from recordings.events import Event
 from tui.playback.source import Source
-from tui.words.findings import short_name
+from tui.words.insight import short_name
 from tui.words.numbers import start, two_digits
 
 VERDICTS: dict[Verdict, str] = {

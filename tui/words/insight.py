@@ -1,106 +1,329 @@
-"""The one sentence of the moment, from milestones and verdicts; and hints in the first minute."""
+"""The insight of the moment: `insight` chooses a kind and its numbers, SENTENCES has the words.
+
+Each states only what was measured; a forecast extrapolates a measured slope.
+"""
 
 import math
-from collections.abc import Collection, Iterable
+import string
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from types import MappingProxyType
+from typing import Any, Literal, NamedTuple
 
+from engine.methods import GENERAL, Method
+from engine.run.judgement import Judgement, Milestone
 from engine.run.lockstep import Sample
-from engine.run.observer import Milestone
 from engine.scenes import Scene
-from recordings.events import Event, EventKind
 from tui.playback.source import Source
-from tui.words.findings import astray, ending, endings, leaving, passing, short_name, so_far, staying
+from tui.words.numbers import about, two_digits
 
 WATCH = 8.0  # s of the clock at the beginning of a run, for the scene's own sentence
 FRESH = 6.0  # s of the clock for which a milestone is news
 TURN = 8.0  # s of the clock until the next of the lasting sentences
-RESTING = "Nothing moves: the pendulum started at rest in equilibrium."
+MAX_BAND = 0.2  # of the energy; a larger loss changes the rate of loss itself
+MAX_FORECAST = 1000 * 86400.0  # s
+MAX_RATE_LOSS = 0.5  # of the energy; beyond it the share that is lost says more than the rate
+MAX_PERIOD_CHANGE = 0.05  # relative, up to which a rate of loss per second stays as it is
+UNCHANGED = 0.05  # relative change of the energy that is not worth a number
 
-HINT_SHOWN = 6.0  # s
-HINTS: tuple[tuple[float, EventKind, str], ...] = (
-    (16.0, "start", "New here? T shows the lab in a tour of eight short steps."),
-    (24.0, "pause", "Press space to pause, then . or , to step forward or back."),
-    (31.0, "start", "? lists the keys: p next scene, M methods, i start values."),
-    (38.0, "set_h", "Press + for a larger step: which methods conserve energy?"),
-    (52.0, "start", "Click anywhere in phase space (F3) to start from there."),
-)
-"""Seconds on screen until the hint is due; the event which shows that the user knows it already; the hint."""
+Kind = Literal[
+    "at rest", "returned", "watch", "failed", "over the top", "over the top with",
+    "over the top with true", "errors cross", "bounded", "chaotic", "chaotic at", "wanders",
+    "wanders at", "caught", "lost", "gains", "loses", "will pass", "exceeds", "so far",
+]  # fmt: skip
+
+SENTENCES: dict[Kind, str] = {
+    "at rest": "Nothing moves: the pendulum started at rest in equilibrium.",
+    "returned": "Back at t = 0. Missed the start by {misses} rad.",
+    "watch": "{text}",
+    "failed": "{0} failed at {t:.4g} s: its energy error is no longer finite.",
+    "over the top": "{0} went over the top at {t:.3g} s.",
+    "over the top with": "{0} went over the top at {t:.3g} s with {ratio:two} times its initial energy.",
+    "over the top with true": "{0} went over the top at {t:.3g} s with {ratio:two} times the true energy.",
+    "errors cross": "{0}'s error passed {1}'s at {t:.4g} s: smaller at first, it kept growing.",
+    "bounded": "{names} bounded; no trend over {seconds:about}.",
+    "chaotic": "{0} is chaotic: nearby starts separate exponentially.",
+    "chaotic at": "{0} is chaotic: nearby starts separate tenfold every {seconds:about}.",
+    "wanders": "{0} wanders: its energy goes up and down, without a trend and in no band.",
+    "wanders at": "{0} wanders in chaos: nearby starts separate tenfold every {seconds:about}.",
+    "caught": "{0} has settled at an energy error of about {error:+.3g}.",
+    "lost": "{0} has lost {share:percent} of its energy.",
+    "gains": "{0} gains {rate:two} of {unit} per s.",
+    "loses": "{0} loses {rate:two} of {unit} per s.",
+    "will pass": "{0} loses {rate:two} of E0 per s; its error will pass {1}'s in about {seconds:about}.",
+    "exceeds": "{0} {gains} {rate:two} of {unit} per s; its error is {ratio:two} times {1}'s maximum.",
+    "so far": "Energy errors so far: {least:.2g} ({0}) to {most:.2g} ({1}).",
+}
 
 
-def hint(seconds: float, events: Iterable[Event]) -> str:
-    """The hint that is due; "" if none is."""
-    for begin, kind, text in HINTS:
-        if begin <= seconds < begin + HINT_SHOWN:
-            known = any(event.kind == kind and (kind != "start" or event.run > 1) for event in events)
-            return "" if known else text
-    return ""
+class Insight(NamedTuple):
+    """A fact about the run: its kind, the methods it is about, and its numbers."""
+
+    kind: Kind
+    methods: tuple[Method, ...] = ()
+    values: Mapping[str, Any] = MappingProxyType({})
 
 
-def insight(source: Source, hidden: Collection[str] = ()) -> str:
-    """The sentence: equilibrium, the return to t = 0, news, the scene's own sentence, or the lasting ones in turn.
+class _Words(string.Formatter):
+    """Knows the formats `about`, `two` and `percent` besides Python's own."""
 
-    It does not mention methods whose keys are `hidden`.
+    def format_field(self, value: Any, format_spec: str) -> str:
+        match format_spec:
+            case "about":
+                return about(value)
+            case "two":
+                return two_digits(value)
+            case "percent":
+                return "all" if value > 1 - 1e-6 else f"{100 * value:.4g} %"
+        return str(super().format_field(value, format_spec))
+
+
+def sentence(found: Insight) -> str:
+    """Return an insight in words."""
+    names = [short_name(method) for method in found.methods]
+    *first, last = names or [""]
+    joined = f"{', '.join(first)} and {last} stay" if first else f"{last} stays"
+    return _Words().format(SENTENCES[found.kind], *names, names=joined, **found.values)
+
+
+def short_name(method: Method) -> str:
+    """Return the last word of a name if no other name ends with it: "Verlet", but "Symplectic Euler"."""
+    last = method.label.split()[-1]
+    alone = sum(each.label.endswith(last) for each in GENERAL) == 1
+    return last if alone and method.general else method.label
+
+
+def insight_text(source: Source, hidden: Collection[str] = ()) -> str:
+    """Return the insight of the moment in words."""
+    return sentence(insight(source, hidden))
+
+
+def insight(source: Source, hidden: Collection[str] = ()) -> Insight:
+    """Choose: equilibrium, the return to t = 0, news, the scene's own sentence, or the lasting ones in turn.
+
+    Methods whose keys are `hidden` are not mentioned.
     """
-    sample, scene, returned = source.sample, source.scene, source.history.returned
-    if source.exact.regime == "equilibrium":
-        return RESTING
-    if returned is not None and abs(sample.t) < WATCH:
-        return return_text(scene, returned)
+    sample = source.sample
+    returned = source.history.returned
     pace = abs(source.playhead.speed)
-    if text := _news(source, FRESH * pace, hidden):
-        return text
-    if abs(sample.t) < WATCH * pace and (text := _watch(source, hidden)):
-        return text
-    sentences = lasting(source, hidden)
-    return sentences[int(sample.step * abs(source.stepping.h) / (TURN * pace)) % len(sentences)]
+    if source.exact.regime == "equilibrium":
+        return Insight("at rest")
+    if returned is not None and abs(sample.t) < WATCH:
+        return _returned(source.scene, returned)
+    if found := _news(source, FRESH * pace, hidden):
+        return found
+    if abs(sample.t) < WATCH * pace and (watch := _watch(source, hidden)):
+        return watch
+    known = lasting(source, hidden)
+    turn = int(sample.step * abs(source.stepping.h) / (TURN * pace))
+    return known[turn % len(known)]
 
 
-def _news(source: Source, seconds: float, hidden: Collection[str]) -> str:
-    """The newest milestone of the last simulated seconds; failures first, over the top, errors that cross, verdicts."""
+def _news(source: Source, seconds: float, hidden: Collection[str]) -> Insight | None:
+    """Return the latest milestone; failures come first, then over the top, errors that cross, verdicts."""
     kinds = ("verdict", "errors cross", "over the top", "failed")
     since = source.sample.step - seconds / abs(source.stepping.h)
     recent = [each for each in source.milestones if each.step > since and each.method.key not in hidden]
-    newest = sorted(recent, key=lambda each: (kinds.index(each.kind), each.step))
-    return next(filter(None, (_sentence(source, each, hidden) for each in reversed(newest))), "")
+    for milestone in sorted(recent, key=lambda each: (kinds.index(each.kind), each.step), reverse=True):
+        if milestone.kind != "verdict":
+            return milestone_insight(milestone, source.scene.equations.energy_error.conserved)
+        index = source.scene.cast.index(milestone.method)
+        is_bounded = milestone.verdict == "bounded"
+        if found := bounded(source, hidden) if is_bounded else drift(source, index):
+            return found
+    return None
 
 
-def _sentence(source: Source, milestone: Milestone, hidden: Collection[str]) -> str:
-    if milestone.other:
-        return passing(milestone, milestone.other)
-    if milestone.kind != "verdict":
-        return ending(milestone, source.scene.equations.energy_error.conserved)
-    index = source.scene.cast.index(milestone.method)
-    return staying(source, hidden) if milestone.verdict == "bounded" else leaving(source, index)
-
-
-def lasting(source: Source, hidden: Collection[str] = ()) -> list[str]:
-    """All that is known of the methods that are not hidden, the most important first; at least one sentence."""
-    shown = [index for index, method in enumerate(source.scene.cast) if method.key not in hidden]
-    ended = {index: each for index, each in endings(source).items() if index in shown}
-    ends = sorted(ended.values(), key=lambda each: (each.kind != "failed", each.step))
-    over = [ending(each, source.scene.equations.energy_error.conserved) for each in ends]
-    cast, judgements, readings = source.scene.cast, source.judgements, source.sample.readings
-    moves = [
-        astray(short_name(cast[at]), judgements[at], readings[at].energy_error) if at in ended else leaving(source, at)
-        for at in shown
-    ]
-    known = list(filter(None, [*over, staying(source, hidden), *moves]))
-    return [*known, *filter(None, [_watch(source, hidden)])] if known else [so_far(source, hidden)]
-
-
-def _watch(source: Source, hidden: Collection[str]) -> str:
-    """The scene's own sentence, which holds for its own step size only; "" where it names a hidden method."""
+def _watch(source: Source, hidden: Collection[str]) -> Insight | None:
+    """Return the scene's own sentence, which holds for its own step only and its methods."""
     scene = source.scene
     named = any(method.key in hidden and short_name(method) in scene.watch for method in scene.cast)
-    return scene.watch if source.stepping.h == scene.h and not named else ""
+    if not scene.watch or source.stepping.h != scene.h or named:
+        return None
+    return Insight("watch", values={"text": scene.watch})
+
+
+def lasting(source: Source, hidden: Collection[str] = ()) -> list[Insight]:
+    """Return all insights on the methods that are not hidden, the most important first; at least one."""
+    ended = {index: each for index, each in endings(source).items() if each.method.key not in hidden}
+    found = list(_on_methods(source, ended, hidden))
+    watch = _watch(source, hidden)
+    if found:
+        return [*found, watch] if watch else found
+    return [_so_far(source, hidden)]
+
+
+def _on_methods(source: Source, ended: Mapping[int, Milestone], hidden: Collection[str]) -> Iterator[Insight]:
+    conserved = source.scene.equations.energy_error.conserved
+    for milestone in sorted(ended.values(), key=lambda each: (each.kind != "failed", each.step)):
+        yield milestone_insight(milestone, conserved)
+    if staying := bounded(source, hidden):
+        yield staying
+    for index, method in enumerate(source.scene.cast):
+        if method.key in hidden:
+            continue
+        found = irregular(source, index) if index in ended else drift(source, index)
+        if found:
+            yield found
+
+
+def endings(source: Source) -> dict[int, Milestone]:
+    """Return by index the methods that failed or went over the top: their verdict no longer matters."""
+    ended = [each for each in source.milestones if each.kind in ("over the top", "failed")]
+    index = source.scene.cast.index
+    return {index(each.method): each for each in sorted(ended, key=lambda each: each.kind == "failed")}
+
+
+def milestone_insight(milestone: Milestone, conserved: bool = True) -> Insight:
+    """Return the insight on a method that failed, went over the top, or passed another's error."""
+    methods = (milestone.method,)
+    values = {"t": milestone.t}
+    if milestone.other:
+        return Insight("errors cross", (milestone.method, milestone.other), values)
+    if milestone.kind == "failed":
+        return Insight("failed", methods, values)
+    if not conserved:
+        ratio = math.exp(min(milestone.energy_error, 700.0))
+        return Insight("over the top with true", methods, values | {"ratio": ratio})
+    if abs(milestone.energy_error) < UNCHANGED:
+        return Insight("over the top", methods, values)
+    return Insight("over the top with", methods, values | {"ratio": 1 + milestone.energy_error})
+
+
+def bounded(source: Source, hidden: Collection[str] = ()) -> Insight | None:
+    """Return the insight on the bounded methods, if there are any."""
+    judged = zip(source.scene.cast, source.judgements, strict=True)
+    found = [(m, j) for m, j in judged if j.verdict == "bounded" and m.key not in hidden]
+    if not found:
+        return None
+    period = source.exact.period or math.tau / source.scene.w0  # the unit of Judgement.periods
+    seconds = min(judgement.periods for _, judgement in found) * period
+    return Insight("bounded", tuple(method for method, _ in found), {"seconds": seconds})
+
+
+def irregular(source: Source, index: int) -> Insight | None:
+    """Return the insight on a method that is chaotic, wanders or is caught."""
+    error = source.sample.readings[index].energy_error
+    return irregular_insight(source.scene.cast[index], source.judgements[index], error)
+
+
+def irregular_insight(method: Method, judgement: Judgement, error: float) -> Insight | None:
+    """Return the insight on a chaotic, wandering or caught method; None for other verdicts."""
+    values = {"seconds": math.log(10) / judgement.lyapunov} if judgement.lyapunov else {}
+    match judgement.verdict:
+        case "chaotic":
+            return Insight("chaotic at" if values else "chaotic", (method,), values)
+        case "wanders":
+            return Insight("wanders at" if values else "wanders", (method,), values)
+        case "caught":
+            return Insight("caught", (method,), {"error": error})
+    return None
+
+
+def drift(source: Source, index: int) -> Insight | None:
+    """Return the insight on a method that is not bounded, as far as that is certain."""
+    if found := irregular(source, index):
+        return found
+    method = source.scene.cast[index]
+    judgement = source.judgements[index]
+    error = source.sample.readings[index].energy_error
+    conserved = source.scene.equations.energy_error.conserved
+    loses = judgement.verdict == "loses"
+    if conserved and loses and -error > MAX_RATE_LOSS:
+        return Insight("lost", (method,), {"share": -error})
+    slope = {"grows": 1, "loses": -1}.get(judgement.verdict, 0) * (judgement.trend or 0)
+    if slope <= 0:
+        return None
+    unit = "E0" if conserved else "the true energy"
+    values = {"rate": slope, "unit": unit, "gains": "loses" if loses else "gains"}
+    if ahead := forecast(source, index):
+        return Insight("will pass", (method, ahead.other), values | {"seconds": ahead.seconds})
+    bands = _bands(source)
+    if bands and abs(error) > bands[0][0] > 0:
+        other = source.scene.cast[bands[0][1]]
+        return Insight("exceeds", (method, other), values | {"ratio": abs(error) / bands[0][0]})
+    return Insight("loses" if loses else "gains", (method,), values)
+
+
+class Forecast(NamedTuple):
+    """When the energy error of a method that loses energy will pass that of a bounded one."""
+
+    seconds: float  # from now on, simulated
+    other: Method
+
+
+def forecast(source: Source, index: int) -> Forecast | None:
+    """Return when a steady loss of energy will exceed the smallest maximum that it is still below.
+
+    None unless the slope is certain to a tenth; after a change of the step, because the maxima belong
+    to another step; where the period depends on the energy, and the rate of loss with it; and
+    if the maximum is too large or the time too long.
+    """
+    judgement = source.judgements[index]
+    error = source.sample.readings[index].energy_error
+    slope = judgement.slope
+    uncertainty = judgement.uncertainty
+    if judgement.verdict != "loses" or not slope or uncertainty is None or 10 * uncertainty > abs(slope):
+        return None
+    if any(event.kind == "set_h" and event.run == source.sample.run for event in source.events):
+        return None
+    band, other = next((each for each in _bands(source) if each[0] > abs(error)), (math.inf, 0))
+    if band > MAX_BAND or not _is_steady(source.scene, band):
+        return None
+    seconds = (band - math.copysign(error, error * slope)) / abs(slope)
+    return Forecast(seconds, source.scene.cast[other]) if seconds < MAX_FORECAST else None
+
+
+def _is_steady(scene: Scene, lost: float) -> bool:
+    """Return whether the period stays nearly the same while this share of the energy is lost."""
+    model = scene.equations
+    if not model.turns:
+        return True
+    energy = (1 - lost) * model.energy()((scene.theta, scene.omega))
+    share = energy / (2 * model.w0_squared)
+    turning = 2 * math.asin(math.sqrt(share)) if share < 1 else 0.0
+    later = model.exact(turning, 0.0 if share < 1 else math.sqrt(2 * energy))
+    before = scene.exact().period
+    if before is None or later.period is None:
+        return False
+    return abs(later.period / before - 1) < MAX_PERIOD_CHANGE
+
+
+def _bands(source: Source) -> list[tuple[float, int]]:
+    """Return the largest energy error of each bounded method, with its index, smallest first."""
+    pairs = enumerate(zip(source.sample.readings, source.judgements, strict=True))
+    return sorted((reading.max_energy_error, i) for i, (reading, judged) in pairs if judged.verdict == "bounded")
+
+
+def _so_far(source: Source, hidden: Collection[str] = ()) -> Insight:
+    """Return the largest energy errors of the best and of the worst method, before there is a verdict."""
+    cast = source.scene.cast
+    errors = [(reading.max_energy_error, at) for at, reading in enumerate(source.sample.readings)]
+    shown = sorted(each for each in errors if cast[each[1]].key not in hidden)
+    if not shown:
+        return Insight("watch", values={"text": ""})
+    least, nearest = shown[0]
+    most, furthest = shown[-1]
+    return Insight("so far", (cast[nearest], cast[furthest]), {"least": least, "most": most})
+
+
+def _returned(scene: Scene, sample: Sample) -> Insight:
+    """Return each method's distance from the start: sqrt(dtheta² + (domega/w0)²) [rad]."""
+    misses = [
+        f"{method.letter} failed" if math.isnan(miss) else f"{method.letter} {miss:.2g}"
+        for method, miss in zip(scene.cast, distances(scene, sample), strict=True)
+    ]
+    return Insight("returned", scene.cast, {"misses": ", ".join(misses)})
+
+
+def distances(scene: Scene, sample: Sample) -> Iterable[float]:
+    """Yield each method's distance from the start in angle and speed [rad]; nan once it has failed."""
+    for reading in sample.readings:
+        if reading.diverged_at is not None:
+            yield math.nan
+        else:
+            yield math.hypot(reading.theta - scene.theta, (reading.omega - scene.omega) / scene.w0)
 
 
 def return_text(scene: Scene, sample: Sample) -> str:
-    """Each method's distance from the start when time has run back to it: sqrt(dtheta² + (domega/w0)²)."""
-    misses = [
-        "failed"
-        if reading.diverged_at is not None
-        else f"{math.hypot(reading.theta - scene.theta, (reading.omega - scene.omega) / scene.w0):.2g}"
-        for reading in sample.readings
-    ]
-    each = ", ".join(f"{method.letter} {miss}" for method, miss in zip(scene.cast, misses, strict=True))
-    return f"Back at t = 0. Missed the start by {each} rad."
+    """Return the sentence on a run whose time is back at 0."""
+    return sentence(_returned(scene, sample))

@@ -1,51 +1,96 @@
-"""The lab without a screen, for screen readers and logs: a sentence per second, and one for each event."""
+"""The lab and its tour without a screen, for screen readers and logs."""
 
 import time
 from collections.abc import Callable
 
 from engine.methods import Cast
+from tui.playback.live import Live
 from tui.playback.source import Source
 from tui.words.describe import description
 from tui.words.events import event_lines
-from tui.words.findings import short_name
-from tui.words.insight import TURN, insight
+from tui.words.insight import TURN, insight_text, short_name
 from tui.words.numbers import seconds
+from tui.words.tour import SHOTS, Tour
 
 TICK = 1 / 30  # s, as often as the screen would be painted
+THINKING = 6.0  # s, to find an answer
+READING = 5.0  # s, to read it
 
 
-def plain(
+def print_run(
     source: Source,
-    say: Callable[[str], object],
+    emit: Callable[[str], object],
     stopped: Callable[[], bool],
     clock: Callable[[], float] = time.monotonic,
     sleep: Callable[[float], object] = time.sleep,
     only: Cast | None = None,
 ) -> None:
-    """Say what runs, then what happens, until `stopped` or the end of the recording; `only` of these methods."""
+    """Emit a sentence a second and one for each event until `stopped` or the end of a recording.
+
+    `only`: of these methods.
+    """
     for sentence in description(source, only):
-        say(sentence)
-    began, second, news = clock(), 0, False
+        emit(sentence)
+    began = clock()
+    second = 0
+    has_news = False
     source.tick(began)
-    known = set(event_lines(source))
+    emitted = set(event_lines(source))
     while not stopped() and not (source.kind == "REPLAY" and source.playhead.paused):
         sleep(TICK)
         source.tick(clock())
         for line in event_lines(source):
-            if line not in known and (only is None or line.method is None or line.method in only):
-                known.add(line)
-                news = True
-                say(f"{seconds(line.t)}: {line.text}.")
+            if line not in emitted and (only is None or line.method is None or line.method in only):
+                emitted.add(line)
+                has_news = True
+                emit(f"{seconds(line.t)}: {line.text}.")
         if clock() - began >= second + 1:
             second = int(clock() - began)
-            lasting = only is None and (news or second % TURN == 0)  # the sentences are about all methods
-            say(insight(source) if lasting else numbers(source, only))
-            news = False
+            explain = only is None and (has_news or second % TURN == 0)  # about all methods
+            emit(insight_text(source) if explain else numbers(source, only))
+            has_news = False
 
 
 def numbers(source: Source, only: Cast | None = None) -> str:
-    """As "3.00 s: energy errors Explicit Euler +0.4, …"."""
+    """Return as "3.00 s: energy errors Explicit Euler +0.4, …"."""
     each = zip(source.scene.cast, source.sample.readings, strict=True)
     shown = [(method, reading) for method, reading in each if only is None or method in only]
     errors = [f"{short_name(method)} {reading.energy_error:+.2g}" for method, reading in shown]
     return f"{seconds(source.sample.t)}: energy errors {', '.join(errors)}."
+
+
+def print_tour(
+    live: Live,
+    emit: Callable[[str], object],
+    stopped: Callable[[], bool],
+    clock: Callable[[], float] = time.monotonic,
+    sleep: Callable[[float], object] = time.sleep,
+) -> None:
+    """Emit the shots with their questions and, after a pause, the truths, until the last or until `stopped`."""
+    tour = Tour(live)
+    live.tick(clock())
+
+    def wait_until(come: Callable[[], bool]) -> None:
+        while not stopped() and not come():
+            sleep(TICK)
+            live.tick(clock())
+
+    def pause(time: float) -> None:
+        end = clock() + time
+        wait_until(lambda: clock() >= end)
+
+    for index, shot in enumerate(SHOTS):
+        tour.begin(index)
+        emit(f"{tour.title}. {shot.watch}")
+        wait_until(tour.follow)
+        if stopped():
+            return
+        emit(f"{seconds(live.sample.t)}: {shot.happened}")
+        emit(f"Question: {shot.question}  1: {shot.answers[0]}  2: {shot.answers[1]}")
+        pause(THINKING)
+        if stopped():
+            return
+        emit(f"Answer: {shot.right + 1}. {shot.truth}")
+        pause(READING)
+    if not stopped():
+        emit("That was the tour.")

@@ -1,2 +1,2 @@
-"""On screen: `live`, `tour`, `replay`, and their `keys`; `snapshot` saves a picture; `serve` is the lab in
+"""On screen: `live`, `tour` and `replay`; `snapshot` saves a picture; `serve` is the lab in
 a browser, by way of `web`."""

@@ -10,7 +10,7 @@ examples:
   pendu-tui tour
   pendu-tui tour --plain --no-record
 
-enter or space goes on, backspace goes back, esc leaves for the lab, where T returns.
+enter goes on, 1 or 2 answers, backspace goes back, esc leaves for the lab, where T returns.
 """
 
 
@@ -38,12 +38,12 @@ def run(options: argparse.Namespace) -> int:
     from functools import partial
 
     from tui.cli.files import stop_requests
-    from tui.words.tour.told import tell
+    from tui.words.plain_text import print_tour
 
     launch.start_recording(live, path, or_next=True)
     try:
         with stop_requests() as stopped:
-            tell(live, partial(print, flush=True), stopped)
+            print_tour(live, partial(print, flush=True), stopped)
     finally:
         live.close()
     launch.say_goodbye(live)

@@ -173,7 +173,7 @@ def _print(
     print_lines(f"{scene_line(scene, 'h')}, {z_name(scene.model)} = {scene.z:.4g}")
     pace = f", {sample.step / wall_seconds / 1e6:.3g} million a second" if wall_seconds > 1 else ""
     print(f"{sample.step} steps to t = {sample.t:g} s in {wall_seconds:.2f} s{pace}\n")
-    from tui.words.findings import astray, ending, passing
+    from tui.words.insight import irregular_insight, milestone_insight, sentence
 
     forms = {"spring_energy": ".4g"} if scene.model == "spring" else {}
     forms |= {"energy_error": "+.2e", "max_energy_error": ".2e", "drift_per_second": "+.1e", "theta_error": ".2e"}
@@ -188,10 +188,8 @@ def _print(
     headers = (*spring, error, "largest", "per second", "theta error [rad]", "force evaluations")
     print_table("ll" + "r" * len(headers), ("method", "verdict", *headers), table)
     for each in observer.milestones(sample.step):
-        if each.other:
-            print(passing(each, each.other))
-        elif each.kind == "over the top":
-            print(ending(each, scene.equations.energy_error.conserved))
+        if each.kind in ("over the top", "errors cross"):
+            print(sentence(milestone_insight(each, scene.equations.energy_error.conserved)))
     for method, judgement in zip(scene.cast, observer.judgements, strict=True):
-        if judgement.lyapunov:
-            print(astray(method.label, judgement, 0.0))
+        if judgement.lyapunov and (found := irregular_insight(method, judgement, 0.0)):
+            print(sentence(found))

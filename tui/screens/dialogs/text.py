@@ -1,26 +1,17 @@
-"""TextScreen: a text over the lab, to scroll in; and the text of the help."""
+"""TextScreen: a text over the lab, to scroll in."""
 
-from collections.abc import Sequence
 from typing import ClassVar
 
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import VerticalScroll
+from textual.geometry import Size
 from textual.widgets import Static
 
-from tui.playback.source import Source
 from tui.screens.dialogs.modal import Modal
-from tui.screens.keys import key_list
-from tui.views.keys import Key
-from tui.words.cards import glossary, method_card, scene_card
-from tui.words.describe import step_text
 
-
-def help_text(keys: Sequence[Key], source: Source) -> str:
-    """The glossary, what to watch in the scene, the keys by group, and the methods."""
-    scene = source.scene
-    now = "" if source.stepping.h == scene.h else f"h = {step_text(source)}"
-    return "\n\n".join([glossary(), scene_card(scene, now), key_list(keys), *map(method_card, scene.cast)])
+MAX_WIDTH = 84  # columns, with FRAME
+FRAME = 8  # columns of the border, the blanks inside, and the scroll bar
 
 
 class TextScreen(Modal[None]):
@@ -34,6 +25,11 @@ class TextScreen(Modal[None]):
         super().__init__()
         self.text = text
         self.text_title = title
+
+    @classmethod
+    def width_of(cls, size: Size) -> int:
+        """Return the columns for a text on a screen of this size."""
+        return min(size.width, MAX_WIDTH) - FRAME
 
     def compose(self) -> ComposeResult:
         with VerticalScroll(id="text") as scroll:

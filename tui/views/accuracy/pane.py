@@ -7,7 +7,7 @@ from textwrap import wrap
 from typing import ClassVar
 
 from textual import events
-from textual.binding import BindingType
+from textual.binding import Binding, BindingType
 
 from engine.accuracy.front import Cost
 from engine.accuracy.growth import Growth
@@ -20,7 +20,6 @@ from tui.drawing.picture import Picture, Row
 from tui.playback.source import Source
 from tui.views.accuracy.chart import Placed, accuracy_series, charted, growth_chart, nearest, raised
 from tui.views.accuracy.words import front_lines, growth_lines, point_words
-from tui.views.keys import Key, bindings
 from tui.views.messages import StepSizeChosen
 from tui.views.view import Chooser
 
@@ -29,25 +28,23 @@ MOST_STEPS = 2_000_000  # of a run for the mark at the present h: some seconds
 HERE, CURSOR = "@", "O"
 LEGEND = f"{HERE} current h  x useless  ~ rounding  dotted:"
 
-_GROUP = "accuracy"
-KEYS = (
-    Key("left", "arrows", "cursor, to choose a point", "move(-1)", _GROUP),
-    Key("right", "", "", "move(1)", _GROUP),
-    Key("up", "", "", "method(-1)", _GROUP),
-    Key("down", "", "", "method(1)", _GROUP),
-    Key("enter", "enter", "use the h of the cursor's point", "choose", _GROUP, "Take it"),
-    Key("tab", "tab", "the next method in words", "method(1)", _GROUP, "Next method"),
-    Key("escape", "esc", "leave the cursor", "cancel", _GROUP),
-    Key("e", "e", "next chart: error over time, theta error, energy error", "chart", _GROUP, "Over time"),
-    Key("asterisk", "*", "all methods and reference lines, or the cast", "all", _GROUP, "All"),
-    Key("", "click", "use that point's h; the pointer reads points out", "", _GROUP),
-)
-
 
 class AccuracyPane(Chooser[int]):
     """Draws the points known so far, with a mark at the present h of each method, and describes one of them."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(*KEYS)
+    BINDING_GROUP_TITLE = "Accuracy"
+    HELP = "A click uses that point's h; the pointer reads points out."
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("left", "move(-1)", "cursor, to choose a point", False, "arrows"),
+        Binding("right", "move(1)"),
+        Binding("up", "method(-1)"),
+        Binding("down", "method(1)"),
+        Binding("enter", "choose", "Use h", tooltip="use the h of the cursor's point"),
+        Binding("tab", "method(1)", "the next method in words", show=False),
+        Binding("escape", "cancel", "leave the cursor", False, "esc"),
+        Binding("e", "chart", "Over time", tooltip="next chart: over time, theta, energy"),
+        Binding("asterisk", "all", "All", True, "*", tooltip="all methods, or those shown"),
+    ]
 
     def __init__(self) -> None:
         super().__init__()

@@ -10,7 +10,7 @@ from engine.accuracy.growth import Growth, growths
 from engine.accuracy.references import References, measured_front, with_all_methods
 from engine.accuracy.study import Point, measured, usual
 from engine.run.lockstep import Sample
-from tui.views.accuracy.pane import KEYS, MOST_STEPS, AccuracyPane
+from tui.views.accuracy.pane import MOST_STEPS, AccuracyPane
 from tui.views.background import computed
 from tui.views.view import View
 
@@ -21,8 +21,6 @@ Start = tuple[object, ...]
 
 class AccuracyView(View):
     """Computes all points anew for another start or pendulum, and some more for another h."""
-
-    KEYS = KEYS
 
     def __init__(self, id: str) -> None:
         super().__init__(id=id)

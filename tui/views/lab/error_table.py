@@ -6,7 +6,7 @@ from typing import ClassVar, NamedTuple
 
 from rich.style import Style
 from textual import events
-from textual.binding import BindingType
+from textual.binding import Binding, BindingType
 from textual.geometry import Offset
 from textual.widgets import Tooltip
 
@@ -18,7 +18,6 @@ from tui.drawing.palette import GOOD, QUIET, TEXT, WARN, mark, series
 from tui.drawing.picture import Picture, Row
 from tui.playback.shown import Shown
 from tui.playback.source import Source
-from tui.views.keys import Key, bindings
 from tui.views.messages import MethodChosen
 from tui.views.view import Pane
 from tui.words.numbers import angle, decimal, scientific
@@ -150,18 +149,15 @@ def table(source: Source, sample: Sample, shown: Shown, width: int) -> list[Row]
     return rows
 
 
-_GROUP = "table"
-KEYS = (
-    Key("tab", "tab", "to the heads of the columns: what each one means", "head(1)", _GROUP),
-    Key("shift+tab", "shift+tab", "to the head before", "head(-1)", _GROUP),
-    Key("escape", "esc", "leave them", "leave", _GROUP),
-)
-
-
 class ErrorTable(Pane, can_focus=True):
     """As many columns as fit.  The pointer on a head, or Tab, says what it means."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(*KEYS)
+    BINDING_GROUP_TITLE = "Table"
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("tab", "head(1)", "what each column means", show=False),
+        Binding("shift+tab", "head(-1)"),
+        Binding("escape", "leave"),
+    ]
     FOCUS_ON_CLICK = False  # that shows a method
 
     _rows_shown = 0

@@ -9,7 +9,7 @@ from tui.playback.source import Source
 from tui.views.messages import Asked
 from tui.views.view import Pane
 from tui.words.events import EventLine, event_lines, numbered
-from tui.words.findings import short_name
+from tui.words.insight import short_name
 
 
 def ink_of(line: EventLine) -> int:
@@ -49,6 +49,6 @@ class EventList(Pane):
         offset = event.get_content_offset(self)
         if offset is not None and offset.y < len(self._listed):
             line = self._listed[offset.y]
-            self.post_message(Asked(f"app.extra('go_to', {line[:2]})"))
+            self.post_message(Asked(f"go_to({line.run}, {line.step})"))
         else:
-            self.post_message(Asked("app.extra('events')"))
+            self.post_message(Asked("events"))

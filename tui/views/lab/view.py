@@ -1,20 +1,20 @@
 """LabView: the pendulums, the chart of their errors, phase space, the events, and the table."""
 
-from textual.app import ComposeResult
+from collections.abc import Iterable
+
+from textual.app import ComposeResult, SystemCommand
 from textual.geometry import Region, Size
 from textual.widget import Widget
 
 from engine.run.lockstep import Sample
 from engine.scenes import MOST_METHODS
 from tui.playback.source import Source
-from tui.views.lab import error_table
 from tui.views.lab.error_table import ErrorTable
 from tui.views.lab.event_list import EventList
 from tui.views.lab.layout import CellLayout, places
 from tui.views.lab.pendulums import Pendulum
 from tui.views.lab.reach import Reach
 from tui.views.lab.time_chart import TimeChart
-from tui.views.phase.keys import KEYS
 from tui.views.phase.pane import PhasePane
 from tui.views.view import Box, View
 
@@ -33,8 +33,6 @@ class Stage(Box):
 
 class LabView(View):
     """Arranges the panes anew when their size, the cast or what is shown of it changes."""
-
-    KEYS = (*KEYS, *error_table.KEYS)
 
     def __init__(self, id: str | None = None) -> None:
         super().__init__(id)
@@ -58,6 +56,11 @@ class LabView(View):
 
     def zoom(self, factor: float, shift: float = 0.0) -> None:
         (self.second_chart if self.second_chart.is_pointed_at else self.chart).zoom(factor, shift)
+
+    def commands(self) -> Iterable[SystemCommand]:
+        yield SystemCommand("chart: zoom out", "", lambda: self.zoom(2.0))
+        yield SystemCommand("chart: earlier, once it is zoomed", "", lambda: self.zoom(1.0, -0.25))
+        yield SystemCommand("chart: later", "", lambda: self.zoom(1.0, 0.25))
 
     def regions(self, size: Size) -> dict[Widget, Region]:
         """Where each pane is on a stage of this size.  A method that is hidden leaves its room to the others."""

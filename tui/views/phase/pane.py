@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import events
-from textual.binding import BindingType
+from textual.binding import Binding, BindingType
 from textual.content import Content
 from textual.message import Message
 from textual.reactive import var
@@ -12,9 +12,7 @@ from engine.models.model import State
 from engine.run.lockstep import Sample
 from engine.scenes import SceneError
 from tui.playback.source import Source
-from tui.views.keys import bindings
 from tui.views.messages import Asked, SceneChosen
-from tui.views.phase.keys import KEYS
 from tui.views.phase.viewport import Viewport
 from tui.views.view import Chooser
 
@@ -23,13 +21,25 @@ if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
     from tui.drawing.picture import Picture
 
 TITLE = "Phase space (F3): theta [rad], omega [rad/s]"
+DOTS = 4  # that an arrow moves the crosshair
 RING_STEPS = 100  # a frame; 52 µs each, so a ring that has to catch up costs 5 ms of a frame at most
 
 
 class PhasePane(Chooser[State]):
     """Click or enter chooses a start; a drag shows the orbit through the pointer, or with shift moves the picture."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(*KEYS)
+    BINDING_GROUP_TITLE = "Phase space"
+    HELP = "A click starts there, a drag shows the orbit first; shift+drag moves, the wheel zooms."
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("left", "move(-1, 0)", "crosshair: choose a start", False, "arrows"),
+        Binding("right", "move(1, 0)"),
+        Binding("up", "move(0, 1)"),
+        Binding("down", "move(0, -1)"),
+        Binding("enter", "choose", "Start", tooltip="start at the crosshair"),
+        Binding("escape", "cancel", "no crosshair; then all in view", False, "esc"),
+        Binding("z", "zoom(0.5)", "Zoom", tooltip="zoom in at the crosshair"),
+        Binding("g", "radius", "Ring", tooltip="ring of neighbours: next, none"),
+    ]
 
     wrap: var[bool] = var(True)
     radius: var[float | None] = var(None)
@@ -126,15 +136,16 @@ class PhasePane(Chooser[State]):
             self.show(captioned(self._plot, scene, exact, self.aim, width))
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        return (action == "cancel" and self.aiming) or super().check_action(action, parameters)
+        cancels = self.aiming or self.zoomed is not None
+        return (action == "cancel" and cancels) or super().check_action(action, parameters)
 
     def action_move(self, right: int, up: int) -> None:
-        """Move the crosshair by dots; at the edge the picture moves."""
+        """Move the crosshair; at the edge the picture moves."""
         if self.source is None or not self.drawable:
             return
         viewport = self.viewport
         here = self.aim or State(self.source.scene.theta, self.source.scene.omega)
-        self.cursor, moved = viewport.stepped(here, right, up)
+        self.cursor, moved = viewport.stepped(here, DOTS * right, DOTS * up)
         goes_round = self.wrap and self.zoomed is None and moved.omega == viewport.omega
         if moved != viewport and not goes_round:
             self.zoomed = moved
@@ -152,6 +163,9 @@ class PhasePane(Chooser[State]):
         self.draw()
 
     def action_cancel(self) -> None:
+        """Leave the crosshair, or show the whole portrait again."""
+        if self.cursor is None and not self.aiming:
+            self.zoomed = None
         self.aiming = False
         super().action_cancel()
 
@@ -165,19 +179,16 @@ class PhasePane(Chooser[State]):
             middle = 2 * self.pointer[0] + 1, 4 * self.pointer[1] + 2
         self._zoom(factor, *middle)
 
-    def action_whole(self) -> None:
-        self.zoomed = None
-        self.draw()
-
-    def action_wrap(self) -> None:
+    def toggle_wrap(self) -> None:
+        """Draw angles within a turn, or unwrapped."""
         self.wrap = not self.wrap
 
-    def action_radius(self, direction: int) -> None:
-        """Take the next larger ring, or the next smaller one; the ends are joined by none."""
+    def action_radius(self) -> None:
+        """Take the next larger ring, after the largest none."""
         from engine.phase_space.area import RADII
 
         radii = (None, *RADII)
-        self.radius = radii[(radii.index(self.radius) + direction) % len(radii)]
+        self.radius = radii[(radii.index(self.radius) + 1) % len(radii)]
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
         """Begin to choose a start or, with a modifier or another button, to move the picture."""

@@ -3,7 +3,7 @@
 from functools import lru_cache
 from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
-from textual.binding import BindingType
+from textual.binding import Binding, BindingType
 from textual.content import Content
 from textual.message import Message
 from textual.reactive import var
@@ -12,8 +12,6 @@ from engine.methods import Method
 from engine.models.model import Model, Phase, State
 from engine.run.lockstep import Sample
 from tui.playback.source import Source
-from tui.views.keys import Key, bindings
-from tui.views.phase.keys import KEYS as PORTRAIT_KEYS
 from tui.views.phase.pane import PhasePane
 from tui.views.phase.viewport import Viewport
 
@@ -22,12 +20,6 @@ if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
     from tui.views.phase.section import Section
 
 STEPS = 2000  # of the orbit that is described: some ms
-
-_OWN = (
-    Key("x", "x", "a method's own map: islands, chaos, spirals", "section", "phase space"),
-    Key("tab", "tab", "beside x: the map of the next method", "next_map", "phase space"),
-)
-KEYS = (*PORTRAIT_KEYS, *_OWN)
 
 
 class Wanted(NamedTuple):
@@ -42,7 +34,10 @@ class Wanted(NamedTuple):
 class SectionPane(PhasePane):
     """The portrait or, after x, the section of the method that is described."""
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(*_OWN)
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("x", "section", "Map", tooltip="a method's own map: islands, …"),
+        Binding("tab", "next_map", "the map of the next method", show=False),
+    ]
 
     shows_section: var[bool] = var(False)
 

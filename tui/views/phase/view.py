@@ -1,16 +1,17 @@
 """PhaseView: phase space over the whole screen, with a table of what the methods do to area, or of their orbits."""
 
 import asyncio
+from collections.abc import Iterable
 from functools import partial
 
-from textual.app import ComposeResult
+from textual.app import ComposeResult, SystemCommand
 
 from engine.run.lockstep import Sample
 from tui.drawing.cells import CellWidget
 from tui.drawing.picture import Picture, Row
 from tui.views.background import computed
 from tui.views.phase.facts import fact_rows
-from tui.views.phase.section_pane import KEYS, SectionPane, Wanted, followed
+from tui.views.phase.section_pane import SectionPane, Wanted, followed
 from tui.views.view import View
 
 RADIUS = 0.1  # rad; large enough to be seen, small enough to stay a ring for a while
@@ -23,11 +24,13 @@ SOON = 0.1  # s that a picture has to stand before its section is computed: a wh
 class PhaseView(View):
     """The portrait or a section, and the table below it."""
 
-    KEYS = KEYS
-
     def compose(self) -> ComposeResult:
         yield self.moving(SectionPane(radius=RADIUS), late=True)
         yield CellWidget(id="facts")
+
+    def commands(self) -> Iterable[SystemCommand]:
+        pane = self.query_one(SectionPane)
+        yield SystemCommand("phase space: angles within a turn, or unwrapped", "", pane.toggle_wrap)
 
     def on_show(self) -> None:
         self.query_one(SectionPane).focus()

@@ -4,7 +4,7 @@ import textwrap
 from typing import ClassVar
 
 from textual import events
-from textual.binding import BindingType
+from textual.binding import Binding, BindingType
 
 from engine.run.lockstep import Sample
 from engine.stability.grid import Grid
@@ -13,7 +13,6 @@ from engine.stability.study import amplitude
 from tui.drawing.palette import NOBODY, Palette, palette
 from tui.drawing.picture import Picture, Row
 from tui.playback.source import Source
-from tui.views.keys import Key, arrows, bindings
 from tui.views.messages import SceneChosen
 from tui.views.stability.picture import MARGIN, Segments, legend, panel, place_at, side_by_side, title
 from tui.views.stability.words import note, verdict
@@ -21,16 +20,6 @@ from tui.views.view import Chooser
 
 WORDS = 2  # lines
 ROOMY = 28  # rows from which on there is room for all of the legend
-BIG_STEP = 5  # cells of the map
-
-_GROUP = "stability"
-KEYS = (
-    *arrows(_GROUP, "cursor", "choose h and amplitude", BIG_STEP),
-    Key("enter", "enter", "start with the cursor's h and amplitude", "choose", _GROUP, "Take it"),
-    Key("tab", "tab", "the next method in words", "method(1)", _GROUP, "Next method"),
-    Key("escape", "esc", "leave the cursor", "cancel", _GROUP),
-    Key("", "click", "start with that h and amplitude", "", _GROUP),
-)
 
 
 class StabilityPane(Chooser[tuple[int, int]]):
@@ -39,7 +28,17 @@ class StabilityPane(Chooser[tuple[int, int]]):
     Places on the map are indices of z and theta.
     """
 
-    BINDINGS: ClassVar[list[BindingType]] = bindings(*KEYS)
+    BINDING_GROUP_TITLE = "Stability"
+    HELP = "A click starts with that h and amplitude."
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("left", "move(-1, 0)", "cursor: choose h, amplitude", False, "arrows"),
+        Binding("right", "move(1, 0)"),
+        Binding("up", "move(0, 1)"),
+        Binding("down", "move(0, -1)"),
+        Binding("enter", "choose", "Start", tooltip="start at the cursor"),
+        Binding("tab", "method(1)", "the next method in words", show=False),
+        Binding("escape", "cancel", "leave the cursor", False, "esc"),
+    ]
 
     def __init__(self, grid: Grid) -> None:
         super().__init__()

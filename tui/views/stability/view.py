@@ -11,7 +11,7 @@ from engine.methods import Cast
 from engine.run.lockstep import Sample
 from engine.stability.grid import Grid, pieces
 from tui.views.background import computed
-from tui.views.stability.pane import KEYS, StabilityPane
+from tui.views.stability.pane import StabilityPane
 from tui.views.view import View
 
 PASSES = (300, 10_000)
@@ -24,8 +24,6 @@ def _grid(cast: Cast) -> Grid:
 
 class StabilityView(View):
     """The map depends on z and amplitude only: another scene moves the mark and the axis, not the map."""
-
-    KEYS = KEYS
 
     def compose(self) -> ComposeResult:
         yield self.read(StabilityPane(_grid(())))

@@ -1,0 +1,28 @@
+"""State: a lab or a replay as an undo brings it back."""
+
+from typing import NamedTuple
+
+from engine.run.rewindable import RewindableRun
+from engine.run.stepping import Stepping
+from engine.scenes import Scene
+from tui.playback.shown import Shown
+from tui.playback.so_far import RunSoFar
+
+
+class RunState(NamedTuple):
+    """A run of the lab where it was left, with its past."""
+
+    run: RewindableRun
+    so_far: RunSoFar
+
+
+class State(NamedTuple):
+    """All that an undo may change."""
+
+    scene: Scene  # with the cast
+    t: float  # s, simulated
+    number: int  # of the run
+    stepping: Stepping
+    speed: float
+    shown: Shown
+    run: RunState | None  # None: a replay has no other

@@ -1,0 +1,142 @@
+"""The tour on the lab's screen: TourGuide shows its shots, TourPanel its words."""
+
+import textwrap
+from typing import TYPE_CHECKING
+
+from rich.style import Style
+from textual.binding import Binding
+
+from tui.drawing.cells import CellWidget
+from tui.drawing.palette import EXACT, TEXT, WARN
+from tui.drawing.picture import Picture, Row
+from tui.playback.shown import Shown
+from tui.screens.insight_line import InsightLine
+from tui.words.tour import Tour
+
+if TYPE_CHECKING:
+    from tui.screens.live import LiveScreen
+
+TITLE = -10
+"""The ink of the title."""
+
+TOUR_BINDINGS = (
+    Binding("enter", "on_tour('forward')", "tour: go on", show=False, priority=True),
+    Binding("1", "on_tour('first')", "tour: choose an answer", False, "1 or 2", priority=True),
+    Binding("2", "on_tour('second')", show=False, priority=True),
+    Binding("backspace", "on_tour('back')", "tour: back", show=False, priority=True),
+    Binding("escape", "on_tour('leave')", "tour: leave", False, "esc", priority=True),
+)
+FORWARD = {
+    "watching": "enter to the moment",
+    "asked": "1 or 2 answer  enter the truth",
+    "answered": "enter go on",
+}
+
+
+class TourGuide:
+    """Shows the tour's shots on a lab's screen, and gives the screen back."""
+
+    def __init__(self, screen: "LiveScreen") -> None:
+        self.screen = screen
+        self.tour = Tour(screen.live)
+        self.panel = TourPanel(self.tour)
+        self.is_on = False
+        screen.mount(self.panel, before=screen.query_one(InsightLine))
+
+    def takes(self, *keys: object) -> bool:
+        """Return whether a key of the tour does something now."""
+        return self.is_on and (self.tour.stage == "asked" or keys[0] not in ("first", "second"))
+
+    def toggle(self) -> None:
+        """Begin the shot where the tour was left, or leave it."""
+        if self.is_on:
+            self._leave("T goes on with the tour; u brings back the run before it.")
+            return
+        self.before = self.screen.state
+        self.is_on = True
+        self.screen.add_class("-tour")
+        self.tour.begin(self.tour.index)
+        self._show_shot()
+
+    def press(self, key: str) -> None:
+        """Do what a key of the tour does."""
+        index = self.tour.index
+        match key:
+            case "leave":
+                self.toggle()
+            case "first" | "second":
+                self.tour.answer(("first", "second").index(key))
+                self._show()
+            case "back":
+                self.tour.back()
+                self._show_shot()
+            case _ if not self.tour.forward():
+                self._leave("That was the tour. Now the lab is yours: ? lists its keys.")
+            case _ if self.tour.index != index:
+                self._show_shot()
+            case _:
+                self._show()
+
+    def follow(self) -> None:
+        """Look with each frame whether the moment has come."""
+        if self.is_on:
+            if self.tour.follow():
+                self._show()
+            self.panel.draw()
+
+    def _leave(self, notice: str) -> None:
+        self.is_on = False
+        self.screen.remove_class("-tour")
+        self.screen.keep(self.before)
+        self.screen.shown = self.before.shown
+        self.screen.live.set_speed(self.before.speed)
+        self.screen.live.pause(False)
+        self.screen.notify(notice, timeout=6)
+        self._show()
+
+    def _show_shot(self) -> None:
+        """Show the methods, the view and the words of the shot."""
+        default = Shown()
+        self.screen.shown = self.screen.shown._replace(
+            hidden=frozenset(), quantity=default.quantity, seconds=None, stretch=None
+        )
+        if self.screen.view != self.tour.shot.view:
+            self.screen.action_view(self.tour.shot.view)
+        self._show()
+
+    def _show(self) -> None:
+        self.screen.show_now()
+        self.screen.refresh_bindings()
+        self.panel.draw()
+
+
+def tour_rows(title: str, keys: str, text: tuple[str, ...], width: int, height: int) -> list[Row]:
+    """Return the title line, and the sentences each on lines of its own, the last of them in full."""
+    room = max(width - len(title) - 4, 0)
+    heads = [(f" {title} ", TITLE), ("  ", TEXT), (keys[:room], EXACT)]
+    wrapped = [textwrap.wrap(sentence, max(width - 2, 2)) for sentence in text]
+    lines = [(line, EXACT) for sentence in wrapped[:-1] for line in sentence]
+    lines += [(line, TEXT) for line in wrapped[-1]]
+    return [heads, *([(f" {line}", ink)] for line, ink in lines[-(height - 1) :])]
+
+
+class TourPanel(CellWidget):
+    """The words of the tour, in place of the insight line; a click goes forward."""
+
+    def __init__(self, tour: Tour) -> None:
+        super().__init__()
+        self.tour = tour
+
+    def draw(self) -> None:
+        if self.drawable:
+            forward = "enter again" if self.tour.is_astray else FORWARD[self.tour.stage]
+            keys = f"{forward}  backspace back  esc leave"
+            self.show(Picture(tour_rows(self.tour.title, keys, self.tour.text, *self.room)))
+
+    def on_click(self) -> None:
+        self.app.simulate_key("enter")
+
+    def style_of(self, owner: int, base: Style) -> Style:
+        if owner == TITLE:
+            return super().style_of(WARN, base) + Style(reverse=True, bold=True)
+        return super().style_of(owner, base)

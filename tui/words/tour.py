@@ -1,0 +1,265 @@
+"""SHOTS: the tour as data: a run, its moment, a question with two answers, and the truth.  Tests measure the truths."""
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from engine.run.stepping import Stepping
+from engine.scenes import SCENES, Scene
+from tui.playback.live import Live
+
+ASTRAY = "This is your own run now. Enter begins the step again."
+
+
+@dataclass(frozen=True, slots=True)
+class Shot:
+    """A step of the tour."""
+
+    title: str
+    scene: Scene
+    speed: float  # so that the moment comes after about ten seconds
+    view: str  # a key of VIEWS
+    watch: str  # what to look at until the moment comes
+    moment: float  # s, simulated
+    happened: str
+    question: str
+    answers: tuple[str, str]
+    right: int  # index of the right answer
+    truth: str
+    returns: bool = False  # at the moment time turns round; the question comes at t = 0
+    equal_cost: bool = False
+
+    @property
+    def stepping(self) -> Stepping:
+        """The stepping at the start of its run."""
+        scene = self.scene
+        return Stepping(scene.h, self.equal_cost, scene.cast).with_smallest(scene.h)
+
+    @property
+    def turn(self) -> int:
+        """The step at the moment."""
+        return round(self.moment / self.stepping.h)
+
+
+SHOTS = (
+    Shot(
+        title="who gains",
+        scene=SCENES["drift"],
+        speed=1.0,
+        view="lab",
+        watch="Four methods, one pendulum without friction, the same step. Watch Explicit Euler.",
+        moment=7.15,
+        happened="Explicit Euler went over the top: it has five times its initial energy.",
+        question="Nothing pushes this pendulum. Do the other three keep their energy?",
+        answers=("All three, nearly.", "Only RK4, the most accurate."),
+        right=0,
+        truth="Symplectic Euler to 8 %, Verlet to 0.6 %: their errors come and go. RK4 lost only 0.002 %, but a little"
+        " more with each swing.",
+    ),
+    Shot(
+        title="why",
+        scene=SCENES["linear"].altered(theta=0.3, model="pendulum"),
+        speed=0.5,
+        view="phase",
+        watch="A small swing in phase space, almost an ellipse. Watch Explicit Euler step by step.",
+        moment=5.5,
+        happened="Each step of Explicit Euler follows the tangent and lands outside: its energy grows by about z²,"
+        " 25 % a step.",
+        question="Symplectic Euler differs in one thing: it moves theta with the new omega. Is that enough?",
+        answers=("Yes, its energy stays bounded.", "No, it gains, only slower."),
+        right=0,
+        truth="Its orbit is an ellipse, too, only a tilted one: the energy error stays between -20 % and +33 %,"
+        " however long it runs.",
+    ),
+    Shot(
+        title="smaller h",
+        scene=replace(SCENES["drift"], h=0.025),
+        speed=2.0,
+        view="lab",
+        watch="The first scene with half the step, at twice the speed, until Verlet has its verdict.",
+        moment=17.6,
+        happened="Half the step: Verlet's largest energy error is a quarter, 0.14 % instead of 0.57 %. Its order is 2.",
+        question="RK4 has order 4. By how much did its energy error shrink?",
+        answers=("To a sixteenth.", "To a thirty-second."),
+        right=1,
+        truth="A thirty-second: its loss of energy goes with the fifth power of h. Explicit Euler still goes over the"
+        " top, only later.",
+    ),
+    Shot(
+        title="the crossing",
+        scene=SCENES["crossover"],
+        speed=3.0,
+        view="lab",
+        watch="A step of 0.2 s. RK4's energy error starts far below Verlet's.",
+        moment=33.4,
+        happened="After half a minute RK4's energy error has passed Verlet's, for good.",
+        question="Would a smaller step save RK4?",
+        answers=("Yes, it would stay below.", "It would only buy time."),
+        right=1,
+        truth="It buys time: with h = 0.05 s the errors cross after half an hour. Verlet's stays bounded, RK4's grows"
+        " with each swing.",
+    ),
+    Shot(
+        title="time reversed",
+        scene=SCENES["drift"],
+        speed=1.5,
+        view="lab",
+        watch="When Explicit Euler goes over the top, time turns round: the same steps with -h, back to 0.",
+        moment=7.15,
+        happened="Back at t = 0, only Verlet is back at its start, to the last digits. Symplectic Euler misses it"
+        " visibly.",
+        question="Verlet made errors on the way there. Why does it come home?",
+        answers=("It is the most accurate here.", "Its step is symmetric."),
+        right=1,
+        truth="A step of -h undoes one of h, errors and all. RK4 is merely accurate: in angle and speed it misses its"
+        " start by 0.00004 rad.",
+        returns=True,
+    ),
+    Shot(
+        title="phase space and area",
+        scene=SCENES["drift"],
+        speed=0.5,
+        view="phase",
+        watch="The rings are neighbouring starts, carried along by each method. Watch them for two swings.",
+        moment=4.3,
+        happened="Symplectic Euler and Verlet keep the area of their rings exactly; Explicit Euler's is 2.4 times as"
+        " large.",
+        question="What has area to do with energy?",
+        answers=("Where it stays, no orbit spirals out.", "Nothing, it is a coincidence."),
+        right=0,
+        truth="Where area stays, orbits cannot spiral out or in. Explicit Euler's step multiplies it by"
+        " 1 + z² cos(theta), RK4's by a little less than 1.",
+    ),
+    Shot(
+        title="where it breaks",
+        scene=SCENES["verlet-limit-above"],
+        speed=2.0,
+        view="stability",
+        watch="z = h·sqrt(g/L) goes to the right, the amplitude up; @ is here, just above Verlet's limit 2.",
+        moment=20.2,
+        happened="In ten steps Verlet's swing grew from 0.1 to almost 0.5 rad. For a linear spring that would never"
+        " end.",
+        question="Does it go over the top here?",
+        answers=("Yes.", "No."),
+        right=1,
+        truth="At 0.48 rad a swing takes longer, so that the same step is small enough again. RK4 lasts to z = 2.83,"
+        " Explicit Euler is never stable.",
+    ),
+    Shot(
+        title="what it costs",
+        scene=SCENES["drift"],
+        speed=0.25,
+        view="accuracy",
+        watch="To the right: more force evaluations. Down: smaller errors. At equal cost RK4's step is four times as"
+        " long.",
+        moment=1.8,
+        happened="With as many force evaluations for all, RK4's energy error passed Verlet's after two seconds.",
+        question="Is Verlet the better method, then?",
+        answers=("Yes.", "It depends on the accuracy."),
+        right=1,
+        truth="For an error of 1 % Verlet needs half of RK4's evaluations. For 1e-6 RK4 needs an eighth of Verlet's:"
+        " its line is steeper.",
+        equal_cost=True,
+    ),
+)
+
+
+class Tour:
+    """Takes a lab through the shots: to the moment, the question, the truth, and on."""
+
+    def __init__(self, live: Live) -> None:
+        self.live = live
+        self.index = 0
+        self.stage: Literal["watching", "asked", "answered"] = "watching"
+        self.choice: int | None = None  # the answer that was chosen
+        self._home: tuple[int, Stepping] | None = None  # the run of the shot, and its stepping
+
+    @property
+    def shot(self) -> Shot:
+        return SHOTS[self.index]
+
+    @property
+    def title(self) -> str:
+        return f"Tour {self.index + 1} of {len(SHOTS)}: {self.shot.title}"
+
+    @property
+    def is_astray(self) -> bool:
+        """Return whether the user has changed the run before its moment."""
+        return self.stage == "watching" and (self.live.sample.run, self.live.stepping) != self._home
+
+    @property
+    def text(self) -> tuple[str, ...]:
+        """Return the sentences of this stage."""
+        shot = self.shot
+        if self.stage == "watching":
+            return (ASTRAY,) if self.is_astray else (shot.watch,)
+        if self.stage == "asked":
+            return shot.happened, f"{shot.question}  1: {shot.answers[0]}  2: {shot.answers[1]}"
+        result = {None: "", shot.right: "Right. "}.get(self.choice, "Not quite. ")
+        return f"{shot.question}  {shot.answers[shot.right]}", f"{result}{shot.truth}"
+
+    def begin(self, index: int) -> None:
+        """Set a shot's run in the lab."""
+        self.index = index
+        self.stage = "watching"
+        self.choice = None
+        shot = self.shot
+        if (self.live.scene, self.live.sample.step) != (shot.scene, 0):
+            self.live.start(shot.scene)
+        self._step(shot.stepping)
+        self.live.set_speed(shot.speed)
+        self.live.pause(False)
+
+    def _step(self, stepping: Stepping) -> None:
+        if stepping != self.live.stepping:
+            self.live.set_stepping(stepping)
+        self._home = self.live.sample.run, stepping
+
+    def follow(self, at_once: bool = False) -> bool:
+        """Return whether the moment has come, or is to come `at_once`; the lab is paused there."""
+        if self.stage != "watching" or self.is_astray:
+            return False
+        turn = self.shot.turn
+        forwards = self.live.stepping.h > 0
+        if self.shot.returns and forwards and self._reach(turn, at_once):
+            self._step(self.live.stepping.reversed())
+            self.live.pause(False)
+            forwards = False
+        end = 2 * turn if self.shot.returns else turn
+        if (forwards and self.shot.returns) or not self._reach(end, at_once):
+            return False
+        self.stage = "asked"
+        return True
+
+    def _reach(self, step: int, at_once: bool) -> bool:
+        """Pause at a step, once it has come."""
+        reached = at_once or self.live.sample.step >= step
+        if reached:
+            self.live.go_to(self.live.sample.run, step)
+        return reached
+
+    def answer(self, choice: int | None) -> None:
+        """Answer the question, or ask for the truth."""
+        self.choice = choice
+        self.stage = "answered"
+
+    def forward(self) -> bool:
+        """Go to the moment, to the truth, or to the next shot; return False after the last."""
+        if self.is_astray:
+            self.begin(self.index)
+        elif self.stage == "watching":
+            self.follow(at_once=True)
+        elif self.stage == "asked":
+            self.answer(None)
+        else:
+            if self.index + 1 == len(SHOTS):
+                self.index = 0
+                return False
+            self.begin(self.index + 1)
+        return True
+
+    def back(self) -> None:
+        """Return from the truth to the question, or else to the shot before."""
+        if self.stage == "answered":
+            self.stage = "asked"
+        else:
+            self.begin(max(self.index - 1, 0))
