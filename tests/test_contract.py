@@ -38,7 +38,6 @@ COMMANDS = {
     "recover": ["recover", "cut.mcap", "-o", "saved.mcap", "--json"],
     "recordings": ["recordings", "--json"],
     "recordings prune": ["recordings", "prune", "--keep", "1", "--json"],
-    "keys": ["keys", "--json"],
     "scenes": ["scenes", "--json"],
     "methods": ["methods", "--json"],
     "methods --method": ["methods", "--methods", "mine", "--method", "mine.py:mine", "--json"],

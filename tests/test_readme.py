@@ -17,7 +17,8 @@ from engine.scenes import DEFAULT_SCENE
 from recordings.fields import COLUMNS
 from tests.tui.command_line import pendu
 from tui.cli.dispatch import COMMANDS, command_of, split
-from tui.screens.keys import COMMON, LIVE
+from tui.screens.help import bindings_of, key_lines
+from tui.screens.live import LiveScreen
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -135,7 +136,7 @@ def test_its_keys_are_keys_of_the_lab():
     section = README.partition("## Keys")[2].partition("\n## ")[0]
     rows = re.findall(r"^\| `(.+?)` \| (.+) \|$", section, re.MULTILINE)
     assert len(rows) == 8
-    assert set(rows) <= {(key.shown, key.does) for key in (*COMMON, *LIVE)}
+    assert {f"{key:<10}{does}" for key, does in rows} <= set(key_lines(bindings_of(LiveScreen)))
 
 
 def test_the_pictures_are_committed_snapshots():

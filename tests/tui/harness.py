@@ -20,11 +20,11 @@ from tui.playback.replay import Replay
 from tui.playback.source import Source
 from tui.screens.app import PenduApp
 from tui.screens.base import SourceScreen
-from tui.screens.keys import COMMON
 from tui.screens.live import LiveScreen
 from tui.screens.replay import ReplayScreen
 from tui.screens.still import settled
 from tui.terminal.options import FPS
+from tui.views import VIEWS
 
 PATIENCE = 120  # s; a process that ended would be waited for in vain
 
@@ -135,7 +135,7 @@ class Theatre:
 
 def key_of(view: str) -> str:
     """The key that shows a view, as Textual calls it."""
-    return next(key.names for key in COMMON if key.action == f"view({view!r})")
+    return f"f{2 + list(VIEWS).index(view)}"
 
 
 @asynccontextmanager

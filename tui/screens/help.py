@@ -14,7 +14,7 @@ from tui.words.cards import glossary, method_card, scene_card
 from tui.words.describe import step_text
 
 KEY_WIDTH = 10  # columns
-COLUMN_WIDTH = 38  # of a key and what it does; two of them fit on 80 columns
+COLUMN_WIDTH = 36  # of a key and what it does; two of them fit on 80 columns
 
 
 def bindings_of(owner: type[DOMNode]) -> list[Binding]:

@@ -173,7 +173,7 @@ class LiveScreen(SourceScreen):
     def action_tour(self) -> None:
         """Begin the tour, go on where it was left, or leave it."""
         if self.tour is None:
-            self.tour = TourGuide(self)
+            self.tour = TourGuide(self, self.live)
         self.tour.toggle()
 
     def action_on_tour(self, key: str) -> None:

@@ -1,7 +1,6 @@
 """The tour on the lab's screen: TourGuide shows its shots, TourPanel its words."""
 
 import textwrap
-from typing import TYPE_CHECKING
 
 from rich.style import Style
 from textual.binding import Binding
@@ -9,23 +8,24 @@ from textual.binding import Binding
 from tui.drawing.cells import CellWidget
 from tui.drawing.palette import EXACT, TEXT, WARN
 from tui.drawing.picture import Picture, Row
+from tui.playback.live import Live
 from tui.playback.shown import Shown
+from tui.screens.base import SourceScreen
 from tui.screens.insight_line import InsightLine
 from tui.words.tour import Tour
-
-if TYPE_CHECKING:
-    from tui.screens.live import LiveScreen
 
 TITLE = -10
 """The ink of the title."""
 
 TOUR_BINDINGS = (
-    Binding("enter", "on_tour('forward')", "tour: go on", show=False, priority=True),
-    Binding("1", "on_tour('first')", "tour: choose an answer", False, "1 or 2", priority=True),
-    Binding("2", "on_tour('second')", show=False, priority=True),
-    Binding("backspace", "on_tour('back')", "tour: back", show=False, priority=True),
-    Binding("escape", "on_tour('leave')", "tour: leave", False, "esc", priority=True),
+    Binding("enter", "on_tour('forward')", priority=True),
+    Binding("1", "on_tour('first')", priority=True),
+    Binding("2", "on_tour('second')", priority=True),
+    Binding("backspace", "on_tour('back')", priority=True),
+    Binding("escape", "on_tour('leave')", priority=True),
 )
+"""Only the panel names them: they work while it is on the screen."""
+
 FORWARD = {
     "watching": "enter to the moment",
     "asked": "1 or 2 answer  enter the truth",
@@ -36,9 +36,10 @@ FORWARD = {
 class TourGuide:
     """Shows the tour's shots on a lab's screen, and gives the screen back."""
 
-    def __init__(self, screen: "LiveScreen") -> None:
+    def __init__(self, screen: SourceScreen, live: Live) -> None:
         self.screen = screen
-        self.tour = Tour(screen.live)
+        self.live = live
+        self.tour = Tour(live)
         self.panel = TourPanel(self.tour)
         self.is_on = False
         screen.mount(self.panel, before=screen.query_one(InsightLine))
@@ -89,8 +90,8 @@ class TourGuide:
         self.screen.remove_class("-tour")
         self.screen.keep(self.before)
         self.screen.shown = self.before.shown
-        self.screen.live.set_speed(self.before.speed)
-        self.screen.live.pause(False)
+        self.live.set_speed(self.before.speed)
+        self.live.pause(False)
         self.screen.notify(notice, timeout=6)
         self._show()
 

@@ -350,17 +350,3 @@ def test_settings_survive_the_way_to_the_lab():
     for folder in (None, Path("/somewhere/ours")):
         settings = Settings(SCENES["spin"].altered(theta=1 / 3), TerminalOptions(theme="light"), folder)
         assert Settings.from_text(settings.as_text()) == settings
-
-
-def test_the_keys_that_are_kept_out_are_keys_of_the_lab():
-    from tui.commands.lab.web.served import EXTRAS, KEPT_OUT, ServedScreen
-    from tui.screens.extras import EXTRAS as ALL
-    from tui.screens.live import LiveScreen
-
-    assert {key.action for key in LiveScreen.KEYS} > KEPT_OUT
-    assert not KEPT_OUT & {key.action for key in ServedScreen.KEYS}
-    kept_out = {name for key in LiveScreen.KEYS if key.action in KEPT_OUT for name in key.names.split(",")}
-    bound = [set(kind._merge_bindings().key_to_bindings) for kind in (LiveScreen, ServedScreen)]
-    assert bound[0] - bound[1] == kept_out  # Tab and the tour's keys are there
-    assert bound[1] <= bound[0]
-    assert ALL.keys() - EXTRAS == {"screenshot", "replay"}

@@ -20,7 +20,7 @@ from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
 from tui.words.events import event_lines
-from tui.words.findings import staying
+from tui.words.insight import bounded
 
 NANOSECOND = 1e-9  # what clocks in a file are rounded to
 LENGTH = 12.0  # s, of the eventful sitting
@@ -140,7 +140,7 @@ def test_a_trend_is_told_only_when_all_that_it_rests_on_has_been_read(tmp_path):
     table = Table(recorded(tmp_path / "drift.mcap", 25.0))
     table.replay.seek(24.0)
     assert all(judgement.slope is None for judgement in table.replay.judgements)
-    assert staying(table.replay) == "Symplectic Euler and Verlet stay bounded."
+    assert [method.letter for method in bounded(table.replay).methods] == ["s", "v"]
     while not table.replay.fill():
         pass
     assert any(judgement.slope is not None for judgement in table.replay.judgements)

@@ -8,7 +8,6 @@ from textual.containers import VerticalScroll
 from textual.events import Resize
 from textual.geometry import Size
 from textual.screen import Screen
-from textual.system_commands import SystemCommandsProvider
 from textual.widgets import Input, OptionList
 from textual.widgets._toast import Toast
 
@@ -18,6 +17,7 @@ from tui.playback.live import Live
 from tui.screens.dialogs.modal import Commands
 from tui.screens.dialogs.text import TextScreen
 from tui.screens.live import LiveScreen
+from tui.screens.palette import LabCommands
 
 
 async def opened(theatre) -> TextScreen:
@@ -61,7 +61,7 @@ async def test_with_reduced_motion_a_text_scrolls_at_once():
 
 
 async def test_a_palette_that_is_closed_while_it_searches_ends_quietly(monkeypatch):
-    search = SystemCommandsProvider.search
+    search = LabCommands.search
 
     async def closed_meanwhile(self, query):
         async for hit in search(self, query):
@@ -76,7 +76,7 @@ async def test_a_palette_that_is_closed_while_it_searches_ends_quietly(monkeypat
             while not theatre.app.screen.query_one(OptionList).option_count:
                 await theatre.pilot.pause(0.01)
         searched = asyncio.Event()
-        monkeypatch.setattr(SystemCommandsProvider, "search", closed_meanwhile)
+        monkeypatch.setattr(LabCommands, "search", closed_meanwhile)
         theatre.app.screen.query_one(Input).value = "zzz"  # finds nothing: the list is to be hidden
         async with asyncio.timeout(20):
             await searched.wait()

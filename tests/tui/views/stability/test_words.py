@@ -5,8 +5,8 @@ import pytest
 
 from engine.methods import USUAL_CAST
 from engine.stability.outcomes import CAUGHT, CELL, GROWS, HOLDS, LOSES, OVER_THE_TOP, UNKNOWN, outcomes
+from tui.screens.status_line import limit_warning
 from tui.views.stability.words import note, verdict
-from tui.words.findings import limit_warning
 
 EULER, _, VERLET, RK4 = USUAL_CAST
 ZS = np.array([0.5, 1.0, 1.5, 2.0, 2.5])
