@@ -5,5 +5,5 @@ without keeping it waiting.  `replay` is a recording that follows the clock; `cu
 file and reads what came before, `marks` are kept next to the file.  `playhead` turns readings of the clock into how far
 to go.  `so_far` is the run up to the sample, with its
 observer and its `history`, whose `levels` are for chart and trails; `ghost` is a recording laid under it.  `shown`
-holds which methods and quantities are on screen.
+holds which methods and quantities are on screen, and `state` is what an undo brings back.
 """
