@@ -1,28 +1,32 @@
-"""What the accuracy command prints: table, chart, recommendation; JSON; CSV."""
+"""The report of the accuracy command: points, chart, measured orders, and what is recommended."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from itertools import groupby, pairwise
-from typing import Any, TextIO
+from itertools import pairwise
+from typing import Any
 
 from rich.text import Text
 
 from engine.accuracy.advice import Advice
 from engine.accuracy.front import Cheapest, Cost, front
 from engine.accuracy.growth import Growth
-from engine.accuracy.references import AnyPoint, Reference, References
+from engine.accuracy.references import CLOSED_FORM, TAYLOR_20, AnyPoint, References
 from engine.accuracy.study import REASONS, ErrorKind, Order, Point
 from engine.methods import Method
+from engine.methods.euler import SYMPLECTIC_EULER
+from engine.methods.own import OwnMethod
 from engine.scenes import Scene
-from tui.cli.output import console, fields_of, print_picture, scene_line, write_csv, write_json
-from tui.cli.report import print_table
-from tui.commands.studies.reports.orders import claimed, order_remarks
-from tui.commands.studies.reports.references import print_references, rows_of
+from tui.cli.output import console, fields_of, scene_line
+from tui.cli.report import Column, Report, Table
 from tui.drawing.palette import PALETTES
 from tui.views.accuracy.chart import ERROR_LABELS, MARKS, accuracy_chart, accuracy_series
 from tui.words.accuracy import WORTH_SAYING, factor_words, front_words, growth_words, length
 
 CHART_SIZE = (100, 24)  # columns at most, rows
+APART = 0.25  # of two orders; larger differences get a remark
+NUMBERS = ("h", "steps", "force_evaluations", "seconds", "spread", "theta_error", "energy_error", "final_error")
+TRUTH = "the exact motion, against which errors are taken"
 
 
 @dataclass(slots=True)
@@ -45,54 +49,39 @@ class Findings:
 
     @property
     def front(self) -> list[Cheapest]:
-        """The cheapest method at each accuracy."""
-        taylor = self.references.taylor if self.references else ()
-        return front([*self.points, *taylor], self.kind, self.cost)
+        """Return the cheapest method at each accuracy."""
+        return front([*self.points, *self.series], self.kind, self.cost)
 
     @property
-    def wish(self) -> str:
-        """What was asked for, in words."""
-        within = f" within {self.budget} force evaluations" if self.budget else ""
-        return (f"{self.kind} error up to {self.target:g}" if self.target else f"smallest {self.kind} error") + within
+    def series(self) -> Sequence[AnyPoint]:
+        """Return the points of Taylor's series."""
+        return self.references.taylor if self.references else ()
 
 
-def print_text(found: Findings) -> None:
-    """Print the table, the chart, and what is recommended."""
-    print(f"{scene_line(found.scene)}, over {found.time:g} s\n{ERROR_LABELS[found.kind]}\n")
-    _print_points(found)
-    if found.references:
-        print_references(found.references, found.kind)
-    print()
-    _print_chart(found)
-    if found.all and found.points:
-        alone = front(found.points, found.kind, "evaluations")
-        print(f"\n{front_words(found.front, found.cost, alone)}")
-        if words := factor_words(alone):
-            print(words)
-    for advice in found.advice:
-        print()
-        _print_advice(found, advice)
-    if len(found.advice) > 1:
-        print(f"\n{winners(found.advice)}")
-
-
-def print_json(found: Findings) -> None:
-    """Print one object: points, orders, recommendation, and the recommendation for each time asked for."""
+def report(found: Findings) -> Report:
+    """Return the report of what was found."""
+    points = list(_records(found))
     durations = [_advice_fields(found, advice) for advice in found.advice]
-    write_json(
-        "accuracy",
-        {
+    return Report(
+        name="accuracy",
+        title=f"{scene_line(found.scene)}, over {found.time:g} s\n{ERROR_LABELS[found.kind]}\n",
+        columns=_columns(found),
+        rows=_rungs(found),
+        notes=list(_notes(found)),
+        records=points,
+        fields={
             "scene": found.scene.fields(),
             "time": found.time,
             "error": found.kind,
-            "points": rows_of(found.points, found.references, found.kind),
+            "points": points,
             "front": [
-                {"error": a.target, "method": a.method.key, "cost": a.cost, "saves_over_rk4": a.saves}
-                for a in found.front
+                {"error": each.target, "method": each.method.key, "cost": each.cost, "saves_over_rk4": each.saves}
+                for each in found.front
             ],
-            "absent": found.references and found.references.absent,
+            "absent": found.references.absent if found.references else None,
             "orders": [
-                {"method": o.method.key, "claimed": claimed(o.method), "measured": o.measured} for o in found.orders
+                {"method": each.method.key, "claimed": claimed(each.method), "measured": each.measured}
+                for each in found.orders
             ],
             "recommendation": durations[-1] if durations else None,
             "durations": durations,
@@ -101,91 +90,155 @@ def print_json(found: Findings) -> None:
     )
 
 
-def print_csv(found: Findings, out: TextIO) -> None:
-    """Write a line for each point."""
-    rows = rows_of(found.points, found.references, found.kind)
-    if rows:
-        write_csv(out, list(rows[0]), (list(row.values()) for row in rows))
+def _records(found: Findings) -> Iterator[dict[str, Any]]:
+    """Yield the points of all lines, in the fields of JSON and CSV."""
+    for point in (*found.points, *found.series):
+        flaw = point.flaw(found.kind)
+        numbers = {name: getattr(point, name, None) for name in NUMBERS}
+        tolerance = getattr(point, "tolerance", None)
+        reason = REASONS[flaw] if flaw else None
+        yield {"method": point.method.key, **numbers, "valid": flaw is None, "reason": reason, "tolerance": tolerance}
+    if found.references:
+        numbers = dict.fromkeys(NUMBERS) | {"seconds": found.references.floor}
+        yield {"method": CLOSED_FORM.key, **numbers, "valid": False, "reason": TRUTH, "tolerance": None}
 
 
-def _print_points(found: Findings) -> None:
-    cast = found.scene.cast
-    rungs = [(steps, list(ours)) for steps, ours in groupby(found.points, key=lambda point: point.steps)]
-    rows = [
-        (f"{ours[0].h:.4g}", f"{ours[0].h * found.scene.w0:.3g}", str(steps), *(_cell(found, ours, m) for m in cast))
-        for steps, ours in rungs
-    ]
-    if found.orders:
-        measured = ("-" if order.measured is None else f"{order.measured:.2f}" for order in found.orders)
-        rows.append(("order", "", "measured", *measured))
-        rows.append(("", "", "claimed", *(str(claimed(order.method) or "-") for order in found.orders)))
-    names = (f"{method.label} ({method.force_evaluations}/step)" for method in cast)
-    print_table("rrr" + "r" * len(cast), ("h [s]", "z = h·w0", "steps", *names), rows)
+def _rungs(found: Findings) -> list[dict[str, str]]:
+    """Return the rows of the table: the errors of all methods with one h, and the orders."""
+    rows: dict[int, dict[str, str]] = {}
+    for point in found.points:
+        z = point.h * found.scene.w0
+        row = rows.setdefault(point.steps, {"h": f"{point.h:.4g}", "z": f"{z:.3g}", "steps": str(point.steps)})
+        row[point.method.key] = _cell(point, found.kind)
+    measured = {"h": "order", "steps": "measured"}
+    claims = {"steps": "claimed"}
+    for order in found.orders:
+        measured[order.method.key] = "-" if order.measured is None else f"{order.measured:.2f}"
+        claims[order.method.key] = str(claimed(order.method) or "-")
+    return [*rows.values(), measured, claims] if found.orders else [*rows.values()]
+
+
+def _columns(found: Findings) -> list[Column]:
+    heads = {"h": "h [s]", "z": "z = h·w0", "steps": "steps"}
+    heads |= {method.key: f"{method.label} ({method.force_evaluations}/step)" for method in found.scene.cast}
+    return [Column(head, lambda row, key=key: row.get(key, ""), right=True) for key, head in heads.items()]  # type: ignore[misc]
+
+
+def _cell(point: AnyPoint, kind: ErrorKind) -> str:
+    flaw = point.flaw(kind)
+    mark = f"{MARKS[flaw]} " if flaw else ""
+    seconds = "" if point.seconds is None else f" in {length(point.seconds)}"
+    return f"{mark}{point.error(kind):.1e}{seconds}"
+
+
+def _notes(found: Findings) -> Iterator[Any]:
     flaws = {flaw for point in found.points if (flaw := point.flaw(found.kind))}
     for mark in sorted({MARKS[flaw] for flaw in flaws}):
-        print(f"{mark} {'; '.join(REASONS[flaw] for flaw in flaws if MARKS[flaw] == mark)}")
-    print("order measured on the theta error over at most one period; n/step: force evaluations")
-    for remark in order_remarks(found.scene, found.orders):
-        print(remark)
-    if said := growth_words(found.growth):
-        print(f"at h = {found.scene.h:g} s, {said}")
+        yield f"{mark} {'; '.join(REASONS[flaw] for flaw in flaws if MARKS[flaw] == mark)}"
+    yield "order measured on the theta error over at most one period; n/step: force evaluations"
+    yield from order_remarks(found.scene, found.orders)
+    if growth := growth_words(found.growth):
+        yield f"at h = {found.scene.h:g} s, {growth}"
+    if found.references:
+        yield from _reference_notes(found.references, found.kind)
+    yield from ("", *_chart(found))
+    if found.all and found.points:
+        alone = front(found.points, found.kind, "evaluations")
+        yield f"\n{front_words(found.front, found.cost, alone)}"
+        if factors := factor_words(alone):
+            yield factors
+    for advice in found.advice:
+        yield from _advice_notes(found, advice)
+    if len(found.advice) > 1:
+        yield f"\n{winners(found.advice)}"
 
 
-def _cell(found: Findings, rung: Sequence[Point], method: Method) -> str:
-    for point in rung:
-        if point.method == method:
-            flaw = point.flaw(found.kind)
-            seconds = "" if point.seconds is None else f" in {length(point.seconds)}"
-            return f"{MARKS[flaw] if flaw else ''} {point.error(found.kind):.1e}{seconds}"
-    return ""
-
-
-def _print_chart(found: Findings) -> None:
-    on, rows, palette = console(CHART_SIZE[0]), CHART_SIZE[1], PALETTES["dark"]
-    width = min(on.width, CHART_SIZE[0])
-    series = accuracy_series(found.points, found.kind, found.cost, references=found.references)
-    chart = accuracy_chart(series, found.kind, found.cost, width, rows)
-    lines = [
-        Text.assemble(*((text, palette.colour(ink)) for text, ink in row if isinstance(ink, int))) for row in chart.rows
-    ]
-    for line in lines:
-        line.rstrip()
-    print_picture(on, lines)
-
-
-def _print_advice(found: Findings, advice: Advice) -> None:
-    kind, point = found.kind, advice.point
-    if point is None:
-        print(f"No method reaches the target over {advice.time:g} s: {found.wish}")
-    else:
-        seconds = "" if point.seconds is None else f" in {length(point.seconds)}"
-        print(f"Over {advice.time:g} s, {found.wish}: {point.method.label} at h = {point.h:.5g} s")
-        print(f"{point.force_evaluations} force evaluations{seconds}, {kind} error {point.error(kind):.2e}, confirmed")
-        if advice.rk4 and advice.saves and advice.saves >= WORTH_SAYING:
-            print(f"RK4 takes {advice.saves:.2g} times as many force evaluations, {advice.rk4.force_evaluations}")
-    timed = any(attempt.point and attempt.point.seconds is not None for attempt in advice.attempts)
-    rows = []
-    for method, tried, why_not in _tries(advice):
-        note = why_not or ("recommended" if tried is point else "")
-        cells = (
-            f"{tried.h:.5g}" if isinstance(tried, Point) else "-",
-            str(tried.force_evaluations) if isinstance(tried, Point) else "-",
-            *([length(tried.seconds) if tried and tried.seconds is not None else "-"] if timed else []),
-            f"{tried.error(kind):.2e}" if tried else "-",
+def _reference_notes(found: References, kind: ErrorKind) -> Iterator[Any]:
+    """Yield the points of Taylor's series, or why there are none, and what the closed form takes."""
+    if found.taylor:
+        columns = (
+            Column("tolerance [rad/s]", lambda point: f"{point.tolerance:.2g}", right=True),
+            Column("steps", lambda point: str(point.steps), right=True),
+            Column(TAYLOR_20.label, lambda point: _cell(point, kind), right=True),
         )
-        rows.append((method.label, *cells, note))
-    headers = ("method", "h [s]", "force evaluations", *(["seconds"] if timed else []), f"{kind} error", "")
-    print_table("lrr" + "r" * timed + "rl", headers, rows)
+        yield from ("", Table(columns, found.taylor))
+    if found.absent:
+        yield found.absent
+    yield f"{CLOSED_FORM.label}, the floor: {length(found.floor)}"
 
 
-def _tries(advice: Advice) -> list[tuple[Method | Reference, AnyPoint | None, str | None]]:
-    """The methods that were tried, each with its run and the reason why it will not do."""
-    return [(each.method, each.point, each.why_not) for each in advice.attempts]
+def order_remarks(scene: Scene, orders: Sequence[Order]) -> Iterator[str]:
+    """Yield why a measured order is not the claimed one."""
+    for method, measured in orders:
+        order = claimed(method)
+        if measured is None or order is None or abs(measured - order) < APART:
+            continue
+        why = "its errors do not follow a single power over these h"
+        if method == SYMPLECTIC_EULER and math.remainder(scene.theta, math.pi) == 0:
+            why = "from theta = 0 its angles are velocity Verlet's"
+        elif not method.symplectic and round(measured) == order + 1:
+            why = f"near the upright position the phase depends on the energy, which it loses as h^{measured:.0f}"
+        yield f"{method.label} reads {measured:.2f}, not {order}: {why}"
+
+
+def claimed(method: Method) -> int | None:
+    """Return the claimed order; nothing is claimed of a user's own method."""
+    return None if isinstance(method, OwnMethod) else method.order
+
+
+def _chart(found: Findings) -> list[Text]:
+    palette = PALETTES["dark"]
+    columns, rows = CHART_SIZE
+    series = accuracy_series(found.points, found.kind, found.cost, references=found.references)
+    chart = accuracy_chart(series, found.kind, found.cost, min(console(columns).width, columns), rows)
+    lines = []
+    for row in chart.rows:
+        line = Text.assemble(*((text, palette.colour(ink)) for text, ink in row if isinstance(ink, int)))
+        line.rstrip()
+        lines.append(line)
+    return lines
+
+
+def _advice_notes(found: Findings, advice: Advice) -> Iterator[Any]:
+    """Yield the recommendation for one time, and what was tried for it."""
+    wish = f"smallest {found.kind} error" if found.target is None else f"{found.kind} error up to {found.target:g}"
+    if found.budget is not None:
+        wish += f" within {found.budget} force evaluations"
+    point = advice.point
+    if point is None:
+        yield f"\nNo method reaches the target over {advice.time:g} s: {wish}"
+    else:
+        w0 = found.scene.w0
+        z = f"z = {point.h * w0:.3g}, {math.tau / (point.h * w0):.3g} steps a small swing"
+        yield f"\nOver {advice.time:g} s, {wish}: {point.method.label} at h = {point.h:.5g} s ({z})"
+        seconds = "" if point.seconds is None else f" in {length(point.seconds)}"
+        error = f"{found.kind} error {point.error(found.kind):.2e}, confirmed"
+        yield f"{point.force_evaluations} force evaluations{seconds}, {error}"
+        if advice.rk4 and advice.saves and advice.saves >= WORTH_SAYING:
+            yield f"RK4 takes {advice.saves:.2g} times as many force evaluations, {advice.rk4.force_evaluations}"
+    yield Table(_attempt_columns(found, advice), advice.attempts)
+
+
+def _attempt_columns(found: Findings, advice: Advice) -> list[Column]:
+    def of_point(head: str, write: Any) -> Column:
+        return Column(head, lambda attempt: attempt.point and write(attempt.point), right=True)
+
+    columns = [
+        Column("method", lambda attempt: attempt.method.label),
+        of_point("h [s]", lambda point: f"{point.h:.5g}"),
+        of_point("force evaluations", lambda point: str(point.force_evaluations)),
+    ]
+    if any(attempt.point and attempt.point.seconds is not None for attempt in advice.attempts):
+        columns.append(of_point("seconds", lambda point: None if point.seconds is None else length(point.seconds)))
+    columns.append(of_point(f"{found.kind} error", lambda point: f"{point.error(found.kind):.2e}"))
+    recommended = {id(advice.point): "recommended"}
+    columns.append(Column("", lambda attempt: attempt.why_not or recommended.get(id(attempt.point), "")))
+    return columns
 
 
 def winners(advice: Sequence[Advice]) -> str:
-    """Where the recommended method changes with the time."""
-    names = [piece.point.method.label if piece.point else "no method" for piece in advice]
+    """Return where the recommended method changes with the time."""
+    names = [each.point.method.label if each.point else "no method" for each in advice]
     changes = [
         f"{after} instead of {before} from {advice[at].time:g} s on (not yet at {advice[at - 1].time:g} s)"
         for at, (before, after) in enumerate(pairwise(names), 1)
@@ -194,15 +247,14 @@ def winners(advice: Sequence[Advice]) -> str:
     return "; ".join(changes) + "." if changes else f"{names[0]} for all these times."
 
 
-def _run_fields(
-    method: Method | Reference | None, point: AnyPoint | None, kind: ErrorKind, error: str
-) -> dict[str, Any]:
-    """A method and its run, whose error is called `error`; None for what there is not."""
+def _run_fields(method: Method | None, point: Point | None, error: str, kind: ErrorKind) -> dict[str, Any]:
+    """Return a method and its run, whose error is called `error`; None for what there is not."""
     return {
-        "method": method and method.key,
-        **{name: getattr(point, name, None) for name in ("h", "force_evaluations")},
-        error: point and point.error(kind),
-        **{name: getattr(point, name, None) for name in ("seconds", "tolerance")},
+        "method": method.key if method else None,
+        "h": point.h if point else None,
+        "force_evaluations": point.force_evaluations if point else None,
+        error: point.error(kind) if point else None,
+        "seconds": point.seconds if point else None,
     }
 
 
@@ -211,11 +263,11 @@ def _advice_fields(found: Findings, advice: Advice) -> dict[str, Any]:
     return {
         "time": advice.time,
         **fields_of(found, "target", "budget"),
-        **_run_fields(point.method if point else None, point, found.kind, "reached"),
+        **_run_fields(point.method if point else None, point, "reached", found.kind),
         "saves_over_rk4": advice.saves,
         "reason": None if point else "no method gets there",
         "attempts": [
-            _run_fields(method, tried, found.kind, "error") | {"why_not": why_not}
-            for method, tried, why_not in _tries(advice)
+            _run_fields(each.method, each.point, "error", found.kind) | {"why_not": each.why_not}
+            for each in advice.attempts
         ],
     }
