@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from engine.methods.method import Method
+from engine.models import FIRST_ORDER
 from engine.models.model import Force, Phase, Rates
 from engine.models.modified_energy import symplectic_euler_modified_energy
 
@@ -50,7 +51,7 @@ EXPLICIT_EULER = Method(
     reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), I.1.2",
     used="equations with additive noise (Euler-Maruyama): Brian 2 [brian2.readthedocs.io, Numerical integration]",
     on_rates=explicit_euler_on_rates,
-    models=("pendulum", "linear", "damped"),
+    models=("pendulum", "linear", *FIRST_ORDER),
 )
 
 SYMPLECTIC_EULER = Method(

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 
 from engine.methods.method import Method
+from engine.models import FIRST_ORDER
 from engine.models.model import Force, Phase, Rates
 
 
@@ -57,7 +58,7 @@ RK4 = Method(
     reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), II.1.1",
     used="energy-conserving systems in MuJoCo, integrator RK4 [mujoco.readthedocs.io, Computation]",
     on_rates=rk4_on_rates,
-    models=("pendulum", "linear", "damped", "spring"),
+    models=("pendulum", "linear", "spring", *FIRST_ORDER),
 )
 
 FAMILY = (RK4,)

@@ -1,19 +1,25 @@
 """The models: what is simulated, one a file, and what it is compared with.
 
-`model` says what a model is, and holds the types a method meets.  `pendulum`, `linear`, `damped` and `spring` are the
-models; the last two have no closed form, and are compared with a `reference`;
+`model` says what a model is, and holds the types a method meets.  `pendulum`, `linear`, `damped`, `spring` and
+`mean_field` are the models; the last three have no closed form, and are compared with a `reference`;
 `exact_pendulum` is the pendulum's motion in closed form, the reference of every error in theta; `modified_energy`
 is what symplectic methods conserve instead of the energy.
 """
 
 from engine.models.damped import DampedPendulum
 from engine.models.linear import LinearOscillator as LinearOscillator
+from engine.models.mean_field import MeanField
 from engine.models.model import Model as Model
 from engine.models.model import Parameter as Parameter
 from engine.models.pendulum import Pendulum as Pendulum
 from engine.models.spring import Spring
 
-MODELS: dict[str, type[Model]] = {model.key: model for model in (Pendulum, LinearOscillator, DampedPendulum, Spring)}
+MODELS: dict[str, type[Model]] = {
+    model.key: model for model in (Pendulum, LinearOscillator, DampedPendulum, Spring, MeanField)
+}
+
+FIRST_ORDER = tuple(key for key, model in MODELS.items() if not model.second_order)
+"""The keys of the models that methods integrate by their rates."""
 
 PARAMETERS: dict[str, Parameter] = {each.name: each for model in MODELS.values() for each in model.parameters}
 """The parameters that models have besides length and gravity, by name."""

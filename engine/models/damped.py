@@ -21,7 +21,7 @@ from engine.models.model import (
     State,
 )
 from engine.models.pendulum import Pendulum, separatrix_energy
-from engine.models.reference import Reference
+from engine.models.reference import Reference, compose_verlet
 
 STEP = 0.05  # of the reference, times the larger of w0 and gamma
 ACCURACY = 1e-10  # rad
@@ -98,4 +98,5 @@ class DampedPendulum(Pendulum):
 @lru_cache(maxsize=16)
 def _reference(model: DampedPendulum, theta: float, omega: float) -> Reference:
     start: Phase = theta, omega
-    return Reference(model.force(), start, STEP / max(model.w0, model.friction), model.friction)
+    step = compose_verlet(model.force(), model.friction)
+    return Reference(step, start, STEP / max(model.w0, model.friction))

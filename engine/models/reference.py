@@ -1,12 +1,15 @@
 """An accurate motion where there is no closed form: Kahan and Li's method of order 8, in steps of its own.
 
-Kahan & Li, Math. Comput. 66 (1997) 1089: velocity Verlet with 17 fractions of h in turn.  With friction each of them
-is a conformal step, which damps before and after; those that go backwards undo it exactly.
+Kahan & Li, Math. Comput. 66 (1997) 1089: a symmetric step of order 2 with 17 fractions of h in turn.
 """
 
 import math
+from collections.abc import Callable
 
 from engine.models.model import Force, Phase
+
+Step = Callable[[Phase, float], Phase]
+"""(phase, h) -> the phase after h [s]."""
 
 _HALF = (
     *(0.13020248308889008088, 0.56116298177510838456, -0.38947496264484728641, 0.15884190655515560090),
@@ -19,9 +22,10 @@ EVERY = 64  # steps from one that is kept to the next
 class Reference:
     """The motion from a start, computed when asked for.  The order of the times asked for changes no bit."""
 
-    def __init__(self, force: Force, start: Phase, h: float, friction: float = 0.0) -> None:
-        """In steps of h [s]; friction [s⁻¹]."""
-        self._force, self._h, self._friction = force, h, friction
+    def __init__(self, step: Step, start: Phase, h: float) -> None:
+        """In steps of h [s]."""
+        self._step = step
+        self._h = h
         self._kept = {0: start}  # by number of steps, negative ones included
         self._last = 0, start  # the last whole step that was asked for
 
@@ -48,14 +52,35 @@ class Reference:
         except (ValueError, ArithmeticError):  # far back, where friction has made it faster than doubles hold
             return phase
 
-    def _step(self, phase: Phase, h: float) -> Phase:
-        force, (position, velocity) = self._force, phase
+
+def compose(step: Step) -> Step:
+    """Return a step of order 8 that takes WEIGHTS of h by a symmetric step of order 2 in turn."""
+
+    def composed(phase: Phase, h: float) -> Phase:
+        for weight in WEIGHTS:
+            phase = step(phase, weight * h)
+        return phase
+
+    return composed
+
+
+def compose_verlet(force: Force, friction: float = 0.0) -> Step:
+    """Return the composition of velocity Verlet, which shares a force between one part and the next.
+
+    With friction [s⁻¹] each part is a conformal step, which damps before and after; parts that go
+    backwards undo it exactly.
+    """
+
+    def composed(phase: Phase, h: float) -> Phase:
+        position, velocity = phase
         a = force(position)
         for weight in WEIGHTS:
             part = weight * h
-            damping = math.exp(-self._friction * part / 2)
+            damping = math.exp(-friction * part / 2)
             velocity = velocity * damping + part / 2 * a
             position = position + part * velocity
             a = force(position)
             velocity = (velocity + part / 2 * a) * damping
         return position, velocity
+
+    return composed

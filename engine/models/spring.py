@@ -25,7 +25,7 @@ from engine.models.model import (
     State,
     Variable,
 )
-from engine.models.reference import Reference
+from engine.models.reference import Reference, compose_verlet
 
 STRETCH = 0.04  # of its length, beyond equilibrium: how far the spring is stretched at a start
 STEP = 0.1  # of the reference, times the spring's frequency
@@ -193,4 +193,4 @@ class Spring(Model):
 
 @lru_cache(maxsize=16)
 def _reference(model: Spring, theta: float, omega: float) -> Reference:
-    return Reference(model.force(), model.start(theta, omega), STEP / model.fastest)
+    return Reference(compose_verlet(model.force()), model.start(theta, omega), STEP / model.fastest)

@@ -2,7 +2,6 @@
 
 from engine.scenes.listed import DEFAULT_SCENE as DEFAULT_SCENE
 from engine.scenes.listed import GROUPS as GROUPS
-from engine.scenes.listed import LEFT_OUT as LEFT_OUT
 from engine.scenes.listed import SCENES as SCENES
 from engine.scenes.scene import LIMITS as LIMITS
 from engine.scenes.scene import MOST_METHODS as MOST_METHODS

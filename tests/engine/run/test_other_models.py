@@ -17,7 +17,7 @@ from engine.scenes import SCENES, Scene, SceneError
 
 NAMES = [n for n, s in SCENES.items() if not s.general]
 each_scene = pytest.mark.parametrize("scene", [SCENES[name] for name in NAMES], ids=NAMES)
-PARAMETERS = {"friction": 0.1, "stiffness": 100.0}
+PARAMETERS = {"friction": 0.1, "stiffness": 100.0, "coupling": 2.0, "level_frequency": 20.0}
 
 
 def without_extremes(sample: Sample) -> list[Reading]:
@@ -123,7 +123,7 @@ def test_any_scene_within_the_limits_gives_finite_numbers(
     model: str, theta: float, omega: float, friction: float, stiffness: float, h: float
 ) -> None:
     given_values = {"friction": friction, "stiffness": stiffness}
-    own = {each.name: given_values[each.name] for each in MODELS[model].parameters}
+    own = {each.name: given_values.get(each.name, each.default) for each in MODELS[model].parameters}
     cast = tuple(method for method in METHODS if model in method.models)
     h = min(h, 1.0) if model == "damped" else h  # the reference takes steps of 0.5 ms where friction is 100
     lockstep = Lockstep(Scene(theta=theta, omega=omega, h=h, model=model, cast=cast, parameters=own))

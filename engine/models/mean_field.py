@@ -1,0 +1,165 @@
+"""A pendulum whose bob carries a quantum two-level system, in mean field (Ehrenfest's dynamics).
+
+The two levels are the Bloch vector s, of length 1 for a pure state.  It turns about the field
+b(theta) = (sin theta, 0, cos theta), and the pendulum feels the expectation value of the energy:
+
+    theta' = omega,  omega' = -w0² sin theta - kappa b'(theta)·s,  s' = nu b(theta) × s
+
+Energy and |s|, the probability, are conserved for any nu.  Tully, Faraday Discuss. 110 (1998) 407.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache, partial
+from typing import Any, ClassVar
+
+from engine.models.model import (
+    Energy,
+    ExactMotion,
+    Model,
+    Observation,
+    Parameter,
+    Phase,
+    Rates,
+    Sine,
+    State,
+    Variable,
+)
+from engine.models.reference import Reference, compose
+
+START = (1.0, 0.0, 0.0)
+"""The Bloch vector of every start: an equal superposition of both levels."""
+STEP = 0.4  # of the reference, times the fastest frequency
+ACCURACY = 1e-10  # rad
+
+
+@dataclass(frozen=True)
+class MeanField(Model):
+    """A phase is (theta, omega, sx, sy, sz)."""
+
+    w0_squared: float  # s⁻²
+    coupling: float  # kappa [s⁻²]: energy of the two levels, per unit m·L²
+    level_frequency: float  # nu [s⁻¹]: how fast the Bloch vector turns
+
+    key: ClassVar[str] = "mean_field"
+    equation: ClassVar[str] = "theta'' = -w0² sin theta - kappa b'·s, s' = nu b × s"
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("coupling", "s⁻²", "of the bob to its two levels", -1e6, 1e6, default=2.0),
+        Parameter("level_frequency", "s⁻¹", "of the two levels", 1e-3, 1e6, default=20.0),
+    )
+    turns: ClassVar[bool] = True
+    second_order: ClassVar[bool] = False
+    counted_parts: ClassVar[tuple[str, ...]] = ("kick",)
+    variables: ClassVar[tuple[Variable, ...]] = (
+        Variable("sx", about="of the Bloch vector"),
+        Variable("sy", about="of the Bloch vector"),
+        Variable("sz", about="of the Bloch vector"),
+        Variable(
+            "probability",
+            about="length of the Bloch vector, which the true motion keeps",
+            label="probability",
+            is_state=False,
+        ),
+    )
+    frequency_symbol: ClassVar[str] = "nu"
+    caption: ClassVar[str] = "a projection: angle and angular velocity, without the two levels"
+    without_force: ClassVar[str] = "Maps and studies are for one angle; the mean field has a Bloch vector as well."
+    without_ring: ClassVar[str] = (
+        "A projection of five dimensions to two: no curves and no ring of neighbouring starts."
+    )
+
+    @property
+    def fastest(self) -> float:
+        return max(self.w0, self.level_frequency)
+
+    def start(self, theta: float, omega: float) -> Phase:
+        return (theta, omega, *START)
+
+    def rest_phase(self, theta: float) -> Phase:
+        """Return the phase of least energy at an angle [rad]: s against the field."""
+        sign = math.copysign(1.0, self.coupling)
+        return theta, 0.0, -sign * math.sin(theta), 0.0, -sign * math.cos(theta)
+
+    def observe(self, phase: Phase) -> Observation:
+        theta, omega, sx, sy, sz = phase
+        extra = {"sx": sx, "sy": sy, "sz": sz, "probability": self.invariant(phase)}
+        return Observation(theta, omega, extra)
+
+    def phase_of(self, theta: float, omega: float, extra: Mapping[str, float]) -> Phase:
+        return theta, omega, extra["sx"], extra["sy"], extra["sz"]
+
+    def invariant(self, phase: Phase) -> float:
+        """Return |s|, which the true motion conserves besides the energy."""
+        return math.hypot(*phase[2:])
+
+    def rates(self, sin: Sine = math.sin) -> Rates:
+        def mean_field_rates(phase: Phase) -> Phase:
+            theta, omega, sx, sy, sz = phase
+            sine = sin(theta)
+            cosine = sin(theta + math.pi / 2)
+            acceleration = -self.w0_squared * sine - self.coupling * (cosine * sx - sine * sz)
+            return (
+                omega,
+                acceleration,
+                -self.level_frequency * cosine * sy,
+                self.level_frequency * (cosine * sx - sine * sz),
+                self.level_frequency * sine * sy,
+            )
+
+        return mean_field_rates
+
+    def kick(self, phase: Phase, h: float) -> Phase:
+        """Return the phase after h [s] in which theta stands still; exact.
+
+        The vectors b, b' and b × b' are orthonormal: s keeps its part along b, and turns by nu h in
+        the plane of the other two, along which u and v are its parts.
+        """
+        theta, omega, sx, sy, sz = phase
+        sine = math.sin(theta)
+        cosine = math.cos(theta)
+        along = sine * sx + cosine * sz
+        u = cosine * sx - sine * sz
+        v = sy
+        turned = self.level_frequency * h
+        integral = (u * math.sin(turned) - v * (1 - math.cos(turned))) / self.level_frequency
+        omega = omega - self.w0_squared * h * sine - self.coupling * integral
+        u_after = u * math.cos(turned) - v * math.sin(turned)
+        v_after = v * math.cos(turned) + u * math.sin(turned)
+        return (
+            theta,
+            omega,
+            sine * along + cosine * u_after,
+            v_after,
+            cosine * along - sine * u_after,
+        )
+
+    def energy(self, sin: Sine = math.sin) -> Energy:
+        def mean_field_energy(phase: Phase) -> Any:
+            theta, omega, sx, _, sz = phase
+            half = sin(theta / 2)
+            field = sin(theta) * sx + sin(theta + math.pi / 2) * sz
+            return omega * omega / 2 + 2 * self.w0_squared * half * half + self.coupling * field
+
+        return mean_field_energy
+
+    def exact(self, theta: float, omega: float) -> ExactMotion:
+        """Return the motion by a splitting of order 8 at a small step: there is no closed form."""
+
+        def at(t: float) -> State:
+            return State(*_reference(self, theta, omega).at(t)[:2])
+
+        return ExactMotion(at, "libration", accuracy=ACCURACY)
+
+
+def strang(model: MeanField, phase: Phase, h: float) -> Phase:
+    """Return the phase after half a drift, the exact kick, and half a drift."""
+    theta, omega, *bloch = phase
+    theta, omega, *bloch = model.kick((theta + h / 2 * omega, omega, *bloch), h)
+    return theta + h / 2 * omega, omega, *bloch
+
+
+@lru_cache(maxsize=16)
+def _reference(model: MeanField, theta: float, omega: float) -> Reference:
+    step = compose(partial(strang, model))
+    return Reference(step, model.start(theta, omega), STEP / model.fastest)

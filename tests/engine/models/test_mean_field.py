@@ -1,0 +1,175 @@
+"""A pendulum with a quantum two-level system: its equations, what it conserves, its splitting."""
+
+import math
+from itertools import islice
+
+import mpmath as mp
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from engine.methods import EXPLICIT_EULER, RK4, method_of
+from engine.models.mean_field import ACCURACY, STEP, MeanField, strang
+from engine.models.model import Phase
+from engine.models.reference import Reference, compose
+
+MODEL = MeanField(9.81, 2.0, 20.0)
+START = MODEL.start(1.0, 0.0)
+SPLITTING = method_of("mean_field_splitting")
+
+phases = st.tuples(st.floats(-3, 3), st.floats(-5, 5), st.floats(-1, 1), st.floats(-1, 1), st.floats(-1, 1))
+
+
+def field(theta):
+    return np.array([math.sin(theta), 0.0, math.cos(theta)])
+
+
+def slope_of_field(theta):
+    return np.array([math.cos(theta), 0.0, -math.sin(theta)])
+
+
+@given(phase=phases)
+def test_the_rates_are_the_equations_of_motion(phase: Phase) -> None:
+    theta, omega, *bloch = phase
+    expected = [
+        omega,
+        -9.81 * math.sin(theta) - 2.0 * slope_of_field(theta) @ bloch,
+        *(20.0 * np.cross(field(theta), bloch)),
+    ]
+    assert MODEL.rates()(phase) == pytest.approx(expected, abs=1e-13)
+
+
+@given(phase=phases)
+def test_energy_and_probability_do_not_change_along_the_rates(phase: Phase) -> None:
+    rates = MODEL.rates()(phase)
+    theta, omega, *bloch = phase
+    change_of_energy = (
+        omega * rates[1]
+        + 9.81 * math.sin(theta) * rates[0]
+        + 2.0 * (slope_of_field(theta) @ bloch * rates[0] + field(theta) @ rates[2:])
+    )
+    assert change_of_energy == pytest.approx(0.0, abs=1e-12)
+    assert np.dot(bloch, rates[2:]) == pytest.approx(0.0, abs=1e-13)
+
+
+@given(phase=phases)
+def test_the_energy_is_the_pendulums_and_the_expectation_of_the_levels(phase: Phase) -> None:
+    theta, omega, *bloch = phase
+    expected = omega**2 / 2 + 9.81 * (1 - math.cos(theta)) + 2.0 * field(theta) @ bloch
+    assert MODEL.energy()(phase) == pytest.approx(expected, abs=1e-13)
+
+
+@given(phase=phases, h=st.floats(-0.5, 0.5))
+def test_a_kick_is_the_exact_flow_at_fixed_theta(phase: Phase, h: float) -> None:
+    theta, omega, *bloch = phase
+    b = mp.matrix(field(theta))
+    slope = mp.matrix(slope_of_field(theta))
+    generator = mp.matrix([[0, -b[2], b[1]], [b[2], 0, -b[0]], [-b[1], b[0], 0]])
+    with mp.workdps(30):
+        turned = mp.expm(20 * h * generator) * mp.matrix(bloch)
+        coupling = mp.quad(lambda t: (slope.T * mp.expm(20 * t * generator) * mp.matrix(bloch))[0], [0, h])
+    expected = [theta, omega - 9.81 * h * math.sin(theta) - 2.0 * float(coupling), *map(float, turned)]
+    assert MODEL.kick(phase, h) == pytest.approx(expected, abs=1e-12)
+
+
+def test_a_reading_holds_the_whole_phase() -> None:
+    reading = MODEL.observe(START)
+    assert reading.extra == {"sx": 1.0, "sy": 0.0, "sz": 0.0, "probability": 1.0}
+    assert MODEL.phase_of(*reading) == START
+
+
+def test_the_reference_is_as_accurate_as_it_claims_and_keeps_both_invariants() -> None:
+    exact = MODEL.exact(1.0, 0.0)
+    finer = Reference(compose(lambda phase, h: strang(MODEL, phase, h)), START, STEP / 4 / 20)
+    energy = MODEL.energy()
+    for t in (1.0, 10.0, 60.0):
+        phase = finer.at(t)
+        assert abs(exact.at(t).theta - phase[0]) < ACCURACY
+        assert energy(phase) == pytest.approx(energy(START), rel=1e-11)
+        assert MODEL.invariant(phase) == pytest.approx(1.0, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("h", "frequency", "energy_error", "probability"),
+    [(0.05, 20.0, 4.3e-4, 0.852), (0.05, 10.0, 4.3e-4, 0.975), (0.01, 20.0, 1.9e-6, 0.9993)],
+)
+def test_rk4_keeps_the_energy_and_loses_the_probability(
+    h: float, frequency: float, energy_error: float, probability: float
+) -> None:
+    model = MeanField(9.81, 2.0, frequency)
+    largest, left = run(RK4, model, h)
+    assert largest == pytest.approx(energy_error, rel=0.03)
+    assert left == pytest.approx(probability, abs=5e-4)
+
+
+def test_the_splitting_keeps_the_probability_to_rounding_and_explicit_euler_nothing() -> None:
+    largest, left = run(SPLITTING, MODEL, 0.05)
+    assert largest == pytest.approx(6.9e-3, rel=0.03)
+    assert left == pytest.approx(1.0, abs=1e-13)
+    _, left = run(EXPLICIT_EULER, MODEL, 0.05, time=5.0)
+    assert left > 1e12
+
+
+def run(method, model: MeanField, h: float, time: float = 60.0) -> tuple[float, float]:
+    """Return the largest relative energy error of all steps, and the probability at the end."""
+    energy = model.energy()
+    start = energy(START)
+    largest = 0.0
+    for phase in islice(method.on(model)(START, h), round(time / h)):
+        largest = max(largest, abs(energy(phase) - start) / start)
+    return largest, model.invariant(phase)
+
+
+@pytest.mark.parametrize("method", [EXPLICIT_EULER, RK4, SPLITTING], ids=lambda method: method.key)
+def test_each_method_has_its_order_in_theta_and_in_the_bloch_vector(method) -> None:
+    exact = _exact_phase(1.0)
+    errors = []
+    for steps in (400, 800) if method.order > 1 else (40_000, 80_000):
+        phase = next(islice(method.on(MODEL)(START, 1.0 / steps), steps - 1, None))
+        errors.append(np.abs(np.array(phase) - exact))
+    for index in (0, 2, 3, 4):
+        order = math.log2(errors[0][index] / errors[1][index])
+        assert order == pytest.approx(method.order, abs=0.15)
+
+
+def _exact_phase(t: float) -> np.ndarray:
+    step = compose(lambda phase, h: strang(MODEL, phase, h))
+    return np.array(Reference(step, START, STEP / 8 / 20).at(t))
+
+
+@given(phase=phases, h=st.floats(0.01, 0.5))
+def test_the_splitting_is_reversible(phase: Phase, h: float) -> None:
+    # turning time round turns omega and the part of s across the field's plane
+    def turned_round(phase: Phase) -> Phase:
+        theta, omega, sx, sy, sz = phase
+        return theta, -omega, sx, -sy, sz
+
+    there = strang(MODEL, phase, h)
+    back = turned_round(strang(MODEL, turned_round(there), h))
+    assert back == pytest.approx(phase, abs=1e-10)
+
+
+@given(phase=phases, h=st.floats(0.01, 0.3))
+def test_the_splitting_keeps_the_poisson_structure(phase: Phase, h: float) -> None:
+    jacobian = np.empty((5, 5))
+    nudge = 1e-6
+    for column in range(5):
+        ends = []
+        for sign in (1, -1):
+            moved = list(phase)
+            moved[column] += sign * nudge
+            ends.append(np.array(strang(MODEL, tuple(moved), h)))
+        jacobian[:, column] = (ends[0] - ends[1]) / (2 * nudge)
+    there = jacobian @ structure(phase) @ jacobian.T
+    assert there == pytest.approx(structure(strang(MODEL, phase, h)), abs=1e-6)
+
+
+def structure(phase: Phase) -> np.ndarray:
+    """Return the tensor P of y' = P grad H: canonical for the pendulum, a turn about s for the levels."""
+    sx, sy, sz = phase[2:]
+    tensor = np.zeros((5, 5))
+    tensor[0, 1] = 1.0
+    tensor[1, 0] = -1.0
+    tensor[2:, 2:] = 20.0 / 2.0 * np.array([[0, sz, -sy], [-sz, 0, sx], [sy, -sx, 0]])
+    return tensor
