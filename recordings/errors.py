@@ -1,10 +1,10 @@
 """Errors: what can go wrong with a recording, and how text from a file becomes safe to print."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-TEXT_LIMIT = 200  # characters of one text from a file; a mark or a scene's name is shorter
+MAX_TEXT = 200  # characters of one text from a file; a mark or a scene's name is shorter
 
 
 class RecordingError(Exception):
@@ -49,14 +49,9 @@ def writing(path: Path) -> Iterator[None]:
         raise DiskError(error.strerror or str(error), path, error.errno or 0) from error
 
 
-def printable(text: str, limit: int = TEXT_LIMIT) -> str:
-    """`text` without anything that controls a terminal: no escapes, line ends or bidirectional overrides."""
+def printable(text: str, limit: int = MAX_TEXT) -> str:
+    """Return the text without what controls a terminal: escapes, line ends, bidirectional overrides."""
     text = text if len(text) <= limit else text[: limit - 1] + "…"
     if text.isprintable():
         return text
-    return "".join(character if character.isprintable() else "\N{REPLACEMENT CHARACTER}" for character in text)
-
-
-def printable_items(texts: Mapping[str, str]) -> dict[str, str]:
-    """`printable` for both the names and the values of a mapping."""
-    return {printable(name): printable(value) for name, value in texts.items()}
+    return "".join(each if each.isprintable() else "\N{REPLACEMENT CHARACTER}" for each in text)

@@ -1,35 +1,34 @@
-"""Event: an action in the lab, or a milestone.  Entry: a sample or an event, with its time in the recording.
-
-A recording may name methods and models that this version does not know.  Stand-ins for them play as they were
-recorded: nothing is computed of them, so they cannot be verified.
-"""
+"""Events: actions in the lab, and milestones.  An entry is a sample or an event at its time."""
 
 import math
-from collections.abc import Collection, Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from engine.methods import Method, method_of
-from engine.models import MODELS, PARAMETERS, Model
-from engine.models.model import Energy, EnergyReference, ExactMotion, Force, Phase, Sine, State
+from engine.models import MODELS
+from engine.models.model import Force, Phase
 from engine.run.lockstep import Sample
 from engine.scenes import Scene
+from recordings.arithmetic import Arithmetic
+from recordings.errors import RecordingError
 
 if TYPE_CHECKING:
     from engine.methods.own import OwnMethod
-    from engine.run.observer import Milestone
+    from engine.run.judgement import Milestone
 
 EventKind = Literal["start", "set_h", "mark", "pause", "resume", "speed", "stop", "noticed"]
+NOT_DONE = ("start", "stop", "noticed")
+"""Events that nobody did in a run."""
 
 
 class Event(NamedTuple):
-    """Something done in the lab, or noticed by it.  It applies before `step` of `run`.
+    """An action in the lab, or a milestone that the lab noticed.  It applies before `step` of `run`.
 
-    Replay and verification need only events and samples: a `start` (the scene with its model and methods) and
-    the `set_h` after it determine a run; the other kinds change no number.  A run that continues
-    from an earlier step of another one begins with that one's start and repeats its `set_h`.
-    What is `noticed` is what the lab said, which is seen somewhat later than it happens.
+    A `start` (the scene with its model and methods) and the `set_h` after it determine a run; the
+    other kinds change no number.  A run that continues from an earlier step of another one begins
+    with that one's start and repeats its `set_h`.  A milestone is noticed somewhat later than it
+    happens.
     """
 
     kind: EventKind
@@ -38,30 +37,22 @@ class Event(NamedTuple):
     t: float  # s, simulated
     scene: Scene | None = None  # start
     h: float | None = None  # set_h [s]
-    equal_cost: bool = False  # set_h: methods that need fewer force evaluations take the step in parts
+    equal_cost: bool = False  # set_h
     speed: float | None = None  # speed, times real time
     text: str | None = None  # mark
     milestone: "Milestone | None" = None  # noticed
+    arithmetic: Arithmetic | None = None  # start; None: of this version on this machine
 
 
 class Entry(NamedTuple):
     """A sample or an event at its time in a recording."""
 
-    clock: float  # s, the recording clock: running time since the recording began, pauses excluded
+    clock: float  # s, running time since the recording began, pauses excluded
     value: Sample | Event
 
 
-class Seal(NamedTuple):
-    """What a recording holds up to here."""
-
-    samples: int
-    events: int
-    sha256: str
-    end: bool  # the recording was finished here
-
-
 def noticed(run: int, milestone: "Milestone") -> Event:
-    """The event of a milestone."""
+    """Return the event of a milestone."""
     return Event("noticed", run, milestone.step, milestone.t, milestone=milestone)
 
 
@@ -69,69 +60,58 @@ _own: dict[str, "OwnMethod"] = {}
 
 
 def remember(own: Iterable["OwnMethod"]) -> None:
-    """Know these methods when a recording names them; nothing in a recording is ever executed."""
+    """Use these methods where a recording names them; nothing in a recording is ever executed."""
     _own.update({name_of(method): method for method in own})
 
 
 def name_of(method: Method) -> str:
-    """What a recording calls a method: its key, and for a user's own one the hash of its text."""
+    """Return a method's name in recordings: its key, and of a user's own the hash of its source."""
     sha256 = getattr(method, "sha256", "")
     return f"{method.key}@{sha256}" if sha256 else method.key
 
 
 def method_named(name: str) -> Method:
-    """The method of this name, or a stand-in."""
+    """Return the method of this name; an AbsentMethod for a user's own that was not given."""
     key, _, sha256 = name.partition("@")
+    if sha256:
+        return _own.get(name) or _absent_method(key, sha256)
     try:
-        return _own[name] if sha256 else method_of(key)
-    except KeyError:
-        return _unknown_method(key, sha256)
+        return method_of(key)
+    except KeyError as error:
+        raise RecordingError(f"this version has no method {key}") from error
 
 
-def scene_named(name: str, **fields: Any) -> Scene:
-    """The scene of these fields; its model may be a stand-in."""
-    parameters = {each: value for each in PARAMETERS if (value := fields.pop(each, 0.0))}
-    kind = Scene if fields["model"] in MODELS else _UnknownScene
-    return kind(name, parameters=parameters, **fields)
-
-
-def unknown_in(scene: Scene, only: Collection[str] | None = None) -> str | None:
-    """What of a scene this version does not know; None if it knows all of it, or all of the methods of these keys."""
-    if scene.model not in MODELS:
-        return f"the model {scene.model}"
-    unknown = (method for method in scene.cast if method.phases is _no_phases and (only is None or method.key in only))
-    return next(map(_described, unknown), None)
-
-
-def _described(method: Method) -> str:
-    if not (sha256 := getattr(method, "sha256", "")):
-        return f"the method {method.key}"
-    return (
-        f"the method {method.key}, a user's own; give it with --method FILE.py:{method.key}, "
-        f"its file as it was (SHA-256 {sha256[:12]}…)"
-    )
-
-
-class _Unknown(Method):
-    """A method of which only what was recorded is known: of a user's own, the SHA-256 of its text is its reference."""
+class AbsentMethod(Method):
+    """A user's own method without its source: it plays as recorded, and cannot be simulated."""
 
     __slots__ = ()
 
     @property
     def sha256(self) -> str:
+        """The hash of its source."""
         return self.reference
 
 
+def check_present(scene: Scene, only: Iterable[str] | None = None) -> None:
+    """Raise RecordingError if a method of the scene, or of these keys, cannot be simulated."""
+    for method in scene.cast:
+        if isinstance(method, AbsentMethod) and (only is None or method.key in only):
+            raise RecordingError(
+                f"it cannot be verified without the method {method.key}, a user's own; give it with"
+                f" --method FILE.py:{method.key}, its file as it was (SHA-256 {method.sha256[:12]}…)"
+            )
+
+
 def _no_phases(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
-    """Phases that are no numbers, so that no loop takes a step."""
+    """Yield phases that are no numbers, so that no loop takes a step."""
     theta, omega = phase
     while True:
         yield math.nan * theta, math.nan * omega
 
 
 @lru_cache(64)
-def _unknown_method(key: str, sha256: str) -> Method:
-    return _Unknown(
+def _absent_method(key: str, sha256: str) -> Method:
+    return AbsentMethod(
         key=key,
         label=key,
         letter="?",
@@ -144,37 +124,3 @@ def _unknown_method(key: str, sha256: str) -> Method:
         used=None,
         models=tuple(MODELS),
     )
-
-
-@dataclass(frozen=True)
-class _UnknownModel(Model):
-    """A model of which only what was recorded is known."""
-
-    w0_squared: float
-
-    key: ClassVar[str] = "unknown"
-    equation: ClassVar[str] = "unknown"
-    turns: ClassVar[bool] = False
-
-    def force(self, sin: Sine = math.sin) -> Force:
-        return lambda theta: math.nan * theta
-
-    def slope(self, theta: float) -> float:
-        return math.nan
-
-    def energy(self, sin: Sine = math.sin) -> Energy:
-        return lambda phase: math.nan * phase[0]
-
-    def exact(self, theta: float, omega: float) -> ExactMotion:
-        return ExactMotion(lambda t: State(math.nan, math.nan), "libration")
-
-    def reference(self, theta: float, omega: float) -> EnergyReference:
-        return EnergyReference(0.0, 1.0)
-
-
-class _UnknownScene(Scene):
-    __slots__ = ()
-
-    @property
-    def equations(self) -> Model:
-        return _UnknownModel(self.w0_squared)

@@ -1,15 +1,11 @@
-"""Headless runs, and how many steps they may take.
+"""Headless runs.  Their recording clock is the simulated time, so the same run gives the same bytes."""
 
-The clock of their recordings is the simulated time, so the same run gives the same bytes.
-"""
-
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 from engine.run.lockstep import Lockstep, Sample
 from engine.run.loops import LoopsOf, plain
 from engine.run.observer import RunObserver
 from engine.scenes import Scene
-from recordings.errors import RecordingError
 from recordings.events import Event, noticed
 from recordings.recorder import Recorder
 
@@ -53,34 +49,3 @@ def simulate(
         if lockstep.step >= last:
             return
         lockstep.advance(min(every, last - lockstep.step))
-
-
-MOST_STEPS = 10_000_000  # simulated again of a file, unless more are asked for: less than a minute
-STEP_SECONDS = 5e-6  # of all four methods in plain Python, about
-
-
-class StepBudget:
-    """How many steps may be simulated, and how to show how far they are."""
-
-    def __init__(self, steps: int) -> None:
-        self.steps = self._left = steps
-        self.show: Callable[[float], object] | None = None  # called with the share done of what is due
-
-    def spend(self, run: int, step: int, steps: int) -> None:
-        """Take so many steps off, or raise RecordingError."""
-        if steps > self._left:
-            needed = self.steps - self._left + steps
-            raise RecordingError(
-                f"run {run} claims to reach step {step}; to simulate {needed} steps takes about"
-                f" {_duration(needed * STEP_SECONDS)}, and the limit is {self.steps} steps; if you trust the file, use"
-                f" --max-steps {needed}"
-            )
-        self._left -= steps
-
-
-def _duration(seconds: float) -> str:
-    """About how long."""
-    for size, unit in ((31_557_600, "years"), (86_400, "days"), (3600, "hours"), (60, "minutes")):
-        if seconds >= 2 * size:
-            return f"{seconds / size:.0f} {unit}"
-    return f"{seconds:.0f} seconds"

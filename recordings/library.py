@@ -1,7 +1,7 @@
-"""Library: the folder of recordings, their locks; list, find, name and prune them.
+"""Library: the folder of recordings, their names and locks.
 
-A writer holds an exclusive lock on a recording, a reader a shared one.  A lock ends with its process, however that
-ends, so a leftover differs from a recording in progress.  Only POSIX has such locks; elsewhere nothing is locked.
+A writer holds an exclusive lock on a recording, a reader a shared one.  A lock ends with its process, so a
+leftover differs from a recording in progress.  Only POSIX has such locks; elsewhere nothing is locked.
 """
 
 import os
@@ -16,7 +16,7 @@ from typing import IO, Any, BinaryIO, NamedTuple
 
 import platformdirs
 
-from recordings.errors import RecordingError, printable
+from recordings.errors import DiskError, RecordingError, printable
 
 SUFFIX = ".mcap"
 PART = ".part"  # appended to the name of a recording that is not finished
@@ -33,29 +33,35 @@ class Item(NamedTuple):
 
 
 def part_of(path: Path) -> Path:
-    """Where a recording is until it is finished."""
+    """Return where a recording is until it is finished."""
     return path.with_name(path.name + PART)
 
 
 def free_path(path: Path) -> Path:
-    """`path`, or the first of NAME-2, NAME-3, … that no recording has, finished or not."""
+    """Return `path`, or the first of NAME-2, NAME-3, … that no recording has, finished or not."""
     numbered = (path.with_name(f"{path.stem}-{n}{path.suffix}") for n in count(2))
     return next(free for free in chain([path], numbered) if not lexists(free) and not lexists(part_of(free)))
 
 
 def folder() -> Path:
-    """$PENDU_RECORDINGS, or recordings in the user's data folder.  It need not exist."""
+    """Return $PENDU_RECORDINGS, or recordings in the user's data folder.  It need not exist."""
     chosen = os.environ.get("PENDU_RECORDINGS")
-    return Path(chosen).expanduser() if chosen else platformdirs.user_data_path("pendu-tui", False) / "recordings"
+    if not chosen:
+        return platformdirs.user_data_path("pendu-tui", False) / "recordings"
+    try:
+        return Path(chosen).expanduser()
+    except RuntimeError as error:
+        raise DiskError(f"PENDU_RECORDINGS names no folder: {error}", chosen) from error
 
 
 def new_path(where: Path | None = None, now: time.struct_time | None = None) -> Path:
-    """A free name, by date and time."""
-    return free_path((where or folder()) / (time.strftime("%Y-%m-%dT%H-%M-%S", now or time.localtime()) + SUFFIX))
+    """Return a free name, by date and time."""
+    name = time.strftime("%Y-%m-%dT%H-%M-%S", now or time.localtime()) + SUFFIX
+    return free_path((where or folder()) / name)
 
 
 def listing(where: Path | None = None) -> list[Item]:
-    """The finished recordings, newest first."""
+    """Return the finished recordings, newest first."""
     items = []
     for path in _files(where or folder(), SUFFIX):
         with suppress(OSError):  # deleted meanwhile
@@ -65,7 +71,7 @@ def listing(where: Path | None = None) -> list[Item]:
 
 
 def resolve(name: str) -> Path:
-    """The recording of this name: a file, `latest`, one of the library, or a bundled one.
+    """Return the recording of this name: a file, `latest`, one of the library, or a bundled one.
 
     Raises RecordingError, a sentence, if there is none.
     """
@@ -86,29 +92,29 @@ def resolve(name: str) -> Path:
                 return candidate
     names = ["latest", *golden, *(item.path.name for item in listing(where))]
     close = get_close_matches(name, names, n=1)
-    advice = (
-        f"did you mean {printable(close[0])}?" if close else f"choose a file, or one of latest, {', '.join(golden)}."
-    )
+    advice = f"choose a file, or one of latest, {', '.join(golden)}."
+    if close:
+        advice = f"did you mean {printable(close[0])}?"
     raise RecordingError(f"there is no recording {printable(name)!r}: {advice}")
 
 
 def golden_names() -> list[str]:
-    """The bundled recordings."""
+    """Return the names of the bundled recordings."""
     return sorted(path.stem for path in GOLDEN.glob("*" + SUFFIX))
 
 
 def leftovers(where: Path | None = None) -> list[Path]:
-    """Unfinished recordings that no lab is writing any more."""
+    """Return the unfinished recordings that no lab is writing any more."""
     return [path for path in _files(where or folder(), SUFFIX + PART) if not in_use(path)]
 
 
 def being_made(where: Path | None = None) -> list[Path]:
-    """Recordings that a lab is writing now."""
+    """Return the recordings that a lab is writing now."""
     return [path for path in _files(where or folder(), SUFFIX + PART) if in_use(path)]
 
 
 def to_prune(items: Sequence[Item], keep: int | None = None, size: int | None = None) -> list[Item]:
-    """What to delete so that only the `keep` newest are left, with at most `size` bytes in all."""
+    """Return what to delete so that the `keep` newest are left, with at most `size` bytes in all."""
     newest_first = sorted(items, key=lambda item: item.modified, reverse=True)
     total = 0
     for place, item in enumerate(newest_first):
@@ -144,7 +150,7 @@ def hold(file: IO[Any], shared: bool = False) -> None:
 
 
 def in_use(path: Path) -> bool:
-    """Whether a recorder or a reader has this file open.  In doubt, yes."""
+    """Return whether a recorder or a reader has this file open.  In doubt, yes."""
     try:
         with path.open("rb") as file:
             _lock(file, shared=False, wait=False)
@@ -155,7 +161,7 @@ def in_use(path: Path) -> bool:
 
 @contextmanager
 def alone_with(path: Path) -> Iterator[None]:
-    """Have the file to oneself; raises FileNotFoundError if its former user has moved it meanwhile."""
+    """Lock the file; raises FileNotFoundError if its former user has moved it meanwhile."""
     with path.open("rb") as file:
         hold(file)
         path.stat()
@@ -163,14 +169,14 @@ def alone_with(path: Path) -> Iterator[None]:
 
 
 def open_file(path: Path) -> BinaryIO:
-    """The file to read, marked as in use until it is closed."""
+    """Open a file to read, locked as in use until it is closed."""
     try:
         file = path.open("rb")
     except OSError as error:
         raise RecordingError(error.strerror or str(error)) from error
     if not file.seekable():
         file.close()
-        raise RecordingError("this is a pipe, which can be read only once; save it as a file first")
+        raise RecordingError("this is a pipe, which can be read only once; save it as a file")
     hold(file, shared=True)
     return file
 
@@ -180,4 +186,5 @@ def _lock(file: IO[Any], shared: bool, wait: bool) -> None:
         import fcntl
     except ImportError:
         return
-    fcntl.flock(file, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | (0 if wait else fcntl.LOCK_NB))
+    kind = fcntl.LOCK_SH if shared else fcntl.LOCK_EX
+    fcntl.flock(file, kind if wait else kind | fcntl.LOCK_NB)

@@ -8,8 +8,7 @@ from engine.run.lockstep import Sample
 from recordings.errors import DiskError, NameTakenError, writing
 from recordings.events import Entry, Event
 from recordings.library import free_path
-from recordings.recorder import Recorder
-from recordings.summary import WallClock
+from recordings.recorder import Recorder, WallClock
 
 RETRY_EVERY = 5.0  # s of the recording clock
 
@@ -17,9 +16,9 @@ RETRY_EVERY = 5.0  # s of the recording clock
 class LiveRecorder:
     """A recorder that survives a failing disk: the lab goes on, and so does the recording, in a new file.
 
-    Opening the first file may raise DiskError; nothing after that does.  With `or_next`, a name that another
-    lab has taken meanwhile becomes the next free one.  `failed` is a sentence on why nothing is being recorded
-    now, or None.  Every file begins with the start of its run, its changes of h and what
+    Opening the first file may raise DiskError; nothing after that does.  With `or_next`, a name that
+    another lab has taken meanwhile becomes the next free one.  `failed` is a sentence on why nothing is
+    being recorded now, or None.  Every file begins with the start of its run, its changes of h and what
     was noticed of it, so each replays and verifies by itself.
     """
 
@@ -27,9 +26,11 @@ class LiveRecorder:
         self.failed: str | None = None
         self._closed = False
         self.files: list[Path] = []  # that hold something and are no longer written to
-        self._path, self._wall = path, wall
+        self._path = path
+        self._wall = wall
         self._run: list[Event] = []  # of the run: its start, its changes of h and what was noticed
-        self._zero = self._failed_at = 0.0  # s of the lab's clock: where the file begins, the last failure
+        self._zero = 0.0  # s of the lab's clock, where the file begins
+        self._failed_at = 0.0  # s of the lab's clock
         self._recorder = self._opened() if or_next else Recorder(path, wall)
 
     @property
@@ -60,7 +61,8 @@ class LiveRecorder:
         self._closed = True
         if self.failed is None:
             try:
-                self._recorder.close()
+                with suppress(NameTakenError):  # it has another name then, and the lab shows which
+                    self._recorder.close()
                 self._keep(self._recorder.path)
             except DiskError as error:
                 self._fail(error, self._failed_at)
@@ -82,7 +84,8 @@ class LiveRecorder:
             self._fail(error, clock)
 
     def _fail(self, error: DiskError, clock: float) -> None:
-        self.failed, self._failed_at = str(error), clock
+        self.failed = str(error)
+        self._failed_at = clock
         self._recorder.abandon()
         self._keep(self._recorder.part)
 
@@ -99,7 +102,8 @@ class LiveRecorder:
         with writing(self._path):
             self._path.parent.mkdir(parents=True, exist_ok=True)
             recorder = self._opened()
-        self._recorder, self._zero = recorder, clock
+        self._recorder = recorder
+        self._zero = clock
         for event in self._run:
             recorder.event(event, 0.0)
         self.failed = None

@@ -3,98 +3,110 @@
 An unfinished or damaged file opens with what is intact in it.
 """
 
-from array import array
+import zlib
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
+from dataclasses import dataclass, field
 from functools import lru_cache
 from io import SEEK_END
-from itertools import groupby, islice, pairwise
-from operator import attrgetter, itemgetter
+from math import inf
+from operator import attrgetter
 from pathlib import Path
 from typing import BinaryIO, NamedTuple, Self
 
-from mcap.opcode import Opcode
-
+from engine.run.judgement import Milestone
 from engine.run.lockstep import Sample
-from recordings.contents import Contents, from_summary
+from engine.scenes import Scene
+from recordings.arithmetic import Arithmetic
 from recordings.errors import RecordingError, named
-from recordings.events import Entry, Event
-from recordings.format import CLOCK_LIMIT, CLOCK_OFFSET
-from recordings.framing import read_chunk, record_at
+from recordings.events import NOT_DONE, Entry, Event
+from recordings.format import CLOCK_OFFSET
 from recordings.library import open_file
-from recordings.scan import Scan, ShowProgress
-from recordings.timeline import Events, Runs
+from recordings.reader import Decoder, Place, Scan, ShowProgress, check_format, read_chunk, read_summary
 
-EVENT_LIMIT = 100_000  # in memory all at once, 30 MB; a lesson has a few hundred, but each step back repeats them
-CHUNKS_KEPT = 2  # decoded; playing meets the same one thirty times, stepping to and fro about an edge two
-_BEYOND = 1 << 62  # the last entry of any chunk
+MAX_EVENTS = 100_000  # 30 MB; a lesson has a few hundred
+MAX_CHECKED = 1 << 26  # bytes that are checked whenever a file is opened: 50 ms
+CHUNKS_KEPT = 3  # decoded; playing meets the same one thirty times, stepping about an edge two
 
 
 class SamplePlace(NamedTuple):
-    """Where in a file a sample is.  Samples may share a clock: single steps while paused do not advance it."""
+    """Where in a file a sample is.  Samples may share a clock: single steps while paused."""
 
     chunk: int
     entry: int
 
 
-class _Decoded(NamedTuple):
-    """A chunk's entries, their clocks and runs ascending, and where the samples among them are."""
+@dataclass(slots=True)
+class Run:
+    """One run of a recording."""
 
-    entries: "tuple[Entry, ...]"
-    samples: "array[int]"
+    number: int
+    scene: Scene
+    arithmetic: Arithmetic
+    begin: float  # s of the recording clock
+    end: float  # s, at its last sample
+    steps: int = 0  # at its last sample
+    t: float = 0.0  # s simulated, at its last sample
+    events: list[Entry] = field(default_factory=list)
+
+    @property
+    def inputs(self) -> int:
+        """How many things somebody did in it."""
+        events = (entry.value for entry in self.events if isinstance(entry.value, Event))
+        return sum(event.kind not in NOT_DONE for event in events)
+
+    @property
+    def milestones(self) -> list[Milestone]:
+        """What the lab noticed, by step."""
+        found = (entry.value.milestone for entry in self.events if isinstance(entry.value, Event))
+        return sorted((each for each in found if each is not None), key=attrgetter("step"))
+
+
+class _Decoded(NamedTuple):
+    """A chunk's entries, their clocks ascending, and where the samples among them are."""
+
+    entries: list[Entry]
+    samples: list[int]
 
 
 class Recording:
     """A recording that is open for reading.
 
-    `complete`: finished, and nothing is wrong; `damaged`: something was changed or lost; `reason`:
-    what is wrong, a clause, or None; `sealed`: whether its digests are right, or None where it has none or they were
-    not checked.  In a file too long to be checked at opening, damage may show
-    only while it plays.  Clocks are in s, from 0 to `length`.
+    `complete`: finished, and nothing is wrong; `damaged`: something was changed or lost; `reason`: what is
+    wrong, a clause, or None.  Of a file too long to be checked at opening, damage may show only while it
+    plays.  Clocks are in s, from 0 to `length`.
     """
 
-    def __init__(self, path: Path, stream: BinaryIO, contents: Contents) -> None:
+    def __init__(self, path: Path, stream: BinaryIO, check: bool, progress: ShowProgress | None) -> None:
         self.path = path
         self.bytes = stream.seek(0, SEEK_END)
-        self.metadata = contents.metadata
-        self.version, self.functions = contents.layout.version, contents.layout.functions
-        self.keys = tuple(contents.layout.methods.values())  # model and method of each topic
-        self.methods = tuple(dict.fromkeys(method for _, method in self.keys))
-        self.models = tuple(dict.fromkeys(model for model, _ in self.keys))
-        self.samples, self.seal, self.sealed = contents.samples, contents.seal, contents.sealed
-        self.complete, self.damaged, self.reason = contents.complete, contents.damaged, contents.reason
-        self.length = (contents.chunks.ends[-1] - CLOCK_OFFSET) / 1e9 if contents.chunks else 0.0
-        self._stream, self._layout, self._chunks = stream, contents.layout, contents.chunks
-        self._decoded = lru_cache(CHUNKS_KEPT)(self._decode)
-        self.methods_of = lru_cache(1)(self._methods_of)
-        self._sampled = bytearray(b"\1" * len(self._chunks))  # 0 once a chunk turned out to hold no samples
-        self.events = Events()
-        starts: list[tuple[int, int]] = []  # chunk, run
-        for chunk, clock, event in self._read_events():
-            if event.kind == "start":
-                starts.append((chunk, event.run))
-            self.events.add(clock, event)
-        if any(run >= following for (_, run), (_, following) in pairwise(starts)):
-            raise RecordingError("its runs are not in order")
-        if not starts:
-            raise RecordingError("the starts of all its runs are lost")
-        self._known = frozenset(run for _, run in starts)
-        self.events.keep(self._known)
-        self.runs = self._find_runs(starts)
-        if self.events.cut:
-            self.complete, self.reason = False, self.reason or "only the first of its texts are shown"
+        self.complete = True
+        self.damaged = False
+        self.reason: str | None = None
+        self.events: list[Entry] = []  # in the order of recording
+        self.runs: list[Run] = []
+        self._stream = stream
+        self._places = self._find_places(check, progress)
+        self._decode = lru_cache(CHUNKS_KEPT)(self._decode_chunk)
+        self._sampled = bytearray(b"\1" * len(self._places))  # 0: no samples in this chunk
+        self._find_ends(self._read_events())
+        self.about = self._decoder.about  # where and how it was made
+        self.samples = self._count_samples()
+        self.length = (self._places[-1].end - CLOCK_OFFSET) / 1e9
+        self.models = tuple(dict.fromkeys(run.scene.model for run in self.runs))
+        methods = (method.key for run in self.runs for method in run.scene.cast)
+        self.methods = tuple(dict.fromkeys(methods))
 
     @classmethod
     def open(cls, path: Path, check: bool = False, progress: ShowProgress | None = None) -> Self:
         """Open a recording; with `check`, check every byte of it.
 
-        Raises RecordingError, a sentence, if it is not one of ours or has no run in it.
+        Raises RecordingError, a sentence, if it is not one of this format or has no run in it.
         """
         with named(path):
             stream = open_file(path)
             try:
-                contents = None if check else from_summary(stream)
-                return cls(path, stream, contents or Scan(stream, progress).contents())
+                return cls(path, stream, check, progress)
             except BaseException:
                 stream.close()
                 raise
@@ -109,132 +121,173 @@ class Recording:
         self.close()
 
     def at(self, clock: float) -> SamplePlace | None:
-        """The last sample at or before that time, or else the first; None if there are no samples."""
+        """Return the last sample at or before that time, or else the first; None if there are none."""
         clock, log_time = _as_recorded(clock)
-        chunk = bisect_right(self._chunks.starts, log_time) - 1
-        entries = self._decoded(chunk).entries if chunk >= 0 else ()
-        later = bisect_right(entries, clock, key=_clock)
+        chunk = bisect_right(self._places, log_time, key=attrgetter("start")) - 1
+        later = bisect_right(self._decode(chunk).entries, clock, key=_clock) if chunk >= 0 else 0
         return self.previous(SamplePlace(chunk, later)) or self.next(SamplePlace(0, -1))
 
     def sample(self, place: SamplePlace) -> Entry:
-        return self._decoded(place.chunk).entries[place.entry]
+        """Return the sample there."""
+        return self._decode(place.chunk).entries[place.entry]
 
     def next(self, place: SamplePlace) -> SamplePlace | None:
-        """The next sample; None after the last."""
+        """Return the next sample; None after the last."""
         chunk, index = place.chunk, place.entry + 1
         while (chunk := self._sampled.find(1, max(chunk, 0))) >= 0:
-            samples = self._decoded(chunk).samples
-            at = bisect_left(samples, index)
+            samples = self._decode(chunk).samples
+            at = bisect_left(samples, index if chunk == place.chunk else 0)
             if at < len(samples):
                 return SamplePlace(chunk, samples[at])
-            chunk, index = chunk + 1, 0
+            chunk += 1
         return None
 
-    def previous(self, place: SamplePlace, after: int = 0) -> SamplePlace | None:
-        """The sample before; None before the first, or before the chunk `after`."""
+    def previous(self, place: SamplePlace) -> SamplePlace | None:
+        """Return the sample before; None before the first."""
         chunk, index = place.chunk, place.entry
-        while (chunk := self._sampled.rfind(1, after, max(chunk, -1) + 1)) >= 0:
-            samples = self._decoded(chunk).samples
-            at = bisect_left(samples, index if chunk == place.chunk else _BEYOND) - 1
-            if at >= 0:
-                return SamplePlace(chunk, samples[at])
+        while (chunk := self._sampled.rfind(1, 0, max(chunk, -1) + 1)) >= 0:
+            samples = self._decode(chunk).samples
+            at = bisect_left(samples, index) if chunk == place.chunk else len(samples)
+            if at > 0:
+                return SamplePlace(chunk, samples[at - 1])
             chunk -= 1
         return None
 
-    def entries(self, start: float = 0.0, end: float = CLOCK_LIMIT, run: int = 0) -> Iterator[Entry]:
-        """All samples and events from `start` to `end`, both included, in the order of recording; from `run` on."""
-        (start, log_time), (end, _) = _as_recorded(start), _as_recorded(end)
-        for chunk in range(bisect_left(self._chunks.ends, log_time), len(self._chunks)):
-            if self._chunks.starts[chunk] > _as_recorded(end)[1]:
+    def entries(self, start: float = 0.0, end: float = inf) -> Iterator[Entry]:
+        """Yield all samples and events from `start` to `end` [s], both included, in order."""
+        start, log_time = _as_recorded(start)
+        end, last = _as_recorded(min(end, self.length))
+        for chunk in range(bisect_left(self._places, log_time, key=attrgetter("end")), len(self._places)):
+            if self._places[chunk].start > last:
                 return
-            entries = self._decoded(chunk).entries
-            first = max(bisect_left(entries, start, key=_clock), bisect_left(entries, run, key=_run) if run else 0)
-            for entry in islice(entries, first, None):
-                if entry.clock > end:
+            entries = self._decode(chunk).entries
+            for at in range(bisect_left(entries, start, key=_clock), len(entries)):
+                if entries[at].clock > end:
                     return
-                yield entry
+                yield entries[at]
 
-    def _methods_of(self, run: int) -> tuple[str, ...]:
-        """The methods of a run, in its order."""
-        scene = self.events.start_of(run)
-        return tuple(method.key for method in scene.cast) if scene else ()
+    def samples_between(self, start: float = 0.0, end: float = inf) -> Iterator[tuple[float, Sample]]:
+        """Yield the samples of that time, each with its clock."""
+        for clock, value in self.entries(start, end):
+            if isinstance(value, Sample):
+                yield clock, value
 
-    def _read_entries(self, chunk: int, only_events: bool = False) -> tuple[Entry, ...]:
-        """A chunk's entries; none if it turns out to be damaged."""
-        try:
-            record = record_at(self._stream, self._chunks.offsets[chunk])
-            if record is None or record[0] != Opcode.CHUNK:
-                raise RecordingError("a chunk is not where the summary puts it")
-            read = read_chunk(record[1])
-            if (read.start, read.end) != (self._chunks.starts[chunk], self._chunks.ends[chunk]):
-                raise RecordingError("a chunk differs from its entry in the summary")
-            entries = self._layout.entries(read.messages, self.events.start_of, only_events)
-            return tuple(entry for _, entry in entries)
-        except (RecordingError, OSError) as error:
-            self.complete, self.damaged, self.reason = False, True, self.reason or str(error)
-            return ()
+    def run_of(self, number: int) -> Run | None:
+        """Return the run of this number."""
+        at = bisect_left(self.runs, number, key=attrgetter("number"))
+        found = at < len(self.runs) and self.runs[at].number == number
+        return self.runs[at] if found else None
 
-    def _decode(self, chunk: int) -> _Decoded:
-        """A chunk, without entries of runs whose start is lost, and of runs that were over."""
-        entries, latest = [], 0
-        for entry in self._read_entries(chunk):
-            if entry.value.run in self._known and entry.value.run >= latest:
-                latest = entry.value.run
-                entries.append(entry)
-        samples = array("L", (at for at, (_, value) in enumerate(entries) if isinstance(value, Sample)))
-        self._sampled[chunk] = bool(samples)
-        return _Decoded(tuple(entries), samples)
+    def methods_of(self, number: int) -> tuple[str, ...]:
+        """Return the methods of a run, in its order."""
+        run = self.run_of(number)
+        return tuple(method.key for method in run.scene.cast) if run else ()
 
-    def _read_events(self) -> Iterator[tuple[int, float, Event]]:
-        """(chunk, clock, event) of all events; of too many, the first."""
-        count = 0
-        for chunk, eventful in enumerate(self._chunks.eventful):
-            if not eventful:
+    def _find_places(self, check: bool, progress: ShowProgress | None) -> list[Place]:
+        self._lost = 0  # entries
+        summary = None if check else read_summary(self._stream)
+        if summary is not None and (
+            summary.data_end > MAX_CHECKED or _checksum(self._stream, summary.data_end) == summary.data_crc
+        ):
+            check_format(summary.channels)
+            self._decoder = Decoder(summary.channels)
+            return summary.places
+        scan = Scan(self._stream, progress)
+        places = [place for place, _ in scan]
+        self._lost = scan.entries_lost
+        self.complete = scan.complete
+        self.damaged = scan.damaged
+        self.reason = scan.reason
+        self._decoder = Decoder(scan.channels)
+        return places
+
+    def _read_events(self) -> list[int]:
+        """Read all events; return the chunks in which runs start."""
+        starts: list[int] = []
+        for chunk, place in enumerate(self._places):
+            if not place.has_events:
                 continue
-            for clock, event in self._read_entries(chunk, only_events=True):
-                if not isinstance(event, Event):
-                    continue
-                if count == EVENT_LIMIT:
-                    self.complete, self.reason = False, self.reason or f"only its first {count} events are shown"
-                    return
-                yield chunk, clock, event
-                count += 1
+            for clock, event in self._entries(chunk, only_events=True):
+                assert isinstance(event, Event)
+                self._take(clock, event)
+                if event.kind == "start" and chunk not in starts[-1:]:
+                    starts.append(chunk)
+        if not self.runs:
+            raise RecordingError(self.reason or "it has no runs")
+        return starts
 
-    def _find_runs(self, starts: list[tuple[int, int]]) -> Runs:
-        """The runs, each up to the last sample before the next one's start.  Every chunk is read at most once."""
-        runs, last, searched = Runs(self.events), None, 0
-        kinds = self.events.starts()
-        begun: int | None = None
-        for chunk, group in groupby(starts, itemgetter(0)):
-            last, searched = self._last_sample(searched, chunk) or last, chunk + 1
-            entries = iter(self._decoded(chunk).entries)
-            for _, run in group:
-                for entry in entries:
-                    if entry.value.run >= run:
-                        break
-                    if isinstance(entry.value, Sample):
-                        last = entry
-                if begun is not None:
-                    runs.add(begun, last)
-                begun = next(kinds)
-            last = next((entry for entry in reversed(tuple(entries)) if isinstance(entry.value, Sample)), last)
-        assert begun is not None
-        runs.add(begun, self._last_sample(searched, len(self._chunks)) or last)
-        return runs
+    def _take(self, clock: float, event: Event) -> None:
+        if event.scene is not None:
+            if self.runs and event.run <= self.runs[-1].number:
+                raise RecordingError("its runs are not in order")
+            assert event.arithmetic is not None
+            self.runs.append(Run(event.run, event.scene, event.arithmetic, begin=clock, end=clock))
+        if len(self.events) == MAX_EVENTS:
+            raise RecordingError(f"it has more than {MAX_EVENTS} events")
+        entry = Entry(clock, event)
+        self.events.append(entry)
+        run = self.run_of(event.run)
+        assert run is not None  # or the decoder would have left it out
+        run.events.append(entry)
 
-    def _last_sample(self, first: int, end: int) -> Entry | None:
-        place = self.previous(SamplePlace(end - 1, _BEYOND), first)
-        return self.sample(place) if place else None
+    def _find_ends(self, chunks: list[int]) -> None:
+        """Find the last sample of each run, which is the last before the next one's start."""
+        starts = [
+            SamplePlace(chunk, index)
+            for chunk in chunks
+            for index, entry in enumerate(self._decode(chunk).entries)
+            if isinstance(entry.value, Event) and entry.value.kind == "start"
+        ]
+        ends = [*starts[1:], SamplePlace(len(self._places), 0)]
+        for run, end in zip(self.runs, ends, strict=True):
+            place = self.previous(end)
+            if place is not None:
+                clock, sample = self.sample(place)
+                if isinstance(sample, Sample) and sample.run == run.number:
+                    run.end, run.steps, run.t = clock, sample.step, sample.t
+
+    def _count_samples(self) -> int:
+        try:
+            last = read_chunk(self._stream, self._places[-1].offset).messages[-1]
+        except (RecordingError, OSError, EOFError):
+            return 0
+        return last.sequence + 1 - self._lost - self._decoder.others
+
+    def _entries(self, chunk: int, only_events: bool = False) -> list[Entry]:
+        """Return a chunk's entries; none if it turns out to be damaged."""
+        place = self._places[chunk]
+        try:
+            messages = read_chunk(self._stream, place.offset).messages
+            if (messages[0].log_time, messages[-1].log_time) != (place.start, place.end):
+                raise RecordingError("a chunk differs from its entry in the summary")
+            return [entry for _, entry in self._decoder.entries(messages, only_events)]
+        except (RecordingError, OSError, EOFError) as error:
+            self.complete = False
+            self.damaged = True
+            self.reason = self.reason or str(error) or "a chunk is cut off"
+            return []
+
+    def _decode_chunk(self, chunk: int) -> _Decoded:
+        entries = self._entries(chunk)
+        samples = [at for at, (_, value) in enumerate(entries) if isinstance(value, Sample)]
+        self._sampled[chunk] = bool(samples)
+        return _Decoded(entries, samples)
 
 
 _clock = attrgetter("clock")
 
 
-def _run(entry: Entry) -> int:
-    return entry.value.run
+def _checksum(stream: BinaryIO, size: int) -> int:
+    """Return the checksum of a file's first bytes."""
+    crc = 0
+    stream.seek(0)
+    while size and (block := stream.read(min(size, 1 << 20))):
+        crc = zlib.crc32(block, crc)
+        size -= len(block)
+    return crc
 
 
 def _as_recorded(clock: float) -> tuple[float, int]:
-    """The nearest clock that a file can hold, in s and as log_time in ns: files round to nanoseconds."""
-    nanoseconds = round(min(max(clock, 0.0), CLOCK_LIMIT) * 1e9)
+    """Return the nearest clock that a file can hold, in s and as log_time: files round to nanoseconds."""
+    nanoseconds = round(max(clock, 0.0) * 1e9)
     return nanoseconds / 1e9, CLOCK_OFFSET + nanoseconds

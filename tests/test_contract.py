@@ -31,11 +31,11 @@ COMMANDS = {
     "judge": ["judge", "energies.csv", "--time", "t", "--energy", "E", "--json"],
     "judge of a few energies": ["judge", "few.csv", "--time", "1", "--energy", "2", "--json"],
     "verify": ["verify", "whole.mcap", "cut.mcap", "--json"],
-    "info": ["info", "whole.mcap", "--json"],
-    "info of a cut recording": ["info", "cut.mcap", "--json"],
+    "recordings show": ["recordings", "show", "whole.mcap", "--json"],
+    "recordings show of a cut recording": ["recordings", "show", "cut.mcap", "--json"],
     "diff": ["diff", "whole.mcap", "other.mcap", "--json"],
     "diff of the same": ["diff", "whole.mcap", "whole.mcap", "--json"],
-    "recover": ["recover", "cut.mcap", "-o", "saved.mcap", "--json"],
+    "recordings recover": ["recordings", "recover", "cut.mcap", "-o", "saved.mcap", "--json"],
     "recordings": ["recordings", "--json"],
     "recordings prune": ["recordings", "prune", "--keep", "1", "--json"],
     "scenes": ["scenes", "--json"],
@@ -87,7 +87,9 @@ def test_every_json_field_is_there_with_its_kind(name, request):
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_the_schema_is_that_of_the_command(name):
-    schema = "section" if "--section" in COMMANDS[name] else COMMANDS[name][0]
+    command, verb, *_ = COMMANDS[name]
+    schema = f"recordings-{verb}" if command == "recordings" and verb != "--json" else command
+    schema = "section" if "--section" in COMMANDS[name] else schema
     assert pendu(*COMMANDS[name]).json["schema"] == f"pendu.{schema}/1"
 
 
@@ -117,7 +119,8 @@ def test_the_schema_is_that_of_the_command(name):
         (2, ["serve", "--port", "x"]),
         (2, ["nothing"]),
         (2, ["--scene", "nothing"]),
-        (3, ["info", "absent.mcap"]),
+        (3, ["recordings", "show", "absent.mcap"]),
+        (2, ["info", "whole.mcap"]),
         (3, ["verify", "absent.mcap"]),
         (4, ["live", "--no-record"]),
         (4, ["tour", "--no-record"]),

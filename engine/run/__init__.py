@@ -10,3 +10,6 @@
   starts part; `judgement` has the verdicts; `crossing` finds errors that pass each other.
 - `energies` judges the record of any program, by times and energies.
 """
+
+NUMERICS = 1
+"""The version of the numbers: a run recorded with another one may differ in the last digits."""

@@ -15,7 +15,7 @@ from unittest.mock import patch
 
 from textual.pilot import WaitForScreenTimeout
 
-from recordings.verify import verify
+from recordings.verification import verify
 from tests.tui.harness import on_stage
 from tests.tui.monkey import SIZE, play_on_stage, small_studies, wild_presses, wild_replay, wild_stage
 from tui.screens.app import PenduApp

@@ -12,8 +12,8 @@ from engine.scenes import DEFAULT_SCENE
 from recordings.headless import simulate
 from recordings.recorder import Recorder
 from recordings.recording import Recording
-from recordings.recover import recover
-from recordings.verify import verify
+from recordings.recovery import recover
+from recordings.verification import verify
 
 HOUR = 3600.0  # s
 DAMAGES = 20

@@ -15,7 +15,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from recordings.verify import verify
+from recordings.verification import verify
 from tests.tui.pty_lab import PtyLab
 
 NUMBERS = 2000, 500, 300, 200

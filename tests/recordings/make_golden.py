@@ -1,7 +1,7 @@
 """Make the bundled recordings: python -m tests.recordings.make_golden.
 
 The same bytes each time.  Run it only when a scene is meant to change: these files are what later
-versions of the methods are measured against.  Those of format 1 are never made again.
+versions of the methods are measured against.
 """
 
 import math
@@ -107,8 +107,6 @@ RECORDINGS = {
         changes=[(200, 0.01)],
     ),
 }
-FORMAT_1 = ("drift", "changes-of-h", "reversed-time", "near-separatrix", "spin")
-"""Made when the format was new.  They stay as they are, so that it stays readable."""
 
 
 class Later:
@@ -133,5 +131,4 @@ def make(name: str, path: Path) -> None:
 
 if __name__ == "__main__":
     for name in RECORDINGS:
-        if name not in FORMAT_1:
-            make(name, GOLDEN / (name + SUFFIX))
+        make(name, GOLDEN / (name + SUFFIX))

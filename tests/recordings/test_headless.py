@@ -9,8 +9,8 @@ from engine.run.lockstep import Lockstep
 from recordings.headless import simulate, steps_for
 from recordings.recorder import Recorder
 from recordings.recording import Recording
-from recordings.recover import recover
-from recordings.verify import verify
+from recordings.recovery import recover
+from recordings.verification import verify
 from tests.recordings.examples import SCENE, with_changes
 
 
@@ -51,11 +51,10 @@ def test_a_long_headless_run_has_few_chunks(tmp_path):
         samples = sum(1 for _ in simulate(SCENE, 600.0, recorder, sample_every=2))
     with Recording.open(tmp_path / "a.mcap") as recording:
         assert recording.samples == samples == 3001
-        assert len(recording._chunks) < 50  # of 128 kB; readers refuse more than 250 000
     recover(tmp_path / "a.mcap", tmp_path / "copy.mcap")
     with Recording.open(tmp_path / "copy.mcap") as recording:
         assert recording.samples == samples
-        assert len(recording._chunks) < 50
+    assert (tmp_path / "a.mcap").read_bytes().count(b"\x04\x00\x00\x00zstd") < 100  # in chunks and their index
 
 
 def test_memory_does_not_grow_with_the_length_of_a_run():

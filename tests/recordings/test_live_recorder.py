@@ -14,7 +14,7 @@ from recordings.events import Event
 from recordings.library import free_path
 from recordings.live_recorder import RETRY_EVERY, LiveRecorder
 from recordings.recording import Recording
-from recordings.verify import verify
+from recordings.verification import verify
 from tests.recordings.examples import SCENE, start
 
 
@@ -184,7 +184,7 @@ def test_a_folder_that_became_read_only_is_reported(lab, tmp_path):
 
 
 def test_a_first_file_that_cannot_be_written_raises_at_once(tmp_path):
-    with pytest.raises(DiskError, match="No such file"):
+    with pytest.raises(DiskError, match="no folder"):
         LiveRecorder(tmp_path / "no" / "lab.mcap")
 
 

@@ -1,6 +1,7 @@
 """A user's own method in a recording: its text is kept, its hash vouches for it, and nothing of it is ever executed."""
 
 import hashlib
+import json
 from pathlib import Path
 
 import pytest
@@ -45,14 +46,15 @@ def test_the_other_methods_verify_without_it(path):
 
 def test_the_recording_keeps_the_text_and_its_hash(path):
     with path.open("rb") as stream:
-        (own,) = (each.metadata for each in make_reader(stream).iter_metadata() if each.name == "pendu.method")
+        ((_, _, message),) = make_reader(stream).iter_messages(["/pendu/sources"])
+    own = json.loads(message.data)
     assert own["source"] == HEUN
     assert own["sha256"] == hashlib.sha256(HEUN.encode()).hexdigest()
     assert own["method"] == "heun"
 
 
-def test_info_and_export_work_without_the_text(path):
+def test_show_and_export_work_without_the_text(path):
     Path("mine.py").unlink()
-    assert "heun" in pendu("info", path).out
+    assert "heun" in pendu("recordings", "show", path).out
     assert pendu("export", path, "-o", "own.csv").code == 0
     assert "heun" in Path("own.csv").read_text()

@@ -3,13 +3,13 @@
 import errno
 import json
 import os
-from dataclasses import replace
+from pathlib import Path
 
 import jsonschema
 import pytest
 from mcap.reader import make_reader
-from mcap.records import Channel, Chunk, DataEnd, Footer, Message, Metadata, Statistics
-from mcap.stream_reader import StreamReader, breakup_chunk
+from mcap.records import Chunk, DataEnd, Footer, Message, Statistics
+from mcap.stream_reader import StreamReader
 
 from engine.run.lockstep import Lockstep
 from engine.run.stepping import Stepping
@@ -20,8 +20,7 @@ from recordings.headless import simulate
 from recordings.library import free_path, in_use, part_of
 from recordings.recorder import FLUSH_EVERY, Recorder
 from recordings.recording import Recording
-from recordings.summary import facts_of
-from recordings.verify import verify
+from recordings.verification import verify
 from tests.recordings.examples import SCENE, record, start, tiny, two_runs
 
 FRAME = 1 / 30
@@ -75,7 +74,7 @@ def test_every_message_is_valid_against_its_schema_and_found_through_the_index(t
         count = 0
         for schema, channel, message in reader.iter_messages():
             assert schema.encoding == "jsonschema"
-            names = {"/pendu/events": "pendu.Event", "/pendu/seals": "pendu.Seal"}
+            names = {"/pendu/events": "pendu.Event", "/pendu/about": "pendu.About"}
             assert schema.name == names.get(channel.topic, "pendu.Sample")
             jsonschema.validate(json.loads(message.data), json.loads(schema.data))
             count += 1
@@ -84,23 +83,11 @@ def test_every_message_is_valid_against_its_schema_and_found_through_the_index(t
         events = [decode_event(message.data) for _, _, message in reader.iter_messages("/pendu/events")]
         window = list(reader.iter_messages("/pendu/rk4", starting_at=2_500_000_000, ending_before=3_500_000_000))
     assert theta == [entry.value.readings[3].theta for entry in entries if not isinstance(entry.value, Event)]
-    assert events[:-1] == [entry.value for entry in entries if isinstance(entry.value, Event)]
+    assert [event._replace(arithmetic=None) for event in events[:-1]] == [
+        entry.value for entry in entries if isinstance(entry.value, Event)
+    ]
     assert events[-1].kind == "stop"
     assert [json.loads(message.data)["step"] for _, _, message in window] == [9, 12]  # at 1.5 and 2.0 s
-
-
-def test_each_chunk_in_which_a_run_begins_declares_its_channels_once(tmp_path):
-    with Recorder(tmp_path / "a.mcap", facts=facts_of(SCENE, None)) as recorder:  # a copy, where runs share chunks
-        for run in range(1, 7):
-            recorder.event(start(run), run)
-            recorder.sample(Lockstep(SCENE).sample()._replace(run=run), run)
-            if run == 3:
-                recorder.flush()
-    with recorder.path.open("rb") as file:
-        chunks = [record for record in StreamReader(file, emit_chunks=True).records if isinstance(record, Chunk)]
-    declared = [[each.topic for each in breakup_chunk(chunk) if isinstance(each, Channel)] for chunk in chunks]
-    topics = sorted(["/pendu/events", "/pendu/seals", *(f"/pendu/{method.key}" for method in SCENE.cast)])
-    assert [sorted(each) for each in declared[:2]] == [topics, topics]
 
 
 def test_log_times_never_decrease_and_are_never_zero_even_if_the_clock_jumps_back(tmp_path):
@@ -123,21 +110,6 @@ def test_live_messages_carry_the_wall_clock_and_headless_ones_simulated_time(tmp
         with path.open("rb") as file:
             messages = [record for record in StreamReader(file).records if isinstance(record, Message)]
         assert {message.publish_time for message in messages} == expected
-
-
-def test_metadata_describe_the_machine_in_live_recordings_only(tmp_path):
-    def metadata(path):
-        with path.open("rb") as file:
-            (found,) = [record for record in StreamReader(file).records if isinstance(record, Metadata)]
-        assert found.name == "pendu.recording"
-        return found.metadata
-
-    live = metadata(record(tmp_path / "live.mcap", two_runs(), wall=lambda: 1_700_000_000_000_000_000))
-    headless = metadata(record(tmp_path / "headless.mcap", two_runs()))
-    assert float.fromhex(headless["theta.hex"]) == SCENE.theta
-    assert headless["format"] == "2"
-    assert set(live) - set(headless) == {"started", "python", "platform"}
-    assert live["started"].startswith("2023-11-1")
 
 
 def test_a_repeated_sample_is_not_written(recorder):
@@ -168,7 +140,6 @@ def test_the_first_sample_of_a_run_has_no_extremes(tmp_path):
         (lambda recorder, sample: recorder.sample(sample, -1.0), "clock"),
         (lambda recorder, sample: recorder.sample(sample, float("nan")), "clock"),
         (lambda recorder, sample: recorder.event(Event("mark", 1, 0, float("inf")), 0.0), "JSON"),
-        (lambda recorder, sample: recorder.event(start(scene=replace(SCENE, watch=70_000 * "x")), 0.0), "bytes"),
     ],
 )
 def test_invalid_input_is_refused_before_it_spoils_a_chunk(recorder, write, why):
@@ -276,7 +247,7 @@ def test_closing_twice_is_allowed(recorder):
 def test_a_recording_is_overwritten_only_on_request(tmp_path):
     path = tiny(tmp_path / "a.mcap")
     before = path.read_bytes()
-    with pytest.raises(DiskError, match="exists already"):
+    with pytest.raises(DiskError, match="already exists"):
         Recorder(path)
     assert path.read_bytes() == before
     with Recorder(path, overwrite=True) as recorder:
@@ -287,7 +258,7 @@ def test_a_recording_is_overwritten_only_on_request(tmp_path):
 
 
 def test_two_labs_never_write_to_the_same_file(tmp_path, recorder):
-    with pytest.raises(DiskError, match="is in use by a running recording"):
+    with pytest.raises(DiskError, match="is in use"):
         Recorder(recorder.path)
     assert free_path(recorder.path).name == "live-2.mcap"
     part_of(tmp_path / "live-2.mcap").touch()
@@ -351,3 +322,29 @@ def test_an_interrupted_run_leaves_a_complete_recording(tmp_path):
     verification = verify(path)
     assert verification.complete
     assert verification.samples == 51
+
+
+def test_a_live_recording_describes_its_machine_and_a_headless_one_does_not(tmp_path):
+    live = record(tmp_path / "live.mcap", two_runs(), wall=lambda: 1_700_000_000_000_000_000)
+    with Recording.open(live) as recording:
+        assert set(recording.about) == {"program", "python", "platform", "started"}
+        assert recording.about["started"].startswith("2023-11-1")
+    with Recording.open(record(tmp_path / "headless.mcap", two_runs())) as recording:
+        assert set(recording.about) == {"program"}
+
+
+def test_a_name_that_was_taken_meanwhile_is_left_alone(tmp_path):
+    recorder = Recorder(tmp_path / "a.mcap")
+    recorder.event(start(), 0.0)
+    recorder.sample(Lockstep(SCENE).sample(), 0.0)
+    (tmp_path / "a.mcap").write_text("precious")
+    with pytest.raises(DiskError, match=r"saved as a-2\.mcap"):
+        recorder.close()
+    assert (tmp_path / "a.mcap").read_text() == "precious"
+    assert verify(tmp_path / "a-2.mcap").complete
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a-2.mcap", "a.mcap"]
+
+
+def test_a_device_is_never_replaced_by_a_recording():
+    with pytest.raises(DiskError, match="a recording needs a file"):
+        Recorder(Path("/dev/null"), overwrite=True)

@@ -32,10 +32,8 @@ GROUPS = {
     "files": {
         "verify": "re-simulate recordings and compare every bit",
         "diff": "compare two recordings: scene, changes, every number",
-        "export": "convert a recording to CSV",
-        "info": "show what is in a recording, whole or damaged",
-        "recover": "salvage a damaged recording",
-        "recordings": "list the recordings, or prune them",
+        "export": "convert a recording to CSV or Parquet",
+        "recordings": "list the recordings, show, recover or delete them",
     },
     "about": {
         "scenes": "list the scenes, with what to watch",
@@ -50,6 +48,8 @@ COMMANDS = {name: about for group in GROUPS.values() for name, about in group.it
 RENAMED = {
     "keys": "live, and there the key ?",
     "section": "stability --section",
+    "info": "recordings show",
+    "recover": "recordings recover",
     "completion": "--print-completion SHELL",
 }
 

@@ -9,33 +9,20 @@ from threading import Timer, main_thread
 from types import FrameType
 from typing import TextIO
 
-from tui.cli.errors import Exit, UserError
-
 _SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
 
 @contextmanager
 def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
-    """Yield the path to write to meanwhile; what is there at the end gets the name `path`.
+    """Yield the path to write to; what is there at the end gets the name `path`.
 
-    If the block raises, and also at Ctrl+C, SIGTERM and SIGHUP, nothing is left of it and an older file stays as
-    it was.  A device or a pipe is written to as it is.  Raises UserError and OSError before the block if the file
-    exists already or cannot be made, so that nothing is computed in vain.
+    If the block raises, and also at Ctrl+C, SIGTERM and SIGHUP, nothing is left of it and an older file
+    stays as it was.  Raises DiskError before the block if the name is taken.
     """
-    if path.exists() and not path.is_file() and not path.is_dir():
-        yield path
-        return
-    check_free(path, force)
-    if not path.parent.is_dir():
-        raise UserError(f"{path}: no folder {path.parent}; create the folder first.", Exit.DISK)
-    part = path.with_name(path.name + ".part")
-    with interruptible():
-        try:
-            part.touch()
-            yield part
-            part.replace(path)
-        finally:
-            part.unlink(missing_ok=True)
+    from recordings import files
+
+    with interruptible(), files.whole_file(path, force) as part:
+        yield part
 
 
 @contextmanager
@@ -49,10 +36,11 @@ def text_file(path: Path | None, force: bool = False) -> Iterator[TextIO]:
 
 
 def check_free(path: Path, force: bool) -> None:
-    """Raise UserError if something has this name and must not be overwritten, or cannot."""
-    if path.exists() and (not force or path.is_dir()):
-        advice = "choose another name" if path.is_dir() else "choose another name, or --force to overwrite it"
-        raise UserError(f"{path} already exists; {advice}.", Exit.DISK)
+    """Raise DiskError if something has this name and must not be overwritten, or cannot."""
+    from recordings.files import check_target, is_stream
+
+    if not is_stream(path):
+        check_target(path, force)
 
 
 def interruptible() -> AbstractContextManager[None]:

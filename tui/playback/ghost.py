@@ -5,7 +5,6 @@ from array import array
 from bisect import bisect_right
 from typing import TYPE_CHECKING, NamedTuple
 
-from engine.run.lockstep import Sample
 from engine.run.observer import RunObserver
 from tui.playback.history import ErrorHistory
 
@@ -14,7 +13,7 @@ if TYPE_CHECKING:
     from tui.playback.levels import Window
 
 ROWS = 1 << 14  # of the chart at full resolution, 9 minutes of the usual samples
-MOST = 50_000  # samples that are read: half an hour, in three seconds
+MAX_SAMPLES = 50_000  # half an hour, read in three seconds
 ROUNDING = 1e-9  # s
 
 
@@ -26,7 +25,7 @@ class Rod(NamedTuple):
 
 
 class Ghost:
-    """The longest run of a recording, up to where its time turns or to its MOST-th sample."""
+    """The longest run of a recording, up to where its time turns or to its MAX_SAMPLES-th sample."""
 
     def __init__(self, recording: "Recording") -> None:
         run = max(recording.runs, key=lambda run: abs(run.t))
@@ -35,10 +34,10 @@ class Ghost:
         self._history = ErrorHistory(RunObserver(run.scene), ROWS)
         self._times, self._rods = array("d"), array("d")  # s; theta and length of each method in turn
         exact, latest = run.scene.exact(), -math.inf
-        for _, value in recording.entries(run.begin, run.end, run.number):
-            if value.run > run.number or len(self._times) == MOST:
+        for _, value in recording.samples_between(run.begin, run.end):
+            if value.run > run.number or len(self._times) == MAX_SAMPLES:
                 break
-            if not isinstance(value, Sample) or value.t == latest:
+            if value.run < run.number or value.t == latest:
                 continue
             if value.t < latest:
                 break

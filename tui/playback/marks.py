@@ -5,25 +5,23 @@ Those of a bundled recording are kept in the library, because its own folder is 
 
 import json
 import math
-from bisect import bisect_right
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
-from itertools import groupby
-from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from recordings import library
 from recordings.errors import printable
 from recordings.events import Event
-from recordings.format import STEP_LIMIT
+from recordings.files import whole_file
+from recordings.format import MAX_STEP
 from recordings.library import MARKS
 
 if TYPE_CHECKING:
-    from recordings.timeline import Events
+    from recordings.recording import Recording
 
 SCHEMA = "pendu.marks/1"
-SIZE_LIMIT = 1 << 20  # bytes
+MAX_SIZE = 1 << 20  # bytes
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,29 +50,25 @@ class Marks:
         self._marks = sorted([*self._marks, mark], key=lambda each: each.clock)
         text = json.dumps({"schema": SCHEMA, "marks": [asdict(each) for each in self._marks]}, indent=1)
         self.path.parent.mkdir(parents=True, exist_ok=True)
-        beside = self.path.with_name(self.path.name + ".new")
-        beside.write_text(text, encoding="utf-8")
-        beside.replace(self.path)
+        with whole_file(self.path, force=True) as part:
+            part.write_text(text, encoding="utf-8")
 
 
-def mark_events(marks: Iterable[Mark], events: "Events") -> Iterator[Event]:
-    """Marks as events, at the simulated times that the starts and changes among `events` give their steps."""
-    for run, of_run in groupby(sorted(marks, key=attrgetter("run", "clock")), attrgetter("run")):
-        changes = [event for _, event in events.of(run) if event.kind in ("start", "set_h")]
-        for mark in of_run:
-            t, h, since = 0.0, 0.0, 0
-            at = bisect_right(changes, mark.step, key=attrgetter("step"))
-            if at:
-                event = changes[at - 1]
-                t, since = event.t, event.step
-                h = event.scene.h if event.scene is not None else event.h or 0.0
-            yield Event("mark", mark.run, mark.step, t + (mark.step - since) * h, text=mark.text)
+def mark_event(recording: "Recording", mark: Mark) -> Event:
+    """Return a mark as an event, at the simulated time of its step."""
+    t, h, since = 0.0, 0.0, 0
+    run = recording.run_of(mark.run)
+    for _, event in run.events if run else ():
+        if isinstance(event, Event) and event.kind in ("start", "set_h") and event.step <= mark.step:
+            t, since = event.t, event.step
+            h = event.scene.h if event.scene else event.h or 0.0
+    return Event("mark", mark.run, mark.step, t + (mark.step - since) * h, text=mark.text)
 
 
 def _read(path: Path) -> list[Mark]:
     """The marks in a file; none, where it is not there or not ours."""
     try:
-        if path.stat().st_size > SIZE_LIMIT:
+        if path.stat().st_size > MAX_SIZE:
             return []
         content = json.loads(path.read_text(encoding="utf-8"))
         marks = [_mark(fields) for fields in content["marks"]] if content["schema"] == SCHEMA else []
@@ -84,7 +78,8 @@ def _read(path: Path) -> list[Mark]:
 
 
 def _mark(fields: dict[str, Any]) -> Mark:
-    clock, run, step, text = float(fields["clock"]), int(fields["run"]), int(fields["step"]), fields["text"]
-    if not math.isfinite(clock) or max(abs(run), abs(step)) >= STEP_LIMIT:
+    clock, text = float(fields["clock"]), fields["text"]
+    run, step = int(fields["run"]), int(fields["step"])
+    if not math.isfinite(clock) or max(abs(run), abs(step)) >= MAX_STEP:
         raise ValueError("a mark needs a time, a run and a step")
     return Mark(clock, run, step, None if text is None else printable(str(text)))

@@ -3,26 +3,24 @@
 import time
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
+from functools import cache, partial
 from operator import attrgetter
 from typing import TYPE_CHECKING
 
+from engine.run.judgement import Judgement, Milestone
 from engine.run.lockstep import Sample
-from engine.run.observer import Milestone
 from engine.run.stepping import Stepping, change_before
-from engine.run.verdict import Judgement
 from recordings.events import Event
 from tui.playback.cursor import ReplayCursor
 from tui.playback.live import Live
-from tui.playback.marks import Mark, Marks, mark_events
+from tui.playback.marks import Mark, Marks, mark_event
 from tui.playback.playhead import Pace, Playhead
 from tui.playback.so_far import RunSoFar
 from tui.playback.source import RecordingStatus, Source
 
 if TYPE_CHECKING:
-    from recordings.recording import Recording
-    from recordings.timeline import Run
+    from recordings.recording import Recording, Run
 
-EVENTS_SHOWN = 2000  # the last ones; a hostile file may have a million
 FILL_BUDGET = 0.006  # s of each frame for reading the past
 
 
@@ -39,19 +37,15 @@ class Replay(Source):
         self.pace = Pace()
         self.ends: tuple[float | None, float | None] = (None, None)
         """Of the loop, on the recording clock [s]; None: the recording's own."""
-        self.looping = self._closed = False
+        self.looping = False
+        self._closed = False
         self._clock = clock
         self._cursor = ReplayCursor(recording)
-        self._filled = False  # all of the past read, and all milestones found
-        self._said = recording.version > 1  # it holds what the lab noticed
-        self._search = iter(()) if self._said else self._cursor.milestone_times()
-        self._milestone_times: list[float] = []  # s, on the recording clock, as far as known by now
-        self._milestones: tuple[int, list[Milestone]] = 0, []  # of the run of this number, in its order
-        self._events: list[Event] = []  # as many as there were behind the playhead:
-        self._events_done = 0
-        self._mark_events: list[Event] = []
-        self._ticks: list[float] = []  # for so many marks and milestones:
-        self._ticks_known = -1, -1
+        self._events: list[Event] = []  # up to the playhead
+        self._milestones: tuple[int, list[Milestone]] = 0, []  # of the run of this number
+        self._ticks: list[float] = []  # s, for so many marks:
+        self._ticked_marks = -1
+        self._mark_event = cache(partial(mark_event, recording))
 
     @property
     def so_far(self) -> RunSoFar:
@@ -73,46 +67,41 @@ class Replay(Source):
 
     @property
     def events(self) -> Sequence[Event]:
-        """What was done up to the playhead; of very many events, the last."""
-        done = bisect_right(self.recording.events.clocks, self.playhead.position)
-        if done != self._events_done:
-            recent = self.recording.events[max(0, done - EVENTS_SHOWN) : done]
-            self._events_done, self._events = done, [event for _, event in recent]
+        """What was done up to the playhead."""
+        done = bisect_right(self.recording.events, self.playhead.position, key=_clock)
+        if done != len(self._events):
+            entries = self.recording.events[:done]
+            self._events = [value for _, value in entries if isinstance(value, Event)]
         return self._events
 
     @property
     def milestones(self) -> Sequence[Milestone]:
-        """What the lab noticed; a recording of format 1 does not say, and it follows from the samples."""
-        if not self._said:
-            return super().milestones
-        number = self.run.number
-        if self._milestones[0] != number:
-            found = (milestone for _, milestone in self.recording.events.milestones(number))
-            self._milestones = number, sorted(found, key=attrgetter("step"))
+        """What the lab noticed in this run up to the sample."""
+        if self._milestones[0] != self.run.number:
+            self._milestones = self.run.number, self.run.milestones
         known = self._milestones[1]
-        done = bisect_right(known, self.sample.step, key=attrgetter("step"))
-        return known[max(0, done - EVENTS_SHOWN) : done]
+        return known[: bisect_right(known, self.sample.step, key=attrgetter("step"))]
 
     @property
     def judgements(self) -> Sequence[Judgement]:
-        """The verdicts that the lab gave; the trends follow from the samples, once all those before have been read."""
-        computed = super().judgements if self.knows_past else [Judgement()] * len(self.scene.cast)
-        if not self._said:
-            return computed
+        """The verdicts that the lab gave since the stepping last changed, with their trends."""
         since = change_before(self.changes, self.sample.step).step
-        said = {each.method: each.verdict for each in self.milestones if each.kind == "verdict" and each.step > since}
+        given = {
+            each.method: Judgement(each.verdict, each.trend, lyapunov=each.lyapunov)
+            for each in self.milestones
+            if each.kind == "verdict" and each.step > since
+        }
+        judged = zip(self.scene.cast, self.sample.readings, strict=True)
         return [
-            judgement if reading.diverged_at is not None else judgement._replace(verdict=said.get(method, "too early"))
-            for method, judgement, reading in zip(self.scene.cast, computed, self.sample.readings, strict=True)
+            Judgement("failed") if reading.diverged_at is not None else given.get(method, Judgement())
+            for method, reading in judged
         ]
 
     @property
     def later_marks(self) -> Sequence[Event]:
         marks = list(self.marks)
-        if len(self._mark_events) != len(marks):
-            self._mark_events = list(mark_events(marks, self.recording.events))
-        done = bisect_right(marks, self.playhead.position, key=attrgetter("clock"))
-        return self._mark_events[max(0, done - EVENTS_SHOWN) : done]
+        done = bisect_right(marks, self.playhead.position, key=_clock)
+        return [self._mark_event(mark) for mark in marks[:done]]
 
     @property
     def stepping(self) -> Stepping:
@@ -124,8 +113,8 @@ class Replay(Source):
 
     @property
     def is_at_rest(self) -> bool:
-        """Paused, with all of the past read and all milestones found."""
-        return self.playhead.paused and self._filled
+        """Paused, with all of the past read."""
+        return self.playhead.paused and self.knows_past
 
     @property
     def recording_status(self) -> RecordingStatus:
@@ -141,16 +130,9 @@ class Replay(Source):
         return self.sample
 
     def fill(self) -> bool:
-        """Read more of the past, and then look for milestones; whether the past of the sample is known by now."""
-        if self._closed:
-            return True
+        """Read more of the past; return whether all of it has been read."""
         until = self._clock() + FILL_BUDGET
-        filled = self._cursor.fill(lambda: self._clock() < until)
-        times: list[float] | None = []
-        while self._clock() < until and (times := next(self._search, None)) is not None:
-            self._milestone_times += times
-        self._filled = filled and times is None
-        return filled
+        return self._closed or self._cursor.fill(lambda: self._clock() < until)
 
     def pause(self, paused: bool) -> None:
         """Pause or go on; from the end, go on from the start."""
@@ -174,7 +156,6 @@ class Replay(Source):
         """Go to a moment of the recording clock [s], or to the nearer end."""
         if self._closed:
             return
-        self._filled = False
         self.playhead = self.playhead.moved_to(min(max(position, 0.0), self.length))
         self._cursor.go_to(self.playhead.position)
 
@@ -194,12 +175,12 @@ class Replay(Source):
 
     @property
     def ticks(self) -> list[float]:
-        """The events, marks and milestones known by now, on the recording clock [s]."""
-        known = len(list(self.marks)), len(self._milestone_times)
-        if known != self._ticks_known:
-            done = self.recording.events.done()
-            marked = (mark.clock for mark in self.marks)
-            self._ticks_known, self._ticks = known, sorted({*done, *marked, *self._milestone_times})
+        """The clocks of events, milestones and marks [s]; not the stops."""
+        marks = [mark.clock for mark in self.marks]
+        if len(marks) != self._ticked_marks:
+            self._ticked_marks = len(marks)
+            done = {clock for clock, event in self.recording.events if not _is_stop(event)}
+            self._ticks = sorted({*done, *marks})
         return self._ticks
 
     def mark(self, text: str | None = None) -> None:
@@ -225,3 +206,10 @@ class Replay(Source):
             self.playhead = self.playhead.moved_to(end if backwards else start)
         elif backwards == (position < start):
             self.playhead = self.playhead._replace(paused=True).moved_to(start if backwards else end)
+
+
+_clock = attrgetter("clock")
+
+
+def _is_stop(value: Sample | Event) -> bool:
+    return isinstance(value, Event) and value.kind == "stop"

@@ -51,7 +51,7 @@ def facts(replay: Replay, room: int) -> str:
     text = f"recording {seconds(replay.playhead.position):>{widest}} of {whole}"
     for part in (
         "loop" if replay.loop else "",
-        f"run {_of(runs.place(replay.run.number) + 1, len(runs))}",
+        f"run {_of(runs.index(replay.run) + 1, len(runs))}",
         f"step {_of(replay.sample.step, replay.run.steps)}",
         f"event {_of(bisect_right(ticks, replay.playhead.position), len(ticks))}",
     ):

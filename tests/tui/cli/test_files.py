@@ -12,15 +12,12 @@ import pytest
 
 from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PENDU
-from tui.cli.errors import UserError
 from tui.cli.files import repeat_swallowed_interrupts, whole_file
 
 WRITERS = {
     "export": ("export", "drift", "-o"),
     "accuracy": ("accuracy", "--time", 1, "--h-values", "0.2:0.1:2", "--csv"),
     "stability": ("stability", "--steps", 5, "--z-values", "0.1,0.2", "--theta-values", "1", "-o"),
-    "film": ("export", "drift", "--format", "cast", "--speed", 15, "--fps", 1, "-o"),
-    "section": ("section", "--starts", 9, "--steps", 50, "-o"),
     "snapshot": ("snapshot", "--time", 0, "--size", "60x16", "-o"),
 }
 LONG = {
@@ -87,7 +84,7 @@ def test_an_interrupt_that_a_callback_swallows_comes_again(monkeypatch):
 
 
 def test_force_does_not_replace_a_folder(tmp_path):
-    with pytest.raises(UserError, match="already exists"), whole_file(tmp_path, force=True):
+    with pytest.raises(OSError, match="already exists"), whole_file(tmp_path, force=True):
         raise AssertionError
 
 
@@ -113,7 +110,6 @@ def test_a_missing_folder_is_refused_before_anything_is_computed(tmp_path, comma
     monkeypatch.setattr("engine.stability.grid.Grid.compute", None)
     monkeypatch.setattr("tui.commands.files.export.write_csv", None)
     monkeypatch.setattr("tui.commands.studies.reports.section.pieces", None)
-    monkeypatch.setattr("tui.screens.still.film", None)
     assert pendu(*command, tmp_path / "no" / "file.svg").refused(5, "no folder", "create the folder")
 
 
@@ -134,3 +130,27 @@ def test_a_command_stopped_by_a_signal_leaves_no_part_behind(tmp_path, command, 
     assert list(tmp_path.iterdir()) == [file]
     if command[0] == "stability":
         assert file.read_text() == "older"
+
+
+def test_a_file_that_appears_meanwhile_is_left_alone(tmp_path):
+    file = tmp_path / "data"
+
+    def write():
+        with whole_file(file) as meanwhile:
+            meanwhile.write_text("ours")
+            file.write_text("precious")
+
+    with pytest.raises(OSError, match="appeared meanwhile"):
+        write()
+    assert file.read_text() == "precious"
+    assert list(tmp_path.iterdir()) == [file]
+
+
+def test_two_commands_may_write_the_same_name_at_once(tmp_path):
+    file = tmp_path / "data"
+    (tmp_path / "data.part").write_text("a user's own")
+    with whole_file(file, force=True) as one, whole_file(file, force=True) as other:
+        one.write_text("1")
+        other.write_text("2")
+    assert file.read_text() == "1"
+    assert (tmp_path / "data.part").read_text() == "a user's own"

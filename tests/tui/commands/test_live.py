@@ -6,7 +6,7 @@ from engine.scenes import DEFAULT_SCENE
 from recordings.errors import DiskError
 from recordings.library import listing
 from recordings.live_recorder import LiveRecorder
-from recordings.verify import verify
+from recordings.verification import verify
 from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PtyLab
 from tui.playback.live import Live

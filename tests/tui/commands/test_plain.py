@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from recordings.library import listing
-from recordings.verify import verify
+from recordings.verification import verify
 from tests.tui.pty_lab import PENDU, ROOT
 
 

@@ -14,7 +14,7 @@ from engine.run.lockstep import Lockstep
 from engine.run.loops import count_evaluations
 from engine.scenes import DEFAULT_SCENE, SCENES
 from recordings.recording import Recording
-from recordings.verify import verify
+from recordings.verification import verify
 from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PENDU
 from tui.cli.fail_if import FIELDS

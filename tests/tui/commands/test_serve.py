@@ -12,7 +12,7 @@ import pyte
 import pytest
 
 from engine.scenes import SCENES
-from recordings.verify import verify
+from recordings.verification import verify
 from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PENDU
 from tui.terminal.options import TerminalOptions

@@ -3,7 +3,7 @@
 import signal
 
 from recordings.library import listing
-from recordings.verify import verify
+from recordings.verification import verify
 from tests.tui.commands.test_plain import read_until, started
 from tests.tui.pty_lab import PtyLab
 

@@ -7,7 +7,7 @@ from recordings.events import Event
 from recordings.headless import simulate
 from recordings.recorder import Recorder
 from recordings.recording import Recording
-from recordings.verify import verify
+from recordings.verification import verify
 from tests.tui.harness import Lab, after
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
@@ -32,9 +32,8 @@ def test_a_replay_shows_the_milestones_and_verdicts_of_the_lab(lab):
     live, first, path = lab
     assert {milestone.kind for milestone in first} == {"over the top", "verdict"}
     assert verify(path).identical
-    assert verify(path).sealed
     with Recording.open(path) as recording:
-        assert [milestone for _, milestone in recording.events.milestones(1)] == first
+        assert recording.runs[0].milestones == first
         replay = Replay(recording, Marks(path))
         replay.seek(recording.length)
         assert replay.run.number == 2
@@ -51,7 +50,7 @@ def test_a_replay_shows_the_milestones_and_verdicts_of_the_lab(lab):
 def test_a_replay_jumps_to_what_the_lab_noticed(lab):
     _, first, path = lab
     with Recording.open(path) as recording:
-        clocks = [clock for clock, _ in recording.events.milestones(1)]
+        clocks = [clock for clock, event in recording.runs[0].events if event.kind == "noticed"]
         replay = Replay(recording, Marks(path))
         assert set(clocks) < set(replay.ticks)
         for clock, milestone in zip(clocks, first, strict=True):
@@ -81,7 +80,7 @@ def test_errors_that_cross_are_recorded_and_a_stop_of_the_replay(tmp_path):
         for _ in simulate(scene, 40, recorder):
             pass
     with Recording.open(path) as recording:
-        (crossing,) = [each for _, each in recording.events.milestones(1) if each.kind == "errors cross"]
+        (crossing,) = [each for each in recording.runs[0].milestones if each.kind == "errors cross"]
         replay = Replay(recording, Marks(path))
         replay.seek(33.0)
         assert crossing not in replay.milestones

@@ -6,7 +6,7 @@ import pytest
 
 from engine.scenes import Scene
 from recordings.recording import Recording
-from recordings.verify import verify
+from recordings.verification import verify
 from tests.tui.harness import recorded
 from tui.playback.live import Live
 from tui.screens.live import LiveScreen

@@ -12,7 +12,7 @@ from engine.scenes import DEFAULT_SCENE
 from recordings.library import resolve
 from recordings.live_recorder import LiveRecorder
 from recordings.recording import Recording
-from recordings.verify import verify
+from recordings.verification import verify
 from tests.tui.harness import on_stage
 from tests.tui.monkey import (
     ESCDELAY,

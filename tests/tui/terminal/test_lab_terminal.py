@@ -12,7 +12,7 @@ import pytest
 
 from recordings.library import GOLDEN
 from recordings.recording import Recording
-from recordings.verify import verify
+from recordings.verification import verify
 from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PENDU, PtyLab
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from engine.run.lockstep import Sample
 from recordings.recording import Recording
-from recordings.verify import verify
+from recordings.verification import verify
 from tests.tui.emulator import Emulator
 from tests.tui.pty_lab import PtyLab
 

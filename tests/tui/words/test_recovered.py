@@ -1,7 +1,7 @@
 from pathlib import Path
 
 from recordings.recording import Recording
-from recordings.verify import verify
+from recordings.verification import verify
 from tests.tui.harness import Lab
 from tui.words.recovered import recover_leftovers
 

@@ -1,4 +1,1 @@
-"""Recordings: `verify`, `info`, `diff`, `recover`, `export`, and the list of them, `recordings`.
-
-`foxglove` makes the layout with which other viewers show one.
-"""
+"""Commands about recordings: `verify`, `diff`, `export`, and `recordings`, the list of them."""

@@ -1,14 +1,14 @@
-"""Write a recording as CSV, one row per sample and method, or as a layout for Foxglove."""
+"""Write a recording as CSV or Parquet, one row per sample and method."""
 
 import argparse
-import json
 from collections.abc import Callable, Iterator
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from recordings.errors import printable
-from tui.cli.errors import Exit
-from tui.cli.files import text_file
+from tui.cli.errors import Exit, UserError
+from tui.cli.files import text_file, whole_file
 from tui.cli.options import add_file, add_recording
 from tui.cli.output import progress, warn, write_csv
 from tui.words.numbers import file_size
@@ -16,58 +16,68 @@ from tui.words.numbers import file_size
 if TYPE_CHECKING:
     from recordings.recording import Recording
 
-FORMATS = ("csv", "foxglove")
+ROWS_AT_ONCE = 100_000  # of Parquet
+
 EXAMPLES = """\
 examples:
-  pendu-tui export latest --format csv -o latest.csv
-  pendu-tui export drift --format csv | head -3
-  pendu-tui export latest --format foxglove -o layout.json
-
-A film of a recording: asciinema rec -c "pendu-tui replay drift" drift.cast
+  pendu-tui export latest -o latest.csv
+  pendu-tui export drift | head -3
+  pendu-tui export drift --format parquet -o drift.parquet
 """
+
+Rows = Iterator[tuple[object, ...]]
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_recording(parser)
-    parser.add_argument("--format", choices=FORMATS, default="csv", help="output format (%(default)s)")
+    parser.add_argument("--format", choices=("csv", "parquet"), default="csv", help="output format (%(default)s)")
     add_file(parser, "-o", "--output", metavar="OUT", type=Path, help="write to OUT instead of stdout")
     parser.add_argument("--force", action="store_true", help="overwrite OUT")
 
 
 def run(options: argparse.Namespace) -> int:
     from recordings import library
+    from recordings.fields import columns
     from recordings.recording import Recording
 
+    if options.format == "parquet" and options.output is None:
+        raise UserError("Parquet is no text: name a file with -o.")
     path = library.resolve(options.file)
-    with (
-        Recording.open(path) as recording,
-        progress(printable(path.name)) as show,
-        text_file(options.output, options.force) as out,
-    ):
-        if options.format == "csv":
-            from recordings.fields import columns
-
-            head = columns(*recording.models)
-            write_csv(out, head, _rows(recording, len(head), show))
+    with Recording.open(path) as recording, progress(printable(path.name)) as show:
+        rows = _rows(recording, show)
+        if options.format == "parquet":
+            _write_parquet(options.output, options.force, columns(recording.models), rows)
         else:
-            from tui.commands.files.foxglove import layout
-
-            print(json.dumps(layout(recording.keys), indent=2), file=out)
+            with text_file(options.output, options.force) as out:
+                write_csv(out, columns(recording.models), rows)
         if recording.reason:
             warn(f"{printable(str(path))}: {recording.reason}; the rest is exported.")
     if options.output:
         size = file_size(options.output.stat().st_size)
-        what = "a layout for" if options.format == "foxglove" else f"{recording.length:g} s of"
-        warn(f"wrote {what} {printable(path.name)}, {size}: {printable(str(options.output))}")
+        name = printable(str(options.output))
+        warn(f"wrote {recording.length:g} s of {printable(path.name)}, {size}: {name}")
     return Exit.FINE
 
 
-def _rows(recording: "Recording", width: int, show: Callable[[int, int], None]) -> "Iterator[tuple[object, ...]]":
-    from engine.run.lockstep import Sample
+def _rows(recording: "Recording", show: Callable[[int, int], None]) -> Rows:
     from recordings.fields import rows
 
-    samples = ((clock, value) for clock, value in recording.entries() if isinstance(value, Sample))
-    for count, (clock, sample) in enumerate(samples, 1):
-        yield from rows(clock, sample, recording.methods_of(sample.run), width)
+    for count, (clock, sample) in enumerate(recording.samples_between(), 1):
+        yield from rows(clock, sample, recording.methods_of(sample.run), recording.models)
         if count % 1000 == 0:
             show(count, recording.samples)
+
+
+def _write_parquet(path: Path, force: bool, columns: tuple[str, ...], rows: Rows) -> None:
+    try:
+        import pyarrow
+        from pyarrow.parquet import ParquetWriter
+    except ImportError:
+        raise UserError("--format parquet needs pyarrow: pip install pyarrow.") from None
+
+    types = {"run": pyarrow.int64(), "step": pyarrow.int64(), "method": pyarrow.string()}
+    schema = pyarrow.schema([(name, types.get(name, pyarrow.float64())) for name in columns])
+    with whole_file(path, force) as part, ParquetWriter(part, schema) as writer:
+        while some := list(islice(rows, ROWS_AT_ONCE)):
+            values = dict(zip(columns, zip(*some, strict=True), strict=True))
+            writer.write_table(pyarrow.table(values, schema))

@@ -1,35 +1,54 @@
-"""List the recordings in the library, newest first, or prune them."""
+"""List the recordings, show what is in one, recover a damaged one, or delete old ones."""
 
 import argparse
 import re
 import sys
 import time
+from dataclasses import asdict
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from recordings.errors import RecordingError, printable
 from tui.cli.errors import Exit, UserError
-from tui.cli.options import count
-from tui.cli.output import write_json
-from tui.cli.report import print_table
-from tui.words.numbers import file_size, seconds
+from tui.cli.files import check_free
+from tui.cli.options import add_file, add_recording, count
+from tui.cli.output import progress
+from tui.cli.report import Column, Report, Table, add_report_options, form_of
+from tui.words.numbers import counted, file_size, seconds
 
 if TYPE_CHECKING:
     from recordings.library import Item
+    from recordings.recording import Recording
+    from recordings.recovery import Recovery
+
+MAX_RUNS_SHOWN = 1000
 
 EXAMPLES = """\
 examples:
   pendu-tui recordings
+  pendu-tui recordings show latest
+  pendu-tui recordings recover swing.mcap.part -o swing.mcap
   pendu-tui recordings prune --keep 20
   pendu-tui recordings prune --size 500MB --yes
 """
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    actions = ("list", "prune")
+    verbs = {"list": _list, "show": _show, "recover": _recover, "prune": _prune}
     parser.add_argument(
-        "action", metavar="|".join(actions), nargs="?", choices=actions, default="list", help="what to do (%(default)s)"
+        "verb",
+        metavar="|".join(verbs),
+        nargs="?",
+        choices=list(verbs),
+        default="list",
+        help="what to do (%(default)s)",
     )
-    parser.add_argument("--json", action="store_true", help="one JSON object")
+    add_recording(parser, nargs="?", help="of show and recover: a file, latest, or a name")
+    add_report_options(parser)
+    parser.set_defaults(verbs=verbs)
+    group = parser.add_argument_group("recover")
+    add_file(group, "-o", "--output", metavar="OUT", type=Path, help="the file to write")
+    group.add_argument("--force", action="store_true", help="overwrite OUT")
     group = parser.add_argument_group("prune")
     group.add_argument("--keep", metavar="N", type=count, help="keep the N newest")
     group.add_argument("--size", metavar="SIZE", type=size, help="keep the newest up to SIZE in total, e.g. 500MB")
@@ -37,56 +56,186 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def size(text: str) -> int:
-    """A size in bytes from `500MB`, `1.5 GB` or `2000000`."""
+    """Return a size in bytes from `500MB`, `1.5 GB` or `2000000`."""
     match = re.fullmatch(r"(\d{1,9}(?:\.\d{1,9})?) ?([kMGT]?)B?", text)
     if not match:
         raise argparse.ArgumentTypeError(f"{text!r} is not a size; use for example 500MB or 2GB")
-    return int(float(match[1]) * 1000 ** ("kMGT".index(match[2]) + 1 if match[2] else 0))
+    power = "kMGT".index(match[2]) + 1 if match[2] else 0
+    return int(float(match[1]) * 1000**power)
+
+
+OPTIONS = {
+    "file": ("show", "recover"),
+    "output": ("recover",),
+    "force": ("recover",),
+    "keep": ("prune",),
+    "size": ("prune",),
+    "yes": ("prune",),
+}
+"""Option -> the verbs that it belongs to."""
 
 
 def run(options: argparse.Namespace) -> int:
-    if options.action == "prune":
-        return _prune(options)
-    if options.keep is not None or options.size is not None:
-        raise UserError("--keep and --size belong to pendu-tui recordings prune.")
-    from recordings import library
-
-    all_facts, leftovers = [_facts(item) for item in library.listing()], library.leftovers()
-    if options.json:
-        write_json("recordings", {"folder": str(library.folder()), "recordings": all_facts})
-        return Exit.FINE
-    if not all_facts:
-        print(f"No recordings in {printable(str(library.folder()))} yet; start pendu-tui to make one.")
-    else:
-        rows = []
-        for facts in all_facts:
-            finished = time.strftime("%Y-%m-%d %H:%M", time.localtime(facts["modified"]))
-            length = "-" if facts["seconds"] is None else seconds(facts["seconds"])
-            scenes = facts["reason"] or ", ".join(facts["scenes"])
-            rows.append((facts["file"], finished, scenes, length, file_size(facts["bytes"])))
-        print_table("lllrr", ("recording, newest first", "finished", "scenes", "length", "size"), rows)
-    for path in library.being_made():
-        print(f"recording now: {printable(str(path.with_suffix('')))}, {file_size(path.stat().st_size)} so far")
-    for path in leftovers:
-        print(f"unfinished: {printable(str(path))}; will be recovered the next time the lab starts")
+    for name, verbs in OPTIONS.items():
+        if getattr(options, name) and options.verb not in verbs:
+            option = "a file" if name == "file" else f"--{name}"
+            raise UserError(f"{option} belongs to pendu-tui recordings {' or '.join(verbs)}.")
+    if options.verb in ("show", "recover") and options.file is None:
+        raise UserError(f"name a recording: pendu-tui recordings {options.verb} FILE.")
+    report = options.verbs[options.verb](options)
+    report.show(form_of(options))
     return Exit.FINE
 
 
+def _list(options: argparse.Namespace) -> Report:
+    from recordings import library
+
+    rows = [_facts(item) for item in library.listing()]
+    folder = library.folder()
+    title = ""
+    if not rows:
+        title = f"No recordings in {printable(str(folder))} yet; start pendu-tui to make one."
+    notes = [f"recording now: {printable(str(path.with_suffix('')))}" for path in library.being_made()]
+    notes += [
+        f"unfinished: {printable(str(path))}; will be recovered the next time the lab starts"
+        for path in library.leftovers()
+    ]
+    columns = (
+        Column("recording, newest first", "file"),
+        Column("finished", _finished),
+        Column("scenes", lambda row: row["reason"] or ", ".join(row["scenes"])),
+        Column("length", lambda row: row["seconds"] and seconds(row["seconds"]), right=True),
+        Column("size", lambda row: file_size(row["bytes"]), right=True),
+    )
+    return Report(
+        name="recordings",
+        title=title,
+        columns=columns if rows else (),
+        rows=rows,
+        fields={"folder": str(folder), "recordings": rows},
+        notes=notes,
+    )
+
+
+def _finished(row: dict[str, Any]) -> str:
+    return time.strftime("%Y-%m-%d %H:%M", time.localtime(row["modified"]))
+
+
 def _facts(item: "Item") -> dict[str, Any]:
-    """What --json shows of a recording."""
     from recordings.recording import Recording
 
-    known: dict[str, Any] = {"seconds": None, "scenes": [], "reason": None}
+    facts = {"file": str(item.path), "bytes": item.bytes, "modified": item.modified}
     try:
         with Recording.open(item.path) as recording:
             scenes = list(dict.fromkeys(run.scene.name for run in recording.runs))
-            known = {"seconds": recording.length, "scenes": scenes, "reason": recording.reason}
+            return facts | {
+                "seconds": recording.length,
+                "scenes": scenes,
+                "reason": recording.reason,
+            }
     except RecordingError as error:
-        known["reason"] = str(error)
-    return {"file": str(item.path), "bytes": item.bytes, "modified": item.modified, **known}
+        return facts | {"seconds": None, "scenes": [], "reason": str(error)}
 
 
-def _prune(options: argparse.Namespace) -> int:
+def _show(options: argparse.Namespace) -> Report:
+    from recordings.library import resolve
+    from recordings.recording import Recording
+
+    path = resolve(options.file)
+    with (
+        progress(printable(path.name)) as show,
+        Recording.open(path, check=True, progress=show) as recording,
+    ):
+        return _contents(recording)
+
+
+def _contents(recording: "Recording") -> Report:
+    from recordings.format import FORMAT_VERSION
+
+    health = recording.reason or "complete"
+    facts = {
+        "file": str(recording.path),
+        "health": f"damaged: {health}" if recording.damaged else health,
+        "length": seconds(recording.length),
+        "size": f"{file_size(recording.bytes)}, {counted(recording.samples, 'sample')}",
+        "methods": ", ".join(recording.methods),
+        **recording.about,
+    }
+    runs = [
+        {
+            "run": run.number,
+            "scene": run.scene.fields(),
+            "steps": run.steps,
+            "time": run.t,
+            "seconds": run.end - run.begin,
+            "inputs": run.inputs,
+            "numerics": run.arithmetic.numerics,
+        }
+        for run in recording.runs
+    ]
+    columns = (
+        Column("run", "run", right=True),
+        Column("scene", lambda run: run["scene"]["name"]),
+        Column("theta [rad]", lambda run: f"{run['scene']['theta']:g}", right=True),
+        Column("omega [rad/s]", lambda run: f"{run['scene']['omega']:g}", right=True),
+        Column("h [s]", lambda run: f"{run['scene']['h']:g}", right=True),
+        Column("steps", "steps", right=True),
+        Column("simulated s", "time", "g"),
+        Column("recorded s", "seconds", ".2f"),
+        Column("inputs", "inputs", right=True),
+    )
+    more = len(runs) - MAX_RUNS_SHOWN
+    notes: list[Any] = [Table(columns, runs[:MAX_RUNS_SHOWN])]
+    if more > 0:
+        notes.append(f"... and {more} more runs; --json lists all.")
+    return Report(
+        name="recordings-show",
+        columns=(Column("", "name"), Column("", "value")),
+        rows=[{"name": name, "value": value} for name, value in facts.items()],
+        fields={
+            "file": str(recording.path),
+            "format": int(FORMAT_VERSION),
+            "complete": recording.complete,
+            "damaged": recording.damaged,
+            "reason": recording.reason,
+            "runs": runs,
+            "methods": recording.methods,
+            "samples": recording.samples,
+            "seconds": recording.length,
+            "bytes": recording.bytes,
+            "about": recording.about,
+        },
+        notes=notes,
+    )
+
+
+def _recover(options: argparse.Namespace) -> Report:
+    from recordings.library import resolve
+    from recordings.recovery import recover
+
+    if options.output is None:
+        raise UserError("name the file to write: -o OUT.")
+    path = resolve(options.file)
+    check_free(options.output, options.force)
+    with progress(printable(path.name)) as show:
+        recovery = recover(path, options.output, show, options.force)
+    fields = asdict(recovery) | {"file": str(recovery.file), "out": str(recovery.out)}
+    return Report(name="recordings-recover", fields=fields, notes=_sentences(recovery))
+
+
+def _sentences(recovery: "Recovery") -> list[str]:
+    saved = counted(recovery.samples_kept, "sample")
+    lines = [f"{printable(str(recovery.out))}: {saved} saved."]
+    if recovery.reason:
+        lines.append(f"Problem: {recovery.reason}.")
+    if recovery.entries_lost:
+        lines.append(f"Lost: {recovery.entries_lost} samples and events.")
+    if recovery.runs_lost:
+        lines.append(f"Runs not saved because their start is missing: {recovery.runs_lost}.")
+    return lines
+
+
+def _prune(options: argparse.Namespace) -> Report:
     from recordings import library
 
     if options.keep is None and options.size is None:
@@ -95,13 +244,12 @@ def _prune(options: argparse.Namespace) -> int:
     if doomed and not options.yes and not _confirmed(doomed):
         doomed = []
     deleted = library.prune(doomed)
-    if options.json:
-        write_json("recordings", {"deleted": [str(item.path) for item in deleted]})
-        return Exit.FINE
-    print(f"deleted {len(deleted)} recordings, {file_size(sum(item.bytes for item in deleted))}")
+    freed = file_size(sum(item.bytes for item in deleted))
+    notes = [f"deleted {counted(len(deleted), 'recording')}, {freed}"]
     if len(deleted) < len(doomed):
-        print(f"{len(doomed) - len(deleted)} more could not be deleted (in use?)")
-    return Exit.FINE
+        notes.append(f"{len(doomed) - len(deleted)} more could not be deleted (in use?)")
+    fields = {"deleted": [str(item.path) for item in deleted]}
+    return Report(name="recordings-prune", fields=fields, notes=notes)
 
 
 def _confirmed(doomed: "list[Item]") -> bool:
@@ -109,5 +257,6 @@ def _confirmed(doomed: "list[Item]") -> bool:
         raise UserError("not a terminal, cannot ask: add --yes to delete.")
     for item in doomed:
         print(printable(str(item.path)), file=sys.stderr)
-    print(f"Delete these {len(doomed)} recordings? [y/N] ", end="", file=sys.stderr, flush=True)
+    question = f"Delete these {counted(len(doomed), 'recording')}? [y/N] "
+    print(question, end="", file=sys.stderr, flush=True)
     return sys.stdin.readline().strip().lower() in ("y", "yes")

@@ -1,8 +1,8 @@
 """Re-simulate recordings from their recorded inputs, and compare every number bit for bit."""
 
 import argparse
-import math
 from collections.abc import Iterator
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,11 +11,12 @@ from recordings.library import PART
 from tui.cli.cast import add_cast_options, cast_of, own_methods
 from tui.cli.errors import Exit
 from tui.cli.options import add_recording, count
-from tui.cli.output import difference_fields, fields_of, progress, warn, write_json
+from tui.cli.output import progress, warn
+from tui.cli.report import Report, add_report_options, form_of
 from tui.words.numbers import counted
 
 if TYPE_CHECKING:
-    from recordings.verify import Difference, Verification
+    from recordings.verification import Difference
 
 EXAMPLES = """\
 examples:
@@ -25,125 +26,127 @@ examples:
   pendu-tui verify crossover.mcap --methods rk4
 
 A folder means all recordings below it; golden means the bundled ones.
-A recording holds a SHA-256 of all that is in it, which shows what was changed, added or left out later. It proves
-nothing against somebody who recomputes it.
 Exit 0: all are identical; 1: at least one differs or is incomplete (a .part may be); 3: one cannot be read.
 """
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    add_recording(parser, "files", nargs="+", help="a file, a folder, latest, or a name such as drift")
+    about = "a file, a folder, latest, or a name such as drift"
+    add_recording(parser, "files", nargs="+", help=about)
     add_cast_options(parser, "all of a recording's")
     parser.add_argument(
         "--max-steps",
         metavar="N",
         type=count,
         default=10_000_000,
-        help="simulate at most so many steps of each recording (%(default)s)",
+        help="simulate at most N steps of each recording (%(default)s)",
     )
-    parser.add_argument("--json", action="store_true", help="one JSON object")
+    add_report_options(parser)
 
 
 def run(options: argparse.Namespace) -> int:
-    results: list[tuple[Path, Verification | RecordingError]] = []
     own = own_methods(options)
     if own:
         from recordings.events import remember
 
         remember(own)
-    only = None if options.methods is None else [method.key for method in cast_of(options, ())]
-    for path, result in (verified for name in options.files for verified in _verified(name, options.max_steps, only)):
-        results.append((path, result))
-        if options.json:
-            continue
-        if isinstance(result, RecordingError):
-            warn(str(result))
-        else:
-            print(_sentence(result))
-    passed = [_passes(result) for _, result in results]
+    rows = []
+    for path, refusal in (found for name in options.files for found in _files(name)):
+        row = _row(path, refusal, options)
+        rows.append(row)
+        if not options.json:
+            show = warn if row["error"] else print
+            show(_sentence(row))
+    passed = sum(row["passes"] for row in rows)
     if options.json:
-        write_json("verify", {"files": [_fields(path, result) for path, result in results]})
-    elif len(results) > 1:
-        print(f"{len(results)} recordings, {sum(passed)} identical")
-    if any(isinstance(result, RecordingError) for _, result in results):
+        Report(name="verify", fields={"files": rows}).show(form_of(options))
+    elif len(rows) > 1:
+        print(f"{len(rows)} recordings, {passed} identical")
+    if any(row["error"] for row in rows):
         return Exit.INPUT_UNREADABLE
-    return Exit.FINE if all(passed) else Exit.CHECK_FAILED
+    return Exit.FINE if passed == len(rows) else Exit.CHECK_FAILED
 
 
-def _passes(result: "Verification | RecordingError") -> bool:
-    """Whether nothing differs and, except in a .part, nothing is missing."""
-    if isinstance(result, RecordingError):
-        return False
-    return result.identical and result.sealed is not False and (result.complete or result.file.suffix == PART)
-
-
-def _verified(
-    name: str, max_steps: int, only: list[str] | None
-) -> "Iterator[tuple[Path, Verification | RecordingError]]":
-    """Verify the recordings that a name on the command line stands for, the unreadable ones notwithstanding."""
+def _files(name: str) -> Iterator[tuple[Path, RecordingError | None]]:
+    """Yield the recordings that a name on the command line stands for, or why there is none."""
     from recordings import library
-    from recordings.verify import verify
 
-    path = library.GOLDEN if name == "golden" and not Path(name).exists() else Path(name)
+    path = Path(name)
+    if name == "golden" and not path.exists():
+        path = library.GOLDEN
     try:
         files = sorted(path.rglob("*.mcap")) if path.is_dir() else [library.resolve(name)]
-        if not files:
-            raise RecordingError(f"{printable(name)}: no recordings in this folder.")
     except RecordingError as error:
         yield path, error
         return
+    if not files:
+        yield path, RecordingError(f"{printable(name)}: no recordings in this folder.")
     for file in files:
-        result: Verification | RecordingError
+        yield file, None
+
+
+def _row(path: Path, refusal: RecordingError | None, options: argparse.Namespace) -> dict[str, Any]:
+    """Verify a recording, and return the result, or the reason why it cannot be read."""
+    from recordings.verification import Verification, verify
+
+    only = None
+    if options.methods is not None:
+        only = [method.key for method in cast_of(options, ())]
+    result = Verification(path)
+    if refusal is None:
         try:
-            with progress(printable(file.name)) as show:
-                result = verify(file, show, max_steps, only)
+            with progress(printable(path.name)) as show:
+                result = verify(path, show, options.max_steps, only)
         except RecordingError as error:
-            result = error
-        yield file, result
-
-
-def _sentence(result: "Verification") -> str:
-    name = printable(str(result.file))
-    size = f"{counted(result.samples, 'sample')} in {counted(result.runs, 'run')}"
-    end = "" if result.complete else f"; {result.reason}"
-    others = " and ".join(f"{name}()" for name in result.other_functions)
-    notes = f"; within tolerance only: this machine has another {others}" if others else ""
-    notes += "; it has no digest" if result.sealed is None else ""
+            refusal = error
     first = result.first_difference
-    where = "" if first is None else f"\n{_where(first)}"
-    if result.sealed is False:
-        numbers = "identical" if first is None else "different"
-        return f"altered     {name}: {size}; {result.reason}; its numbers are {numbers}{notes}{where}"
-    if result.identical and not _passes(result):
-        return f"unfinished  {name}: {size}{end}; identical as far as it goes{notes}"
-    if result.identical:
-        return f"identical   {name}: {size}{end}{notes}"
-    if first is None:
-        return f"damaged     {name}: {size} before it; {result.reason}"
-    return f"different   {name}: {size}{end}{notes}{where}"
-
-
-def _where(difference: "Difference") -> str:
-    place = f"run {difference.run}, step {difference.step}, t = {difference.t:g} s"
-    lines = [f"  first in {difference.field} at {place}, {difference.method or 'all methods'}:"]
-    for what, value in (("recorded", difference.recorded), ("computed", difference.computed)):
-        lines.append(f"    {what} nothing" if value is None else f"    {what} {value!r} ({value.hex()})")
-    if difference.ulps is not None:
-        lines.append(f"    {difference.ulps} ulps apart")
-    return "\n".join(lines)
-
-
-def _fields(path: Path, result: "Verification | RecordingError") -> dict[str, Any]:
-    if isinstance(result, RecordingError):
-        nothing: dict[str, Any] = {"complete": False, "runs": 0, "samples": 0, "same_sin": None, "identical": False}
-        nothing |= dict.fromkeys(("other_functions", "sha256", "digest_matches", "max_difference", "first_difference"))
-        return {"file": str(path), **nothing, "reason": str(result)}
-    first = result.first_difference
+    passes = result.identical and (result.complete or result.file.suffix == PART)
     return {
-        "file": str(path),
-        **fields_of(result, "complete", "runs", "samples", "same_sin", "identical", "other_functions", "sha256"),
-        "digest_matches": result.sealed,
-        "max_difference": result.max_difference if math.isfinite(result.max_difference) else None,
-        "first_difference": first and difference_fields(first, ("run", "step", "t"), ("recorded", "computed")),
-        "reason": result.reason,
+        **asdict(result),
+        "file": str(result.file),
+        "max_difference": min(result.max_difference, 1e300),
+        "first_difference": first and _difference_fields(first),
+        "passes": passes,
+        "error": refusal and str(refusal),
     }
+
+
+def _difference_fields(difference: "Difference") -> dict[str, Any]:
+    return asdict(difference) | {"ulps": difference.ulps}
+
+
+def _sentence(row: dict[str, Any]) -> str:
+    if row["error"]:
+        return str(row["error"])
+    from engine.run import NUMERICS
+
+    size = f"{counted(row['samples'], 'sample')} in {counted(row['runs'], 'run')}"
+    if not row["complete"]:
+        size += f"; {row['reason']}"
+    if row["other_functions"]:
+        others = " and ".join(f"{name}()" for name in row["other_functions"])
+        size += f"; within tolerance only: this machine has another {others}"
+    if row["numerics"] != NUMERICS:
+        size += f"; made with version {row['numerics']} of the numerics, this is version {NUMERICS}"
+    verdict = "damaged"
+    if row["first_difference"]:
+        verdict = "different"
+        size += f"\n{_where(row['first_difference'])}"
+    elif row["passes"]:
+        verdict = "identical"
+    elif row["identical"]:
+        verdict = "unfinished"
+        size += "; identical as far as it goes"
+    return f"{verdict:<11} {printable(row['file'])}: {size}"
+
+
+def _where(first: dict[str, Any]) -> str:
+    place = f"run {first['run']}, step {first['step']}, t = {first['t']:g} s"
+    lines = [f"  first in {first['field']} at {place}, {first['method'] or 'all methods'}:"]
+    for name in ("recorded", "computed"):
+        value = first[name]
+        number = "nothing" if value is None else f"{value!r} ({value.hex()})"
+        lines.append(f"    {name} {number}")
+    if first["ulps"] is not None:
+        lines.append(f"    {first['ulps']} ulps apart")
+    return "\n".join(lines)

@@ -1,0 +1,43 @@
+"""Arithmetic: what the bits of a run depend on besides its inputs."""
+
+import hashlib
+import math
+import struct
+from functools import cache
+from typing import NamedTuple
+
+from engine.run import NUMERICS
+
+FUNCTIONS = ("sin", "sqrt")
+"""Library functions that the simulation calls; + - * / give the same bits everywhere."""
+
+
+class Arithmetic(NamedTuple):
+    """The version of the numerics, and fingerprints of the library functions, where a run was made."""
+
+    numerics: int
+    sin: str
+    sqrt: str
+
+    def other_functions(self) -> tuple[str, ...]:
+        """Return the names of the functions that this machine computes differently."""
+        here = arithmetic_here()
+        return tuple(name for name in FUNCTIONS if getattr(self, name) != getattr(here, name))
+
+
+@cache
+def fingerprint(function: str) -> str:
+    """Return a checksum of this machine's sin or sqrt at 4096 places from 1e-8 to 1e8.
+
+    Another libm, or the same one on another processor, rounds one sine in 1400 the other way.
+    """
+    arguments = ((-1) ** i * 10 ** (i / 256 - 8) * 1.1 for i in range(4096))
+    if function == "sqrt":
+        arguments = (abs(x) for x in arguments)
+    values = map(getattr(math, function), arguments)
+    return hashlib.sha256(struct.pack("<4096d", *values)).hexdigest()[:16]
+
+
+def arithmetic_here() -> Arithmetic:
+    """Return the arithmetic of this version on this machine."""
+    return Arithmetic(NUMERICS, fingerprint("sin"), fingerprint("sqrt"))

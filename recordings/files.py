@@ -1,0 +1,91 @@
+"""Files that are written whole or not at all.
+
+A file is written under a temporary name beside its target, and gets its name only once it is finished and
+only if the name is still free, or may be replaced.
+"""
+
+import os
+import stat
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from recordings.errors import DiskError, NameTakenError, printable, writing
+
+
+def check_target(path: Path, force: bool = False) -> None:
+    """Raise DiskError if a file cannot become `path`: the name is taken, or its folder is missing."""
+    if os.path.lexists(path) and (not force or path.is_dir()):
+        advice = "" if path.is_dir() else ", or --force to overwrite it"
+        raise NameTakenError(f"already exists; choose another name{advice}", path)
+    if not path.parent.is_dir():
+        raise DiskError(f"no folder {printable(str(path.parent))}; create the folder first", path)
+
+
+def is_stream(path: Path) -> bool:
+    """Return whether this is a device, a pipe or a socket, which is never replaced by a file."""
+    try:
+        mode = path.stat().st_mode
+    except OSError:
+        return False
+    return not stat.S_ISREG(mode) and not stat.S_ISDIR(mode)
+
+
+@contextmanager
+def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
+    """Yield the path to write to; what is there at the end gets the name `path`.
+
+    If the block raises, nothing is left of it and an older file stays as it was.  A device or a pipe is
+    written to as it is.  Raises DiskError before the block if the name is taken.
+    """
+    if is_stream(path):
+        yield path
+        return
+    check_target(path, force)
+    with writing(path):
+        handle, name = tempfile.mkstemp(prefix=f".{path.name[:100]}.", suffix=".part", dir=path.parent)
+        os.close(handle)
+    part = Path(name)
+    try:
+        with writing(path):
+            part.chmod(0o666 & ~_umask())  # mkstemp makes it private
+        yield part
+        publish(part, path, force)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def publish(part: Path, path: Path, force: bool = False) -> None:
+    """Give a finished file its name.  Raises NameTakenError if another one has it by now."""
+    with writing(path):
+        if force:
+            part.replace(path)
+            return
+        try:
+            os.link(part, path)
+        except FileExistsError as error:
+            raise NameTakenError("a file of this name appeared meanwhile", path) from error
+        except OSError:  # no links on this file system
+            _copy(part, path)
+        part.unlink()
+
+
+def _copy(part: Path, path: Path) -> None:
+    try:
+        with part.open("rb") as source, path.open("xb") as target:
+            try:
+                while block := source.read(1 << 20):
+                    target.write(block)
+            except BaseException:
+                with suppress(OSError):
+                    path.unlink()
+                raise
+    except FileExistsError as error:
+        raise NameTakenError("a file of this name appeared meanwhile", path) from error
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

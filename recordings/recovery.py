@@ -1,0 +1,95 @@
+"""Recover: write what is intact of a damaged or unfinished recording as a whole one.
+
+Chunks are kept or dropped as they are; no number is repaired, guessed or changed.
+"""
+
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+
+from recordings.errors import DiskError, RecordingError, named, printable
+from recordings.events import Event
+from recordings.fields import without_extremes
+from recordings.library import PART, alone_with, free_path, open_file
+from recordings.reader import Decoder, Scan, ShowProgress
+from recordings.recorder import Recorder
+
+
+@dataclass(frozen=True, slots=True)
+class Recovery:
+    """The result of a recovery."""
+
+    file: Path
+    out: Path
+    damaged: bool  # more was wrong than that it was not finished
+    reason: str | None  # what was wrong, a clause; None if nothing was
+    samples_kept: int
+    entries_lost: int  # samples and events, as far as the numbers of the others show
+    runs_lost: int  # runs whose start was lost
+
+
+def recover(path: Path, out: Path, progress: ShowProgress | None = None, overwrite: bool = False) -> Recovery:
+    """Write what is intact of `path` to `out`, which appears only when it is whole.
+
+    Raises RecordingError if nothing can be saved, DiskError if `out` cannot be written.
+    """
+    if out.exists() and path.exists() and out.samefile(path):
+        raise DiskError("is the recording to recover; choose another name", out)
+    with named(path), open_file(path) as stream:
+        scan = Scan(stream, progress)
+        decoder = Decoder(scan.channels)
+        recorder: Recorder | None = None
+        lost = 0
+        with ExitStack() as stack:
+            for _, messages in scan:
+                for _, (clock, value) in decoder.entries(messages):
+                    if recorder is None:
+                        about = decoder.about | {"recovered": "yes"}
+                        recorder = Recorder(out, None, overwrite, about)
+                        stack.callback(recorder.discard)
+                    if isinstance(value, Event):
+                        recorder.event(value, clock)
+                        continue
+                    has_gap = scan.entries_lost > lost
+                    lost = scan.entries_lost
+                    recorder.sample(without_extremes(value) if has_gap else value, clock)
+            if recorder is None or not recorder.samples:
+                raise RecordingError(scan.reason or "it has no samples")
+            stack.pop_all()
+            recorder.close()
+        return Recovery(
+            file=path,
+            out=recorder.path,
+            damaged=scan.damaged,
+            reason=scan.reason,
+            samples_kept=recorder.samples,
+            entries_lost=scan.entries_lost,
+            runs_lost=len(decoder.lost_runs),
+        )
+
+
+def rescue(leftover: Path, progress: ShowProgress | None = None) -> str:
+    """Make a recording of a leftover, and return a sentence about it.
+
+    The leftover is removed once all of it is in the recording, or if it was empty; otherwise it is renamed,
+    so that it is not found again.  Raises OSError if the disk fails.
+    """
+    with alone_with(leftover):
+        if leftover.stat().st_size == 0:
+            leftover.unlink()
+            return f"An unfinished recording was empty: {printable(str(leftover))}."
+        name = leftover.with_name(leftover.name.removesuffix(PART))
+        try:
+            recovery = recover(leftover, free_path(name), progress)
+        except RecordingError as error:
+            kept = leftover.rename(free_path(leftover.with_name(leftover.name + ".unreadable")))
+            return f"An unfinished recording cannot be recovered: {error} It is kept as {printable(str(kept))}."
+        if not recovery.damaged:
+            leftover.unlink()
+            saved = recovery.out if name.exists() else recovery.out.rename(name)
+            return f"An unfinished recording was recovered: {printable(str(saved))}."
+        kept = leftover.rename(free_path(leftover.with_name(leftover.name + ".damaged")))
+        return (
+            f"An unfinished recording was recovered: {printable(str(recovery.out))},"
+            f" {recovery.entries_lost} entries are lost. The original is kept as {printable(str(kept))}."
+        )
