@@ -29,6 +29,7 @@ class Method:
     key: str  # in topics, JSON and on the command line
     label: str  # for people
     letter: str  # its mark on charts, never colour alone
+    hue: int | None = None  # its own number on every palette; None: the next free one of the cast
     phases: Phases
     formula: str
     order: int  # global order on the nonlinear pendulum, over at most one period

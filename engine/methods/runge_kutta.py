@@ -49,6 +49,7 @@ RK4 = Method(
     key="rk4",
     label="RK4",
     letter="r",
+    hue=3,
     phases=rk4,
     formula="y' = y + h/6 (k1 + 2 k2 + 2 k3 + k4), the slopes k at the start, twice the middle, the end",
     order=4,

@@ -27,6 +27,7 @@ VELOCITY_VERLET = Method(
     key="velocity_verlet",
     label="Velocity Verlet",
     letter="v",
+    hue=2,
     phases=velocity_verlet,
     formula="omega½ = omega + h/2 a(theta);  theta' = theta + h omega½;  omega' = omega½ + h/2 a(theta')",
     order=2,

@@ -1,28 +1,28 @@
-"""The owners of characters, and their colours in each theme.
+"""Inks, and their colours in each theme.
 
-Every character of a picture has an owner, a method or one of those below; only here does an owner become
-a colour.  Colour is never alone: methods also have a digit and a letter.
+Every character of a picture has an ink, a method's or one of those below; only here does an ink become a colour.
+Colour is never alone: methods also have a digit and a letter.
 """
 
+import itertools
 from typing import NamedTuple
-from zlib import crc32
 
-from engine.methods import METHODS, Method
+from engine.methods import Cast, Method
 
 EXACT, FRAME, TEXT, WARN, QUIET, GOOD, NOBODY = -1, -2, -3, -4, -5, -6, -7
-"""Owners that are not methods (whose numbers are their `series`): exact motion, lines and borders, text, warnings,
-text that matters less, what is as it should be, blanks.  FRAME is too faint for words."""
+"""Inks that are not methods': exact motion, lines and borders, text, warnings, text that matters less, what is as it
+should be, blanks.  FRAME is too faint for words."""
 
 FAINT = 64
-"""Added to a method's series: its fainter colour, for trails."""
+"""Added to a method's ink: its fainter colour, for trails."""
 
-_SERIES = {method.key: number for number, method in enumerate(METHODS)}
+CLASSICS = 4  # inks from 0 that belong to methods, by `Method.hue`
 
 
 class Palette(NamedTuple):
     """The colours of a theme as #rrggbb, or as Rich's names of the terminal's own 16."""
 
-    methods: tuple[str, ...]  # by series, which share them where there are more
+    methods: tuple[str, ...]  # by ink: the classics', then six for all others
     exact: str
     frame: str
     text: str
@@ -30,25 +30,28 @@ class Palette(NamedTuple):
     background: str
     good: str
 
-    def colour(self, owner: int) -> str:
-        """The colour of an owner; a ninth method gets another shade of the first one's colour, and so on."""
-        if owner >= FAINT:
-            return mixed(self.colour(owner - FAINT), self.background, 0.5)
-        if owner >= 0:
-            lap, index = divmod(owner, len(self.methods))
+    def colour(self, ink: int) -> str:
+        """Return the colour of an ink; beyond ten methods, other shades of the same ten."""
+        if ink >= FAINT:
+            return mixed(self.colour(ink - FAINT), self.background, 0.5)
+        if ink >= 0:
+            lap, index = divmod(ink, len(self.methods))
             return mixed(self.methods[index], self.text, 1 - 0.6**lap)
         others = {EXACT: self.exact, FRAME: self.frame, WARN: self.warn, QUIET: self.exact, GOOD: self.good}
-        return others.get(owner, self.text)
+        return others.get(ink, self.text)
 
 
-# The methods' colours are optimised for contrast and for separation under all kinds of colour blindness:
-# the worst pair is 19.5 (dark), 16.0 (light) and 21.6 (high-contrast, all with 7:1) apart in OKLab, compared
-# with 3.5 for red, green, yellow and blue.  The terminal's own colours are at least 14.4 apart on black in
-# the palettes of xterm, VGA, Tango and Windows.  Those are the first four; the worst pair of all eight is 10.0, 9.7
-# and 9.2 apart.
+# Optimised for contrast and for distance in OKLab under all kinds of colour blindness, in the casts of the scenes.
+# The worst pair of the classics is 19.5 apart (dark), 13.3 (light) and 21.6 (high-contrast, all with 7:1), of any
+# scene's cast 10.7, 7.8 and 8.8; red, green, yellow and blue are 3.5 apart.  Light colours must be dark to be read on
+# white, yet none is so dark that it is taken for black.  The terminal's own are at least 14.4 apart on black in the
+# palettes of xterm, VGA, Tango and Windows.
 PALETTES = {
     "dark": Palette(
-        methods=("#DF9F20", "#8888DD", "#4CE5E5", "#FBFB51", "#87B4FF", "#B4FFC3", "#F0C378", "#A5780F"),
+        methods=(
+            *("#DF9F20", "#8888DD", "#4CE5E5", "#FBFB51"),
+            *("#FF5599", "#009966", "#CC11FF", "#77BBFF", "#99DD00", "#EE3322"),
+        ),
         exact="#A0A0A0",
         frame="#606468",
         text="#D8D8D8",
@@ -57,7 +60,10 @@ PALETTES = {
         good="#7FD17F",
     ),
     "light": Palette(
-        methods=("#AE3D04", "#5139C6", "#101070", "#631D1D", "#964B96", "#3C5AFF", "#693C69", "#00002D"),
+        methods=(
+            *("#78240C", "#A800FC", "#0C3C90", "#547800"),
+            *("#6C00CC", "#9C546C", "#3C6CCC", "#1818F0", "#6C0C78", "#C024A8"),
+        ),
         exact="#686868",
         frame="#84888C",
         text="#202020",
@@ -66,7 +72,10 @@ PALETTES = {
         good="#006B2D",
     ),
     "high-contrast": Palette(
-        methods=("#EE7766", "#8888FF", "#77FFFF", "#FFDD00", "#69B4F0", "#C3FFA5", "#96D2F0", "#D2B40F"),
+        methods=(
+            *("#EE7766", "#8888FF", "#77FFFF", "#FFDD00"),
+            *("#CCBBFF", "#00BBBB", "#44AA11", "#66EE66", "#BBBB77", "#DD77CC"),
+        ),
         exact="#C0C0C0",
         frame="#A0A0A0",
         text="#FFFFFF",
@@ -75,7 +84,10 @@ PALETTES = {
         good="#9CFF9C",
     ),
     "ansi": Palette(
-        methods=("bright_red", "bright_blue", "bright_cyan", "bright_yellow"),
+        methods=(
+            *("bright_red", "bright_blue", "bright_cyan", "bright_yellow"),
+            *("green", "blue", "red", "cyan", "yellow", "white"),
+        ),
         exact="white",
         frame="white",
         text="bright_white",
@@ -91,14 +103,23 @@ def palette(theme: str) -> Palette:
     return PALETTES.get(theme) or PALETTES["ansi" if "ansi" in theme else "light" if "light" in theme else "dark"]
 
 
-def faint(owner: int) -> int:
-    """The owner of a method's trail; other owners have no fainter shade."""
-    return owner + FAINT if owner >= 0 else owner
+def inks(cast: Cast) -> tuple[int, ...]:
+    """Return the ink of each method of a cast: the classics' own, of the others the next free one."""
+    free = itertools.count(CLASSICS)
+    return tuple(next(free) if method.hue is None else method.hue for method in cast)
 
 
-def series(method: Method) -> int:
-    """A method's number as an owner: the same in every cast, so a method keeps its colour."""
-    return _SERIES.get(method.key, len(_SERIES) + crc32(method.key.encode()) % 8)
+def ink_of(method: Method, cast: Cast) -> int:
+    """Return the ink of a method in a cast; of one that is not in it QUIET, but a classic has its own everywhere."""
+    keys = [each.key for each in cast]
+    if method.key in keys:
+        return inks(cast)[keys.index(method.key)]
+    return QUIET if method.hue is None else method.hue
+
+
+def faint(ink: int) -> int:
+    """Return the ink of a method's trail; other inks have no fainter shade."""
+    return ink + FAINT if ink >= 0 else ink
 
 
 def mark(place: int, method: Method) -> str:

@@ -25,8 +25,7 @@ from tui.drawing.axes import (
 from tui.drawing.canvas import Canvas
 from tui.drawing.chart import SMALLEST, first_free, plot, too_small
 from tui.drawing.loglog import ROOM, Series, row_at
-from tui.drawing.palette import TEXT, faint
-from tui.drawing.palette import series as series_of
+from tui.drawing.palette import TEXT, faint, inks
 from tui.drawing.picture import Picture
 from tui.playback.levels import Window
 from tui.playback.shown import LARGEST, Quantity, Stretch
@@ -170,10 +169,11 @@ def time_chart(
 
 def _part(window: Window, cast: Cast, quantity: Quantity, places: Sequence[int], is_ghost: bool = False) -> _Part:
     low, high = (np.clip(side[quantity][:, places], -LARGEST, LARGEST) for side in (window.low, window.high))
-    inks = [series_of(cast[place]) for place in places]
+    ink = inks(cast)
+    colours = [ink[place] for place in places]
     if is_ghost:
-        return _Part(window, [faint(ink) for ink in inks], [""] * len(inks), low, high)
-    return _Part(window, inks, [cast[place].letter for place in places], low, high)
+        return _Part(window, [faint(each) for each in colours], [""] * len(colours), low, high)
+    return _Part(window, colours, [cast[place].letter for place in places], low, high)
 
 
 def _log_span(window: Window) -> tuple[float, float]:

@@ -3,9 +3,9 @@
 import math
 from collections.abc import Sequence
 
-from engine.methods import Method
+from engine.methods import Cast, Method
 from engine.phase_space.section import OrbitKind, numerical_period
-from tui.drawing.palette import FRAME, TEXT, mark, series
+from tui.drawing.palette import FRAME, TEXT, inks, mark
 from tui.playback.source import Source
 from tui.words.numbers import counted
 
@@ -83,14 +83,14 @@ def period_sentence(source: Source) -> str:
     return f"From this start and with this step, a period takes {', '.join(said)}; the exact one is {exact:.6g} s."
 
 
-def kind_rows(known: Sequence[tuple[int, Method, OrbitKind]], width: int) -> list[_Row]:
+def kind_rows(cast: Cast, known: Sequence[tuple[int, Method, OrbitKind]], width: int) -> list[_Row]:
     """Heads, and a row for each place in the cast, method and kind of its orbit; the first columns that fit."""
     label = 22
     fit = [sum(WIDTHS[: n + 1]) <= width - label for n in range(len(HEADS))]
     rows: list[_Row] = [[(" " * label + _joined(HEADS, fit), FRAME)]]
     for place, method, kind in known:
         title = f" {mark(place, method)} {method.label}".ljust(label)
-        rows.append([(title, series(method)), (_joined(cells(method, kind), fit), TEXT)])
+        rows.append([(title, inks(cast)[place]), (_joined(cells(method, kind), fit), TEXT)])
     return rows
 
 

@@ -8,7 +8,7 @@ from recordings.recording import Recording
 from tests.tui.command_line import pendu
 from tests.tui.drawn import inks
 from tests.tui.harness import after, lab, recorded
-from tui.drawing.palette import faint, series
+from tui.drawing.palette import faint, ink_of
 from tui.playback.ghost import Ghost
 from tui.views.lab.time_chart import TimeChart
 from tui.views.lab.view import LabView
@@ -67,7 +67,7 @@ async def test_it_is_faint_behind_the_same_methods_and_says_which_step_size_it_h
         await theatre.run(5)
         await theatre.settled()
         first = theatre.stage.query_one(LabView).pendulums[1]
-        colour = faint(series(DEFAULT_SCENE.cast[1]))
+        colour = faint(ink_of(DEFAULT_SCENE.cast[1], DEFAULT_SCENE.cast))
         assert colour in inks(first._picture)
         assert first.border_subtitle == "dim: h 0.1 s" or "dim: swing, h 0.1 s" in first.border_subtitle
         chart = theatre.stage.query(TimeChart).first()

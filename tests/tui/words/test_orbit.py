@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import pytest
 
-from engine.methods import RK4, VELOCITY_VERLET
+from engine.methods import RK4, USUAL_CAST, VELOCITY_VERLET
 from engine.phase_space.section import OrbitKind
 from engine.scenes import Scene
 from tui.playback.live import Live
@@ -52,7 +52,7 @@ def test_numbers_that_there_are_not_are_a_hyphen():
 
 @pytest.mark.parametrize(("width", "heads"), [(200, 5), (94, 5), (93, 4), (60, 2), (39, 0)])
 def test_the_table_has_the_columns_that_fit(width, heads):
-    rows = ["".join(text for text, _ in row) for row in kind_rows([(2, VELOCITY_VERLET, ISLAND)], width)]
+    rows = ["".join(text for text, _ in row) for row in kind_rows(USUAL_CAST, [(2, VELOCITY_VERLET, ISLAND)], width)]
     assert rows[0] == " " * 22 + "".join(map(str.rjust, HEADS[:heads], WIDTHS))
     assert rows[1].startswith(" 3 v Velocity Verlet")
     assert len(rows[1]) == len(rows[0]) <= width

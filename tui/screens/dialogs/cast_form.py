@@ -13,7 +13,7 @@ from textual.geometry import Region
 from engine.methods import METHODS, Cast, Method
 from engine.scenes import MOST_METHODS, Scene
 from tui.drawing.cells import CellWidget
-from tui.drawing.palette import TEXT, series
+from tui.drawing.palette import TEXT, ink_of
 from tui.drawing.picture import Picture, Row
 from tui.screens.dialogs.modal import Form
 from tui.words.numbers import counted
@@ -41,7 +41,7 @@ def method_rows(methods: Sequence[Method], cast: Cast, cursor: int, width: int) 
     rows: list[Row] = []
     for at, method in enumerate(methods):
         line = method_line(method, cast).ljust(width)
-        rows.append([(line[:3], TEXT), (line[3:27], series(method)), (line[27:], TEXT)])
+        rows.append([(line[:3], TEXT), (line[3:27], ink_of(method, cast)), (line[27:], TEXT)])
         if at == cursor:
             rows[-1] = [(line, MARKED)]
     return rows

@@ -7,10 +7,10 @@ from engine.accuracy.front import Cost, cost_of
 from engine.accuracy.growth import Growth
 from engine.accuracy.references import CLOSED_FORM, TAYLOR_20, AnyPoint, References
 from engine.accuracy.study import ErrorKind, Flaw, Point
+from engine.methods import Cast
 from tui.drawing.chart import SMALLEST, loglog_chart
 from tui.drawing.loglog import LogLog, Series
-from tui.drawing.palette import EXACT, FRAME, TEXT
-from tui.drawing.palette import series as series_of
+from tui.drawing.palette import EXACT, FRAME, TEXT, ink_of
 from tui.drawing.picture import Picture
 from tui.words.accuracy import COSTS
 
@@ -68,6 +68,7 @@ def accuracy_series(
     marks: Sequence[tuple[str, Point]] = (),
     references: References | None = None,
     whole: int = 0,
+    cast: Cast = (),
 ) -> list[Series]:
     """Letters for points, x for useless and ~ for rounding-limited ones, dotted lines for orders, and `marks`.
 
@@ -79,12 +80,13 @@ def accuracy_series(
         return Series(ink, mark, [cost_of(p, cost) for p in some], [p.error(kind) for p in some])
 
     methods = dict.fromkeys(point.method for point in points)
+    cast = tuple(dict.fromkeys((*cast, *methods)))
     by_method = [[point for point in points if point.method == method] for method in methods]
     slopes = [_slope(ours, kind, cost, points) for ours in by_method]
     found = [slope for slope in slopes if slope]
     joined = [each for ours in by_method for each in ([[p] for p in ours] if len(ours) < whole else [ours])]
-    found += (series(series_of(ours[0].method), ours, ours[0].method.letter) for ours in joined)
-    found += (series(series_of(p.method), [p], MARKS[flaw]) for p in points if (flaw := p.flaw(kind)))
+    found += (series(ink_of(ours[0].method, cast), ours, ours[0].method.letter) for ours in joined)
+    found += (series(ink_of(p.method, cast), [p], MARKS[flaw]) for p in points if (flaw := p.flaw(kind)))
     if references:
         taylor = references.taylor
         found += [series(TEXT, taylor, TAYLOR_20.letter)] if taylor else []
@@ -93,15 +95,15 @@ def accuracy_series(
         errors = [error for p in every if (error := p.error(kind)) and math.isfinite(error)]
         ends = [min(errors), max(errors)] if errors else []
         found.append(Series(EXACT, CLOSED_FORM.letter, [references.floor] * len(ends), ends))
-    return [*found, *(series(series_of(point.method), [point], mark) for mark, point in marks)]
+    return [*found, *(series(ink_of(point.method, cast), [point], mark) for mark, point in marks)]
 
 
-def growth_chart(found: Sequence[Growth], width: int, height: int) -> Picture:
+def growth_chart(found: Sequence[Growth], cast: Cast, width: int, height: int) -> Picture:
     """Letters for errors in theta along a run, and dotted lines of the powers of t that they follow."""
     lines: list[Series] = []
     slopes: dict[int, Series] = {}
     for growth in found:
-        ink, times, errors = series_of(growth.method), growth.times, growth.errors
+        ink, times, errors = ink_of(growth.method, cast), growth.times, growth.errors
         some = sorted({round(len(times) ** (n / MARKED)) - 1 for n in range(MARKED + 1)}) if times else []
         lines.append(Series(ink, growth.method.letter, [times[n] for n in some], [errors[n] for n in some]))
         if growth.power is not None:

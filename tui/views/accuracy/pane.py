@@ -162,13 +162,14 @@ class AccuracyPane(Chooser[int]):
         if self.cursor is not None and (at := self.points.get((self.index, self.rungs[self.cursor]))):
             marks.append((CURSOR, at))
         every: list[AnyPoint] = [*points, *(p for _, p in marks), *(self.references.taylor if self.references else ())]
-        series = accuracy_series(points, kind, cost, marks, self.references, len(self.rungs))
+        series = accuracy_series(points, kind, cost, marks, self.references, len(self.rungs), self.cast)
         return charted(series, every, kind, cost, width, height)
 
     def _growth(self, width: int, height: int) -> tuple[Picture, list[Placed]]:
         """The chart of error over time, of the methods that are shown."""
         hidden = self.shown.hidden
-        return growth_chart([growth for growth in self.growths if growth.method.key not in hidden], width, height), []
+        shown = [growth for growth in self.growths if growth.method.key not in hidden]
+        return growth_chart(shown, self.cast, width, height), []
 
     def _words(self) -> list[str]:
         if self.over_time:

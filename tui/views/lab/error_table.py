@@ -14,7 +14,7 @@ from engine.methods import Method
 from engine.models.model import Model, State
 from engine.run.lockstep import Reading, Sample
 from engine.run.verdict import Judgement
-from tui.drawing.palette import GOOD, QUIET, TEXT, WARN, mark, series
+from tui.drawing.palette import GOOD, QUIET, TEXT, WARN, inks, mark
 from tui.drawing.picture import Picture, Row
 from tui.playback.shown import Shown
 from tui.playback.source import Source
@@ -141,7 +141,7 @@ def table(source: Source, sample: Sample, shown: Shown, width: int) -> list[Row]
         line = TableLine(model, method, sample.readings[place], judgements[place], exact, h[place])
         failed = line.reading.diverged_at is not None
         name = f"{mark(place, method)} {method.label}".ljust(room)
-        rows.append([(name, series(method))])
+        rows.append([(name, inks(cast)[place])])
         for head, size, cell in columns:
             text = gap + cell(line, size)
             owner = owner_of(text.strip()) if head == "verdict" else WARN if failed else TEXT

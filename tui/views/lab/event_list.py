@@ -2,8 +2,9 @@
 
 from textual import events
 
+from engine.methods import Cast
 from engine.run.lockstep import Sample
-from tui.drawing.palette import QUIET, TEXT, series
+from tui.drawing.palette import QUIET, TEXT, ink_of
 from tui.drawing.picture import Picture
 from tui.playback.source import Source
 from tui.views.messages import Asked
@@ -12,9 +13,11 @@ from tui.words.events import EventLine, event_lines, numbered
 from tui.words.insight import short_name
 
 
-def ink_of(line: EventLine) -> int:
-    """A milestone has its method's colour."""
-    return series(line.method) if line.method is not None else TEXT if line.kind == "mark" else QUIET
+def line_ink(line: EventLine, cast: Cast) -> int:
+    """Return the ink of a line; a milestone has its method's."""
+    if line.method is not None:
+        return ink_of(line.method, cast)
+    return TEXT if line.kind == "mark" else QUIET
 
 
 class EventList(Pane):
@@ -33,7 +36,7 @@ class EventList(Pane):
         lines = event_lines(source)
         last = [*zip(lines, numbered(lines), strict=True)][-self.room.height :]
         self._listed = [line for line, _ in last]
-        self.show(Picture([[(self._fitted(text, line), ink_of(line))] for line, text in last]))
+        self.show(Picture([[(self._fitted(text, line), line_ink(line, self.cast))] for line, text in last]))
         self._listed_for = listed_for
 
     def _fitted(self, text: str, line: EventLine) -> str:

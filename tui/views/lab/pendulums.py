@@ -12,7 +12,7 @@ from textual.content import Content
 
 from engine.run.lockstep import Sample
 from tui.drawing.canvas import Canvas
-from tui.drawing.palette import EXACT, FRAME, faint, mark, series
+from tui.drawing.palette import EXACT, FRAME, faint, ink_of, inks, mark
 from tui.drawing.picture import Picture
 from tui.playback.source import Source
 from tui.views.lab.reach import Reach
@@ -114,13 +114,13 @@ class Pendulum(Pane):
         rods = {} if ghost is None else ghost.rods(sample.t)
         for method in [self.cast[place] for place in places]:
             if (rod := rods.get(method.key)) is not None:
-                bobs.append(Bob(rod.theta, faint(series(method)), length=rod.length))
+                bobs.append(Bob(rod.theta, faint(ink_of(method, self.cast)), length=rod.length))
         for place in places:
             reading, method = sample.readings[place], self.cast[place]
             bobs.append(
                 Bob(
                     reading.theta,
-                    series(method),
+                    inks(self.cast)[place],
                     trail=source.history.thetas(place, length),
                     length=model.length(reading.extra),
                     letter=method.letter if self._place is None else "",

@@ -8,7 +8,7 @@ from engine.phase_space.area import Neighbours
 from engine.run.stepping import change_before
 from engine.scenes import Scene
 from tui.drawing.axes import in_pi
-from tui.drawing.palette import QUIET, TEXT, mark, series
+from tui.drawing.palette import QUIET, TEXT, inks, mark
 from tui.drawing.picture import Picture, Row
 from tui.playback.shown import Shown
 from tui.playback.source import Source
@@ -40,7 +40,9 @@ def fact_rows(source: Source, shown: Shown, neighbours: Neighbours | None, width
         area = ("-", "-") if ring is None or source.scene.why_no_ring else area_text(ring.area_ratios[index])
         cells = (*area, scientific(off, _CELL, 3), scientific(reading.energy_error, _CELL, 3))
         name = f" {mark(index, method)} {method.label}".ljust(_NAME)
-        rows.append([(name, series(method)), ("".join(cell.rjust(_CELL) for cell in cells[:fit]), TEXT)])
+        rows.append(
+            [(name, inks(source.scene.cast)[index]), ("".join(cell.rjust(_CELL) for cell in cells[:fit]), TEXT)]
+        )
     return rows
 
 

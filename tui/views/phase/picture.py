@@ -11,7 +11,7 @@ from engine.models.model import State
 from engine.phase_space.area import Neighbourhood
 from engine.run.lockstep import Sample
 from tui.drawing.canvas import Canvas
-from tui.drawing.palette import EXACT, TEXT, faint, series
+from tui.drawing.palette import EXACT, TEXT, faint, inks
 from tui.drawing.picture import Picture
 from tui.playback.shown import Shown
 from tui.playback.source import Source
@@ -53,7 +53,7 @@ def trails_of(source: Source, shown: Shown) -> list[tuple[int, Track]]:
     """Return where each method has been lately, and its ink."""
     states = source.history.levels.trails(TRAIL)
     return [
-        (faint(series(source.scene.cast[place])), (states[:, place, 0], states[:, place, 1]))
+        (faint(inks(source.scene.cast)[place]), (states[:, place, 0], states[:, place, 1]))
         for place in shown.places(source.scene.cast)
     ]
 
@@ -66,7 +66,8 @@ def method_points(source: Source, sample: Sample, shown: Shown, ring: Neighbourh
         method = source.scene.cast[index]
         reading = sample.readings[index]
         around = None if ring is None else ring.rings[index]
-        points.append(PhasePoint(reading.theta, reading.omega, series(method), method.letter, around))
+        ink = inks(source.scene.cast)[index]
+        points.append(PhasePoint(reading.theta, reading.omega, ink, method.letter, around))
     return points
 
 

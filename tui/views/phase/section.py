@@ -7,7 +7,7 @@ from engine.methods import Method
 from engine.models.model import Model, Phase, State
 from engine.phase_space.section import Points, spread
 from tui.drawing.canvas import Canvas
-from tui.drawing.palette import FRAME, faint, series
+from tui.drawing.palette import FRAME, faint
 from tui.drawing.picture import Picture
 from tui.views.phase.picture import PhasePoint, draw_crosshair, letter, on_screen
 from tui.views.phase.portrait import Portrait, axes, write_words
@@ -29,8 +29,10 @@ def starts(viewport: Viewport, count: int) -> Points:
 class Section:
     """Orbits of one method on one viewport, with the separatrix of the true pendulum underneath."""
 
-    def __init__(self, viewport: Viewport, model: Model, method: Method) -> None:
-        self.viewport, self.method = viewport, method
+    def __init__(self, viewport: Viewport, model: Model, method: Method, ink: int) -> None:
+        self.viewport = viewport
+        self.method = method
+        self.ink = ink
         self._ground = Canvas(viewport.columns, viewport.rows)
         if model.key == "pendulum":
             self._ground.scatter(*Portrait.of(viewport, model.w0).separatrix, FRAME)
@@ -45,14 +47,14 @@ class Section:
             at = inside[:, each]
             i, j = np.unique(np.stack([x[at, each], y[at, each]]).astype(np.intp), axis=1)
             if len(i) and self._near[j + GAP, i + GAP].mean() <= TAKEN[self.method.symplectic]:
-                self._ground.scatter(i, j, faint(series(self.method)))
+                self._ground.scatter(i, j, faint(self.ink))
                 for right in range(2 * GAP + 1):
                     for down in range(2 * GAP + 1):
                         self._near[j + down, i + right] = True
 
     def picture(self, orbit: Points, start: State, crosshair: Phase | None = None) -> Picture:
         """All that was drawn, one orbit in thick dots or, if it is a spiral, joined; its start, perhaps a crosshair."""
-        viewport, canvas, ink = self.viewport, self._ground.copy(), series(self.method)
+        viewport, canvas, ink = self.viewport, self._ground.copy(), self.ink
         if self.method.symplectic:
             x, y = self._dots(orbit)
             for right, down in ((0, 0), (1, 0), (0, 1)):

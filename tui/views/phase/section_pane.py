@@ -79,13 +79,14 @@ class SectionPane(PhasePane):
         if not self.shows_section:
             super().paint(source, sample)
             return
+        from tui.drawing.palette import inks
         from tui.views.phase.section import Section
 
         method, model, h = self.cast[self.index], source.scene.equations, abs(source.stepping.own[self.index])
         wanted = Wanted(method, model, h, self.viewport)
         if wanted != self.wanted or self._section is None:
             self.wanted, self.share = wanted, 0.0
-            self._section = Section(wanted.viewport, model, method)
+            self._section = Section(wanted.viewport, model, method, inks(self.cast)[self.index])
             self.tell_progress()
             self.post_message(self.SectionWanted())
         start = self.cursor or State(source.scene.theta, source.scene.omega)

@@ -95,4 +95,4 @@ class PhaseView(View):
             method, h = scene.cast[place], abs(self.source.stepping.own[place])
             known.append((place, method, followed(method, scene.equations, h, (scene.theta, scene.omega))[1]))
         head = " The start's orbit under each method's own map (x: back, tab: next method)"
-        return [[(head[:width], TEXT)], *kind_rows(known, width)]
+        return [[(head[:width], TEXT)], *kind_rows(scene.cast, known, width)]

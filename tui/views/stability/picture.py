@@ -19,12 +19,12 @@ from engine.methods.verlet import VELOCITY_VERLET
 from engine.stability.chaos import GREENE_Z
 from engine.stability.grid import Grid
 from engine.stability.outcomes import HELD, UNKNOWN, Cells
-from tui.drawing.palette import Palette, mark, mixed, series
+from tui.drawing.palette import Palette, ink_of, inks, mark, mixed
 
 EXACT_ENOUGH = 1e-12  # energy errors below it are drawn alike
 LIMIT, THRESHOLD, CATCHING, HERE = "│", "┊", "•", "@"
 _WITHOUT_COLOUR = {LIMIT: "|", THRESHOLD: ":", CATCHING: "o", HERE: HERE}
-EXAMPLE = VELOCITY_VERLET  # whose colours the legend shows
+EXAMPLE = ink_of(VELOCITY_VERLET, ())  # whose shades the legend shows
 MARGIN = 4  # for the labels of the amplitudes
 SHADES = 16  # from lost at once to lost at the end, and again from there to held exactly
 
@@ -76,6 +76,7 @@ def panel(
     `here` is a (z, theta) to mark.  With w0 [1/s] the axis shows h instead of z.
     """
     method, width = grid.methods[index], columns - MARGIN
+    ink = inks(grid.methods)[index]
     overlay: dict[tuple[int, int] | None, str] = {
         _place(grid, z, theta, width, rows): sign for z, theta, sign in theory(method, grid, rows)
     }
@@ -84,7 +85,7 @@ def panel(
     values = scores(cells[:, index], grid.steps)
     character_set = worst(values, width, rows if palette is None else 2 * rows).tolist()
     levels = range(-SHADES, 2 * SHADES + 1)
-    shades = [] if palette is None else [colour(level / SHADES, method, palette) for level in levels]
+    shades = [] if palette is None else [colour(level / SHADES, ink, palette) for level in levels]
 
     def drawn(row: int, column: int) -> tuple[str, str, str, bool]:
         """The character, its colour, the colour behind it, and whether they change places."""
@@ -141,13 +142,13 @@ def worst(values: Scores, columns: int, rows: int) -> Scores:
     return np.minimum.reduceat(across, starts(values.shape[1], rows), axis=1).T[::-1]
 
 
-def colour(score: float, method: Method, palette: Palette) -> str:
+def colour(score: float, ink: int, palette: Palette) -> str:
     """Held: the method's colour, brighter for a smaller energy error.  Lost: the warning colour, darker if sooner."""
     if score < 0:
         return palette.background
     if score < 1:
         return mixed(palette.warn, palette.background, 0.9 - 0.5 * score)
-    return mixed(palette.colour(series(method)), palette.background, 0.6 * (2 - score))
+    return mixed(palette.colour(ink), palette.background, 0.6 * (2 - score))
 
 
 def character(score: float, steps: int) -> str:

@@ -6,20 +6,21 @@ import numpy as np
 import pytest
 
 from engine.methods import USUAL_CAST, VELOCITY_VERLET
+from engine.models.model import State
 from engine.phase_space.section import iterate, orbit, pieces
 from engine.scenes import SCENES, Scene
 from tests.tui import drawn
 from tests.tui.harness import Theatre, lab, until
 from tui.drawing.cells import CellWidget
-from tui.drawing.palette import FRAME, faint, series
+from tui.drawing.palette import FRAME, faint
 from tui.views.phase.section import Section, starts
 from tui.views.phase.section_pane import SectionPane
 from tui.views.phase.viewport import Viewport
 
 SCENE = Scene(theta=1.25, h=0.348011)  # at the 1:6 resonance of velocity Verlet
-MODEL, H, START = SCENE.equations, SCENE.h, (SCENE.theta, SCENE.omega)
+MODEL, H, START = SCENE.equations, SCENE.h, State(SCENE.theta, SCENE.omega)
 VIEWPORT = Viewport.portrait(70, 24, SCENE)
-MINE, OTHERS = series(VELOCITY_VERLET), faint(series(VELOCITY_VERLET))
+MINE, OTHERS = 2, faint(2)
 
 
 def cells(picture, ink: int) -> set[tuple[int, int]]:
@@ -35,7 +36,7 @@ def test_the_starts_are_all_over_the_viewport():
 
 
 def test_an_orbit_is_drawn_where_its_points_are_with_the_angle_within_a_turn():
-    section = Section(VIEWPORT, MODEL, VELOCITY_VERLET)
+    section = Section(VIEWPORT, MODEL, VELOCITY_VERLET, MINE)
     points = iterate(VELOCITY_VERLET, MODEL, H, (np.array([0.0]), np.array([7.0])), 500)
     assert np.ptp(points[0]) > 2 * math.pi
     section.add(points)
@@ -50,7 +51,7 @@ def test_an_orbit_is_drawn_where_its_points_are_with_the_angle_within_a_turn():
 
 
 def test_an_orbit_that_leaves_no_gap_to_those_before_is_not_drawn():
-    section = Section(VIEWPORT, MODEL, VELOCITY_VERLET)
+    section = Section(VIEWPORT, MODEL, VELOCITY_VERLET, MINE)
     rest = orbit(VELOCITY_VERLET, MODEL, H, (0.0, 0.0), 1)
     for theta, is_drawn in ((1.6, True), (1.61, False), (2.0, True), (0.3, True)):
         before = cells(section.picture(rest, (0.0, 0.0)), OTHERS)
@@ -59,7 +60,7 @@ def test_an_orbit_that_leaves_no_gap_to_those_before_is_not_drawn():
 
 
 def test_the_starts_orbit_stands_out_and_the_separatrix_lies_underneath():
-    section = Section(VIEWPORT, MODEL, VELOCITY_VERLET)
+    section = Section(VIEWPORT, MODEL, VELOCITY_VERLET, MINE)
     for piece in pieces(VELOCITY_VERLET, MODEL, H, starts(VIEWPORT, 100), 1000):
         section.add(piece)
     picture = section.picture(orbit(VELOCITY_VERLET, MODEL, H, START, 1000), START)
@@ -67,7 +68,7 @@ def test_the_starts_orbit_stands_out_and_the_separatrix_lies_underneath():
     assert {column > 35 for column, _ in mine} == {True, False}
     assert (int(VIEWPORT.x(0.0)) // 2, int(VIEWPORT.y(0.0)) // 4) not in mine  # islands go around the middle
     assert len(cells(picture, FRAME)) > 20
-    flat = Section(VIEWPORT, SCENES["linear"].equations, VELOCITY_VERLET)
+    flat = Section(VIEWPORT, SCENES["linear"].equations, VELOCITY_VERLET, MINE)
     assert not cells(flat.picture(orbit(VELOCITY_VERLET, MODEL, H, START, 10), START), FRAME)
 
 
@@ -76,7 +77,7 @@ def test_the_starts_orbit_stands_out_and_the_separatrix_lies_underneath():
 @pytest.mark.parametrize("size", [(1, 1), (3, 2), (60, 5), (200, 60)])
 def test_it_fits_every_size_and_method(method, size):
     viewport = Viewport.portrait(*size, SCENE)
-    section = Section(viewport, MODEL, method)
+    section = Section(viewport, MODEL, method, MINE)
     section.add(iterate(method, MODEL, 50.0, starts(viewport, 20), 300))
     picture = section.picture(orbit(method, MODEL, 50.0, START, 300), START, (0.5, 0.5))
     assert drawn.size(picture) == size
@@ -110,7 +111,7 @@ async def test_x_shows_the_own_map_of_velocity_verlet_and_the_portrait_again(siz
 async def test_the_section_is_the_engines():
     async with lab(SCENE, size=(100, 30)) as theatre:
         pane = await section_of(theatre, "x")
-        section = Section(pane.viewport, MODEL, VELOCITY_VERLET)
+        section = Section(pane.viewport, MODEL, VELOCITY_VERLET, MINE)
         for piece in pieces(VELOCITY_VERLET, MODEL, H, starts(pane.viewport, 300), 2000):
             section.add(piece)
         expected = section.picture(orbit(VELOCITY_VERLET, MODEL, H, START, 2000), START).text.splitlines()

@@ -189,7 +189,7 @@ def claimed(method: Method) -> int | None:
 def _chart(found: Findings) -> list[Text]:
     palette = PALETTES["dark"]
     columns, rows = CHART_SIZE
-    series = accuracy_series(found.points, found.kind, found.cost, references=found.references)
+    series = accuracy_series(found.points, found.kind, found.cost, references=found.references, cast=found.scene.cast)
     chart = accuracy_chart(series, found.kind, found.cost, min(console(columns).width, columns), rows)
     lines = []
     for row in chart.rows:

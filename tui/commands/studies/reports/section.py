@@ -20,7 +20,7 @@ from tui.cli.errors import Exit, UserError
 from tui.cli.files import whole_file
 from tui.cli.output import console, progress, scene_line
 from tui.cli.report import Column, Report, Table, publish
-from tui.drawing.palette import PALETTES
+from tui.drawing.palette import PALETTES, ink_of
 from tui.drawing.picture import Picture
 from tui.terminal.options import CharacterSet, TerminalOptions, terminal_options_of
 from tui.views.phase.section import Section, starts
@@ -77,7 +77,7 @@ def portrait(
     model = scene.equations
     start = State(scene.theta, scene.omega)
     viewport = Viewport.portrait(*size, scene, wrap=model.turns)
-    section = Section(viewport, model, method)
+    section = Section(viewport, model, method, ink_of(method, scene.cast))
     done = 0
     with progress("section") as show:
         for piece in pieces(method, model, scene.h, starts(viewport, count), steps):
