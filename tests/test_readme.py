@@ -136,7 +136,7 @@ def test_its_keys_are_keys_of_the_lab():
     section = README.partition("## Keys")[2].partition("\n## ")[0]
     rows = re.findall(r"^\| `(.+?)` \| (.+) \|$", section, re.MULTILINE)
     assert len(rows) == 8
-    assert {f"{key:<10}{does}" for key, does in rows} <= set(key_lines(bindings_of(LiveScreen)))
+    assert {f"{key:<9}{does}" for key, does in rows} <= set(key_lines(bindings_of(LiveScreen)))
 
 
 def test_the_pictures_are_committed_snapshots():

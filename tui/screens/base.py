@@ -18,21 +18,30 @@ from textual.screen import Screen
 from textual.timer import Timer
 from textual.widget import Widget
 
+from engine.methods import method_of
 from engine.run.lockstep import Sample
 from engine.scenes import MOST_METHODS
+from recordings import library
+from tui.cli.errors import explained
 from tui.playback.playhead import doubled
 from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.playback.state import State
+from tui.screens.help import help_text
 from tui.screens.host import Host
 from tui.screens.insight_line import InsightLine
 from tui.screens.key_line import KeyLine
 from tui.screens.status_line import StatusLine
 from tui.screens.too_small import TooSmall
+from tui.terminal.screenshot import save_screenshot
 from tui.terminal.writer import is_writing
 from tui.views import VIEWS, create, following
 from tui.views.messages import Asked, MethodChosen, Zoomed
 from tui.views.view import Box, Pane, View
+from tui.words.cards import method_card
+from tui.words.command_line import command, reproduces
+from tui.words.describe import description
+from tui.words.events import event_lines, numbered
 from tui.words.undone import undone
 
 READ_RATE = 5  # updates a second of what people read
@@ -45,7 +54,7 @@ _SPEED = Binding.Group("half, double speed")
 _STEPS = Binding.Group("one step back, forward")
 _EVENTS = Binding.Group("previous, next event")
 _METHODS = Binding.Group("show or hide a method")
-_VIEWS = Binding.Group(", ".join(entry.title.lower() for entry in VIEWS.values()))
+_VIEWS = Binding.Group("view: lab, phase, …")
 
 
 class SourceScreen(Screen[None]):
@@ -78,7 +87,7 @@ class SourceScreen(Screen[None]):
         Binding("t", "switch('trails')", "trails", show=False),
         Binding("e", "quantity", "chart: next quantity", show=False),
         Binding("y", "switch('log')", "chart: log or linear", show=False),
-        Binding("w", "window(1)", "chart: last 20 s, 60 s, … all", show=False),
+        Binding("w", "window(1)", "chart: last 20 s, 60 s, …", show=False),
         Binding("z", "zoom(0.5)", "chart: zoom in", show=False),
         Binding("escape", "window(0)", "chart: back from the zoom", False, "esc"),
         Binding("v", "view", "View", tooltip="next view"),
@@ -87,7 +96,7 @@ class SourceScreen(Screen[None]):
             for n, name in enumerate(VIEWS, 2)
         ),
         Binding("E,shift+e", "events", "list all events", show=False),
-        Binding("d", "describe", "describe the screen in words", show=False),
+        Binding("d", "describe", "describe it in words", show=False),
         Binding("s", "screenshot", "save a screenshot", show=False),
         Binding("u", "undo", "Undo", tooltip="undo the last change"),
         Binding("question_mark", "help", "Help", True, "?", tooltip="this help"),
@@ -352,50 +361,37 @@ class SourceScreen(Screen[None]):
         yield SystemCommand("all pendulums on one pivot, or one pane each", "", lambda: self.action_switch("overlay"))
         yield from self._view_in_front.commands()
 
+    def show_text(self, title: str, *paragraphs: str) -> None:
+        """Lay a text over the screen."""
+        from tui.screens.dialogs.text import TextScreen
+
+        self.app.push_screen(TextScreen(title, "\n".join(filter(None, paragraphs))))
+
     def action_help(self) -> None:
         """Show the keys of the view in front, the others, and what the words mean."""
-        from tui.screens.dialogs.text import TextScreen
-        from tui.screens.help import help_text
-
         panes = dict.fromkeys(type(pane) for pane in self._view_in_front.query(Pane))
         owners = [pane for pane in panes if pane.BINDING_GROUP_TITLE]
         order = [type(self), *owners] if self.view == "lab" else [*owners, type(self)]
-        width = TextScreen.width_of(self.app.size)
-        self.app.push_screen(TextScreen("Help", help_text(order, self.source, width)))
+        self.show_text("Help", help_text(order, self.source, self.app.size.width))
 
     def action_events(self) -> None:
-        """List all events."""
-        from tui.screens.dialogs.text import TextScreen
-        from tui.words.events import event_lines, numbered
-
-        self.app.push_screen(TextScreen("Events", "\n".join(numbered(event_lines(self.source)))))
+        self.show_text("Events", *numbered(event_lines(self.source)))
 
     def action_describe(self) -> None:
         """Describe in words what runs and what is on screen."""
-        from tui.screens.dialogs.text import TextScreen
-        from tui.words.describe import description
         from tui.words.orbit import period_sentence  # with NumPy
 
         titles = [pane.border_title for pane in self.query(Pane) if pane.is_on_screen]
         panes = "; ".join(Content.from_markup(title).plain for title in titles if title)
         view = f"On screen: {VIEWS[self.view].title}; {panes}."
-        lines = [*description(self.source), period_sentence(self.source), view]
-        self.app.push_screen(TextScreen("In words", "\n".join(filter(None, lines))))
+        period = period_sentence(self.source)
+        self.show_text("In words", *description(self.source), period, view)
 
     def action_card(self, key: str) -> None:
-        """Show a method's card."""
-        from engine.methods import method_of
-        from tui.screens.dialogs.text import TextScreen
-        from tui.words.cards import method_card
-
-        self.app.push_screen(TextScreen("Method", method_card(method_of(key))))
+        self.show_text("Method", method_card(method_of(key)))
 
     def action_screenshot(self) -> None:
         """Save the screen next to the recordings."""
-        from recordings import library
-        from tui.cli.errors import explained
-        from tui.terminal.screenshot import save_screenshot
-
         try:
             picture, text = save_screenshot(self.app.export_screenshot(), library.folder())
         except OSError as error:
@@ -405,8 +401,6 @@ class SourceScreen(Screen[None]):
 
     def action_copy_command(self) -> None:
         """Copy the command that shows this again, and show it: not every terminal has a clipboard."""
-        from tui.words.command_line import command, reproduces
-
         text = command(self.source)
         self.app.copy_to_clipboard(text)
         rest = "" if reproduces(self.source) else " (start values only; later changes of h are in the recording)"
@@ -414,8 +408,6 @@ class SourceScreen(Screen[None]):
 
     def action_replay(self, path: str) -> None:
         """Finish what is on the screen and replay a recording."""
-        from tui.cli.errors import explained
-
         assert self.host.open_replay is not None
         try:
             other = self.host.open_replay(Path(path))

@@ -13,8 +13,9 @@ from tui.playback.source import Source
 from tui.words.cards import glossary, method_card, scene_card
 from tui.words.describe import step_text
 
-KEY_WIDTH = 10  # columns
-COLUMN_WIDTH = 36  # of a key and what it does; two of them fit on 80 columns
+KEY_WIDTH = 9  # columns
+COLUMN_WIDTH = 36  # of a key and what it does
+TWO_COLUMNS = 80  # columns of a screen from which on two fit
 
 
 def bindings_of(owner: type[DOMNode]) -> list[Binding]:
@@ -46,7 +47,7 @@ def key_lines(bindings: Iterable[Binding]) -> Iterator[str]:
 def section(owner: type[DOMNode], width: int) -> str:
     """Return the keys of a class below its title, in two columns if there is room, and its mouse."""
     lines = list(key_lines(bindings_of(owner)))
-    if width >= 2 * COLUMN_WIDTH:
+    if width >= TWO_COLUMNS:
         half = (len(lines) + 1) // 2
         pairs = zip_longest(lines[:half], lines[half:], fillvalue="")
         lines = [f"{left:<{COLUMN_WIDTH}}{right}".rstrip() for left, right in pairs]
@@ -54,7 +55,10 @@ def section(owner: type[DOMNode], width: int) -> str:
 
 
 def help_text(owners: Sequence[type[DOMNode]], source: Source, width: int) -> str:
-    """Return the keys of these classes, the scene, the glossary, and the methods."""
+    """Return the keys of these classes, the scene, the glossary, and the methods.
+
+    `width`: columns of the screen.
+    """
     scene = source.scene
     now = "" if source.stepping.h == scene.h else f"h = {step_text(source)}"
     keys = [section(owner, width) for owner in owners]

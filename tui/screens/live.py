@@ -3,9 +3,9 @@
 from collections.abc import Callable
 from typing import ClassVar
 
+from textual import work
 from textual.binding import Binding, BindingType
 
-from engine.methods import Cast
 from engine.run.lockstep import Sample
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene, SceneError
@@ -32,7 +32,7 @@ class LiveScreen(SourceScreen):
         Binding("M,shift+m", "methods", "Methods", True, "M", tooltip="choose methods"),
         Binding("r", "restart", "Restart", tooltip="restart"),
         Binding("b", "reverse", "Back", tooltip="run back in time"),
-        Binding("n", "equal_cost", "Equal cost", tooltip="equal cost for all methods"),
+        Binding("n", "equal_cost", "Equal cost", tooltip="equal cost for all"),
         Binding("T,shift+t", "tour", "Tour", True, "T", tooltip="tour: begin, leave, go on"),
         *TOUR_BINDINGS,
     ]
@@ -128,36 +128,31 @@ class LiveScreen(SourceScreen):
 
     # Forms; they are imported when they are needed
 
-    def action_scenes(self) -> None:
-        from tui.screens.dialogs.scene_list import SceneList
+    @work
+    async def action_scenes(self) -> None:
+        from tui.screens.dialogs.forms import SceneList
 
-        def chosen(name: str | None) -> None:
-            if name is not None:
-                self.action_start_scene(name)
+        if name := await self.app.push_screen_wait(SceneList(self.live.scene.name)):
+            self.action_start_scene(name)
 
-        self.app.push_screen(SceneList(self.live.scene.name), chosen)
+    @work
+    async def action_start_values(self) -> None:
+        from tui.screens.dialogs.forms import StartForm
 
-    def action_start_values(self) -> None:
-        from tui.screens.dialogs.start_form import StartForm
+        backwards = self.live.stepping.h < 0
+        if scene := await self.app.push_screen_wait(StartForm(self._scene_now(), backwards)):
+            self.start(scene)
 
-        def chosen(scene: Scene | None) -> None:
-            if scene is not None:
-                self.start(scene)
+    @work
+    async def action_methods(self) -> None:
+        from tui.screens.dialogs.forms import CastForm
 
-        stepping = self.live.stepping
-        scene = self.live.scene.altered(h=stepping.smallest)
-        self.app.push_screen(StartForm(scene, stepping.h < 0), chosen)
+        scene = self._scene_now()  # another may run by the answer
+        if cast := await self.app.push_screen_wait(CastForm(scene)):
+            self.start(scene.with_cast(cast))
 
-    def action_methods(self) -> None:
-        from tui.screens.dialogs.cast_form import CastForm
-
-        scene = self.live.scene.altered(h=self.live.stepping.smallest)  # another may run by the answer
-
-        def chosen(cast: Cast | None) -> None:
-            if cast:
-                self.start(scene.with_cast(cast))
-
-        self.app.push_screen(CastForm(scene), chosen)
+    def _scene_now(self) -> Scene:
+        return self.live.scene.altered(h=self.live.stepping.smallest)
 
     # The tour
 

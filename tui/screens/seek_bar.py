@@ -41,22 +41,22 @@ def bar(position: float, length: float, ticks: Sequence[float], ends: Sequence[t
 
 
 def facts(replay: Replay, room: int) -> str:
-    """Position and length of the recording; loop, run, step and event as far as there is room.
+    """Return position and length; loop, run, step and event as far as there is room.
 
     A number has the room of the largest, so that the bar beside it stays where it is.
     """
-    runs, ticks = replay.recording.runs, replay.ticks
-    whole = seconds(replay.length)
-    widest = max(len(whole), len("59.99 s" if replay.length >= 60 else whole))
-    text = f"recording {seconds(replay.playhead.position):>{widest}} of {whole}"
-    for part in (
-        "loop" if replay.loop else "",
+    runs = replay.recording.runs
+    ticks = replay.ticks
+    length = seconds(replay.length)
+    text = f"{seconds(replay.playhead.position):>{max(len(length), len('59.99 s'))}} of {length}"
+    parts = [
         f"run {_of(runs.index(replay.run) + 1, len(runs))}",
         f"step {_of(replay.sample.step, replay.run.steps)}",
         f"event {_of(bisect_right(ticks, replay.playhead.position), len(ticks))}",
-    ):
-        if part and len(text) + len(part) + 2 <= room:
-            text += "  " + part
+    ]
+    for part in (["loop"] if replay.loop else []) + parts:
+        if len(text) + len(part) + 2 <= room:
+            text += f"  {part}"
     return text
 
 

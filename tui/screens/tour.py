@@ -54,6 +54,7 @@ class TourGuide:
             self._leave("T goes on with the tour; u brings back the run before it.")
             return
         self.before = self.screen.state
+        self.view = self.screen.view
         self.is_on = True
         self.screen.add_class("-tour")
         self.tour.begin(self.tour.index)
@@ -92,6 +93,7 @@ class TourGuide:
         self.screen.shown = self.before.shown
         self.live.set_speed(self.before.speed)
         self.live.pause(False)
+        self.screen.action_view(self.view)
         self.screen.notify(notice, timeout=6)
         self._show()
 

@@ -195,7 +195,7 @@ class Tour:
         if self.stage == "asked":
             return shot.happened, f"{shot.question}  1: {shot.answers[0]}  2: {shot.answers[1]}"
         result = {None: "", shot.right: "Right. "}.get(self.choice, "Not quite. ")
-        return f"{shot.question}  {shot.answers[shot.right]}", f"{result}{shot.truth}"
+        return f"{result}{shot.right + 1}: {shot.answers[shot.right]}", shot.truth
 
     def begin(self, index: int) -> None:
         """Set a shot's run in the lab."""

@@ -5,31 +5,20 @@ from typing import ClassVar
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import VerticalScroll
-from textual.geometry import Size
 from textual.widgets import Static
 
 from tui.screens.dialogs.modal import Modal
-
-MAX_WIDTH = 84  # columns, with FRAME
-FRAME = 8  # columns of the border, the blanks inside, and the scroll bar
 
 
 class TextScreen(Modal[None]):
     """A text.  Esc closes it, and so do the keys that open one."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("escape,question_mark,q,space,enter,d,E,shift+e", "dismiss(None)", "close")
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape,question_mark,q,space,enter,d,E,shift+e", "dismiss(None)")]
 
     def __init__(self, title: str, text: str) -> None:
         super().__init__()
         self.text = text
         self.text_title = title
-
-    @classmethod
-    def width_of(cls, size: Size) -> int:
-        """Return the columns for a text on a screen of this size."""
-        return min(size.width, MAX_WIDTH) - FRAME
 
     def compose(self) -> ComposeResult:
         with VerticalScroll(id="text") as scroll:
