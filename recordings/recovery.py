@@ -84,12 +84,12 @@ def rescue(leftover: Path, progress: ShowProgress | None = None) -> str:
         except RecordingError as error:
             kept = leftover.rename(free_path(leftover.with_name(leftover.name + ".unreadable")))
             return f"An unfinished recording cannot be recovered: {error} It is kept as {printable(str(kept))}."
-        if not recovery.damaged:
+        sentence = ""
+        if recovery.damaged:
+            kept = leftover.rename(free_path(leftover.with_name(leftover.name + ".damaged")))
+            lost = f"{recovery.entries_lost} samples and events are lost"
+            sentence = f" {lost}. The original is kept as {printable(str(kept))}."
+        else:
             leftover.unlink()
-            saved = recovery.out if name.exists() else recovery.out.rename(name)
-            return f"An unfinished recording was recovered: {printable(str(saved))}."
-        kept = leftover.rename(free_path(leftover.with_name(leftover.name + ".damaged")))
-        return (
-            f"An unfinished recording was recovered: {printable(str(recovery.out))},"
-            f" {recovery.entries_lost} entries are lost. The original is kept as {printable(str(kept))}."
-        )
+        saved = recovery.out if name.exists() else recovery.out.rename(name)
+        return f"An unfinished recording was recovered: {printable(str(saved))}.{sentence}"

@@ -1,0 +1,196 @@
+"""Damage a recording at random and look what every reader makes of it."""
+
+import csv
+import os
+import random
+from contextlib import suppress
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import pytest
+
+from engine.run.lockstep import Sample
+from recordings.errors import RecordingError
+from recordings.events import Event
+from recordings.fields import without_extremes
+from recordings.reader import Scan
+from recordings.recording import Recording
+from recordings.recovery import recover
+from recordings.verification import verify
+from tests.recordings.examples import record, tiny, two_runs
+from tests.tui.command_line import pendu
+from tui.playback.marks import Marks
+from tui.playback.replay import Replay
+
+
+class Damaged:
+    """Damaged copies of a recording, compared with the original."""
+
+    def __init__(self, whole: Path, folder: Path, cut: int = 0) -> None:
+        """`cut`: the original is this much shorter, as if its lab had been killed."""
+        data = whole.read_bytes()
+        self.data = data[: len(data) - cut]
+        self.path = folder / "damaged.mcap"
+        self.out = folder / "out.mcap"
+        self.path.write_bytes(self.data)
+        with Recording.open(self.path) as recording:
+            self.entries = list(recording.entries())
+            self.runs = [run.scene for run in recording.runs]
+            self.about = recording.about
+        with self.path.open("rb") as stream:
+            self.chunks = [(place, len(messages)) for place, messages in Scan(stream)]
+        self.samples = sum(isinstance(value, Sample) for _, value in self.entries)
+        self._verified = verify(self.path).samples
+
+    def cut(self, length: int) -> None:
+        """Check that a file of this length reads as far as it goes."""
+        self.path.write_bytes(self.data[:length])
+        with suppress(RecordingError):
+            assert not verify(self.path).complete
+        with suppress(RecordingError):
+            assert verify(self.path).identical
+        with suppress(RecordingError), Recording.open(self.path) as recording:
+            entries = list(recording.entries())
+            assert entries == self.entries[: len(entries)]
+
+    def flip(self, chance: random.Random) -> None:
+        """Change a bit of the file."""
+        data = bytearray(self.data)
+        data[chance.randrange(len(data))] ^= 1 << chance.randrange(8)
+        self.path.write_bytes(data)
+
+    def is_noticed_by_verify(self) -> bool:
+        """Return whether verify refuses the file, or does not call it complete or as long as it was."""
+        try:
+            result = verify(self.path)
+        except RecordingError:
+            return True
+        assert result.identical or result.reason
+        return not result.complete or not result.identical
+
+    def is_harmless(self) -> bool:
+        """Return whether all that is read is what was recorded."""
+        with Recording.open(self.path) as recording:
+            same = list(recording.entries()) == self.entries and recording.about == self.about
+            return same and [run.scene for run in recording.runs] == self.runs
+
+    def is_noticed_by_show(self) -> bool:
+        """Return whether `recordings show` names a problem."""
+        try:
+            with Recording.open(self.path, check=True) as recording:
+                return bool(recording.reason)
+        except RecordingError:
+            return True
+
+    def is_noticed_by_export(self) -> bool:
+        """Return whether `export` names a problem, and check every number that it writes."""
+        answer = pendu("export", self.path)
+        numbers = {
+            (sample.step, reading.theta, reading.energy_error)
+            for _, sample in self.entries
+            if isinstance(sample, Sample)
+            for reading in sample.readings
+        }
+        for row in csv.DictReader(answer.out.splitlines()):
+            assert (int(row["step"]), float(row["theta_rad"]), float(row["energy_error"])) in numbers
+        return bool(answer.err)
+
+    def is_noticed_by_replay(self) -> bool:
+        """Return whether a replay names a problem, and check every sample that it shows."""
+        samples = [value for _, value in self.entries if isinstance(value, Sample)]
+        try:
+            with Recording.open(self.path) as recording:
+                if recording.at(0.0) is None:
+                    return True
+                replay = Replay(recording, Marks(self.path), clock=lambda: 0.0)
+                for tenth in range(11):
+                    replay.seek(recording.length * tenth / 10)
+                    assert replay.sample in samples
+                return bool(recording.reason)
+        except RecordingError:
+            return True
+
+    def hole(self, chance: random.Random) -> int:
+        """Overwrite up to 5 000 bytes, and check that every intact chunk comes back; return those lost."""
+        begin = chance.randrange(len(self.data))
+        end = begin + chance.randrange(1, 5_000)
+        noise = chance.randbytes(min(end, len(self.data)) - begin)
+        self.path.write_bytes(self.data[:begin] + noise + self.data[end:])
+        intact = [place.offset for place, following in self._with_ends() if following <= begin or place.offset >= end]
+        with self.path.open("rb") as stream:
+            scan = Scan(stream)
+            try:
+                found = [place.offset for place, _ in scan]
+            except RecordingError:  # the chunk that declares the channels is lost, and the summary
+                assert self.chunks[0][0].offset not in intact
+                return len(self.chunks)
+        assert set(intact) <= set(found)
+        self._check_recovered()
+        return len(self.chunks) - len(found)
+
+    def _with_ends(self):
+        ends = [place.offset for place, _ in self.chunks[1:]] + [len(self.data)]
+        return [(place, end) for (place, _), end in zip(self.chunks, ends, strict=True)]
+
+    def _check_recovered(self) -> None:
+        """Check that what is saved is what was recorded."""
+        try:
+            recover(self.path, self.out, overwrite=True)
+        except RecordingError:
+            return
+        with Recording.open(self.out, check=True) as recording:
+            assert recording.complete
+            for clock, value in recording.entries():
+                if isinstance(value, Event):
+                    assert (clock, value) in self.entries or value.kind == "stop"
+                else:
+                    was = [each for time, each in self.entries if time == clock]
+                    assert value in was or value in map(without_extremes, filter(_is_sample, was))
+
+
+def _is_sample(value: object) -> bool:
+    return isinstance(value, Sample)
+
+
+READERS = {
+    "verify": Damaged.is_noticed_by_verify,
+    "show": Damaged.is_noticed_by_show,
+    "export": Damaged.is_noticed_by_export,
+    "replay": Damaged.is_noticed_by_replay,
+}
+
+
+def campaign(cuts: int = 1, flips: int = 100, others: int = 30, holes: int = 30) -> dict[str, int]:
+    """Damage recordings in every way; every `cuts`-th byte is cut at.  Return what was done."""
+    done = {"cuts": 0, "flips": 0, "unnoticed": 0, "harmless": 0, "holes": 0, "chunks_lost": 0}
+    chance = random.Random(1)
+    memory = "/dev/shm" if Path("/dev/shm").is_dir() else None
+    with TemporaryDirectory(dir=memory) as name, pytest.MonkeyPatch.context() as patch:
+        patch.setattr(os, "fsync", lambda _: None)
+        folder = Path(name)
+        files = [tiny(folder / "tiny.mcap"), record(folder / "two.mcap", two_runs())]
+        for file in files:
+            damaged = Damaged(file, folder)
+            for length in range(chance.randrange(cuts), len(damaged.data), cuts):
+                damaged.cut(length)
+                done["cuts"] += 1
+        whole = Damaged(files[1], folder)
+        cut = Damaged(files[1], folder, cut=1_500)
+        for reader, count in (("verify", flips), *((each, others) for each in list(READERS)[1:])):
+            for number in range(count):
+                damaged = (whole, cut)[number % 2]
+                damaged.flip(chance)
+                done["flips"] += 1
+                noticed = READERS[reader](damaged)
+                if not noticed or damaged is cut:
+                    try:
+                        harmless = damaged.is_harmless()
+                    except RecordingError:
+                        harmless = False
+                    done["harmless"] += harmless
+                    done["unnoticed"] += not (noticed or harmless)
+        long = Damaged(files[1], folder)
+        for _ in range(holes):
+            done["chunks_lost"] += long.hole(chance)
+            done["holes"] += 1
+    return done

@@ -1,0 +1,157 @@
+"""Hostile files: every checksum right, and much in them that no recorder writes."""
+
+import hashlib
+import json
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+from mcap.writer import CompressionType, Writer
+
+from engine.run.judgement import Milestone
+from engine.run.lockstep import Lockstep, Sample
+from recordings.events import Event, noticed
+from recordings.format import (
+    ABOUT,
+    CLOCK_OFFSET,
+    EVENTS,
+    FORMAT_VERSION,
+    encode_event,
+    encode_readings,
+    topic,
+)
+from tests.recordings.examples import METHOD_KEYS, SCENE, start
+
+Part = tuple[str, float, bytes]
+"""Topic, clock [s], data."""
+
+FOREIGN = "/somebody/else"
+ESCAPES = "\x1b[2J\x1b]0;x\x07 [bold]"
+
+
+def write(path: Path, entries: Iterator[list[Part]], chunk_size: int = 1 << 20) -> None:
+    """Write entries as a finished file."""
+    with path.open("wb") as stream:
+        writer = Writer(
+            stream,
+            chunk_size=chunk_size,
+            compression=CompressionType.ZSTD,
+            enable_data_crcs=True,
+        )
+        writer.start("pendu", "forger")
+        schema = writer.register_schema("x", "jsonschema", b'{"type": "object"}')
+        names = (EVENTS, ABOUT, FOREIGN, *map(topic, METHOD_KEYS))
+        facts = {"format": FORMAT_VERSION}
+        channels = {name: writer.register_channel(name, "json", schema, facts) for name in names}
+        for number, parts in enumerate(entries):
+            for name, clock, data in parts:
+                time = CLOCK_OFFSET + round(clock * 1e9)
+                writer.add_message(channels[name], time, data, time, number % (1 << 32))
+        writer.finish()
+
+
+def event(value: Event, clock: float = 0.0, **changes: object) -> list[Part]:
+    data = encode_event(value)
+    if changes:
+        data = json.dumps(json.loads(data) | changes).encode()
+    return [(EVENTS, clock, data)]
+
+
+def sample(value: Sample, clock: float = 0.0) -> list[Part]:
+    messages = zip(METHOD_KEYS, encode_readings(value), strict=True)
+    return [(topic(key), clock, data) for key, data in messages]
+
+
+def first_sample(run: int = 1) -> Sample:
+    return Lockstep(SCENE, run).sample()
+
+
+def begun() -> Iterator[list[Part]]:
+    yield event(start())
+    yield sample(first_sample())
+
+
+def raw(data: bytes, name: str = EVENTS) -> Iterator[list[Part]]:
+    """One run, and a message of these bytes."""
+    yield from begun()
+    yield [(name, 1.0, data)]
+
+
+def far(step: int) -> Iterator[list[Part]]:
+    """A run whose second sample claims to be many steps later."""
+    yield from begun()
+    yield sample(first_sample()._replace(step=step, t=step * SCENE.h), 1.0)
+
+
+def changed_h(h: float) -> Iterator[list[Part]]:
+    yield from begun()
+    yield event(Event("set_h", 1, 0, 0.0, h=h), 0.5)
+    for step in range(1, 40):
+        yield sample(first_sample()._replace(step=step), 0.5 + step / 30)
+
+
+def late(count: int) -> Iterator[list[Part]]:
+    """Samples that are years apart."""
+    yield event(start())
+    for number in range(count):
+        clock = number * 9.4e8 / count
+        yield sample(first_sample()._replace(step=number * 10_000, t=clock), clock)
+
+
+def unlike(number: int) -> str:
+    """A long text that no other number has, and that cannot be compressed to nothing."""
+    return hashlib.sha256(number.to_bytes(8)).hexdigest() + "字" * 130
+
+
+def runs(count: int) -> Iterator[list[Part]]:
+    for run in range(1, count + 1):
+        yield event(start(run, replace(SCENE, name=unlike(run))))
+        yield sample(first_sample(run))
+
+
+def marks(count: int) -> Iterator[list[Part]]:
+    yield from begun()
+    for number in range(count):
+        yield event(Event("mark", 1, 0, 0.0, text=unlike(number)), number * 1e-3)
+
+
+def milestones(count: int) -> Iterator[list[Part]]:
+    yield from begun()
+    for number in range(count):
+        made = Milestone("verdict", SCENE.cast[number % 4], number, number * 0.1, 1e-9, "grows")
+        yield event(noticed(1, made), number * 1e-3)
+
+
+def foreign(count: int) -> Iterator[list[Part]]:
+    yield from begun()
+    for _ in range(count):
+        yield [(FOREIGN, 0.0, b"")]
+
+
+FILES: dict[str, Callable[[int], Iterator[list[Part]]]] = {
+    "deep JSON": lambda n: raw(b"[" * 100_000),
+    "a huge message": lambda n: raw(b'{"text": "' + b"x" * (1 << 27) + b'"}'),
+    "a long whole number": lambda n: raw(b'{"run": ' + b"9" * 6_000 + b"}"),
+    "numbers that are none": lambda n: raw(b'{"run": 1, "step": 0, "t": NaN, "kind": "pause"}'),
+    "escapes": lambda n: iter(
+        [
+            event(start(), scene=ESCAPES, watch=ESCAPES),
+            [(ABOUT, 0.0, json.dumps({ESCAPES: ESCAPES}).encode())],
+            sample(first_sample()),
+            event(Event("mark", 1, 0, 0.0, text="x"), text=ESCAPES),
+        ]
+    ),
+    "a path as method": lambda n: iter([event(start(), methods=["../../etc/passwd"])]),
+    "h of 0": lambda n: changed_h(0.0),
+    "h of 5e-324": lambda n: changed_h(5e-324),
+    "h of 1e300": lambda n: changed_h(1e300),
+    "step 10^9": lambda n: far(10**9),
+    "step 10^15": lambda n: far(10**15),
+    "30 years": lambda n: late(n // 50),
+    "many runs": runs,
+    "many marks": marks,
+    "many milestones": milestones,
+    "many foreign messages": lambda n: foreign(10 * n),
+    "many tiny events": lambda n: (event(Event("mark", 1, 0, 0.0)) for _ in range(10 * n)),
+}
+"""What is in it -> its entries; a number says how many are many."""

@@ -1,0 +1,128 @@
+"""Recover: what is intact becomes a complete recording, and losses are counted."""
+
+import pytest
+
+from engine.run.lockstep import Lockstep, Sample
+from recordings.errors import DiskError, RecordingError
+from recordings.events import Event
+from recordings.library import leftovers
+from recordings.reader import Scan
+from recordings.recorder import Recorder
+from recordings.recording import Recording
+from recordings.recovery import recover, rescue
+from recordings.verification import verify
+from tests.recordings.examples import SCENE, record, start, two_runs
+
+
+@pytest.fixture
+def out(tmp_path):
+    return tmp_path / "out.mcap"
+
+
+def ten_seconds(path):
+    """Ten samples a second; a chunk every second or so."""
+    lockstep = Lockstep(SCENE)
+    with Recorder(path, lambda: 1_700_000_000_000_000_000) as recorder:
+        recorder.event(start(), 0.0)
+        for step in range(101):
+            lockstep.advance(step - lockstep.step)
+            recorder.sample(lockstep.sample(), step / 10)
+    return path
+
+
+def spoil(path, *numbers):
+    """Change a byte in each of these chunks."""
+    with path.open("rb") as stream:
+        offsets = [place.offset for place, _ in Scan(stream)]
+    data = bytearray(path.read_bytes())
+    for number in numbers:
+        data[offsets[number] + 80] ^= 0xFF
+    path.write_bytes(data)
+    return path
+
+
+def samples(path):
+    with Recording.open(path) as recording:
+        return [value for _, value in recording.entries() if isinstance(value, Sample)]
+
+
+def test_a_whole_recording_is_copied(tmp_path, out):
+    path = record(tmp_path / "a.mcap", two_runs())
+    recovery = recover(path, out)
+    assert (recovery.samples_kept, recovery.entries_lost, recovery.damaged) == (10, 0, False)
+    assert recovery.reason is None
+    with Recording.open(path) as was, Recording.open(out) as now:
+        assert list(now.entries()) == list(was.entries())
+        assert now.about == was.about | {"recovered": "yes"}
+
+
+def test_an_unfinished_recording_is_finished_and_not_called_damaged(tmp_path, out):
+    with Recorder(tmp_path / "a.mcap") as recorder:
+        for clock, value in two_runs():
+            write = recorder.event if isinstance(value, Event) else recorder.sample
+            write(value, clock)
+        recorder.flush()
+        recovery = recover(recorder.part, out)
+    assert (recovery.samples_kept, recovery.damaged) == (10, False)
+    assert recovery.reason == "the recording was not finished"
+    assert verify(out).complete
+    assert verify(out).identical
+
+
+def test_lost_chunks_cost_their_samples_and_the_extremes_of_the_next_one(tmp_path, out):
+    path = ten_seconds(tmp_path / "a.mcap")
+    whole = samples(path)
+    recovery = recover(spoil(path, 3, 6), out)
+    kept = samples(out)
+    assert recovery.damaged
+    assert (recovery.samples_kept, recovery.entries_lost) == (len(kept), len(whole) - len(kept))
+    assert recovery.entries_lost > 0
+    after_gaps = [sample for sample in kept if sample not in whole]
+    assert len(after_gaps) == 2
+    for sample in after_gaps:
+        assert all(each.energy_error_low == each.energy_error for each in sample.readings)
+    assert verify(out).identical
+
+
+def test_without_its_start_a_run_is_lost(tmp_path, out):
+    with pytest.raises(RecordingError, match="entries are lost|damaged"):
+        recover(spoil(ten_seconds(tmp_path / "a.mcap"), 0), out)
+    assert not out.exists()
+    assert [path.name for path in tmp_path.iterdir()] == ["a.mcap"]
+
+
+def test_a_recording_is_not_recovered_onto_itself_or_over_another(tmp_path, out):
+    path = ten_seconds(tmp_path / "a.mcap")
+    with pytest.raises(DiskError, match="is the recording to recover"):
+        recover(path, path)
+    out.write_text("precious")
+    with pytest.raises(DiskError, match="already exists"):
+        recover(path, out)
+    assert out.read_text() == "precious"
+
+
+def leftover(tmp_path, spoiled=()):
+    path = spoil(ten_seconds(tmp_path / "lab.mcap"), *spoiled)
+    return path.rename(tmp_path / "lab.mcap.part")
+
+
+def test_a_leftover_becomes_a_recording(tmp_path):
+    part = leftover(tmp_path)
+    assert leftovers(tmp_path) == [part]
+    assert "was recovered" in rescue(part)
+    assert verify(tmp_path / "lab.mcap").identical
+    assert [path.name for path in tmp_path.iterdir()] == ["lab.mcap"]
+
+
+def test_a_damaged_leftover_is_kept_beside_its_recording(tmp_path):
+    sentence = rescue(leftover(tmp_path, [4]))
+    assert "are lost" in sentence
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["lab.mcap", "lab.mcap.part.damaged"]
+
+
+@pytest.mark.parametrize(("content", "left"), [(b"", []), (b"nonsense", ["lab.mcap.part.unreadable"])])
+def test_a_leftover_without_a_recording_is_removed_or_put_aside(tmp_path, content, left):
+    part = tmp_path / "lab.mcap.part"
+    part.write_bytes(content)
+    assert rescue(part)
+    assert [path.name for path in tmp_path.iterdir()] == left
