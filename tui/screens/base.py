@@ -356,7 +356,8 @@ class SourceScreen(Screen[None]):
 
     def commands(self) -> Iterator[SystemCommand]:
         """Yield what the command palette offers beside the keys."""
-        yield SystemCommand("copy the command for this moment", "", self.action_copy_command)
+        if not self.app.is_web:  # it may name a file
+            yield SystemCommand("copy the command for this moment", "", self.action_copy_command)
         yield SystemCommand("normal speed (1×)", "", lambda: self.action_set_speed(1.0))
         yield SystemCommand("all pendulums on one pivot, or one pane each", "", lambda: self.action_switch("overlay"))
         yield from self._view_in_front.commands()

@@ -32,10 +32,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     scene = scene_of(options)
-    import asyncio
 
     try:
-        from tui.commands.lab.web.server import Server, Settings
+        from tui.commands.lab.web.served import Settings
+        from tui.commands.lab.web.server import serve
     except ImportError as error:
         raise UserError(f"serve needs {error.name}: pip install textual-serve (the extra web).") from None
     folder = None if options.record is None else recording_folder(options.record)
@@ -50,7 +50,7 @@ def run(options: argparse.Namespace) -> int:
         print(f"{address} shows the lab, {options.at_most} at once at most; Ctrl+C ends it.", flush=True)
 
     try:
-        asyncio.run(Server(settings, options.at_most).run(options.host, options.port, listening))
+        serve(settings, options.host, options.port, options.at_most, listening)
     except OSError as error:
         why = os.strerror(error.errno) if error.errno and error.errno > 0 else error.strerror or str(error)
         raise UserError(

@@ -1,52 +1,63 @@
 """A lab in a browser, in a process of its own.
 
-Who uses it need not be who started the server, so nothing in it reads or writes a file by name, there is no shell to
-suspend to, and it ends with the server.
+The visitor is not necessarily the person who started the server, so no action names a file.
 """
 
 import os
-from typing import ClassVar
+import pickle
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
-from textual.binding import Binding, BindingType
+from textual.drivers.web_driver import WebDriver
 
-from tui.commands.lab.web.server import Settings
+from engine.scenes import Scene
+from recordings import library
 from tui.playback.live import Live
 from tui.screens.app import PenduApp
-from tui.screens.launch import start_recording
-from tui.screens.live import LiveScreen
-
-WATCH = 2.0  # s between looks at whether the server is still there
+from tui.screens.launch import live_screen
+from tui.terminal.options import LARGEST, TerminalOptions
 
 
-class ServedScreen(LiveScreen):
-    """The lab's screen without the actions on files."""
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """The scene, the look and the folder of recordings of each lab that is served."""
 
-    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        return action not in ("screenshot", "replay") and super().check_action(action, parameters)
-
-
-class ServedApp(PenduApp, inherit_bindings=False):
-    """The lab's app, whose actions on files do nothing, by whatever way they are called."""
-
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("ctrl+c", "interrupt", show=False, priority=True)]
-
-    def on_mount(self) -> None:
-        """End with the server, even if that was killed."""
-        server = os.getppid()
-        self.set_interval(WATCH, lambda: None if os.getppid() == server else self.exit())
-
-    def action_suspend_process(self) -> None:
-        """Do nothing: there is no shell."""
+    scene: Scene
+    terminal: TerminalOptions
+    folder: Path | None
 
 
-def main(text: str) -> None:
-    """Show the lab of these settings, and record it if they have a folder."""
-    from recordings import library
+class BoundedDriver(WebDriver):
+    """Textual's driver for a browser, which may ask for any size."""
 
-    settings = Settings.from_text(text)
+    def on_meta(self, packet_type: str, payload: dict[str, Any]) -> None:
+        if packet_type == "resize":
+            payload["width"] = bounded(payload["width"], LARGEST[0])
+            payload["height"] = bounded(payload["height"], LARGEST[1])
+        super().on_meta(packet_type, payload)
+
+
+def bounded(size: float, largest: int) -> int:
+    """Return a size in cells within reason."""
+    return int(min(max(size, 1), largest))
+
+
+def main() -> None:
+    """Show the lab of the settings in a file, and record it if they have a folder."""
+    settings: Settings = pickle.loads(Path(sys.argv[1]).read_bytes())
+    for name, largest in zip(("COLUMNS", "ROWS"), LARGEST, strict=True):
+        os.environ[name] = str(bounded(int(os.environ[name]), largest))
     live = Live(settings.scene)
     path = settings.folder and library.new_path(settings.folder)
-    screen = ServedScreen(live, prepare=lambda: start_recording(live, path, or_next=True))
-    app = ServedApp(screen, terminal=settings.terminal)
-    app.run()
-    live.close()
+    app = PenduApp(live_screen(live, path), terminal=settings.terminal)
+    app.driver_class = BoundedDriver
+    try:
+        app.run()
+    finally:
+        live.close()
+
+
+if __name__ == "__main__":
+    main()
