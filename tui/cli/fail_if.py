@@ -1,10 +1,10 @@
-"""The gate of --fail-if: `velocity_verlet.max_energy_error > 1e-2 or rk4.verdict == grows` -> true or false.
+"""The gate of --fail-if: `velocity_verlet.max_energy_error > 1e-2 or rk4.verdict == grows`.
 
-A gate is comparisons joined by `and`, `or` and parentheses.  Python's parser reads it; nothing is evaluated but the
-nodes named here.  It fails safe.  A comparison holds, whatever its sign, where its method has diverged or its value
-is not known (None, missing, not finite): what cannot be checked has not passed.  Hence there is no `not`.  Only
-`diverged_at` is compared as it is, None meaning that the method never diverged.  `verdict` is compared by == or !=
-with one of the verdicts; too_early (or 'too early') is a word like the others, so `!= bounded` is the careful gate.
+A gate is comparisons joined by `and`, `or` and parentheses.  Python's parser reads it; nothing is
+evaluated but the nodes named here.  It fails safe: a comparison holds, whatever its sign, where its
+method has diverged or its value is not known (None, missing, not finite).  Hence there is no `not`.
+Only `diverged_at` is compared as it is, None meaning that the method never diverged.  `verdict` is
+compared by == or != with a verdict; too_early (or 'too early') is one, so `!= bounded` is careful.
 """
 
 import ast
@@ -34,8 +34,10 @@ FIELDS = (
 """The fields of `run --json` that are numbers."""
 
 Values = Mapping[str, Mapping[str, float | str | None]]  # method key -> field -> value
-Gate = Callable[[Values], bool]  # whether it trips on these values
+Gate = Callable[[Values], str]  # the values that trip it; empty if it passes
 
+MAX_LENGTH = 10_000  # characters of a gate
+MAX_NAME = 200  # characters; difflib takes seconds for long ones
 _SIGNS: dict[type[ast.cmpop], Callable[[Any, Any], bool]] = {
     ast.Lt: operator.lt,
     ast.LtE: operator.le,
@@ -49,11 +51,14 @@ _EXAMPLE = "velocity_verlet.max_energy_error > 1e-2"
 
 
 def parse(text: str, fields: Sequence[str] = (), cast: Cast = USUAL_CAST) -> Gate:
-    """The gate that `text` states of the methods of a cast.  Raises UserError for anything else.
+    """Return the gate that `text` states of the methods of a cast.  Raises UserError for anything else.
 
-    With `fields`, comparisons name one of these, or `verdict`, and no method; their values stand under the key "".
+    With `fields`, comparisons name one of these, or `verdict`, and no method; their values stand
+    under the key "".
     """
     source = " ".join(text.split())
+    if len(source) > MAX_LENGTH:
+        raise _refusal(f"it is longer than {MAX_LENGTH:,} characters.")
     for verdict in VERDICTS:
         source = source.replace(verdict, verdict.replace(" ", "_"))
     try:
@@ -63,50 +68,80 @@ def parse(text: str, fields: Sequence[str] = (), cast: Cast = USUAL_CAST) -> Gat
         raise _no_comparison(source, fields) from None
     if "#" in source:  # a comment would hide what follows
         raise _no_comparison(source, fields)
-    return _gate(node, source, fields, [method.key for method in cast])
+    try:
+        return _gate(node, source, fields, [method.key for method in cast])
+    except RecursionError:
+        raise _no_comparison(source, fields) from None
 
 
 def _gate(node: ast.expr, source: str, fields: Sequence[str], methods: Sequence[str]) -> Gate:
     match node:
         case ast.BoolOp(op, parts):
-            join = all if isinstance(op, ast.And) else any
             gates = [_gate(part, source, fields, methods) for part in parts]
-            return lambda values: join(gate(values) for gate in gates)
+            return partial(_all if isinstance(op, ast.And) else _any, gates)
         case ast.Compare(ast.Attribute(ast.Name(key), field), [sign], [value]) if type(sign) in _SIGNS and not fields:
-            method, known = _known("method", key, methods), FIELDS
+            method = _named("method", key, methods)
+            names = FIELDS
         case ast.Compare(ast.Attribute(ast.Name(), field) as named) if fields:
-            ours = source.replace(ast.get_source_segment(source, named) or "", field)
+            ours = source.replace(_segment(source, named), field)
             raise _refusal(
                 f"{_quoted(source)} names a method, and one table of energies has none; write {_quoted(ours)}."
             )
         case ast.Compare(ast.Name(field), [sign], [value]) if type(sign) in _SIGNS and fields:
-            method, known = "", tuple(fields)
+            method = ""
+            names = tuple(fields)
         case _:
-            raise _no_comparison(ast.get_source_segment(source, node) or source, fields)
-    field = _known("field", field, (*known, "verdict"))
-    return partial(_holds, method, field, _SIGNS[type(sign)], _value(field, sign, value, source))
+            raise _no_comparison(_segment(source, node), fields)
+    field = _named("field", field, (*names, "verdict"))
+    limit = _value(field, sign, value, source)
+    return partial(_found, method, field, _SIGNS[type(sign)], limit)
 
 
-def _holds(method: str, field: str, compare: Callable[[Any, Any], bool], value: float | str, values: Values) -> bool:
-    """Whether a comparison is true of these values, or cannot be checked."""
+def _all(gates: Sequence[Gate], values: Values) -> str:
+    found = [gate(values) for gate in gates]
+    return ", ".join(found) if all(found) else ""
+
+
+def _any(gates: Sequence[Gate], values: Values) -> str:
+    return ", ".join(found for found in (gate(values) for gate in gates) if found)
+
+
+def _found(
+    method: str,
+    field: str,
+    compare: Callable[[Any, Any], bool],
+    limit: float | str,
+    values: Values,
+) -> str:
+    """Return the value for which a comparison is true, or why it cannot be checked."""
     reading = values.get(method, {})
-    ours, diverged_at = reading.get(field), reading.get("diverged_at")
+    ours = reading.get(field)
+    diverged_at = reading.get("diverged_at")
+    name = f"{method}.{field}" if method else field
     if field == "diverged_at":
-        return ours is not None and compare(ours, value)
-    unknown = ours is None or diverged_at is not None or not (isinstance(ours, str) or math.isfinite(ours))
-    return unknown or compare(ours, value)
+        return f"{name} is {ours:g}" if ours is not None and compare(ours, limit) else ""
+    if diverged_at is not None:
+        return f"{method or 'the energy'} diverged at {diverged_at:g}"
+    if ours is None or not (isinstance(ours, str) or math.isfinite(ours)):
+        return f"{name} is not known"
+    if not compare(ours, limit):
+        return ""
+    return f"{name} is {ours if isinstance(ours, str) else format(ours, '.3g')}"
+
+
+def _segment(source: str, node: ast.expr) -> str:
+    """Return the text of a node of a source in one line."""
+    return source.encode()[node.col_offset : node.end_col_offset].decode()
 
 
 def _value(field: str, sign: ast.cmpop, node: ast.expr, source: str) -> float | str:
-    quoted = node.value if isinstance(node, ast.Constant) and isinstance(node.value, str) else None
-    text = quoted or ast.get_source_segment(source, node) or ""
+    is_text = isinstance(node, ast.Constant) and isinstance(node.value, str)
+    text = str(node.value) if is_text else _segment(source, node)  # type: ignore[attr-defined]
     if field == "verdict":
         if not isinstance(sign, ast.Eq | ast.NotEq):
-            raise _refusal("Verdicts have no order: compare them with == or !=.")
-        if text == "drifts":
-            raise _refusal("The verdict 'drifts' is now called loses.")
-        return _known("verdict", text.replace("_", " "), VERDICTS)
-    if quoted or not _NUMBER.fullmatch(text) or not math.isfinite(number := float(text)):
+            raise _refusal("verdicts have no order: compare them with == or !=.")
+        return _named("verdict", text.replace("_", " "), VERDICTS)
+    if is_text or not _NUMBER.fullmatch(text) or not math.isfinite(number := float(text)):
         raise _refusal(f"{_quoted(text)} is not a finite number; use for example 0.05 or 1e-2.")
     return number
 
@@ -116,16 +151,21 @@ def _refusal(sentence: str) -> UserError:
 
 
 def _no_comparison(text: str, fields: Sequence[str]) -> UserError:
-    form, example = ("FIELD", f"{fields[0]} > 1e-2") if fields else ("METHOD.FIELD", _EXAMPLE)
-    return _refusal(f"{_quoted(text)} is not a comparison; write {form} > NUMBER, for example {example!r}.")
+    form = "FIELD" if fields else "METHOD.FIELD"
+    example = f"{fields[0]} > 1e-2" if fields else _EXAMPLE
+    return _refusal(
+        f"{_quoted(text)} is not a comparison; write {form} > NUMBER, for example {example!r};"
+        " comparisons are joined by and, or and parentheses."
+    )
 
 
-def _known(what: str, name: str, names: Sequence[str]) -> str:
+def _named(what: str, name: str, names: Sequence[str]) -> str:
     if name in names:
         return name
     longer = next((f": did you mean {each}?" for each in names if f"_{name}" in each), "")
-    advice = did_you_mean(name, names) or longer or f": choose from {', '.join(names)}."
-    raise _refusal(f"There is no {what} {_quoted(name)}{advice}")
+    similar = did_you_mean(name, names) if len(name) <= MAX_NAME else None
+    advice = similar or longer or f": choose from {', '.join(names)}."
+    raise _refusal(f"there is no {what} {_quoted(name)}{advice}")
 
 
 def _quoted(text: str) -> str:

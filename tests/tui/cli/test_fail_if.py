@@ -1,5 +1,6 @@
 import math
 import operator
+import time
 from typing import get_args
 
 import pytest
@@ -21,7 +22,8 @@ SIGNS = {
 }
 KEYS = [method.key for method in USUAL_CAST]
 NO_COMPARISON = (
-    "is not a comparison; write METHOD.FIELD > NUMBER, for example 'velocity_verlet.max_energy_error > 1e-2'."
+    "is not a comparison; write METHOD.FIELD > NUMBER, for example 'velocity_verlet.max_energy_error > 1e-2';"
+    " comparisons are joined by and, or and parentheses."
 )
 PLAIN = [field for field in FIELDS if field != "diverged_at"]
 
@@ -36,13 +38,15 @@ def reading(**values: float | str | None) -> dict[str, dict[str, float | str | N
 
 @given(methods, plain_fields, signs, numbers, numbers)
 def test_a_comparison_is_that_of_python(method: str, field: str, sign: str, value: float, number: float) -> None:
-    assert parse(f"{method}.{field}{sign}{number!r}")(reading(**{field: value})) is SIGNS[sign](value, number)
+    assert parse(f"{method}.{field}{sign}{number!r}")(reading(**{field: value})) == (
+        f"{method}.{field} is {value:.3g}" if SIGNS[sign](value, number) else ""
+    )
 
 
 @given(st.lists(st.lists(st.booleans(), min_size=1, max_size=4), min_size=1, max_size=4))
 def test_and_binds_tighter_than_or(truths: list[list[bool]]) -> None:
     text = " or ".join(" and ".join(f"rk4.energy > {-1 if truth else 1}" for truth in row) for row in truths)
-    assert parse(text)(reading(energy=0.0)) is any(all(row) for row in truths)
+    assert bool(parse(text)(reading(energy=0.0))) is any(all(row) for row in truths)
 
 
 def test_parentheses_join_as_in_python() -> None:
@@ -61,7 +65,7 @@ def test_parentheses_join_as_in_python() -> None:
         "rk4.energy in (1, 2)",
         "__import__('os').remove('x')",
         "(" * 1000,
-        "-" * 100_000,
+        "-" * 9_000,
         "\0",
         "",
     ],
@@ -77,7 +81,7 @@ def test_a_diverged_method_trips_every_comparison_that_names_it(field: str, sign
     values = reading()
     values["rk4"]["diverged_at"] = 3.0
     assert parse(f"rk4.{field} {sign} 1e9")(values)
-    assert parse(f"velocity_verlet.{field} > 1e9")(values) is False
+    assert not parse(f"velocity_verlet.{field} > 1e9")(values)
 
 
 @pytest.mark.parametrize("unknown", [None, math.nan, math.inf])
@@ -92,9 +96,9 @@ def test_a_method_that_was_not_run_trips_the_gate() -> None:
 
 def test_the_time_of_divergence_can_be_asked_for() -> None:
     healthy, diverged = reading(), reading(diverged_at=3.0)
-    assert parse("rk4.diverged_at >= 0")(healthy) is False
+    assert parse("rk4.diverged_at >= 0")(healthy) == ""
     assert parse("rk4.diverged_at >= 0")(diverged)
-    assert parse("rk4.diverged_at < 2")(diverged) is False
+    assert parse("rk4.diverged_at < 2")(diverged) == ""
 
 
 @pytest.mark.parametrize("quote", ["", " ", "'", '"'])
@@ -103,8 +107,8 @@ def test_a_verdict_is_compared_with_one_of_its_words(word: str, quote: str) -> N
     written = f"{quote}{word}{quote}" if quote else word.replace(" ", "_")  # and with a blank, as it is
     for verdict in get_args(Verdict):
         values = reading(verdict=verdict)
-        assert parse(f"rk4.verdict == {written}")(values) is (verdict == word)
-        assert parse(f"rk4.energy > 1 or rk4.verdict!={written}")(values) is (verdict != word)
+        assert bool(parse(f"rk4.verdict == {written}")(values)) is (verdict == word)
+        assert bool(parse(f"rk4.energy > 1 or rk4.verdict!={written}")(values)) is (verdict != word)
     assert parse(f"rk4.verdict == {written}")(reading(verdict=None))
     assert parse(f"rk4.verdict == {written}")(reading(verdict="bounded", diverged_at=1.0))
 
@@ -112,16 +116,15 @@ def test_a_verdict_is_compared_with_one_of_its_words(word: str, quote: str) -> N
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        ("rk4.verdict == lose", "There is no verdict 'lose': did you mean loses?"),
-        ("rk4.verdict == drifts", "The verdict 'drifts' is now called loses."),
-        ("rk4.verdict > loses", "Verdicts have no order: compare them with == or !=."),
+        ("rk4.verdict == lose", "there is no verdict 'lose': did you mean loses?"),
+        ("rk4.verdict > loses", "verdicts have no order: compare them with == or !=."),
         ("rk4.energy > loses", "'loses' is not a finite number; use for example 0.05 or 1e-2."),
         ("rk4.energy > '1'", "'1' is not a finite number; use for example 0.05 or 1e-2."),
-        ("velocity_verlt.energy > 1", "There is no method 'velocity_verlt': did you mean velocity_verlet?"),
-        ("rk4.max_enrgy_error > 1", "There is no field 'max_enrgy_error': did you mean max_energy_error?"),
+        ("velocity_verlt.energy > 1", "there is no method 'velocity_verlt': did you mean velocity_verlet?"),
+        ("rk4.max_enrgy_error > 1", "there is no field 'max_enrgy_error': did you mean max_energy_error?"),
         (
             "leapfrog.energy > 1",
-            "There is no method 'leapfrog': choose from explicit_euler, symplectic_euler, velocity_verlet, rk4.",
+            "there is no method 'leapfrog': choose from explicit_euler, symplectic_euler, velocity_verlet, rk4.",
         ),
         ("rk4.energy > 1e999", "'1e999' is not a finite number; use for example 0.05 or 1e-2."),
         ("rk4.energy > 1_0", "'1_0' is not a finite number; use for example 0.05 or 1e-2."),
@@ -147,3 +150,19 @@ def test_any_text_is_a_gate_or_one_printable_sentence(text: str) -> None:
         sentence = str(error)
     assert sentence.isprintable()
     assert len(sentence) < 800  # at most 60 quoted characters, ten each when escaped
+
+
+def test_the_values_that_trip_a_gate_are_given() -> None:
+    values = reading(max_energy_error=0.057, verdict="too early")
+    gate = parse("rk4.max_energy_error > 1e-2 or rk4.verdict != bounded or rk4.energy > 1")
+    assert gate(values) == "rk4.max_energy_error is 0.057, rk4.verdict is too early"
+    values["rk4"]["diverged_at"] = 3.0
+    assert parse("rk4.verdict != failed")(values) == "rk4 diverged at 3"
+
+
+@pytest.mark.parametrize("text", [" or ".join(["rk4.energy > 1"] * 3000), "rk4." + "x" * 9000 + " > 1"])
+def test_long_gates_are_refused_at_once(text: str) -> None:
+    began = time.process_time()
+    with pytest.raises(UserError):
+        parse(text)
+    assert time.process_time() - began < 1

@@ -93,8 +93,8 @@ def run(options: argparse.Namespace) -> int:
     if stopped:
         warn(f"interrupted at t = {sample.t:g} s, showing the results up to then.")
         return Exit.INTERRUPTED
-    if gate and gate({row["method"]: row for row in rows}):
-        warn(f"the check failed: {options.fail_if}")
+    if gate and (found := gate({row["method"]: row for row in rows})):
+        warn(f"the check failed: {options.fail_if} ({found})")
         return Exit.CHECK_FAILED
     return Exit.FINE
 
