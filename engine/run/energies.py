@@ -1,250 +1,424 @@
-"""Energies alone: a verdict on any program, from times and energies, with no model and no known period.
+"""Energies without a method: a verdict on the energies of any program, from times and energies alone.
 
-The record is cut into up to 64 blocks of equal time.  A block's mean hardly shows the wobble within it, and blocks
-without samples are left out, so sampling may be uneven.  A straight line through the means gives the trend, with
-an uncertainty that takes correlation into account: by the residuals' own (Bands.line), and by longer blocks, of
-which the largest uncertainty counts: Flyvbjerg & Petersen, J. Chem. Phys. 91 (1989) 461.
+The record is cut into up to 64 blocks of equal time.  The means of the blocks are held against a few
+descriptions: a level, a line, a curve that still moves, a curve or a step that has settled, each with
+or without slow waves.  What a description leaves is noise of any correlation time, from none to that
+of a random walk, with white noise on top; its likelihood is averaged over a grid of such noises, so
+the uncertainty of a trend holds for correlated energies, too (generalised least squares with
+restricted maximum likelihood: Harville, J. Am. Stat. Assoc. 72 (1977) 320).
 
-- `grows`, `loses`: the means move steadily one way; or the line's slope is significant and what is left is noise; or
-  the last quarter runs away from all before it; or the energies end in nan or inf, which is `grows`.
-- `bounded`: noise or a wobble, whose slope and three times its uncertainty move it by less than half its band; or a
-  slow wobble seen at least four times, in early and late thirds alike.
-- `caught`: the energy has left its start, and the second half is noise about one level.
-- `wanders`: the means do what a random walk does; or the wobble gets wider.
-- `too early`: none of these, yet.
+In this order: energies that move by no more than rounding are `bounded`; a start outside the band of
+the rest is left out; what settles after a change of level is `caught`; a trend `grows` or `loses`;
+no trend, in a record of enough independent samples, is `bounded`; a record that has moved further
+than any noise about a level would is one that `wanders`.
 """
 
 import math
-from collections import Counter
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from engine.run.bands import FLOOR, MOST_BINS, Bands, Bin, steady
-from engine.run.verdict import Verdict
+from engine.run.judgement import Judgement, Progress, Verdict
 
-LEAST_SAMPLES = 64
-LEAST_BLOCKS = 10
-SAMPLES_PER_BLOCK = 4
-CUTS = (1.0, 0.85, 0.7)  # of the most blocks: a wobble that beats with one of them does not beat with all
-ALIKE = 0.5  # correlation of a residual with the next one: below, what is left is noise
-ROUGH = 1.65  # exponent of how far means part at lag 1 and 2: 1.3 for a random walk, 2 for a smooth curve
-WALK = 0.4  # the same exponent at long lags: 0 for noise, 1 for a random walk
-FAR = 3.0  # times the width of a block's band: how far a random walk goes, at least
-CYCLES = 4  # of a slow wobble, to call it bounded
-AHEAD = 10.0  # the forecast is for so many times the record
+MIN_SAMPLES = 64  # 32 blocks: a line, three waves and a noise leave 20 degrees of freedom
+MAX_BLOCKS = 64  # resolve a correlation time of a 20th of the record
+SAMPLES_PER_BLOCK = 2
+MIN_BLOCKS = 12  # where a gap leaves some of them empty
+MIN_INDEPENDENT = 15  # correlation times in a record: uncertainties were tested down to here
+STILL = 2.6  # standard deviations: a level exceeds them in 1 of 100 records
+TREND = 3.3  # standard deviations: a level exceeds them in 1 of 1000 records
+STEEP = 2.0  # standard deviations of a line beside a curve: not an end alone
+CHANGE = 5.0  # standard deviations of a change of level: the best of 200 in white noise has 3.3
+LINE_OF_FEW = 7.0  # standard deviations, where independent samples are few: 2 in 100 random walks
+CURVE_OF_FEW = 12.0  # have a steeper line, or a clearer curve
+SETTLED = math.log(100)  # of a likelihood ratio: wrong in 1 of 100 where both are as common
+CLEAR = math.log(10)  # of a likelihood ratio, between curves of as many parameters
+WALKS = 3.5  # of a likelihood ratio: noise with a correlation time of T/5 exceeds it in 1 of 100
+MIN_CYCLES = 4.0  # of a slow wave that is called bounded: thirds of the record look alike
+MAX_WAVES = 3
+WAVES = 12.0  # log likelihood that waves must gain: in random walks they gained up to 10
+MIN_WAVE = 1.1  # cycles: the search ends at 1, where curves end up
+TRANSIENT = 0.05  # of the record: a start that is over so early belongs to the preparation
+RUNAWAY = 1.65  # exponent of structure functions: 2 for a smooth curve, 1.3 for means of a walk
+WIDER = 3.0  # times as wide in the last third as in the first: more than medians of noise vary
+ROUNDING = 1e-12  # of the energy: a random walk of 1e7 roundings of 1e-16
+MULTIPLIED = 1e3  # times the smallest energy: what multiplies is judged in its logarithm
 
-
-@dataclass(frozen=True, slots=True)
-class Forecast:
-    """Where the energy error will be if the trend stays: three uncertainties to either side."""
-
-    time: float  # of the record's own unit
-    low: float  # relative energy error
-    high: float
-
-
-@dataclass(frozen=True, slots=True)
-class Finding:
-    """The verdict on a record of energies."""
-
-    verdict: Verdict
-    slope: float | None  # mean change of the relative energy error per unit of time; None if too early for one
-    uncertainty: float | None  # standard deviation of the slope
-    max_error: float  # largest relative energy error
-    last_error: float  # signed
-    forecast: Forecast | None  # only for a trend that is a line
+_RATES = 1.0 * np.geomspace(1, 25, 20)  # of exponential curves, per record: these still move
+_LOGARITHMS = np.geomspace(1, 3000, 15)  # of log(1 + k t), which never settles
+_SETTLING = np.geomspace(6, 600, 30)  # exponential approaches that are over within the record
+_CORRELATION_TIMES = 1 / np.array([0.5, 1, 2, 4, 7, 10, 14, 20, 28, 40, 64])  # of the record
+LEVEL_TIME, WALK_TIME = 0.21, 1.9  # correlation times of noise about a level, and of a walk
+_WHITE = np.array([0.0, 1, 10, 100, 1000])  # variance of white noise, in mean squares of the steps
 
 
-@dataclass(frozen=True, slots=True)
-class _Blocks:
-    """Blocks of equal time that have samples: mean times, and means, lowest and highest of the errors."""
+class SeriesJudgement(NamedTuple):
+    """The judgement on a series, with the evidence that only a whole record can give."""
 
-    times: Any  # arrays of float, one value a block
+    judgement: Judgement
+    transient: float = 0.0  # time at the start that was left out
+    first: int = 0  # the index of the first sample that was judged
+    independent: float = 0.0  # correlation times in the record
+    fluctuation: float | None = None  # standard deviation about a line, of the energies' unit
+
+
+class _Blocks(NamedTuple):
+    """Arrays with one value a block; times run from 0 to 1."""
+
+    places: Any  # numbers of the blocks
+    times: Any
     means: Any
     lows: Any
     highs: Any
-
-    def __len__(self) -> int:
-        return len(self.means)
-
-    def part(self, which: slice) -> "_Blocks":
-        return _Blocks(self.times[which], self.means[which], self.lows[which], self.highs[which])
+    sizes: Any  # samples
 
 
-def judge(times: Any, energies: Any, scale: float | None = None, diverged: bool = False) -> Finding:
-    """Judge energies at times: arrays of one length, finite, not empty; times increase and are below 1e300.
+def judge_energies(times: Any, energies: Any, failed: bool = False) -> SeriesJudgement:
+    """Judge finite `energies` at increasing `times`; the slope has their units.
 
-    Errors are relative to `scale`, or to the first energy, which is the start's.  `diverged`: nan or inf came after
-    the last of them.  Raises ValueError if the first energy is zero and there is no scale.
+    `failed`: nan or inf came after the last of them.
     """
-    scale = abs(float(energies[0])) if scale is None else scale
-    if not 0 < scale < math.inf:
-        raise ValueError("the first energy is zero, and errors are relative to it")
-    with np.errstate(over="ignore"):
-        errors = np.clip((energies - energies[0]) / scale, -1e300, 1e300)
-    largest, last = float(np.abs(errors).max()), float(errors[-1])
-    unit = max(largest, 1e-300)  # squares of errors must not overflow
-    start, span = float(times[0]), float(times[-1] - times[0])
-    most = min(MOST_BINS, len(times) // SAMPLES_PER_BLOCK)
-    cuts = []
-    if len(times) >= LEAST_SAMPLES:
-        cuts = [_blocks((times - start) / span, errors / unit, round(share * most)) for share in CUTS]
-    if not cuts or min(map(len, cuts)) < LEAST_BLOCKS:
-        return Finding("grows" if diverged else "too early", None, None, largest, last, None)
-    votes = Counter(_verdict(cut, FLOOR / unit) for cut in cuts)
-    (verdict, straight), count = votes.most_common(1)[0]
-    if diverged or count == 1:
-        verdict, straight = "grows" if diverged else "too early", False
-    slope, uncertainty = _line(cuts[0])
-    forecast = None
-    if straight:
-        level = float(np.mean(cuts[0].means)) + slope * (AHEAD - float(np.mean(cuts[0].times)))
-        reach = 3 * uncertainty * AHEAD + float(np.max(cuts[0].highs - cuts[0].lows)) / 2
-        forecast = Forecast(start + AHEAD * span, (level - reach) * unit, (level + reach) * unit)
-    slope, uncertainty = slope / span * unit, uncertainty / span * unit
-    finite = math.isfinite(slope + uncertainty)
-    return Finding(verdict, slope if finite else None, uncertainty if finite else None, largest, last, forecast)
+    if failed:
+        return SeriesJudgement(Judgement("failed"))
+    if len(times) < MIN_SAMPLES:
+        return SeriesJudgement(_too_early(len(times), MIN_SAMPLES, "samples"))
+    floor = max(_last_digit(energies), ROUNDING * float(np.abs(energies).max()))
+    first = _transient(times, energies, floor)
+    found = _judge(times[first:], energies[first:], floor)
+    if found.first:
+        first += found.first
+        found = _judge(times[first:], energies[first:], floor, again=True)
+    sizes = np.abs(energies[first:])
+    if sizes.max() > MULTIPLIED * sizes.min() > 0 and np.ptp(np.sign(energies[first:])) == 0:
+        logarithm = _judge(times[first:], np.log(sizes), ROUNDING, again=True).judgement
+        found = found._replace(judgement=found.judgement._replace(verdict=logarithm.verdict))
+    span = float(times[-1] - times[first])
+    judgement = found.judgement
+    if judgement.slope is not None and judgement.uncertainty is not None:
+        slope = judgement.slope / span
+        judgement = judgement._replace(slope=slope, uncertainty=judgement.uncertainty / span)
+    transient = float(times[first] - times[0])
+    return SeriesJudgement(judgement, transient, first, found.independent, found.fluctuation)
 
 
-def _blocks(times: Any, errors: Any, count: int) -> _Blocks:
-    """The blocks of samples at times from 0 to 1."""
-    places = np.minimum((times * count).astype(np.int64), count - 1)
-    firsts = np.flatnonzero(np.diff(places, prepend=-1))
-    sizes = np.diff(firsts, append=len(places))
-    means = np.add.reduceat(errors, firsts) / sizes
-    middles = np.add.reduceat(times, firsts) / sizes
-    return _Blocks(middles, means, np.minimum.reduceat(errors, firsts), np.maximum.reduceat(errors, firsts))
+def _too_early(have: float, need: float, unit: str) -> Judgement:
+    return Judgement("too early", progress=Progress(int(have), int(need), unit))
 
 
-def _line(blocks: _Blocks) -> tuple[float, float]:
-    """Slope of the line through the means, and the largest uncertainty that blocks of any length give it."""
-    slope, uncertainty = 0.0, 0.0
-    times, means = blocks.times, blocks.means
-    while len(means) >= LEAST_BLOCKS:
-        bands = Bands(1)
-        bands.bins = [Bin(time, mean, mean) for time, mean in zip(times.tolist(), means.tolist(), strict=True)]
-        found, deviation = bands.line()
-        slope = slope if uncertainty else found
-        uncertainty = max(uncertainty, deviation)
-        even = len(means) // 2 * 2
-        times, means = times[:even].reshape(-1, 2).mean(axis=1), means[:even].reshape(-1, 2).mean(axis=1)
-    return slope, uncertainty
+def _last_digit(energies: Any) -> float:
+    """Return the last printed digit of the energies, or the rounding of a double."""
+    some = energies[:: max(1, len(energies) // 4096)]
+    rounding = 8 * np.finfo(float).eps * float(np.abs(some).max())
+    for exponent in range(8, -18, -1):
+        digit = 10.0**exponent
+        if digit <= rounding:
+            break
+        if np.all(np.abs(some - np.round(some / digit) * digit) <= rounding):
+            return digit
+    return rounding
 
 
-def _verdict(blocks: _Blocks, floor: float) -> tuple[Verdict, bool]:
-    """The verdict that one way to cut the record gives, and whether a line describes the trend."""
-    slope, uncertainty = _line(blocks)
-    if (width := _width(blocks)) <= floor:
-        return "bounded", True
-    towards: Verdict = "grows" if slope > 0 else "loses"
-    if _runs_away(blocks):
-        return ("grows" if blocks.means[-1] > blocks.means[0] else "loses"), False
-    if _is_steady(blocks):
-        return towards, _correlation(blocks) < ALIKE
-    if _correlation(blocks) < ALIKE:
-        if _gets_wider(blocks):
-            return "wanders", False
-        if _gap(blocks.part(slice(len(blocks) // 4, None))) > 1:  # before the first block was over
-            return "caught", False
-        if abs(slope) > (3 + MOST_BINS / len(blocks)) * uncertainty and abs(slope) > 10 * floor:
-            return towards, True
-        if abs(slope) + 3 * uncertainty < width / 2:
-            return "bounded", True
-    if _cycles(blocks.means) >= CYCLES and _thirds_agree(blocks):
-        return "bounded", True
-    if _is_caught(blocks):
-        return "caught", False
-    return ("wanders" if _walks(blocks) else "too early"), False
+def _transient(times: Any, energies: Any, floor: float) -> int:
+    """Return how many samples at the start lie outside the band of the rest, by half its width."""
+    at = (times - times[0]) / (times[-1] - times[0])
+    early = int(np.searchsorted(at, TRANSIENT))
+    line = np.polyfit(at[early:], energies[early:], 1)
+    rest = energies - np.polyval(line, at)
+    low = float(rest[early:].min())
+    high = float(rest[early:].max())
+    margin = max((high - low) / 2, floor)
+    outside = np.flatnonzero((rest[:early] > high + margin) | (rest[:early] < low - margin))
+    return int(outside[-1]) + 1 if len(outside) else 0
 
 
-def _is_steady(blocks: _Blocks) -> bool:
-    """Whether the means move one way, far better than those of a random walk."""
-    return _one_way(blocks.means) or steady([Bin(0.0, mean, mean) for mean in blocks.means.tolist()])
-
-
-def _one_way(values: Any) -> bool:
-    """Whether each value is above the one before, or each below."""
-    moves = np.diff(values)
-    return bool(np.all(moves > 0) or np.all(moves < 0))
-
-
-def _runs_away(blocks: _Blocks) -> bool:
-    """Whether the last quarter moves one way only, and far beyond all before it."""
-    quarter, end = len(blocks) // 4, float(blocks.means[-1])
-    before = blocks.part(slice(-quarter))
-    far = max(end - before.highs.max(), before.lows.min() - end) > _width(before) / 2
-    return bool(far) and _one_way(blocks.means[-max(quarter, 6) :]) and _exponent(blocks.means, 1, 2) > ROUGH
-
-
-def _correlation(blocks: _Blocks) -> float:
-    """Of a residual, about the line, with the next one; 0 where the line is all there is, to a thousandth."""
-    rest = blocks.means - np.polyval(np.polyfit(blocks.times, blocks.means, 1), blocks.times)
-    total = float(rest @ rest)
-    return float(rest[1:] @ rest[:-1]) / total if total > 1e-6 * len(rest) * float(np.var(blocks.means)) else 0.0
-
-
-def _gets_wider(blocks: _Blocks) -> bool:
-    """Whether the wobble within four blocks is at the end more than twice as wide as at the start."""
-    firsts = np.arange(0, len(blocks), 4)
-    widths = np.maximum.reduceat(blocks.highs, firsts) - np.minimum.reduceat(blocks.lows, firsts)
-    third = max(1, len(widths) // 3)
-    early, late = blocks.part(slice(len(blocks) // 3)), blocks.part(slice(-(len(blocks) // 3), None))
-    further = _width(late) > 1.5 * _width(early)  # a few narrow peaks would widen a median
-    return further and float(np.median(widths[-third:])) > 2 * float(np.median(widths[:third])) > 0
-
-
-def _cycles(values: Any) -> float:
-    """How often values go from the lower to the upper quarter of their range and back."""
-    low, high = float(values.min()), float(values.max())
-    sides = np.where(values > high - (high - low) / 4, 1, np.where(values < low + (high - low) / 4, -1, 0))
-    sides = sides[sides != 0]
-    return int(np.count_nonzero(np.diff(sides))) / 2
-
-
-def _thirds_agree(blocks: _Blocks) -> bool:
-    """Whether the first and the last third reach as low and as high as the whole, but for a quarter."""
-    third = len(blocks) // 3
-    low, high = float(blocks.lows.min()), float(blocks.highs.max())
-    edge = (high - low) / 4
-    return all(
-        float(part.lows.min()) < low + edge and float(part.highs.max()) > high - edge
-        for part in (blocks.part(slice(third)), blocks.part(slice(-third, None)))
+def _judge(times: Any, energies: Any, floor: float, again: bool = False) -> SeriesJudgement:
+    """Judge a record; `first` of the result is not 0 where so many samples are a transient."""
+    at = (times - times[0]) / (times[-1] - times[0])
+    energies = energies - float(np.median(energies))
+    count = min(MAX_BLOCKS, len(at) // SAMPLES_PER_BLOCK)
+    blocks = _cut(at, energies, count)
+    if len(blocks.means) < MIN_BLOCKS:
+        return SeriesJudgement(_too_early(len(blocks.means), MIN_BLOCKS, "blocks with samples"))
+    if float(np.ptp(energies)) <= 2 * floor:
+        return SeriesJudgement(Judgement("bounded", 0.0, floor))
+    if verdict := _runs_away(blocks) or _gets_wider(blocks, floor):
+        return SeriesJudgement(Judgement(verdict))
+    stories = _best_stories(blocks, count, floor)
+    rest = energies - np.polyval(np.polyfit(at, energies, 1), at)
+    error = max(stories.line.deviation, floor / len(at))
+    independent = min(len(at), 24 * float(np.mean(rest**2)) / error**2)
+    within = float(np.mean(energies**2) - np.average(blocks.means**2, weights=blocks.sizes))
+    has_settled = stories.settled_gain > SETTLED and stories.settled.amplitude**2 > within
+    if has_settled and stories.settling <= TRANSIENT and not again:
+        return SeriesJudgement(Judgement(), first=int(np.searchsorted(at, stories.settling)))
+    judgement = _conclude(stories, independent, has_settled)
+    if judgement.verdict == "caught" and len(at) >= 2 * MIN_SAMPLES:
+        half = len(at) // 2
+        later = _judge(times[half:], energies[half:], floor, again=True).judgement
+        judgement = later if later.verdict in ("grows", "loses") else judgement
+    slope = stories.line.amplitude
+    if abs(slope) < 2 * floor and judgement.verdict in ("grows", "loses"):
+        judgement = Judgement("bounded")
+    significant = judgement.verdict in ("grows", "loses")
+    return SeriesJudgement(
+        judgement._replace(slope=slope, uncertainty=stories.line.deviation, significant=significant),
+        independent=independent,
+        fluctuation=float(np.std(rest)),
     )
 
 
-def _width(blocks: _Blocks) -> float:
-    """How wide the band of some blocks is."""
-    return float(blocks.highs.max() - blocks.lows.min())
+def _conclude(stories: "_Stories", independent: float, has_settled: bool) -> Judgement:
+    """Return the verdict that the descriptions allow."""
+    line = stories.line.sigmas
+    few = independent < MIN_INDEPENDENT or stories.cycles < MIN_CYCLES
+    walk_like = few or independent < 2 * MIN_INDEPENDENT
+    if has_settled and stories.settled.sigmas > (CURVE_OF_FEW if walk_like else CHANGE):
+        return Judgement("caught")
+    curved = stories.moving.likelihood - stories.line.likelihood > CLEAR
+    clear = not curved or stories.settled_gain < -CLEAR
+    sure = line > LINE_OF_FEW or stories.moving.sigmas > CURVE_OF_FEW
+    trend = sure or (not walk_like and stories.moving.sigmas > TREND)
+    if trend and line > STEEP and clear:
+        return Judgement("grows" if stories.line.amplitude > 0 else "loses")
+    if line < STILL and not few:
+        return Judgement("bounded")
+    if line < STILL and stories.level.walks > WALKS and not math.isfinite(stories.cycles):
+        return Judgement("wanders")
+    if stories.cycles < MIN_CYCLES:
+        return _too_early(stories.cycles, MIN_CYCLES, "cycles of its slowest wave")
+    return _too_early(independent, max(MIN_INDEPENDENT, 2 * independent), "independent samples")
 
 
-def _gap(blocks: _Blocks) -> float:
-    """How far the band of some blocks is from the start, where the error is 0, in its own widths."""
-    away = max(float(blocks.lows.min()), -float(blocks.highs.max()))
-    return away / max(_width(blocks), 1e-300)
+def _cut(at: Any, energies: Any, count: int) -> _Blocks:
+    """Cut samples at times from 0 to 1 into blocks."""
+    places = np.minimum((at * count).astype(np.int64), count - 1)
+    firsts = np.flatnonzero(np.diff(places, prepend=-1))
+    sizes = np.diff(firsts, append=len(places))
+    means = np.add.reduceat(energies, firsts) / sizes
+    return _Blocks(
+        places=places[firsts],
+        times=np.add.reduceat(at, firsts) / sizes,
+        means=means,
+        lows=np.minimum.reduceat(energies, firsts),
+        highs=np.maximum.reduceat(energies, firsts),
+        sizes=sizes,
+    )
 
 
-def _is_caught(blocks: _Blocks) -> bool:
-    """Whether the second half is noise in a band that does not hold the start."""
-    half = blocks.part(slice(len(blocks) // 2, None))
-    if len(half) < 16 or (gap := _gap(half)) < 0.25:
-        return False
-    slope, uncertainty = _line(half)
-    quiet = _correlation(half) < ALIKE and abs(slope) < 4 * max(uncertainty, 1e-300)
-    return gap > 50 or quiet or (_cycles(half.means) >= CYCLES and _thirds_agree(half))
+def _runs_away(blocks: _Blocks) -> Verdict | None:
+    """Return the direction in which the last quarter moves smoothly, far beyond all before it."""
+    quarter = len(blocks.means) // 4
+    low = float(blocks.lows[:-quarter].min())
+    high = float(blocks.highs[:-quarter].max())
+    end = float(blocks.means[-1])
+    moves = np.diff(blocks.means[-max(quarter, 6) :])
+    one_way = np.all(moves > 0) or np.all(moves < 0)
+    if not one_way or max(end - high, low - end) <= (high - low) / 2:
+        return None
+    near, far = (float(np.mean((blocks.means[by:] - blocks.means[:-by]) ** 2)) for by in (1, 2))
+    if far < 2**RUNAWAY * near:
+        return None
+    return "grows" if end > high else "loses"
 
 
-def _walks(blocks: _Blocks) -> bool:
-    """Whether the means part with the lag as those of a random walk do: neither smoothly nor about one level."""
-    n, width = len(blocks), float(np.median(blocks.highs - blocks.lows))
-    if n < 32 or len(np.unique(blocks.means)) < n // 2 or _width(blocks) < FAR * width:
-        return False
-    short, long = (_exponent(blocks.means, lag, factor) for lag, factor in ((1, 2), (n // 16, 4)))
-    return short < ROUGH and long > WALK
+def _gets_wider(blocks: _Blocks, floor: float) -> Verdict | None:
+    """Return `wanders` if the wobble within blocks gets wider from third to third of the record."""
+    firsts = np.arange(0, len(blocks.means), 4)
+    lasts = np.append(firsts[1:], len(blocks.means)) - 1
+    moved = np.abs(blocks.means[lasts] - blocks.means[firsts])
+    highs = np.maximum.reduceat(blocks.highs, firsts)
+    widths = highs - np.minimum.reduceat(blocks.lows, firsts) - moved
+    third = len(widths) // 3
+    early = float(np.median(widths[:third]))
+    middle = float(np.median(widths[third:-third]))
+    late = float(np.median(widths[-third:]))
+    steadily = late > 1.2 * middle > 1.44 * early and late > WIDER * early + 2 * floor
+    return "wanders" if steadily and late > float(blocks.means.std()) else None
 
 
-def _exponent(values: Any, lag: int, factor: int) -> float:
-    """The exponent to which values part with the lag, from one lag to `factor` times it, by mean squares."""
-    near, far = (float(np.mean((values[by:] - values[:-by]) ** 2)) for by in (lag, factor * lag))
-    return math.log(far / near) / math.log(factor) if near > 0 and far > 0 else 0.0
+class _Fit(NamedTuple):
+    """One description fitted: its likelihood, and the amplitude of its last regressor."""
+
+    likelihood: float  # logarithm, of the best noise
+    amplitude: float  # averaged over the noises
+    deviation: float
+    walks: float  # logarithm of the likelihood ratio of a random walk and of noise about a level
+
+    @property
+    def sigmas(self) -> float:
+        """The amplitude in its standard deviations."""
+        return abs(self.amplitude) / self.deviation
+
+
+class _Noises:
+    """The noises, as matrices that make each of them white."""
+
+    def __init__(self, blocks: _Blocks, count: int, rounding: float) -> None:
+        """`count`: the blocks with and without samples; `rounding`: of their means."""
+        lags = np.abs(blocks.places[:, None] - blocks.places[None, :]) / count
+        white = np.diag(blocks.sizes.mean() / blocks.sizes)
+        matrices = [white]
+        for time in _CORRELATION_TIMES:
+            noise, step = _covariance(lags, time, 1 / count)
+            matrices += [noise / step + share * white for share in _WHITE]
+        roots = np.linalg.cholesky(np.array(matrices))
+        self.times = np.concatenate([[0.0], np.repeat(_CORRELATION_TIMES, len(_WHITE))])
+        self._rounding = len(blocks.means) * rounding**2 / 12
+        self._whiten = np.linalg.inv(roots)
+        self._log_determinants = 2 * np.log(np.diagonal(roots, axis1=1, axis2=2)).sum(axis=1)
+
+    def fit(self, regressors: list[Any], means: Any) -> _Fit:
+        """Fit the means by regressors with every noise."""
+        freedom = len(means) - len(regressors)
+        columns = self._whiten @ np.column_stack([*regressors, means])
+        products = columns.transpose(0, 2, 1) @ columns
+        inverse = np.linalg.inv(products[:, :-1, :-1])
+        amplitudes = (inverse @ products[:, :-1, -1:])[..., 0]
+        explained = (amplitudes * products[:, :-1, -1]).sum(axis=1)
+        squares = np.maximum(products[:, -1, -1] - explained, 0) + self._rounding
+        whole = -(self._log_determinants + len(means) * np.log(squares)) / 2
+        design = np.linalg.slogdet(products[:, :-1, :-1])[1]
+        restricted = -(self._log_determinants + design + freedom * np.log(squares)) / 2
+        weights = np.exp(restricted - restricted.max())
+        weights /= weights.sum()
+        deviations = np.sqrt(squares / freedom * np.maximum(inverse[:, -1, -1], 0))
+        return _Fit(
+            likelihood=float(whole.max()),
+            amplitude=float(weights @ amplitudes[:, -1]),
+            deviation=math.exp(float(weights @ np.log(deviations))),
+            walks=float(restricted[self.times >= WALK_TIME].max() - restricted[self.times <= LEVEL_TIME].max()),
+        )
+
+
+def _covariance(lags: Any, time: float, width: float) -> tuple[Any, float]:
+    """Return the covariance of block means of noise with a correlation time, and of their steps."""
+    blocks = width / time
+    noise = np.exp(-lags / time) * (math.sinh(blocks / 2) / (blocks / 2)) ** 2
+    next_one = math.exp(-blocks) * (math.sinh(blocks / 2) / (blocks / 2)) ** 2
+    np.fill_diagonal(noise, 2 * (blocks - 1 + math.exp(-blocks)) / blocks**2)
+    return noise, 2 * (float(noise[0, 0]) - next_one)
+
+
+class _Stories(NamedTuple):
+    """The best of each kind of description."""
+
+    level: _Fit
+    line: _Fit
+    moving: _Fit
+    settled: _Fit
+    settling: float  # the share of the record after which an approach is over; 1 for a step
+    cycles: float  # of the slowest wave; infinite without waves
+    likelihood: float  # of the best, less a penalty for its parameters
+
+    @property
+    def settled_gain(self) -> float:
+        """The log likelihood of the best that has settled, less that of the best that moves."""
+        return self.settled.likelihood - self.moving.likelihood
+
+
+def _best_stories(blocks: _Blocks, count: int, floor: float) -> _Stories:
+    """Fit all descriptions, with waves if they make a better one."""
+    means = blocks.means - float(blocks.means.mean())
+    noises = _Noises(blocks, count, floor)
+    plain = _stories(blocks.times, means, noises, [])
+    waves = _waves(blocks.times, means)
+    wavy = _stories(blocks.times, means, noises, waves) if waves else plain
+    return max(plain, wavy, key=lambda each: each.likelihood)
+
+
+def _stories(times: Any, means: Any, noises: _Noises, waves: list[float]) -> _Stories:
+    """Fit all descriptions, with waves of these frequencies."""
+    base = [np.ones(len(times)), *_regressors(waves, times)]
+    level = noises.fit(base, means)
+    line = noises.fit([*base, times], means)
+    curves = [np.expm1(rate * times) / math.expm1(rate) for rate in (*_RATES, *-_RATES[_RATES < 4])]
+    logarithms = [np.log1p(rate * times) for rate in _LOGARITHMS]
+    moving = [line]
+    for family in (curves, logarithms):
+        moving.append(noises.fit([*base, family[_best(family, base, means)]], means))
+    approaches = [-np.expm1(-rate * times) for rate in _SETTLING]
+    approach = _best(approaches, base, means)
+    settled = noises.fit([*base, approaches[approach]], means)
+    settling = 3 / float(_SETTLING[approach])  # to a 20th of the way
+    steps = _steps(len(times))
+    step = noises.fit([*base, steps[_best(steps, base, means)]], means)
+    if step.likelihood > settled.likelihood:
+        settled, settling = step, 1.0
+    best = max(moving, key=lambda fit: fit.likelihood)
+    penalty = math.log(len(times))
+    likelihood = max(level.likelihood, best.likelihood - penalty, settled.likelihood - penalty)
+    return _Stories(
+        level=level,
+        line=line,
+        moving=best,
+        settled=settled,
+        settling=settling,
+        cycles=min(waves, default=math.inf),
+        likelihood=likelihood - 1.5 * len(waves) * penalty - (WAVES if waves else 0),
+    )
+
+
+def _steps(count: int) -> list[Any]:
+    """Return steps of 1 in the middle three quarters of so many blocks, and within a block."""
+    places = np.arange(count)
+    edge = max(2, count // 8)
+    return [
+        np.clip(places - place + share, 0, 1) for place in range(edge, count - edge) for share in (0.25, 0.5, 0.75, 1.0)
+    ]
+
+
+def _best(family: list[Any], base: list[Any], means: Any) -> int:
+    """Return the index of the member that explains most of the means, beside the base."""
+    basis = np.linalg.qr(np.column_stack(base))[0]
+    members = np.array(family)
+    members = members - (members @ basis) @ basis.T
+    lengths = np.maximum((members**2).sum(axis=1), 1e-12)
+    return int(np.argmax((members @ means) ** 2 / lengths))
+
+
+def _regressors(frequencies: list[float], times: Any) -> list[Any]:
+    """Return cosine and sine of each frequency [cycles in the record]."""
+    angles = [math.tau * frequency * times for frequency in frequencies]
+    return [wave for angle in angles for wave in (np.cos(angle), np.sin(angle))]
+
+
+def _waves(times: Any, means: Any) -> list[float]:
+    """Return the frequencies of waves about a line that stand out of white noise."""
+    found: list[float] = []
+    grid = np.arange(1, len(times) / 2, 0.25)  # a line and less than a cycle look alike
+    penalty = 3 * math.log(len(times)) + 6  # of three parameters, and of the search
+    while len(found) < MAX_WAVES:
+        base = [np.ones(len(times)), times, *_regressors(found, times)]
+        basis = np.linalg.qr(np.column_stack(base))[0]
+        rest = means - basis @ (basis.T @ means)
+        before = float(rest @ rest)
+        if before < 1e-20 * float(means @ means):
+            break
+        gains = _gains(grid, times, basis, rest)
+        best = float(grid[np.argmax(gains)])
+        for width in (0.25, 0.05, 0.01):
+            near = np.maximum(best + width * np.linspace(-1, 1, 11), 1.0)
+            gains = _gains(near, times, basis, rest)
+            best = float(near[np.argmax(gains)])
+        after = max(before - float(gains.max()), 1e-12 * before)
+        apart = min((abs(best - other) for other in found), default=1.0)
+        if len(times) * math.log(before / after) < 2 * penalty or best < MIN_WAVE or apart < 0.75:
+            break
+        found.append(best)
+    return found
+
+
+def _gains(frequencies: Any, times: Any, basis: Any, rest: Any) -> Any:
+    """Return how much of the rest a wave of each frequency explains, in squares."""
+    angles = math.tau * np.asarray(frequencies)[:, None] * times
+    cosines = np.cos(angles)
+    sines = np.sin(angles)
+    cosines = cosines - (cosines @ basis) @ basis.T
+    sines = sines - (sines @ basis) @ basis.T
+    first = cosines @ rest
+    second = sines @ rest
+    squares = (cosines**2).sum(axis=1)
+    others = (sines**2).sum(axis=1)
+    mixed = (cosines * sines).sum(axis=1)
+    determinant = np.maximum(squares * others - mixed**2, 1e-6 * squares * others)
+    return (others * first**2 - 2 * mixed * first * second + squares * second**2) / determinant

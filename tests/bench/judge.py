@@ -4,7 +4,7 @@
 
 The truth of a cell is that of tests/truths.py, known from a million steps; what is judged is the energies of some
 300 periods, sampled 16 times a period (`dense`), every 7 or 13 of these (`7th`, `13th`: fewer than two or three a
-period), and at random (`random`).  Series of known make, such as noise, come with 100 to 20 000 samples.
+period), and at random (`random`).  tests/bench/foreign.py has series of known make.
 A verdict is wrong if the truth forbids it; `too early` is never wrong.  The yardstick of the time is numpy.loadtxt.
 """
 
@@ -15,7 +15,6 @@ import sys
 import tempfile
 import time
 from collections import Counter, defaultdict
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -23,10 +22,10 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from engine.run.compiled import compiled
-from engine.run.energies import judge
+from engine.run.energies import judge_energies
 from tests.truths import scene_at, truths
 
-PERIODS, SAMPLES_A_PERIOD, LEAST_SAMPLES, LINES, TRIALS = 300, 16, 2048, 10**6, 100
+PERIODS, SAMPLES_A_PERIOD, LEAST_SAMPLES, LINES = 300, 16, 2048, 10**6
 CELLS = {  # a million steps' truth -> what fewer steps, and energies alone, may be called
     "b": {"bounded"},
     "s": {"bounded", "wanders"},
@@ -38,60 +37,6 @@ CELLS = {  # a million steps' truth -> what fewer steps, and energies alone, may
     "K": {"grows", "loses", "caught", "bounded"},
     "B": {"bounded", "loses", "grows", "caught", "wanders"},  # by rounding, which walks, too
 }
-SERIES = {
-    "white noise": {"bounded"},
-    "white noise, uneven": {"bounded"},
-    "correlated noise": {"bounded"},
-    "random walk": {"wanders"},
-    "wobble": {"bounded"},
-    "slow beats": {"bounded"},
-    "half a beat": {"grows", "loses"},
-    "drift of 1 sigma": {"grows", "bounded"},
-    "drift of 3 sigma": {"loses"},
-    "exponential growth": {"grows"},
-    "relaxation": {"caught"},
-    "step": {"caught"},
-    "widening": {"wanders", "grows"},
-    "last digits": {"bounded"},
-    "constant": {"bounded"},
-}
-
-
-def series(n: int, random: np.random.Generator) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
-    """Name, times and energies less 1000 of each series of known make."""
-    t, noise = np.linspace(0, 100, n), random.standard_normal(n)
-    phase, angular = random.uniform(0, 2 * math.pi), random.uniform(3, 30)
-    correlated = np.zeros(n)
-    for i in range(1, n):
-        correlated[i] = math.exp(-100 / n) * correlated[i - 1] + noise[i]
-    yield "white noise", t, noise
-    yield "white noise, uneven", np.sort(random.uniform(0, 100, n)), noise
-    yield "correlated noise", t, correlated
-    yield "random walk", t, np.cumsum(noise)
-    yield "wobble", t, np.sin(angular * t + phase)
-    yield "slow beats", t, np.sin(2 * math.pi * random.uniform(5, 20) * t / 100 + phase) + 0.1 * np.sin(33 * t)
-    yield "half a beat", t, np.cos(math.pi * t / 100) + 0.1 * np.sin(33 * t)
-    yield "drift of 1 sigma", t, noise + t / 100
-    yield "drift of 3 sigma", t, noise - 3 * t / 100
-    yield "exponential growth", t, 1e-8 * (np.exp(t / random.uniform(3, 30)) + np.sin(5 * t))
-    yield "relaxation", t, 1 - np.exp(-t / 8) + 0.02 * noise
-    yield "step", t, (t > 50) + 0.02 * noise
-    yield "widening", t, t * np.sin(7 * t)
-    yield "last digits", t, np.round(0.3 * noise)
-    yield "constant", t, 0 * t
-
-
-def of_series() -> tuple[dict[str, Counter[str]], int]:
-    """The verdicts on the series, and how many are wrong."""
-    table: defaultdict[str, Counter[str]] = defaultdict(Counter)
-    random, wrong = np.random.default_rng(1), 0
-    for n in (100, 1000, 20_000):
-        for _ in range(TRIALS):
-            for name, times, energies in series(n, random):
-                verdict = judge(times, 1000 + energies - energies[0]).verdict
-                table[f"{name}, {n}"][verdict] += 1
-                wrong += verdict not in SERIES[name] | {"too early"}
-    return table, wrong
 
 
 def samplings(n: int, random: np.random.Generator) -> dict[str, np.ndarray]:
@@ -119,7 +64,7 @@ def of_cells(every: int) -> tuple[dict[str, Counter[str]], list[tuple[object, ..
             errors.append(reference.error(value))
         energies = 1 + np.array(errors)
         for name, which in samplings(len(energies), random).items():
-            verdict = judge(which * stride * scene.h, energies[which], 1.0, ended).verdict
+            verdict = judge_energies(which * stride * scene.h, energies[which], ended).judgement.verdict
             table[f"{name} {letter}"][verdict] += 1
             if verdict not in CELLS[letter] | {"too early"}:
                 wrong.append((name, method.key, start, z, letter, verdict))
@@ -156,12 +101,9 @@ def of_time() -> dict[str, float]:
 
 def main() -> None:
     """Print the tables."""
-    by_make, wrong_series = of_series()
     by_truth, wrong_cells = of_cells(int(sys.argv[1]) if sys.argv[1:] else 5)
     total = sum(sum(counter.values()) for counter in by_truth.values())
     report = {
-        "series": {name: dict(counter) for name, counter in by_make.items()},
-        "series_wrong": [wrong_series, sum(sum(counter.values()) for counter in by_make.values())],
         "cells": {name: dict(counter) for name, counter in sorted(by_truth.items())},
         "cells_wrong": [len(wrong_cells), total],
         "wrong": wrong_cells,

@@ -1,193 +1,396 @@
-"""Two columns of another program's table: times and energies from a CSV, an .xvg, a log, a file or stdin.
+"""Columns of another program's tables: text of any form, JSON lines, Amber's mdout, an .npz.
 
-Lines are read one by one, so a table may stand between other text.  The delimiter is that of the header: a tab, a
-semicolon, a comma or blanks.  Lines that start with # or @ are comments, but for names of columns: those of a header
-after a #, and of `@ s0 legend "Total Energy"` and `@ xaxis label "Time (ps)"` as GROMACS writes them.
+Lines are read one by one, so a table may stand between other text.  A table begins with a header
+that has the wanted names, or where the time starts again; one of the tables is returned.
 """
 
-import csv
+import io
+import json
 import math
 import re
+import zipfile
 from array import array
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from itertools import chain, islice
+from itertools import chain
+from typing import Any, BinaryIO, NamedTuple
 
 from recordings.errors import printable
 from tui.cli.errors import Exit, UserError
 from tui.cli.options import did_you_mean
 
-MOST_NAMES = 200  # of columns, in a hint
+MAX_LINE = 1 << 20  # bytes
+MAX_LINES_BEFORE = 100_000  # the first row
+MAX_NAME = 200  # characters of a column's name
+MAX_NAMES = 200  # columns of a header
+MAX_ARRAY = 1 << 30  # bytes of an array in an .npz
 LATEST = 1e300  # a time; squares and differences of later ones overflow
-MOST_BETWEEN = 20  # lines between a header and the first row, such as units
-REASONS = {
-    "text_or_gap": "text or a gap",
-    "time_not_later": "time not later than before",
-    "time_not_finite": "time not finite",
-    "energy_not_finite": "energy not finite",
-}
-"""Why a line below the header is not used: in JSON, and for people."""
 
-_LEGEND = re.compile(r'@\s*(?:s(\d+)\s+legend|(xaxis)\s+label)\s+"(.*)"')
-_UNIT = re.compile(r"\s*[(\[].*[)\]]$")
+_LEGEND = re.compile(r'@\s*(?:s(\d{1,3})\s+legend|([xy])axis\s+label)\s+"([^"]*)"')
+_PAIR = re.compile(r"([A-Za-z][\w()/-]*(?: [\w()/-]+)?)\s*=\s*([-+.\w*]+)")
+_BINARY = {
+    b"\x1f\x8b": "a gzip file; unpack it first",
+    b"\xff\xfe": "text in UTF-16; save it as UTF-8",
+    b"\xfe\xff": "text in UTF-16; save it as UTF-8",
+    b"\x89MCAP": "a recording; pendu-tui export makes a table of it",
+}
+
+
+class Head(NamedTuple):
+    """The wanted columns of a table: the fields that add up to each, and its unit."""
+
+    places: tuple[tuple[int, ...], ...]
+    units: tuple[str, ...]
+
+
+Row = Sequence[float | None]  # a number for each wanted column; None: text or a gap
+Records = Iterator[Head | Row]
+
+
+REASONS = {
+    "without_numbers": "without numbers",
+    "time_not_later": "whose time is not later",
+    "time_not_finite": "whose time is not finite",
+    "energy_not_finite": "whose energy is not finite",
+    "before_start": "before --from",
+}
+"""Why a row is not used: in JSON, and for people."""
 
 
 @dataclass
-class Columns:
-    """What was read."""
+class Table:
+    """One table: columns of finite numbers, of which the first increases."""
 
-    times: "array[float]" = field(default_factory=lambda: array("d"))
-    energies: "array[float]" = field(default_factory=lambda: array("d"))  # finite, one a time, in increasing time
-    skipped: dict[str, int] = field(default_factory=lambda: dict.fromkeys(REASONS, 0))  # why -> how many lines
-    diverged_at: float | None = None  # the time from which on energies are nan or inf, to the end
+    units: tuple[str, ...]
+    columns: "list[array[float]]"
+    number: int = 0
+    count: int = 0  # tables in the input
+    skipped: dict[str, int] = field(default_factory=lambda: dict.fromkeys(REASONS, 0))
+    last: float = -LATEST  # the time of the last row
+    failed_at: float | None = None  # the time from which on numbers are nan or inf, to the end
+
+    def add(self, row: Row, start: float) -> None:
+        """Add a row, or count it as skipped."""
+        now = row[0]
+        numbers = [value for value in row if value is not None]
+        if now is None or len(numbers) < len(row):
+            self.skipped["without_numbers"] += 1
+        elif not abs(now) < LATEST:
+            self.skipped["time_not_finite"] += 1
+        elif now <= self.last:
+            self.skipped["time_not_later"] += 1
+        elif now < start:
+            self.skipped["before_start"] += 1
+        elif all(map(math.isfinite, numbers)):
+            self.last = now
+            self.failed_at = None
+            for column, value in zip(self.columns, numbers, strict=True):
+                column.append(value)
+        else:
+            self.last = now
+            self.skipped["energy_not_finite"] += 1
+            self.failed_at = now if self.failed_at is None else self.failed_at
 
 
-def read_columns(lines: Iterable[str], time: str, energy: str) -> Columns:
-    """Read the columns of these names, or numbers from 1.  Raises UserError if there are none."""
-    found = Columns()
-    rows, delimiter, places = _header(iter(lines), (time, energy))
-    last, failed = -LATEST, None
-    times, energies, skipped = found.times, found.energies, found.skipped
-    most = max(places) + 1
-    words = [_plain(name) for name in (time, energy)]
-    decimal_commas = False
-    for line in rows:
-        if decimal_commas:
-            line = line.replace(",", ".")
-        try:
-            fields = line.split(delimiter, most) if '"' not in line else _fields(line, delimiter, most)
-            now, value = float(fields[places[0]]), float(fields[places[1]])
-        except (ValueError, IndexError):
-            if not (text := line.strip()) or text[0] in "#@":
-                continue
-            fields = _fields(line, delimiter)
-            if all(word in text.casefold() for word in words) and (again := _places(fields, (time, energy))):
-                places, most = again, max(again) + 1  # a log's next run
-                continue
-            numbers = [_number(fields[place]) for place in places if place < len(fields)]
-            read = [number for number in numbers if number is not None]
-            if len(read) < len(places):
-                skipped["text_or_gap"] += 1
-                continue
-            now, value = read
-            decimal_commas = delimiter != "," and "," in fields[places[1]]
-        if not last < now < LATEST:
-            skipped["time_not_later" if now <= last else "time_not_finite"] += 1
+def read_table(stream: BinaryIO, wanted: Sequence[str], number: int | None = None, start: float = -LATEST) -> Table:
+    """Return a table of the wanted columns, times first: the last one, or that of this number.
+
+    A column is a name, a number from 1, or several of them joined by +.  Rows before `start` are
+    left out.  Raises UserError if there is no such table.
+    """
+    current = Table((), [])
+    found = None
+    count = 0
+    for record in _records(stream, wanted):
+        if isinstance(record, Head):
+            current = Table(record.units, [array("d") for _ in wanted])
             continue
-        last = now
-        if not math.isfinite(value):
-            skipped["energy_not_finite"] += 1
-            failed = now if failed is None else failed
-            continue
-        failed = None
-        times.append(now)
-        energies.append(value)
-    found.diverged_at = failed
+        now = record[0]
+        if now is not None and abs(now) < LATEST and None not in record:
+            if now < current.last:  # the time starts again
+                current = Table(current.units, [array("d") for _ in wanted])
+            if not current.number:
+                count += 1
+                current.number = count
+                found = current if number in (None, count) else found
+        current.add(record, start)
+    if found is None and count:
+        raise _unreadable(f"there is no table {number}; the input has {count}.")
+    if found is None:
+        raise _unreadable("no row has a number in each column; columns count from 1.")
+    found.count = count
     return found
 
 
+def _unreadable(sentence: str) -> UserError:
+    return UserError(sentence, Exit.INPUT_UNREADABLE)
+
+
+def _records(stream: BinaryIO, wanted: Sequence[str]) -> Records:
+    """Return heads and rows of any input."""
+    head = stream.peek(4096) if isinstance(stream, io.BufferedReader) else b""
+    if head.startswith(b"PK\x03\x04"):
+        return _of_arrays(stream, wanted)
+    kind = next((text for start, text in _BINARY.items() if head.startswith(start)), None)
+    if kind or b"\0" in head:
+        raise _unreadable(f"this is {kind or 'no text'}.")
+    if head.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"{"):
+        return _of_objects(_parsed(_lines(stream)), wanted)
+    return _Text(wanted).records(_lines(stream))
+
+
+def _lines(stream: BinaryIO) -> Iterator[str]:
+    """Yield the lines of a stream."""
+    encoding = "utf-8-sig"
+    while line := stream.readline(MAX_LINE + 1):
+        if len(line) > MAX_LINE:
+            raise _unreadable("a line is longer than 1 MB; is this a table?")
+        yield line.decode(encoding, errors="replace")
+        encoding = "utf-8"
+    if encoding == "utf-8-sig":
+        raise _unreadable("the input is empty; nothing to judge.")
+
+
+class _Text:
+    """The table in lines of text: a header may have a # in front, units may follow it."""
+
+    def __init__(self, wanted: Sequence[str]) -> None:
+        self._wanted = wanted
+        self._legend: dict[int, str] = {}  # names of columns as GROMACS writes them
+        self._names: list[str] = []  # of the header, or of the longest line before it
+        self._head: Head | None = None
+        self._has_rows = False
+        self._delimiter: str | None = None
+
+    def records(self, lines: Iterator[str]) -> Records:
+        """Yield heads and rows."""
+        for number, line in enumerate(lines):
+            row = self._plain_row(line) if self._has_rows else None
+            if row:
+                yield row
+            elif line.lstrip().startswith("NSTEP") and len(_PAIR.findall(line[:MAX_NAME])) > 1:
+                yield from _of_objects(_pairs(chain([line], lines)), self._wanted)
+                return
+            else:
+                yield from self._other(line)
+            if number > MAX_LINES_BEFORE and not self._has_rows:
+                raise _unreadable(f"{number:,} lines without a row of these columns; is this a table?")
+        if self._head is None:
+            raise _missing(self._wanted, list(self._legend.values()) or self._names)
+
+    def _plain_row(self, line: str) -> Row | None:
+        """Return a row like the one before it."""
+        assert self._head is not None
+        fields = line.split(self._delimiter) if '"' not in line else _fields(line, self._delimiter)
+        try:
+            return [sum([float(fields[place]) for place in group]) for group in self._head.places]
+        except (ValueError, IndexError):
+            return None
+
+    def _other(self, line: str) -> Records:
+        """Yield what any other line means."""
+        if match := _LEGEND.match(line[: 2 * MAX_NAME]):
+            number, axis, name = match.groups()
+            self._legend[{"x": 0, "y": -1}[axis] if axis else int(number) + 1] = name
+            return
+        is_comment = line.lstrip()[:1] in ("#", "@")
+        text = line.lstrip("#@ \t") if is_comment else line
+        delimiter = _delimiter(text)
+        fields = _fields(text, delimiter)
+        if sum(_number(each) is not None for each in fields) < 2:
+            self._read_header(text, fields, is_comment)
+        elif not is_comment and not self._has_rows:
+            self._head = self._head or self._head_of_legend(len(fields))
+            if self._head:
+                self._delimiter = delimiter
+                self._has_rows = True
+                yield self._head
+        if self._has_rows and self._head and text.strip() and not is_comment:
+            yield _row(fields, self._head.places)
+
+    def _read_header(self, text: str, fields: list[str], is_comment: bool) -> None:
+        """Look for the names of columns in a line, or for the units below them."""
+        ways = [fields, re.split(r"\s{2,}", text.strip())]  # names may hold single blanks
+        for names in ways:
+            if places := _places(names[:MAX_NAMES], self._wanted, named=True):
+                self._head = Head(places, tuple(_unit(names[group[0]]) for group in places))
+                self._names = names
+                self._has_rows = False
+                return
+        if self._head is None:
+            longer = len(fields) > len(self._names) and not is_comment
+            self._names = fields[:MAX_NAMES] if longer else self._names
+        elif len(fields) == len(self._names) and not self._has_rows and not any(self._head.units):
+            units = tuple(fields[group[0]].strip("()[]")[:20] for group in self._head.places)
+            self._head = self._head._replace(units=units)
+
+    def _head_of_legend(self, width: int) -> Head | None:
+        """Return the head of a table without a header, by legend or by numbers."""
+        names = [self._legend.get(place, "") for place in range(width)]
+        places = _places(names, self._wanted)
+        if places is None:
+            return None
+        units = [_unit(names[group[0]]) for group in places]
+        shared = _unit(self._legend.get(-1, ""))
+        return Head(places, (units[0], *(unit or shared for unit in units[1:])))
+
+
+def _row(fields: Sequence[str], places: Iterable[Iterable[int]]) -> Row:
+    """Return the numbers of a row, also with decimal commas or with Fortran's D."""
+    row: list[float | None] = []
+    for group in places:
+        numbers = [_number(fields[place]) if place < len(fields) else None for place in group]
+        present = [number for number in numbers if number is not None]
+        row.append(sum(present) if len(present) == len(numbers) else None)
+    return row
+
+
 def _number(text: str) -> float | None:
-    """A number, also with a decimal comma, or with Fortran's D."""
     try:
-        return float(text.strip().replace(",", ".").replace("D", "e").replace("d", "e"))
+        return float(text.replace(",", ".").replace("D", "e").replace("d", "e"))
     except ValueError:
         return None
 
 
-def _fields(line: str, delimiter: str | None, most: int = -1) -> list[str]:
-    """The fields of a line, or the first `most` and the rest of it."""
-    texts = line.split(delimiter, most)
+def _fields(line: str, delimiter: str | None) -> list[str]:
+    """Return the fields of a line, without quotes."""
     if '"' not in line:
-        return [text.strip() for text in texts]
-    if delimiter is not None and not any(text.count('"') % 2 for text in texts[:-1]):  # no delimiter within quotes
-        return [text.strip().strip('"') for text in texts]
+        return [text.strip() for text in line.split(delimiter)]
     if delimiter is None:
-        return [a or b for a, b in re.findall(r'"([^"]*)"|(\S+)', line)]
-    return [text.strip() for text in next(csv.reader([line.replace("\r", " ").strip()], delimiter=delimiter), [])]
-
-
-def _header(lines: Iterator[str], names: Sequence[str]) -> tuple[Iterator[str], str | None, tuple[int, ...]]:
-    """The lines of the table, its delimiter, and the places of two columns."""
-    legend: dict[int, str] = {}
-    header: list[str] = []
-    empty = True
-    for line in lines:
-        empty = False
-        if match := _LEGEND.match(line):
-            legend[0 if match[2] else int(match[1]) + 1] = match[3]
-            continue
-        delimiter, is_comment = _delimiter(line), line.lstrip()[:1] in ("#", "@")
-        fields = _fields(line.lstrip("#@ \t") if is_comment else line, delimiter)
-        if places := _places(fields, names):
-            return *_first_row(lines, delimiter), places
-        if _has_numbers(fields) and not is_comment:
-            known = [legend.get(place, "") for place in range(len(fields))]
-            if places := _places(known, names) or _numbered(names, len(fields)):
-                return chain([line], lines), delimiter, places
-        elif len(fields) > len(header):
-            header = fields[:MOST_NAMES]
-    if empty:
-        raise UserError("the input is empty; nothing to judge.", Exit.INPUT_UNREADABLE)
-    raise _missing(names, list(legend.values()) or header)
-
-
-def _first_row(lines: Iterator[str], delimiter: str | None) -> tuple[Iterator[str], str | None]:
-    """The lines below a header, and the delimiter of the first of them that has numbers."""
-    before: list[str] = []
-    for line in islice(lines, MOST_BETWEEN):
-        before.append(line)
-        if _has_numbers(_fields(line, own := _delimiter(line))):
-            delimiter = own
-            break
-    return chain(before, lines), delimiter
-
-
-def _missing(names: Sequence[str], header: list[str]) -> UserError:
-    lost = next((name for name in names if not name.isdecimal() and _place(header, name) is None), None)
-    if lost is None:
-        return UserError(f"no line has numbers in the columns {' and '.join(names)}.", Exit.INPUT_UNREADABLE)
-    known = [printable(name, 40) for name in header[:20] if name]
-    others = f"; choose from {', '.join(known)}." if known else "; give columns by number, from 1."
-    return UserError(f"there is no column {printable(lost)!r}{did_you_mean(lost, known) or others}")
-
-
-def _has_numbers(fields: list[str]) -> bool:
-    return sum(_number(text) is not None for text in fields) >= 2
-
-
-def _numbered(names: Sequence[str], width: int) -> tuple[int, ...] | None:
-    """The places of columns given by number, if a row is as wide."""
-    if not all(name.isdecimal() for name in names):
-        return None
-    places = tuple(int(name) - 1 for name in names)
-    return places if min(places) >= 0 and max(places) < width else None
+        return [quoted or bare for quoted, bare in re.findall(r'"([^"]*)"|(\S+)', line)]
+    parts = re.findall(r'((?:"[^"]*"|[^"' + delimiter + r"])*)(?:" + delimiter + r"|$)", line.strip())
+    return [text.strip().strip('#" ') for text in parts]
 
 
 def _delimiter(line: str) -> str | None:
-    """A tab, a semicolon or a comma outside quotes; None for blanks."""
+    """Return a tab, a semicolon or a comma outside quotes; None for blanks."""
     bare = re.sub(r'"[^"]*"', "", line)
     return next((sign for sign in "\t;," if sign in bare), None)
 
 
-def _places(fields: list[str], names: Sequence[str]) -> tuple[int, ...] | None:
-    """The places of the columns in a header; a header has a name for each that is asked for by name."""
-    if all(name.isdecimal() for name in names):
+def _places(fields: Sequence[str], wanted: Sequence[str], named: bool = False) -> tuple[tuple[int, ...], ...] | None:
+    """Return the fields that make up each wanted column, if all are there; `named`: not by numbers only."""
+    if named and all(part.isdecimal() for name in wanted for part in name.split("+")):
         return None
-    places = [int(name) - 1 if name.isdecimal() else _place(fields, name) for name in names]
-    found = tuple(place for place in places if place is not None and 0 <= place < len(fields))
-    return found if len(found) == len(names) else None
+    found: list[tuple[int, ...]] = []
+    for name in wanted:
+        whole = _place(fields, name)
+        parts = [whole] if whole is not None else [_place(fields, part) for part in name.split("+")]
+        places = tuple(place for place in parts if place is not None)
+        if len(places) < len(parts):
+            return None
+        found.append(places)
+    return tuple(found)
 
 
-def _place(fields: list[str], name: str) -> int | None:
-    """The place of a column: by its name, or but for case, or but for case and unit."""
+def _place(fields: Sequence[str], name: str) -> int | None:
+    """Return the place of a column: by number, name, name but for case, or but for its unit."""
+    if name.strip().isdecimal():
+        place = int(name[:9]) - 1
+        return place if 0 <= place < len(fields) else None
     ways: tuple[Callable[[str], str], ...] = (str.strip, lambda text: text.strip().casefold(), _plain)
     for like in ways:
-        same = [place for place, text in enumerate(fields) if like(text) == like(name)]
-        if same:
-            return same[0]
+        asked = like(name)
+        for place, text in enumerate(fields):
+            if len(text) <= MAX_NAME and like(text) == asked:
+                return place
     return None
 
 
+def _unit(name: str) -> str:
+    """Return the unit in a name, such as ps in `Time (ps)`, `time [ps]` or `t/ps`."""
+    return _split(name)[1]
+
+
 def _plain(name: str) -> str:
-    """A name without its unit, in lower case."""
-    return _UNIT.sub("", name.strip()).casefold()
+    """Return a name without its unit, in lower case."""
+    return _split(name)[0].casefold()
+
+
+def _split(name: str) -> tuple[str, str]:
+    """Split a name and its unit."""
+    name = name.strip()[:MAX_NAME]
+    for opening, closing in ("()", "[]"):
+        bare, found, unit = name.rpartition(opening)
+        if found and name.endswith(closing):
+            return bare.rstrip(), unit[:-1].strip()
+    bare, _, unit = name.rpartition("/")
+    return (bare, unit) if bare and unit.isalpha() else (name, "")
+
+
+def _missing(wanted: Sequence[str], names: Sequence[str]) -> UserError:
+    lost = next((name for name in wanted if not name.isdecimal() and not _places(names, [name])), None)
+    if lost is None:
+        return _unreadable("no row has a number in each column; columns count from 1.")
+    present = [printable(name, 40) for name in names[:20] if name]
+    others = f"; choose from {', '.join(present)}." if present else "; give columns by number, from 1."
+    hint = did_you_mean(lost, present) if len(lost) <= MAX_NAME else None
+    return UserError(f"there is no column {printable(lost, 40)!r}{hint or others}")
+
+
+def _of_objects(objects: Iterable[dict[str, Any]], wanted: Sequence[str]) -> Records:
+    """Yield a head and the rows of objects with names."""
+    names: list[str] = []
+    places: tuple[tuple[int, ...], ...] | None = None
+    for number, item in enumerate(objects):
+        if list(item) != names:
+            names = list(item)
+            now = _places(names[:MAX_NAMES], wanted)
+            if now and not places:
+                yield Head(now, tuple(_unit(names[group[0]]) for group in now))
+            places = now or places
+        if places:
+            yield _row([str(value) for value in item.values()], places)
+        elif number > MAX_LINES_BEFORE:
+            break
+    if not places:
+        raise _missing(wanted, names)
+
+
+def _parsed(lines: Iterable[str]) -> Iterator[dict[str, Any]]:
+    """Yield the objects of JSON lines; an empty one for a line that is none."""
+    for line in lines:
+        try:
+            item = json.loads(line)
+        except (ValueError, RecursionError):
+            item = None
+        if line.strip():
+            yield item if isinstance(item, dict) else {}
+
+
+def _pairs(lines: Iterable[str]) -> Iterator[dict[str, Any]]:
+    """Yield the records of Amber's mdout, `NSTEP = 10  TIME(PS) = 0.02 …`, up to its averages."""
+    record: dict[str, Any] = {}
+    for line in lines:
+        ends = line.lstrip().startswith("A V E R A G E S")
+        if record and (ends or line.lstrip().startswith("NSTEP")):
+            yield record
+            record = {}
+        if ends:
+            return
+        record |= dict(_PAIR.findall(line[:MAX_NAME]))
+    if record:
+        yield record
+
+
+def _of_arrays(stream: BinaryIO, wanted: Sequence[str]) -> Records:
+    """Yield the head and the rows of the arrays in an .npz."""
+    import numpy as np
+
+    try:
+        source = stream if stream.seekable() else io.BytesIO(stream.read(MAX_ARRAY))
+        with np.load(source, allow_pickle=False) as arrays:
+            names = list(arrays)
+            places = _places(names[:MAX_NAMES], wanted)
+            if places is None:
+                raise _missing(wanted, names)
+            sizes = {item.filename.removesuffix(".npy"): item.file_size for item in arrays.zip.infolist()}
+            if any(sizes[names[place]] > MAX_ARRAY for place in chain(*places)):
+                raise _unreadable("an array is larger than 1 GB.")
+            columns = [
+                np.sum([np.ravel(arrays[names[place]]).astype(float) for place in group], axis=0) for group in places
+            ]
+    except (OSError, ValueError, TypeError, KeyError, EOFError, zipfile.BadZipFile) as error:
+        raise _unreadable(f"this .npz cannot be read: {printable(str(error), 100)}.") from None
+    yield Head(places, tuple(_unit(names[group[0]]) for group in places))
+    yield from zip(*(column.tolist() for column in columns), strict=False)

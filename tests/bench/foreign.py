@@ -1,0 +1,191 @@
+"""`judge` on series of known truth: wrong verdicts and too many `too early` of each kind, as JSON.
+
+    python tests/bench/foreign.py [TRIALS]
+
+A kind is made with 100 to 6000 samples, at a random scale and zero of energy and time.  `too early`
+is never wrong; it is counted where the effect has five standard deviations or more and the record at
+least 50 independent samples.
+"""
+
+import json
+import math
+import sys
+import time
+from collections import Counter, defaultdict
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parents[2]))
+
+from engine.run.energies import judge_energies
+
+SIZES = (100, 200, 500, 2000, 6000)
+CLEAR = math.inf  # an effect, or samples, that no verdict may miss
+
+
+class Series(NamedTuple):
+    """A series with its truth."""
+
+    kind: str
+    energies: Any
+    truth: set[str]
+    sigmas: float = CLEAR  # the effect, in standard deviations of what could be mistaken for it
+    independent: float = CLEAR  # samples
+
+
+def correlated(count: int, times: float, random: np.random.Generator) -> Any:
+    """Return stationary noise of deviation 1, so many correlation times long."""
+    keep = math.exp(-times / count)
+    kicks = random.standard_normal(count) * math.sqrt(1 - keep * keep)
+    kicks[0] = random.standard_normal()
+    values = np.empty(count)
+    value = 0.0
+    for at, kick in enumerate(kicks):
+        value = keep * value + kick
+        values[at] = value
+    return values
+
+
+class Maker:
+    """Makes series of `count` samples; x runs from 0 to 1."""
+
+    def __init__(self, count: int, random: np.random.Generator) -> None:
+        self.count = count
+        self.random = random
+        self.x = (np.arange(count) + 0.5) / count
+        self.sign = int(random.choice([-1, 1]))
+        self.way = {"grows" if self.sign > 0 else "loses"}
+
+    def between(self, low: float, high: float) -> float:
+        """Return a number between two, evenly in its logarithm."""
+        return math.exp(self.random.uniform(math.log(low), math.log(high)))
+
+    def white(self) -> Any:
+        return self.random.standard_normal(self.count)
+
+    def wave(self, cycles: float) -> Any:
+        return np.sin(math.tau * (cycles * self.x + self.random.uniform()))
+
+    def all(self) -> Iterator[Series]:
+        yield from self.levels()
+        yield from self.drifts()
+        yield from self.waves()
+        yield from self.changes()
+        yield from self.digits()
+
+    def levels(self) -> Iterator[Series]:
+        bounded = {"bounded"}
+        yield Series("white", self.white(), bounded, independent=self.count)
+        for times in (200, 100, 50, 20, 10, 5):
+            noise = correlated(self.count, times, self.random)
+            yield Series(f"correlated T/{times}", noise, bounded, independent=times / 2)
+        yield Series("constant", 0 * self.x, bounded)
+        rare = self.random.uniform(size=self.count) < 0.01
+        yield Series("spikes", self.white() + rare * self.random.exponential(30, self.count), bounded)
+        yield Series("Student-2", self.random.standard_t(2, self.count), bounded)
+        yield Series("walk", np.cumsum(self.white()), {"wanders"}, sigmas=0)
+        walk = np.cumsum(self.white()) / math.sqrt(self.count)
+        yield Series("walk and white", walk + self.between(0.02, 0.3) * self.white(), {"wanders"}, sigmas=0)
+        few = self.white()[: self.random.integers(10, 64)]
+        yield Series("few", few, set(), sigmas=0)
+
+    def drifts(self) -> Iterator[Series]:
+        for times in (200, 100, 50, 20, 10, 5):
+            sigmas = self.between(5, 30)
+            drift = self.sign * sigmas * math.sqrt(24 / times) * self.x
+            noise = correlated(self.count, times, self.random)
+            yield Series(f"drift, correlated T/{times}", noise + drift, self.way, sigmas, times / 2)
+        for low, high in ((5, 10), (10, 300)):
+            sigmas = self.between(low, high)
+            drift = self.sign * sigmas * math.sqrt(12 / self.count) * self.x
+            yield Series(f"drift {low} to {high} sigma", self.white() + drift, self.way, sigmas, self.count)
+        noise = correlated(self.count, 20, self.random)
+        yield Series("drift 10 sd, correlated T/20", noise + 10 * self.sign * self.x, self.way, 9, 10)
+
+    def waves(self) -> Iterator[Series]:
+        most = min(60, self.count / 3)
+        noise = 0.01 * self.white()
+        yield Series("sine", self.wave(self.between(4.5, most)) + noise, {"bounded"})
+        yield Series("slow sine", self.wave(self.between(1, 4)) + noise, {"bounded"}, sigmas=0)
+        two = self.wave(self.between(5, most)) + 0.4 * self.wave(self.between(5, self.count / 3))
+        yield Series("two sines", two, {"bounded"})
+        drift = self.sign * self.x
+        slow = self.wave(self.between(2.5, 7.7))
+        yield Series("slow sine, drift of 3 amplitudes", slow + noise + 3 * drift, self.way)
+        fast = self.wave(self.between(8, most))
+        yield Series("sine, drift of 1 amplitude", fast + 10 * noise + drift, self.way)
+        wider = self.x * np.sin(math.tau * self.between(40, 400) * self.x)
+        yield Series("widening", wider, {"wanders", "grows"}, sigmas=0)
+
+    def changes(self) -> Iterator[Series]:
+        size = self.sign * self.between(5, 100)
+        step = self.x > self.random.uniform(0.15, 0.85)
+        yield Series("step of 5 to 100 sd", self.white() + size * step, {"caught"})
+        size = self.sign * self.between(1, 5)
+        step = self.x > self.random.uniform(0.3, 0.7)
+        yield Series("step of 1 to 5 sd", self.white() + size * step, {"caught"}, sigmas=0)
+        size = self.sign * self.between(3, 100) * max(1.0, math.sqrt(200 / self.count))
+        for share in (2, 3):
+            curve = 1.5 * size * -np.expm1(-share * self.x)
+            yield Series(f"relaxation T/{share}", self.white() + curve, self.way)
+        for share in (8, 15):
+            curve = size * -np.expm1(-share * self.x)
+            yield Series(f"relaxation T/{share}", self.white() + curve, {"caught"})
+        curve = size * -np.expm1(-100 * self.x)
+        yield Series("relaxation T/100", self.white() + curve, {"bounded"})
+        curve = size * np.log1p(self.x * self.between(3, 300)) / 3
+        yield Series("logarithmic growth", self.white() + curve, self.way)
+        curve = self.sign * np.expm1(self.between(4, 20) * self.x)
+        yield Series("exponential growth", 0.01 * (self.white() + curve), self.way)
+        start = self.white()
+        start[: self.random.integers(1, max(2, self.count // 60))] += self.sign * self.between(8, 300)
+        yield Series("short start", start, {"bounded"})
+
+    def digits(self) -> Iterator[Series]:
+        for digit in (0.3, 1, 3):
+            yield Series(f"digits of {digit} sd", np.round(self.white() / digit) * digit, {"bounded"})
+        still = np.round(0.2 * self.white() + self.random.uniform())
+        yield Series("hardly a digit", still, {"bounded"})
+        drift = self.sign * self.between(4, 30) * self.x + self.random.uniform()
+        noise = self.between(0.01, 0.5) * self.white()
+        yield Series("drift of 4 to 30 digits", np.round(drift + noise), self.way)
+
+
+def main(trials: int) -> None:
+    random = np.random.default_rng(1)
+    kinds: defaultdict[str, Counter[str]] = defaultdict(Counter)
+    began = time.process_time()
+    for count in SIZES:
+        for _ in range(trials):
+            for series in Maker(count, random).all():
+                length = len(series.energies)
+                times = 10 ** random.uniform(-2, 4) * (np.arange(length) + 0.5) / length
+                zero = round(10 ** random.uniform(1, 4)) * random.choice([-1, 1])
+                scale = 10.0 ** random.integers(-3, 3)
+                energies = np.round((zero + series.energies) * scale, 8)
+                verdict = judge_energies(times, energies).judgement.verdict
+                found = kinds[series.kind]
+                found[verdict] += 1
+                early = verdict == "too early"
+                found["wrong"] += not early and verdict not in series.truth
+                clear = series.sigmas >= 5 and series.independent >= 50
+                found["clear"] += clear
+                found["clear, too early"] += early and clear
+    total = sum(kinds.values(), Counter())
+    verdicts = sum(found.total() for found in kinds.values())
+    verdicts -= total["wrong"] + total["clear"] + total["clear, too early"]
+    result = {
+        "series": verdicts,
+        "wrong %": round(100 * total["wrong"] / verdicts, 2),
+        "too early % of clear ones": round(100 * total["clear, too early"] / total["clear"], 2),
+        "ms each": round(1000 * (time.process_time() - began) / verdicts, 1),
+        "kinds": {kind: {name: n for name, n in found.items() if n} for kind, found in kinds.items()},
+    }
+    print(json.dumps(result, indent=1))
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 12)
