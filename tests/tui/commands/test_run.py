@@ -160,7 +160,7 @@ def test_a_gate_that_holds_is_exit_1_and_the_numbers_are_printed():
     outcome = pendu("run", "--time", 10, "--fail-if", "explicit_euler.max_energy_error > 1", "--json")
     assert outcome.code == 1
     assert outcome.err.startswith("pendu-tui: the check failed: explicit_euler.max_energy_error > 1 (")
-        assert outcome.err.endswith("is 5.54)\n")
+    assert outcome.err.endswith("is 5.54)\n")
     assert outcome.json["methods"][0]["max_energy_error"] > 1
 
 
