@@ -3,8 +3,7 @@
 from collections.abc import Iterator
 
 from engine.run.lockstep import Lockstep, Sample
-from engine.run.loops import LoopsOf, plain
-from engine.run.observer import RunObserver
+from engine.run.loops import LoopsOf, PlainLoops
 from engine.scenes import Scene
 from recordings.events import Event, noticed
 from recordings.recorder import Recorder
@@ -22,29 +21,30 @@ def simulate(
     time: float,
     recorder: Recorder | None = None,
     sample_every: int | None = None,
-    loops: LoopsOf = plain,
-    observer: RunObserver | None = None,
+    loops: LoopsOf = PlainLoops,
+    lockstep: Lockstep | None = None,
 ) -> Iterator[Sample]:
     """Run a scene for `time` [s]; record and yield its samples, of which the last is the result.
 
-    What an `observer` notices is recorded, too; without one, a recording has one of its own.
+    Milestones are recorded, too.  A caller that reads them, or verdicts, passes the `lockstep` of the scene.
 
     Samples are `sample_every` steps apart, or 1/30 s rounded to whole steps; always the first and the
     last step.  Memory does not grow.  The caller closes the recorder; without a wall clock, the recording has the
     same bytes each time.
     """
-    lockstep, last = Lockstep(scene, loops=loops), steps_for(scene, time)
+    lockstep = lockstep or Lockstep(scene, loops=loops, judged=recorder is not None)
+    last = steps_for(scene, time)
+    noticed_by_now = 0
     every = sample_every or max(1, round(SAMPLE_EVERY / scene.h))
     if recorder:
-        observer = observer or RunObserver(scene, loops)
         recorder.event(Event("start", 1, 0, 0.0, scene=scene), 0.0)
     while True:
         sample = lockstep.sample()
         if recorder:
             recorder.sample(sample, sample.t)
-        for milestone in observer.add(sample) if observer else ():
-            if recorder:
+            for milestone in lockstep.milestones[noticed_by_now:]:
                 recorder.event(noticed(1, milestone), sample.t)
+            noticed_by_now = len(lockstep.milestones)
         yield sample
         if lockstep.step >= last:
             return

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from engine.run import NUMERICS
-from engine.run.compiled import tiered
+from engine.run.compiled import TieredLoops
 from engine.run.lockstep import Lockstep, Sample
 from engine.run.stepping import Stepping
 from recordings.errors import RecordingError, named
@@ -164,7 +164,7 @@ class Rerun:
         if not exact:
             nearer = {name: getattr(scene, name) * (1 - TOLERANCE) for name in ("theta", "omega")}
             scenes.append(replace(scene, **nearer))
-        self._locksteps = [Lockstep(each, self.run, tiered) for each in scenes]
+        self._locksteps = [Lockstep(each, self.run, TieredLoops) for each in scenes]
         self._exact = exact
         self._budget = budget or StepBudget(MAX_STEPS)
         self._only = only

@@ -6,10 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from engine.methods import GENERAL, Method
-from engine.run.judging import Judging
 from engine.run.lockstep import Lockstep
 from engine.run.loops import LoopsOf
-from engine.run.verdict import stride
 from engine.scenes import Scene
 
 FILE = Path(__file__).parent / "engine/run/truths.txt"
@@ -62,17 +60,10 @@ Course = list[tuple[str, int, float]]
 def verdicts(method: Method, scene: Scene, loops: LoopsOf, steps: int) -> Course:
     """The verdicts on a method in turn, with the step and the periods of each."""
     period = scene.exact().period or math.tau / scene.w0
-    reference = scene.equations.reference(scene.theta, scene.omega)
-    lockstep = Lockstep(replace(scene, cast=(method,)), loops=loops)
-    judging = Judging(method, scene.equations, reference, scene.h, 1, period, loops)
-    judging.follow(0, lockstep.sample().readings[0])
-    given: Course = []
-    every = stride(period, scene.h)
-    while lockstep.step < steps:
-        lockstep.advance(every)
-        looks = judging.follow(lockstep.step, lockstep.sample().readings[0])
-        given += [(each.verdict, each.step, each.step * scene.h / period) for each in looks if each.news]
-    return given
+    lockstep = Lockstep(replace(scene, cast=(method,)), loops=loops, judged=True)
+    lockstep.advance(steps)
+    milestones = [each for each in lockstep.milestones if each.kind == "verdict"]
+    return [(each.verdict, each.step, each.step * scene.h / period) for each in milestones]
 
 
 def watch(scene: Scene) -> int:

@@ -14,7 +14,7 @@ from engine.accuracy.recommend import (
 )
 from engine.accuracy.study import Clock, ErrorKind, Point, Study, timed
 from engine.methods.runge_kutta import RK4
-from engine.run.loops import LoopsOf, plain
+from engine.run.loops import LoopsOf, PlainLoops
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +61,7 @@ def least_seconds(
     budget: int | None,
     show: Callable[[float], None],
     clock: Clock,
-    loops: LoopsOf = plain,
+    loops: LoopsOf = PlainLoops,
 ) -> Advice:
     """The fastest run that reaches a target, timed by `clock` with these loops."""
     attempts: list[Attempt] = []

@@ -8,6 +8,7 @@ every machine, or in seconds by a clock that is passed in.
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from statistics import linear_regression
 from typing import Literal, NamedTuple
 
@@ -16,9 +17,9 @@ from engine.accuracy.timing import Clock as Clock
 from engine.accuracy.timing import shortest
 from engine.methods import Cast, Method
 from engine.methods.own import OwnMethod
-from engine.run.compiled import available, compiled, tiered
+from engine.run.compiled import TieredLoops, available, compiled
 from engine.run.lockstep import Lockstep
-from engine.run.loops import LoopsOf, plain
+from engine.run.loops import LoopsOf, PlainLoops
 from engine.scenes import Z_LIMITS, Scene
 
 ErrorKind = Literal["theta", "energy", "final"]
@@ -89,8 +90,10 @@ class Order(NamedTuple):
 class Study:
     """Runs of one scene over one time.  They share the exact swing and the rounding floor."""
 
-    def __init__(self, scene: Scene, time: float, loops: LoopsOf = plain) -> None:
-        self.scene, self.time, self.loops = scene, time, loops
+    def __init__(self, scene: Scene, time: float, loops: LoopsOf = PlainLoops) -> None:
+        self.scene = scene
+        self.time = time
+        self.loops = cache(loops)  # so that the steps of all its runs count
         self.exact = scene.exact()
         self._energy_floor, self._theta_floor = rounding_floor(scene, time)
         times = (time * comparison / COMPARISONS for comparison in range(COMPARISONS + 1))
@@ -143,7 +146,7 @@ class Study:
                 yield self.run(method, steps)
 
 
-def timed(point: Point, scene: Scene, clock: Clock, loops: LoopsOf = plain) -> Point:
+def timed(point: Point, scene: Scene, clock: Clock, loops: LoopsOf = PlainLoops) -> Point:
     """The same point with its seconds: the same steps again, without comparisons and energies."""
     travel, start = loops(point.method, scene.equations).travel, (scene.theta, scene.omega)
     travel(start, point.h, 1)  # may have to be compiled
@@ -175,12 +178,12 @@ def measured(scene: Scene, time: float, rungs: Sequence[int], clock: Clock | Non
 
     For another process, which has only the arguments.
     """
-    points = Study(scene, time, tiered).points(rungs)
-    loops = compiled if compilable(scene.cast) else plain
+    points = Study(scene, time, TieredLoops).points(rungs)
+    loops = compiled if compilable(scene.cast) else PlainLoops
     return points if clock is None else (timed(point, scene, clock, loops) for point in points)
 
 
-def orders(scene: Scene, time: float, loops: LoopsOf = plain) -> list[Order]:
+def orders(scene: Scene, time: float, loops: LoopsOf = PlainLoops) -> list[Order]:
     """The order of each method: the slope of log theta error over log h, fitted over one period or less.
 
     Over longer times RK4 reads 5 and more.  Its phase error at the time t is a·h⁴·t, but it also loses energy

@@ -49,6 +49,8 @@ class Method:
     on_rates: RatePhases | None = None  # the same method for first-order systems
     models: tuple[str, ...] = ("pendulum", "linear")  # keys of the models that it integrates
     any_numbers: bool = True  # also arrays, complex and mpmath numbers
+    longest_substep: float = 1.0  # of a symplectic splitting, in steps: chaos begins there first
+    epsilon: float = 2.0**-53  # the relative error of a rounding
     varies: bool = False  # its evaluations depend on the phase; `force_evaluations` is then an average
 
     @property

@@ -75,6 +75,7 @@ FOREST_RUTH = Method(
     symplectic=True,
     reversible=True,
     linear_limit=1.57340194743,
+    longest_substep=2 * _C - 1,
     other_names=("Yoshida 4", "triple jump"),
     reference="Forest & Ruth, Physica D 43 (1990) 105",
     used="orbits in galaxies: gala, Ruth4Integrator [gala.adrian.pw, Ruth4Integrator]",

@@ -1,13 +1,15 @@
-"""Running methods side by side: a scene becomes samples, and samples become verdicts.
+"""Running methods side by side: a scene becomes samples, and look points become verdicts.
 
-    Scene, stepping --lockstep--> samples --observer--> milestones, verdicts
+    Scene, stepping --lockstep--> samples
+                        |
+                        +--look points--> judges --> judgements, milestones
 
 - Running: `stepping` holds h, equal cost and each method's own step; `lockstep` moves all methods by it, in `loops`,
   which `compiled` gives to Numba, with the same bits; `rewindable` is a lockstep that can also go back; `ensemble`
   runs many swings together, as arrays.
-- Judging: `observer` reads the samples, live, replayed or without a screen; `judging` shows each method at fixed
-  steps to a Judge of `verdict`, which uses the `bands` of its energy error and, by `tangent`, how fast neighbouring
-  starts part; `judgement` has the verdicts; `crossing` finds errors that pass each other.
+- Judging: the lockstep stops at look points and shows each method to its `judge`, which uses the `bands` of its energy
+  error and, by `tangent`, how fast neighbouring starts separate; `judges` are those of all methods, with the
+  milestones of the run; `judgement` defines the verdicts.
 - `energies` judges the record of any program, by times and energies.
 """
 

@@ -10,13 +10,13 @@ from collections.abc import Callable, Iterator
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
-from typing import Any
+from typing import Any, NamedTuple
 
 from engine.methods import Method
 from engine.methods.splitting import COMPILABLE
 from engine.models.model import Model, Phase
 from engine.run import loops
-from engine.run.loops import Advanced, Loops, plain
+from engine.run.loops import Advanced, Loops, PlainLoops
 
 COMPILED_FROM = 1_000_000  # steps of a method: in plain Python they take as long as importing and compiling
 
@@ -27,20 +27,32 @@ def available() -> bool:
     return find_spec("numba") is not None
 
 
-@cache
+class CompiledLoops(NamedTuple):
+    """Loops in machine code, which several runs may share."""
+
+    travel: Callable[[Phase, float, int], Phase]
+    advance: Callable[[Phase, float, int, float], Advanced]
+
+
 def compiled(method: Method, model: Model) -> Loops:
-    """The method's loops on this model, compiled; its parameters become constants.  Raises ImportError without Numba.
+    """Return the method's loops on this model, compiled; its parameters become constants.
 
     They release the interpreter's lock while they run.  Where Numba's sine is not Python's, which
     depends on the platform's libraries, bits would differ: there the plain loops are returned, and for a user's own
-    method, which may hold anything, for one that is not general, and on a model that is not plain.
+    method, which may hold anything, for one that is not general, and on a model that is not plain.  Raises
+    ImportError without Numba.
     """
+    return _compiled(method, model) or PlainLoops(method, model)
+
+
+@cache
+def _compiled(method: Method, model: Model) -> CompiledLoops | None:
     from engine.methods.own import OwnMethod  # with all that measures one, which most runs do not need
 
     numba: Any = import_module("numba")
     general = method.general and model.has_force and not isinstance(method, OwnMethod)
     if not general or not _same_sine(numba):
-        return plain(method, model)
+        return None
     inner = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)  # never called by Python: compiles twice as fast
     phases = inner(COMPILABLE.get(method.phases, method.phases))
     force, energy = inner(model.force()), inner(model.energy())
@@ -52,7 +64,7 @@ def compiled(method: Method, model: Model) -> Loops:
     def advancing(phase: Phase, h: float, n: int, limit: float) -> Any:
         return advance(phases(force, phase, h), energy, phase, n, limit)
 
-    return Loops(*(numba.njit(nogil=True)(loop) for loop in (travelling, advancing)))
+    return CompiledLoops(*(numba.njit(nogil=True)(loop) for loop in (travelling, advancing)))
 
 
 def _travel(phases: Iterator[Phase], phase: Phase, n: int) -> Phase:
@@ -64,29 +76,42 @@ def _travel(phases: Iterator[Phase], phase: Phase, n: int) -> Phase:
     return phase
 
 
-@cache
-def tiered(
-    method: Method, model: Model, fast: Callable[[Method, Model], Loops | None] = compiled, ahead: int = 0
-) -> Loops:
-    """Plain loops, and from COMPILED_FROM steps on those of `fast`, as soon as it has any, if Numba is installed.
+class TieredLoops:
+    """Plain loops at first, and compiled ones once enough steps have been taken, if Numba is installed.
 
-    Counted are the method's steps so far; more than those count if so many are known to lie `ahead`.
-    Both kinds of loops give the same bits.
+    Both give the same bits.  The steps of one run count, so each run has loops of its own.
     """
-    done = 0
 
-    def loops_for(n: int) -> Loops:
-        nonlocal done
-        done += n
-        return (max(done, ahead) >= COMPILED_FROM and available() and fast(method, model)) or plain(method, model)
+    def __init__(
+        self,
+        method: Method,
+        model: Model,
+        fast: Callable[[Method, Model], Loops | None] = compiled,
+        expected_steps: int = 0,
+    ) -> None:
+        """`fast` returns the compiled loops as soon as there are any."""
+        self._method = method
+        self._model = model
+        self._fast = fast
+        self._expected_steps = expected_steps
+        self._plain = PlainLoops(method, model)
+        self._compiled: Loops | None = None
+        self._steps = 0
 
-    def travel(phase: Phase, h: float, n: int) -> Phase:
-        return loops_for(n).travel(phase, h, n)
+    def _loops(self, n: int) -> Loops:
+        self._steps += n
+        if max(self._steps, self._expected_steps) < COMPILED_FROM or not available():
+            return self._plain
+        self._compiled = self._compiled or self._fast(self._method, self._model)
+        return self._compiled or self._plain
 
-    def advance(phase: Phase, h: float, n: int, limit: float) -> Advanced:
-        return loops_for(n).advance(phase, h, n, limit)
+    def travel(self, phase: Phase, h: float, n: int) -> Phase:
+        """Return the phase after n >= 1 steps, and nothing else."""
+        return self._loops(n).travel(phase, h, n)
 
-    return Loops(travel, advance)
+    def advance(self, phase: Phase, h: float, n: int, limit: float) -> Advanced:
+        """Advance by n >= 1 steps, or to the last one whose energy is below `limit`."""
+        return self._loops(n).advance(phase, h, n, limit)
 
 
 @cache

@@ -27,7 +27,7 @@ class LookPoint(NamedTuple):
     error: float  # relative, signed
     low: float  # the smallest and the largest since the look point before
     high: float
-    theta: float = 0.0  # rad, unwrapped; of a method only, as are the others
+    theta: float = 0.0  # rad, perhaps less whole turns; of a method only, as are the others
     omega: float = 0.0  # rad/s
     energy: float = 1.0  # s⁻²
 

@@ -1,11 +1,15 @@
 """A scene's methods side by side, step by step."""
 
 import copy
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from engine.models.model import NO_EXTRA
-from engine.run.loops import Advance, LoopsOf, advance_with_errors, plain
+from engine.run.judge import stride
+from engine.run.judgement import Judgement, LookPoint, Milestone
+from engine.run.judges import Judges
+from engine.run.loops import Advance, LoopsOf, PlainLoops, advance_with_errors
 from engine.run.stepping import Stepping
 from engine.scenes import Scene, check_h
 
@@ -40,13 +44,14 @@ class Sample(NamedTuple):
 class _Track:
     """One method's way through a run."""
 
-    __slots__ = ("advance", "diverged_at", "energy", "error", "high", "low", "parts", "phase", "run_high", "run_low")
-
     def __init__(self, advance: Advance, scene: Scene, start_energy: float) -> None:
         self.advance = advance
         self.phase = scene.equations.start(scene.theta, scene.omega)
         self.energy = start_energy
-        self.error = self.low = self.high = self.run_low = self.run_high = 0.0  # of the energy
+        self.error = 0.0  # of the energy
+        self.low = self.high = 0.0  # since the last sample
+        self.look_low = self.look_high = 0.0  # since the last look point
+        self.run_low = self.run_high = 0.0
         self.diverged_at: float | None = None
         self.parts = 1  # how many steps of its own it takes in one of the lockstep
 
@@ -56,31 +61,44 @@ class Lockstep:
 
     `scene.h` is the step size at the start, `stepping` what is in force.  Time is `t_base + n·h`, never a
     running sum.  A method whose numbers stop being finite is frozen; the others go on.
+
+    The lockstep stops by itself at look points, every `stride` steps since the last change of the stepping: there
+    each method is shown to its judge, if there are judges.
     """
 
     def __init__(
         self,
         scene: Scene,
         run: int = 1,
-        loops: LoopsOf = plain,  # or engine.run.compiled.compiled
+        loops: LoopsOf = PlainLoops,  # or engine.run.compiled.compiled
+        judged: bool = False,
     ) -> None:
         self.scene = scene
         self.run = run
         self.step = 0
         self.stepping = Stepping(scene.h, cast=scene.cast)
-        self._t_base, self._base_step = 0.0, 0
-        self._reference = scene.equations.reference(scene.theta, scene.omega)
-        start = scene.equations.observe(scene.equations.start(scene.theta, scene.omega)).extra
-        self._scales = {each.name: start[each.name] or 1.0 for each in scene.equations.variables if each.relative}
+        self._t_base = 0.0
+        self._base_step = 0
+        self._model = model = scene.equations
+        self._reference = model.reference(scene.theta, scene.omega)
+        start = model.observe(model.start(scene.theta, scene.omega)).extra
+        self._scales = {each.name: start[each.name] or 1.0 for each in model.variables if each.relative}
         self._limit = min(1.0, self._reference.scale) * 1e300  # so that relative errors are finite, too
-        self._tracks = [
-            _Track(loops(method, scene.equations).advance, scene, self._reference.start) for method in scene.cast
-        ]
+        self._tracks = [_Track(loops(method, model).advance, scene, self._reference.start) for method in scene.cast]
+        exact = scene.exact()
+        self._period = exact.period or math.tau / model.w0
+        self._judges: Judges | None = None
+        if judged:
+            self._judges = Judges(scene.cast, model, self._period, self._reference.scale)
+        swings = model.turns and exact.regime == "libration"
+        self._bottom = math.tau * round(scene.theta / math.tau) if judged and swings else None
+        self._restart()
 
     def copy(self) -> "Lockstep":
-        """Another lockstep that goes on from here."""
+        """Return another lockstep that goes on from here."""
         other = copy.copy(self)
         other._tracks = [copy.copy(track) for track in self._tracks]
+        other._judges = self._judges and self._judges.copy()
         return other
 
     @property
@@ -88,39 +106,135 @@ class Lockstep:
         """Simulated time [s]."""
         return self._t_base + (self.step - self._base_step) * self.stepping.h
 
+    @property
+    def judgements(self) -> list[Judgement]:
+        """The verdicts since the last change of the stepping, in the order of the cast; none without judges."""
+        return self._judges.judgements if self._judges else []
+
+    @property
+    def milestones(self) -> Sequence[Milestone]:
+        """What the methods have done in this run up to this step; nothing without judges."""
+        return self._judges.milestones if self._judges else ()
+
     def set_stepping(self, stepping: Stepping) -> None:
         """Step like this from the next step on.  Raises SceneError for an h that is zero, not finite or absurd."""
         check_h(stepping.h, self.scene.w0)
-        self._t_base, self._base_step = self.t, self.step
+        self._t_base = self.t
+        self._base_step = self.step
         self.stepping = stepping
         for track, part in zip(self._tracks, stepping.parts, strict=True):
             track.parts = part
+        self._restart()
+
+    def _restart(self) -> None:
+        """Count look points from here on."""
+        self._stride = stride(self._period, self.stepping.h)
+        for track in self._tracks:
+            track.look_low = track.look_high = track.error
+        if self._judges:
+            self._judges.restart(self.stepping.own, [self._look_point(track) for track in self._tracks])
+        self._next_stop = self._following_stop()
 
     def advance(self, n: int) -> None:
-        if n <= 0:
-            return
-        for track in self._tracks:
+        """Take n steps."""
+        last = self.step + n
+        while self.step < last:
+            self._move(min(last, self._next_stop) - self.step)
+            if self.step == self._next_stop:
+                self._stop()
+
+    def _move(self, n: int) -> None:
+        for index, track in enumerate(self._tracks):
             if track.diverged_at is not None:
                 continue
-            h, steps = self.stepping.h / track.parts, n * track.parts
-            begin = self._t_base, (self.step - self._base_step) * track.parts
+            h = self.stepping.h / track.parts
+            steps = n * track.parts
+            begin = (self._t_base, (self.step - self._base_step) * track.parts)
             went = advance_with_errors(track.advance, self._reference, track.phase, h, steps, self._limit, begin)
             if went.done:
-                track.phase, track.energy, track.error = went.phase, went.energy, went.error
-                track.low, track.high = min(track.low, went.low), max(track.high, went.high)
+                track.phase = went.phase
+                track.energy = went.energy
+                track.error = went.error
+                track.low = min(track.low, went.low)
+                track.high = max(track.high, went.high)
+                track.look_low = min(track.look_low, went.low)
+                track.look_high = max(track.look_high, went.high)
             if went.done < steps:
                 track.diverged_at = begin[0] + (begin[1] + went.done + 1) * h
+                if self._judges:
+                    self._judges.fail(index, begin[1] + went.done)
+                    step = self.step + math.ceil((went.done + 1) / track.parts)
+                    self._judges.note("failed", index, step, track.diverged_at, track.error)
         self.step += n
 
+    def _stop(self) -> None:
+        """Look where it is time to, and choose the next stop."""
+        is_look_point = (self.step - self._base_step) % self._stride == 0
+        if self._judges and is_look_point:
+            self._judges.look(self.step, self.t, [self._look_point(track) for track in self._tracks])
+            for track in self._tracks:
+                track.look_low = track.look_high = track.error
+        self._note_tops()
+        self._next_stop = self._following_stop()
+
+    def _look_point(self, track: _Track) -> LookPoint | None:
+        if track.diverged_at is not None:
+            return None
+        theta, omega, _ = self._model.observe(track.phase)
+        return LookPoint(
+            step=(self.step - self._base_step) * track.parts,
+            error=track.error,
+            low=track.look_low,
+            high=track.look_high,
+            theta=theta,
+            omega=omega,
+            energy=track.energy,
+        )
+
+    def _following_stop(self) -> int:
+        """Return the step of the next look point, or one before it at which a method may be over the top."""
+        done = (self.step - self._base_step) // self._stride + 1
+        stop = self._base_step + done * self._stride
+        for index, track in enumerate(self._tracks):
+            if self._may_go_over(index, track):
+                stop = min(stop, self.step + self._steps_below_top(track, stop - self.step))
+        return stop
+
+    def _note_tops(self) -> None:
+        """Note the methods that are where the exact motion never comes: beyond the top."""
+        for index, track in enumerate(self._tracks):
+            if self._judges and self._may_go_over(index, track) and self._below_top(track) < 0:
+                self._judges.note("over the top", index, self.step, self.t, track.error)
+
+    def _may_go_over(self, index: int, track: _Track) -> bool:
+        if self._judges is None or self._bottom is None or track.diverged_at is not None:
+            return False
+        return not self._judges.has("over the top", index)
+
+    def _below_top(self, track: _Track) -> float:
+        """Return how far from the top a method is [rad]."""
+        assert self._bottom is not None
+        theta = self._model.observe(track.phase).theta
+        return math.pi - abs(theta - self._bottom)
+
+    def _steps_below_top(self, track: _Track, most: int) -> int:
+        """Return a number of steps, at least 1, in which a method does not go over the top."""
+        left = self._below_top(track)
+        omega = abs(self._model.observe(track.phase).omega)
+        h = abs(self.stepping.h)
+        while most > 1 and 2 * (omega + self._model.w0_squared * most * h) * most * h > left:
+            most //= 2  # twice the way under full gravity: methods overshoot
+        return most
+
     def sample(self) -> Sample:
-        """The readings now.  Lows and highs of the next sample are taken from here on."""
+        """Return the readings now.  Lows and highs of the next sample are taken from here on."""
         return Sample(self.run, self.step, self.t, tuple(self._read(track) for track in self._tracks))
 
     def _read(self, track: _Track) -> Reading:
         track.run_low, track.run_high = min(track.run_low, track.low), max(track.run_high, track.high)
         low, high = track.low, track.high
         track.low = track.high = track.error
-        theta, omega, extra = self.scene.equations.observe(track.phase)
+        theta, omega, extra = self._model.observe(track.phase)
         if self._scales:
             extra = {**extra, **{name: extra[name] / scale for name, scale in self._scales.items()}}
         return Reading(

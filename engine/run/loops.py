@@ -3,9 +3,8 @@
 import math
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from functools import cache
 from itertools import islice
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 from engine.methods import Method
 from engine.models.model import Energy, EnergyReference, Model, Phase
@@ -13,20 +12,18 @@ from engine.models.model import Energy, EnergyReference, Model, Phase
 Advanced = tuple[int, Phase, float, float, float]
 """Steps done, phase and energy there, lowest and highest energy on the way [s⁻²]."""
 
-Travel = Callable[[Phase, float, int], Phase]
-"""(phase, h, n) -> phase."""
-
 Advance = Callable[[Phase, float, int, float], Advanced]
 """(phase, h, n, limit) -> Advanced."""
 
 
-class Loops(NamedTuple):
-    """One method's loops on one model."""
+class Loops(Protocol):
+    """One method's loops on one model, for one run."""
 
-    travel: Travel
-    """The phase after n >= 1 steps, and nothing else."""
-    advance: Advance
-    """Advance by n >= 1 steps, or to the last one whose energy is below `limit`."""
+    def travel(self, phase: Phase, h: float, n: int) -> Phase:
+        """Return the phase after n >= 1 steps, and nothing else."""
+
+    def advance(self, phase: Phase, h: float, n: int, limit: float) -> Advanced:
+        """Advance by n >= 1 steps, or to the last one whose energy is below `limit`."""
 
 
 LoopsOf = Callable[[Method, Model], Loops]
@@ -67,21 +64,33 @@ def _advance_all(phases: Iterator[Phase], energy: Energy, n: int, limit: float) 
     return n, phase, now, low, high
 
 
-@cache
-def plain(method: Method, model: Model) -> Loops:
-    """The loops in Python."""
-    phases, energy = method.on(model), model.energy()
+class PlainLoops:
+    """The loops in Python.  Where a call goes on from the last one, so does its generator, at no cost."""
 
-    def travelling(phase: Phase, h: float, n: int) -> Phase:
-        return next(islice(phases(phase, h), n - 1, None))
+    def __init__(self, method: Method, model: Model) -> None:
+        self._phases = method.on(model)
+        self._energy = model.energy()
+        self._end: Phase | None = None
+        self._h = 0.0
+        self._generator: Iterator[Phase] = iter(())
 
-    def advancing(phase: Phase, h: float, n: int, limit: float) -> Advanced:
+    def travel(self, phase: Phase, h: float, n: int) -> Phase:
+        """Return the phase after n >= 1 steps, and nothing else."""
+        return next(islice(self._phases(phase, h), n - 1, None))
+
+    def advance(self, phase: Phase, h: float, n: int, limit: float) -> Advanced:
+        """Advance by n >= 1 steps, or to the last one whose energy is below `limit`."""
+        if phase is not self._end or h != self._h:
+            self._generator = self._phases(phase, h)
+            self._h = h
         try:
-            return _advance_all(phases(phase, h), energy, n, limit)
+            advanced = _advance_all(self._generator, self._energy, n, limit)
         except OVERFLOW:
-            return advance(_to_overflow(phases(phase, h), energy), energy, phase, n, limit)
-
-    return Loops(travelling, advancing)
+            self._end = None
+            phases = _to_overflow(self._phases(phase, h), self._energy)
+            return advance(phases, self._energy, phase, n, limit)
+        self._end = advanced[1]
+        return advanced
 
 
 class Errors(NamedTuple):

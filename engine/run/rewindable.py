@@ -6,10 +6,11 @@ are, the further they lie apart, so their number grows with the logarithm of the
 
 import math
 from bisect import bisect_right
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from engine.run.compiled import tiered
+from engine.run.compiled import TieredLoops
+from engine.run.judgement import Judgement, Milestone
 from engine.run.lockstep import Lockstep, Sample
 from engine.run.loops import LoopsOf
 from engine.run.stepping import Stepping, SteppingChange
@@ -30,14 +31,14 @@ class RewindableRun:
     Between a step back and the step reached before, forward repeats what was, changes included.
     """
 
-    def __init__(self, scene: Scene, run: int = 1, loops: LoopsOf = tiered) -> None:
+    def __init__(self, scene: Scene, run: int = 1, loops: LoopsOf = TieredLoops) -> None:
         self.scene = scene
         self.run = run
         self.changes = [SteppingChange(0, 0.0, Stepping(scene.h, cast=scene.cast))]
         self.furthest = 0  # the last step sampled
         self._x = [0.0]  # s, the simulated time run up to each change; it goes up even while t goes down
         self._applied = 1
-        self._lockstep = Lockstep(scene, run, loops=loops)
+        self._lockstep = Lockstep(scene, run, loops=loops, judged=True)
         self._copies = [self._copy()]
 
     def repeat(self, changes: Iterable[SteppingChange], step: int) -> None:
@@ -65,6 +66,16 @@ class RewindableRun:
         """The simulated time run so far [s]; it goes up even while t goes down."""
         last = self._applied - 1
         return self._x[last] + (self.step - self.changes[last].step) * abs(self.changes[last].stepping.h)
+
+    @property
+    def judgements(self) -> list[Judgement]:
+        """The verdicts at this step, since the last change of the stepping."""
+        return self._lockstep.judgements
+
+    @property
+    def milestones(self) -> Sequence[Milestone]:
+        """What the methods have done up to this step; those ahead come again, and are the same."""
+        return self._lockstep.milestones
 
     @property
     def in_past(self) -> bool:

@@ -17,7 +17,7 @@ from pathlib import Path
 
 from engine.methods import USUAL_CAST, Method
 from engine.run.lockstep import Lockstep
-from engine.run.loops import plain
+from engine.run.loops import PlainLoops
 from engine.scenes import DEFAULT_SCENE
 
 STEPS, REPEATS = 10_000, 30
@@ -90,7 +90,7 @@ def c_loop(library: ctypes.CDLL | None, method: Method, loop: str) -> Callable[[
     def run(steps: int) -> float:
         return float(function(scene.w0_squared, scene.theta, scene.omega, scene.h, steps, 1e300))
 
-    assert run(1000) == plain(method, scene.equations).travel((scene.theta, scene.omega), scene.h, 1000)[0]
+    assert run(1000) == PlainLoops(method, scene.equations).travel((scene.theta, scene.omega), scene.h, 1000)[0]
     return run
 
 
@@ -102,7 +102,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         library = compiled(folder)
         for method in USUAL_CAST:
-            travel, advance = plain(method, scene.equations)
+            travel, advance = PlainLoops(method, scene.equations)
             runs = {
                 "without_energies": (partial(travel, start, scene.h, STEPS), c_loop(library, method, "travel")),
                 "with_energies": (partial(advance, start, scene.h, STEPS, 1e300), c_loop(library, method, "advance")),

@@ -13,7 +13,7 @@ from typing import Any
 from engine.methods import GENERAL, USUAL_CAST, Method
 from engine.run.compiled import compiled
 from engine.run.lockstep import Lockstep
-from engine.run.loops import LoopsOf, plain
+from engine.run.loops import LoopsOf, PlainLoops
 from engine.scenes import DEFAULT_SCENE as SCENE
 from tests.bench.lockstep import STEPS, c_loop, rates
 from tests.bench.lockstep import compiled as c_library
@@ -34,7 +34,7 @@ def our_loop(loops_of: LoopsOf, method: Method, loop: str, steps: int) -> tuple[
 def one_loop(library: Any, method: Method, loop: str) -> dict[str, Any]:
     """C, compiled and plain [steps a second], and their ratios."""
     in_c = c_loop(library, method, loop)
-    ours = our_loop(compiled, method, loop, MANY), our_loop(plain, method, loop, STEPS)
+    ours = our_loop(compiled, method, loop, MANY), our_loop(PlainLoops, method, loop, STEPS)
     fast, slow, *c = rates(*ours, *([(partial(in_c, MANY), MANY)] if in_c else []))
     return {
         "c": c[0] if c else None,
@@ -48,7 +48,7 @@ def one_loop(library: Any, method: Method, loop: str) -> dict[str, Any]:
 
 def ns_per_force(method: Method) -> dict[str, float]:
     """What an evaluation of the force and its share of the step take."""
-    each = {"compiled": (compiled, MANY), "plain": (plain, STEPS // 4)}
+    each = {"compiled": (compiled, MANY), "plain": (PlainLoops, STEPS // 4)}
     return {
         name: 1e9 / rates(our_loop(loops_of, method, "travel", steps))[0] / method.force_evaluations
         for name, (loops_of, steps) in each.items()
@@ -58,7 +58,7 @@ def ns_per_force(method: Method) -> dict[str, float]:
 def together() -> dict[str, float]:
     """The lockstep of four with energies at every step [lockstep steps a second]."""
     answer = {}
-    for name, loops_of, steps in (("compiled", compiled, MANY), ("plain", plain, STEPS)):
+    for name, loops_of, steps in (("compiled", compiled, MANY), ("plain", PlainLoops, STEPS)):
         lockstep = Lockstep(SCENE, loops=loops_of)
         lockstep.advance(1)
         (answer[name],) = rates((partial(lockstep.advance, steps), steps))

@@ -12,7 +12,6 @@ import numpy as np
 
 from engine.methods import USUAL_CAST
 from engine.run.lockstep import Lockstep
-from engine.run.observer import RunObserver
 from engine.scenes import DEFAULT_SCENE
 from tui.drawing.canvas import Canvas
 from tui.drawing.picture import Picture
@@ -56,7 +55,7 @@ def scattered(random: np.random.Generator) -> Callable[[], Picture]:
 
 def long_run() -> tuple[ErrorHistory, float]:
     """A history of many frames, and what adding one took on average [ms]."""
-    lockstep, exact, history = Lockstep(DEFAULT_SCENE), DEFAULT_SCENE.exact(), ErrorHistory(RunObserver(DEFAULT_SCENE))
+    lockstep, exact, history = Lockstep(DEFAULT_SCENE), DEFAULT_SCENE.exact(), ErrorHistory(DEFAULT_SCENE)
     samples = []
     for _ in range(FRAMES):
         samples.append(lockstep.sample())

@@ -13,7 +13,8 @@ import time
 
 from engine.methods import USUAL_CAST
 from engine.run.compiled import compiled
-from engine.run.verdict import Judge, Look
+from engine.run.judge import Judge
+from engine.run.judgement import LookPoint
 from engine.scenes import Scene
 from tests.truths import is_true, scene_at, truths, verdicts, watch
 
@@ -21,12 +22,12 @@ from tests.truths import is_true, scene_at, truths, verdicts, watch
 def microseconds_per_look(z: float) -> float:
     """What a look costs, once the bins have begun to merge [µs]."""
     scene = Scene(h=z / Scene().w0)
-    judge = Judge(USUAL_CAST[2], scene.equations, 1.0, scene.h, 2.0)
+    judge = Judge(h=scene.h, period=2.0, method=USUAL_CAST[2], model=scene.equations)
     best = math.inf
     for k in range(8):
         began = time.perf_counter()
         for step in range(k * 2000, (k + 1) * 2000):
-            judge.look(step, Look(1.0, 1.0, 0.0, 0.0, 1.0))
+            judge.look(LookPoint(step, error=0.0, low=0.0, high=1.0, theta=1.0, omega=1.0))
         best = min(best, time.perf_counter() - began)
     return best / 2000 * 1e6
 

@@ -10,7 +10,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.run.lockstep import Lockstep, Sample
-from engine.run.observer import RunObserver
 from engine.run.stepping import Stepping
 from engine.scenes import DEFAULT_SCENE, GROUPS, LIMITS, SCENES, Z_LIMITS, Scene, SceneError, check_h
 
@@ -182,10 +181,9 @@ def test_spin_symplectic_euler_and_verlet_show_the_same_angle_a_turn_a_second() 
 
 
 def test_euler_caught_half_a_turn_a_step_holds_explicit_euler_near_110_times_its_energy() -> None:
-    scene, lockstep = SCENES["euler-caught"], Lockstep(SCENES["euler-caught"])
-    observer, turns, energies = RunObserver(scene), [], []
+    scene, lockstep = SCENES["euler-caught"], Lockstep(SCENES["euler-caught"], judged=True)
+    turns, energies = [], []
     while lockstep.t < 30 * scene.speed:  # half a minute of watching
-        observer.add(lockstep.sample())
         lockstep.advance(10)
         euler = lockstep.sample().readings[EXPLICIT]
         turns.append(abs(euler.omega) * scene.h / math.tau)  # a step
@@ -198,7 +196,7 @@ def test_euler_caught_half_a_turn_a_step_holds_explicit_euler_near_110_times_its
     caught = (math.pi / scene.h) ** 2 / 2 + scene.w0_squared  # as long above the pivot as below
     assert fmean(energies[half:]) == pytest.approx(caught / scene.equations.energy()((1.0, 0.0)), rel=0.02)
     assert fmean(energies[half:]) == pytest.approx(110, abs=2)
-    assert observer.judgements[EXPLICIT].verdict == "caught"
+    assert lockstep.judgements[EXPLICIT].verdict == "caught"
 
 
 def test_verlet_limit_verlet_loses_98_percent_and_has_it_back_every_11_steps() -> None:

@@ -7,8 +7,7 @@ from pathlib import Path
 
 from engine.methods import USUAL_CAST, VELOCITY_VERLET
 from engine.run.lockstep import Lockstep, Sample
-from engine.run.observer import RunObserver
-from engine.run.stepping import Stepping, SteppingChange
+from engine.run.stepping import Stepping
 from engine.scenes import Scene
 from recordings.events import Entry, Event, noticed
 from recordings.recorder import FLUSH_EVERY, Recorder
@@ -94,14 +93,16 @@ def with_changes(
     scene: Scene, time: float, recorder: Recorder, changes: Changes, sample_every: int = 1
 ) -> Iterator[Sample]:
     """`headless.simulate` with changes of h; its clock is the time simulated, backwards or forwards."""
-    lockstep, observer = Lockstep(scene), RunObserver(scene)
-    change, clock, left = SteppingChange(0, 0.0, lockstep.stepping), 0.0, time
+    lockstep = Lockstep(scene, judged=True)
+    clock, left, known = 0.0, time, 0
 
     def sampled() -> Sample:
+        nonlocal known
         sample = lockstep.sample()
         recorder.sample(sample, clock)
-        for milestone in observer.add(sample, change):
+        for milestone in lockstep.milestones[known:]:
             recorder.event(noticed(1, milestone), clock)
+        known = len(lockstep.milestones)
         return sample
 
     recorder.event(start(scene=scene), 0.0)
@@ -119,5 +120,4 @@ def with_changes(
         left -= (end - first) * size
         if h != lockstep.stepping.h:
             recorder.event(Event("set_h", 1, end, lockstep.t, h=h), clock)
-            change = SteppingChange(end, lockstep.t, Stepping(h, cast=scene.cast))
-            lockstep.set_stepping(change.stepping)
+            lockstep.set_stepping(Stepping(h, cast=scene.cast))

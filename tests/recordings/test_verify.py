@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from engine.run import loops
+from engine.run.compiled import CompiledLoops
 from engine.run.lockstep import Lockstep, Sample
-from engine.run.observer import RunObserver
 from engine.scenes import SCENES
 from recordings.arithmetic import arithmetic_here
 from recordings.errors import RecordingError
@@ -160,11 +160,9 @@ def foreign_loops(monkeypatch, every):
 
     def loops_of(method, model):
         def advance(phase, h, n, limit):
-            return loops.advance(
-                method.on(model).phases(model.force(sin), phase, h), model.energy(sin), phase, n, limit
-            )
+            return loops.advance(method.on(model, sin)(phase, h), model.energy(sin), phase, n, limit)
 
-        return loops.plain(method, model)._replace(advance=advance)
+        return CompiledLoops(loops.PlainLoops(method, model).travel, advance)
 
     of_another_machine(monkeypatch)
     return loops_of
@@ -175,8 +173,8 @@ def test_a_recording_from_a_machine_with_another_sin_verifies_within_the_toleran
     path = tmp_path / "a.mcap"
     with monkeypatch.context() as elsewhere, Recorder(path, wall=None) as recorder:
         foreign = foreign_loops(elsewhere, every=2)  # much worse than any libm
-        time, observer = 1500 * SCENES[scene].h, RunObserver(SCENES[scene])
-        for _ in simulate(SCENES[scene], time, recorder, sample_every=5, loops=foreign, observer=observer):
+        time = 1500 * SCENES[scene].h
+        for _ in simulate(SCENES[scene], time, recorder, sample_every=5, loops=foreign):
             pass
     verification = verify(path)
     assert verification.other_functions == ("sin",)

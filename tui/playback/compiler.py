@@ -6,13 +6,13 @@ from functools import cache
 
 from engine.methods import Method
 from engine.models.model import Model
-from engine.run.compiled import compiled, tiered
+from engine.run.compiled import TieredLoops, compiled
 from engine.run.loops import Loops
 
 
 def patient(method: Method, model: Model) -> Loops:
     """The method's loops: plain until the thread has compiled them, with the same bits at any time."""
-    return tiered(method, model, _ready)
+    return TieredLoops(method, model, _ready)
 
 
 def _ready(method: Method, model: Model) -> Loops | None:

@@ -149,9 +149,7 @@ class ReplayCursor:
         for _, sample in self.recording.samples_between(start, end):
             if sample.run > run:
                 return
-            before = getattr(so_far, "sample", None)
-            is_new = before is None or sample.step > before.step
-            if sample.run == run and is_new and sample.step < last:
+            if sample.run == run and so_far.step < sample.step < last:
                 so_far.add(sample)
                 yield
 

@@ -5,7 +5,6 @@ from array import array
 from bisect import bisect_right
 from typing import TYPE_CHECKING, NamedTuple
 
-from engine.run.observer import RunObserver
 from tui.playback.history import ErrorHistory
 
 if TYPE_CHECKING:
@@ -31,7 +30,7 @@ class Ghost:
         run = max(recording.runs, key=lambda run: abs(run.t))
         self.scene = run.scene
         self._name = recording.path.stem
-        self._history = ErrorHistory(RunObserver(run.scene), ROWS)
+        self._history = ErrorHistory(run.scene, ROWS)
         self._times, self._rods = array("d"), array("d")  # s; theta and length of each method in turn
         exact, latest = run.scene.exact(), -math.inf
         for _, value in recording.samples_between(run.begin, run.end):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 
 from engine.models.model import State
 from engine.run.lockstep import Sample
-from engine.run.observer import RunObserver
+from engine.scenes import Scene
 
 if TYPE_CHECKING:
     from tui.playback.levels import Levels, Window  # NumPy can wait for the first paint
@@ -28,9 +28,11 @@ class _Row(NamedTuple):
 class ErrorHistory:
     """The past of one run, up to the last sample added."""
 
-    def __init__(self, observer: RunObserver, capacity: int = 2048) -> None:
-        exact, self._reference, self._methods = observer.exact, observer.reference, len(observer.scene.cast)
-        model = observer.scene.equations
+    def __init__(self, scene: Scene, capacity: int = 2048) -> None:
+        exact = scene.exact()
+        model = scene.equations
+        self._reference = model.reference(scene.theta, scene.omega)
+        self._methods = len(scene.cast)
         self._energy = [] if model.energy_error.conserved else ["energy"]
         self._extra = [each.name for each in model.variables if not each.is_state]
         self._theta_error = model.theta_error

@@ -5,8 +5,8 @@ from collections.abc import Callable, Sequence
 from copy import copy
 from typing import TYPE_CHECKING, Any
 
+from engine.run.judgement import Judgement, Milestone
 from engine.run.lockstep import Sample
-from engine.run.observer import Milestone
 from engine.run.rewindable import RewindableRun
 from engine.run.stepping import Stepping, SteppingChange
 from engine.scenes import Scene
@@ -48,7 +48,7 @@ class Live(Source):
         self._events: list[Event] = []
         self._recorded = Playhead()  # the recording clock: it stands while the lab is paused, whatever the speed
         self._clock = clock
-        self._observing = 0.0  # s a step, lately: verdicts take longer than the steps themselves
+        self._noticed_step = 0  # up to which the milestones of the run are events
         self._runs = 1
         run = RewindableRun(scene, 1, patient)
         if so_far is not None:
@@ -62,6 +62,14 @@ class Live(Source):
     @property
     def stepping(self) -> Stepping:
         return self._run.stepping
+
+    @property
+    def judgements(self) -> Sequence[Judgement]:
+        return self._run.judgements
+
+    @property
+    def milestones(self) -> Sequence[Milestone]:
+        return self._run.milestones
 
     @property
     def ghost(self) -> "Ghost | None":
@@ -99,21 +107,18 @@ class Live(Source):
         self.playhead, self._recorded = before.at(now), self._recorded.at(now)
         if self.playhead.paused or before.seen is None:
             return self.sample
-        began, first, target = self._clock(), self._run.step, self._run.step_at(self.playhead.position)
+        began = self._clock()
+        target = self._run.step_at(self.playhead.position)
         target = int(min(target, self._run.home))  # so that a sample shows what each method misses its start by
         while (left := target - self._run.step) > 0:
-            if self._clock() - began + (self._run.step - first) * self._observing >= FRAME_BUDGET:
+            if self._clock() - began >= FRAME_BUDGET:
                 break
             self._run.forward(min(left, CHUNK))
         due = self.playhead.position - before.position
         if left > 0:
             self.playhead = self.playhead.moved_to(self._run.x)
         self.pace = self.pace.after(max(0.0, now - before.seen), due, self.playhead.position - before.position)
-        simulated = self._clock()
-        sample = self._take_sample()
-        if steps := self._run.step - first:
-            self._observing = (self._clock() - simulated) / steps
-        return sample
+        return self._take_sample()
 
     def step(self, n: int) -> Sample:
         self.pause(True)
@@ -179,7 +184,6 @@ class Live(Source):
             self._note_start()
         self._run.set_stepping(stepping)
         self._note_here("set_h", h=stepping.h, equal_cost=stepping.equal_cost)
-        self._so_far.observer.judge_anew(self._run.step)
         self._take_sample()
 
     def pause(self, paused: bool) -> None:
@@ -204,10 +208,10 @@ class Live(Source):
 
     def _take_sample(self) -> Sample:
         sample = self._run.sample()
-        news = self._so_far.add(sample)
+        self._so_far.add(sample)
         if self.recorder is not None and sample.step >= self._run.furthest:
             self.recorder.sample(sample, self._recorded.position)
-        self._note_milestones(news)
+        self._note_milestones()
         return sample
 
     def _note_start(self) -> None:
@@ -215,11 +219,15 @@ class Live(Source):
         self._note(Event("start", self._run.run, 0, 0.0, scene=self.scene))
         for step, t, stepping in self._run.changes[1:]:
             self._note(Event("set_h", self._run.run, step, t, h=stepping.h, equal_cost=stepping.equal_cost))
-        self._note_milestones(self._so_far.observer.milestones(self._run.step))
+        self._noticed_step = -1
+        self._note_milestones()
 
-    def _note_milestones(self, milestones: Sequence[Milestone]) -> None:
-        for milestone in milestones:
-            self._note(noticed(self._run.run, milestone))
+    def _note_milestones(self) -> None:
+        """Note the milestones that are no events yet; a step that is repeated has them already."""
+        for milestone in self._run.milestones:
+            if milestone.step > self._noticed_step:
+                self._note(noticed(self._run.run, milestone))
+        self._noticed_step = max(self._noticed_step, self._run.step)
 
     def _note_here(self, kind: EventKind, **what: Any) -> None:
         self._note(Event(kind, self._run.run, self._run.step, self._run.t, **what))

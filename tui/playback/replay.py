@@ -1,5 +1,6 @@
 """Replay: a recording that follows the clock, forwards and backwards."""
 
+import math
 import time
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
@@ -86,8 +87,15 @@ class Replay(Source):
     def judgements(self) -> Sequence[Judgement]:
         """The verdicts that the lab gave since the stepping last changed, with their trends."""
         since = change_before(self.changes, self.sample.step).step
+        swings = (self.sample.step - since) * abs(self.stepping.h) / (self.exact.period or math.tau / self.scene.w0)
         given = {
-            each.method: Judgement(each.verdict, each.trend, lyapunov=each.lyapunov)
+            each.method: Judgement(
+                verdict=each.verdict,
+                slope=each.trend,
+                significant=each.trend is not None,
+                periods=swings,
+                lyapunov=each.lyapunov,
+            )
             for each in self.milestones
             if each.kind == "verdict" and each.step > since
         }

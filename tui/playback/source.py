@@ -5,10 +5,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, ClassVar, Literal, NamedTuple
 
 from engine.models.model import ExactMotion
+from engine.run.judgement import Judgement, Milestone
 from engine.run.lockstep import Sample
-from engine.run.observer import Milestone
 from engine.run.stepping import Stepping, SteppingChange
-from engine.run.verdict import Judgement
 from engine.scenes import Scene
 from recordings.events import Event
 from tui.playback.history import ErrorHistory
@@ -49,12 +48,12 @@ class Source(ABC):
 
     @property
     def scene(self) -> Scene:
-        return self.so_far.observer.scene
+        return self.so_far.scene
 
     @property
     def exact(self) -> ExactMotion:
         """The exact motion of the scene: at(t), period, regime."""
-        return self.so_far.observer.exact
+        return self.so_far.exact
 
     @property
     def changes(self) -> Sequence[SteppingChange]:
@@ -67,14 +66,14 @@ class Source(ABC):
         return self.so_far.history
 
     @property
+    @abstractmethod
     def judgements(self) -> Sequence[Judgement]:
         """The verdicts on the run, and the trends per second, since the last change of the stepping."""
-        return self.so_far.observer.judgements
 
     @property
+    @abstractmethod
     def milestones(self) -> Sequence[Milestone]:
         """What the methods did in this run up to the sample, in its order."""
-        return self.so_far.observer.milestones(self.sample.step)
 
     @property
     @abstractmethod

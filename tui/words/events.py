@@ -5,8 +5,7 @@ from collections.abc import Iterator, Sequence
 from typing import Literal, NamedTuple
 
 from engine.methods import Method
-from engine.run.observer import Milestone
-from engine.run.verdict import Verdict
+from engine.run.judgement import Milestone, Verdict
 from recordings.events import Event
 from tui.playback.source import Source
 from tui.words.insight import short_name

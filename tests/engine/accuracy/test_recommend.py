@@ -10,12 +10,12 @@ from engine.accuracy.study import Study
 from engine.methods import METHODS, USUAL_CAST
 from engine.run import compiled
 from engine.run.lockstep import Lockstep
-from engine.run.loops import plain
+from engine.run.loops import PlainLoops
 from engine.scenes import SCENES, Z_LIMITS
 
 E, S, V, R = USUAL_CAST
 DRIFT = SCENES["drift"]
-LOOPS = compiled.compiled if compiled.available() else plain  # the same bits
+LOOPS = compiled.compiled if compiled.available() else PlainLoops  # the same bits
 
 
 def recommended(scene, time, kind, target):
@@ -129,7 +129,7 @@ def test_where_every_method_is_lost_nothing_is_recommended():
     assert all(math.isfinite(attempt.point.theta_error) for attempt in attempts)
 
 
-@pytest.mark.skipif(LOOPS is plain, reason="takes a minute without Numba")
+@pytest.mark.skipif(LOOPS is PlainLoops, reason="takes a minute without Numba")
 @pytest.mark.parametrize(("kind", "target"), [("theta", 1e-3), ("theta", 1e-9), ("energy", 1e-6)])
 def test_no_method_on_a_dense_ladder_is_three_percent_cheaper(kind, target):
     study = Study(replace(DRIFT, cast=tuple(m for m in METHODS if m.general)), 20.0, LOOPS)

@@ -14,12 +14,12 @@ from engine.accuracy.timing import REPEATS
 from engine.methods import USUAL_CAST
 from engine.models.pendulum import energy
 from engine.run import compiled
-from engine.run.loops import plain
+from engine.run.loops import PlainLoops
 from engine.scenes import SCENES, SceneError
 from tests.engine.run.test_loops import OVERFLOWING
 
 E, S, V, R = USUAL_CAST
-LOOPS = compiled.compiled if compiled.available() else plain  # the same bits
+LOOPS = compiled.compiled if compiled.available() else PlainLoops  # the same bits
 DRIFT = SCENES["drift"]
 STEPS = ladder(20.0, 0.2, 0.0005, 9)
 
@@ -103,7 +103,7 @@ def test_errors_are_the_largest_of_the_run(steps):
     exact, w0_squared, phase = DRIFT.exact(), DRIFT.w0_squared, (DRIFT.theta, DRIFT.omega)
     start, path = energy(w0_squared, *phase), []
     for _ in range(steps):
-        path.append(phase := plain(V, DRIFT.equations).travel(phase, 10.0 / steps, 1))
+        path.append(phase := PlainLoops(V, DRIFT.equations).travel(phase, 10.0 / steps, 1))
     off = [abs(theta - exact.at(n * (10.0 / steps)).theta) for n, (theta, _) in enumerate(path, 1)]
     assert point.theta_error == max(off)
     assert point.final_error == off[-1]

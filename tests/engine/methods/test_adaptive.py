@@ -11,7 +11,7 @@ from engine.methods import VELOCITY_VERLET, Method
 from engine.methods.adaptive import HALVING_RICHARDSON, HALVING_VERLET, MOST_HALVINGS, halving
 from engine.methods.verlet import velocity_verlet
 from engine.models.pendulum import Pendulum
-from engine.run.loops import count_evaluations, plain
+from engine.run.loops import PlainLoops, count_evaluations
 from engine.scenes import SCENES, Scene
 
 PENDULUM = Pendulum(9.81)
@@ -23,7 +23,7 @@ both = pytest.mark.parametrize("method", [HALVING_VERLET, HALVING_RICHARDSON], i
 def energy_error(method: Method, h: float, time: float) -> tuple[float, float]:
     """The relative energy error at the end, and its largest size on the way."""
     energy, start = PENDULUM.energy(), (2.0, 0.0)
-    _, _, end, low, high = plain(method, PENDULUM).advance(start, h, round(time / h), math.inf)
+    _, _, end, low, high = PlainLoops(method, PENDULUM).advance(start, h, round(time / h), math.inf)
     first = energy(start)
     return end / first - 1, max(high / first - 1, 1 - low / first)
 
@@ -32,7 +32,7 @@ def energy_error(method: Method, h: float, time: float) -> tuple[float, float]:
 def test_with_small_steps_it_has_the_claimed_order(method: Method) -> None:
     exact, errors, steps = Scene(theta=1.0).exact(), [], (80, 113, 160, 226, 320)
     for n in steps:
-        theta, _ = plain(method, PENDULUM).travel((1.0, 0.0), 1.0 / n, n)
+        theta, _ = PlainLoops(method, PENDULUM).travel((1.0, 0.0), 1.0 / n, n)
         errors.append(abs(theta - exact.at(1.0).theta))
     assert -np.polyfit(np.log(steps), np.log(errors), 1)[0] == pytest.approx(method.order, abs=0.1)
 
@@ -48,7 +48,7 @@ def test_a_step_costs_about_the_claimed_evaluations_and_six_if_it_is_not_divided
 def test_a_step_that_looks_accurate_is_two_halves_and_any_other_two_steps_of_half_the_length() -> None:
     phases = halving(velocity_verlet, 0.1)
     small = next(phases(FORCE, (2.0, 0.0), 0.05))
-    assert small == plain(VELOCITY_VERLET, PENDULUM).travel((2.0, 0.0), 0.025, 2)
+    assert small == PlainLoops(VELOCITY_VERLET, PENDULUM).travel((2.0, 0.0), 0.025, 2)
     divided = next(phases(FORCE, (2.0, -5.0), 0.4))
     halved = next(phases(FORCE, next(phases(FORCE, (2.0, -5.0), 0.2)), 0.2))
     assert divided == halved
@@ -70,13 +70,13 @@ def test_where_nothing_looks_accurate_a_step_still_ends(method: Method, theta: f
 
 @both
 def test_nothing_is_kept_from_step_to_step(method: Method) -> None:
-    travel = plain(method, PENDULUM).travel
+    travel = PlainLoops(method, PENDULUM).travel
     assert travel(travel((2.0, 0.0), 0.2, 7), 0.2, 5) == travel((2.0, 0.0), 0.2, 12)
 
 
 @both
 def test_there_and_back_it_misses_its_start(method: Method) -> None:
-    travel = plain(method, PENDULUM).travel
+    travel = PlainLoops(method, PENDULUM).travel
     theta, omega = travel((2.0, 0.3), 0.2, 50)
     theta, omega = travel((theta, -omega), 0.2, 50)
     assert max(abs(theta - 2.0), abs(-omega - 0.3)) > 1e-3

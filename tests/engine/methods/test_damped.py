@@ -9,7 +9,7 @@ import pytest
 from engine.methods import EXPLICIT_EULER, RK4, Method
 from engine.methods.damped import CONFORMAL_VERLET, LAGGED_VERLET
 from engine.models.damped import DampedPendulum
-from engine.run.loops import count_evaluations, plain
+from engine.run.loops import PlainLoops, count_evaluations
 from engine.run.tangent import jacobian
 
 CAST = (EXPLICIT_EULER, LAGGED_VERLET, CONFORMAL_VERLET, RK4)
@@ -31,7 +31,7 @@ def test_the_error_falls_with_the_claimed_power_of_h(method: Method) -> None:
         {1: (4000, 5600, 8000), 2: (200, 280, 400), 4: (100, 140, 200)}[method.order],
     )
     exact = model.exact(2.0, 0.0).at(2.0)
-    errors = [abs(plain(method, model).travel((2.0, 0.0), 2.0 / n, n)[0] - exact.theta) for n in steps]
+    errors = [abs(PlainLoops(method, model).travel((2.0, 0.0), 2.0 / n, n)[0] - exact.theta) for n in steps]
     slope = -np.polyfit(np.log(steps), np.log(errors), 1)[0]
     assert slope == pytest.approx(method.order, abs=0.05 if method.order == 2 else 0.2)
 
@@ -48,7 +48,7 @@ def test_explicit_euler_gains_energy_from_gamma_over_w0_squared_on(friction: flo
     model = DampedPendulum(9.81, friction)
     for share, gains in ((0.95, False), (1.05, True)):
         h = share * friction / 9.81
-        theta, omega = plain(EXPLICIT_EULER, model).travel((0.1, 0.0), h, round(200 / h))
+        theta, omega = PlainLoops(EXPLICIT_EULER, model).travel((0.1, 0.0), h, round(200 / h))
         assert (model.energy()((theta, omega)) > model.energy()((0.1, 0.0))) == gains
 
 
@@ -78,7 +78,7 @@ def test_a_step_evaluates_the_force_as_often_as_claimed(method: Method) -> None:
 
 @each_method
 def test_however_a_run_is_cut_the_bits_are_the_same(method: Method) -> None:
-    travel = plain(method, DampedPendulum(9.81, 0.1)).travel
+    travel = PlainLoops(method, DampedPendulum(9.81, 0.1)).travel
     assert travel(travel((1.0, 0.5), 0.05, 3), 0.05, 4) == travel((1.0, 0.5), 0.05, 7)
 
 

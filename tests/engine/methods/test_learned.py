@@ -20,7 +20,7 @@ from engine.methods.learned_numbers import FEATURES, FIELD, HAMILTONIAN
 from engine.methods.runge_kutta import rk4_on_rates
 from engine.models.model import Phase
 from engine.models.pendulum import Pendulum
-from engine.run.loops import plain
+from engine.run.loops import PlainLoops
 from tests.bench import learn
 
 PENDULUM = Pendulum(W0_SQUARED)
@@ -55,7 +55,7 @@ def test_both_fields_are_about_as_far_from_the_true_one() -> None:
 
 def largest_energy_errors(method: Method, start: float) -> tuple[float, float]:
     """The largest relative errors of the true energy in 50 s and in 100 s."""
-    energy, advance = PENDULUM.energy()((start, 0.0)), plain(method, PENDULUM).advance
+    energy, advance = PENDULUM.energy()((start, 0.0)), PlainLoops(method, PENDULUM).advance
     _, phase, _, low, high = advance((start, 0.0), 0.02, 2500, math.inf)
     _, _, _, lowest, highest = advance(phase, 0.02, 2500, math.inf)
     early = max(high / energy - 1, 1 - low / energy)
@@ -74,7 +74,7 @@ def test_the_energy_error_of_the_hamiltonian_is_bounded_and_that_of_the_field_gr
 @pytest.mark.parametrize("start", STARTS[::3])
 def test_the_learned_energy_is_conserved_but_for_rk4s_own_loss(start: float) -> None:
     before = learned_energy(start, 0.0) - learned_energy(0.0, 0.0)
-    theta, omega = plain(RK4_LEARNED_HAMILTONIAN, PENDULUM).travel((start, 0.0), 0.02, 5000)
+    theta, omega = PlainLoops(RK4_LEARNED_HAMILTONIAN, PENDULUM).travel((start, 0.0), 0.02, 5000)
     after = learned_energy(theta, omega) - learned_energy(0.0, 0.0)
     assert after == pytest.approx(before, rel=1e-4)
 
@@ -115,4 +115,4 @@ def test_rk4_on_a_field_asks_it_four_times_a_step_and_on_the_pendulums_is_rk4() 
 
     phase = next(islice(rk4_on_rates(rates, (1.0, 0.5), 0.05), 9, None))
     assert count == 10 * RK4_LEARNED_FIELD.force_evaluations
-    assert phase == pytest.approx(plain(RK4, PENDULUM).travel((1.0, 0.5), 0.05, 10), abs=1e-14)
+    assert phase == pytest.approx(PlainLoops(RK4, PENDULUM).travel((1.0, 0.5), 0.05, 10), abs=1e-14)

@@ -16,7 +16,7 @@ from engine.methods.own import LONGEST_SOURCE, OwnMethod, OwnMethodError
 from engine.models.pendulum import Pendulum
 from engine.run.compiled import compiled
 from engine.run.lockstep import Lockstep
-from engine.run.loops import plain
+from engine.run.loops import PlainLoops
 from engine.scenes import DEFAULT_SCENE, SCENES
 from engine.stability.grid import Grid
 
@@ -103,7 +103,7 @@ def test_it_goes_to_another_process_as_its_text_and_gives_the_same_bits_there() 
 def test_it_is_never_compiled_for_it_may_hold_anything() -> None:
     pytest.importorskip("numba")
     mine, model = loaded(VERLET), Pendulum(9.81)
-    assert compiled(mine, model) is plain(mine, model)
+    assert compiled(mine, model) is PlainLoops(mine, model)
 
 
 WRONG = {

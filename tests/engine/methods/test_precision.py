@@ -13,7 +13,7 @@ from engine.methods import VELOCITY_VERLET, Method
 from engine.methods.precision import VERLET_COMPENSATED, VERLET_FLOAT32, Compensated, Float32
 from engine.models.model import Phase
 from engine.models.pendulum import Pendulum
-from engine.run.loops import count_evaluations, plain
+from engine.run.loops import PlainLoops, count_evaluations
 from engine.scenes import Scene
 
 PENDULUM = Pendulum(9.81)
@@ -51,7 +51,7 @@ def test_however_a_run_is_cut_the_bits_are_the_same(method: Method, cuts: list[i
     def bits(phase: Phase) -> list[tuple[float, float]]:
         return [(float(x), getattr(x, "lost", 0.0)) for x in phase]
 
-    travel, phase = plain(method, PENDULUM).travel, (2.0, 0.3)
+    travel, phase = PlainLoops(method, PENDULUM).travel, (2.0, 0.3)
     for n in cuts:
         phase = travel(phase, 0.05, n)
     assert bits(phase) == bits(travel((2.0, 0.3), 0.05, sum(cuts)))
@@ -65,14 +65,14 @@ def test_every_phase_of_32_bits_is_a_double_that_32_bits_hold() -> None:
 @pytest.mark.parametrize(("method", "rounding"), [(VERLET_FLOAT32, 1e-4), (VERLET_COMPENSATED, 1e-12)])
 def test_in_mid_swing_the_kind_of_numbers_does_not_matter(method: Method, rounding: float) -> None:
     """Verlet's own error, 2e-2 after 10 s, hides them."""
-    ends = [plain(each, PENDULUM).travel((2.0, 0.0), 0.02, 500) for each in (method, VELOCITY_VERLET)]
+    ends = [PlainLoops(each, PENDULUM).travel((2.0, 0.0), 0.02, 500) for each in (method, VELOCITY_VERLET)]
     assert ends[0] == pytest.approx(ends[1], abs=rounding)
     assert ends[0] != ends[1]
 
 
 @pytest.mark.parametrize(("method", "returns"), [(VERLET_FLOAT32, 1e-3), (VERLET_COMPENSATED, 1e-13)])
 def test_there_and_back_it_meets_its_start_only_as_claimed(method: Method, returns: float) -> None:
-    travel = plain(method, PENDULUM).travel
+    travel = PlainLoops(method, PENDULUM).travel
     theta, omega = travel((2.0, 0.3), 0.05, 200)
     theta, omega = travel((theta, -omega), 0.05, 200)
     miss = max(abs(theta - 2.0), abs(-omega - 0.3))

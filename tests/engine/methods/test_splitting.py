@@ -12,7 +12,7 @@ from engine.methods.method import Phases
 from engine.methods.splitting import BLANES_MOAN_4, BLANES_MOAN_6, FAMILY, FOREST_RUTH, composition, splitting
 from engine.models.model import Force, Phase
 from engine.models.pendulum import Pendulum
-from engine.run.loops import plain
+from engine.run.loops import PlainLoops
 from engine.run.stepping import Stepping
 from engine.scenes import Scene
 
@@ -119,7 +119,7 @@ def test_a_composition_takes_verlet_steps_of_the_given_sizes() -> None:
 def largest_energy_error(method: Method, h: float, time: float = 60.0) -> float:
     model = Pendulum(9.81)
     start: float = model.energy()((1.0, 0.0))
-    _, _, _, low, high = plain(method, model).advance((1.0, 0.0), h, round(time / h), math.inf)
+    _, _, _, low, high = PlainLoops(method, model).advance((1.0, 0.0), h, round(time / h), math.inf)
     return max(high - start, start - low) / start
 
 

@@ -9,7 +9,7 @@ from engine.methods import RK4, VELOCITY_VERLET, Method
 from engine.methods.stiff import IMEX_EULER, IMPLICIT_MIDPOINT, RESPA, respa
 from engine.methods.verlet import velocity_verlet
 from engine.models.spring import Spring
-from engine.run.loops import count_evaluations, plain
+from engine.run.loops import PlainLoops, count_evaluations
 
 SPRING = Spring(9.81, 2500.0)
 SOFT = Spring(9.81, 100.0)
@@ -25,14 +25,14 @@ def test_verlet_and_rk4_fail_at_their_linear_limits(
     reference = model.reference(1.0, 0.0)
     for z, kept in ((holds, True), (fails, False)):
         h = z / math.sqrt(stiffness)
-        done, _, _, low, high = plain(method, model).advance(model.start(1.0, 0.0), h, round(30 / h), 1e300)
+        done, _, _, low, high = PlainLoops(method, model).advance(model.start(1.0, 0.0), h, round(30 / h), 1e300)
         error = max(abs(reference.error(low)), abs(reference.error(high)))
         assert (done == round(30 / h) and error < 1) == kept
 
 
 def test_respa_at_a_golden_part_of_the_period_is_no_better_than_at_a_rational_one() -> None:
     def largest_error(h: float) -> float:
-        done, _, _, low, high = plain(RESPA, SPRING).advance(START, h, round(30 / h), 1e300)
+        done, _, _, low, high = PlainLoops(RESPA, SPRING).advance(START, h, round(30 / h), 1e300)
         return max(map(abs, map(SPRING.reference(1.0, 0.0).error, (low, high)))) if done else math.inf
 
     errors = {share: largest_error(share * math.tau / 50) for share in (0.5, 0.618, 0.99)}
@@ -44,19 +44,19 @@ def test_respa_with_one_inner_step_is_verlet_but_for_rounding() -> None:
     phase = START
     for _ in range(500):
         phase = next(one(SPRING.parts(), phase, 0.01))
-    expected = plain(VELOCITY_VERLET, SPRING).travel(START, 0.01, 500)
+    expected = PlainLoops(VELOCITY_VERLET, SPRING).travel(START, 0.01, 500)
     assert phase == pytest.approx(expected, abs=1e-11)
     assert phase != expected
 
 
 def test_imex_euler_is_stable_however_stiff_the_spring_and_stops_the_swing_as_well() -> None:
     stiff = Spring(9.81, 1e14)
-    done, (z, w), *_ = plain(IMEX_EULER, stiff).advance(stiff.start(1.0, 0.0), 0.02, 1500, 100.0)
+    done, (z, w), *_ = PlainLoops(IMEX_EULER, stiff).advance(stiff.start(1.0, 0.0), 0.02, 1500, 100.0)
     assert done == 1500
     assert z == pytest.approx(-1j, abs=0.02)
     assert abs(w) < 0.2
     left = [
-        1 + SPRING.reference(1.0, 0.0).error(SPRING.energy()(plain(IMEX_EULER, SPRING).travel(START, 0.02, n)))
+        1 + SPRING.reference(1.0, 0.0).error(SPRING.energy()(PlainLoops(IMEX_EULER, SPRING).travel(START, 0.02, n)))
         for n in (50, 500)
     ]
     assert left == pytest.approx([0.52, 0.065], abs=0.01)  # after 1 and 10 s
@@ -68,7 +68,7 @@ def test_on_a_softer_spring_it_has_the_claimed_order(method: Method) -> None:
     exact, errors = SOFT.place(1.0, 0.0, 0.5), []
     steps = (8000, 11_300, 16_000) if method.order == 1 else (200, 283, 400)
     for n in steps:
-        z, _ = plain(method, SOFT).travel(SOFT.start(1.0, 0.0), 0.5 / n, n)
+        z, _ = PlainLoops(method, SOFT).travel(SOFT.start(1.0, 0.0), 0.5 / n, n)
         errors.append(abs(z - exact[0]))
     assert -np.polyfit(np.log(steps), np.log(errors), 1)[0] == pytest.approx(method.order, abs=0.1)
 
@@ -87,7 +87,7 @@ def determinant(method: Method) -> float:
 @pytest.mark.parametrize("method", [RESPA, IMPLICIT_MIDPOINT, IMEX_EULER, VELOCITY_VERLET], ids=lambda m: m.key)
 def test_volume_is_kept_and_time_turned_back_where_claimed(method: Method) -> None:
     assert (abs(determinant(method) - 1) < 1e-6) == method.symplectic
-    travel = plain(method, SPRING).travel
+    travel = PlainLoops(method, SPRING).travel
     z, w = travel(START, 0.02, 50)
     z, w = travel((z, -w), 0.02, 50)
     assert (abs(z - START[0]) + abs(w + START[1]) < 1e-10) == method.reversible

@@ -13,7 +13,7 @@ from engine.models import MODELS
 from engine.models.pendulum import Pendulum
 from engine.run import compiled
 from engine.run.lockstep import Lockstep
-from engine.run.loops import plain
+from engine.run.loops import PlainLoops
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES
 from tests.engine.run.test_loops import OVERFLOWING
@@ -26,7 +26,7 @@ each_method = pytest.mark.parametrize("method", GENERAL, ids=lambda method: meth
 @needs_numba
 @each_method
 def test_many_steps_compiled_and_plain_end_on_the_same_bits(method):
-    fast, slow = compiled.compiled(method, PENDULUM), plain(method, PENDULUM)
+    fast, slow = compiled.compiled(method, PENDULUM), PlainLoops(method, PENDULUM)
     assert fast is not slow
     start = ((2.5, 0.3), 0.05, 200_000)
     assert fast.advance(*start, math.inf) == slow.advance(*start, math.inf)
@@ -51,7 +51,7 @@ def test_runs_of_compiled_loops_leave_no_memory_behind(method):
 @each_method
 @pytest.mark.parametrize("model", [kind(98.1) for kind in MODELS.values() if not kind.without_force], ids=str)
 def test_compiled_and_plain_agree_on_any_model_at_any_step(method, model):
-    fast, slow = compiled.compiled(method, model), plain(method, model)
+    fast, slow = compiled.compiled(method, model), PlainLoops(method, model)
     for h in (0.001, -0.02, 0.7, 3.0):
         start = ((math.radians(179.9), -0.2), h, 2_000)
         assert repr(fast.advance(*start, 1e9)) == repr(slow.advance(*start, 1e9))  # repr: nan where no step was taken
@@ -62,7 +62,7 @@ def test_compiled_and_plain_agree_on_any_model_at_any_step(method, model):
 @needs_numba
 def test_a_method_that_overflows_ends_at_the_same_step_compiled_and_plain():
     start = ((1.7, 0.0), 0.1, 100, math.inf)
-    expected = plain(OVERFLOWING, PENDULUM).advance(*start)
+    expected = PlainLoops(OVERFLOWING, PENDULUM).advance(*start)
     assert 0 < expected[0] < 100
     assert compiled.compiled(OVERFLOWING, PENDULUM).advance(*start) == expected
 
@@ -83,11 +83,11 @@ def test_a_lockstep_can_be_copied_and_given_either_loops():
 @pytest.mark.parametrize("ahead", [0, 10_000])
 def test_loops_that_are_compiled_when_it_pays_give_the_same_bits_before_and_after(method, ahead, monkeypatch):
     monkeypatch.setattr(compiled, "COMPILED_FROM", 3_000)
-    loops = compiled.tiered.__wrapped__(method, PENDULUM, ahead=ahead)
+    loops = compiled.TieredLoops(method, PENDULUM, expected_steps=ahead)
     for n in (1_000, 1_000, 2_000, 500):
         start = ((2.0, 0.0), 0.05, n)
-        assert loops.travel(*start) == plain(method, PENDULUM).travel(*start)
-        assert loops.advance(*start, math.inf) == plain(method, PENDULUM).advance(*start, math.inf)
+        assert loops.travel(*start) == PlainLoops(method, PENDULUM).travel(*start)
+        assert loops.advance(*start, math.inf) == PlainLoops(method, PENDULUM).advance(*start, math.inf)
 
 
 @needs_numba
@@ -97,19 +97,18 @@ def test_it_pays_from_a_number_of_steps_done_or_known_to_lie_ahead(ahead, compil
     used = []
 
     def fast(method, model):
-        return plain(method, model)._replace(travel=lambda *start: used.append(start[-1]))
+        advance = PlainLoops(method, model).advance
+        return compiled.CompiledLoops(travel=lambda *start: used.append(start[-1]), advance=advance)
 
-    loops = compiled.tiered.__wrapped__(GENERAL[0], PENDULUM, fast, ahead)
+    loops = compiled.TieredLoops(GENERAL[0], PENDULUM, fast, ahead)
     for n in (1, 2, 4):
         loops.travel((1.0, 0.0), 0.05, n)
     assert used == compiled_steps
 
 
 def test_neither_a_few_steps_nor_asking_for_numba_imports_it():
-    work = "import sys; from engine.run.compiled import *; from engine.scenes import DEFAULT_SCENE as s; "
-    work += (
-        "available(); tiered(s.cast[0], s.equations).travel((1.0, 0.0), 0.05, 10_000); print('numba' in sys.modules)"
-    )
+    work = "import sys; from engine.run.compiled import *; from engine.scenes import DEFAULT_SCENE as s; available(); "
+    work += "TieredLoops(s.cast[0], s.equations).travel((1.0, 0.0), 0.05, 10_000); print('numba' in sys.modules)"
     told = subprocess.run([sys.executable, "-c", work], check=True, capture_output=True, text=True)
     assert told.stdout == "False\n"
 
@@ -130,4 +129,5 @@ def test_where_the_compiled_sine_has_other_bits_the_plain_loops_are_used():
 def test_the_check_of_the_sine_decides(monkeypatch):
     monkeypatch.setattr(compiled, "import_module", lambda name: None)
     monkeypatch.setattr(compiled, "_same_sine", lambda numba: False)
-    assert compiled.compiled.__wrapped__(GENERAL[0], PENDULUM) is plain(GENERAL[0], PENDULUM)
+    monkeypatch.setattr(compiled, "_compiled", compiled._compiled.__wrapped__)
+    assert isinstance(compiled.compiled(GENERAL[0], PENDULUM), PlainLoops)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from engine.methods import GENERAL
 from engine.models import MODELS
 from engine.models.pendulum import Pendulum, energy
-from engine.run.loops import plain
+from engine.run.loops import PlainLoops
 
 each_method = pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
 each_model = pytest.mark.parametrize(
@@ -41,9 +41,9 @@ def test_the_loops_give_the_bits_of_single_steps(method, model, theta, omega, h,
     for _ in range(n):
         path.append(phase := method.step(model.force(), phase, h))
     energies = [model.energy()(point) for point in path]
-    assert plain(method, model).travel((theta, omega), h, n) == path[-1]
+    assert PlainLoops(method, model).travel((theta, omega), h, n) == path[-1]
     expected = (n, path[-1], energies[-1], min(energies), max(energies))
-    assert plain(method, model).advance((theta, omega), h, n, math.inf) == expected
+    assert PlainLoops(method, model).advance((theta, omega), h, n, math.inf) == expected
 
 
 @given(theta=st.floats(1.01, 1e6), n=st.integers(1, 60))
@@ -56,7 +56,7 @@ def test_a_method_that_overflows_is_carried_to_its_last_finite_step(theta, n):
             break
         path.append(phase)
     energies = [energy(9.81, *point) for point in path]
-    done, last, value, low, high = plain(OVERFLOWING, PENDULUM).advance((theta, 0.0), 0.1, n, math.inf)
+    done, last, value, low, high = PlainLoops(OVERFLOWING, PENDULUM).advance((theta, 0.0), 0.1, n, math.inf)
     assert (done, last) == (len(path), path[-1] if path else (theta, 0.0))
     assert (low, high) == (min(energies, default=math.inf), max(energies, default=-math.inf))
     assert value == energies[-1] if path else math.isnan(value)
@@ -64,7 +64,7 @@ def test_a_method_that_overflows_is_carried_to_its_last_finite_step(theta, n):
 
 @each_method
 def test_it_stops_before_the_step_whose_energy_reaches_the_limit(method):
-    loops = plain(method, PENDULUM)
+    loops = PlainLoops(method, PENDULUM)
     *_, highest = loops.advance((2.0, 0.0), 0.05, 500, math.inf)
     done, phase, value, _, high = loops.advance((2.0, 0.0), 0.05, 500, highest)
     assert done < 500

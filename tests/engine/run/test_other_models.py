@@ -1,4 +1,4 @@
-"""Lockstep, observer and judging on scenes whose model or methods are not as general as the pendulum's."""
+"""Lockstep and judges on scenes whose model or methods are not as general as the pendulum's."""
 
 import math
 
@@ -10,9 +10,8 @@ from engine.methods import METHODS
 from engine.models import MODELS
 from engine.run.compiled import available, compiled
 from engine.run.lockstep import Lockstep, Reading, Sample
-from engine.run.loops import plain
-from engine.run.observer import RunObserver
-from engine.run.stepping import Stepping, SteppingChange
+from engine.run.loops import PlainLoops
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene, SceneError
 
 NAMES = [n for n, s in SCENES.items() if not s.general]
@@ -25,12 +24,11 @@ def without_extremes(sample: Sample) -> list[Reading]:
 
 
 def verdicts(scene: Scene, steps: int, every: int) -> list[tuple[int, str, str]]:
-    observer, lockstep = RunObserver(scene), Lockstep(scene)
-    observer.add(lockstep.sample())
+    lockstep = Lockstep(scene, judged=True)
     for _ in range(steps // every):
         lockstep.advance(every)
-        observer.add(lockstep.sample())
-    return [(m.step, m.method.key, m.verdict) for m in observer.milestones(steps) if m.kind == "verdict"]
+        lockstep.sample()
+    return [(m.step, m.method.key, m.verdict) for m in lockstep.milestones if m.kind == "verdict"]
 
 
 @each_scene
@@ -60,8 +58,6 @@ def test_readings_are_finite_floats_and_hold_the_whole_phase(scene: Scene) -> No
 
 @each_scene
 def test_verdicts_do_not_depend_on_the_distance_of_samples(scene: Scene) -> None:
-    if scene.name.startswith("precision"):
-        scene = scene.with_cast(scene.cast[:2])  # a sample does not tell what a compensated sum keeps
     steps = 14 * round(20 / scene.h / 14)
     assert verdicts(scene, steps, 1) == verdicts(scene, steps, 14)
 
@@ -82,23 +78,12 @@ def test_the_scenes_have_their_verdicts(name: str, expected: dict[str, str]) -> 
     assert last.items() >= expected.items()
 
 
-@each_scene
-def test_there_is_no_modified_energy_but_on_plain_models(scene: Scene) -> None:
-    observer, lockstep = RunObserver(scene), Lockstep(scene)
-    before = lockstep.sample()
-    lockstep.advance(10)
-    change = SteppingChange(0, 0.0, lockstep.stepping)
-    errors = observer.modified_energy_errors(before, lockstep.sample(), change)
-    expected = [bool(method.modified_energy) and scene.equations.has_force for method in scene.cast]
-    assert [not math.isnan(error) for error in errors] == expected
-
-
 @pytest.mark.skipif(not available(), reason="Numba is not installed")
 @each_scene
 def test_where_numba_would_not_give_the_same_bits_the_plain_loops_are_used(scene: Scene) -> None:
     for method in scene.cast:
         general = method.general and scene.equations.has_force
-        assert (compiled(method, scene.equations) is plain(method, scene.equations)) == (not general)
+        assert isinstance(compiled(method, scene.equations), PlainLoops) == (not general)
 
 
 @each_scene

@@ -9,17 +9,17 @@ import pytest
 from engine.methods import USUAL_CAST
 from engine.models.pendulum import Pendulum
 from engine.run import compiled
-from engine.run.judgement import Judgement
+from engine.run.bands import Bands, line
+from engine.run.judge import Judge
+from engine.run.judgement import Judgement, LookPoint
 from engine.run.lockstep import Lockstep
-from engine.run.loops import plain
-from engine.run.observer import RunObserver
-from engine.run.stepping import Stepping, SteppingChange
-from engine.run.verdict import Judge, Look
+from engine.run.loops import PlainLoops
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene
 from tests.truths import is_true, scene_at, truths, verdicts, watch
 
 E, S, V, R = USUAL_CAST
-LOOPS = compiled.compiled if compiled.available() else plain  # the same bits
+LOOPS = compiled.compiled if compiled.available() else PlainLoops  # the same bits
 CELLS = list(truths())
 SAMPLED = CELLS[::23]  # 23 and the 36 steps of a line have no divisor in common: every start and step has its turn
 BELOW_THE_LIMITS = ["grows", "bounded", "bounded", "loses"]
@@ -71,11 +71,9 @@ def test_an_orbit_in_a_chaotic_sea_is_called_chaotic_with_its_lyapunov_number(
 ) -> None:
     scene = Scene(theta=theta, h=h)
     assert course(USUAL_CAST[index], scene, 6000) == ["chaotic", "wanders"]
-    observer, lockstep = RunObserver(scene, LOOPS), Lockstep(scene, loops=LOOPS)
-    observer.add(lockstep.sample())
+    lockstep = Lockstep(scene, loops=LOOPS, judged=True)
     lockstep.advance(6000)
-    observer.add(lockstep.sample())
-    lyapunov = observer.judgements[index].lyapunov
+    lyapunov = lockstep.judgements[index].lyapunov
     assert lyapunov is not None
     assert 0.01 < lyapunov * h < 2  # per step
 
@@ -96,62 +94,31 @@ def test_rk4_that_has_lost_everything_is_not_caught() -> None:
     assert course(R, Scene(h=1.2 / Scene().w0), 6000) == ["loses"]
 
 
-def change(step: int, t: float, h: float) -> SteppingChange:
-    return SteppingChange(step, t, Stepping(h))
-
-
-@pytest.mark.parametrize("name", ["drift", "large-swing", "spin", "verlet-limit-above"])
-def test_verdicts_come_at_the_same_steps_whatever_the_samples(name: str) -> None:
-    scene, uneven = SCENES[name], random.Random(1)
-    steps = math.ceil(40 * (scene.exact().period or 1.0) / scene.h)
-    told = []
-    for gaps in ([1] * steps, [7] * (steps // 7), [uneven.randint(1, 400) for _ in range(steps // 200)], [steps]):
-        observer, lockstep = RunObserver(scene), Lockstep(scene)
-        observer.add(lockstep.sample())
-        for gap in gaps:
-            lockstep.advance(min(gap, steps - lockstep.step))
-            observer.add(lockstep.sample())
-        lockstep.advance(steps - lockstep.step)
-        observer.add(lockstep.sample())
-        told.append([each for each in observer.milestones(steps) if each.kind == "verdict"])
-    assert all(each == told[0] for each in told)
-    assert told[0]
-
-
 @pytest.mark.parametrize("h", [0.02, 0.1])
 def test_judging_may_begin_anywhere_in_a_swing(h: float) -> None:
     """As after a change of h: the energy error is then neither 0 nor at an end of its band."""
     scene = SCENES["large-swing"]
     for steps in (5, 13, 29, 47):
-        observer, lockstep = RunObserver(scene, LOOPS), Lockstep(scene, loops=LOOPS)
+        lockstep = Lockstep(scene, loops=LOOPS, judged=True)
         lockstep.advance(steps)
-        observer.add(lockstep.sample())
-        changed = change(steps, lockstep.t, h)
-        lockstep.set_stepping(changed.stepping)
-        observer.judge_anew(steps)
-        while lockstep.t < 120:
-            lockstep.advance(50)
-            observer.add(lockstep.sample(), changed)
-        assert [judgement.verdict for judgement in observer.judgements] == BELOW_THE_LIMITS
+        lockstep.set_stepping(Stepping(h))
+        lockstep.advance(round(120 / h))
+        assert [judgement.verdict for judgement in lockstep.judgements] == BELOW_THE_LIMITS
 
 
 def test_backwards_in_time_the_same_methods_gain_keep_and_lose() -> None:
     scene = SCENES["drift"]
-    observer, lockstep = RunObserver(scene, LOOPS), Lockstep(scene, loops=LOOPS)
+    lockstep = Lockstep(scene, loops=LOOPS, judged=True)
     lockstep.set_stepping(Stepping(-scene.h))
-    back = change(0, 0.0, -scene.h)
-    observer.add(lockstep.sample(), back)
-    for _ in range(100):
-        lockstep.advance(20)
-        observer.add(lockstep.sample(), back)
-    assert [judgement.verdict for judgement in observer.judgements] == BELOW_THE_LIMITS
+    lockstep.advance(2000)
+    assert [judgement.verdict for judgement in lockstep.judgements] == BELOW_THE_LIMITS
 
 
-def judged(errors: list[float], method=R) -> Judge:
-    """A Judge of made-up errors, 16 steps a period."""
-    judge = Judge(method, Pendulum(1.0), 1.0, 0.1, 1.6)
+def judged(errors: list[float]) -> Judge:
+    """Return a judge of made-up errors, 16 steps a period."""
+    judge = Judge(h=0.1, period=1.6, method=R, model=Pendulum(1.0))
     for step, error in enumerate(errors):
-        judge.look(step, Look(0.0, 0.0, error, error, error))
+        judge.look(LookPoint(step, error, error, error))
     return judge
 
 
@@ -164,15 +131,14 @@ def test_the_uncertainty_is_honest(memory: float, least: int) -> None:
     """
     hits = 0
     for seed in range(200):
-        noise, slow, errors = random.Random(seed), 0.0, []
-        for step in range(16 * 31):
+        noise, slow, bands = random.Random(seed), 0.0, Bands(16)
+        for step in range(16 * 31 + 1):
             if step % 16 == 0:
                 slow = memory * slow + noise.gauss(0, 0.1 if memory else 0.0)
-            errors.append(1e-3 * step * 0.1 + slow + noise.gauss(0, 0.1 * (1 - memory)))
-        judgement = judged(errors).judgement
-        assert judgement.slope is not None
-        assert judgement.uncertainty is not None
-        hits += abs(judgement.slope - 1e-3) < 2 * judgement.uncertainty
+            error = 1e-3 * step + slow + noise.gauss(0, 0.1 * (1 - memory))
+            bands.add(step, error, error, error)
+        trend = line(bands.bins)
+        hits += abs(trend.slope - 1e-3) < 2 * trend.uncertainty
     assert least <= hits <= 199
 
 
@@ -185,7 +151,10 @@ def test_a_random_walk_of_roundings_is_no_trend(seed: int) -> None:
 
 
 def test_before_four_swings_it_is_too_early_and_there_is_no_slope() -> None:
-    assert judged([0.0] * 60).judgement == Judgement("too early", None, None, 0.0)
+    judgement = judged([0.0] * 60).judgement
+    assert (judgement.verdict, judgement.slope, judgement.uncertainty) == ("too early", None, None)
+    assert judgement.progress is not None
+    assert judgement.progress.have < judgement.progress.need
 
 
 def test_a_verdict_is_taken_back_when_the_error_comes_back() -> None:

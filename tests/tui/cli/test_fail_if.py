@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.methods import USUAL_CAST
-from engine.run.verdict import Verdict
+from engine.run.judgement import Verdict
 from tui.cli.errors import UserError
 from tui.cli.fail_if import FIELDS, parse
 

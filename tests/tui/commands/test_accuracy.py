@@ -11,8 +11,8 @@ from engine.accuracy.growth import Growth
 from engine.accuracy.references import ABSENT, OTHER_MODEL, UNFAIR
 from engine.accuracy.study import REASONS, Study, ladder, orders
 from engine.methods import METHODS, USUAL_CAST
-from engine.run.compiled import available, tiered
-from engine.run.loops import plain
+from engine.run.compiled import TieredLoops, available
+from engine.run.loops import PlainLoops
 from engine.scenes import SCENES
 from tests.tui.command_line import own_method, pendu
 from tui.commands.studies.reports.accuracy import order_remarks
@@ -252,7 +252,7 @@ SMALL = ("accuracy", "--all", "--cost", "seconds", "--time", "2", "--h-values", 
 @pytest.fixture
 def hurried(monkeypatch):
     """Leave out the compiling and the results that these tests do not look at: they take seconds."""
-    monkeypatch.setattr("engine.run.compiled.compiled", plain)
+    monkeypatch.setattr("engine.run.compiled.compiled", PlainLoops)
     monkeypatch.setattr("engine.accuracy.study.orders", lambda *_: [])
     monkeypatch.setattr("engine.accuracy.growth.growth", lambda _, method: Growth(method, [], [], None))
 
@@ -276,7 +276,7 @@ def test_where_there_is_no_series_it_says_why(more, words, hurried):
     [(SCENES["drift"], []), (SCENES["spin"], ["Symplectic Euler"]), (SCENES["near-separatrix"], ["RK4"])],
 )
 def test_a_measured_order_that_is_not_the_claimed_one_is_remarked_on(scene, differing):
-    remarks = list(order_remarks(scene, orders(scene, 20.0, tiered)))
+    remarks = list(order_remarks(scene, orders(scene, 20.0, TieredLoops)))
     assert [remark.partition(" reads")[0] for remark in remarks] == differing
 
 

@@ -7,7 +7,7 @@ import threading
 import pytest
 
 from engine.run import compiled
-from engine.run.loops import plain
+from engine.run.loops import PlainLoops
 from engine.scenes import DEFAULT_SCENE
 from tui.playback import compiler
 
@@ -17,11 +17,11 @@ def test_loops_stay_plain_until_another_thread_has_compiled_them(monkeypatch):
     scene, release, used = DEFAULT_SCENE, threading.Event(), []
 
     method, model = scene.cast[3], scene.equations
-    slow = plain(method, model)
+    slow = PlainLoops(method, model)
 
     def slowly(method, model):
         release.wait(10)
-        return slow._replace(advance=lambda *start: used.append(start) or slow.advance(*start))
+        return compiled.CompiledLoops(slow.travel, lambda *start: used.append(start) or slow.advance(*start))
 
     monkeypatch.setattr(compiled, "COMPILED_FROM", 10)
     monkeypatch.setattr(compiler, "compiled", slowly)

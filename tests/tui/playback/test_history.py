@@ -9,7 +9,6 @@ from engine.methods import USUAL_CAST
 from engine.models.model import State
 from engine.models.pendulum import energy
 from engine.run.lockstep import Lockstep, Reading, Sample
-from engine.run.observer import RunObserver
 from engine.scenes import DEFAULT_SCENE, SCENES
 from tui.drawing.palette import EXACT
 from tui.playback.history import ErrorHistory
@@ -32,7 +31,7 @@ def sample(step, error=0.0, *, low=None, high=None, t=None, run=1, theta=0.0):
 
 
 def filled(samples, capacity=CAPACITY):
-    history = ErrorHistory(RunObserver(DEFAULT_SCENE), capacity)
+    history = ErrorHistory(DEFAULT_SCENE, capacity)
     for one in samples:
         history.add(one)
     return history
@@ -80,7 +79,7 @@ def test_recent_samples_are_kept_as_they_were_in_a_short_window():
 
 def test_memory_grows_by_one_level_only_when_the_run_gets_twice_as_long():
     """An hour at 30 samples a second takes seven levels of 2048 rows, about 3 MB."""
-    history = ErrorHistory(RunObserver(DEFAULT_SCENE), capacity=64)
+    history = ErrorHistory(DEFAULT_SCENE, capacity=64)
     for step in range(20_000):
         history.add(sample(step))
         if step + 1 in (63, 64, 127, 128, 1023, 1024, 20_000):
@@ -90,12 +89,12 @@ def test_memory_grows_by_one_level_only_when_the_run_gets_twice_as_long():
 
 def test_half_a_swing_is_what_errors_repeat_after_and_a_turn_in_rotation():
     assert filled([sample(0)]).window().repeats == pytest.approx(1.0696, abs=1e-4)  # T = 2.1391 s at 1 rad
-    spin = ErrorHistory(RunObserver(SCENES["spin"]))
+    spin = ErrorHistory(SCENES["spin"])
     spin.add(sample(0))
     assert (
         0.7 < spin.window().repeats < 2 * math.pi / math.sqrt(64 - 4 * 9.81) * 1.01
     )  # between fastest and slowest omega
-    rest = ErrorHistory(RunObserver(DEFAULT_SCENE.altered(theta=0.0)))
+    rest = ErrorHistory(DEFAULT_SCENE.altered(theta=0.0))
     assert rest.window().repeats == 0
 
 
@@ -132,7 +131,7 @@ def test_after_a_rewind_the_past_is_what_it_was_but_for_one_row(count, data):
 
 @given(st.lists(st.tuples(st.booleans(), st.integers(0, 60)), max_size=60))
 def test_however_one_goes_back_and_forth_rows_stay_in_order(moves):
-    history, step = ErrorHistory(RunObserver(DEFAULT_SCENE), CAPACITY), 0
+    history, step = ErrorHistory(DEFAULT_SCENE, CAPACITY), 0
     for forward, by in moves:
         if forward:
             for _ in range(by):
@@ -158,7 +157,7 @@ def test_where_time_runs_backwards_rows_stay_in_the_order_in_which_they_were_run
 
 
 def test_theta_errors_are_taken_against_the_exact_swing_and_unknown_without_it():
-    history = ErrorHistory(RunObserver(DEFAULT_SCENE))
+    history = ErrorHistory(DEFAULT_SCENE)
     history.add(sample(0, theta=1.0), State(0.75, 0.0))
     history.add(sample(1, theta=1.0))
     assert history.window().low["theta_error"][0, 0] == 0.25
@@ -169,7 +168,7 @@ def test_theta_errors_are_taken_against_the_exact_swing_and_unknown_without_it()
 @given(st.sampled_from(sorted(SCENES)), st.integers(1, 5))
 def test_energies_are_those_of_the_readings_also_where_friction_takes_them_and_in_a_spring(name, stride):
     scene = SCENES[name]
-    lockstep, history = Lockstep(scene), ErrorHistory(RunObserver(scene))
+    lockstep, history = Lockstep(scene), ErrorHistory(scene)
     history.add(lockstep.sample())
     for _ in range(20):
         lockstep.advance(stride)
@@ -188,7 +187,7 @@ def test_energies_are_those_of_the_readings_also_where_friction_takes_them_and_i
 
 
 def test_trails_are_the_last_states_of_methods_and_of_the_exact_swing():
-    history = ErrorHistory(RunObserver(DEFAULT_SCENE), CAPACITY)
+    history = ErrorHistory(DEFAULT_SCENE, CAPACITY)
     for step in range(20):
         history.add(sample(step, theta=step), State(-step, 0.5))
     theta, omega = history.levels.trails(3)[:, 2].T
@@ -200,14 +199,14 @@ def test_trails_are_the_last_states_of_methods_and_of_the_exact_swing():
 
 def test_an_angle_in_the_plane_is_off_by_half_a_turn_at_most():
     scene = SCENES["stiff-slow"]
-    history = ErrorHistory(RunObserver(scene))
+    history = ErrorHistory(scene)
     reading = Reading(3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, None, {"spring_energy": 1.0})
     history.add(Sample(1, 0, 0.0, (reading,) * len(scene.cast)), State(-3.0, 0.0))
     assert history.window().low["theta_error"][0, 0] == pytest.approx(6 - math.tau)
 
 
 def test_an_empty_history_has_empty_windows_and_trails():
-    history = ErrorHistory(RunObserver(DEFAULT_SCENE))
+    history = ErrorHistory(DEFAULT_SCENE)
     assert history.levels.trails(5)[:, 0].T[0].size == 0
     assert all(
         history.window(seconds).low[quantity].shape == (0, 4)

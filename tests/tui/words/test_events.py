@@ -5,9 +5,8 @@ from typing import get_args
 import pytest
 
 from engine.methods import USUAL_CAST
-from engine.run.observer import Milestone
+from engine.run.judgement import Milestone, Verdict
 from engine.run.stepping import Stepping
-from engine.run.verdict import Verdict
 from engine.scenes import SCENES
 from recordings.recording import Recording
 from tests.tui.harness import after, recorded

@@ -128,13 +128,13 @@ def _fill(found: "Findings", durations: list[float], rungs: list[int], fast: boo
     from engine.run import compiled, loops
 
     scene = found.scene
-    study = Study(scene, found.time, compiled.tiered if fast else loops.plain)
+    study = Study(scene, found.time, compiled.TieredLoops if fast else loops.PlainLoops)
     steps = len(scene.cast) * sum(rungs)
     done = 0
     with progress("measuring") as show:
         for point in study.points(rungs):
             if found.cost == "seconds":
-                point = timed(point, scene, time.perf_counter, compiled.compiled if fast else loops.plain)
+                point = timed(point, scene, time.perf_counter, compiled.compiled if fast else loops.PlainLoops)
             found.points.append(point)
             done += point.steps
             show(done, steps)
@@ -165,7 +165,7 @@ def _advice(found: "Findings", study: "Study", fast: bool, show: Callable[[float
     if found.cost == "evaluations":
         advice = least_evaluations(*wish)
     else:
-        advice = least_seconds(*wish, time.perf_counter, compiled.compiled if fast else loops.plain)
+        advice = least_seconds(*wish, time.perf_counter, compiled.compiled if fast else loops.PlainLoops)
     return with_saving_over_rk4(advice, study, found.kind, found.target) if found.all else advice
 
 

@@ -21,8 +21,7 @@ from tui.cli.scene import add_scene_options, scene_of
 from tui.words.numbers import file_size, z_name
 
 if TYPE_CHECKING:
-    from engine.run.lockstep import Sample
-    from engine.run.observer import RunObserver
+    from engine.run.lockstep import Lockstep, Sample
 
 EXAMPLES = """\
 examples:
@@ -80,16 +79,16 @@ def run(options: argparse.Namespace) -> int:
         check_free(options.record, options.force)
         _announce(steps, every)
     began = time.perf_counter()
-    sample, observer, stopped = _simulate(scene, options, steps, every)
+    sample, lockstep, stopped = _simulate(scene, options, steps, every)
     wall_seconds = time.perf_counter() - began
-    rows = _rows(scene, sample, observer, stopped)
+    rows = _rows(scene, sample, lockstep, stopped)
     if options.record:
         warn(f"recorded {sample.t:g} s, {file_size(options.record.stat().st_size)}: {printable(str(options.record))}")
     if options.json:
         fields = {"scene": scene.fields(), "time": sample.t, "steps": sample.step, "wall_seconds": wall_seconds}
         write_json("run", {**fields, "methods": rows})
     else:
-        _print(scene, sample, wall_seconds, rows, observer)
+        _print(scene, sample, wall_seconds, rows, lockstep)
     if stopped:
         warn(f"interrupted at t = {sample.t:g} s, showing the results up to then.")
         return Exit.INTERRUPTED
@@ -108,10 +107,10 @@ def _announce(steps: int, every: int) -> None:
         )
 
 
-def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int) -> "tuple[Sample, RunObserver, bool]":
-    """The last sample, what was observed, and whether a signal stopped the run before its end."""
+def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int) -> "tuple[Sample, Lockstep, bool]":
+    """The last sample, its lockstep with the verdicts, and whether a signal stopped the run before its end."""
     from engine.run import compiled, loops
-    from engine.run.observer import RunObserver
+    from engine.run.lockstep import Lockstep
     from recordings.headless import simulate
 
     recorder: Any = nullcontext()
@@ -119,17 +118,17 @@ def _simulate(scene: Scene, options: argparse.Namespace, steps: int, every: int)
         from recordings.recorder import Recorder
 
         recorder = Recorder(options.record, wall=None, overwrite=options.force)
-    fitting = loops.plain if options.no_compiled else partial(compiled.tiered, ahead=steps)
-    observer = RunObserver(scene, fitting)
+    fitting = loops.PlainLoops if options.no_compiled else partial(compiled.TieredLoops, expected_steps=steps)
+    lockstep = Lockstep(scene, loops=fitting, judged=True)
     with stop_requests() as stopped, progress(f"{steps:,} steps") as show, recorder as recording:
-        for sample in simulate(scene, options.time, recording, every, loops=fitting, observer=observer):
+        for sample in simulate(scene, options.time, recording, every, lockstep=lockstep):
             show(sample.step, steps)
             if stopped() and sample.step < steps:
-                return sample, observer, True
-    return sample, observer, False
+                return sample, lockstep, True
+    return sample, lockstep, False
 
 
-def _rows(scene: Scene, sample: "Sample", observer: "RunObserver", stopped: bool) -> list[dict[str, Any]]:
+def _rows(scene: Scene, sample: "Sample", lockstep: "Lockstep", stopped: bool) -> list[dict[str, Any]]:
     """The results by method, as in --json.  A method that diverged has no theta to compare.
 
     Where evaluations vary they are counted, by running again, unless somebody waits for the end.
@@ -137,9 +136,9 @@ def _rows(scene: Scene, sample: "Sample", observer: "RunObserver", stopped: bool
     from engine.run.loops import count_evaluations
     from recordings.fields import NUMBERS
 
-    exact = observer.exact.at(sample.t).theta
+    exact = scene.exact().at(sample.t).theta
     rows = []
-    for method, reading, judgement in zip(scene.cast, sample.readings, observer.judgements, strict=True):
+    for method, reading, judgement in zip(scene.cast, sample.readings, lockstep.judgements, strict=True):
         end, off = reading.diverged_at, scene.equations.theta_error(reading.theta, exact)
         steps = sample.step if end is None else round(end / scene.h)
         evaluations = method.evaluations(steps)
@@ -168,7 +167,7 @@ def _print(
     sample: "Sample",
     wall_seconds: float,
     rows: list[dict[str, Any]],
-    observer: "RunObserver",
+    lockstep: "Lockstep",
 ) -> None:
     print_lines(f"{scene_line(scene, 'h')}, {z_name(scene.model)} = {scene.z:.4g}")
     pace = f", {sample.step / wall_seconds / 1e6:.3g} million a second" if wall_seconds > 1 else ""
@@ -178,7 +177,7 @@ def _print(
     forms = {"spring_energy": ".4g"} if scene.model == "spring" else {}
     forms |= {"energy_error": "+.2e", "max_energy_error": ".2e", "drift_per_second": "+.1e", "theta_error": ".2e"}
     table = []
-    for method, row, judgement in zip(scene.cast, rows, observer.judgements, strict=True):
+    for method, row, judgement in zip(scene.cast, rows, lockstep.judgements, strict=True):
         end, row = row["diverged_at"], row | {"drift_per_second": judgement.trend}
         numbers = ("-" if row[name] is None else format(row[name], form) for name, form in forms.items())
         verdict = row["verdict"] if end is None else f"diverged at {end:g} s"
@@ -187,9 +186,9 @@ def _print(
     spring = ("in the spring",) if scene.model == "spring" else ()
     headers = (*spring, error, "largest", "per second", "theta error [rad]", "force evaluations")
     print_table("ll" + "r" * len(headers), ("method", "verdict", *headers), table)
-    for each in observer.milestones(sample.step):
+    for each in lockstep.milestones:
         if each.kind in ("over the top", "errors cross"):
             print(sentence(milestone_insight(each, scene.equations.energy_error.conserved)))
-    for method, judgement in zip(scene.cast, observer.judgements, strict=True):
+    for method, judgement in zip(scene.cast, lockstep.judgements, strict=True):
         if judgement.lyapunov and (found := irregular_insight(method, judgement, 0.0)):
             print(sentence(found))

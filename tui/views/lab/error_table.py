@@ -12,8 +12,8 @@ from textual.widgets import Tooltip
 
 from engine.methods import Method
 from engine.models.model import Model, State
+from engine.run.judgement import Judgement
 from engine.run.lockstep import Reading, Sample
-from engine.run.verdict import Judgement
 from tui.drawing.palette import GOOD, QUIET, TEXT, WARN, inks, mark
 from tui.drawing.picture import Picture, Row
 from tui.playback.shown import Shown

@@ -1,0 +1,96 @@
+"""The judges of a run's methods, and the milestones that follow from what they see."""
+
+import copy
+from collections.abc import Sequence
+from typing import Self
+
+from engine.methods import Cast
+from engine.models.model import Model
+from engine.run.judge import ROUNDING, Judge
+from engine.run.judgement import Judgement, LookPoint, Milestone, MilestoneKind
+
+
+class Judges:
+    """One judge a method, since the last change of the stepping, and the milestones of the whole run.
+
+    Errors cross where the largest error so far of a method that gains or loses energy passes that of a bounded one,
+    for good.  Two that are bounded, or two that are not, may pass each other again and again.
+    """
+
+    def __init__(self, cast: Cast, model: Model, period: float, scale: float) -> None:
+        """`period` [s] is the exact motion's, or 2 pi/w0 if it has none; energy errors are relative to `scale`."""
+        self.milestones: list[Milestone] = []
+        self._cast = cast
+        self._model = model
+        self._period = period
+        self._scale = scale
+        self._judges: list[Judge] = []
+        self._below: set[tuple[int, int]] = set()  # methods that leave, and bounded ones that they were below
+        self._passed: set[tuple[int, int]] = set()  # once is enough
+
+    @property
+    def judgements(self) -> list[Judgement]:
+        """The verdicts since the last change of the stepping, in the order of the cast."""
+        return [judge.judgement for judge in self._judges]
+
+    def copy(self) -> Self:
+        """Return other judges that go on from here."""
+        other = copy.copy(self)
+        other.milestones = self.milestones.copy()
+        other._judges = [judge.copy() for judge in self._judges]
+        other._below = self._below.copy()
+        other._passed = self._passed.copy()
+        return other
+
+    def restart(self, steps: Sequence[float], points: Sequence[LookPoint | None]) -> None:
+        """Judge anew from these look points on, each method with its own step size [s]."""
+        self._below = set()
+        self._passed = set()
+        self._judges = []
+        for method, h, point in zip(self._cast, steps, points, strict=True):
+            judge = Judge(h=h, period=self._period, method=method, model=self._model, scale=self._scale)
+            self._judges.append(judge)
+            if point is None:
+                judge.fail(0)
+            else:
+                judge.look(point)
+
+    def look(self, step: int, t: float, points: Sequence[LookPoint | None]) -> None:
+        """Show each judge its method at a step of the lockstep; None: its numbers have ended."""
+        for index, (judge, point) in enumerate(zip(self._judges, points, strict=True)):
+            if point is None:
+                continue
+            before = judge.judgement.verdict
+            judge.look(point)
+            now = judge.judgement
+            if now.verdict != before:
+                verdict = Milestone("verdict", self._cast[index], step, t, point.error, now.verdict)
+                self.milestones.append(verdict._replace(trend=now.trend, lyapunov=now.lyapunov))
+        for index, other in self._crossings():
+            if point := points[index]:
+                crossing = Milestone("errors cross", self._cast[index], step, t, point.error)
+                self.milestones.append(crossing._replace(other=self._cast[other]))
+
+    def note(self, kind: MilestoneKind, index: int, step: int, t: float, error: float) -> None:
+        """Note what happens to a method once in a run."""
+        if not self.has(kind, index):
+            self.milestones.append(Milestone(kind, self._cast[index], step, t, error))
+
+    def has(self, kind: MilestoneKind, index: int) -> bool:
+        """Return whether this has happened to a method."""
+        return any(each.kind == kind and each.method == self._cast[index] for each in self.milestones)
+
+    def fail(self, index: int, steps: int) -> None:
+        """Note that a method's numbers have ended, so many of its steps after the restart."""
+        self._judges[index].fail(steps)
+
+    def _crossings(self) -> list[tuple[int, int]]:
+        """Return the pairs (passing, passed) that are new since the last look."""
+        peaks = [(judge.judgement.verdict, judge.peak) for judge in self._judges]
+        bounded = [(other, peak) for other, (verdict, peak) in enumerate(peaks) if verdict == "bounded"]
+        leaving = [(index, peak) for index, (verdict, peak) in enumerate(peaks) if verdict in ("grows", "loses")]
+        ahead = {(index, other): mine - peak for index, mine in leaving for other, peak in bounded if peak > ROUNDING}
+        passed = sorted(pair for pair in self._below - self._passed if ahead.get(pair, 0.0) > 0)
+        self._below |= {pair for pair, distance in ahead.items() if distance <= 0}
+        self._passed.update(passed)
+        return passed

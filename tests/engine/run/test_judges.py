@@ -1,0 +1,165 @@
+"""Verdicts and milestones of a run: where they fall, however the run is cut, and on the way back."""
+
+import math
+import random
+from dataclasses import replace
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from engine.methods import USUAL_CAST
+from engine.run import compiled
+from engine.run.lockstep import Lockstep
+from engine.run.loops import PlainLoops
+from engine.run.rewindable import RewindableRun
+from engine.run.stepping import Stepping
+from engine.scenes import SCENES, Scene
+
+DRIFT = SCENES["drift"]
+
+
+def watched(scene: Scene, seconds: float, every: int = 1) -> Lockstep:
+    lockstep = Lockstep(scene, judged=True)
+    while lockstep.t < seconds:
+        lockstep.advance(every)
+        lockstep.sample()
+    return lockstep
+
+
+def tops(scene: Scene, seconds: float) -> dict[str, tuple[int, float, float]]:
+    """Step, time and energy error where each method first is over the top, by every step."""
+    lockstep = Lockstep(scene)
+    found: dict[str, tuple[int, float, float]] = {}
+    while lockstep.t < seconds:
+        lockstep.advance(1)
+        for method, reading in zip(scene.cast, lockstep.sample().readings, strict=True):
+            if abs(reading.theta) > math.pi:
+                found.setdefault(method.key, (lockstep.step, lockstep.t, reading.energy_error))
+    return found
+
+
+@pytest.mark.parametrize("name", ["drift", "crossover", "near-separatrix", "rk4-limit", "chaos-loose"])
+@pytest.mark.parametrize("every", [1, 7, 400])
+def test_the_step_over_the_top_is_found_however_far_apart_the_samples_are(name: str, every: int) -> None:
+    lockstep = watched(SCENES[name], 30.0, every)
+    found = {
+        each.method.key: (each.step, each.t, each.energy_error)
+        for each in lockstep.milestones
+        if each.kind == "over the top"
+    }
+    assert found == tops(SCENES[name], lockstep.t - 1e-9)
+
+
+def test_a_pendulum_that_spins_goes_over_no_top() -> None:
+    assert not [each for each in watched(SCENES["spin"], 20).milestones if each.kind == "over the top"]
+
+
+def test_a_rotation_that_beats_with_its_steps_gets_no_early_verdict() -> None:
+    scene = Scene(theta=0.0, omega=6.2 * Scene().w0 / 0.1, h=0.1 / Scene().w0)
+    lockstep = Lockstep(scene, judged=True)
+    lockstep.advance(700)
+    assert {judgement.verdict for judgement in lockstep.judgements[1:3]} <= {"too early", "bounded"}
+
+
+def test_verdicts_happen_when_they_are_given() -> None:
+    lockstep = Lockstep(DRIFT, judged=True)
+    changes = []
+    for _ in range(1200):
+        before = [judgement.verdict for judgement in lockstep.judgements]
+        lockstep.advance(1)
+        after = [judgement.verdict for judgement in lockstep.judgements]
+        changes += [(lockstep.step, m, after[i]) for i, m in enumerate(USUAL_CAST) if after[i] != before[i]]
+    verdicts = [(each.step, each.method, each.verdict) for each in lockstep.milestones if each.kind == "verdict"]
+    assert verdicts == changes
+    assert {(method.key, verdict) for _, method, verdict in changes} >= {
+        ("explicit_euler", "grows"),
+        ("symplectic_euler", "bounded"),
+        ("velocity_verlet", "bounded"),
+        ("rk4", "loses"),
+    }
+
+
+def test_rk4s_error_passes_verlets_once_for_good() -> None:
+    lockstep = watched(SCENES["crossover"], 120, 7)
+    (passing,) = [each for each in lockstep.milestones if each.kind == "errors cross"]
+    assert passing.other is not None
+    assert (passing.method.key, passing.other.key, passing.step) == ("rk4", "velocity_verlet", 167)
+    assert passing.t == pytest.approx(33.4)
+    verdicts = {each.method.key for each in lockstep.milestones if each.kind == "verdict" and each.step <= 167}
+    assert {"rk4", "velocity_verlet"} <= verdicts
+
+
+def test_a_method_fails_once_at_the_time_at_which_its_numbers_ended() -> None:
+    lockstep = Lockstep(Scene(model="linear", h=1.0), judged=True)
+    lockstep.advance(2000)
+    failed = {each.method.key: each for each in lockstep.milestones if each.kind == "failed"}
+    readings = lockstep.sample().readings
+    ends = {m.key: r.diverged_at for m, r in zip(USUAL_CAST, readings, strict=True) if r.diverged_at is not None}
+    assert {key: milestone.t for key, milestone in failed.items()} == ends
+    assert failed
+    for method, judgement in zip(USUAL_CAST, lockstep.judgements, strict=True):
+        assert (judgement.verdict == "failed") == (method.key in failed)
+
+
+def moved(scene: Scene, gaps: list[int], loops=PlainLoops) -> Lockstep:
+    lockstep = Lockstep(scene, loops=loops, judged=True)
+    for gap in gaps:
+        lockstep.advance(gap)
+        lockstep.sample()
+    return lockstep
+
+
+@pytest.mark.parametrize("name", ["drift", "large-swing", "spin", "verlet-limit-above", "chaos-loose", "damped"])
+def test_verdicts_and_milestones_do_not_depend_on_the_samples_or_the_loops(name: str) -> None:
+    scene, uneven = SCENES[name], random.Random(1)
+    steps = min(30_000, math.ceil(40 * (scene.exact().period or 1.0) / scene.h))
+    whole = moved(scene, [steps])
+    gaps = [uneven.randint(1, 400) for _ in range(steps // 400)]
+    cut = moved(scene, [*gaps, steps - sum(gaps)])
+    assert cut.milestones == whole.milestones
+    assert cut.judgements == whole.judgements
+    assert whole.milestones
+    if compiled.available():
+        fast = moved(scene, [steps], compiled.compiled)
+        assert (fast.milestones, fast.judgements) == (whole.milestones, whole.judgements)
+
+
+@settings(max_examples=20, deadline=None)
+@given(back=st.integers(0, 1500), at=st.integers(0, 1500))
+def test_after_a_way_back_verdicts_are_those_of_their_step(back: int, at: int) -> None:
+    run = RewindableRun(DRIFT, loops=PlainLoops)
+    run.forward(1500)
+    run.back_to(back)
+    run.forward(max(0, at - back))
+    alone = Lockstep(DRIFT, judged=True)
+    alone.advance(run.step)
+    assert run.judgements == alone.judgements
+    assert list(run.milestones) == list(alone.milestones)
+
+
+def test_a_change_of_the_stepping_in_the_past_forgets_what_came_later() -> None:
+    run = RewindableRun(DRIFT, loops=PlainLoops)
+    run.forward(1200)
+    everything = list(run.milestones)
+    run.back_to(300)
+    run.branch(2)
+    run.set_stepping(Stepping(0.02, cast=DRIFT.cast))
+    assert list(run.milestones) == [each for each in everything if each.step <= 300]
+    assert {judgement.verdict for judgement in run.judgements} == {"too early"}
+    run.forward(1500)
+    verdicts = [judgement.verdict for judgement in run.judgements]
+    assert verdicts == ["grows", "bounded", "bounded", "loses"]
+
+
+def test_nothing_is_simulated_for_the_judge() -> None:
+    """Velocity Verlet evaluates the force once a step, and once more where it begins."""
+    verlet = USUAL_CAST[2]
+    calls = []
+
+    def counting(force, phase, h):
+        return verlet.phases(lambda theta: calls.append(theta) or force(theta), phase, h)
+
+    scene = SCENES["crossover"].with_cast((replace(verlet, phases=counting),))
+    Lockstep(scene, judged=True).advance(600)
+    assert sum(type(theta) is float for theta in calls) == 601  # tangent maps take complex numbers
