@@ -1,19 +1,21 @@
 """Fields: the one table of names and units of what a recording holds.
 
-Messages, their schemas, the columns of a table, `verify`, `run --json` and `--fail-if` use it.  To add a
-value to the recorded readings, add it to `Reading` and to READING.
+Messages, their schemas, tables, `verify`, `run --json` and `--fail-if` use it.  To record another value of
+a reading, add it to `Reading` and to READING.
 """
 
 import math
 import struct
 from collections.abc import Iterator, Sequence
-from functools import lru_cache
 from operator import attrgetter
 from typing import Any, NamedTuple, get_args
 
 from engine.models import MODELS, PARAMETERS
 from engine.run.lockstep import Reading, Sample
+from recordings.errors import RecordingError, printable
 from recordings.events import EventKind
+
+MAX_INTEGER = 1 << 53
 
 
 class Field(NamedTuple):
@@ -28,7 +30,7 @@ class Field(NamedTuple):
     @property
     def column(self) -> str:
         """The head of its column in a table: name and unit."""
-        unit = {"rad/s": "rad_per_s", "s^-1": "per_s", "s^-2": "per_s2"}.get(self.unit, self.unit)
+        unit = self.unit.replace("/", "_per_").replace("s^-", "per_s").removesuffix("1")
         return f"{self.name}_{unit}" if unit else self.name
 
     @property
@@ -41,10 +43,33 @@ class Field(NamedTuple):
             schema["items"] = {"type": "string"}
         return schema
 
+    def checked(self, value: Any) -> Any:
+        """Return the value of a message, or raise RecordingError: numbers are finite, texts printable."""
+        if self.type == "number":
+            if type(value) is int and abs(value) < MAX_INTEGER:  # other writers drop the ".0"
+                return float(value)
+            if type(value) is float and math.isfinite(value):
+                return value
+        elif self.type == "integer":
+            if type(value) is int and 0 <= value < MAX_INTEGER:
+                return value
+        elif self.type == "string" and type(value) is str:
+            return printable(value)
+        elif self.type == "boolean" and type(value) is bool:
+            return value
+        elif self.type == "array" and type(value) is list and all(type(each) is str for each in value):
+            return list(map(printable, value))
+        kind = {"number": "finite number", "integer": "whole number"}.get(self.type, self.type)
+        raise RecordingError(f"{self.name!r} of a message is no {kind}")
+
 
 def _ascii(unit: str) -> str:
     """Return a unit without superscripts: "s^-1" for "s⁻¹"."""
     return unit.replace("⁻", "^-").replace("¹", "1").replace("²", "2")
+
+
+def _optional(type: str, *names: str) -> tuple[Field, ...]:
+    return tuple(Field(name, type=type, required=False) for name in names)
 
 
 MOMENT = (Field("run", type="integer"), Field("step", type="integer"), Field("t", "s"))
@@ -70,41 +95,42 @@ EXTRA = {
 
 EVENT = (
     Field("kind", about=" ".join(get_args(EventKind)), type="string"),
-    Field("scene", type="string", required=False),
-    Field("model", type="string", required=False),
-    Field("watch", type="string", required=False),
+    *_optional("string", "scene", "model", "watch"),
     Field("theta", "rad", required=False),
     Field("omega", "rad/s", required=False),
     Field("length", "m", required=False),
     Field("gravity", "m/s^2", required=False),
     Field("h", "s", required=False),
     *(Field(each.name, _ascii(each.unit), required=False) for each in PARAMETERS.values()),
-    Field("methods", type="array", required=False),
-    Field("numerics", about="version of the numbers", type="integer", required=False),
-    Field("sin", about="fingerprint of the library's sin", type="string", required=False),
-    Field("sqrt", about="fingerprint of the library's sqrt", type="string", required=False),
-    Field("equal_cost", type="boolean", required=False),
+    *_optional("array", "methods"),
+    *_optional("integer", "numerics"),
+    *_optional("string", "sin", "sqrt"),  # fingerprints
+    *_optional("boolean", "equal_cost"),
     Field("speed", about="times real time", required=False),
-    Field("text", type="string", required=False),
-    Field("milestone", about="over the top, failed, verdict or errors cross", type="string", required=False),
-    Field("method", about="of the milestone", type="string", required=False),
-    Field("verdict", type="string", required=False),
-    Field("other", about="the method that was passed", type="string", required=False),
+    *_optional("string", "text", "milestone", "method", "verdict", "other"),
     Field("energy_error", about="(E - E0) / E0", required=False),
     Field("trend", "s^-1", required=False),
     Field("lyapunov", "s^-1", required=False),
 )
 """An event: its kind, and what that kind needs."""
 
-EXTRA_NAMES = tuple(dict.fromkeys(field.name for fields in EXTRA.values() for field in fields))
+ABOUT = (Field("program", type="string"), *_optional("string", "python", "platform", "started", "recovered"))
+"""Where and how a recording was made, for people."""
+
+SOURCE = tuple(Field(name, type="string") for name in ("method", "letter", "sha256", "source"))
+"""A user's own method.  Reading a recording never executes it."""
+
 NUMBERS = tuple(field.name for field in READING if field.required)
+EXTREMES = ("energy_error_low", "energy_error_high")
+EXTRA_NAMES = tuple(dict.fromkeys(field.name for fields in EXTRA.values() for field in fields))
 VALUES = (*(field.name for field in READING), *EXTRA_NAMES)
 STATE = {
     "theta",
     "omega",
     *(each.name for model in MODELS.values() for each in model.variables if each.is_state),
 }
-EXTREMES = ("energy_error_low", "energy_error_high")
+COLUMNS = ("clock_s", *(field.column for field in MOMENT), "method", *(field.column for field in READING))
+"""The columns of a table of samples: names with units; energies are per unit m·L²."""
 
 _scalars_of = attrgetter(*(field.name for field in READING))
 
@@ -114,65 +140,38 @@ def values_of(reading: Reading) -> tuple[float | None, ...]:
     return *_scalars_of(reading), *map(reading.extra.get, EXTRA_NAMES)
 
 
-COLUMNS = (
-    "clock_s",
-    *(field.column for field in MOMENT),
-    "method",
-    *(field.column for field in READING),
-)
-"""The columns of a table of samples: names with units; energies are per unit m·L²."""
-
-
-@lru_cache(8)
-def _extra_fields(models: tuple[str, ...]) -> tuple[Field, ...]:
-    return tuple(dict.fromkeys(field for model in models for field in EXTRA[model]))
-
-
 def columns(models: Sequence[str]) -> tuple[str, ...]:
     """Return the columns of a table of samples of these models."""
-    return *COLUMNS, *(field.column for field in _extra_fields(tuple(models)))
+    return *COLUMNS, *dict.fromkeys(field.column for model in models for field in EXTRA[model])
 
 
 def rows(clock: float, sample: Sample, methods: Sequence[str], models: Sequence[str]) -> Iterator[tuple[object, ...]]:
     """Yield a sample as rows of that table, one for each method."""
-    names = [field.name for field in _extra_fields(tuple(models))]
+    names = dict.fromkeys(field.name for model in models for field in EXTRA[model])
     for method, reading in zip(methods, sample.readings, strict=True):
         place = (clock, sample.run, sample.step, sample.t, method)
         yield *place, *_scalars_of(reading), *map(reading.extra.get, names)
 
 
-def schema_of(title: str, about: str, fields: Sequence[Field]) -> dict[str, Any]:
+def schema_of(title: str, fields: Sequence[Field]) -> dict[str, Any]:
     """Return the JSON Schema of a kind of message."""
     return {
         "title": title,
-        "description": about,
         "type": "object",
         "properties": {field.name: field.schema for field in fields},
         "required": [field.name for field in fields if field.required],
     }
 
 
-EVENT_SCHEMA = schema_of("pendu.Event", "An event before this step of this run.", (*MOMENT, *EVENT))
-ABOUT_SCHEMA = schema_of(
-    "pendu.About",
-    "Where and how the recording was made, for people.",
-    [
-        Field(name, type="string", required=name == "program")
-        for name in ("program", "python", "platform", "started", "recovered")
-    ],
-)
-SOURCE_SCHEMA = schema_of(
-    "pendu.Source",
-    "A user's own method; its source is never executed by reading a recording.",
-    [Field(name, type="string") for name in ("method", "letter", "sha256", "source")],
-)
+EVENT_SCHEMA = schema_of("pendu.Event", (*MOMENT, *EVENT))
+ABOUT_SCHEMA = schema_of("pendu.About", ABOUT)
+SOURCE_SCHEMA = schema_of("pendu.Source", SOURCE)
 
 
 def sample_schema(model: str) -> dict[str, Any]:
     """Return the schema of the samples of a model."""
     title = "pendu.Sample" if model == "pendulum" else f"pendu.Sample.{model}"
-    about = f"A method at a step; model {model}; theta from the downward vertical, energy per m L^2."
-    return schema_of(title, about, (*MOMENT, *READING, *EXTRA[model]))
+    return schema_of(title, (*MOMENT, *READING, *EXTRA[model]))
 
 
 _pack = struct.Struct(f"<{len(NUMBERS)}d").pack
@@ -209,7 +208,7 @@ def _ordinal(value: float) -> int:
 def without_extremes(sample: Sample) -> Sample:
     """Return the sample as the first of its run or after a gap: the steps before it are unknown."""
     readings = (
-        reading._replace(energy_error_low=reading.energy_error, energy_error_high=reading.energy_error)
-        for reading in sample.readings
+        each._replace(energy_error_low=each.energy_error, energy_error_high=each.energy_error)
+        for each in sample.readings
     )
     return sample._replace(readings=tuple(readings))

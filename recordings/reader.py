@@ -3,9 +3,10 @@
 mcap takes records and chunks apart.  A chunk is the unit that is intact or lost: its checksum covers all
 that is in it.  A finished file ends with a summary of where its chunks are; without one, or to check
 every byte, `Scan` reads the file from its start and searches for intact chunks behind damage.
-Sizes are bounded before anything is read or decompressed: all work stays in proportion to the file's bytes.
+Sizes are bounded before anything is decompressed: all work stays in proportion to the file's bytes.
 """
 
+import json
 import struct
 import zlib
 from collections.abc import Callable, Collection, Iterator, Mapping
@@ -24,14 +25,13 @@ from mcap.stream_reader import breakup_chunk
 from engine.run.lockstep import Sample
 from engine.run.stepping import Stepping
 from engine.scenes import Scene, SceneError
-from recordings.errors import RecordingError
+from recordings.errors import RecordingError, printable
 from recordings.events import Entry, Event
 from recordings.format import (
     ABOUT,
     CLOCK_OFFSET,
     EVENTS,
     FORMAT_VERSION,
-    decode_about,
     decode_event,
     decode_reading,
     keys_of,
@@ -42,15 +42,13 @@ MAX_RECORD = 1 << 22  # bytes of a chunk, and of what it decompresses to; a reco
 MAX_EXPANSION = 128  # times its compressed size, besides SMALL_CHUNK; a recorder's reach 69
 SMALL_CHUNK = 1 << 14  # bytes
 MAX_SUMMARY = 1 << 26  # bytes; four days
-MAX_SEARCH = 1 << 30  # bytes of false chunks that are tried, a few seconds' work
 _RECORD = struct.Struct("<BQ")  # opcode, length of what follows
 _DATA_END = struct.Struct("<BQI")  # with the checksum of all before it
-_FOOTER = struct.Struct("<BQQQI8s")  # with where the summary starts, its checksum, and MAGIC
+_FOOTER = struct.Struct("<BQQQI8s")  # with the summary's start and checksum, and MAGIC
 _INDEX = struct.Struct("<QQQQI")  # start [ns], end [ns], offset, length, bytes of the map behind
 _INDEX_MAP = struct.Struct("<HQ")  # channel, offset of its index
-_COMPRESSION = b"\x04\x00\x00\x00zstd"
-_BEFORE_COMPRESSION = 28  # bytes of a chunk's content
-_CHUNK_HEAD = _BEFORE_COMPRESSION + len(_COMPRESSION) + 8
+_ZSTD = b"\x04\x00\x00\x00zstd"
+_BEFORE_ZSTD = 28  # bytes of a chunk's content
 _BLOCK = 1 << 20
 _BROKEN = (
     McapError,
@@ -89,25 +87,19 @@ def read_summary(stream: BinaryIO) -> Summary | None:
     """Return the summary of a file; None if it has none, or one with a wrong checksum."""
     size = stream.seek(0, SEEK_END)
     stream.seek(max(0, size - _FOOTER.size))
-    tail = stream.read(_FOOTER.size)
-    if len(tail) < _FOOTER.size:
-        return None
-    opcode, length, start, _, crc, magic = _FOOTER.unpack(tail)
-    data_end = start - _DATA_END.size
-    if (opcode, length, magic) != (Opcode.FOOTER, 20, MAGIC) or crc == 0:
-        return None
-    if not size - MAX_SUMMARY < data_end < size or data_end < 0:
-        return None
-    stream.seek(data_end)
-    data = stream.read(size - data_end - len(MAGIC))
-    opcode, length, data_crc = _DATA_END.unpack_from(data)
-    if zlib.crc32(data[_DATA_END.size : -4]) != crc or (opcode, length) != (Opcode.DATA_END, 4):
-        return None
     try:
-        channels, places = _read_index(data)
+        *head, start, _, crc, magic = _FOOTER.unpack(stream.read())
+        data_end = start - _DATA_END.size
+        if head != [Opcode.FOOTER, 20] or magic != MAGIC or size - data_end > MAX_SUMMARY:
+            return None
+        stream.seek(data_end)
+        data = stream.read()[: -len(MAGIC)]
+        *head, data_crc = _DATA_END.unpack_from(data)
+        if head != [Opcode.DATA_END, 4] or zlib.crc32(data[_DATA_END.size : -4]) != crc or not data_crc:
+            return None
+        return Summary(*_read_index(data[_DATA_END.size :]), data_end, data_crc)
     except _BROKEN:
         return None
-    return Summary(channels, places, data_end, data_crc) if data_crc else None
 
 
 def _read_index(data: bytes) -> tuple[dict[int, Channel], list[Place]]:
@@ -117,7 +109,7 @@ def _read_index(data: bytes) -> tuple[dict[int, Channel], list[Place]]:
     """
     channels: dict[int, Channel] = {}
     places: list[Place] = []
-    at = _DATA_END.size
+    at = 0
     while at < len(data):
         opcode, length = _RECORD.unpack_from(data, at)
         begin = at + _RECORD.size
@@ -129,33 +121,30 @@ def _read_index(data: bytes) -> tuple[dict[int, Channel], list[Place]]:
             start, end, offset, _, map_length = _INDEX.unpack_from(data, begin)
             begin += _INDEX.size
             indexed = _INDEX_MAP.iter_unpack(data[begin : begin + map_length])
-            has_events = any(number not in channels or channels[number].topic == EVENTS for number, _ in indexed)
+            has_events = any(channels[number].topic == EVENTS for number, _ in indexed)
             places.append(Place(offset, start, end, has_events))
     return channels, places
 
 
 def check_format(channels: Mapping[int, Channel]) -> None:
     """Raise RecordingError unless these are the channels of a recording of this format."""
-    for channel in channels.values():
-        if channel.topic == EVENTS:
-            format_version = channel.metadata.get("format", "")
-            if format_version in ("1", "2"):
-                raise RecordingError(f"it was made by 0.1; this version reads format {FORMAT_VERSION}")
-            if format_version == FORMAT_VERSION:
-                return
-            raise RecordingError(f"it was made by another version; this one reads format {FORMAT_VERSION}")
-    raise RecordingError("this is an MCAP file, but not a recording of pendu-tui")
+    found = [each.metadata.get("format") for each in channels.values() if each.topic == EVENTS]
+    if not found:
+        raise RecordingError("this is an MCAP file, but not a recording of pendu-tui")
+    if found[0] != FORMAT_VERSION:
+        maker = "0.1" if found[0] in ("1", "2") else "another version"
+        raise RecordingError(f"it was made by {maker}; this version reads format {FORMAT_VERSION}")
 
 
 class OpenChunk(NamedTuple):
     """What is in an intact chunk."""
 
-    channels: list[Channel]
+    channels: dict[int, Channel]  # declared in it
     messages: list[Message]
 
 
 def read_chunk(stream: BinaryIO, offset: int) -> OpenChunk:
-    """Read the chunk there.  Raises RecordingError if any bit of it that means something is wrong."""
+    """Read the chunk there.  Raises RecordingError if it is damaged, EOFError if it is cut off."""
     opcode, content = _read_record(stream, offset)
     if opcode != Opcode.CHUNK:
         raise RecordingError("there is no chunk where one should be")
@@ -163,7 +152,6 @@ def read_chunk(stream: BinaryIO, offset: int) -> OpenChunk:
 
 
 def _read_record(stream: BinaryIO, offset: int) -> tuple[int, bytes]:
-    """Return (opcode, content).  Raises EOFError if the file ends within it."""
     stream.seek(offset)
     head = stream.read(_RECORD.size)
     if len(head) < _RECORD.size:
@@ -181,24 +169,25 @@ def _open_chunk(content: bytes) -> OpenChunk:
     try:
         chunk = Chunk.read(ReadDataStream(BytesIO(content)))
         size = chunk.uncompressed_size
-        if len(content) != _CHUNK_HEAD + len(chunk.data) or not chunk.uncompressed_crc:
-            raise RecordingError("a chunk's header is damaged")
-        if (
-            size > min(MAX_RECORD, SMALL_CHUNK + MAX_EXPANSION * len(chunk.data))
-            or chunk.compression != "zstd"
-            or zstandard.frame_content_size(chunk.data) != size  # the one that is obeyed
-        ):
-            raise RecordingError("a chunk's size is wrong")
+        is_possible = (
+            chunk.compression == "zstd"
+            and chunk.uncompressed_crc  # 0 would not be checked
+            and len(content) == _BEFORE_ZSTD + len(_ZSTD) + 8 + len(chunk.data)
+            and size <= min(MAX_RECORD, SMALL_CHUNK + MAX_EXPANSION * len(chunk.data))
+            and zstandard.frame_content_size(chunk.data) == size  # the one that is obeyed
+        )
+        if not is_possible:
+            raise ValueError
         records = breakup_chunk(chunk, validate_crc=True)
     except _BROKEN as error:
         raise RecordingError("a chunk is damaged") from error
     messages = [record for record in records if isinstance(record, Message)]
     times = [message.log_time for message in messages]
-    if not times or times != sorted(times):
+    header = [chunk.message_start_time, chunk.message_end_time]
+    if times != sorted(times) or [*times[:1], *times[-1:]] != header:
         raise RecordingError("a chunk's times are wrong")
-    if (times[0], times[-1]) != (chunk.message_start_time, chunk.message_end_time):
-        raise RecordingError("a chunk's times are wrong")
-    return OpenChunk([record for record in records if isinstance(record, Channel)], messages)
+    channels = {record.id: record for record in records if isinstance(record, Channel)}
+    return OpenChunk(channels, messages)
 
 
 class Scan:
@@ -218,80 +207,70 @@ class Scan:
         if not self.size:
             raise RecordingError("the file is empty")
         self._stream = stream
-        self._progress = progress
+        self._progress = progress or (lambda done, size: None)
         self._summary = read_summary(stream)
-        self.channels = dict(self._summary.channels) if self._summary else {}
-        self.sequence = 0  # the number of the next entry
-        self._left = MAX_SEARCH
+        self.channels: dict[int, Channel] = {}
+        if self._summary:
+            self.channels |= self._summary.channels
+            check_format(self.channels)
+        self._sequence = 0  # the number of the next entry
 
     def __iter__(self) -> Iterator[tuple[Place, list[Message]]]:
         self._stream.seek(0)
         start = self._stream.read(len(MAGIC))
         if start != MAGIC[: len(start)]:
-            self._damage("its first bytes are damaged")
+            self._damage("its first bytes are damaged" if self.channels else "this is not an MCAP file")
         offset = intact_end = len(MAGIC)
         crc = zlib.crc32(MAGIC)
-        if self.channels:
-            check_format(self.channels)
         while True:
-            if self._progress:
-                self._progress(offset, self.size)
+            self._progress(offset, self.size)
             chunk = None
             try:
                 opcode, content = _read_record(self._stream, offset)
                 if opcode == Opcode.CHUNK:
                     chunk = _open_chunk(content)
-                elif opcode == Opcode.DATA_END and self._is_end(offset, content, crc):
+                elif opcode == Opcode.DATA_END:
+                    self._check_end(offset, content, crc)
                     return
                 elif opcode not in (Opcode.HEADER, Opcode.MESSAGE_INDEX):
                     raise RecordingError("there is no record where one should begin")
             except (RecordingError, EOFError) as error:
                 following = self._search(intact_end)
-                if following is None and isinstance(error, EOFError):
-                    self.reason = self.reason or "the recording was not finished"
-                else:
+                if following is not None or not isinstance(error, EOFError):
                     self._damage(str(error) or "a record's length is wrong")
                 if following is None:
-                    self._check_start(start)
+                    self.reason = self.reason or "the recording was not finished"
                     return
                 offset = following
                 continue
-            end = offset + _RECORD.size + len(content)
+            crc = zlib.crc32(content, zlib.crc32(_RECORD.pack(opcode, len(content)), crc))
             if chunk:
                 yield self._take(offset, chunk), chunk.messages
-                intact_end = end
-            crc = zlib.crc32(content, zlib.crc32(_RECORD.pack(opcode, len(content)), crc))
-            offset = end
+                intact_end = offset + _RECORD.size + len(content)
+            offset += _RECORD.size + len(content)
 
     def _take(self, offset: int, chunk: OpenChunk) -> Place:
-        self.channels |= {channel.id: channel for channel in chunk.channels}
-        first = chunk.messages[0]
-        last = chunk.messages[-1]
-        numbers = {message.channel_id for message in chunk.messages}
+        self.channels |= chunk.channels
         if chunk.channels:
             check_format(self.channels)
-        missing = (first.sequence - self.sequence) % (1 << 32)
+        first = chunk.messages[0]
+        last = chunk.messages[-1]
+        missing = (first.sequence - self._sequence) % (1 << 32)
         if missing:
             self.entries_lost += missing
             self._damage(f"{missing} entries are lost")
-        self.sequence = (last.sequence + 1) % (1 << 32)
-        topics = {self.channels[number].topic for number in self.channels if number in numbers}
-        return Place(offset, first.log_time, last.log_time, EVENTS in topics)
+        self._sequence = (last.sequence + 1) % (1 << 32)
+        numbers = {message.channel_id for message in chunk.messages}
+        events = {number for number, each in self.channels.items() if each.topic == EVENTS}
+        return Place(offset, first.log_time, last.log_time, bool(numbers & events))
 
-    def _is_end(self, offset: int, content: bytes, crc: int) -> bool:
-        """Check all that follows the data; return False if they do not end here."""
-        if len(content) != 4:
-            return False
-        if int.from_bytes(content, "little") != crc:
+    def _check_end(self, offset: int, content: bytes, crc: int) -> None:
+        """Check all that follows the data."""
+        if content != crc.to_bytes(4, "little"):
             self._damage("its checksum is wrong")
         if self._summary is None or self._summary.data_end != offset:
             self.reason = self.reason or "its summary is cut off or damaged"
         self.complete = self.reason is None
-        return True
-
-    def _check_start(self, start: bytes) -> None:
-        if start != MAGIC[: len(start)] and not self.sequence:
-            raise RecordingError("this is not an MCAP file")
 
     def _damage(self, reason: str) -> None:
         self.damaged = True
@@ -299,29 +278,21 @@ class Scan:
 
     def _search(self, offset: int) -> int | None:
         """Return where the next intact chunk from `offset` on begins."""
-        before = _RECORD.size + _BEFORE_COMPRESSION
-        while offset < self.size:
+        before = _RECORD.size + _BEFORE_ZSTD
+        while True:
             self._stream.seek(offset)
             block = self._stream.read(_BLOCK)
-            at = block.find(_COMPRESSION, before)
+            at = block.find(_ZSTD, before)
             while at >= 0:
-                if block[at - before] == Opcode.CHUNK and self._is_chunk(offset + at - before):
+                try:
+                    read_chunk(self._stream, offset + at - before)
+                except (RecordingError, EOFError):
+                    at = block.find(_ZSTD, at + 1)
+                else:
                     return offset + at - before
-                at = block.find(_COMPRESSION, at + 1)
-            if len(block) < _BLOCK or self._left < 0:
-                break
-            offset += len(block) - before - len(_COMPRESSION) + 1
-        return None
-
-    def _is_chunk(self, offset: int) -> bool:
-        if self._left < 0:
-            return False
-        try:
-            read_chunk(self._stream, offset)
-        except (RecordingError, EOFError):
-            self._left -= self._stream.tell() - offset
-            return False
-        return True
+            if len(block) < _BLOCK:
+                return None
+            offset += len(block) - before - len(_ZSTD) + 1
 
 
 class Decoder:
@@ -331,55 +302,49 @@ class Decoder:
         self._channels = channels
         self.scenes: dict[int, Scene] = {}  # of the runs whose start was read
         self.lost_runs: set[int] = set()  # those of the others
-        self.about: dict[str, str] = {}
+        self.about: dict[str, str] = {}  # where and how the recording was made
         self.others = 0  # entries that are no samples, in the chunks with events
 
-    def entries(self, messages: Collection[Message], only_events: bool = False) -> Iterator[tuple[Message, Entry]]:
-        """Yield each entry with its first message, without those of runs whose start is lost.
+    def entries(self, messages: Collection[Message], only_events: bool = False) -> Iterator[Entry]:
+        """Yield the entries of a chunk, without those of runs whose start is lost.
 
         Messages of unknown topics are skipped.  Raises RecordingError for anything impossible.
         """
         for _, group in groupby(messages, attrgetter("sequence")):
             parts = [part for part in group if part.channel_id in self._channels]
             topics = [self._channels[part.channel_id].topic for part in parts]
+            keys = [keys for name in topics if (keys := keys_of(name))]
             value: Event | Sample | None = None
-            self.others += only_events and not any(map(keys_of, topics))
             if topics == [EVENTS]:
                 value = self._event(decode_event(parts[0].data))
             elif topics == [ABOUT]:
-                self.about = decode_about(parts[0].data)
-            elif not only_events:
-                value = self._sample(parts, topics)
-            if value is None:
-                continue
-            if value.run not in self.scenes:
+                self.about = _texts(parts[0].data)
+            elif keys and not only_events:
+                value = self._sample(parts, keys)
+            self.others += only_events and not keys
+            if value is not None and value.run in self.scenes:
+                yield Entry((parts[0].log_time - CLOCK_OFFSET) / 1e9, value)
+            elif value is not None:
                 self.lost_runs.add(value.run)
-                continue
-            yield parts[0], Entry((parts[0].log_time - CLOCK_OFFSET) / 1e9, value)
 
     def _event(self, event: Event) -> Event:
         if event.scene is not None:
-            if event.step != 0 or event.t != 0:
+            if event.step or event.t:
                 raise RecordingError(f"run {event.run} does not begin at its start")
             self.scenes.setdefault(event.run, event.scene)
         scene = self.scenes.get(event.run)
-        if scene is None:
-            return event
-        if event.h is not None:
+        if scene is not None and event.h is not None:
             try:
                 Stepping(event.h, event.equal_cost, scene.cast).check(scene.w0)
-            except (SceneError, ArithmeticError) as error:
-                raise RecordingError(f"run {event.run} cannot have been recorded: {error}") from error
-        if event.milestone is not None:
-            methods = {event.milestone.method, event.milestone.other or event.milestone.method}
-            if not methods <= set(scene.cast):
+            except SceneError as error:
+                why = f"run {event.run} cannot have been recorded: {error}"
+                raise RecordingError(why) from error
+        if scene is not None and event.milestone is not None:
+            if not {event.milestone.method, event.milestone.other} <= {*scene.cast, None}:
                 raise RecordingError("a milestone is of a method that the run does not have")
         return event
 
-    def _sample(self, parts: list[Message], topics: list[str]) -> Sample | None:
-        keys = [keys for name in topics if (keys := keys_of(name))]
-        if not keys:
-            return None
+    def _sample(self, parts: list[Message], keys: list[tuple[str, str]]) -> Sample:
         if len(keys) < len(parts):
             raise RecordingError("a sample is incomplete")
         decoded = [decode_reading(part.data, model) for part, (model, _) in zip(parts, keys, strict=True)]
@@ -389,3 +354,11 @@ class Decoder:
         if not is_whole or any(each[:3] != (run, step, t) for each in decoded):
             raise RecordingError("a sample is incomplete")
         return Sample(run, step, t, tuple(reading for *_, reading in decoded))
+
+
+def _texts(data: bytes) -> dict[str, str]:
+    try:
+        texts = json.loads(data)
+        return {printable(name): printable(str(value)) for name, value in texts.items()}
+    except (ValueError, AttributeError, RecursionError) as error:
+        raise RecordingError("a message is not JSON") from error

@@ -260,7 +260,7 @@ class Recording:
             messages = read_chunk(self._stream, place.offset).messages
             if (messages[0].log_time, messages[-1].log_time) != (place.start, place.end):
                 raise RecordingError("a chunk differs from its entry in the summary")
-            return [entry for _, entry in self._decoder.entries(messages, only_events)]
+            return list(self._decoder.entries(messages, only_events))
         except (RecordingError, OSError, EOFError) as error:
             self.complete = False
             self.damaged = True

@@ -42,7 +42,7 @@ def recover(path: Path, out: Path, progress: ShowProgress | None = None, overwri
         lost = 0
         with ExitStack() as stack:
             for _, messages in scan:
-                for _, (clock, value) in decoder.entries(messages):
+                for clock, value in decoder.entries(messages):
                     if recorder is None:
                         about = decoder.about | {"recovered": "yes"}
                         recorder = Recorder(out, None, overwrite, about)

@@ -86,7 +86,7 @@ def verify(
         for _, messages in scan:
             if scan.damaged:
                 break
-            for _, (_, value) in decoder.entries(messages):
+            for _, value in decoder.entries(messages):
                 if isinstance(value, Event) and value.scene is not None:
                     rerun = _begin(value, rerun, result, budget, only)
                 if rerun is None or value.run != rerun.run:

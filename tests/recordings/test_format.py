@@ -18,11 +18,12 @@ from engine.scenes import LIMITS, Scene
 from recordings.arithmetic import FUNCTIONS, fingerprint
 from recordings.errors import MAX_TEXT, RecordingError, printable
 from recordings.events import Event, noticed
-from recordings.fields import EVENT_SCHEMA, EXTRA_NAMES, sample_schema, values_of, without_extremes
+from recordings.fields import EVENT_SCHEMA, EXTRA, sample_schema, values_of, without_extremes
 from recordings.format import decode_event, decode_reading, encode_event, encode_readings, keys_of, topic
 from tests.recordings.examples import SCENE, start
 
 SAMPLE_SCHEMA, PLANE_SCHEMA = sample_schema("pendulum"), sample_schema("spring")
+SPRING = tuple(field.name for field in EXTRA["spring"])
 finite = st.floats(allow_nan=False, allow_infinity=False)
 counts = st.integers(0, 2**53 - 1)
 
@@ -46,7 +47,7 @@ readings = made(
 readings_in_plane = st.builds(
     lambda reading, extra: reading._replace(extra=extra),
     readings,
-    st.fixed_dictionaries(dict.fromkeys(EXTRA_NAMES, finite)),
+    st.fixed_dictionaries(dict.fromkeys(SPRING, finite)),
 )
 samples = made(
     Sample,
@@ -101,7 +102,7 @@ def test_every_finite_double_of_a_sample_reads_back_with_the_same_bits(sample):
         assert again == reading
         assert repr(values_of(again)) == repr(values_of(reading))  # -0.0 == 0.0, but their texts differ
         jsonschema.validate(json.loads(message), PLANE_SCHEMA if reading.extra else SAMPLE_SCHEMA)
-        assert set(EXTRA_NAMES) & set(json.loads(message)) == set(reading.extra)
+        assert set(SPRING) & set(json.loads(message)) == set(reading.extra)
 
 
 @given(events)

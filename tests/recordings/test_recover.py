@@ -85,7 +85,7 @@ def test_lost_chunks_cost_their_samples_and_the_extremes_of_the_next_one(tmp_pat
 
 
 def test_without_its_start_a_run_is_lost(tmp_path, out):
-    with pytest.raises(RecordingError, match="entries are lost|damaged"):
+    with pytest.raises(RecordingError, match="damaged"):
         recover(spoil(ten_seconds(tmp_path / "a.mcap"), 0), out)
     assert not out.exists()
     assert [path.name for path in tmp_path.iterdir()] == ["a.mcap"]

@@ -14,7 +14,7 @@ from recordings import library
 from recordings.errors import printable
 from recordings.events import Event
 from recordings.files import whole_file
-from recordings.format import MAX_STEP
+from recordings.fields import MAX_INTEGER
 from recordings.library import MARKS
 
 if TYPE_CHECKING:
@@ -80,6 +80,6 @@ def _read(path: Path) -> list[Mark]:
 def _mark(fields: dict[str, Any]) -> Mark:
     clock, text = float(fields["clock"]), fields["text"]
     run, step = int(fields["run"]), int(fields["step"])
-    if not math.isfinite(clock) or max(abs(run), abs(step)) >= MAX_STEP:
+    if not math.isfinite(clock) or max(abs(run), abs(step)) >= MAX_INTEGER:
         raise ValueError("a mark needs a time, a run and a step")
     return Mark(clock, run, step, None if text is None else printable(str(text)))
