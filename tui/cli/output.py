@@ -12,11 +12,10 @@ from engine.scenes import LIMITS, Scene
 
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
-    from rich.text import Text
 
 
 def warn(sentence: str) -> None:
-    """Say something besides the data, on stderr."""
+    """Print a sentence besides the data, on stderr."""
     text = f"pendu-tui: {sentence}"
     print(_wrapped(text) if sys.stderr.isatty() else text, file=sys.stderr)
 
@@ -30,24 +29,10 @@ def _wrapped(text: str) -> str:
 
 
 def write_json(name: str, fields: Mapping[str, Any]) -> None:
-    """Print one object of the schema pendu.NAME/1.  Raises ValueError for a number that is not finite.
-
-    An iterator becomes a list, written item by item: it may be long.
-    """
+    """Print one object of the schema pendu.NAME/1.  Raises ValueError for a number that is not finite."""
     import json  # here and below, because the lab needs neither for its first paint
 
-    encode = json.JSONEncoder(allow_nan=False, indent=2).encode
-    lists = [key for key, value in fields.items() if isinstance(value, Iterator)]
-    rest = encode({"schema": f"pendu.{name}/1", **fields, **{key: [] for key in lists}})
-    for key in lists:
-        before, after, rest = rest.partition(f'\n  "{key}": []')
-        print(before + after.removesuffix("]"), end="")
-        comma = ""
-        for item in fields[key]:
-            print(f"{comma}\n    " + encode(item).replace("\n", "\n    "), end="")
-            comma = ","
-        print("\n  ]" if comma else "]", end="")
-    print(rest)
+    print(json.dumps({"schema": f"pendu.{name}/1", **fields}, allow_nan=False, indent=2))
 
 
 def write_csv(out: TextIO, header: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
@@ -60,20 +45,12 @@ def write_csv(out: TextIO, header: Sequence[str], rows: Iterable[Sequence[object
 
 
 def fields_of(value: object, *names: str) -> dict[str, Any]:
-    """Some attributes by name, as in JSON."""
+    """Return some attributes by name, as in JSON."""
     return {name: getattr(value, name) for name in names}
 
 
-def difference_fields(difference: Any, place: Sequence[str], values: Sequence[str]) -> dict[str, Any]:
-    """A number that differs, as in JSON: where, and its two values, also in hexadecimal."""
-    numbers = fields_of(difference, *values)
-    hexes = {f"{name}_hex": None if value is None else value.hex() for name, value in numbers.items()}
-    named = {"method": difference.method or None, "field": difference.field}
-    return {**fields_of(difference, *place), **named, **numbers, **hexes, "ulps": difference.ulps}
-
-
 def scene_line(scene: Scene, *more: str) -> str:
-    """The scene's name and numbers, and `more` of its attributes."""
+    """Return the scene's name and numbers, and `more` of its attributes."""
     numbers = fields_of(scene, *LIMITS, *more)
     model = "" if scene.model == "pendulum" else f" ({scene.equations.equation})"
     return f"{scene.name}{model}: {', '.join(f'{name} {value:g}' for name, value in numbers.items())} (SI units)"
@@ -85,13 +62,8 @@ def print_lines(*lines: str) -> None:
         print(_wrapped(line) if sys.stdout.isatty() else line)
 
 
-def print_picture(on: "Console", lines: "Iterable[Text]") -> None:
-    """Print lines of coloured characters, cropped to the width of the console."""
-    draw(on, lines, no_wrap=True, overflow="crop")
-
-
 def console(piped_width: int | None = None) -> "Console":
-    """Where tables and pictures are drawn: as wide as the terminal, or as given where the output is none."""
+    """Return where tables and pictures are drawn: as wide as the terminal, or as given where the output is none."""
     from rich.console import Console
 
     return Console(width=None if sys.stdout.isatty() else piped_width, markup=False, emoji=False, highlight=False)

@@ -1,17 +1,4 @@
-"""A report: the result of a command, printed as a table, as JSON or as CSV.
-
-A command makes one from the rows that it computed, and every form follows from the same rows:
-
-    report = Report(
-        name="run",
-        title="drift: 600 steps to t = 30 s",
-        columns=(Column("method", "method"), Column("largest", "max_energy_error", ".2e")),
-        rows=[{"method": "rk4", "max_energy_error": 3.1e-7}],
-        fields={"time": 30.0, "methods": rows},
-        notes=["Errors are relative to the first energy."],
-    )
-    report.show(form_of(options))
-"""
+"""A report: the result of a command, printed as a table, as JSON or as CSV, all from the same rows."""
 
 import argparse
 import csv

@@ -5,14 +5,18 @@ import io
 import math
 import os
 from operator import itemgetter
+from pathlib import Path
 from typing import Any
 
 from rich.console import Console
 from rich.segment import Segment
-from rich.terminal_theme import DEFAULT_TERMINAL_THEME, TerminalTheme
+from rich.style import Style
+from rich.terminal_theme import DEFAULT_TERMINAL_THEME, SVG_EXPORT_THEME
 from rich.text import Text
+from textual.color import Color
 
 from engine.methods import Method
+from engine.methods.verlet import VELOCITY_VERLET
 from engine.models.model import State
 from engine.phase_space.section import OrbitKind, kind_of, least_lyapunov, orbit, pieces
 from engine.scenes import Scene
@@ -21,11 +25,10 @@ from tui.cli.files import whole_file
 from tui.cli.output import console, progress, scene_line
 from tui.cli.report import Column, Report, Table, publish
 from tui.drawing.palette import PALETTES, ink_of
-from tui.drawing.picture import Picture
-from tui.terminal.options import CharacterSet, TerminalOptions, terminal_options_of
+from tui.terminal.character_sets import CharacterSetFilter
+from tui.terminal.options import terminal_options_of
 from tui.views.phase.section import Section, starts
 from tui.views.phase.viewport import Viewport
-from tui.views.view import DESCRIBED_FIRST
 from tui.words.orbit import HEADS, cells, fraction, sentence
 
 MAX_STARTS = 10_000
@@ -38,69 +41,79 @@ def run(scene: Scene, options: argparse.Namespace, steps: int) -> int:
     for name, value, limit in (("starts", options.starts, MAX_STARTS), ("steps", steps, MAX_STEPS)):
         if value > limit:
             raise UserError(f"--{name} {value} is too many; use at most {limit}.")
-    method = drawn(scene, options)
-    title = f"{method.label}, h {scene.h:g} s (z = {scene.z:.4g}): its own phase portrait"
-    display = terminal_options_of(options, os.environ, "utf-8")
+    method = scene.cast[0]
+    if options.methods is None:
+        method = next((each for each in scene.cast if each is VELOCITY_VERLET), method)
     path = options.output
-    if path is not None and path.suffix.lower() != ".json":
-        theme = "dark" if options.theme == "auto" else options.theme  # of a file, not of the terminal
-        size = options.size or FILE_SIZE
+    is_picture = path is not None and path.suffix.lower() != ".json"
+    lines: list[Text] = []
+    if is_picture:
         with whole_file(path, options.force) as part:
-            lines = [Text(title), *portrait(scene, method, options.starts, steps, size, display._replace(theme=theme))]
-            part.write_text(_svg(lines, size, theme) if path.suffix.lower() == ".svg" else _plain(lines), "utf-8")
-        print(f"{path}: {title}")
+            size = options.size or FILE_SIZE
+            lines = [Text(title_of(scene, method)), *portrait(scene, method, options, steps, size)]
+            write(part, path.suffix.lower(), size, lines, options.theme == "light")
+        print(f"{path}: {title_of(scene, method)}")
         return Exit.FINE
-    lines = []
     if path is None and not options.json:
-        on = console()
-        characters = display.character_set if "utf" in on.encoding else "ascii"
-        width = max(on.width, 40)
-        size = options.size or (width, width * 5 // 16)
-        lines = portrait(scene, method, options.starts, steps, size, display._replace(character_set=characters))
-    publish(report(scene, method, steps, title, lines), options)
+        width = max(console().width, 40)
+        lines = portrait(scene, method, options, steps, options.size or (width, width * 5 // 16))
+    publish(report(scene, method, steps, lines), options)
     return Exit.FINE
 
 
-def drawn(scene: Scene, options: argparse.Namespace) -> Method:
-    """Return the method whose map is drawn: the first that --methods names, else velocity Verlet."""
-    if options.methods is None:
-        for method in scene.cast:
-            if method.key == DESCRIBED_FIRST:
-                return method
-    return scene.cast[0]
+def title_of(scene: Scene, method: Method) -> str:
+    return f"{method.label}, h {scene.h:g} s (z = {scene.z:.4g}): its own phase portrait"
 
 
 def portrait(
-    scene: Scene, method: Method, count: int, steps: int, size: tuple[int, int], display: TerminalOptions
+    scene: Scene, method: Method, options: argparse.Namespace, steps: int, size: tuple[int, int]
 ) -> list[Text]:
-    """Return the lines of the phase portrait of a method's map, of so many starts."""
-    model = scene.equations
-    start = State(scene.theta, scene.omega)
+    """Return the lines of the phase portrait of a method's map, in the colours and characters of the options."""
+    model, start = scene.equations, State(scene.theta, scene.omega)
     viewport = Viewport.portrait(*size, scene, wrap=model.turns)
     section = Section(viewport, model, method, ink_of(method, scene.cast))
     done = 0
     with progress("section") as show:
-        for piece in pieces(method, model, scene.h, starts(viewport, count), steps):
+        for piece in pieces(method, model, scene.h, starts(viewport, options.starts), steps):
             section.add(piece)
             done += piece[0].shape[1]
-            show(done, count)
-    return _lines(section.picture(orbit(method, model, scene.h, start, steps), start), display)
+            show(done, options.starts)
+    display = terminal_options_of(options, os.environ, "utf-8" if options.output else console().encoding)
+    palette = PALETTES["dark" if options.output and options.theme == "auto" else display.theme]
+    characters = CharacterSetFilter(display.character_set)
+    lines = []
+    for row in section.picture(orbit(method, model, scene.h, start, steps), start).rows:
+        segments = [Segment(text, Style(color=palette.colour(ink))) for text, ink in row if isinstance(ink, int)]
+        if display.character_set != "braille":
+            segments = characters.apply(segments, Color(0, 0, 0))
+        lines.append(Text.assemble(*((segment.text, segment.style or "") for segment in segments)))
+    return lines
 
 
-def report(scene: Scene, method: Method, steps: int, title: str, picture: list[Text]) -> Report:
+def write(file: Path, suffix: str, size: tuple[int, int], lines: list[Text], is_light: bool) -> None:
+    """Write the picture as SVG or as text; the same bytes every time."""
+    text = "\n".join(line.plain.rstrip() for line in lines) + "\n"
+    if suffix == ".svg":
+        on = Console(file=io.StringIO(), record=True, width=size[0], height=size[1] + 1, color_system="truecolor")
+        on.print(*lines, sep="\n", no_wrap=True, overflow="crop")
+        theme = DEFAULT_TERMINAL_THEME if is_light else SVG_EXPORT_THEME
+        text = on.export_svg(title="pendu-tui stability --section", theme=theme, unique_id="terminal")
+    file.write_text(text, encoding="utf-8")
+
+
+def report(scene: Scene, method: Method, steps: int, picture: list[Text]) -> Report:
     """Return the report of the orbits of the scene's start, below the picture."""
     model, h, start = scene.equations, scene.h, State(scene.theta, scene.omega)
     kinds = [(each, kind_of(each, model, h, orbit(each, model, h, start, steps))) for each in scene.cast]
     (words,) = (sentence(each, kind) for each, kind in kinds if each == method)
-    heads = [Column("method", lambda row: row[0]), Column(HEADS[0], lambda row: row[1])]
-    heads += [Column(head, itemgetter(at), right=True) for at, head in enumerate(HEADS[1:], 2)]
+    columns = [Column(head, itemgetter(at), right=at > 1) for at, head in enumerate(("method", *HEADS))]
     return Report(
         name="section",
-        title=title,
+        title=title_of(scene, method),
         notes=[
             *picture,
             f"\n{scene_line(scene, 'h', 'z')}, {steps} steps",
-            Table(heads, [(each.label, *cells(each, kind)) for each, kind in kinds]),
+            Table(columns, [(each.label, *cells(each, kind)) for each, kind in kinds]),
             f"{steps} steps cannot tell a Lyapunov number below about {least_lyapunov(steps):.2g} from 0.",
             f"\n{method.label}: {words}",
         ],
@@ -130,46 +143,3 @@ def _fields(method: Method, kind: OrbitKind) -> dict[str, Any]:
 
 def _finite(value: float) -> float | None:
     return value if math.isfinite(value) else None
-
-
-def _lines(picture: Picture, display: TerminalOptions) -> list[Text]:
-    """Return the rows of a picture in the colours and characters of a display."""
-    palette = PALETTES[display.theme]
-    lines = []
-    for spans in picture.rows:
-        segments = [Segment(text, None) for text, _ in spans]
-        if display.character_set != "braille":
-            segments = _in_characters(segments, display.character_set)
-        colours = [palette.colour(ink) for _, ink in spans if isinstance(ink, int)]
-        coloured = zip((segment.text for segment in segments), colours, strict=True)
-        lines.append(Text.assemble(*coloured))
-    return lines
-
-
-def _in_characters(row: list[Segment], character_set: CharacterSet) -> list[Segment]:
-    from textual.color import Color
-
-    from tui.terminal.character_sets import CharacterSetFilter
-
-    return CharacterSetFilter(character_set).apply(row, Color(0, 0, 0))
-
-
-def _plain(lines: list[Text]) -> str:
-    return "\n".join(line.plain.rstrip() for line in lines) + "\n"
-
-
-def _svg(lines: list[Text], size: tuple[int, int], theme: str) -> str:
-    """Return an SVG of the lines, byte-identical every time."""
-    on = Console(file=io.StringIO(), record=True, width=size[0], height=size[1] + 1, color_system="truecolor")
-    on.print(*lines, sep="\n", no_wrap=True, overflow="crop")
-    return on.export_svg(title="pendu-tui stability --section", theme=_theme(theme), unique_id="terminal")
-
-
-def _theme(name: str) -> TerminalTheme:
-    """Return the theme's background and text for an SVG; the 16 colours are Rich's."""
-    palette = PALETTES[name]
-    if not palette.background.startswith("#"):
-        return DEFAULT_TERMINAL_THEME
-    background, text = (tuple(bytes.fromhex(colour[1:])) for colour in (palette.background, palette.text))
-    colours = [tuple(DEFAULT_TERMINAL_THEME.ansi_colors[number]) for number in range(16)]
-    return TerminalTheme(background, text, colours[:8], colours[8:])  # type: ignore[arg-type]
