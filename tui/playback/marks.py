@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 from recordings import library
 from recordings.errors import printable
 from recordings.events import Event
-from recordings.files import whole_file
 from recordings.fields import MAX_INTEGER
+from recordings.files import whole_file
 from recordings.library import MARKS
 
 if TYPE_CHECKING:
