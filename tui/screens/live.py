@@ -12,7 +12,7 @@ from engine.scenes import SCENES, Scene, SceneError
 from tui.playback.live import Live
 from tui.playback.state import State
 from tui.screens.base import ALREADY, SourceScreen
-from tui.screens.tour import TOUR_BINDINGS, TourGuide
+from tui.screens.tour import TourGuide
 from tui.views.messages import SceneChosen, StepSizeChosen
 from tui.words.insight import return_text
 
@@ -34,7 +34,8 @@ class LiveScreen(SourceScreen):
         Binding("b", "reverse", "Back", tooltip="run back in time"),
         Binding("n", "equal_cost", "Equal cost", tooltip="equal cost for all"),
         Binding("T,shift+t", "tour", "Tour", True, "T", tooltip="tour: begin, leave, go on"),
-        *TOUR_BINDINGS,
+        Binding("enter", "tour_forward"),  # the tour's panel names these two
+        Binding("backspace", "tour_back"),
     ]
 
     begins_with_tour = False
@@ -160,9 +161,13 @@ class LiveScreen(SourceScreen):
         if self.begins_with_tour:
             self.action_tour()
 
+    @property
+    def is_on_tour(self) -> bool:
+        return self.tour is not None and self.tour.is_on
+
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        if action == "on_tour":
-            return self.tour is not None and self.tour.takes(*parameters)
+        if action in ("tour_forward", "tour_back"):
+            return self.is_on_tour
         return super().check_action(action, parameters)
 
     def action_tour(self) -> None:
@@ -171,6 +176,22 @@ class LiveScreen(SourceScreen):
             self.tour = TourGuide(self, self.live)
         self.tour.toggle()
 
-    def action_on_tour(self, key: str) -> None:
+    def action_tour_forward(self) -> None:
         assert self.tour is not None
-        self.tour.press(key)
+        self.tour.forward()
+
+    def action_tour_back(self) -> None:
+        assert self.tour is not None
+        self.tour.back()
+
+    def action_show(self, number: int) -> None:
+        """Answer the tour's question, or show or hide a method."""
+        if self.tour is None or not self.tour.answers(number):
+            super().action_show(number)
+
+    def action_window(self, direction: int) -> None:
+        """Leave the tour with esc, or change the window of the chart."""
+        if self.is_on_tour and direction == 0:
+            self.action_tour()
+        else:
+            super().action_window(direction)

@@ -17,9 +17,9 @@ from tui.screens.seek_bar import SeekBar
 NO_LENGTH = "A loop cannot start and end at the same moment: move along the recording, then set the other end."
 LONG = 100_000  # steps; a quarter of a second
 _SECONDS = Binding.Group("back, forward 1 s")
-_ENDS = Binding.Group("go to the start, to the end")
+_ENDS = Binding.Group("to the start, to the end")
 _TENTHS = Binding.Group("back, forward 10 %")
-_LOOP = Binding.Group("loop: start here, end here, on or off")
+_LOOP = Binding.Group("loop: start, end, on/off")
 
 
 class ReplayScreen(SourceScreen):

@@ -3,7 +3,6 @@
 import textwrap
 
 from rich.style import Style
-from textual.binding import Binding
 
 from tui.drawing.cells import CellWidget
 from tui.drawing.palette import EXACT, TEXT, WARN
@@ -16,15 +15,6 @@ from tui.words.tour import Tour
 
 TITLE = -10
 """The ink of the title."""
-
-TOUR_BINDINGS = (
-    Binding("enter", "on_tour('forward')", priority=True),
-    Binding("1", "on_tour('first')", priority=True),
-    Binding("2", "on_tour('second')", priority=True),
-    Binding("backspace", "on_tour('back')", priority=True),
-    Binding("escape", "on_tour('leave')", priority=True),
-)
-"""Only the panel names them: they work while it is on the screen."""
 
 FORWARD = {
     "watching": "enter to the moment",
@@ -44,10 +34,6 @@ class TourGuide:
         self.is_on = False
         screen.mount(self.panel, before=screen.query_one(InsightLine))
 
-    def takes(self, *keys: object) -> bool:
-        """Return whether a key of the tour does something now."""
-        return self.is_on and (self.tour.stage == "asked" or keys[0] not in ("first", "second"))
-
     def toggle(self) -> None:
         """Begin the shot where the tour was left, or leave it."""
         if self.is_on:
@@ -60,24 +46,28 @@ class TourGuide:
         self.tour.begin(self.tour.index)
         self._show_shot()
 
-    def press(self, key: str) -> None:
-        """Do what a key of the tour does."""
+    def forward(self) -> None:
+        """Go to the moment, to the truth, or to the next shot."""
         index = self.tour.index
-        match key:
-            case "leave":
-                self.toggle()
-            case "first" | "second":
-                self.tour.answer(("first", "second").index(key))
-                self._show()
-            case "back":
-                self.tour.back()
-                self._show_shot()
-            case _ if not self.tour.forward():
-                self._leave("That was the tour. Now the lab is yours: ? lists its keys.")
-            case _ if self.tour.index != index:
-                self._show_shot()
-            case _:
-                self._show()
+        if not self.tour.forward():
+            self._leave("That was the tour. Now the lab is yours: ? lists its keys.")
+        elif self.tour.index != index:
+            self._show_shot()
+        else:
+            self._show()
+
+    def back(self) -> None:
+        """Go back to the question, or to the shot before."""
+        self.tour.back()
+        self._show_shot()
+
+    def answers(self, choice: int) -> bool:
+        """Take an answer; return False where none is asked for."""
+        if not self.is_on or self.tour.stage != "asked" or choice > 1:
+            return False
+        self.tour.answer(choice)
+        self._show()
+        return True
 
     def follow(self) -> None:
         """Look with each frame whether the moment has come."""

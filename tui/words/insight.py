@@ -22,7 +22,7 @@ TURN = 8.0  # s of the clock until the next of the lasting sentences
 MAX_BAND = 0.2  # of the energy; a larger loss changes the rate of loss itself
 MAX_FORECAST = 1000 * 86400.0  # s
 MAX_RATE_LOSS = 0.5  # of the energy; beyond it the share that is lost says more than the rate
-MAX_PERIOD_CHANGE = 0.05  # relative, up to which a rate of loss per second stays as it is
+MAX_PERIOD = 2.0  # of small swings; near the separatrix the rate of loss changes with the energy
 UNCHANGED = 0.05  # relative change of the energy that is not worth a number
 
 Kind = Literal[
@@ -267,25 +267,11 @@ def forecast(source: Source, index: int) -> Forecast | None:
     if any(event.kind == "set_h" and event.run == source.sample.run for event in source.events):
         return None
     band, other = next((each for each in _bands(source) if each[0] > abs(error)), (math.inf, 0))
-    if band > MAX_BAND or not _is_steady(source.scene, band):
+    slow = (source.exact.period or 0.0) > MAX_PERIOD * math.tau / source.scene.w0
+    if band > MAX_BAND or slow:
         return None
     seconds = (band - math.copysign(error, error * slope)) / abs(slope)
     return Forecast(seconds, source.scene.cast[other]) if seconds < MAX_FORECAST else None
-
-
-def _is_steady(scene: Scene, lost: float) -> bool:
-    """Return whether the period stays nearly the same while this share of the energy is lost."""
-    model = scene.equations
-    if not model.turns:
-        return True
-    energy = (1 - lost) * model.energy()((scene.theta, scene.omega))
-    share = energy / (2 * model.w0_squared)
-    turning = 2 * math.asin(math.sqrt(share)) if share < 1 else 0.0
-    later = model.exact(turning, 0.0 if share < 1 else math.sqrt(2 * energy))
-    before = scene.exact().period
-    if before is None or later.period is None:
-        return False
-    return abs(later.period / before - 1) < MAX_PERIOD_CHANGE
 
 
 def _bands(source: Source) -> list[tuple[float, int]]:

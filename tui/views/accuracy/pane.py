@@ -39,11 +39,11 @@ class AccuracyPane(Chooser[int]):
         Binding("right", "move(1)"),
         Binding("up", "method(-1)"),
         Binding("down", "method(1)"),
-        Binding("enter", "choose", "Use h", tooltip="use the h of the cursor's point"),
+        Binding("enter", "choose", "Use h", tooltip="use the cursor's h"),
         Binding("tab", "method(1)", "the next method in words", show=False),
         Binding("escape", "cancel", "leave the cursor", False, "esc"),
-        Binding("e", "chart", "Over time", tooltip="next chart: over time, theta, energy"),
-        Binding("asterisk", "all", "All", True, "*", tooltip="all methods, or those shown"),
+        Binding("e", "chart", "Over time", tooltip="next chart: time, theta, …"),
+        Binding("asterisk", "all", "All", True, "*", tooltip="all methods, or the shown"),
     ]
 
     def __init__(self) -> None:

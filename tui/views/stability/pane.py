@@ -31,7 +31,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
     BINDING_GROUP_TITLE = "Stability"
     HELP = "A click starts with that h and amplitude."
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("left", "move(-1, 0)", "cursor: choose h, amplitude", False, "arrows"),
+        Binding("left", "move(-1, 0)", "choose h and amplitude", False, "arrows"),
         Binding("right", "move(1, 0)"),
         Binding("up", "move(0, 1)"),
         Binding("down", "move(0, -1)"),

@@ -1,0 +1,300 @@
+"""Every key of the lab does what the help says."""
+
+import pytest
+
+from engine.methods import USUAL_CAST
+from engine.scenes import DEFAULT_SCENE, SCENES
+from recordings.live_recorder import LiveRecorder
+from recordings.verification import verify
+from tests.tui.harness import lab, on_stage
+from tui.playback.live import Live
+from tui.playback.shown import WINDOWS, quantities
+from tui.screens.dialogs.text import TextScreen
+from tui.screens.help import COLUMN_WIDTH, bindings_of, key_lines
+from tui.screens.live import LiveScreen
+from tui.screens.replay import ReplayScreen
+from tui.screens.status_line import StatusLine
+from tui.views.lab.error_table import ErrorTable
+from tui.views.lab.event_list import EventList
+from tui.views.lab.time_chart import TimeChart
+from tui.views.lab.view import LabView
+from tui.views.phase.section_pane import SectionPane
+
+
+async def test_time_space_pauses_and_goes_on_full_stop_and_comma_step():
+    async with lab() as theatre:
+        await theatre.run(1)
+        step = theatre.source.sample.step
+        await theatre.press("space")
+        await theatre.run(1)
+        assert theatre.source.sample.step == step
+        assert "paused" in theatre.text(StatusLine)
+        await theatre.press("full_stop", "full_stop", "comma")
+        assert theatre.source.sample.step == step + 1
+        await theatre.press("comma", "comma", "comma")
+        assert theatre.source.sample.step == step - 2
+        await theatre.press("space")
+        await theatre.run(1)
+        assert theatre.source.sample.step == step - 2 + 20
+        assert "running" in theatre.text(StatusLine)
+
+
+async def test_the_run_r_restarts_plus_and_minus_change_h_b_reverses_p_and_capital_p_change_the_scene():
+    async with lab() as theatre:
+        await theatre.run(2)
+        await theatre.press("plus")
+        assert theatre.source.stepping.h == 0.1
+        await theatre.press("minus", "minus")
+        assert theatre.source.stepping.h == 0.02
+        await theatre.press("b")
+        assert theatre.source.stepping.h == -0.02
+        await theatre.run(1)
+        assert theatre.source.sample.t == pytest.approx(1, abs=0.05)
+        await theatre.press("r")
+        assert (theatre.source.stepping.h, theatre.source.sample.step, theatre.source.scene.theta) == (0.02, 0, 1.0)
+        names = list(SCENES)
+        await theatre.press("p")
+        assert theatre.source.scene == SCENES[names[0]]  # 0.02 made it a scene of its own
+        await theatre.press("p")
+        assert theatre.source.scene == SCENES[names[1]]
+        await theatre.press("P", "end", "enter")
+        assert theatre.source.scene == SCENES[names[-1]]
+        await theatre.press("P", "escape", "p")
+        assert theatre.source.scene == SCENES[names[0]]
+        await theatre.press("P", "up", "enter")  # from the first to the last
+        assert names[-1] in theatre.text(StatusLine)
+
+
+async def test_time_that_runs_backwards_pauses_at_0_and_keeps_what_each_method_misses_its_start_by():
+    async with lab() as theatre:
+        await theatre.run(1)
+        await theatre.press("b")
+        for _ in range(40):
+            theatre.now += 1 / 30
+            theatre.stage.frame()
+        assert theatre.source.sample.t == pytest.approx(0, abs=1e-9)
+        assert theatre.source.playhead.paused
+        (mark,) = [event for event in theatre.source.events if event.kind == "mark"]
+        assert mark.text.startswith("Back at t = 0. Missed the start by e ")
+        await theatre.press("space")
+        theatre.now += 0.5
+        theatre.stage.frame()
+        assert theatre.source.sample.t < -0.3
+
+
+async def test_settings_are_undone_one_after_the_other():
+    async with lab() as theatre:
+        await theatre.run(1)
+        before = (theatre.source.stepping.h, theatre.source.playhead.speed, theatre.source.scene, theatre.stage.shown)
+        await theatre.press("plus", "greater_than_sign", "p", "t", "y")
+        await theatre.press("u", "u", "u", "u", "u")
+        after = (theatre.source.stepping.h, theatre.source.playhead.speed, theatre.source.scene, theatre.stage.shown)
+        assert after == before
+        await theatre.press("u")  # there is nothing left to undo
+
+
+async def test_a_run_that_another_start_replaced_is_brought_back_where_it_was_and_verifies(tmp_path):
+    path = tmp_path / "run.mcap"
+
+    def make(clock):
+        live = Live(SCENES["drift"], clock=lambda: 0.0)
+        live.record(LiveRecorder(path))
+        return LiveScreen(live, clock)
+
+    async with on_stage(make, (120, 40)) as theatre:
+        await theatre.run(2)
+        await theatre.press("plus")
+        await theatre.run(2)
+        before, milestones = theatre.source.sample, theatre.source.milestones
+        for key in ("p", "r"):
+            await theatre.press(key)
+            await theatre.run(1)
+        await theatre.press("u", "u")
+        there = theatre.source.sample
+        assert (there.step, there.t, there.readings) == (before.step, before.t, before.readings)
+        assert (theatre.source.scene.name, theatre.source.stepping.h) == ("drift", 0.1)
+        assert theatre.source.milestones == milestones
+        await theatre.run(4)
+        assert theatre.source.sample.t == pytest.approx(before.t + 4, abs=0.11)
+        assert there.run == 5  # drift, the next, that again, that again, drift again
+        theatre.source.close()
+    assert verify(path).identical
+
+
+async def test_what_is_shown_digits_t_y_e_and_w():
+    async with lab() as theatre:
+        await theatre.run(2)
+        panes = theatre.stage.query_one(LabView).pendulums
+        await theatre.press("1")
+        await theatre.pilot.pause()
+        assert [pane.is_on_screen for pane in panes] == [False, True, True, True, False, False]
+        assert "Explicit" not in theatre.text(ErrorTable)
+        await theatre.press("1", "5")
+        assert theatre.stage.shown.exact
+        dotted = panes[1].text
+        await theatre.press("5")
+        assert panes[1].text != dotted
+        with_trails = panes[1].text
+        await theatre.press("t")
+        assert len(panes[1].text.split()) < len(with_trails.split())
+
+        chart = theatre.stage.query_one(TimeChart)
+        titles = [chart.border_title]
+        for _ in quantities(DEFAULT_SCENE):
+            await theatre.press("e")
+            titles.append(chart.border_title)
+        assert titles[0] == titles[-1] == "max |dE/E0| per half swing, all"
+        assert len(set(titles)) == len(quantities(DEFAULT_SCENE))
+        await theatre.press("y")
+        assert chart.border_title == "energy error dE/E0, all"
+        spans = set()
+        for _ in WINDOWS:
+            await theatre.press("w")
+            spans.add(chart.border_title)
+        assert len(spans) == len(WINDOWS)
+        before = theatre.stage.shown
+        await theatre.press(*"w" * len(WINDOWS))
+        assert theatre.stage.shown == before
+
+
+async def test_capital_x_shows_one_method_alone_and_then_all_and_next_time_the_next_one():
+    async with lab() as theatre:
+        seen = []
+        for _ in range(5):
+            await theatre.press("X")
+            seen.append("".join(USUAL_CAST[at].letter for at in theatre.stage.shown.places(USUAL_CAST)))
+        assert seen == ["e", "esvr", "s", "esvr", "v"]
+        await theatre.press("u")
+        assert theatre.stage.shown.places(USUAL_CAST) == [0, 1, 2, 3]
+
+
+async def test_a_click_on_a_row_or_a_pendulum_shows_that_method_alone_and_another_one_all():
+    async with lab() as theatre:
+        await theatre.run(1)
+        for widget, offset in ((ErrorTable, (5, 3)), (theatre.stage.query_one(LabView).pendulums[2], (9, 5))):
+            await theatre.pilot.click(widget, offset=offset)
+            await theatre.run(0.1)
+            assert theatre.stage.shown.places(USUAL_CAST) == [2]
+            assert [line[:3] for line in theatre.text(ErrorTable).splitlines()[1:]] == ["3 v"]
+            await theatre.pilot.click(ErrorTable, offset=(5, 1))
+            await theatre.run(0.1)
+            assert theatre.stage.shown.places(USUAL_CAST) == [0, 1, 2, 3]
+
+
+async def test_a_click_on_an_event_goes_there_and_brackets_go_from_one_to_the_next():
+    async with lab() as theatre:
+        await theatre.run(12)
+        first, over, *_ = [milestone.step for milestone in theatre.source.milestones]
+        listed = theatre.stage.query_one(EventList)
+        row = next(at for at, line in enumerate(listed.text.splitlines()) if "over the top" in line)
+        await theatre.pilot.click(listed, offset=(8, row + 1))
+        await theatre.pilot.pause()
+        assert theatre.source.sample.step == first
+        assert theatre.source.playhead.paused
+        await theatre.press("]")
+        assert theatre.source.sample.step == over
+        await theatre.press("[", "[")
+        assert theatre.source.sample.step == 0
+        await theatre.press("r")
+        theatre.stage.action_go_to(1, first)
+        await theatre.pilot.pause()
+        assert "run 1" in [each.message for each in theatre.app._notifications][-1]
+
+
+async def test_a_listed_scene_starts_at_its_own_speed_and_u_brings_back_run_and_speed():
+    async with lab() as theatre:
+        await theatre.run(1)
+        await theatre.press("greater_than_sign", "P", "end", "enter")
+        assert (theatre.source.scene.name, theatre.source.playhead.speed) == (
+            list(SCENES)[-1],
+            list(SCENES.values())[-1].speed,
+        )
+        await theatre.press("u")
+        assert (theatre.source.scene.name, theatre.source.playhead.speed) == ("drift", 2.0)
+        assert theatre.source.sample.step == 20
+
+
+async def test_a_click_on_the_chart_the_events_or_the_title_of_phase_space_does_what_their_keys_do():
+    async with lab() as theatre:
+        await theatre.run(1)
+        await theatre.pilot.click(TimeChart, offset=(20, 5))
+        await theatre.run(0.1)
+        assert theatre.stage.shown.quantity == "theta_error"
+        await theatre.pilot.click("EventList", offset=(5, 2))
+        await theatre.pilot.pause()
+        assert theatre.app.screen.text_title == "Events"
+        await theatre.press("escape")
+        run = theatre.source.sample.run
+        await theatre.pilot.click("PhasePane", offset=(5, 0))
+        await theatre.pilot.pause()
+        assert (theatre.stage.view, theatre.source.sample.run) == ("phase", run)
+
+
+async def test_less_and_greater_halve_and_double_the_speed():
+    async with lab() as theatre:
+        await theatre.press("greater_than_sign", "greater_than_sign", "less_than_sign")
+        assert theatre.source.playhead.speed == 2
+        await theatre.run(1)
+        assert theatre.source.sample.t == pytest.approx(2, abs=0.05)
+
+
+@pytest.mark.parametrize("opening", ["question_mark", "ctrl+p", "i", "M", "P", "d", "E"])
+async def test_a_dialog_pauses_the_lab_and_it_goes_on_afterwards(opening):
+    async with lab() as theatre:
+        await theatre.run(1)
+        await theatre.press(opening)
+        await theatre.pilot.pause()
+        assert theatre.app.screen is not theatre.stage
+        assert theatre.source.playhead.paused
+        await theatre.press("escape")
+        await theatre.pilot.pause()
+        assert theatre.app.screen is theatre.stage
+        assert not theatre.source.playhead.paused
+
+
+async def test_a_lab_that_was_paused_stays_so_after_a_dialog():
+    async with lab() as theatre:
+        await theatre.press("space", "question_mark", "escape")
+        await theatre.pilot.pause()
+        assert theatre.source.playhead.paused
+
+
+@pytest.mark.parametrize("view", [None, "f3", "f4", "f5"])
+async def test_the_help_begins_with_the_keys_of_the_view_in_front(view):
+    async with lab() as theatre:
+        await theatre.press(*([view] if view else []), "question_mark")
+        await theatre.pilot.pause()
+        screen = theatre.app.screen
+        assert isinstance(screen, TextScreen)
+        title = {None: "Lab", "f3": "Phase space", "f4": "Accuracy", "f5": "Stability"}[view]
+        assert screen.text.splitlines()[0] == title
+        assert screen.text.index("pause, go on") < screen.text.index("What is on the screen")
+
+
+@pytest.mark.parametrize("owner", [LiveScreen, ReplayScreen, SectionPane])
+def test_every_listed_key_fits_a_column_of_the_help_and_has_one_meaning(owner):
+    listed = bindings_of(owner)
+    assert all(len(line) < COLUMN_WIDTH for line in key_lines(listed))
+    keys = [key for binding in listed for key in binding.key.split(",")]
+    assert len(keys) == len(set(keys))
+
+
+def test_the_lab_and_the_replay_need_few_keys():
+    assert len(list(key_lines(bindings_of(LiveScreen)))) <= 35
+    assert len(list(key_lines(bindings_of(ReplayScreen)))) <= 35
+
+
+@pytest.mark.parametrize("width", [80, 120])
+async def test_the_last_line_has_what_one_needs_now_each_a_button(width):
+    async with lab(size=(width, 40)) as theatre:
+        row = theatre.text("KeyLine")
+        hints = ("+ - Step", "p Scene", "space Pause", "v View", "? Help", "ctrl+p Find", "b Back", "T Tour")
+        assert all(hint in row for hint in hints)
+        await theatre.pilot.click("KeyLine", offset=(row.index("Pause") + 1, 0))
+        await theatre.pilot.click("KeyLine", offset=(row.index("-"), 0))
+        await theatre.pilot.pause()
+        assert theatre.source.playhead.paused
+        assert theatre.source.stepping.h == 0.02
+        await theatre.press("f3")
+        await theatre.pilot.pause()
+        assert "g Ring" in theatre.text("KeyLine")

@@ -1,0 +1,134 @@
+"""The lab's lines, as pictures made of text."""
+
+import pytest
+
+from engine.run.stepping import Stepping
+from engine.scenes import DEFAULT_SCENE, SCENES
+from tests.tui.harness import after, eventful
+from tui.playback.live import Live
+from tui.playback.marks import Marks
+from tui.playback.playhead import Pace, Playhead
+from tui.playback.replay import Replay
+from tui.playback.source import RecordingStatus
+from tui.screens.insight_line import fitted
+from tui.screens.seek_bar import bar, facts
+from tui.screens.status_line import speed_text, status_row
+
+
+def text(row) -> str:
+    return "".join(words for words, _ in row).rstrip()
+
+
+def lab(seconds: float = 12.0) -> Live:
+    return after(DEFAULT_SCENE, seconds)
+
+
+class Taped(Live):
+    """A lab with a recording that is only said to be there."""
+
+    recording_status = RecordingStatus("2026-11-20T10-14-03.mcap", 72.4, 96_000)
+
+
+def taped(**changes) -> Taped:
+    live = Taped(DEFAULT_SCENE, clock=lambda: 0.0)
+    for name, value in changes.items():
+        setattr(live, name, value)
+    return live
+
+
+def test_the_status_line_says_all_where_there_is_room():
+    line = text(status_row(taped(), 120))
+    assert line == (
+        " LIVE   running  1×  t 0.00 s  h 0.05 s  z 0.157  scene drift  57.3° 0 rad/s  REC 1 min"
+        "  2026-11-20T10-14-03.mcap  96 kB"
+    )
+
+
+def test_the_status_line_leaves_out_the_least_important_parts_and_never_runs_over():
+    live = taped()
+    for width in range(60, 125):
+        line = text(status_row(live, width))
+        assert len(line) <= width
+        assert all(word in line for word in ("LIVE", "running", "1×", "t 0.00 s", "h 0.05 s", "z 0.157"))
+        assert "10-14-03.mcap" not in line or "96 kB" in line
+
+
+def test_at_80_columns_it_says_which_run_it_is_at_which_step_and_whether_that_is_recorded():
+    live = taped()
+    assert "  z 0.157  scene drift  REC 1 min" in text(status_row(live, 80))
+    live.set_stepping(Stepping(-0.2, equal_cost=True))
+    live.set_speed(0.25)
+    live.playhead = live.playhead.moved_to(0.0)
+    live.so_far.sample = live.sample._replace(t=725.0)
+    assert text(status_row(live, 80)) == (
+        " LIVE   backwards  1/4×  t 12 min 05 s  h -0.2 s equal cost  z 0.626  REC 1 min"
+    )
+
+
+def test_a_start_without_a_name_is_shown_in_numbers():
+    live = taped()
+    live.start(DEFAULT_SCENE.altered(theta=3.0))
+    assert "171.9° 0 rad/s" in text(status_row(live, 80))
+    assert "custom" not in text(status_row(live, 80))
+
+
+def test_the_status_line_shows_a_low_pace_and_a_failed_recording():
+    slow = taped(pace=Pace(due=1.0, done=0.62))
+    assert "only 62 % of 1×" in text(status_row(slow, 80))
+    hopeless = taped(pace=Pace(due=1.0, done=0.011), playhead=Playhead(speed=2.0**18))
+    assert "reached 2884× of 262144×" in text(status_row(hopeless, 120))
+    assert "only" not in text(status_row(taped(pace=Pace(due=1.0, done=0.995)), 80))
+    broken = taped(recording_status=Taped.recording_status._replace(failed="the disk is full."))
+    assert "NOT RECORDED" in text(status_row(broken, 80))
+    begun = Playhead(seen=0.0)
+    assert "not recorded" in text(status_row(taped(recording_status=None, playhead=begun), 80))
+    assert "record" not in text(status_row(taped(recording_status=None), 80))  # before the first frame
+
+
+def test_speeds_are_read_as_people_say_them():
+    assert [speed_text(speed) for speed in (1, 2, 1024, 2.0**20, 0.5, 1 / 8, -1, -0.25)] == [
+        *("1×", "2×", "1024×", "1048576×", "1/2×", "1/8×", "-1×", "-1/4×")
+    ]
+
+
+def test_where_steps_are_slow_the_status_line_says_when_the_next_one_is_due():
+    live = after(SCENES["verlet-limit"], 2.5)
+    assert live.next_step == pytest.approx(2 * 1.98 - 2.5)
+    assert "next step in 1 s" in text(status_row(live, 120))
+    live.pause(True)
+    assert "next step" not in text(status_row(live, 120))
+    assert "next step" not in text(status_row(lab(), 120))
+
+
+def test_the_bar_shows_what_was_played_what_was_done_and_the_loop():
+    assert text(bar(5.0, 10.0, [0.0, 2.5, 7.5], [(4.0, "A"), (9.0, "B")], 20)) == "┿━━━━┿━━A━█────┼──B─"
+    assert text(bar(10.0, 10.0, [], [], 10)) == "━━━━━━━━━█"
+    assert text(bar(0.0, 0.0, [], [], 4)) == "█───"
+
+
+def test_the_bar_shows_position_length_run_step_and_event(tmp_path):
+    from recordings.recording import Recording
+
+    path = eventful(tmp_path / "eventful.mcap")
+    replay = Replay(Recording.open(path), Marks(path), clock=lambda: 0.0)
+    replay.seek(6.0)
+    here = " 6.00 s of 12.00 s"
+    assert facts(replay, 80) == f"{here}  run 2/3  step  50/200  event 4/5"
+    replay.looping = True
+    assert facts(replay, 80) == f"{here}  loop  run 2/3  step  50/200  event 4/5"
+    assert facts(replay, 40) == f"{here}  loop  run 2/3"
+    assert facts(replay, 0) == here
+    assert " t 1.00 s  " in text(status_row(replay, 80))
+    replay.looping, widths = False, set()
+    for clock in range(13):
+        replay.seek(float(clock))
+        widths.add(len(facts(replay, 30)))
+    assert len(widths) == 1  # so that the bar stays where it is
+    replay.close()
+
+
+def test_a_sentence_that_does_not_fit_ends_in_an_ellipsis():
+    words = "Explicit Euler gains energy, the symplectic ones keep it."
+    assert fitted(words, 60, 1) == [words]
+    assert fitted(words, 40, 2) == ["Explicit Euler gains energy, the", "symplectic ones keep it."]
+    assert fitted(words, 40, 1) == ["Explicit Euler gains energy, the …"]

@@ -1,0 +1,153 @@
+"""The tour on the lab's screen, at three sizes, with a clock that is moved by hand."""
+
+import pytest
+
+from engine.scenes import SCENES
+from tests.tui.harness import FPS, Theatre, lab, on_stage
+from tui.playback.live import Live
+from tui.screens.insight_line import InsightLine
+from tui.screens.key_line import KeyLine
+from tui.screens.live import LiveScreen
+from tui.screens.still import normalised
+from tui.screens.tour import TourPanel
+from tui.words.tour import ASTRAY, SHOTS
+
+SIZES = [(80, 24), (120, 40), (200, 60)]
+
+
+@pytest.fixture(autouse=True)
+def _few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of the stability map: they take no time."""
+    monkeypatch.setattr("tui.views.stability.view.PASSES", (20, 300))
+
+
+def words(text: str) -> str:
+    return " ".join(text.split())
+
+
+def panel(theatre: Theatre) -> str:
+    return words(theatre.text(TourPanel))
+
+
+async def to_the_question(theatre: Theatre) -> None:
+    began = theatre.now
+    while not theatre.source.playhead.paused:
+        theatre.now += 1 / FPS
+        theatre.stage.frame()
+        assert theatre.now - began < 30
+    await theatre.pilot.pause()
+
+
+@pytest.mark.parametrize("size", SIZES, ids="{0[0]}x{0[1]}".format)
+async def test_it_is_walked_from_the_first_shot_to_the_last(size):
+    async with lab(SCENES["spin"], size) as theatre:
+        await theatre.press("T")
+        for number, shot in enumerate(SHOTS):
+            await theatre.pilot.pause()
+            assert (theatre.stage.view, theatre.source.scene) == (shot.view, shot.scene)
+            assert words(shot.watch) in panel(theatre)
+            await to_the_question(theatre)
+            assert words(shot.question) in panel(theatre)
+            assert words(f"1: {shot.answers[0]} 2: {shot.answers[1]}") in panel(theatre)
+            await theatre.press(str(1 + number % 2))
+            assert ("Right." in panel(theatre)) == (shot.right == number % 2)
+            assert words(shot.truth) in panel(theatre)
+            assert not theatre.stage.shown.hidden
+            await theatre.press("enter")
+        await theatre.pilot.pause()
+        assert not theatre.stage.query_one(TourPanel).is_on_screen
+        assert (theatre.stage.view, theatre.source.playhead.paused) == ("lab", False)
+        await theatre.press("u")
+        assert theatre.source.scene == SCENES["spin"]
+
+
+@pytest.mark.parametrize("size", [(60, 16), *SIZES], ids="{0[0]}x{0[1]}".format)
+async def test_the_panel_takes_the_place_of_the_insight_line_and_covers_nothing(size):
+    async with lab(size=size) as theatre:
+        await theatre.press("T")
+        await theatre.run(1)
+        region = theatre.stage.query_one(TourPanel).region
+        keys = theatre.stage.query_one(KeyLine).region
+        assert 3 <= region.height <= 5
+        assert (region.width, region.bottom) == (size[0], keys.y)
+        assert not theatre.stage.query_one(InsightLine).is_on_screen
+        for widget in theatre.stage.query("#views CellWidget"):
+            assert not widget.is_on_screen or widget.region.bottom <= region.y
+
+
+async def test_on_the_smallest_terminal_question_and_truth_are_there_in_full():
+    async with lab(size=(60, 16)) as theatre:
+        await theatre.press("T")
+        for shot in SHOTS:
+            await theatre.press("enter")
+            assert words(shot.question) in panel(theatre)
+            await theatre.press("enter")
+            assert words(shot.truth) in panel(theatre)
+            await theatre.press("enter")
+
+
+async def test_leaving_it_restores_view_and_settings_and_u_the_run():
+    async with lab(SCENES["spin"]) as theatre:
+        await theatre.run(2)
+        await theatre.press("1", "greater_than_sign")
+        before = theatre.stage.shown
+        t = theatre.source.sample.t
+        await theatre.press("T", "enter", "enter", "enter", "enter")
+        assert theatre.stage.view == "phase"
+        await theatre.press("escape")
+        await theatre.pilot.pause()
+        assert theatre.stage.query_one(InsightLine).is_on_screen
+        assert (theatre.stage.view, theatre.stage.shown) == ("lab", before)
+        assert (theatre.source.playhead.speed, theatre.source.playhead.paused) == (2, False)
+        await theatre.press("u")
+        assert (theatre.source.scene, theatre.source.sample.t) == (SCENES["spin"], t)
+        await theatre.press("T")
+        await theatre.pilot.pause()
+        assert words(SHOTS[1].watch) in panel(theatre)
+
+
+async def test_a_change_of_the_run_is_noticed_and_enter_begins_the_shot_again():
+    async with lab() as theatre:
+        await theatre.press("T", "plus")
+        theatre.stage.frame()
+        assert ASTRAY in panel(theatre)
+        await theatre.press("enter")
+        assert words(SHOTS[0].watch) in panel(theatre)
+
+
+async def test_while_a_shot_runs_the_other_keys_keep_their_meaning():
+    async with lab() as theatre:
+        await theatre.press("T", "space", "1")
+        assert theatre.source.playhead.paused
+        assert theatre.stage.shown.hidden
+        await theatre.press("1", "space", "f3", "question_mark", "escape")
+        await theatre.pilot.pause()
+        assert not theatre.source.playhead.paused
+        assert theatre.stage.view == "phase"
+        assert theatre.stage.query_one(TourPanel).is_on_screen
+
+
+async def test_a_click_on_the_panel_goes_on_and_outside_a_tour_its_keys_do_nothing():
+    async with lab() as theatre:
+        await theatre.press("enter", "backspace", "escape")
+        assert not theatre.stage.query(TourPanel)
+        await theatre.press("T")
+        await theatre.pilot.click(TourPanel)
+        await theatre.pilot.pause()
+        assert words(SHOTS[0].question) in panel(theatre)
+
+
+async def test_the_command_begins_with_it(text_snapshot):
+    def make(clock):
+        screen = LiveScreen(Live(SCENES["drift"], clock=lambda: 0.0), clock)
+        screen.begins_with_tour = True
+        return screen
+
+    async with on_stage(make, (120, 40)) as theatre:
+        await theatre.pilot.pause()
+        assert theatre.source.sample.run == 1
+        await to_the_question(theatre)
+        theatre.stage.show_now()
+        await theatre.settled()
+        await theatre.pilot.pause()
+        text_snapshot("tour-120x40", normalised(theatre.app.export_screenshot()))

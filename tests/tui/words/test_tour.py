@@ -1,0 +1,261 @@
+"""The tour: each truth is measured at its moment, and the shots are walked without a screen."""
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+
+import pytest
+
+from engine.accuracy.recommend import reach
+from engine.accuracy.study import Study, usual
+from engine.methods import EXPLICIT_EULER, RK4, VELOCITY_VERLET
+from engine.phase_space.area import Neighbourhood
+from engine.run.lockstep import Lockstep, Reading
+from engine.run.stepping import Stepping
+from engine.run.tangent import jacobian
+from engine.scenes import SCENES, Scene
+from tests.tui.harness import FPS, Clocked
+from tui.playback.live import Live
+from tui.views import VIEWS
+from tui.words.plain_text import READING, THINKING, print_tour
+from tui.words.tour import ASTRAY, SHOTS, Shot, Tour
+
+EXPLICIT, SYMPLECTIC, VERLET, RK = range(4)
+GAINS, WHY, SMALLER, CROSSING, REVERSED, AREA, BREAKS, COSTS = SHOTS
+
+
+class Walked(Clocked):
+    """A lab that follows one shot to its question."""
+
+    def __init__(self, shot: Shot) -> None:
+        live = Live(SCENES["spin"], clock=lambda: 0.0)
+        super().__init__(live)
+        self.tour = Tour(live)
+        self.tour.begin(SHOTS.index(shot))
+        while not self.tour.follow():
+            self.run(1 / FPS)
+            assert self.now < 60
+        self.readings = live.sample.readings
+
+
+def after(scene: Scene, seconds: float) -> tuple[Reading, ...]:
+    lockstep = Lockstep(scene)
+    lockstep.advance(round(seconds / scene.h))
+    return tuple(lockstep.sample().readings)
+
+
+def miss(reading: Reading, scene: Scene) -> float:
+    """Return the distance from the start [rad]."""
+    return math.hypot(reading.theta - scene.theta, (reading.omega - scene.omega) / scene.w0)
+
+
+@pytest.mark.parametrize("shot", SHOTS, ids=lambda shot: shot.title)
+def test_the_question_comes_after_about_ten_seconds_exactly_at_the_moment(shot):
+    walked = Walked(shot)
+    assert 6 < walked.now < 13
+    assert walked.source.playhead.paused
+    assert walked.source.sample.t == pytest.approx(0.0 if shot.returns else shot.moment, abs=1e-9)
+    assert shot.view in VIEWS
+    assert shot.answers[0] != shot.answers[1]
+
+
+def test_the_numbers_of_the_first_step():
+    readings = Walked(GAINS).readings
+    assert 1 + readings[EXPLICIT].energy_error == pytest.approx(5, abs=0.3)
+    assert readings[SYMPLECTIC].max_energy_error == pytest.approx(0.08, abs=0.005)
+    assert readings[VERLET].max_energy_error == pytest.approx(0.006, abs=5e-4)
+    assert readings[RK].energy_error == pytest.approx(-2e-5, abs=5e-6)
+    period = SCENES["drift"].exact().period
+    losses = [after(SCENES["drift"], count * period)[RK].energy_error for count in range(1, 10)]
+    assert losses == sorted(losses, reverse=True)
+    assert max(abs(after(SCENES["drift"], 7 * period)[place].energy_error) for place in (SYMPLECTIC, VERLET)) < 0.01
+
+
+def test_why_explicit_euler_gains_and_symplectic_euler_does_not():
+    scene = WHY.scene
+    energies = [1 + after(scene, steps * scene.h)[EXPLICIT].energy_error for steps in range(1, 12)]
+    assert scene.z**2 == pytest.approx(0.25)
+    assert all(late / early - 1 == pytest.approx(0.25, abs=0.03) for early, late in pairwise(energies))
+    assert energies[-1] > 10
+    euler = after(scene, 50_000)[SYMPLECTIC]
+    assert (euler.energy_error_low, euler.energy_error_high) == pytest.approx((-0.20, 0.33), abs=0.005)
+    q, p, h = 0.0, 0.3, scene.h  # the ellipse of the linear spring: q² + p² - hqp stays
+    for _ in range(100):
+        p = p - h * q
+        q = q + h * p
+        assert q * q + p * p - h * q * p == pytest.approx(0.09, rel=1e-12)
+
+
+def test_half_the_step_is_a_quarter_of_verlets_error_and_a_thirty_second_of_rk4s():
+    readings, whole = Walked(SMALLER).readings, after(SCENES["drift"], 17.6)
+    assert replace(SMALLER.scene, h=2 * SMALLER.scene.h) == SCENES["drift"]
+    assert readings[VERLET].max_energy_error == pytest.approx(0.0014, abs=5e-5)
+    assert whole[VERLET].max_energy_error == pytest.approx(0.0057, abs=5e-5)
+    assert whole[VERLET].max_energy_error / readings[VERLET].max_energy_error == pytest.approx(4, abs=0.1)
+    assert whole[RK].energy_error / readings[RK].energy_error == pytest.approx(32, abs=2)
+    assert (VELOCITY_VERLET.order, RK4.order) == (2, 4)
+    over = [each.t for each in Walked(SMALLER).source.milestones if each.kind == "over the top"]
+    assert over == [pytest.approx(12.45)]
+    assert Walked(GAINS).source.milestones[0].t == pytest.approx(7.15)
+
+
+def test_the_crossing_is_for_good_and_a_smaller_step_puts_it_off():
+    scene = CROSSING.scene
+    early = after(scene, 5)
+    assert early[RK].max_energy_error < early[VERLET].max_energy_error / 5
+    assert Walked(CROSSING).source.sample.t == pytest.approx(33, abs=1)
+    late = [after(scene, seconds) for seconds in (50, 100, 200)]
+    assert all(readings[RK].max_energy_error > 1.4 * readings[VERLET].max_energy_error for readings in late)
+    smaller = {minutes: after(replace(scene, h=0.05), 60 * minutes) for minutes in (31, 34)}
+    behind = {minutes: each[RK].max_energy_error > each[VERLET].max_energy_error for minutes, each in smaller.items()}
+    assert behind == {31: False, 34: True}
+
+
+def test_time_reversed_brings_verlet_home_and_no_other():
+    walked = Walked(REVERSED)
+    assert walked.source.sample.t == pytest.approx(0, abs=1e-9)
+    misses = [miss(reading, REVERSED.scene) for reading in walked.readings]
+    assert misses[VERLET] < 1e-14
+    assert misses[RK] == pytest.approx(4e-5, abs=5e-6)
+    assert misses[SYMPLECTIC] > 0.1
+    assert misses[EXPLICIT] > 1
+
+
+def test_two_methods_keep_area():
+    scene, t = AREA.scene, Walked(AREA).source.sample.t
+    assert t == pytest.approx(2 * scene.exact().period, abs=scene.h)
+    ring = Neighbourhood(scene, 0.1)
+    ring.advance(round(t / scene.h), Stepping(scene.h))
+    ratios = ring.area_ratios
+    assert ratios[SYMPLECTIC] == pytest.approx(1, abs=1e-12)
+    assert ratios[VERLET] == pytest.approx(1, abs=1e-12)
+    assert ratios[EXPLICIT] == pytest.approx(2.4, abs=0.05)
+    for theta in (0.0, 0.5, 1.0, 2.0):
+        stretch = jacobian(EXPLICIT_EULER, scene.equations, theta, 0.3, scene.h).determinant
+        assert stretch == pytest.approx(1 + scene.z**2 * math.cos(theta), rel=1e-12)
+    assert 1 - 1e-4 < ratios[RK] < 1
+
+
+def test_above_its_limit_verlet_is_held_by_the_pendulum_and_not_by_the_spring():
+    walked, scene = Walked(BREAKS), BREAKS.scene
+    assert scene.theta == 0.1
+    assert walked.source.sample.step == 10
+    assert abs(walked.readings[VERLET].theta) == pytest.approx(0.47, abs=0.01)
+    assert scene.z > VELOCITY_VERLET.linear_limit == 2
+    assert RK4.linear_limit == pytest.approx(2.83, abs=0.005)
+    assert EXPLICIT_EULER.linear_limit == 0
+    lockstep, largest = Lockstep(scene), 0.0
+    for _ in range(5000):
+        lockstep.advance(1)
+        largest = max(largest, abs(lockstep.sample().readings[VERLET].theta))
+    assert largest == pytest.approx(0.48, abs=0.005)
+    slower = math.tau / replace(scene, theta=0.48).exact().period
+    assert scene.h * slower < 2
+    assert abs(after(replace(scene, model="linear"), 200)[VERLET].theta) > 1e9
+
+
+def test_which_method_is_cheaper_depends_on_the_accuracy():
+    walked = Walked(COSTS)
+    verlet, rk4 = (walked.source.stepping.own[place] for place in (VERLET, RK))
+    assert rk4 == 4 * verlet
+    assert walked.source.sample.t == pytest.approx(2, abs=0.25)
+    time, _ = usual(COSTS.scene)
+    cost = {}
+    for method in (VELOCITY_VERLET, RK4):
+        for target in (1e-2, 1e-6):
+            study = Study(COSTS.scene.with_cast((method,)), time)
+            (attempt,) = reach(study, "energy", target)
+            cost[method, target] = attempt.point.force_evaluations
+    assert cost[VELOCITY_VERLET, 1e-2] / cost[RK4, 1e-2] == pytest.approx(1 / 2, abs=0.05)
+    assert cost[RK4, 1e-6] / cost[VELOCITY_VERLET, 1e-6] == pytest.approx(1 / 8, abs=0.01)
+
+
+def begun() -> Tour:
+    tour = Tour(Live(SCENES["drift"], clock=lambda: 0.0))
+    tour.begin(0)
+    return tour
+
+
+def test_forward_goes_to_the_moment_then_to_the_truth_then_to_the_next_shot():
+    tour = begun()
+    for index, shot in enumerate(SHOTS):
+        assert (tour.index, tour.stage) == (index, "watching")
+        assert tour.forward()
+        assert tour.stage == "asked"
+        assert tour.live.playhead.paused
+        assert tour.live.sample.t == pytest.approx(0.0 if shot.returns else shot.moment, abs=1e-9)
+        assert tour.forward()
+        assert tour.stage == "answered"
+        assert tour.forward() == (shot is not SHOTS[-1])
+    assert tour.index == 0
+
+
+@pytest.mark.parametrize("choice", [0, 1])
+def test_an_answer_is_right_or_wrong_and_the_truth_is_the_same(choice):
+    tour = begun()
+    tour.forward()
+    tour.answer(choice)
+    result, truth = tour.text
+    assert result.startswith("Right.") == (choice == GAINS.right)
+    assert truth == GAINS.truth
+
+
+def test_back_goes_from_the_truth_to_the_question_and_from_there_to_the_shot_before():
+    tour = begun()
+    for _ in range(5):
+        tour.forward()
+    assert (tour.index, tour.stage) == (1, "answered")
+    tour.back()
+    assert (tour.index, tour.stage) == (1, "asked")
+    tour.back()
+    assert (tour.index, tour.stage, tour.live.scene) == (0, "watching", GAINS.scene)
+    tour.back()
+    assert (tour.index, tour.live.playhead.paused) == (0, False)
+
+
+CHANGES = [lambda live: live.start(SCENES["spin"]), lambda live: live.set_stepping(Stepping(0.1))]
+
+
+@pytest.mark.parametrize("change", CHANGES, ids=["another scene", "another step"])
+def test_after_a_change_of_the_run_enter_begins_the_shot_again(change):
+    tour = begun()
+    change(tour.live)
+    assert not tour.follow()
+    assert tour.text == (ASTRAY,)
+    tour.forward()
+    assert (tour.stage, tour.live.scene, tour.live.stepping) == ("watching", GAINS.scene, GAINS.stepping)
+
+
+def test_equal_cost_of_ones_own_does_not_stay_in_the_tour():
+    live = Live(SCENES["drift"], clock=lambda: 0.0)
+    live.set_stepping(live.stepping.toggled())
+    Tour(live).begin(0)
+    assert live.stepping == GAINS.stepping
+
+
+def printed(stop_at: float = math.inf) -> list[tuple[float, str]]:
+    """Print the tour by a clock of its own; return what is printed when."""
+    now = 0.0
+    lines = []
+
+    def sleep(seconds: float) -> None:
+        nonlocal now
+        now += seconds
+
+    live = Live(SCENES["drift"], clock=lambda: 0.0)
+    print_tour(live, lambda line: lines.append((now, line)), lambda: now > stop_at, lambda: now, sleep)
+    return lines
+
+
+def test_without_a_screen_it_asks_waits_and_answers():
+    lines = printed()
+    assert len(lines) == 4 * len(SHOTS) + 1
+    asked, answered, following = (at for at, _ in lines[2:5])
+    assert answered - asked == pytest.approx(THINKING, abs=0.1)
+    assert following - answered == pytest.approx(READING, abs=0.1)
+    assert [line for _, line in lines[3::4]] == [f"Answer: {shot.right + 1}. {shot.truth}" for shot in SHOTS]
+
+
+@pytest.mark.parametrize("stop_at", [1.0, 9.0, 15.0])
+def test_it_stops_when_it_is_asked_to(stop_at):
+    assert printed(stop_at)[-1][0] <= stop_at + 0.1
