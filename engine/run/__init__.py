@@ -13,5 +13,5 @@
 - `energies` judges the record of any program, by times and energies.
 """
 
-NUMERICS = 1
+NUMERICS = 2
 """The version of the numbers: a run recorded with another one may differ in the last digits."""

@@ -32,6 +32,9 @@ class Reading(NamedTuple):
     extra: Mapping[str, float] = NO_EXTRA  # the values of the model's own variables, `Model.variables`
 
 
+TAU_REST = 2.4492935982947064e-16  # 2 pi - math.tau
+
+
 class Sample(NamedTuple):
     """All methods' readings at one step, in the order of the cast."""
 
@@ -54,6 +57,21 @@ class _Track:
         self.run_low = self.run_high = 0.0
         self.diverged_at: float | None = None
         self.parts = 1  # how many steps of its own it takes in one of the lockstep
+        self.turns = 0  # taken off theta
+
+    def reduce(self) -> None:
+        """Take whole turns off theta if it is beyond one, because its rounding grows with it.
+
+        2 pi is taken off in two numbers: the nearest double, and what that lacks.  Sums keep what compensated numbers
+        carry.
+        """
+        theta, *others = self.phase
+        if abs(theta) >= math.tau:
+            before = float(theta)
+            rest = math.remainder(before, math.tau)
+            turns = round((before - rest) / math.tau)
+            self.turns += turns
+            self.phase = (theta + -before + (rest - turns * TAU_REST), *others)
 
 
 class Lockstep:
@@ -63,7 +81,7 @@ class Lockstep:
     running sum.  A method whose numbers stop being finite is frozen; the others go on.
 
     The lockstep stops by itself at look points, every `stride` steps since the last change of the stepping: there
-    each method is shown to its judge, if there are judges.
+    theta is reduced, and each method is shown to its judge, if there are judges.
     """
 
     def __init__(
@@ -170,7 +188,10 @@ class Lockstep:
     def _stop(self) -> None:
         """Look where it is time to, and choose the next stop."""
         is_look_point = (self.step - self._base_step) % self._stride == 0
-        if self._judges and is_look_point:
+        if is_look_point and self._model.turns:
+            for track in self._tracks:
+                track.reduce()
+        if is_look_point and self._judges:
             self._judges.look(self.step, self.t, [self._look_point(track) for track in self._tracks])
             for track in self._tracks:
                 track.look_low = track.look_high = track.error
@@ -214,7 +235,7 @@ class Lockstep:
     def _below_top(self, track: _Track) -> float:
         """Return how far from the top a method is [rad]."""
         assert self._bottom is not None
-        theta = self._model.observe(track.phase).theta
+        theta = self._model.observe(track.phase).theta + track.turns * math.tau
         return math.pi - abs(theta - self._bottom)
 
     def _steps_below_top(self, track: _Track, most: int) -> int:
@@ -235,6 +256,8 @@ class Lockstep:
         low, high = track.low, track.high
         track.low = track.high = track.error
         theta, omega, extra = self._model.observe(track.phase)
+        if track.turns:
+            theta += track.turns * math.tau
         if self._scales:
             extra = {**extra, **{name: extra[name] / scale for name, scale in self._scales.items()}}
         return Reading(

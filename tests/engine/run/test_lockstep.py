@@ -8,11 +8,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.methods import USUAL_CAST
+from engine.methods import USUAL_CAST, method_of
 from engine.methods.method import Phases
 from engine.models.model import Force, Phase
 from engine.models.pendulum import acceleration, energy
+from engine.run.compiled import available, compiled
 from engine.run.lockstep import Lockstep, Reading, Sample
+from engine.run.loops import PlainLoops
 from engine.run.stepping import Stepping
 from engine.scenes import LIMITS, SCENES, Scene, SceneError
 
@@ -70,9 +72,27 @@ def test_each_method_goes_where_the_textbooks_loop_goes_to_the_bit(scene: Scene,
     for method, reading in zip(USUAL_CAST, lockstep.sample().readings, strict=True):
         phase: Phase = (scene.theta, scene.omega)
         for _ in range(n):
+            if abs(phase[0]) >= math.tau:
+                return  # from there on theta is reduced
             phase = method.step(force, phase, scene.h)
         assert (reading.theta, reading.omega) == phase
         assert reading.energy == energy(scene.w0_squared, *phase)
+
+
+@pytest.mark.parametrize("key", ["blanes_moan_6", "blanes_moan_4"])
+def test_a_long_rotation_stays_in_the_band_of_its_first_turns(key: str) -> None:
+    """Rounding of theta would grow with it: within 5e5 steps it carried these energies ten bands away."""
+    scene = Scene(theta=-0.538, omega=6.554, h=0.318 / Scene().w0, cast=(method_of(key),))
+    lockstep = Lockstep(scene, loops=compiled if available() else PlainLoops)
+    bands = []
+    for _ in range(2):
+        lockstep.advance(250_000)
+        (reading,) = lockstep.sample().readings
+        bands.append((reading.energy_error_low, reading.energy_error_high))
+    (low, high), (late_low, late_high) = bands
+    assert late_low > low - 1e-12
+    assert late_high < high + 0.01 * (high - low) + 1e-12
+    assert abs(reading.theta) > 1e5  # unwrapped
 
 
 @given(scene=scenes, changes=changes)
