@@ -11,7 +11,7 @@ from tui.playback.marks import Marks
 from tui.playback.replay import Replay
 from tui.playback.source import Source
 from tui.words.describe import description
-from tui.words.plain_text import plain
+from tui.words.plain_text import print_run
 
 DRIFT = SCENES["drift"]
 
@@ -32,7 +32,7 @@ def said(source: Source, seconds: float, only: Cast | None = None) -> list[str]:
     """What is said in so many seconds of the clock."""
     clock, sentences = Hour(), []
     end = clock.now + seconds
-    plain(source, sentences.append, lambda: clock.now >= end, clock.read, clock.sleep, only=only)
+    print_run(source, sentences.append, lambda: clock.now >= end, clock.read, clock.sleep, only=only)
     return sentences
 
 

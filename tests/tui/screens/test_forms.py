@@ -1,0 +1,87 @@
+"""The forms take what is typed and chosen, and say what is wrong."""
+
+import math
+
+from engine.methods import METHODS, USUAL_CAST
+from engine.scenes import DEFAULT_SCENE, MOST_METHODS, SCENES
+from tests.tui.harness import lab
+
+
+async def test_the_start_form_takes_radians_and_degrees_and_starts_with_enter():
+    async with lab() as theatre:
+        await theatre.run(1)
+        await theatre.press("i", *"115deg", "tab", *"-2", "tab", *"0.01", "enter")
+        await theatre.pilot.pause()
+        scene = theatre.source.scene
+        assert (scene.theta, scene.omega, scene.h) == (math.radians(115), -2.0, 0.01)
+        assert (scene.length, scene.gravity, theatre.source.sample.step) == (1.0, 9.81, 0)
+
+
+async def test_it_has_the_parameters_of_the_model_and_starts_nothing_that_is_wrong():
+    async with lab(SCENES["stiff-slow"]) as theatre:
+        await theatre.press("i")
+        form = theatre.app.screen
+        fields = [field.id for field in form.query("Input")]
+        assert fields == ["theta", "omega", "h", "length", "gravity", "stiffness"]
+        for field, value in (("stiffness", "0.5"), ("theta", "abc"), ("theta", "")):
+            before = form.query_one(f"#{field}").value
+            form.query_one(f"#{field}").value = value
+            await theatre.press("enter")
+            await theatre.pilot.pause()
+            assert theatre.app.screen is form
+            assert form.query_one("#verdict").has_class("-wrong")
+            form.query_one(f"#{field}").value = before
+        form.query_one("#stiffness").value = "400"
+        await theatre.pilot.pause()
+        await theatre.press("enter")
+        await theatre.pilot.pause()
+        assert theatre.source.scene == SCENES["stiff-slow"].altered(stiffness=400.0)
+
+
+async def test_a_new_run_of_a_lab_whose_time_runs_backwards_runs_forwards():
+    async with lab() as theatre:
+        await theatre.press("b", "i")
+        assert theatre.app.screen.query_one("#h").value == "0.05"
+        await theatre.press("enter")
+        await theatre.pilot.pause()
+        assert theatre.source.stepping.h == 0.05
+        assert theatre.source.sample.run == 2
+
+
+async def test_methods_are_taken_in_the_order_that_is_chosen():
+    async with lab() as theatre:
+        await theatre.press("M", "space", "down", "down", "space", "end", "up", "space", "home", "space", "enter")
+        await theatre.pilot.pause()
+        letters = [method.letter for method in theatre.source.scene.cast]
+        assert letters[:2] == ["s", "r"]
+        assert letters[-1] == "e"
+        assert len(letters) == 4
+
+
+async def test_a_click_takes_a_method_and_more_than_fit_or_none_are_refused():
+    async with lab(size=(100, 40)) as theatre:
+        await theatre.press("M")
+        form = theatre.app.screen
+        for row in range(4, 9):
+            await theatre.pilot.click("#cast", offset=(10, row + 1))
+            await theatre.pilot.pause()
+        assert len(form.cast) == MOST_METHODS
+        for row, method in enumerate(METHODS[:10]):
+            if method in form.cast:
+                await theatre.pilot.click("#cast", offset=(10, row + 1))
+                await theatre.pilot.pause()
+        assert not form.cast
+        await theatre.press("enter")
+        assert theatre.app.screen is form
+        await theatre.press("escape")
+        await theatre.pilot.pause()
+        assert theatre.source.scene.cast == USUAL_CAST
+
+
+async def test_a_form_that_is_cancelled_changes_nothing():
+    async with lab() as theatre:
+        for key in ("i", "M", "P"):
+            await theatre.press(key, "escape")
+            await theatre.pilot.pause()
+        assert theatre.app.screen is theatre.stage
+        assert (theatre.source.scene, theatre.source.sample.run) == (DEFAULT_SCENE, 1)
