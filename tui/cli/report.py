@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TextIO
 
 from recordings.errors import printable
+from recordings.files import is_stream
 from tui.cli.files import text_file
 from tui.cli.options import add_file
 from tui.cli.output import console, draw, print_lines
@@ -143,8 +144,7 @@ def file_type(suffixes: Sequence[str]) -> Callable[[str], Path]:
 
     def read(text: str) -> Path:
         path = Path(text)
-        is_device = path.exists() and not path.is_file() and not path.is_dir()
-        if path.suffix.lower() not in suffixes and not is_device:
+        if path.suffix.lower() not in suffixes and not is_stream(path):
             named = " or ".join(f"{path.stem}{suffix}" for suffix in suffixes)
             raise argparse.ArgumentTypeError(f"{text!r} has another suffix; use {named}")
         return path

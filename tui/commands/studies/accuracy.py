@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from engine.scenes import Scene, check_h
 from tui.cli.errors import Exit, UserError
+from tui.cli.files import check_free
 from tui.cli.options import count, positive
 from tui.cli.output import progress, warn
 from tui.cli.report import add_report_options, publish
@@ -88,6 +89,8 @@ def run(options: argparse.Namespace) -> int:
         raise UserError(f"--budget {options.budget:g} is out of range; use 1 to {MAX_BUDGET:g} force evaluations.")
     durations = options.time or [usual(scene)[0]]
     rungs = _ladder(scene, durations[-1], options.h_values, options.all)
+    if options.output:
+        check_free(options.output, options.force)
     from tui.commands.studies.reports.accuracy import Findings, report
 
     found = Findings(

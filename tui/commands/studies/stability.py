@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from engine.scenes import Z_LIMITS, Scene
 from tui.cli.errors import Exit, UserError
+from tui.cli.files import check_free
 from tui.cli.install import install_advice
 from tui.cli.options import angle, count, number
 from tui.cli.output import progress, warn
@@ -29,50 +30,33 @@ if TYPE_CHECKING:
 
 EXAMPLES = """\
 examples:
-  pendu-tui stability
   pendu-tui stability --theta 120deg --h 0.3
-  pendu-tui stability linear
   pendu-tui stability --method mine.py:my_step
-  pendu-tui stability --map --workers 4
   pendu-tui stability --json | jq '.pendulum[] | select(.method == "velocity_verlet")'
+  pendu-tui stability --map --workers 4
   pendu-tui stability --z-values 0.005:3:600 --theta-values 1deg:179deg:300 --workers 8 -o map.npz
-  pendu-tui stability --section --theta 1.25 --h 0.348 --methods rk4
-  pendu-tui stability --section --h 0.35 --theme light -o section.svg
+  pendu-tui stability --section --theta 1.25 --h 0.348 --methods rk4 -o section.svg
 """
 
 MAX_VALUES = 1_000_000  # of an axis
-MAX_AMPLITUDES = 1000  # of a table
-MAX_SHOWN = 2_000_000  # swings of a map that is printed
-MAX_SWINGS = 20_000_000  # of a map in a file: 320 MB in memory
+MAX_SWINGS = 20_000_000  # of a grid: 320 MB in memory
 STEPS, SECTION_STEPS = 10_000, 4000
+LIST = "FIRST:LAST:HOW_MANY"
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_scene_options(parser)
+    add = parser.add_argument
     what = parser.add_mutually_exclusive_group()
     what.add_argument("--map", action="store_true", help="draw the map: z on x, amplitude on y")
     what.add_argument("--section", action="store_true", help="draw the phase portrait of the first of the methods")
-    parser.add_argument(
-        "--theta-values",
-        metavar="LIST",
-        type=values(angle),
-        help="amplitudes in rad or deg: 0.5,1,2 or FIRST:LAST:HOW_MANY, for example 10deg:170deg:17"
-        " (default: 0.1, 0.5, 1, 2, 3 and the scene's; with --map: 100)",
-    )
-    parser.add_argument(
-        "--z-values",
-        metavar="LIST",
-        type=values(number),
-        help="z = h·w0, for example 0.01:3:300 (default: one every 1 %% up to 3.2; with --map: 200 up to 3)",
-    )
-    parser.add_argument(
-        "--steps",
-        metavar="N",
-        type=count,
-        help=f"steps of each swing ({STEPS}; of an orbit of --section {SECTION_STEPS})",
-    )
-    parser.add_argument("--starts", metavar="N", type=count, default=300, help="orbits of --section (%(default)s)")
-    parser.add_argument("--size", metavar="CxR", type=cells, help="columns x rows of --section (the terminal's)")
+    thetas = f"amplitudes in rad or deg: 0.5,1,2 or {LIST} (0.1, 0.5, 1, 2, 3 and the scene's; of a map 100)"
+    add("--theta-values", metavar="LIST", type=values(angle), help=thetas)
+    zs = f"z = h·w0: 0.5,1 or {LIST} (one every 1 %% up to 3.2; of a map 200 up to 3)"
+    add("--z-values", metavar="LIST", type=values(number), help=zs)
+    add("--steps", metavar="N", type=count, help=f"steps of each swing ({STEPS}), or orbit ({SECTION_STEPS})")
+    add("--starts", metavar="N", type=count, default=300, help="orbits of --section (%(default)s)")
+    add("--size", metavar="CxR", type=cells, help="columns x rows of --section (the terminal's)")
     add_report_options(parser, csv=True, files=(".npz", ".csv", ".json", ".svg", ".txt"))
     where = parser.add_mutually_exclusive_group()
     where.add_argument("--workers", metavar="N", type=count, default=1, help="processes on this machine (%(default)s)")
@@ -91,9 +75,7 @@ def values(element: Callable[[str], float]) -> Callable[[str], list[float]]:
                 low = element(first)
                 gaps = count(many) - 1
                 return [low + (element(last) - low) * i / gaps for i in range(gaps)] + [element(last)]
-        raise argparse.ArgumentTypeError(
-            f"{text!r} is not a list of values; use for example 0.5,1,2 or 0.1:3:30 (FIRST:LAST:HOW_MANY)"
-        )
+        raise argparse.ArgumentTypeError(f"{text!r} is not a list of values; use 0.5,1,2 or 0.1:3:30 ({LIST})")
 
     return read
 
@@ -112,33 +94,29 @@ def run(options: argparse.Namespace) -> int:
     steps = options.steps or STEPS
     _check(scene, options, steps)
     from engine.stability.study import ladder_of, map_of
-    from tui.commands.studies.reports import stability
+    from tui.commands.studies.reports.stability import report, write_map
 
-    request = (scene, options.theta_values, options.z_values, steps)
+    grids = []
+    if scene.equations.turns and suffix != ".npz":
+        grids.append(ladder_of(scene, options.theta_values, options.z_values, steps))
+    if options.map or suffix == ".npz":
+        grids.append(map_of(scene, options.theta_values, options.z_values, steps))
+    for grid in grids:
+        if math.prod(grid.shape) > MAX_SWINGS:
+            raise UserError(f"{math.prod(grid.shape)} swings are too many; use at most {MAX_SWINGS}.")
+    if options.output:
+        check_free(options.output, options.force)
+    computed = []
+    ended = None
     with _workers(options) as executor:
-        if suffix == ".npz":
-            grid = map_of(*request)
-            _check_size(grid, MAX_SWINGS)
-            with stability.map_file(options.output, options.force) as write:
-                computed, ended = compute(grid, executor)
-                write(grid, computed)
-            return _end(ended)
-        studied = stability.Studied(scene, steps)
-        ended = None
-        if options.map:
-            studied.grid = map_of(*request)
-            _check_size(studied.grid, MAX_SHOWN)
-        if scene.equations.turns:
-            studied.ladder = ladder_of(*request)
-            studied.cells, ended = compute(studied.ladder, executor)
-        if studied.grid is not None and ended is None:
-            studied.map, ended = compute(studied.grid, executor)
-    studied.interrupted = ended is not None
-    publish(stability.report(studied), options)
-    return _end(ended)
-
-
-def _end(ended: UserError | None) -> int:
+        for grid in grids:
+            if ended is None:
+                swings, ended = compute(grid, executor)
+                computed.append((grid, swings))
+    if suffix == ".npz":
+        write_map(options.output, options.force, *computed[0])
+    else:
+        publish(report(scene, steps, computed, is_whole=ended is None), options)
     if ended is None:
         return Exit.FINE
     warn(str(ended))
@@ -170,11 +148,10 @@ def _check(scene: Scene, options: argparse.Namespace, steps: int) -> None:
     """Refuse what is not about this scene, or out of range."""
     asked = {"--map": options.map, "--csv": options.csv, "-o": options.output}
     asked |= {"--theta-values": options.theta_values, "--z-values": options.z_values}
-    given = [name for name, value in asked.items() if value]
-    if not scene.equations.turns and given:
+    given = next((name for name, value in asked.items() if value), None)
+    if given and not scene.equations.turns:
         raise UserError(
-            f"{given[0]} is about a pendulum, and this scene is the linear oscillator, whose limit is the same at every"
-            f" amplitude; leave out {given[0]}, or choose another scene."
+            f"{given} is about a pendulum, and limits of the linear oscillator hold everywhere; leave it out."
         )
     for what, numbers, (low, high) in (
         ("amplitude", options.theta_values or (), (0, math.pi)),
@@ -184,16 +161,6 @@ def _check(scene: Scene, options: argparse.Namespace, steps: int) -> None:
         for value in numbers:
             if not low < value < high:  # also refuses nan
                 raise UserError(f"{what} {value:g} is out of range; it must lie between {low:g} and {high:g}.")
-    amplitudes = len(options.theta_values or ())
-    if amplitudes > MAX_AMPLITUDES and not (options.output or options.map):
-        raise UserError(f"{amplitudes} amplitudes are too many to show; use at most {MAX_AMPLITUDES}, or -o FILE.npz.")
-
-
-def _check_size(grid: "Grid", limit: int) -> None:
-    swings = math.prod(grid.shape)
-    if swings > limit:
-        advice = f"use at most {limit}" + (", or write it with -o FILE.npz" if limit == MAX_SHOWN else "")
-        raise UserError(f"a map of {swings} swings is too large; {advice}.")
 
 
 @contextmanager

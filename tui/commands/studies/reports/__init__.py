@@ -1,1 +1,1 @@
-"""Reports of `accuracy`, of `stability` and of its --section, apart from the options: they load NumPy and Rich."""
+"""Reports of `accuracy`, `stability` and its --section, and of `energies` judged: they load NumPy and Rich."""
