@@ -62,37 +62,39 @@ class Table:
     """One table: columns of finite numbers, of which the first increases."""
 
     units: tuple[str, ...]
-    columns: "list[array[float]]"
+    columns: Sequence[Any]  # array.array while it is read, then NumPy's
     number: int = 0
     count: int = 0  # tables in the input
     skipped: dict[str, int] = field(default_factory=lambda: dict.fromkeys(REASONS, 0))
-    last: float = -LATEST  # the time of the last row
     failed_at: float | None = None  # the time from which on numbers are nan or inf, to the end
 
-    def add(self, row: Row, start: float) -> None:
-        """Add a row, or count it as skipped."""
-        now = row[0]
-        numbers = [value for value in row if value is not None]
-        if now is None or len(numbers) < len(row):
-            self.skipped["without_numbers"] += 1
-        elif not abs(now) < LATEST:
-            self.skipped["time_not_finite"] += 1
-        elif now <= self.last:
-            self.skipped["time_not_later"] += 1
-        elif now < start:
-            self.skipped["before_start"] += 1
-        elif all(map(math.isfinite, numbers)):
-            self.last = now
-            self.failed_at = None
-            for column, value in zip(self.columns, numbers, strict=True):
-                column.append(value)
-        else:
-            self.last = now
-            self.skipped["energy_not_finite"] += 1
-            self.failed_at = now if self.failed_at is None else self.failed_at
+    def finish(self, start: float) -> None:
+        """Leave out what cannot be used, and count it."""
+        import numpy as np
+
+        columns = [np.asarray(column) for column in self.columns]
+        times = np.where(np.abs(columns[0]) < LATEST, columns[0], -np.inf)
+        before = np.maximum.accumulate(np.concatenate([[-np.inf], times[:-1]]))
+        finite = np.all([np.isfinite(column) for column in columns[1:]], axis=0)
+        left = np.ones(len(times), dtype=bool)
+        for why, bad in (
+            ("time_not_finite", np.isinf(times)),
+            ("time_not_later", times <= before),
+            ("before_start", times < start),
+        ):
+            self.skipped[why] = int(np.count_nonzero(bad & left))
+            left &= ~bad
+        good = np.flatnonzero(finite & left)
+        lost = np.flatnonzero(~finite & left)
+        self.skipped["energy_not_finite"] = len(lost)
+        lost = lost[lost > good[-1]] if len(good) else lost
+        self.failed_at = float(times[lost[0]]) if len(lost) else None
+        self.columns = [column[good] for column in columns]
 
 
-def read_table(stream: BinaryIO, wanted: Sequence[str], number: int | None = None, start: float = -LATEST) -> Table:
+def read_table(
+    stream: BinaryIO, wanted: Sequence[str], number: int | None = None, start: float = -LATEST
+) -> Table:
     """Return a table of the wanted columns, times first: the last one, or that of this number.
 
     A column is a name, a number from 1, or several of them joined by +.  Rows before `start` are
@@ -100,25 +102,34 @@ def read_table(stream: BinaryIO, wanted: Sequence[str], number: int | None = Non
     """
     current = Table((), [])
     found = None
+    last = -LATEST
     count = 0
     for record in _records(stream, wanted):
         if isinstance(record, Head):
             current = Table(record.units, [array("d") for _ in wanted])
+            last = -LATEST
+            continue
+        if None in record:
+            current.skipped["without_numbers"] += 1
             continue
         now = record[0]
-        if now is not None and abs(now) < LATEST and None not in record:
-            if now < current.last:  # the time starts again
-                current = Table(current.units, [array("d") for _ in wanted])
-            if not current.number:
-                count += 1
-                current.number = count
-                found = current if number in (None, count) else found
-        current.add(record, start)
+        if -LATEST < now < last:  # type: ignore[operator]
+            current = Table(current.units, [array("d") for _ in wanted])
+            last = -LATEST
+        if not current.number and abs(now) < LATEST:  # type: ignore[arg-type]
+            count += 1
+            current.number = count
+            found = current if number in (None, count) else found
+        if last <= now < LATEST:  # type: ignore[operator]
+            last = now  # type: ignore[assignment]
+        for column, value in zip(current.columns, record):  # noqa: B905
+            column.append(value)
     if found is None and count:
         raise _unreadable(f"there is no table {number}; the input has {count}.")
     if found is None:
         raise _unreadable("no row has a number in each column; columns count from 1.")
     found.count = count
+    found.finish(start)
     return found
 
 
@@ -161,6 +172,7 @@ class _Text:
         self._head: Head | None = None
         self._has_rows = False
         self._delimiter: str | None = None
+        self._singles: list[int] = []  # the places, where none are to be added
 
     def records(self, lines: Iterator[str]) -> Records:
         """Yield heads and rows."""
@@ -183,6 +195,8 @@ class _Text:
         assert self._head is not None
         fields = line.split(self._delimiter) if '"' not in line else _fields(line, self._delimiter)
         try:
+            if self._singles:
+                return [float(fields[place]) for place in self._singles]
             return [sum([float(fields[place]) for place in group]) for group in self._head.places]
         except (ValueError, IndexError):
             return None
@@ -204,6 +218,8 @@ class _Text:
             if self._head:
                 self._delimiter = delimiter
                 self._has_rows = True
+                singles = [group[0] for group in self._head.places]
+                self._singles = singles if max(map(len, self._head.places)) == 1 else []
                 yield self._head
         if self._has_rows and self._head and text.strip() and not is_comment:
             yield _row(fields, self._head.places)
