@@ -6,7 +6,6 @@ that has the wanted names, or where the time starts again; one of the tables is 
 
 import io
 import json
-import math
 import re
 import zipfile
 from array import array
@@ -92,9 +91,7 @@ class Table:
         self.columns = [column[good] for column in columns]
 
 
-def read_table(
-    stream: BinaryIO, wanted: Sequence[str], number: int | None = None, start: float = -LATEST
-) -> Table:
+def read_table(stream: BinaryIO, wanted: Sequence[str], number: int | None = None, start: float = -LATEST) -> Table:
     """Return a table of the wanted columns, times first: the last one, or that of this number.
 
     A column is a name, a number from 1, or several of them joined by +.  Rows before `start` are

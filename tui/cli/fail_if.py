@@ -18,14 +18,14 @@ from typing import Any
 
 from engine.methods import USUAL_CAST, Cast
 from engine.run.judgement import VERDICTS
-from recordings.fields import NUMBERS
+from recordings.fields import EXTRA_NAMES, NUMBERS
 from tui.cli.errors import UserError
 from tui.cli.options import did_you_mean
 
 FIELDS = (
     *NUMBERS,
     "log_energy_error",
-    "spring_energy",
+    *EXTRA_NAMES,
     "theta_error",
     "drift_per_second",
     "force_evaluations",
@@ -33,7 +33,7 @@ FIELDS = (
 )
 """The fields of `run --json` that are numbers."""
 
-Values = Mapping[str, Mapping[str, float | str | None]]  # method key -> field -> value
+Values = Mapping[str, Mapping[str, Any]]  # method key -> field -> value
 Gate = Callable[[Values], str]  # the values that trip it; empty if it passes
 
 MAX_LENGTH = 10_000  # characters of a gate
@@ -126,7 +126,11 @@ def _found(
         return f"{name} is not known"
     if not compare(ours, limit):
         return ""
-    return f"{name} is {ours if isinstance(ours, str) else format(ours, '.3g')}"
+    text = ours if isinstance(ours, str) else format(ours, ".3g")
+    progress = reading.get("progress")
+    if field == "verdict" and isinstance(progress, Mapping):
+        text += f": {progress['have']} of {progress['need']} {progress['unit']}"
+    return f"{name} is {text}"
 
 
 def _segment(source: str, node: ast.expr) -> str:
