@@ -5,10 +5,9 @@ only if the name is still free, or may be replaced.
 """
 
 import os
-import stat
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 
 from recordings.errors import DiskError, NameTakenError, printable, writing
@@ -25,11 +24,7 @@ def check_target(path: Path, force: bool = False) -> None:
 
 def is_stream(path: Path) -> bool:
     """Return whether this is a device, a pipe or a socket, which is never replaced by a file."""
-    try:
-        mode = path.stat().st_mode
-    except OSError:
-        return False
-    return not stat.S_ISREG(mode) and not stat.S_ISDIR(mode)
+    return path.exists() and not path.is_file() and not path.is_dir()
 
 
 @contextmanager
@@ -44,12 +39,13 @@ def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
         return
     check_target(path, force)
     with writing(path):
-        handle, name = tempfile.mkstemp(prefix=f".{path.name[:100]}.", suffix=".part", dir=path.parent)
+        handle, name = tempfile.mkstemp(".part", f".{path.name[:100]}.", path.parent)
         os.close(handle)
     part = Path(name)
     try:
-        with writing(path):
-            part.chmod(0o666 & ~_umask())  # mkstemp makes it private
+        umask = os.umask(0)
+        os.umask(umask)
+        part.chmod(0o666 & ~umask)  # mkstemp makes it private
         yield part
         publish(part, path, force)
     finally:
@@ -58,34 +54,21 @@ def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
 
 def publish(part: Path, path: Path, force: bool = False) -> None:
     """Give a finished file its name.  Raises NameTakenError if another one has it by now."""
-    with writing(path):
-        if force:
-            part.replace(path)
-            return
-        try:
-            os.link(part, path)
-        except FileExistsError as error:
-            raise NameTakenError("a file of this name appeared meanwhile", path) from error
-        except OSError:  # no links on this file system
-            _copy(part, path)
-        part.unlink()
-
-
-def _copy(part: Path, path: Path) -> None:
     try:
-        with part.open("rb") as source, path.open("xb") as target:
+        with writing(path):
+            if force:
+                part.replace(path)
+                return
             try:
-                while block := source.read(1 << 20):
-                    target.write(block)
-            except BaseException:
-                with suppress(OSError):
-                    path.unlink()
+                os.link(part, path)
+            except FileExistsError:
                 raise
-    except FileExistsError as error:
-        raise NameTakenError("a file of this name appeared meanwhile", path) from error
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+            except OSError:  # no links on this file system
+                with part.open("rb") as source, path.open("xb") as target:
+                    while block := source.read(1 << 20):
+                        target.write(block)
+            part.unlink()
+    except DiskError as error:
+        if isinstance(error.__cause__, FileExistsError):
+            raise NameTakenError("a file of this name appeared meanwhile", path) from error
+        raise

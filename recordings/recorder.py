@@ -44,7 +44,7 @@ from recordings.library import free_path, hold, part_of
 FLUSH_EVERY = 0.8  # s of real time; with a slow frame's delay kill -9 loses less than 1 s
 FIRST_FLUSH = 0.2  # s; from there on the time between flushes doubles until it is FLUSH_EVERY
 FLUSH_EVENTS_EVERY = 0.25  # s; a key held down gives 30 events a second
-MAX_CHUNK = 1 << 17  # bytes of messages, however dense the samples; the only limit in headless runs
+MAX_CHUNK = 1 << 17  # bytes of messages; the only limit in headless runs
 MAX_CLOCK = 1e10  # s; log_time has 64 bits of nanoseconds
 
 WallClock = Callable[[], int]
@@ -73,9 +73,9 @@ class Recorder:
         self.bytes = 0  # size of the file so far
         self.samples = 0
         self._wall = wall
-        self._about = about
+        self._about = _about(wall) if about is None else about
         self._overwrite = overwrite
-        self._last: Sample | None = None
+        self._last: Sample | None = None  # of the run
         self._channels: dict[str, int] = {}
         self._schemas: dict[str, int] = {}
         self._topics: list[str] = []  # of the run's methods
@@ -86,8 +86,7 @@ class Recorder:
         self._event_waits = False
         self._began = 0.0 if wall is None else wall() / 1e9  # s, real time
         self._now = self._began
-        self._flushed_at = 0.0  # s, on the recording clock
-        self._really_flushed_at = self._began
+        self._flushed = 0.0, self._began  # s: on the recording clock, and real time
         self._unflushed = 0  # bytes
         if is_stream(path):
             raise DiskError("is a device or a pipe; a recording needs a file", path)
@@ -100,10 +99,7 @@ class Recorder:
                 raise NameTakenError(why, self.part) from error
         hold(self._file)
         self._writer = Writer(
-            self._file,
-            chunk_size=1 << 62,
-            compression=CompressionType.ZSTD,
-            enable_data_crcs=True,
+            self._file, chunk_size=1 << 62, compression=CompressionType.ZSTD, enable_data_crcs=True
         )
         self._writer.start(PROFILE, program())
 
@@ -111,7 +107,7 @@ class Recorder:
         """Write an event; it is on disk within a quarter of a second."""
         data = encode_event(event)
         if event.scene is not None:
-            self._last = None  # a recording that ends here has no stop of the run before
+            self._last = None
             self._begin(event.scene, clock)
         self._add([(EVENTS, data)], clock)
         self._stopped = event.kind == "stop"
@@ -125,27 +121,24 @@ class Recorder:
         Steps ascend within a run.  Extremes are those since the previous sample, so a run's first has none.
         """
         last = self._last
-        is_first = last is None or last.run != sample.run
-        if last is not None and not is_first:
+        if last is not None and last.step >= sample.step:
             if last.step == sample.step:
                 return
-            if last.step > sample.step:
-                raise ValueError(f"step {sample.step} of run {sample.run} comes after {last.step}")
-        messages = encode_readings(without_extremes(sample) if is_first else sample)
+            raise ValueError(f"step {sample.step} of run {sample.run} comes after {last.step}")
+        messages = encode_readings(sample if last else without_extremes(sample))
         self._add(list(zip(self._topics, messages, strict=True)), clock)
         self.samples += 1
         self._last = sample
-        self._flush_if_due(urgent=self._paused or is_first)
+        self._flush_if_due(urgent=self._paused or last is None)
 
     def flush(self) -> None:
         """Hand everything so far to the system, where it survives the death of this process."""
         with writing(self.part):
             self._writer.flush()  # type: ignore[no-untyped-call]
-            if not os.path.samestat(self.part.stat(), os.fstat(self._file.fileno())):
+            if not self._is_ours():
                 raise DiskError("the file was replaced", self.part)
         self.bytes = self._file.tell()
-        self._flushed_at = self.seconds
-        self._really_flushed_at = self._now
+        self._flushed = self.seconds, self._now
         self._unflushed = 0
         self._event_waits = False
 
@@ -153,62 +146,49 @@ class Recorder:
         """Finish the recording: a stop, the summary, and its final name.  Without a start, leave no file.
 
         If the name was taken meanwhile, the recording gets the next free one, `path`, and NameTakenError
-        says so.
+        is raised.
         """
         if self._file.closed:
             return
-        if not self._channels:
-            self.abandon()
-            return
-        try:
-            if self._last is not None and not self._stopped:
-                last = self._last
-                self.event(Event("stop", last.run, last.step, last.t), self.seconds)
-            self.flush()
-            with writing(self.part):
-                self._writer.finish()  # type: ignore[no-untyped-call]
-                self._file.flush()
-                os.fsync(self._file.fileno())
-                self.bytes = self._file.tell()
-            self._publish()  # still locked, until the name is right
-        except NameTakenError:
-            self._file.close()
-            raise
-        except DiskError:
-            self.abandon()
-            raise
-        self._file.close()
-
-    def _publish(self) -> None:
         wanted = self.path
-        while True:
-            try:
-                publish(self.part, self.path, self._overwrite)
-            except NameTakenError:
-                self.path = free_path(wanted)
-                continue
-            break
+        try:
+            if self._channels:
+                self._finish()
+        finally:
+            self.abandon()
         if self.path != wanted:
             why = f"a file of this name appeared meanwhile; the recording is saved as {self.path.name}"
             raise NameTakenError(why, wanted)
 
-    def abandon(self) -> None:
-        """Leave the file as it is: what was flushed stays in NAME.mcap.part, and an empty one is removed."""
-        if not self._file.closed:
-            self._leave(delete=not self.bytes)
+    def _finish(self) -> None:
+        if self._last is not None and not self._stopped:
+            last = self._last
+            self.event(Event("stop", last.run, last.step, last.t), self.seconds)
+        self.flush()
+        with writing(self.part):
+            self._writer.finish()  # type: ignore[no-untyped-call]
+            self._file.flush()
+            os.fsync(self._file.fileno())
+            self.bytes = self._file.tell()
+        wanted = self.path
+        while self.part.exists():  # still locked, until the name is right
+            with suppress(NameTakenError):
+                publish(self.part, self.path, self._overwrite)
+                return
+            self.path = free_path(wanted)
 
-    def discard(self) -> None:
-        """Delete the file."""
-        if not self._file.closed:
-            self._leave(delete=True)
-
-    def _leave(self, delete: bool) -> None:
+    def abandon(self, delete: bool = False) -> None:
+        """Leave the file as it is: what was flushed stays in NAME.mcap.part, and an empty one is deleted."""
+        if self._file.closed:
+            return
         with suppress(OSError):
-            is_ours = os.path.samestat(self.part.stat(), os.fstat(self._file.fileno()))
-            if delete and is_ours:
+            if self._is_ours() and (delete or not self.bytes):
                 self.part.unlink()
         with suppress(OSError):
             self._file.close()
+
+    def _is_ours(self) -> bool:
+        return os.path.samestat(self.part.stat(), os.fstat(self._file.fileno()))
 
     def __enter__(self) -> Self:
         return self
@@ -222,10 +202,9 @@ class Recorder:
     def _begin(self, scene: Scene, clock: float) -> None:
         """Register the channels of a run, and in the first chunk describe the recording."""
         if not self._channels:
-            self._register(EVENTS, EVENT_SCHEMA, {"format": FORMAT_VERSION})
+            self._register(EVENTS, EVENT_SCHEMA)
             self._register(ABOUT, ABOUT_SCHEMA)
-            about = self._about if self._about is not None else _about(self._wall)
-            self._add([(ABOUT, json.dumps(about).encode())], clock)
+            self._add([(ABOUT, json.dumps(self._about).encode())], clock)
         for method in scene.cast:
             if isinstance(method, OwnMethod):
                 self._register(SOURCES, SOURCE_SCHEMA)
@@ -236,15 +215,16 @@ class Recorder:
         for name in self._topics:
             self._register(name, sample_schema(scene.model))
 
-    def _register(self, name: str, schema: dict[str, Any], facts: dict[str, str] | None = None) -> None:
+    def _register(self, name: str, schema: dict[str, Any]) -> None:
         """Make a channel, and its schema, unless it is there already."""
-        if name in self._channels:
-            return
         title = schema["title"]
         if title not in self._schemas:
             data = json.dumps(schema, separators=(",", ":")).encode()
             self._schemas[title] = self._writer.register_schema(title, "jsonschema", data)
-        self._channels[name] = self._writer.register_channel(name, "json", self._schemas[title], facts or {})
+        if name not in self._channels:
+            facts = {"format": FORMAT_VERSION} if name == EVENTS else {}
+            number = self._writer.register_channel(name, "json", self._schemas[title], facts)
+            self._channels[name] = number
 
     def _add(self, messages: Sequence[tuple[str, bytes]], clock: float) -> None:
         """Write the messages of one entry.  All are checked first: a rejected one spoils its chunk."""
@@ -256,15 +236,11 @@ class Recorder:
         self.seconds = max(self.seconds, clock)
         publish_time = self._log_time if self._wall is None else self._wall()
         self._now = publish_time / 1e9
+        number = self._entries % (1 << 32)
         with writing(self.part):
             for name, data in messages:
-                self._writer.add_message(
-                    channel_id=self._channels[name],
-                    log_time=self._log_time,
-                    data=data,
-                    publish_time=publish_time,
-                    sequence=self._entries % (1 << 32),
-                )
+                channel = self._channels[name]
+                self._writer.add_message(channel, self._log_time, data, publish_time, number)
                 self._unflushed += len(data)
         self._entries += 1
 
@@ -276,12 +252,10 @@ class Recorder:
         """Return whether more than the last second is in memory only.  A wall clock may be set back."""
         if self._wall is None:  # it can be made again
             return False
-        age = max(self.seconds - self._flushed_at, self._now - self._really_flushed_at)
-        length = max(self._flushed_at, self._really_flushed_at - self._began)
-        every = min(max(length, FIRST_FLUSH), FLUSH_EVERY)
-        if self._event_waits:
-            every = min(every, FLUSH_EVENTS_EVERY)
-        return age >= every
+        clock, real = self._flushed
+        age = max(self.seconds - clock, self._now - real)
+        every = min(max(clock, real - self._began, FIRST_FLUSH), FLUSH_EVERY)
+        return age >= (min(every, FLUSH_EVENTS_EVERY) if self._event_waits else every)
 
 
 def program() -> str:

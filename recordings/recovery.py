@@ -46,7 +46,7 @@ def recover(path: Path, out: Path, progress: ShowProgress | None = None, overwri
                     if recorder is None:
                         about = decoder.about | {"recovered": "yes"}
                         recorder = Recorder(out, None, overwrite, about)
-                        stack.callback(recorder.discard)
+                        stack.callback(recorder.abandon, delete=True)
                     if isinstance(value, Event):
                         recorder.event(value, clock)
                         continue
