@@ -97,12 +97,10 @@ def test_every_command_overwrites_only_with_force(tmp_path, command):
     assert list(tmp_path.iterdir()) == [file]
 
 
-@each_writer
-def test_a_missing_folder_is_refused_before_anything_is_computed(tmp_path, command, monkeypatch):
-    monkeypatch.setattr("engine.accuracy.study.Study.points", None)
-    monkeypatch.setattr("engine.stability.grid.Grid.compute", None)
+def test_a_missing_folder_is_refused_before_anything_is_computed(tmp_path, monkeypatch):
     monkeypatch.setattr("tui.commands.files.export.write_csv", None)
-    assert pendu(*command, tmp_path / "no" / "file.csv").refused(5, "no folder", "create the folder")
+    refusal = pendu(*WRITERS["export"], tmp_path / "no" / "file.csv")
+    assert refusal.refused(5, "no folder", "create the folder")
 
 
 def test_a_file_that_appears_meanwhile_is_left_alone(tmp_path):
