@@ -18,6 +18,7 @@ from tui.drawing.picture import Picture
 from tui.drawing.time_chart import time_chart
 from tui.playback.history import ErrorHistory
 from tui.playback.levels import Window
+from tui.playback.shown import Shown
 from tui.views.lab.pendulums import Bob, pendulum_picture
 
 REACH = {  # times a plain loop in the same run, as milliseconds differ from machine to machine and from hour to hour
@@ -90,7 +91,7 @@ def fuzz(random: np.random.Generator, builds: int) -> None:
             bool(random.integers(2)),
             None if random.integers(3) == 0 else float(10.0 ** random.uniform(-1, 6)),
         )
-        assert time_chart(window, USUAL_CAST, "energy_error", width, height, log=log, seconds=seconds).picture.rows
+        assert time_chart(window, USUAL_CAST, Shown(log=log, seconds=seconds), width, height).picture.rows
 
 
 def main() -> None:
@@ -101,12 +102,10 @@ def main() -> None:
     trail = history.levels.trails(40)[:, 0].T[0].tolist()
     milliseconds = {
         "canvas_4x3000_points": least(scattered(random)),
-        "chart_80x20": least(lambda: time_chart(window, USUAL_CAST, "energy_error", 80, 20, seconds=20.0)),
-        "chart_160x40": least(lambda: time_chart(window, USUAL_CAST, "energy_error", 160, 40, seconds=20.0)),
-        "chart_160x40_whole_run": least(lambda: time_chart(whole, USUAL_CAST, "energy_error", 160, 40)),
-        "chart_160x40_linear": least(
-            lambda: time_chart(window, USUAL_CAST, "energy_error", 160, 40, seconds=20.0, log=False)
-        ),
+        "chart_80x20": least(lambda: time_chart(window, USUAL_CAST, Shown(seconds=20.0), 80, 20)),
+        "chart_160x40": least(lambda: time_chart(window, USUAL_CAST, Shown(seconds=20.0), 160, 40)),
+        "chart_160x40_whole_run": least(lambda: time_chart(whole, USUAL_CAST, Shown(), 160, 40)),
+        "chart_160x40_linear": least(lambda: time_chart(window, USUAL_CAST, Shown(seconds=20.0, log=False), 160, 40)),
         "pendulum_23x18": least(lambda: pendulum_picture(23, 18, [Bob(1.0, 0, trail=trail)])),
         "history_add": add,
         "history_window_20_s": least(lambda: history.window(20.0)),

@@ -28,6 +28,11 @@ class Axis:
         return max([5, *map(len, self.labels.values())])
 
 
+def row_at(height: float, rows: int) -> int:
+    """Return the row of characters, from the top, at a height above the lower edge."""
+    return min(max(rows - 1 - int(height), 0), rows - 1)
+
+
 def nice(value: float) -> float:
     """The smallest of 1, 2, 5, 10 times a power of ten that is not below the value."""
     if not value > 0:

@@ -101,6 +101,9 @@ class Canvas:
 
     def path(self, points: Iterable[tuple[float, float]], ink: int) -> None:
         """Join points with lines; there is none to or from a point that is not finite."""
+        points = list(points)
+        if len(points) == 1:
+            self.points(points, ink)
         for (x0, y0), (x1, y1) in pairwise(points):
             self.line(x0, y0, x1, y1, ink)
 
@@ -125,6 +128,10 @@ class Canvas:
         """Return whether a cell is on the canvas and has no letter yet."""
         inside = 0 <= column < self.columns and 0 <= row < self.rows
         return inside and row * self.columns + column not in self._letters
+
+    def is_blank(self, column: int, row: int) -> bool:
+        """Return whether a cell is on the canvas, and neither a letter nor a dot is in it."""
+        return self.is_free(column, row) and not self._bits[row * self.columns + column]
 
     def ink_at(self, column: int, row: int) -> int:
         """Return the ink of a cell, NOBODY where it is blank."""

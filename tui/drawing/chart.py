@@ -1,104 +1,145 @@
-"""Arrays -> charts made of characters.  The only module that imports plotext.
+"""Charts with two logarithmic axes, drawn by plotext.  The only module that imports plotext.
 
-plotext 6 aborts the process if a number is not finite or far outside the limits, so it only gets
-numbers inside them.  It has one figure per process, hence the lock.
+plotext 6 aborts the process if a number is not finite or far outside the limits, so it only gets numbers inside
+them; and its own logarithmic scale has wrong labels, so it gets logarithms.
 """
 
-import threading
+import math
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
-from tui.drawing.axes import Axis
+from tui.drawing.axes import Axis, Floats, log_axis, log_x_axis, row_at
 from tui.drawing.canvas import Canvas
-from tui.drawing.loglog import ROOM, LogLog, Series, logs, row_at
 from tui.drawing.palette import FRAME, NOBODY, TEXT
 from tui.drawing.picture import Picture
+from tui.drawing.time_chart import ROOM, too_small
 
-SMALLEST = (20, 5)  # columns, rows
-_BLANKS = " \u2800"
+MIN_COLUMNS, MIN_ROWS = 20, 7
 
-_lock = threading.Lock()
+
+@dataclass(frozen=True, slots=True)
+class Series:
+    """Points with marks, joined by lines; or a dotted reference line with its mark at the end."""
+
+    ink: int
+    mark: str  # a letter; a few for a reference
+    x: Floats | Sequence[float]  # (n,)
+    y: Floats | Sequence[float]  # (n,)
+    dotted: bool = False
+
+    def logs(self) -> Floats:
+        """Return log10 of the finite positive points, (n, 2), sorted by x."""
+        points = np.stack([np.asarray(self.x, np.float64), np.asarray(self.y, np.float64)], axis=1)
+        points = points[(np.isfinite(points) & (points > 0)).all(axis=1)]
+        return np.log10(points[np.argsort(points[:, 0], kind="stable")])
+
+
+@dataclass(frozen=True, slots=True)
+class LogLog:
+    """Two logarithmic axes in a picture that has a line of words above and one below."""
+
+    x_axis: Axis
+    y_axis: Axis
+    columns: int
+    rows: int
+    left: int  # of the first column
+
+    @classmethod
+    def fitting(cls, series: Sequence[Series], width: int, height: int) -> Self:
+        """Return axes that fit all points with marks, in a picture of this many columns and rows."""
+        rows = height - 4
+        marked = [points for one in series if not one.dotted and len(points := one.logs())]
+        corners = np.concatenate(marked or [np.array([(0.0, -4.0), (1.0, 0.0)])])
+        (left, bottom), (right, top) = corners.min(axis=0), corners.max(axis=0)
+        y_axis = log_axis(bottom, top, rows)
+        columns = width - 1 - ROOM - y_axis.label_width
+        return cls(log_x_axis(left, right, columns), y_axis, columns, rows, width - columns - ROOM)
+
+    def curve(self, series: Series) -> tuple[list[float], list[float]]:
+        """Return x and y in characters from the lower left corner; what a reference has outside is cut off."""
+        x, y = series.logs().T
+        if series.dotted and len(x):
+            across = np.linspace(self.x_axis.low, self.x_axis.high, self.columns)
+            x, y = across, np.interp(across, x, y, left=np.nan, right=np.nan)
+            inside = (y >= self.y_axis.low) & (y <= self.y_axis.high)
+            x, y = x[inside], y[inside]
+        return (self.columns * self.x_axis.share(x)).tolist(), (self.rows * self.y_axis.share(y)).tolist()
+
+    def cell(self, x: float, y: float) -> tuple[int, int]:
+        """Return column and row of the picture in which a point on the axes lies."""
+        column = self.columns * float(self.x_axis.share(math.log10(x)))
+        return self.left + int(column), 1 + row_at(self.rows * float(self.y_axis.share(math.log10(y))), self.rows)
 
 
 def loglog_chart(series: Sequence[Series], width: int, height: int, *, x_label: str, y_label: str) -> Picture:
-    """Points with marks on two logarithmic axes that fit them all, and dotted reference lines.
+    """Draw points with marks on two logarithmic axes that fit them all, and dotted reference lines.
 
     Points that are not finite and positive are left out; reference lines are clipped.
     """
-    if width < SMALLEST[0] or height < SMALLEST[1] + 2:
-        return too_small(width, height, SMALLEST[0], SMALLEST[1] + 2)
+    if width < MIN_COLUMNS or height < MIN_ROWS:
+        return too_small(width, height, MIN_COLUMNS, MIN_ROWS)
     axes = LogLog.fitting(series, width, height)
-    x_axis, y_axis, columns, rows = axes.x_axis, axes.y_axis, axes.columns, axes.rows
-    points = [logs(one) for one in series]
-    curves = []
-    for one, (x, y) in zip(series, (some.T for some in points), strict=True):
-        if one.dotted and len(x):
-            across = np.linspace(x_axis.low, x_axis.high, columns)
-            x, y = across, np.interp(across, x, y, left=np.nan, right=np.nan)
-            inside = (y >= y_axis.low) & (y <= y_axis.high)
-            x, y = x[inside], y[inside]
-        curves.append(replace(one, x=columns * x_axis.share(x), y=rows * y_axis.share(y)))
+    curves = [(one, *axes.curve(one)) for one in series]
     canvas = Canvas(width, height)
-    plot(canvas, curves, x_axis, y_axis, 1, height - 2)
     canvas.label(0, 0, y_label, TEXT)
     canvas.label(0, height - 1, x_label.rjust(width), TEXT)
-    for curve in sorted(curves, key=lambda curve: curve.dotted):  # the references' marks where there is room
-        for column, height in list(zip(curve.x, curve.y, strict=True))[-1 if curve.dotted else 0 :]:
-            at, row = min(axes.left + int(column), width - len(curve.mark)), 1 + row_at(height, rows)
-            around = [(row + down, at + right) for down in (0, -1, 1) for right in range(1, -8, -1)]
-            near = around if curve.dotted else []
-            place = first_free(canvas, near, len(curve.mark), 1, rows + 1) or (row, at)
-            canvas.label(place[1], place[0], curve.mark, curve.ink)
+    _plot(canvas, axes, curves)
+    for one, x, y in sorted(curves, key=lambda curve: curve[0].dotted):
+        most = width - len(one.mark)
+        points = [(min(axes.left + int(at), most), row_at(up, axes.rows)) for at, up in zip(x, y, strict=True)]
+        for column, row in points[-1:] if one.dotted else points:
+            place = column, 1 + row
+            if one.dotted:
+                near = [(column + right, 1 + row + down) for down in (0, -1, 1) for right in range(1, -8, -1)]
+                place = _first_free(canvas, near, len(one.mark), axes.rows) or place
+            canvas.label(*place, one.mark, one.ink)
     return canvas.picture()
 
 
-def plot(canvas: Canvas, curves: Sequence[Series], x_axis: Axis, y_axis: Axis, top: int, height: int) -> None:
-    """Let plotext draw curves on rows of a canvas; the x axis ends before the columns for the letters."""
-    import plotext  # 0.1 s, so only after the first paint
+def _plot(canvas: Canvas, axes: LogLog, curves: Iterable[tuple[Series, list[float], list[float]]]) -> None:
+    """Let plotext draw the curves and the axes on a canvas, between its first and its last row."""
+    import plotext  # 0.1 s, so only with the first chart
 
-    width, rows = canvas.columns, height - 2
-    columns = width - 1 - y_axis.label_width
-    inks = {FRAME, TEXT, *(curve.ink for curve in curves)}
-    pixels = {ink: plotext.pixel(foreground=(ink - NOBODY, 0, 0)) for ink in inks}
-    with _lock:
-        plotext.terminal.limit(False, False)
-        figure = plotext.figure
-        figure.clear.data()
-        figure.clear.settings()
-        figure.plot_size(width, height)
-        figure.axes(False)
-        figure.axes(True, pixel=pixels[FRAME], axis=["x", "y"], side=0)
-        for name, axis, size, used in (("x", x_axis, columns, columns - ROOM), ("y", y_axis, rows, rows)):
-            ruler = figure.ruler(name, 0)
-            ruler.alignment(lim="edge")
-            ruler.lim(0, size)
-            labels = [label.rjust(axis.label_width) if name == "y" else label for label in axis.labels.values()]
-            ruler.ticks((used * axis.share(list(axis.labels))).tolist(), labels)
-            ruler.pixel(pixels[TEXT])
-        for curve in curves:
-            marker = plotext.marker("braille", pixel=pixels[curve.ink])
-            signal = figure.signal(np.asarray(curve.x).tolist(), np.asarray(curve.y).tolist(), marker=marker)
-            figure.draw(signal.lines(not curve.dotted))
-        matrix = figure.build()
-        for row, line in enumerate(matrix.string(colorless=True).split("\n")[:height]):
-            for column, character in enumerate(line[:width]):
-                if character not in _BLANKS:
-                    red, _, _ = matrix.get(row, column).foreground()
-                    canvas.label(column, top + row, character, red + NOBODY)
+    width, height = canvas.columns, canvas.rows - 2
+
+    def pixel(ink: int) -> "plotext.pixel":
+        return plotext.pixel(foreground=(ink - NOBODY, 0, 0))
+
+    plotext.terminal.limit(False, False)
+    figure = plotext.figure
+    figure.clear.data()
+    figure.clear.settings()
+    figure.plot_size(width, height)
+    figure.axes(False)
+    figure.axes(True, pixel=pixel(FRAME), axis=["x", "y"], side=0)
+    y_labels = [label.rjust(axes.y_axis.label_width) for label in axes.y_axis.labels.values()]
+    x_labels = list(axes.x_axis.labels.values())
+    for name, axis, labels, size, used in (
+        ("x", axes.x_axis, x_labels, axes.columns + ROOM, axes.columns),
+        ("y", axes.y_axis, y_labels, axes.rows, axes.rows),
+    ):
+        ruler = figure.ruler(name, 0)
+        ruler.alignment(lim="edge")
+        ruler.lim(0, size)
+        ruler.ticks((used * axis.share(list(axis.labels))).tolist(), labels)
+        ruler.pixel(pixel(TEXT))
+    for one, x, y in curves:
+        signal = figure.signal(x, y, marker=plotext.marker("braille", pixel=pixel(one.ink)))
+        figure.draw(signal.lines(not one.dotted))
+    matrix = figure.build()
+    for row, line in enumerate(matrix.string(colorless=True).split("\n")[:height]):
+        for column, character in enumerate(line[:width]):
+            if character not in " \u2800":
+                red, _, _ = matrix.get(row, column).foreground()
+                canvas.label(column, 1 + row, character, red + NOBODY)
 
 
-def first_free(
-    canvas: Canvas, places: Iterable[tuple[int, int]], length: int, top: int, end: int
-) -> tuple[int, int] | None:
-    """Return the first of these places (row, column) where `length` cells are free, from row `top` to before `end`."""
-    for row, column in places:
-        if top <= row < end and all(canvas.is_free(column + at, row) for at in range(length)):
-            return row, column
+def _first_free(canvas: Canvas, places: Iterable[tuple[int, int]], length: int, rows: int) -> tuple[int, int] | None:
+    """Return the first of these places (column, row) where `length` cells of the chart's rows are blank."""
+    for column, row in places:
+        if 1 <= row <= rows and all(canvas.is_blank(column + at, row) for at in range(length)):
+            return column, row
     return None
-
-
-def too_small(width: int, height: int, columns: int, rows: int) -> Picture:
-    """A sentence in place of a chart."""
-    return Picture.of_text(f"A chart needs {columns}×{rows} characters.", width, height, TEXT)

@@ -20,7 +20,7 @@ def fitted(text: str, width: int, height: int) -> list[str]:
 class InsightLine(Pane):
     """The sentence; trouble with the recording comes first."""
 
-    def paint(self, source: Source, sample: Sample) -> None:
+    def picture(self, source: Source, sample: Sample) -> Picture:
         status = source.recording_status
         ink = TEXT
         if status is not None and status.failed:
@@ -29,4 +29,4 @@ class InsightLine(Pane):
         else:
             text = insight_text(source, self.shown.hidden)
         lines = fitted(text, self.room.width - 2, self.room.height)
-        self.show(Picture([[(f" {line}", ink)] for line in lines]))
+        return Picture([[(f" {line}", ink)] for line in lines])

@@ -79,7 +79,7 @@ class SeekBar(Pane):
         self._length = 0.0  # of the recording
         self._dragging = False
 
-    def paint(self, source: Source, sample: Sample) -> None:
+    def picture(self, source: Source, sample: Sample) -> Picture:
         assert isinstance(source, Replay)
         replay = source
         text = facts(replay, self.room.width - LEAST - 3)
@@ -87,7 +87,7 @@ class SeekBar(Pane):
         self._columns = max(self.room.width - len(text) - 3, 1)
         ends = [(clock, letter) for clock, letter in zip(replay.ends, "AB", strict=True) if clock is not None]
         row = bar(replay.playhead.position, replay.length, replay.ticks, ends, self._columns)
-        self.show(Picture([[(" ", TEXT), *row, ("  " + text, TEXT)]]))
+        return Picture([[(" ", TEXT), *row, ("  " + text, TEXT)]])
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
         self._dragging = True

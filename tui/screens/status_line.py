@@ -134,8 +134,8 @@ def status_row(source: Source, width: int) -> Row:
 class StatusLine(Pane):
     """The line; LIVE and REPLAY stand out."""
 
-    def paint(self, source: Source, sample: Sample) -> None:
-        self.show(Picture([status_row(source, self.room.width)]))
+    def picture(self, source: Source, sample: Sample) -> Picture:
+        return Picture([status_row(source, self.room.width)])
 
     def style_of(self, owner: int, base: Style) -> Style:
         if owner == BADGE:

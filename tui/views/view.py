@@ -13,6 +13,7 @@ from engine.methods import Cast
 from engine.methods.own import OwnMethodError
 from engine.run.lockstep import Sample
 from tui.drawing.cells import CellWidget
+from tui.drawing.picture import Picture
 from tui.playback.shown import Shown
 from tui.playback.source import Source
 
@@ -38,24 +39,50 @@ class View(Box):
 
     def __init__(self, id: str | None = None) -> None:
         super().__init__(id=id)
-        self._moving: list[Pane] = []
-        self._late: list[Pane] = []
-        self._read: list[Pane] = []
-        self._followed: Sample | None = None
+        self._every_frame: list[Pane] = []
+        self._at_5_hz: list[Pane] = []
+        self._sample: Sample | None = None
+        self._is_painted = False
 
-    def moving(self, pane: "Pane", late: bool = False) -> "Pane":
-        """A pane that follows every frame; a late one after the first paint only, since NumPy takes long to import."""
-        (self._late if late else self._moving).append(pane)
+    def every_frame(self, pane: "Pane") -> "Pane":
+        """Register a pane that moves."""
+        self._every_frame.append(pane)
         return pane.data_bind(View.source, View.shown)
 
-    def read(self, pane: "Pane") -> "Pane":
-        """A pane that people read: it follows a few frames a second."""
-        self._read.append(pane)
+    def at_5_hz(self, pane: "Pane") -> "Pane":
+        """Register a pane that people read."""
+        self._at_5_hz.append(pane)
         return pane.data_bind(View.source, View.shown)
 
     def on_mount(self) -> None:
-        self._tell([*self._moving, *self._read])
-        self.call_after_refresh(self._begin)
+        self._follow_in(*self._every_frame, *self._at_5_hz)
+        self.call_after_refresh(self._after_first_paint)
+
+    def _after_first_paint(self) -> None:
+        self._is_painted = True
+        self._follow_in(*self._every_frame, *self._at_5_hz)
+
+    def follow(self, sample: Sample, read: bool = True) -> None:
+        """Show a sample in the panes that move and, if it is time to `read`, in the others.
+
+        The latter may show the same sample again, for what else has changed.
+        """
+        has_moved = sample != self._sample
+        self._sample = sample
+        self._follow_in(*(self._every_frame if has_moved else ()), *(self._at_5_hz if read else ()))
+
+    def _follow_in(self, *panes: "Pane") -> None:
+        for pane in panes:
+            if self._sample is not None and (self._is_painted or not pane.NEEDS_NUMPY):
+                pane.follow(self._sample)
+
+    def wake(self) -> None:
+        """Draw what is on screen again: the view was hidden."""
+        for pane in self.query(Pane):
+            pane.draw()
+
+    def zoom(self, factor: float, shift: float = 0.0) -> None:
+        """Show `factor` times the stretch of time, or later by a `shift` of it, where the view has a chart of that."""
 
     def compute(self, work: Callable[[], Coroutine[None, None, None]], group: str = "default") -> Worker[None]:
         """Run this instead of the group's earlier work.  A function, since work that is replaced may not have begun."""
@@ -69,56 +96,24 @@ class View(Box):
             for pane in self.query(Pane):
                 pane.border_subtitle = Content(str(error))
 
-    def zoom(self, factor: float, shift: float = 0.0) -> None:
-        """Show `factor` times the stretch of time, or later by a `shift` of it, where the view has a chart of that."""
-
     def commands(self) -> Iterable[SystemCommand]:
         """Return what the command palette offers here beside the keys."""
         return ()
-
-    def wake(self) -> None:
-        """Draw what is on screen again: the view was hidden."""
-        for pane in self.query(Pane):
-            pane.draw()
-
-    def _begin(self) -> None:
-        self._moving += self._late
-        self._tell(self._late)
-
-    def follow(self, sample: Sample, read: bool = True) -> None:
-        """Show a sample in the panes that move and, if it is time to `read`, in those that are due.
-
-        A pane that is read may show the same sample again, for what else has changed.
-        """
-        moved, self._followed = sample != self._followed, sample
-        reading = [pane for pane in self._read if read and pane.is_due(sample)]
-        self._tell([*(self._moving if moved else ()), *reading])
-
-    def _tell(self, panes: Iterable["Pane"]) -> None:
-        if (sample := self._followed) is not None:
-            for pane in panes:
-                pane.follow(sample)
 
 
 class Pane(CellWidget):
     """Draws a source at one of its samples: when it follows another one, and when source or shown change."""
 
-    PAUSE: ClassVar[float] = 0.0
-    """The least time between two pictures while the run goes on [s of the clock]."""
+    NEEDS_NUMPY: ClassVar[bool] = False
+    """Whether it is drawn after the first paint only: NumPy takes as long to import as all else to paint."""
 
     source: var[Source | None] = var(None)
     sample: Sample | None = None
     shown: var[Shown] = var(Shown())
-    _shown_at: float | None = None  # s, the clock
-
-    def is_due(self, sample: Sample) -> bool:
-        """Whether it is time to show a sample, the last one having been shown for long enough."""
-        now, last = self.source.playhead.seen if self.source is not None else None, self._shown_at
-        return now is None or last is None or not 0 <= now - last < self.PAUSE
+    _titles = ("", "")
 
     def follow(self, sample: Sample) -> None:
         """Show a sample."""
-        self._shown_at = self.source.playhead.seen if self.source is not None else None
         self.sample = sample
         self.draw()
 
@@ -135,6 +130,7 @@ class Pane(CellWidget):
 
     @property
     def places(self) -> list[int]:
+        """The places in the cast of the methods that are shown."""
         return self.shown.places(self.cast)
 
     @property
@@ -142,15 +138,22 @@ class Pane(CellWidget):
         """Whether the source is the lab, where runs can be started, and not a recording."""
         return self.source is not None and self.source.kind == "LIVE"
 
+    def write_titles(self, above: str, below: str) -> None:
+        """Write on the border.  A new title has Textual paint all of the pane."""
+        if (above, below) != self._titles:
+            self._titles = above, below
+            self.border_title = Content(above)  # not markup: units stand in brackets
+            self.border_subtitle = Content(below)
+
     def draw(self) -> None:
         source, sample = self.source, self.sample
-        if source is not None and sample is not None and self.drawable:
-            if sample.run != source.sample.run:  # another run has just begun, maybe with other methods
-                return
-            self.paint(source, sample)
+        if source is None or sample is None or not self.drawable:
+            return
+        if sample.run == source.sample.run:  # else another run has just begun, maybe with other methods
+            self.show(self.picture(source, sample))
 
-    def paint(self, source: Source, sample: Sample) -> None:
-        """Show the sample; called when there is one, and room to show it."""
+    def picture(self, source: Source, sample: Sample) -> Picture:
+        """Return the sample as a picture of `room`; called when there is any."""
         raise NotImplementedError
 
 

@@ -1,6 +1,5 @@
 import subprocess
 import sys
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -12,11 +11,11 @@ from engine.methods import USUAL_CAST
 from tests.tui.drawing.test_canvas import dots
 from tests.tui.drawn import cells, inks, size
 from tui.drawing.axes import held, per_column, time_span
-from tui.drawing.chart import SMALLEST, loglog_chart
-from tui.drawing.loglog import Series
+from tui.drawing.chart import Series, loglog_chart
 from tui.drawing.palette import EXACT, FAINT, FRAME, TEXT
-from tui.drawing.time_chart import CROSSING, time_chart
+from tui.drawing.time_chart import CROSSING, MIN_COLUMNS, MIN_ROWS, time_chart
 from tui.playback.levels import Window
+from tui.playback.shown import Shown
 
 ANY = st.floats(allow_nan=True, allow_infinity=True)
 COUNT = len(USUAL_CAST)
@@ -30,8 +29,14 @@ def window(x, low, high=None, repeats=0.0, turned=False):
     return Window(x, x, {"energy_error": low}, {"energy_error": high}, repeats, turned)
 
 
-def chart(data, width=40, height=10, **options):
-    return time_chart(data, USUAL_CAST, "energy_error", width, height, **options).picture
+def looking(places=range(COUNT), **options):
+    """What is shown, with only the methods at these places."""
+    hidden = {method.key for place, method in enumerate(USUAL_CAST) if place not in places}
+    return Shown(hidden=frozenset(hidden), **options)
+
+
+def chart(data, width=40, height=10, shown=range(COUNT), **options):
+    return time_chart(data, USUAL_CAST, looking(shown, **options), width, height).picture
 
 
 def plotted(picture, log):
@@ -120,12 +125,12 @@ def test_the_largest_errors_of_half_a_swing_over_decades():
     t = np.linspace(0, 18, 400)
     errors = np.stack([0.3 * t, 0.08 * np.sin(6 * t), 0.005 * np.sin(6 * t) ** 2, 3e-6 * t], axis=1)
     assert chart(window(t, errors, repeats=1.0), 48, 11, seconds=20).text == (
-        "     │                    ⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⡀e\n"
+        "     │                    ⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀e\n"
         "    1┤  ⣀⡠⠤⠤⠒⠒⠒⠒⠒⠉⠉⠉⠉⠉⠉⠉⠉⠉\n"
-        "     │⠰⠭⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠄s\n"
-        " 1e-2┤⢀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⡀v\n"
+        "     │⠰⠭⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤⠤s\n"
+        " 1e-2┤⢀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀v\n"
         "     │\n"
-        " 1e-4┤                    ⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⡀r\n"
+        " 1e-4┤                    ⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀⣀r\n"
         "     │  ⣀⡠⠤⠤⠒⠒⠒⠒⠒⠉⠉⠉⠉⠉⠉⠉⠉⠉\n"
         " 1e-6┤⠐⠉\n"
         "     │\n"
@@ -137,13 +142,13 @@ def test_the_largest_errors_of_half_a_swing_over_decades():
 def test_all_values_of_a_column_on_a_linear_axis():
     t = np.linspace(0, 20, 400)
     assert chart(window(t, np.sin(t)), 48, 9, log=False, seconds=20, shown=[1]).text == (
-        "    1┤ ⢀⣠⢤⢄        ⢀⣠⢤⣀        ⣀⡤⣄         ⡀s\n"
-        "     │ ⣸  ⢸       ⢀⣸  ⢸       ⣀⡇  ⡇       ⡠⠇\n"
-        "     │⢸    ⢹      ⢸   ⠈⢹      ⡇   ⠉⡆      ⡇\n"
-        "    0┤⠸    ⠘⢢    ⢠⠚    ⠘⢤    ⡖⠃    ⠧⡄    ⡖⠁\n"
-        "     │      ⢸   ⢀⣸      ⢸   ⣀⡇      ⡇   ⡠⠇\n"
-        "     │       ⢹  ⢸       ⠈⢹  ⡇       ⠉⡆ ⢀⡇\n"
-        "   -1┤       ⠈⠙⠚⠉        ⠈⠙⠚⠁        ⠉⠓⠃\n"
+        "    1┤ ⢀⣠⢤⢄        ⢀⣠⢤⣀        ⢀⣠⢤⡀        ⢀s\n"
+        "     │ ⣸  ⢸       ⢀⣸  ⢸       ⢀⣸  ⢸       ⢀⠼\n"
+        "     │⢸    ⢹      ⢸   ⠈⢹      ⢸   ⠈⢱      ⢸\n"
+        "    0┤⠸    ⠘⢢    ⢠⠚    ⠘⢤    ⢰⠚    ⠸⢤    ⢰⠊\n"
+        "     │      ⢸   ⢀⣸      ⢸   ⢀⣸      ⢸   ⢀⠼\n"
+        "     │       ⢹  ⢸       ⠈⢹  ⢸       ⠈⢱  ⣸\n"
+        "   -1┤       ⠈⠙⠚⠉        ⠈⠙⠚⠉        ⠈⠙⠚\n"
         "     └┬──────────────────┬─────────────────┬────\n"
         "      0                  10               20 s"
     )
@@ -209,23 +214,15 @@ def test_after_a_reversal_the_axis_is_labelled_as_time_run():
     assert "20 s run" in chart(window([1, 2], [1, 2], turned=True), seconds=20).text
 
 
-@pytest.mark.parametrize("size", [(SMALLEST[0] - 1, 30), (80, SMALLEST[1] - 1)])
+@pytest.mark.parametrize("size", [(MIN_COLUMNS - 1, 30), (80, MIN_ROWS - 1)])
 def test_a_chart_that_is_too_small_is_replaced_by_a_sentence(size):
     assert "A chart needs 20×5" in " ".join(chart(window([1, 2], [1, 2]), *size).text.split())
 
 
 def test_the_smallest_chart_still_has_its_lines_and_labels():
-    assert chart(window(range(20), np.geomspace(1e-4, 1, 20)), *SMALLEST, seconds=20).text == (
-        "    1┤       ⢀⡠⠄esvr\n     │    ⢀⡠⠒⠁\n 1e-3┤⢀⡠⠔⠊⠁\n     └┬────────┬────\n      0       20 s"
+    assert chart(window(range(20), np.geomspace(1e-4, 1, 20)), MIN_COLUMNS, MIN_ROWS, seconds=20).text == (
+        "    1┤        ⣀⠤esvr\n     │    ⢀⡠⠒⠉\n 1e-3┤⢀⠤⠔⠊⠁\n     └┬────────┬────\n      0       20 s"
     )
-
-
-def test_charts_can_be_drawn_in_several_threads():
-    def build(number):
-        return chart(window(range(20), np.full(20, 10.0**-number)), seconds=20, shown=[number % COUNT]).text
-
-    with ThreadPoolExecutor(4) as threads:
-        assert list(threads.map(build, range(12))) == [build(number) for number in range(12)]
 
 
 def test_plotext_is_loaded_with_the_first_chart_and_not_before():
@@ -259,12 +256,12 @@ def test_over_a_long_run_growth_is_a_slope_and_a_bounded_error_is_flat():
 def test_where_one_error_passes_another_for_good_there_is_a_cross_and_a_ghost_is_behind_its_methods():
     t = np.linspace(0, 20, 400)
     errors = np.stack([1e-3 * t, np.full(400, 0.01)] * 2, axis=1)
-    plot = time_chart(window(t, errors), USUAL_CAST, "energy_error", 60, 14, seconds=20, shown=[0, 1])
+    plot = time_chart(window(t, errors), USUAL_CAST, looking([0, 1], seconds=20), 60, 14)
     ((_, column),) = (place for place, (character, _) in cells(plot.picture).items() if character == CROSSING)
     assert plot.at(column).t == pytest.approx(10, abs=0.6)
     assert plot.at(column).values == pytest.approx([0.01, 0.01], rel=0.1)
     assert plot.at(plot.left - 1) is None
     ghost = window(t, 10 * errors), USUAL_CAST
-    behind = time_chart(window(t, errors), USUAL_CAST, "energy_error", 60, 14, seconds=20, shown=[0], ghost=ghost)
+    behind = time_chart(window(t, errors), USUAL_CAST, looking([0], seconds=20), 60, 14, ghost)
     assert {0, FAINT} < inks(behind.picture)
     assert FAINT + 1 not in inks(behind.picture)

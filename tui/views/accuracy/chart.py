@@ -8,8 +8,7 @@ from engine.accuracy.growth import Growth
 from engine.accuracy.references import CLOSED_FORM, TAYLOR_20, AnyPoint, References
 from engine.accuracy.study import ErrorKind, Flaw, Point
 from engine.methods import Cast
-from tui.drawing.chart import SMALLEST, loglog_chart
-from tui.drawing.loglog import LogLog, Series
+from tui.drawing.chart import MIN_COLUMNS, MIN_ROWS, LogLog, Series, loglog_chart
 from tui.drawing.palette import EXACT, FRAME, TEXT, ink_of
 from tui.drawing.picture import Picture
 from tui.words.accuracy import COSTS
@@ -44,7 +43,7 @@ def charted(
 ) -> tuple[Picture, list[Placed]]:
     """The chart of these series, and where points are on it."""
     picture = accuracy_chart(series, kind, cost, width, height)
-    if width < SMALLEST[0] or height < SMALLEST[1] + 2:
+    if width < MIN_COLUMNS or height < MIN_ROWS:
         return picture, []
     axes = LogLog.fitting(series, width, height)
     drawn = [p for p in points if cost_of(p, cost) and 0 < p.error(kind) < math.inf]

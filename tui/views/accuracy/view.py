@@ -10,7 +10,7 @@ from engine.accuracy.growth import Growth, growths
 from engine.accuracy.references import References, measured_front, with_all_methods
 from engine.accuracy.study import Point, measured, usual
 from engine.run.lockstep import Sample
-from tui.views.accuracy.pane import MOST_STEPS, AccuracyPane
+from tui.views.accuracy.pane import MAX_STEPS, AccuracyPane, AccuracyPoints
 from tui.views.background import computed
 from tui.views.view import View
 
@@ -28,10 +28,7 @@ class AccuracyView(View):
         self._grown: object = None  # what the errors over time are for
 
     def compose(self) -> ComposeResult:
-        yield self.read(AccuracyPane())
-
-    def on_mount(self) -> None:
-        self._compute_missing()
+        yield self.at_5_hz(AccuracyPane())
 
     def on_show(self) -> None:
         self.query_one(AccuracyPane).focus()
@@ -50,7 +47,7 @@ class AccuracyView(View):
             if self._start is not None:
                 self._start = None
                 self.workers.cancel_node(self)
-                pane.begin(0.0, ())
+                pane.begin(AccuracyPoints())
             return
         own, every = self.source.stepping.own, with_all_methods(scene) if pane.all else scene
         clock = (time.perf_counter,) if pane.all else ()
@@ -58,14 +55,16 @@ class AccuracyView(View):
         if start != self._start:
             self._start, self._grown = start, None
             self.workers.cancel_node(self)
-            pane.begin(*usual(scene, pane.all))
-            self._begin_work("ladder", measured_front if pane.all else measured, every, pane.time, pane.rungs, *clock)
-        here = tuple(max(1, round(pane.time / abs(h))) for h in own)
-        if here != pane.here:
-            pane.here = here
-            known = {*pane.rungs, *(steps for _, steps in pane.points)}
-            if wanted := [steps for steps in sorted(set(here) - known) if 1 < steps <= MOST_STEPS]:
-                self._begin_work("here", measured, scene, pane.time, wanted, *clock)
+            pane.begin(AccuracyPoints(*usual(scene, pane.all)))
+            work = measured_front if pane.all else measured
+            self._begin_work("ladder", work, every, pane.study.time, pane.study.steps, *clock)
+        study = pane.study
+        here = tuple(max(1, round(study.time / abs(h))) for h in own)
+        if here != study.here:
+            study.here = here
+            known = {*study.steps, *(steps for _, steps in study.points)}
+            if wanted := [steps for steps in sorted(set(here) - known) if 1 < steps <= MAX_STEPS]:
+                self._begin_work("here", measured, scene, study.time, wanted, *clock)
         if pane.over_time and self._grown != (start, own):
             self._grown, pane.growths = (start, own), []
             self._begin_work("growth", growths, scene, own)

@@ -164,7 +164,7 @@ class ErrorTable(Pane, can_focus=True):
     _head: Sequence[str] = ()
     _chosen: int | None = None  # of the heads
 
-    def paint(self, source: Source, sample: Sample) -> None:
+    def picture(self, source: Source, sample: Sample) -> Picture:
         rows = table(source, sample, self.shown, self.room.width)
         if len(rows) != self._rows_shown:
             self._rows_shown = len(rows)
@@ -175,7 +175,7 @@ class ErrorTable(Pane, can_focus=True):
             gap = len(text := self._head[at]) - len(text.lstrip())
             chosen = (text[:gap], QUIET), (text[gap:], Style(reverse=True))
             rows[0] = [*rows[0][:at], *chosen, *rows[0][at + 1 :]]
-        self.show(Picture(rows))
+        return Picture(rows)
 
     def on_focus(self) -> None:
         self._choose(1)

@@ -8,11 +8,9 @@ from collections.abc import Sequence
 from math import cos, isfinite, pi, sin
 from typing import NamedTuple
 
-from textual.content import Content
-
 from engine.run.lockstep import Sample
 from tui.drawing.canvas import Canvas
-from tui.drawing.palette import EXACT, FRAME, faint, ink_of, inks, mark
+from tui.drawing.palette import EXACT, FRAME, faint, inks, mark
 from tui.drawing.picture import Picture
 from tui.playback.source import Source
 from tui.views.lab.reach import Reach
@@ -81,56 +79,59 @@ class Pendulum(Pane):
         super().__init__(id)
         self._reach = reach
         self._place = place
-        self._titled: object = None
 
     def on_click(self) -> None:
         """Show this method alone, or all again."""
         if self._place is not None:
             self.post_message(MethodChosen(self._place))
 
-    def _retitle(self) -> None:
+    def picture(self, source: Source, sample: Sample) -> Picture:
         place = self._place
-        title = "Pendulums (O)" if place is None else f"{mark(place, self.cast[place])} {self.cast[place].label}"
-        ghost = self.source.ghost if self.source is not None else None
-        room = self.room.width - 4
-        if (title, ghost, room) != self._titled:  # setting it paints all of the pane
-            self._titled, self.border_title = (title, ghost, room), title
-            exact = "dotted: exact" if place is None else ""
-            dim = "" if ghost is None else ghost.label(room - len(exact) - 2)
-            texts = [text for text in (exact, dim) if text]
-            self.border_subtitle = Content(", ".join(texts if sum(map(len, texts)) < room else texts[-1:]))
-
-    def paint(self, source: Source, sample: Sample) -> None:
-        if self._place is not None and self._place >= len(self.cast):
-            return
-        self._retitle()
-        model = source.scene.equations
-        length = TRAIL if self.shown.trails and model.rigid else 0  # other rods have had many lengths
-        bobs = []
-        if self.shown.exact or self._place is None:
-            bobs += _exact(source, sample.t)
-        places = self.places if self._place is None else [self._place]
-        ghost = source.ghost
-        rods = {} if ghost is None else ghost.rods(sample.t)
-        for method in [self.cast[place] for place in places]:
-            if (rod := rods.get(method.key)) is not None:
-                bobs.append(Bob(rod.theta, faint(ink_of(method, self.cast)), length=rod.length))
-        for place in places:
-            reading, method = sample.readings[place], self.cast[place]
-            bobs.append(
-                Bob(
-                    reading.theta,
-                    inks(self.cast)[place],
-                    trail=source.history.thetas(place, length),
-                    length=model.length(reading.extra),
-                    letter=method.letter if self._place is None else "",
-                    diverged=reading.diverged_at is not None,
-                )
-            )
+        if place is None:
+            places = self.places
+            self.write_titles("Pendulums (O)", self._below(source, "dotted: exact"))
+        elif place < len(self.cast):
+            places = [place]
+            self.write_titles(f"{mark(place, self.cast[place])} {self.cast[place].label}", self._below(source, ""))
+        else:
+            return Picture()
+        bobs = _exact(source, sample.t) if self.shown.exact or place is None else []
+        bobs += _ghosts(source, sample.t, places)
+        bobs += [self._bob(source, sample, each) for each in places]
         widest = self._reach.of(source, sample, self.places)
-        if ghost is not None:
-            widest = max(widest, ghost.widest)
-        self.show(pendulum_picture(*self.room, bobs, widest))
+        if source.ghost is not None:
+            widest = max(widest, source.ghost.widest)
+        return pendulum_picture(*self.room, bobs, widest)
+
+    def _below(self, source: Source, exact: str) -> str:
+        """Return what is beside the methods: the exact motion, and a ghost, which comes first if room is short."""
+        room = self.room.width - 4
+        if source.ghost is None:
+            return exact
+        dim = source.ghost.label(room - len(exact) - 2)
+        both = f"{exact}, {dim}" if exact and dim else exact or dim
+        return both if len(both) <= room else dim
+
+    def _bob(self, source: Source, sample: Sample, place: int) -> Bob:
+        model = source.scene.equations
+        reading = sample.readings[place]
+        has_trail = self.shown.trails and model.rigid  # other rods have had many lengths
+        return Bob(
+            reading.theta,
+            inks(self.cast)[place],
+            trail=source.history.thetas(place, TRAIL) if has_trail else (),
+            length=model.length(reading.extra),
+            letter=self.cast[place].letter if self._place is None else "",
+            diverged=reading.diverged_at is not None,
+        )
+
+
+def _ghosts(source: Source, t: float, places: Sequence[int]) -> list[Bob]:
+    """Return the same methods of a ghost, fainter."""
+    rods = {} if source.ghost is None else source.ghost.rods(t)
+    cast = source.scene.cast
+    shown = [(inks(cast)[place], rods[cast[place].key]) for place in places if cast[place].key in rods]
+    return [Bob(rod.theta, faint(ink), length=rod.length) for ink, rod in shown]
 
 
 def _exact(source: Source, t: float) -> list[Bob]:

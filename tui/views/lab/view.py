@@ -44,15 +44,10 @@ class LabView(View):
         self.events = EventList()
 
     def compose(self) -> ComposeResult:
-        for pendulum in (*self.pendulums, self.overlay):
-            self.moving(pendulum)
-        for chart in (self.chart, self.second_chart):
-            self.read(chart)
-        self.moving(self.phase, late=True)
-        self.read(self.events)
-        panes = self.overlay, self.events, self.chart, self.second_chart, self.phase
-        yield Stage(self, *self.pendulums, *panes)
-        yield self.read(ErrorTable())
+        moving = [self.every_frame(pane) for pane in (*self.pendulums, self.overlay, self.phase)]
+        still = [self.at_5_hz(pane) for pane in (self.events, self.chart, self.second_chart)]
+        yield Stage(self, *moving, *still)
+        yield self.at_5_hz(ErrorTable())
 
     def zoom(self, factor: float, shift: float = 0.0) -> None:
         (self.second_chart if self.second_chart.is_pointed_at else self.chart).zoom(factor, shift)

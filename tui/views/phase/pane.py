@@ -41,6 +41,8 @@ class PhasePane(Chooser[State]):
         Binding("g", "radius", "Ring", tooltip="ring of neighbours, radii"),
     ]
 
+    NEEDS_NUMPY = True
+
     wrap: var[bool] = var(True)
     radius: var[float | None] = var(None)
     """Of the ring of neighbours [rad]; None: no ring."""
@@ -103,13 +105,13 @@ class PhasePane(Chooser[State]):
         """The state at the crosshair or, if there is none, under the pointer."""
         return self.cursor or (None if self.pointer is None else self.viewport.at_cell(*self.pointer))
 
-    def paint(self, source: Source, sample: Sample) -> None:
+    def picture(self, source: Source, sample: Sample) -> "Picture":
         from tui.views.phase.picture import source_picture
 
         orbit = self.aim if self.aiming or self.cursor is not None else None
         self._follow(source, sample)
         self._plot = source_picture(self.viewport, source, sample, self.shown, self.ring, self.cursor, orbit)
-        self.tell()
+        return self._captioned(source, self._plot)
 
     def _follow(self, source: Source, sample: Sample) -> None:
         """Let the ring keep up; where it has not, go on without waiting for the next sample."""
@@ -128,12 +130,15 @@ class PhasePane(Chooser[State]):
         self.post_message(self.RingMoved())
 
     def tell(self) -> None:
-        """Describe in a line below the plot what is at the crosshair or under the pointer."""
+        """Describe what is under the pointer now."""
         if self.source is not None and self._plot is not None:
-            from tui.views.phase.facts import captioned
+            self.show(self._captioned(self.source, self._plot))
 
-            scene, exact, width = self.source.scene, self.source.exact, self.room.width
-            self.show(captioned(self._plot, scene, exact, self.aim, width))
+    def _captioned(self, source: Source, plot: "Picture") -> "Picture":
+        """Return the plot, and a line below it about what is at the crosshair or under the pointer."""
+        from tui.views.phase.facts import captioned
+
+        return captioned(plot, source.scene, source.exact, self.aim, self.room.width)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         cancels = self.aiming or self.zoomed is not None

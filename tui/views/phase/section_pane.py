@@ -17,6 +17,7 @@ from tui.views.phase.viewport import Viewport
 
 if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
     from engine.phase_space.section import OrbitKind, Points
+    from tui.drawing.picture import Picture
     from tui.views.phase.section import Section
 
 STEPS = 2000  # of the orbit that is described: some ms
@@ -71,14 +72,12 @@ class SectionPane(PhasePane):
             self.post_message(self.SectionWanted())
         self.draw()
 
-    def paint(self, source: Source, sample: Sample) -> None:
+    def picture(self, source: Source, sample: Sample) -> "Picture":
         if self.shows_section and (why := source.scene.why_not_mapped):
             self.notify(why, severity="warning")
             self.shows_section = False
-            return
         if not self.shows_section:
-            super().paint(source, sample)
-            return
+            return super().picture(source, sample)
         from tui.drawing.palette import inks
         from tui.views.phase.section import Section
 
@@ -90,12 +89,12 @@ class SectionPane(PhasePane):
             self.tell_progress()
             self.post_message(self.SectionWanted())
         start = self.cursor or State(source.scene.theta, source.scene.omega)
-        if (drawn := (wanted, self.share, start, self.cursor)) == self._drawn:
-            return  # a section does not move
-        self._drawn = drawn
-        points, _ = followed(method, model, h, start)
-        self._plot = self._section.picture(points, start, self.cursor)
-        self.tell()
+        drawn = wanted, self.share, start, self.cursor
+        if drawn != self._drawn or self._plot is None:  # a section does not move
+            self._drawn = drawn
+            points, _ = followed(method, model, h, start)
+            self._plot = self._section.picture(points, start, self.cursor)
+        return self._captioned(source, self._plot)
 
     def fill(self, wanted: Wanted, points: "Points", share: float) -> None:
         """Take in some orbits of a section, unless another one is wanted by now."""
@@ -114,21 +113,19 @@ class SectionPane(PhasePane):
             if title != str(self.border_title):
                 self.border_title = Content(title)
 
-    def tell(self) -> None:
+    def _captioned(self, source: Source, plot: "Picture") -> "Picture":
         """In a section, describe the orbit at the crosshair, under the pointer, or of the scene's start."""
         if not self.shows_section or self.wanted is None:
-            super().tell()
-        elif self.source is not None and self._plot is not None:
-            from tui.drawing.palette import TEXT
-            from tui.drawing.picture import Picture
-            from tui.words.orbit import sentence
+            return super()._captioned(source, plot)
+        from tui.drawing.palette import TEXT
+        from tui.drawing.picture import Picture
+        from tui.words.orbit import sentence
 
-            method, model, h, _ = self.wanted
-            scene, aim = self.source.scene, self.aim
-            where = "start" if aim is None else f"{aim.theta:g}, {aim.omega:g}"
-            _, kind = followed(method, model, h, aim or State(scene.theta, scene.omega))
-            line = Picture.of_line(f"{where}: {sentence(method, kind)}", TEXT)
-            self.show(Picture.stacked(self._plot, line))
+        method, model, h, _ = self.wanted
+        aim = self.aim
+        where = "start" if aim is None else f"{aim.theta:g}, {aim.omega:g}"
+        _, kind = followed(method, model, h, aim or State(source.scene.theta, source.scene.omega))
+        return Picture.stacked(plot, Picture.of_line(f"{where}: {sentence(method, kind)}", TEXT))
 
     def action_section(self) -> None:
         self.shows_section = not self.shows_section

@@ -25,7 +25,7 @@ class PhaseView(View):
     """The portrait or a section, and the table below it."""
 
     def compose(self) -> ComposeResult:
-        yield self.moving(SectionPane(radius=RADIUS), late=True)
+        yield self.every_frame(SectionPane(radius=RADIUS))
         yield CellWidget(id="facts")
 
     def commands(self) -> Iterable[SystemCommand]:

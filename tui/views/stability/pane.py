@@ -46,26 +46,26 @@ class StabilityPane(Chooser[tuple[int, int]]):
         self.begin(grid)
 
     def begin(self, grid: Grid) -> None:
-        """Start over, with a map of which nothing is known."""
+        """Show another map, none of which has been computed."""
         self.grid = grid
         self.cells: Cells = grid.unknown()
-        self.complete = False  # nothing will be added to them
+        self.pieces = 0  # of the map that have been computed
+        self.complete = False
         self.cursor = None
-        self._panels: dict[int, list[Segments]] = {}  # by method, as they were last drawn
-        self._drawn_for: object = None
-        self._is_filled = False  # there are cells that the panels do not show yet
+        self._panels: list[list[Segments]] = []
+        self._drawn: object = None
 
     @property
     def settled(self) -> bool:
         """Whether the map is complete, and shown if there is room."""
         if self.source is not None and not self.source.scene.general:
             return True
-        return self.complete and not (self.drawable and self._is_filled)
+        return self.complete and not (self.drawable and self._drawn != self._state)
 
     def fill(self, z: slice, method: int, cells: Cells) -> None:
-        """Take in some of the map; it is drawn with one of the next samples."""
+        """Take in a piece of the map; it is drawn with one of the next samples."""
         self.cells[z, method] = cells
-        self._is_filled = True
+        self.pieces += 1
 
     def here(self, index: int) -> tuple[float, float] | None:
         """The (z, amplitude) of a method on screen, if it swings."""
@@ -81,45 +81,41 @@ class StabilityPane(Chooser[tuple[int, int]]):
             return None
         return int(abs(self.grid.z - here[0]).argmin()), int(abs(self.grid.theta - here[1]).argmin())
 
-    def paint(self, source: Source, sample: Sample) -> None:
+    @property
+    def _state(self) -> object:
+        """What the panels depend on."""
+        if self.source is None:
+            return None
+        run = self.source.scene, self.source.stepping.own
+        return run, self.pieces, self.shown, self.app.theme, self.room, self.cursor, self.index
+
+    def picture(self, source: Source, sample: Sample) -> Picture:
         if why := source.scene.why_not_mapped:
-            self._panels, self._drawn_for, self.cursor = {}, None, None
+            self.cursor = None
             lines = textwrap.wrap(why, max(self.room.width - 2, 1))
-            self.show(Picture([[(f" {line}", NOBODY)] for line in lines]))
-            return
+            return Picture([[(f" {line}", NOBODY)] for line in lines])
         columns, rows = self.panel_size()
         if columns <= 2 * MARGIN or self.grid.methods != self.cast:
-            return
-        drawn_for = source.scene, source.stepping.own, self.shown, self.app.theme, self.room, self.cursor, self.index
-        if drawn_for != self._drawn_for or self._is_filled:
-            self._drawn_for, self._is_filled = drawn_for, False
-            cursor = (self.grid.z[self.cursor[0]], self.grid.theta[self.cursor[1]]) if self.cursor else None
-            for index in self.places:
-                self._panels[index] = panel(
-                    self.grid,
-                    self.cells,
-                    index,
-                    columns,
-                    rows,
-                    self._colours,
-                    here=cursor or self.here(index),
-                    w0=source.scene.w0,
-                )
-            self.tell()
-
-    def tell(self) -> None:
-        """Describe a swing above each panel and below all, and show that and the panels."""
-        if not self._panels or not self.drawable:
-            return
-        columns = self.panel_size()[0]
+            return Picture()
+        if self._drawn != self._state:
+            self._drawn = self._state
+            self._panels = [self._panel(index, columns, rows) for index in self.places]
         panels = [
-            [title(index, self.cast[index], columns, self._colours, self._note(index)), *self._panels[index][1:]]
-            for index in self.places
+            [title(index, self.cast[index], columns, self._colours, self._note(index)), *lines[1:]]
+            for index, lines in zip(self.places, self._panels, strict=True)
         ]
-        said = [*textwrap.wrap(self._verdict(), max(self.room.width - 1, 1)), "", ""][:WORDS]
-        words: list[Row] = [[(f" {line}", NOBODY)] for line in said]
-        rows = [*map(_row, side_by_side(panels, 2)), *words, *map(_row, self._legend())]
-        self.show(Picture(rows))
+        words = [*textwrap.wrap(self._verdict(), max(self.room.width - 1, 1)), "", ""][:WORDS]
+        below: list[Row] = [[(f" {line}", NOBODY)] for line in words]
+        return Picture([*map(_row, side_by_side(panels, 2)), *below, *map(_row, self._legend())])
+
+    def _panel(self, index: int, columns: int, rows: int) -> list[Segments]:
+        """Return a method's panel, with a mark at the cursor or, if there is none, at the present h."""
+        assert self.source is not None
+        here = self.here(index)
+        if self.cursor is not None:
+            here = self.grid.z[self.cursor[0]], self.grid.theta[self.cursor[1]]
+        w0 = self.source.scene.w0
+        return panel(self.grid, self.cells, index, columns, rows, self._colours, here=here, w0=w0)
 
     @property
     def _colours(self) -> Palette | None:
@@ -161,11 +157,11 @@ class StabilityPane(Chooser[tuple[int, int]]):
     def on_mouse_move(self, event: events.MouseMove) -> None:
         if (under := self._under(event)) != self.pointer:
             self.pointer = under
-            self.tell()
+            self.draw()
 
     def on_leave(self) -> None:
         self.pointer = None
-        self.tell()
+        self.draw()
 
     def on_click(self, event: events.Click) -> None:
         if (under := self._under(event)) is not None and self.is_live:

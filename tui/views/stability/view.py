@@ -26,10 +26,7 @@ class StabilityView(View):
     """The map depends on z and amplitude only: another scene moves the mark and the axis, not the map."""
 
     def compose(self) -> ComposeResult:
-        yield self.read(StabilityPane(_grid(())))
-
-    def on_mount(self) -> None:
-        self._compute_missing()
+        yield self.at_5_hz(StabilityPane(_grid(())))
 
     def on_show(self) -> None:
         self.query_one(StabilityPane).focus()

@@ -43,7 +43,7 @@ def said(pane: AccuracyPane) -> str:
 
 def is_complete(pane: AccuracyPane) -> bool:
     """It has the points of the other process and those of the current step, and its chart shows them."""
-    return pane.settled and set(enumerate(pane.here)) <= set(pane.points)
+    return pane.settled and all(pane.study.at_present(*place) for place in enumerate(USUAL_CAST))
 
 
 async def complete(pilot: Pilot[object], pane: AccuracyPane) -> None:
@@ -65,7 +65,7 @@ async def accuracy_view(
 async def test_the_points_fill_in_and_are_the_engines():
     async with accuracy_view() as (_, pane, _live):
         for point in Study(SCENES["drift"], 5.0).points(RUNGS):
-            found = pane.points[USUAL_CAST.index(point.method), point.steps]
+            found = pane.study.points[point.method.key, point.steps]
             assert (found.theta_error, found.energy_error) == (point.theta_error, point.energy_error)
         assert "energy error, the largest of all steps" in pane.text
         assert all(pane.text.count(letter) for letter in "esvr")
@@ -96,7 +96,7 @@ async def test_enter_uses_the_h_of_the_cursors_point_and_u_takes_it_back():
         await complete(pilot, pane)
         assert live.stepping.h == point.h != 0.05
         assert live.sample.run == run  # h changes, the run goes on
-        assert pane.here[VERLET] == point.steps
+        assert pane.study.here[VERLET] == point.steps
         assert pane.cursor is None
         await pilot.press("u")
         assert live.stepping.h == 0.05
@@ -113,23 +113,23 @@ async def test_at_equal_cost_every_method_is_at_its_own_h():
     async with accuracy_view() as (pilot, pane, live):
         await pilot.press("n")
         await complete(pilot, pane)
-        assert pane.here == (100, 100, 100, 25)
+        assert pane.study.here == (100, 100, 100, 25)
         await pilot.press("left", "left", "enter")
         assert live.stepping.h == pytest.approx(4 * 5.0 / RUNGS[0])
 
 
 async def test_another_h_moves_the_mark_and_another_start_the_points():
     async with accuracy_view() as (pilot, pane, live):
-        before = dict(pane.points)
+        before = dict(pane.study.points)
         await pilot.press("plus")
         await complete(pilot, pane)
-        assert pane.here == (50,) * 4
-        assert before.items() <= pane.points.items()
+        assert pane.study.here == (50,) * 4
+        assert before.items() <= pane.study.points.items()
         live.start(SCENES["large-swing"])
-        await until(pilot, lambda: not before.items() & pane.points.items())
+        await until(pilot, lambda: not before.items() & pane.study.points.items())
         await complete(pilot, pane)
         assert (
-            pane.points[VERLET, RUNGS[0]].theta_error
+            pane.study.points["velocity_verlet", RUNGS[0]].theta_error
             == Study(SCENES["large-swing"], 5.0).run(USUAL_CAST[VERLET], RUNGS[0]).theta_error
         )
 
@@ -147,7 +147,7 @@ async def test_the_charts_quantity_chooses_the_error_and_hidden_methods_are_not_
 
 async def test_it_says_which_method_is_the_cheapest_at_each_accuracy():
     async with accuracy_view() as (_, pane, _live):
-        points = [point for (_, steps), point in pane.points.items() if steps in RUNGS]
+        points = [point for (_, steps), point in pane.study.points.items() if steps in RUNGS]
         found = front(points, "energy", "evaluations")
         assert {one.method.key for one in found} == {"velocity_verlet", "rk4"}
         assert words(pane).endswith(front_words(found, "evaluations", ()))
@@ -155,8 +155,8 @@ async def test_it_says_which_method_is_the_cheapest_at_each_accuracy():
 
 async def test_the_pointer_reads_a_point_out_and_a_click_uses_its_h():
     async with accuracy_view() as (pilot, pane, live):
-        point = pane.points[3, RUNGS[2]]
-        ((column, row),) = (cell for cell, placed in pane._cells if placed is point)
+        point = pane.study.points["rk4", RUNGS[2]]
+        ((column, row),) = (cell for cell, placed in pane.placed if placed is point)
         assert pane.text.splitlines()[row][column] == "r"
         at = (column + 1, row + 1)  # the frame
         await pilot.hover(pane, (at[0] + 1, at[1]))
@@ -216,7 +216,7 @@ async def test_all_methods_and_the_reference_lines_are_charted_over_seconds(monk
         assert "Cheapest in seconds: Taylor, order 20 from 1e-9 to 1e-10, BM6 from 1e-11" in words(pane)
         assert "without Numba, in force evaluations: " in words(pane)
         ((column, row),) = (
-            cell for cell, placed in pane._cells if isinstance(placed, TaylorPoint) and placed.seconds == 6e-6
+            cell for cell, placed in pane.placed if isinstance(placed, TaylorPoint) and placed.seconds == 6e-6
         )
         await pilot.hover(pane, (column + 1, row + 1))
         assert said(pane) == "Taylor, order 20 at a tolerance of 1e-12 rad/s: energy error 1.0e-10 for 50 steps in 6 µs"
@@ -230,11 +230,11 @@ async def test_all_methods_and_the_reference_lines_are_charted_over_seconds(monk
 
 async def test_the_first_arrow_leads_where_it_points():
     async with accuracy_view() as (pilot, pane, _live):
-        here = pane.here[pane.index]
+        here = pane.study.here[pane.index]
         await pilot.press("right")
-        assert pane.rungs[pane.cursor] > here
+        assert pane.study.steps[pane.cursor] > here
         await pilot.press("escape", "left")
-        assert pane.rungs[pane.cursor] < here
+        assert pane.study.steps[pane.cursor] < here
 
 
 async def test_the_cursor_stays_on_the_ladder_and_esc_leaves_it():

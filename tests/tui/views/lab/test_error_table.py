@@ -67,7 +67,7 @@ async def test_a_head_that_is_left_out_in_a_narrow_terminal_hands_over_to_the_la
         await theatre.pilot.pause()
         assert table._chosen is not None
         assert table._chosen >= len(table._head)
-        table.paint(theatre.source, theatre.source.sample)
+        table.draw()
         assert theatre.text(ErrorTable).startswith("method")
 
 
