@@ -7,10 +7,10 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from math import isclose
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from engine.run.lockstep import Reading, Sample
-from recordings.events import NOT_DONE, Event
+from recordings.events import NOT_DONE
 from recordings.fields import EXTREMES, VALUES, distance, same_bits, ulps, values_of
 from recordings.reader import ShowProgress
 from recordings.recording import Recording, Run
@@ -25,7 +25,7 @@ class Difference(NamedTuple):
     step_a: int
     step_b: int
     t: float  # s, simulated
-    method: str  # "" for the time itself
+    method: str
     field: str
     a: float | None
     b: float | None
@@ -64,16 +64,10 @@ def compare(a: Recording, b: Recording, progress: ShowProgress | None = None) ->
     """Compare two open recordings, a damaged one as far as it is intact."""
     result = Comparison(list(_done(a, b)))
     for one, other in _paired(_timed(a), _timed(b)):
-        if one is None:
-            result.only_in_b += 1
-        elif other is None:
-            result.only_in_a += 1
-        else:
-            readings = [
-                dict(zip(recording.methods_of(one.run), sample.readings, strict=True))
-                for recording, sample in ((a, one), (b, other))
-            ]
-            _take(result, one, other, *readings)
+        result.only_in_a += other is None
+        result.only_in_b += one is None
+        if one and other:
+            _take(result, one, other, _readings(a, one), _readings(b, other))
         if progress:
             progress(result.samples + max(result.only_in_a, result.only_in_b), a.samples)
     return result
@@ -82,32 +76,25 @@ def compare(a: Recording, b: Recording, progress: ShowProgress | None = None) ->
 def _done(a: Recording, b: Recording) -> Iterator[tuple[str, str, str]]:
     """Yield what was done differently in each run."""
     for number in sorted({run.number for run in (*a.runs, *b.runs)}):
-        runs = [a.run_of(number), b.run_of(number)]
-        starts = [_start(run) for run in runs]
-        for name in {**starts[0], **starts[1]}:
-            values = [str(start.get(name, "-")) for start in starts]
-            if values[0] != values[1]:
-                yield f"run {number}, {name}", values[0], values[1]
-        events = [Counter(_events(run)) for run in runs]
-        for where, what in (events[0] - events[1]).elements():
-            yield f"run {number}, {where}", what, "-"
-        for where, what in (events[1] - events[0]).elements():
-            yield f"run {number}, {where}", "-", what
+        one, other = (Counter(_inputs(recording.run_of(number))) for recording in (a, b))
+        in_a, in_b = dict((one - other).elements()), dict((other - one).elements())
+        for where in in_a | in_b:
+            yield f"run {number}, {where}", in_a.get(where, "-"), in_b.get(where, "-")
 
 
-def _start(run: Run | None) -> dict[str, Any]:
+def _inputs(run: Run | None) -> Iterator[tuple[str, str]]:
+    """Yield all that determines a run, as where and what."""
     if run is None:
-        return {}
-    methods = ", ".join(method.key for method in run.scene.cast)
-    return {"model": run.scene.model, "methods": methods, **run.scene.numbers}
-
-
-def _events(run: Run | None) -> Iterator[tuple[str, str]]:
-    for _, event in run.events if run else ():
-        if isinstance(event, Event) and event.kind not in NOT_DONE:
+        return
+    yield "model", run.scene.model
+    yield "methods", ", ".join(method.key for method in run.scene.cast)
+    yield from ((name, str(value)) for name, value in run.scene.numbers.items())
+    for _, event in run.events:
+        if event.kind not in NOT_DONE:
             value = event.h or event.speed or event.text or ""
             cost = " at equal cost" if event.equal_cost else ""
-            yield f"step {event.step}, t = {event.t:g} s", f"{event.kind} {value}{cost}".strip()
+            where = f"{event.kind} at step {event.step}, t = {event.t:g} s"
+            yield where, f"{value}{cost}".strip() or event.kind
 
 
 Timed = tuple[int, float, Sample]
@@ -140,10 +127,14 @@ def _paired(a: Iterator[Timed], b: Iterator[Timed]) -> Iterator[tuple[Sample | N
             other = next(b, None)
 
 
+def _readings(recording: Recording, sample: Sample) -> dict[str, Reading]:
+    return dict(zip(recording.methods_of(sample.run), sample.readings, strict=True))
+
+
 def _take(result: Comparison, a: Sample, b: Sample, ours: dict[str, Reading], theirs: dict[str, Reading]) -> None:
     """Take a pair of samples into the result."""
     result.samples += 1
-    differences = []
+    is_same = True
     for key in [key for key in ours if key in theirs]:
         x, y = ours[key], theirs[key]
         errors = result.errors.setdefault(key, MethodErrors())
@@ -156,8 +147,7 @@ def _take(result: Comparison, a: Sample, b: Sample, ours: dict[str, Reading], th
             errors.theta_difference, errors.t = apart, a.t
         for name, value, other in zip(VALUES, values_of(x), values_of(y), strict=True):
             if name not in EXTREMES and (value != other or ulps(value, other)):
-                differences.append(Difference(a.run, a.step, b.step, a.t, key, name, value, other))
-    result.different += bool(differences)
-    if differences and result.first is None:
-        order = list(ours)
-        result.first = min(differences, key=lambda each: order.index(each.method))
+                is_same = False
+                first = Difference(a.run, a.step, b.step, a.t, key, name, value, other)
+                result.first = result.first or first
+    result.different += not is_same

@@ -47,26 +47,18 @@ class Run:
     end: float  # s, at its last sample
     steps: int = 0  # at its last sample
     t: float = 0.0  # s simulated, at its last sample
-    events: list[Entry] = field(default_factory=list)
+    events: list[tuple[float, Event]] = field(default_factory=list)  # each with its clock [s]
 
     @property
     def inputs(self) -> int:
         """How many things somebody did in it."""
-        events = (entry.value for entry in self.events if isinstance(entry.value, Event))
-        return sum(event.kind not in NOT_DONE for event in events)
+        return sum(event.kind not in NOT_DONE for _, event in self.events)
 
     @property
     def milestones(self) -> list[Milestone]:
         """What the lab noticed, by step."""
-        found = (entry.value.milestone for entry in self.events if isinstance(entry.value, Event))
-        return sorted((each for each in found if each is not None), key=attrgetter("step"))
-
-
-class _Decoded(NamedTuple):
-    """A chunk's entries, their clocks ascending, and where the samples among them are."""
-
-    entries: list[Entry]
-    samples: list[int]
+        found = (event.milestone for _, event in self.events if event.milestone)
+        return sorted(found, key=attrgetter("step"))
 
 
 class Recording:
@@ -83,15 +75,15 @@ class Recording:
         self.complete = True
         self.damaged = False
         self.reason: str | None = None
-        self.events: list[Entry] = []  # in the order of recording
+        self.events: list[tuple[float, Event]] = []  # each with its clock [s], in the order of recording
         self.runs: list[Run] = []
         self._stream = stream
+        self._lost = 0  # entries
         self._places = self._find_places(check, progress)
         self._decode = lru_cache(CHUNKS_KEPT)(self._decode_chunk)
         self._sampled = bytearray(b"\1" * len(self._places))  # 0: no samples in this chunk
-        self._find_ends(self._read_events())
+        self._find_runs()
         self.about = self._decoder.about  # where and how it was made
-        self.samples = self._count_samples()
         self.length = (self._places[-1].end - CLOCK_OFFSET) / 1e9
         self.models = tuple(dict.fromkeys(run.scene.model for run in self.runs))
         methods = (method.key for run in self.runs for method in run.scene.cast)
@@ -120,23 +112,32 @@ class Recording:
     def __exit__(self, *_: object) -> None:
         self.close()
 
+    @property
+    def samples(self) -> int:
+        """The number of samples."""
+        try:
+            last = read_chunk(self._stream, self._places[-1].offset).messages[-1]
+        except (RecordingError, OSError, EOFError):
+            return 0
+        return last.sequence + 1 - self._lost - self._decoder.others
+
     def at(self, clock: float) -> SamplePlace | None:
         """Return the last sample at or before that time, or else the first; None if there are none."""
         clock, log_time = _as_recorded(clock)
         chunk = bisect_right(self._places, log_time, key=attrgetter("start")) - 1
-        later = bisect_right(self._decode(chunk).entries, clock, key=_clock) if chunk >= 0 else 0
+        later = bisect_right(self._decode(chunk)[0], clock, key=_clock) if chunk >= 0 else 0
         return self.previous(SamplePlace(chunk, later)) or self.next(SamplePlace(0, -1))
 
     def sample(self, place: SamplePlace) -> Entry:
         """Return the sample there."""
-        return self._decode(place.chunk).entries[place.entry]
+        return self._decode(place.chunk)[0][place.entry]
 
     def next(self, place: SamplePlace) -> SamplePlace | None:
         """Return the next sample; None after the last."""
-        chunk, index = place.chunk, place.entry + 1
+        chunk = place.chunk
         while (chunk := self._sampled.find(1, max(chunk, 0))) >= 0:
-            samples = self._decode(chunk).samples
-            at = bisect_left(samples, index if chunk == place.chunk else 0)
+            samples = self._decode(chunk)[1]
+            at = bisect_right(samples, place.entry) if chunk == place.chunk else 0
             if at < len(samples):
                 return SamplePlace(chunk, samples[at])
             chunk += 1
@@ -144,10 +145,10 @@ class Recording:
 
     def previous(self, place: SamplePlace) -> SamplePlace | None:
         """Return the sample before; None before the first."""
-        chunk, index = place.chunk, place.entry
+        chunk = place.chunk
         while (chunk := self._sampled.rfind(1, 0, max(chunk, -1) + 1)) >= 0:
-            samples = self._decode(chunk).samples
-            at = bisect_left(samples, index) if chunk == place.chunk else len(samples)
+            samples = self._decode(chunk)[1]
+            at = bisect_left(samples, place.entry) if chunk == place.chunk else len(samples)
             if at > 0:
                 return SamplePlace(chunk, samples[at - 1])
             chunk -= 1
@@ -160,14 +161,12 @@ class Recording:
         for chunk in range(bisect_left(self._places, log_time, key=attrgetter("end")), len(self._places)):
             if self._places[chunk].start > last:
                 return
-            entries = self._decode(chunk).entries
-            for at in range(bisect_left(entries, start, key=_clock), len(entries)):
-                if entries[at].clock > end:
-                    return
-                yield entries[at]
+            for entry in self._decode(chunk)[0]:
+                if start <= entry.clock <= end:
+                    yield entry
 
     def samples_between(self, start: float = 0.0, end: float = inf) -> Iterator[tuple[float, Sample]]:
-        """Yield the samples of that time, each with its clock."""
+        """Yield the samples of that time, each with its clock [s]."""
         for clock, value in self.entries(start, end):
             if isinstance(value, Sample):
                 yield clock, value
@@ -175,8 +174,7 @@ class Recording:
     def run_of(self, number: int) -> Run | None:
         """Return the run of this number."""
         at = bisect_left(self.runs, number, key=attrgetter("number"))
-        found = at < len(self.runs) and self.runs[at].number == number
-        return self.runs[at] if found else None
+        return self.runs[at] if self.runs[at : at + 1] and self.runs[at].number == number else None
 
     def methods_of(self, number: int) -> tuple[str, ...]:
         """Return the methods of a run, in its order."""
@@ -184,74 +182,51 @@ class Recording:
         return tuple(method.key for method in run.scene.cast) if run else ()
 
     def _find_places(self, check: bool, progress: ShowProgress | None) -> list[Place]:
-        self._lost = 0  # entries
         summary = None if check else read_summary(self._stream)
-        if summary is not None and (
-            summary.data_end > MAX_CHECKED or _checksum(self._stream, summary.data_end) == summary.data_crc
-        ):
-            check_format(summary.channels)
-            self._decoder = Decoder(summary.channels)
-            return summary.places
+        if summary is not None:
+            is_long = summary.data_end > MAX_CHECKED
+            if is_long or _checksum(self._stream, summary.data_end) == summary.data_crc:
+                check_format(summary.channels)
+                self._decoder = Decoder(summary.channels)
+                return summary.places
         scan = Scan(self._stream, progress)
         places = [place for place, _ in scan]
+        self._decoder = Decoder(scan.channels)
         self._lost = scan.entries_lost
         self.complete = scan.complete
         self.damaged = scan.damaged
         self.reason = scan.reason
-        self._decoder = Decoder(scan.channels)
         return places
 
-    def _read_events(self) -> list[int]:
-        """Read all events; return the chunks in which runs start."""
-        starts: list[int] = []
+    def _find_runs(self) -> None:
+        """Read all events, and the last sample of each run, which is the last before the next start."""
+        starts: list[int] = []  # chunks
         for chunk, place in enumerate(self._places):
-            if not place.has_events:
-                continue
-            for clock, event in self._entries(chunk, only_events=True):
+            for clock, event in self._entries(chunk, only_events=True) if place.has_events else ():
                 assert isinstance(event, Event)
-                self._take(clock, event)
-                if event.kind == "start" and chunk not in starts[-1:]:
+                if event.scene is not None and event.arithmetic is not None:
+                    if self.runs and event.run <= self.runs[-1].number:
+                        raise RecordingError("its runs are not in order")
+                    self.runs.append(Run(event.run, event.scene, event.arithmetic, clock, clock))
                     starts.append(chunk)
+                if len(self.events) == MAX_EVENTS:
+                    raise RecordingError(f"it has more than {MAX_EVENTS} events")
+                self.events.append((clock, event))
+                if run := self.run_of(event.run):
+                    run.events.append((clock, event))
         if not self.runs:
             raise RecordingError(self.reason or "it has no runs")
-        return starts
-
-    def _take(self, clock: float, event: Event) -> None:
-        if event.scene is not None:
-            if self.runs and event.run <= self.runs[-1].number:
-                raise RecordingError("its runs are not in order")
-            assert event.arithmetic is not None
-            self.runs.append(Run(event.run, event.scene, event.arithmetic, begin=clock, end=clock))
-        if len(self.events) == MAX_EVENTS:
-            raise RecordingError(f"it has more than {MAX_EVENTS} events")
-        entry = Entry(clock, event)
-        self.events.append(entry)
-        run = self.run_of(event.run)
-        assert run is not None  # or the decoder would have left it out
-        run.events.append(entry)
-
-    def _find_ends(self, chunks: list[int]) -> None:
-        """Find the last sample of each run, which is the last before the next one's start."""
-        starts = [
+        ends = [
             SamplePlace(chunk, index)
-            for chunk in chunks
-            for index, entry in enumerate(self._decode(chunk).entries)
+            for chunk in dict.fromkeys(starts)
+            for index, entry in enumerate(self._decode(chunk)[0])
             if isinstance(entry.value, Event) and entry.value.kind == "start"
         ]
-        ends = [*starts[1:], SamplePlace(len(self._places), 0)]
-        for run, end in zip(self.runs, ends, strict=True):
-            place = self.previous(end)
-            if place is not None:
-                clock, sample = self.sample(place)
-                if isinstance(sample, Sample) and sample.run == run.number:
-                    run.end, run.steps, run.t = clock, sample.step, sample.t
-
-    def _count_samples(self) -> int:
-        try:
-            last = read_chunk(self._stream, self._places[-1].offset).messages[-1]
-        except (RecordingError, OSError, EOFError):
-            return 0
-        return last.sequence + 1 - self._lost - self._decoder.others
+        for run, end in zip(self.runs, [*ends[1:], SamplePlace(len(self._places), 0)], strict=True):
+            last = self.previous(end)
+            clock, sample = self.sample(last) if last else (0.0, None)
+            if isinstance(sample, Sample) and sample.run == run.number:
+                run.end, run.steps, run.t = clock, sample.step, sample.t
 
     def _entries(self, chunk: int, only_events: bool = False) -> list[Entry]:
         """Return a chunk's entries; none if it turns out to be damaged."""
@@ -267,11 +242,12 @@ class Recording:
             self.reason = self.reason or str(error) or "a chunk is cut off"
             return []
 
-    def _decode_chunk(self, chunk: int) -> _Decoded:
+    def _decode_chunk(self, chunk: int) -> tuple[list[Entry], list[int]]:
+        """Return a chunk's entries, their clocks ascending, and where the samples among them are."""
         entries = self._entries(chunk)
         samples = [at for at, (_, value) in enumerate(entries) if isinstance(value, Sample)]
         self._sampled[chunk] = bool(samples)
-        return _Decoded(entries, samples)
+        return entries, samples
 
 
 _clock = attrgetter("clock")

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 from engine.run.lockstep import Sample
 from engine.run.stepping import Stepping, SteppingChange
-from recordings.events import Event
 from tui.playback.so_far import RunSoFar
 
 if TYPE_CHECKING:
@@ -119,7 +118,7 @@ class ReplayCursor:
         self._changes = [SteppingChange(0, 0.0, Stepping(run.scene.h, cast=run.scene.cast))]
         self._clocks = [-math.inf]  # s, of those changes
         for clock, event in run.events:
-            if isinstance(event, Event) and event.h is not None:
+            if event.h is not None:
                 stepping = Stepping(event.h, event.equal_cost, run.scene.cast)
                 self._changes.append(SteppingChange(event.step, event.t, stepping))
                 self._clocks.append(clock)

@@ -59,7 +59,7 @@ def mark_event(recording: "Recording", mark: Mark) -> Event:
     t, h, since = 0.0, 0.0, 0
     run = recording.run_of(mark.run)
     for _, event in run.events if run else ():
-        if isinstance(event, Event) and event.kind in ("start", "set_h") and event.step <= mark.step:
+        if event.kind in ("start", "set_h") and event.step <= mark.step:
             t, since = event.t, event.step
             h = event.scene.h if event.scene else event.h or 0.0
     return Event("mark", mark.run, mark.step, t + (mark.step - since) * h, text=mark.text)

@@ -5,7 +5,7 @@ import time
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from functools import cache, partial
-from operator import attrgetter
+from operator import attrgetter, itemgetter
 from typing import TYPE_CHECKING
 
 from engine.run.judgement import Judgement, Milestone
@@ -69,10 +69,9 @@ class Replay(Source):
     @property
     def events(self) -> Sequence[Event]:
         """What was done up to the playhead."""
-        done = bisect_right(self.recording.events, self.playhead.position, key=_clock)
+        done = bisect_right(self.recording.events, self.playhead.position, key=itemgetter(0))
         if done != len(self._events):
-            entries = self.recording.events[:done]
-            self._events = [value for _, value in entries if isinstance(value, Event)]
+            self._events = [event for _, event in self.recording.events[:done]]
         return self._events
 
     @property
@@ -108,7 +107,7 @@ class Replay(Source):
     @property
     def later_marks(self) -> Sequence[Event]:
         marks = list(self.marks)
-        done = bisect_right(marks, self.playhead.position, key=_clock)
+        done = bisect_right(marks, self.playhead.position, key=attrgetter("clock"))
         return [self._mark_event(mark) for mark in marks[:done]]
 
     @property
@@ -187,7 +186,7 @@ class Replay(Source):
         marks = [mark.clock for mark in self.marks]
         if len(marks) != self._ticked_marks:
             self._ticked_marks = len(marks)
-            done = {clock for clock, event in self.recording.events if not _is_stop(event)}
+            done = {clock for clock, event in self.recording.events if event.kind != "stop"}
             self._ticks = sorted({*done, *marks})
         return self._ticks
 
@@ -214,10 +213,3 @@ class Replay(Source):
             self.playhead = self.playhead.moved_to(end if backwards else start)
         elif backwards == (position < start):
             self.playhead = self.playhead._replace(paused=True).moved_to(start if backwards else end)
-
-
-_clock = attrgetter("clock")
-
-
-def _is_stop(value: Sample | Event) -> bool:
-    return isinstance(value, Event) and value.kind == "stop"

@@ -38,7 +38,7 @@ def test_what_was_done_differently_is_listed(whole, tmp_path):
     entries = [entry for entry in entries if not (isinstance(entry.value, Event) and entry.value.kind == "mark")]
     done = pendu("diff", whole, record(tmp_path / "b.mcap", entries), "--json").json["done"]
     assert ["run 1, theta", "2.0", "2.5"] in done
-    assert ["run 1, step 15, t = 1.2 s", "mark what is this?", "-"] in done
+    assert ["run 1, mark at step 15, t = 1.2 s", "what is this?", "-"] in done
 
 
 def test_runs_of_other_steps_are_compared_at_equal_times():
