@@ -20,11 +20,8 @@ if TYPE_CHECKING:
 
 EXAMPLES = """\
 examples:
-  pendu-tui accuracy
   pendu-tui accuracy --target 1e-6 --time 100
-  pendu-tui accuracy --methods rk4,verlet
   pendu-tui accuracy --all --cost seconds --target 1e-9
-  pendu-tui accuracy --budget 2e4 --theta 150deg
   pendu-tui accuracy --target 1e-3 --error energy --time 10,100,1000
   pendu-tui accuracy --cost seconds --h-values 0.1:0.001:8 -o points.csv
   pendu-tui accuracy --json | jq '.points[] | select(.method == "rk4" and .valid)'
@@ -76,7 +73,8 @@ def h_values(text: str) -> tuple[float, float, int]:
 def run(options: argparse.Namespace) -> int:
     """Measure, recommend, print.  Ctrl+C keeps what is done."""
     from engine.accuracy.references import with_all_methods
-    from engine.accuracy.study import usual
+    from engine.accuracy.study import compilable, usual
+    from engine.run.compiled import available
 
     if options.all and options.methods is not None:
         raise UserError("--all and --methods exclude each other; choose one of them.")
@@ -103,7 +101,8 @@ def run(options: argparse.Namespace) -> int:
         all=options.all,
     )
     try:
-        _fill(found, durations, rungs, _fast(scene, options))
+        fast = available() if options.cost == "evaluations" else compilable(scene.cast)  # all, or none is
+        _fill(found, durations, rungs, fast and not options.no_compiled)
     except KeyboardInterrupt:
         found.interrupted = True
     publish(report(found), options)
@@ -111,16 +110,6 @@ def run(options: argparse.Namespace) -> int:
         warn("interrupted; partial results are kept.")
         return Exit.INTERRUPTED
     return Exit.FINE
-
-
-def _fast(scene: Scene, options: argparse.Namespace) -> bool:
-    """Return whether to use compiled loops; seconds are compared only where all methods can be compiled."""
-    from engine.accuracy.study import compilable
-    from engine.run.compiled import available
-
-    if options.no_compiled:
-        return False
-    return available() if options.cost == "evaluations" else compilable(scene.cast)
 
 
 def _fill(found: "Findings", durations: list[float], rungs: list[int], fast: bool) -> None:

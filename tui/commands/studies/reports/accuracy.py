@@ -11,7 +11,7 @@ from rich.text import Text
 from engine.accuracy.advice import Advice
 from engine.accuracy.front import Cheapest, Cost, front
 from engine.accuracy.growth import Growth
-from engine.accuracy.references import CLOSED_FORM, TAYLOR_20, AnyPoint, References
+from engine.accuracy.references import CLOSED_FORM, AnyPoint, References
 from engine.accuracy.study import REASONS, ErrorKind, Order, Point
 from engine.methods import Method
 from engine.methods.euler import SYMPLECTIC_EULER
@@ -133,14 +133,14 @@ def _cell(point: AnyPoint, kind: ErrorKind) -> str:
 
 def _notes(found: Findings) -> Iterator[Any]:
     flaws = {flaw for point in found.points if (flaw := point.flaw(found.kind))}
-    for mark in sorted({MARKS[flaw] for flaw in flaws}):
-        yield f"{mark} {'; '.join(REASONS[flaw] for flaw in flaws if MARKS[flaw] == mark)}"
+    yield from sorted(f"{MARKS[flaw]} {REASONS[flaw]}" for flaw in flaws)
     yield "order measured on the theta error over at most one period; n/step: force evaluations"
     yield from order_remarks(found.scene, found.orders)
     if growth := growth_words(found.growth):
         yield f"at h = {found.scene.h:g} s, {growth}"
     if found.references:
-        yield from _reference_notes(found.references, found.kind)
+        yield from filter(None, [found.references.absent])
+        yield f"{CLOSED_FORM.label}, the floor: {length(found.references.floor)}"
     yield from ("", *_chart(found))
     if found.all and found.points:
         alone = front(found.points, found.kind, "evaluations")
@@ -151,20 +151,6 @@ def _notes(found: Findings) -> Iterator[Any]:
         yield from _advice_notes(found, advice)
     if len(found.advice) > 1:
         yield f"\n{winners(found.advice)}"
-
-
-def _reference_notes(found: References, kind: ErrorKind) -> Iterator[Any]:
-    """Yield the points of Taylor's series, or why there are none, and what the closed form takes."""
-    if found.taylor:
-        columns = (
-            Column("tolerance [rad/s]", lambda point: f"{point.tolerance:.2g}", right=True),
-            Column("steps", lambda point: str(point.steps), right=True),
-            Column(TAYLOR_20.label, lambda point: _cell(point, kind), right=True),
-        )
-        yield from ("", Table(columns, found.taylor))
-    if found.absent:
-        yield found.absent
-    yield f"{CLOSED_FORM.label}, the floor: {length(found.floor)}"
 
 
 def order_remarks(scene: Scene, orders: Sequence[Order]) -> Iterator[str]:
@@ -238,12 +224,11 @@ def _attempt_columns(found: Findings, advice: Advice) -> list[Column]:
 
 def winners(advice: Sequence[Advice]) -> str:
     """Return where the recommended method changes with the time."""
+    changes = []
     names = [each.point.method.label if each.point else "no method" for each in advice]
-    changes = [
-        f"{after} instead of {before} from {advice[at].time:g} s on (not yet at {advice[at - 1].time:g} s)"
-        for at, (before, after) in enumerate(pairwise(names), 1)
-        if before != after
-    ]
+    for (before, after), (earlier, later) in zip(pairwise(names), pairwise(advice), strict=True):
+        if before != after:
+            changes.append(f"{after} instead of {before} from {later.time:g} s on (not yet at {earlier.time:g} s)")
     return "; ".join(changes) + "." if changes else f"{names[0]} for all these times."
 
 
