@@ -1,9 +1,9 @@
-"""What commands print: JSON, CSV, tables and pictures on stdout; warnings and progress on stderr."""
+"""What commands print: sentences and CSV on stdout; warnings and progress on stderr."""
 
 import shutil
 import sys
 import textwrap
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from time import monotonic
 from typing import TYPE_CHECKING, Any, TextIO
@@ -26,13 +26,6 @@ def _wrapped(text: str) -> str:
     return "\n".join(
         textwrap.fill(line, columns, break_long_words=False, break_on_hyphens=False) for line in text.split("\n")
     )
-
-
-def write_json(name: str, fields: Mapping[str, Any]) -> None:
-    """Print one object of the schema pendu.NAME/1.  Raises ValueError for a number that is not finite."""
-    import json  # here and below, because the lab needs neither for its first paint
-
-    print(json.dumps({"schema": f"pendu.{name}/1", **fields}, allow_nan=False, indent=2))
 
 
 def write_csv(out: TextIO, header: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
@@ -70,7 +63,7 @@ def console(piped_width: int | None = None) -> "Console":
 
 
 def draw(on: "Console", renderables: "Iterable[RenderableType]", **how: Any) -> None:
-    """Print what Rich draws."""
+    """Print what Rich draws: `how` is for its `print`."""
     with on.capture() as drawn:  # or Rich ends the process when the reader of a pipe is gone
         for renderable in renderables:
             on.print(renderable, **how)

@@ -7,7 +7,6 @@ import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
-from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TextIO
 
@@ -105,15 +104,6 @@ class Report:
                 note.show()
             else:
                 draw(console(WIDTH_OF_FILES), [note], no_wrap=True, overflow="crop")
-
-
-def print_table(align: str, headers: Sequence[str], rows: Iterable[Iterable[str]]) -> None:
-    """Print a table of texts; `align` has an l or an r for each column."""
-    columns = [
-        Column(head, itemgetter(at), right=side == "r")
-        for at, (side, head) in enumerate(zip(align, headers, strict=True))
-    ]
-    Table(columns, [list(row) for row in rows]).show()
 
 
 def write_records(records: Iterable[Mapping[str, Any]], out: TextIO) -> None:

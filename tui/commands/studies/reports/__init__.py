@@ -1,1 +1,1 @@
-"""Reports of `accuracy`, `stability` and its --section, and of `energies` judged: they load NumPy and Rich."""
+"""Reports of `run`, `accuracy`, `stability` and its --section, and of `energies` judged; they load NumPy and Rich."""
