@@ -83,13 +83,12 @@ class SourceScreen(Screen[None]):
             for n in range(1, MOST_METHODS + 1)
         ),
         Binding(f"{MOST_METHODS + 1}", f"show({MOST_METHODS})", "the exact motion", show=False),
-        Binding("X,shift+x", "alone", "one method alone, or all", show=False),
         Binding("t", "switch('trails')", "trails", show=False),
         Binding("e", "quantity", "chart: next quantity", show=False),
         Binding("y", "switch('log')", "chart: log or linear", show=False),
-        Binding("w", "window(1)", "chart: last 20 s, 60 s, …", show=False),
+        Binding("w", "window", "chart: last 20 s, 60 s, …", show=False),
         Binding("z", "zoom(0.5)", "chart: zoom in", show=False),
-        Binding("escape", "window(0)", "chart: back from the zoom", False, "esc"),
+        Binding("escape", "back", "chart: back from the zoom", False, "esc"),
         Binding("v", "view", "View", tooltip="next view"),
         *(
             Binding(f"f{n}", f"view({name!r})", f"view: {VIEWS[name].title}", False, f"F{n}", group=_VIEWS)
@@ -281,17 +280,18 @@ class SourceScreen(Screen[None]):
     def action_switch(self, name: str) -> None:
         self.change_shown(self.shown.switched(name))
 
-    def action_alone(self) -> None:
-        self.change_shown(self.shown.next_alone(self.source.scene.cast))
-
     def on_method_chosen(self, message: MethodChosen) -> None:
         self.change_shown(self.shown.alone(message.place, self.source.scene.cast))
 
     def action_quantity(self) -> None:
         self.change_shown(self.shown.next_quantity(self.source.scene))
 
-    def action_window(self, direction: int) -> None:
-        self.change_shown(self.shown.of(self.source.sample.run).next_window(direction))
+    def action_window(self) -> None:
+        self.change_shown(self.shown.of(self.source.sample.run).next_window())
+
+    def action_back(self) -> None:
+        """Leave the zoom of the chart."""
+        self.change_shown(self.shown.zoomed(None) if self.shown.stretch else self.shown)
 
     def action_zoom(self, factor: float) -> None:
         """Show `factor` times the range of time in the chart."""

@@ -189,9 +189,9 @@ class LiveScreen(SourceScreen):
         if self.tour is None or not self.tour.answers(number):
             super().action_show(number)
 
-    def action_window(self, direction: int) -> None:
-        """Leave the tour with esc, or change the window of the chart."""
-        if self.is_on_tour and direction == 0:
+    def action_back(self) -> None:
+        """Leave the tour, or else the zoom of the chart."""
+        if self.is_on_tour:
             self.action_tour()
         else:
-            super().action_window(direction)
+            super().action_back()

@@ -3,7 +3,6 @@
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import groupby
 
 from textual import events
 from textual.message import Message
@@ -16,28 +15,35 @@ from tui.playback.source import Source
 from tui.views.view import Pane
 from tui.words.numbers import seconds
 
-LEAST = 24  # columns for the bar
+MIN_WIDTH = 24  # columns for the bar
 
 
-def bar(position: float, length: float, ticks: Sequence[float], ends: Sequence[tuple[float, str]], width: int) -> Row:
-    """The bar: heavy up to the position, a tick for each event, letters at the ends of the loop."""
+def bar(
+    position: float,
+    length: float,
+    ticks: Sequence[float],
+    ends: Sequence[tuple[float, str]],
+    width: int,
+) -> Row:
+    """Return the bar: heavy up to the position, a tick for each event, letters at the loop's ends."""
 
     def column(clock: float) -> int:
         return min(int(clock / length * width), width - 1) if length > 0 else 0
 
     here = column(position)
-    cells = ["━" if at < here else "─" for at in range(width)]
-    owners = [TEXT if at < here else FRAME for at in range(width)]
-    tick = 0
-    while tick < len(ticks):  # the first in each column
-        at = column(ticks[tick])
-        cells[at] = "┿" if at < here else "┼"
-        tick = bisect_right(ticks, at, tick, key=column)
-    for clock, letter in ends:
-        cells[column(clock)], owners[column(clock)] = letter, TEXT
-    cells[here], owners[here] = "█", WARN
-    runs = groupby(zip(cells, owners, strict=True), key=lambda cell: cell[1])
-    return [("".join(cell for cell, _ in run), owner) for owner, run in runs]
+    events = {column(clock) for clock in ticks}
+    letters = {column(clock): letter for clock, letter in ends}
+    row: list[tuple[str, int]] = []
+    for at in range(width):
+        if at == here:
+            row.append(("█", WARN))
+        elif at in letters:
+            row.append((letters[at], TEXT))
+        elif at < here:
+            row.append(("┿" if at in events else "━", TEXT))
+        else:
+            row.append(("┼" if at in events else "─", FRAME))
+    return row
 
 
 def facts(replay: Replay, room: int) -> str:
@@ -82,7 +88,7 @@ class SeekBar(Pane):
     def picture(self, source: Source, sample: Sample) -> Picture:
         assert isinstance(source, Replay)
         replay = source
-        text = facts(replay, self.room.width - LEAST - 3)
+        text = facts(replay, self.room.width - MIN_WIDTH - 3)
         self._length = replay.length
         self._columns = max(self.room.width - len(text) - 3, 1)
         ends = [(clock, letter) for clock, letter in zip(replay.ends, "AB", strict=True) if clock is not None]

@@ -13,7 +13,7 @@ from tui.drawing.palette import QUIET, TEXT, WARN
 from tui.drawing.picture import Picture, Row
 from tui.playback.source import Source
 from tui.views.view import Pane
-from tui.words.numbers import factor, file_size, percent, seconds, start, two_digits
+from tui.words.numbers import factor, file_size, seconds, start, two_digits
 
 SLOW = 1.0  # s of the clock from step to step: without a word, the lab would seem to stand still
 BADGE = -10
@@ -80,9 +80,7 @@ def _time(source: Source) -> Iterator[Segment]:
     yield Segment(7, speed)
     share = source.pace.share
     if share < 0.99:
-        reached = two_digits(abs(playhead.speed * share))
-        text = f"only {percent(share)} of" if share >= 0.095 else f"reached {reached}× of"
-        yield Segment(10, f"{text} {speed}", WARN)
+        yield Segment(10, f"only {two_digits(100 * share)} % of {speed}", WARN)
     yield Segment(11, f"t {seconds(source.sample.t)}")
 
 

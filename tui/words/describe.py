@@ -43,7 +43,12 @@ def method_sentence(source: Source, index: int) -> str:
     """Whether a method failed or went over the top; if not, its verdict or its error so far."""
     method, reading = source.scene.cast[index], source.sample.readings[index]
     if milestone := endings(source).get(index):
-        parts = [milestone_insight(milestone, source.scene.equations.energy_error.conserved), irregular(source, index)]
+        conserved = source.scene.equations.energy_error.conserved
+        judgement = source.judgements[index]
+        parts = [
+            milestone_insight(milestone, conserved),
+            irregular(method, judgement, reading.energy_error),
+        ]
         return " ".join(sentence(each) for each in parts if each)
     if source.judgements[index].verdict == "bounded":
         return f"{method.label} stays bounded: its largest energy error is {reading.max_energy_error:.2g}."

@@ -5,9 +5,9 @@ Each states only what was measured; a forecast extrapolates a measured slope.
 
 import math
 import string
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from types import MappingProxyType
-from typing import Any, Literal, NamedTuple
+from typing import Any, NamedTuple
 
 from engine.methods import GENERAL, Method
 from engine.run.judgement import Judgement, Milestone
@@ -25,13 +25,7 @@ MAX_RATE_LOSS = 0.5  # of the energy; beyond it the share that is lost says more
 MAX_PERIOD = 2.0  # of small swings; near the separatrix the rate of loss changes with the energy
 UNCHANGED = 0.05  # relative change of the energy that is not worth a number
 
-Kind = Literal[
-    "at rest", "returned", "watch", "failed", "over the top", "over the top with",
-    "over the top with true", "errors cross", "bounded", "chaotic", "chaotic at", "wanders",
-    "wanders at", "caught", "lost", "gains", "loses", "will pass", "exceeds", "so far",
-]  # fmt: skip
-
-SENTENCES: dict[Kind, str] = {
+SENTENCES = {
     "at rest": "Nothing moves: the pendulum started at rest in equilibrium.",
     "returned": "Back at t = 0. Missed the start by {misses} rad.",
     "watch": "{text}",
@@ -55,10 +49,14 @@ SENTENCES: dict[Kind, str] = {
 }
 
 
-class Insight(NamedTuple):
-    """A fact about the run: its kind, the methods it is about, and its numbers."""
+IRREGULAR = ("chaotic", "chaotic at", "wanders", "wanders at", "caught")
+"""Kinds that matter of a method that went over the top, too."""
 
-    kind: Kind
+
+class Insight(NamedTuple):
+    """A fact about the run: its kind, a key of SENTENCES, its methods and its numbers."""
+
+    kind: str
     methods: tuple[Method, ...] = ()
     values: Mapping[str, Any] = MappingProxyType({})
 
@@ -161,8 +159,8 @@ def _on_methods(source: Source, ended: Mapping[int, Milestone], hidden: Collecti
     for index, method in enumerate(source.scene.cast):
         if method.key in hidden:
             continue
-        found = irregular(source, index) if index in ended else drift(source, index)
-        if found:
+        found = drift(source, index)
+        if found and (index not in ended or found.kind in IRREGULAR):
             yield found
 
 
@@ -200,32 +198,24 @@ def bounded(source: Source, hidden: Collection[str] = ()) -> Insight | None:
     return Insight("bounded", tuple(method for method, _ in found), {"seconds": seconds})
 
 
-def irregular(source: Source, index: int) -> Insight | None:
-    """Return the insight on a method that is chaotic, wanders or is caught."""
-    error = source.sample.readings[index].energy_error
-    return irregular_insight(source.scene.cast[index], source.judgements[index], error)
-
-
-def irregular_insight(method: Method, judgement: Judgement, error: float) -> Insight | None:
+def irregular(method: Method, judgement: Judgement, error: float) -> Insight | None:
     """Return the insight on a chaotic, wandering or caught method; None for other verdicts."""
-    values = {"seconds": math.log(10) / judgement.lyapunov} if judgement.lyapunov else {}
-    match judgement.verdict:
-        case "chaotic":
-            return Insight("chaotic at" if values else "chaotic", (method,), values)
-        case "wanders":
-            return Insight("wanders at" if values else "wanders", (method,), values)
-        case "caught":
-            return Insight("caught", (method,), {"error": error})
-    return None
+    if judgement.verdict == "caught":
+        return Insight("caught", (method,), {"error": error})
+    if judgement.verdict not in ("chaotic", "wanders"):
+        return None
+    if not judgement.lyapunov:
+        return Insight(judgement.verdict, (method,))
+    return Insight(f"{judgement.verdict} at", (method,), {"seconds": math.log(10) / judgement.lyapunov})
 
 
 def drift(source: Source, index: int) -> Insight | None:
     """Return the insight on a method that is not bounded, as far as that is certain."""
-    if found := irregular(source, index):
-        return found
     method = source.scene.cast[index]
     judgement = source.judgements[index]
     error = source.sample.readings[index].energy_error
+    if found := irregular(method, judgement, error):
+        return found
     conserved = source.scene.equations.energy_error.conserved
     loses = judgement.verdict == "loses"
     if conserved and loses and -error > MAX_RATE_LOSS:
@@ -236,7 +226,8 @@ def drift(source: Source, index: int) -> Insight | None:
     unit = "E0" if conserved else "the true energy"
     values = {"rate": slope, "unit": unit, "gains": "loses" if loses else "gains"}
     if ahead := forecast(source, index):
-        return Insight("will pass", (method, ahead.other), values | {"seconds": ahead.seconds})
+        seconds, other = ahead
+        return Insight("will pass", (method, other), values | {"seconds": seconds})
     bands = _bands(source)
     if bands and abs(error) > bands[0][0] > 0:
         other = source.scene.cast[bands[0][1]]
@@ -244,15 +235,8 @@ def drift(source: Source, index: int) -> Insight | None:
     return Insight("loses" if loses else "gains", (method,), values)
 
 
-class Forecast(NamedTuple):
-    """When the energy error of a method that loses energy will pass that of a bounded one."""
-
-    seconds: float  # from now on, simulated
-    other: Method
-
-
-def forecast(source: Source, index: int) -> Forecast | None:
-    """Return when a steady loss of energy will exceed the smallest maximum that it is still below.
+def forecast(source: Source, index: int) -> tuple[float, Method] | None:
+    """Return when [s] a steady loss of energy will exceed the smallest maximum that it is still below.
 
     None unless the slope is certain to a tenth; after a change of the step, because the maxima belong
     to another step; where the period depends on the energy, and the rate of loss with it; and
@@ -271,7 +255,7 @@ def forecast(source: Source, index: int) -> Forecast | None:
     if band > MAX_BAND or slow:
         return None
     seconds = (band - math.copysign(error, error * slope)) / abs(slope)
-    return Forecast(seconds, source.scene.cast[other]) if seconds < MAX_FORECAST else None
+    return (seconds, source.scene.cast[other]) if seconds < MAX_FORECAST else None
 
 
 def _bands(source: Source) -> list[tuple[float, int]]:
@@ -294,20 +278,13 @@ def _so_far(source: Source, hidden: Collection[str] = ()) -> Insight:
 
 def _returned(scene: Scene, sample: Sample) -> Insight:
     """Return each method's distance from the start: sqrt(dtheta² + (domega/w0)²) [rad]."""
-    misses = [
-        f"{method.letter} failed" if math.isnan(miss) else f"{method.letter} {miss:.2g}"
-        for method, miss in zip(scene.cast, distances(scene, sample), strict=True)
-    ]
+    misses = []
+    for method, reading in zip(scene.cast, sample.readings, strict=True):
+        speed = (reading.omega - scene.omega) / scene.w0
+        miss = math.hypot(reading.theta - scene.theta, speed)
+        text = "failed" if reading.diverged_at is not None else f"{miss:.2g}"
+        misses.append(f"{method.letter} {text}")
     return Insight("returned", scene.cast, {"misses": ", ".join(misses)})
-
-
-def distances(scene: Scene, sample: Sample) -> Iterable[float]:
-    """Yield each method's distance from the start in angle and speed [rad]; nan once it has failed."""
-    for reading in sample.readings:
-        if reading.diverged_at is not None:
-            yield math.nan
-        else:
-            yield math.hypot(reading.theta - scene.theta, (reading.omega - scene.omega) / scene.w0)
 
 
 def return_text(scene: Scene, sample: Sample) -> str:

@@ -157,17 +157,6 @@ async def test_what_is_shown_digits_t_y_e_and_w():
         assert theatre.stage.shown == before
 
 
-async def test_capital_x_shows_one_method_alone_and_then_all_and_next_time_the_next_one():
-    async with lab() as theatre:
-        seen = []
-        for _ in range(5):
-            await theatre.press("X")
-            seen.append("".join(USUAL_CAST[at].letter for at in theatre.stage.shown.places(USUAL_CAST)))
-        assert seen == ["e", "esvr", "s", "esvr", "v"]
-        await theatre.press("u")
-        assert theatre.stage.shown.places(USUAL_CAST) == [0, 1, 2, 3]
-
-
 async def test_a_click_on_a_row_or_a_pendulum_shows_that_method_alone_and_another_one_all():
     async with lab() as theatre:
         await theatre.run(1)

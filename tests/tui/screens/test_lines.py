@@ -76,7 +76,7 @@ def test_the_status_line_shows_a_low_pace_and_a_failed_recording():
     slow = taped(pace=Pace(due=1.0, done=0.62))
     assert "only 62 % of 1×" in text(status_row(slow, 80))
     hopeless = taped(pace=Pace(due=1.0, done=0.011), playhead=Playhead(speed=2.0**18))
-    assert "reached 2884× of 262144×" in text(status_row(hopeless, 120))
+    assert "only 1.1 % of 262144×" in text(status_row(hopeless, 120))
     assert "only" not in text(status_row(taped(pace=Pace(due=1.0, done=0.995)), 80))
     broken = taped(recording_status=Taped.recording_status._replace(failed="the disk is full."))
     assert "NOT RECORDED" in text(status_row(broken, 80))

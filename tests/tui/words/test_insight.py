@@ -21,7 +21,7 @@ from tui.words.insight import (
     forecast,
     insight,
     insight_text,
-    irregular_insight,
+    irregular,
     lasting,
     milestone_insight,
     sentence,
@@ -96,13 +96,14 @@ def test_a_forecast_comes_true_in_a_long_run(name, h, seconds):
     live = after(SCENES[name].altered(h=h), seconds)
     ahead = forecast(live, RK4)
     assert ahead is not None
-    band = live.sample.readings[USUAL_CAST.index(ahead.other)].max_energy_error
+    wait, other = ahead
+    band = live.sample.readings[USUAL_CAST.index(other)].max_energy_error
     assert abs(live.sample.readings[RK4].energy_error) < band
     lockstep = Lockstep(SCENES[name].altered(h=h))
     while (sample := lockstep.sample()).readings[RK4].max_energy_error <= band:
-        lockstep.advance(round(0.01 * ahead.seconds / h))
-        assert lockstep.t < seconds + 2 * ahead.seconds
-    assert sample.t - seconds == pytest.approx(ahead.seconds, rel=0.08)  # the drift changes with the energy
+        lockstep.advance(round(0.01 * wait / h))
+        assert lockstep.t < seconds + 2 * wait
+    assert sample.t - seconds == pytest.approx(wait, rel=0.08)  # the drift changes with the energy
 
 
 @pytest.mark.parametrize(
@@ -139,7 +140,7 @@ def test_after_a_change_of_the_step_there_is_no_forecast():
     ],
 )
 def test_a_chaotic_wandering_or_caught_method_has_an_insight(judgement, kind):
-    found = irregular_insight(RK4_METHOD, judgement, 29.0)
+    found = irregular(RK4_METHOD, judgement, 29.0)
     assert (found and found.kind) == kind
     if judgement.lyapunov:
         assert found.values["seconds"] == pytest.approx(math.log(10) / 0.2)
@@ -184,7 +185,7 @@ def test_a_failure_comes_first_and_is_the_only_insight_on_its_method():
     live = Live(SCENES["drift"].altered(theta=1e-150), clock=lambda: 0.0)  # any growth overflows a relative error
     while live.sample.readings[EXPLICIT].diverged_at is None:
         live.step(1000)
-    found = insight(live)
+    found = lasting(live)[0]
     assert (found.kind, found.values["t"]) == ("failed", live.sample.readings[EXPLICIT].diverged_at)
     assert [each for each in lasting(live) if found.methods[0] in each.methods] == [found]
 

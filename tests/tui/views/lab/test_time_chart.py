@@ -91,7 +91,7 @@ def test_a_title_says_the_ends_of_a_stretch_as_exactly_as_they_differ():
 def test_another_run_is_shown_as_before_the_zoom():
     shown = Shown(seconds=20.0, stretch=Stretch(1, 3.0, 4.0, False))
     assert shown.of(1) == shown
-    assert shown.of(2) == shown.next_window(1) == Shown(seconds=20.0)
+    assert shown.of(2) == shown.next_window() == Shown(seconds=20.0)
 
 
 async def test_the_pointer_reads_the_chart_out_the_wheel_zooms_there_and_keys_lead_on_and_back():

@@ -92,7 +92,7 @@ def columns_of(scene: Scene, lockstep: "Lockstep") -> list[Column]:
 
 def notes_of(scene: Scene, lockstep: "Lockstep") -> list[str]:
     """Return the sentences about what happened on the way."""
-    from tui.words.insight import irregular_insight, milestone_insight, sentence
+    from tui.words.insight import irregular, milestone_insight, sentence
 
     notes = [
         sentence(milestone_insight(each, scene.equations.energy_error.conserved))
@@ -100,6 +100,6 @@ def notes_of(scene: Scene, lockstep: "Lockstep") -> list[str]:
         if each.kind in ("over the top", "errors cross")
     ]
     for method, judgement in zip(scene.cast, lockstep.judgements, strict=True):
-        if judgement.lyapunov and (found := irregular_insight(method, judgement, 0.0)):
+        if judgement.lyapunov and (found := irregular(method, judgement, 0.0)):
             notes.append(sentence(found))
     return notes
