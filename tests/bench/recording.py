@@ -1,4 +1,7 @@
-"""What recording costs a frame, and what eight hours of it cost to open, to seek in and to hold: one JSON object."""
+"""What recording costs a frame, and what hours of it cost to open, to seek in and to replay: one JSON object.
+
+python tests/bench/recording.py [HOURS]
+"""
 
 import json
 import os
@@ -8,62 +11,52 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from statistics import median, quantiles
+from statistics import median
 from tempfile import TemporaryDirectory
 
 from engine.run.lockstep import Lockstep
 from engine.scenes import DEFAULT_SCENE
 from recordings.events import Event
-from recordings.format import encode_event, encode_readings
 from recordings.recorder import Recorder
 from recordings.recording import Recording
 
 FRAMES = 30  # a second
-HOURS = 8
 SEEKS = 200
 
 
-def start() -> Event:
-    """The start of the default scene."""
-    return Event("start", 1, 0, 0.0, scene=DEFAULT_SCENE)
-
-
 def seconds_a_frame(folder: Path) -> float:
-    """Processor time that recording takes of a frame [s], flushes included, while the lab runs for a minute."""
-    frames = 60 * FRAMES
+    """Return the processor time that recording takes of a frame [s], flushes included."""
     lockstep = Lockstep(DEFAULT_SCENE)
     samples = []
-    for _ in range(frames):
+    for _ in range(60 * FRAMES):
         samples.append(lockstep.sample())
         lockstep.advance(1)
     with Recorder(folder / "frames.mcap") as recorder:
-        recorder.event(start(), 0.0)
+        recorder.event(Event("start", 1, 0, 0.0, scene=DEFAULT_SCENE), 0.0)
         began = time.process_time()
         for frame, sample in enumerate(samples):
             recorder.sample(sample, frame / FRAMES)
-        return (time.process_time() - began) / frames
+        return (time.process_time() - began) / len(samples)
 
 
 def long_recording(path: Path, hours: float) -> None:
-    """A recording of so many hours.  The numbers of a minute are used again; only clocks and steps go on."""
+    """Record so many hours.  The numbers of a minute are used again; only clocks and steps go on."""
     lockstep = Lockstep(DEFAULT_SCENE)
     minute = []
     for _ in range(60 * FRAMES):
-        minute.append(encode_readings(lockstep.sample()))
+        minute.append(lockstep.sample())
         lockstep.advance(1)
     with Recorder(path) as recorder:
-        recorder.event(start(), 0.0)
-        topics = recorder._topics
+        recorder.event(Event("start", 1, 0, 0.0, scene=DEFAULT_SCENE), 0.0)
         for frame in range(round(hours * 3600 * FRAMES)):
-            recorder._add(list(zip(topics, minute[frame % len(minute)], strict=True)), frame / FRAMES)
-            recorder.samples += 1
+            sample = minute[frame % len(minute)]
+            recorder.sample(sample._replace(step=frame, t=frame / FRAMES), frame / FRAMES)
             if frame % (120 * FRAMES) == 0:
-                recorder._add([("/pendu/events", encode_event(Event("mark", 1, frame, 0.0)))], frame / FRAMES)
-            recorder._flush_if_due()
+                recorder.event(Event("mark", 1, frame, 0.0), frame / FRAMES)
 
 
 def peak_memory() -> float:
-    """Of this process [MB].  Linux's own count: getrusage's begins with what the parent had when it forked."""
+    """Return the most memory that this process had [MB]; getrusage begins with what its parent had."""
     status = Path("/proc/self/status")
     if status.exists():
         return int(status.read_text().split("VmHWM:")[1].split()[0]) / 1000
@@ -72,57 +65,61 @@ def peak_memory() -> float:
 
 def watch(path: Path) -> dict[str, float]:
     """Open it, seek in it at random and step; in a process of its own, because of the memory."""
-    bare = peak_memory()
     began = time.perf_counter()
     recording = Recording.open(path)
     opened = time.perf_counter() - began
-    assert recording.complete
     chance = random.Random(1)
-    seeks, steps = [], []
+    seeks = []
     for _ in range(SEEKS):
         clock = chance.uniform(0, recording.length)
         began = time.perf_counter()
-        place = recording.at(clock)
-        assert place is not None
+        assert recording.at(clock) is not None
         seeks.append(time.perf_counter() - began)
-        began = time.perf_counter()
-        recording.previous(place)
-        steps.append(time.perf_counter() - began)
-    return {
+    found = {
         "open_seconds": opened,
         "seek_seconds_median": median(seeks),
         "seek_seconds_max": max(seeks),
-        "step_back_seconds_p99": quantiles(steps, n=100)[98],
-        "memory_mb": peak_memory(),
-        "memory_before_opening_mb": bare,
     }
+    return found | frames(recording) | {"memory_mb": peak_memory()}
+
+
+def frames(recording: Recording) -> dict[str, float]:
+    """Replay ten seconds at 1x near the start and near the end: the processor time of a frame [s]."""
+    from tui.playback.marks import Marks
+    from tui.playback.replay import Replay
+
+    found = {}
+    for name, begin in (("start", 10.0), ("end", recording.length - 15.0)):
+        now = 0.0
+        replay = Replay(recording, Marks(recording.path), clock=time.perf_counter)
+        replay.tick(now)
+        replay.seek(begin)
+        while not replay.fill():
+            pass
+        began = time.process_time()
+        for _ in range(10 * FRAMES):
+            now += 1 / FRAMES
+            replay.tick(now)
+        found[f"frame_seconds_near_the_{name}"] = (time.process_time() - began) / (10 * FRAMES)
+    return found
 
 
 def main() -> None:
     """Measure and print."""
-    if len(sys.argv) > 1:
-        print(json.dumps(watch(Path(sys.argv[1]))))
+    if sys.argv[1:2] == ["--watch"]:
+        print(json.dumps(watch(Path(sys.argv[2]))))
         return
+    hours = float(sys.argv[1]) if len(sys.argv) > 1 else 24.0
     with TemporaryDirectory() as folder:
         path = Path(folder) / "long.mcap"
         cost = seconds_a_frame(Path(folder))
-        long_recording(path, HOURS)
+        long_recording(path, hours)
         size = path.stat().st_size
-        command = [sys.executable, __file__, str(path)]
+        command = [sys.executable, __file__, "--watch", str(path)]
         watched = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
-    print(
-        json.dumps(
-            {
-                "benchmark": "recording",
-                "microseconds_a_frame": round(cost * 1e6, 1),
-                "share_of_a_core_at_30_fps": round(cost * FRAMES, 5),
-                "hours": HOURS,
-                "megabytes": round(size / 1e6, 1),
-                "cores": os.cpu_count(),
-                **{name: round(value, 4) for name, value in watched.items()},
-            }
-        )
-    )
+    facts = {"microseconds_a_frame": round(cost * 1e6, 1), "hours": hours, "megabytes": round(size / 1e6, 1)}
+    found = {name: round(value, 5) for name, value in watched.items()}
+    print(json.dumps({"benchmark": "recording", "cores": os.cpu_count(), **facts, **found}))
 
 
 if __name__ == "__main__":

@@ -123,11 +123,10 @@ def show(screen: "SourceScreen", options: argparse.Namespace) -> int:
         result = app.run(mouse=terminal.mouse)
     finally:
         app.finish()
-    for each in app.source_screens:
-        say_goodbye(each.source)
+    codes = [say_goodbye(each.source) for each in app.source_screens]
     if isinstance(result, BaseException):
         raise _sentence(result)
-    return app.return_code or Exit.FINE if result is None else result
+    return max([app.return_code or Exit.FINE, *codes]) if result is None else result
 
 
 def _sentence(error: BaseException) -> UserError:
@@ -157,17 +156,18 @@ def print_sentences(source: "Source", only: "Cast | None" = None) -> int:
             print_run(source, partial(print, flush=True), stopped, only=only)
     finally:
         source.close()
-    say_goodbye(source)
-    return Exit.FINE
+    return say_goodbye(source)
 
 
-def say_goodbye(source: "Source") -> None:
-    """Print where a lab was recorded and how to replay it."""
+def say_goodbye(source: "Source") -> int:
+    """Print where a lab was recorded and how to replay it; return the exit code."""
     from tui.playback.live import Live
 
     if not isinstance(source, Live) or source.recorder is None:
-        return
+        return Exit.FINE
     for file in source.recorder.files:
         print(f"saved {file}\nreplay it with: pendu-tui replay {shlex.quote(str(file))}")
     if source.recorder.failed:
         warn(f"the recording stopped: {source.recorder.failed}")
+        return Exit.DISK
+    return Exit.FINE

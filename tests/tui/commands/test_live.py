@@ -10,7 +10,7 @@ from recordings.verification import verify
 from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PtyLab
 from tui.playback.live import Live
-from tui.screens.launch import live_screen
+from tui.screens.launch import live_screen, say_goodbye
 
 
 def test_labs_that_are_opened_in_the_same_second_record_each_for_itself(tmp_path):
@@ -53,3 +53,15 @@ def test_a_file_that_is_there_is_not_recorded_over(tmp_path):
     path.write_bytes(b"precious")
     assert pendu("live", "--plain", "--record", path).refused(5, "exists already", "choose another name")
     assert path.read_bytes() == b"precious"
+
+
+def test_a_lab_whose_recording_stopped_exits_with_5(tmp_path, capsys):
+    live = Live(DEFAULT_SCENE)
+    live.record(LiveRecorder(tmp_path / "lab.mcap"))
+    (tmp_path / "lab.mcap.part").unlink()
+    live.tick(0.0)
+    live.tick(2.0)
+    live.pause(True)
+    live.close()
+    assert say_goodbye(live) == 5
+    assert "the recording stopped" in capsys.readouterr().err
