@@ -1,11 +1,8 @@
-"""Energies without a method: a verdict on the energies of any program, from times and energies alone.
+"""Energies without a method: a verdict on any program, from times and energies alone.
 
 The record is cut into up to 64 blocks of equal time.  The means of the blocks are held against a few
 descriptions: a level, a line, a curve that still moves, a curve or a step that has settled, each with
-or without slow waves.  What a description leaves is noise of any correlation time, from none to that
-of a random walk, with white noise on top; its likelihood is averaged over a grid of such noises, so
-the uncertainty of a trend holds for correlated energies, too (generalised least squares with
-restricted maximum likelihood: Harville, J. Am. Stat. Assoc. 72 (1977) 320).
+or without slow waves, and all with correlated noise (engine.run.noise).
 
 In this order: energies that move by no more than rounding are `bounded`; a start outside the band of
 the rest is left out; what settles after a change of level is `caught`; a trend `grows` or `loses`;
@@ -19,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from engine.run.judgement import Judgement, Progress, Verdict
+from engine.run.noise import Fit, Noises, regressors, waves
 
 MIN_SAMPLES = 64  # 32 blocks: a line, three waves and a noise leave 20 degrees of freedom
 MAX_BLOCKS = 64  # resolve a correlation time of a 20th of the record
@@ -31,25 +29,22 @@ STEEP = 2.0  # standard deviations of a line beside a curve: not an end alone
 CHANGE = 5.0  # standard deviations of a change of level: the best of 200 in white noise has 3.3
 LINE_OF_FEW = 7.0  # standard deviations, where independent samples are few: 2 in 100 random walks
 CURVE_OF_FEW = 12.0  # have a steeper line, or a clearer curve
+STILL_MOVING = 0.05  # of a change of level, in the second half: it has not settled
 SETTLED = math.log(100)  # of a likelihood ratio: wrong in 1 of 100 where both are as common
 CLEAR = math.log(10)  # of a likelihood ratio, between curves of as many parameters
 WALKS = 3.5  # of a likelihood ratio: noise with a correlation time of T/5 exceeds it in 1 of 100
 MIN_CYCLES = 4.0  # of a slow wave that is called bounded: thirds of the record look alike
-MAX_WAVES = 3
 WAVES = 12.0  # log likelihood that waves must gain: in random walks they gained up to 10
-MIN_WAVE = 1.1  # cycles: the search ends at 1, where curves end up
 TRANSIENT = 0.05  # of the record: a start that is over so early belongs to the preparation
 RUNAWAY = 1.65  # exponent of structure functions: 2 for a smooth curve, 1.3 for means of a walk
-WIDER = 3.0  # times as wide in the last third as in the first: more than medians of noise vary
+WIDER = 1.5  # times as wide, all of the last third as any of the first: never by chance
 ROUNDING = 1e-12  # of the energy: a random walk of 1e7 roundings of 1e-16
+AT_REST = 0.01  # of the first energy: losing all of it is no other level
 MULTIPLIED = 1e3  # times the smallest energy: what multiplies is judged in its logarithm
 
 _RATES = 1.0 * np.geomspace(1, 25, 20)  # of exponential curves, per record: these still move
 _LOGARITHMS = np.geomspace(1, 3000, 15)  # of log(1 + k t), which never settles
 _SETTLING = np.geomspace(6, 600, 30)  # exponential approaches that are over within the record
-_CORRELATION_TIMES = 1 / np.array([0.5, 1, 2, 4, 7, 10, 14, 20, 28, 40, 64])  # of the record
-LEVEL_TIME, WALK_TIME = 0.21, 1.9  # correlation times of noise about a level, and of a walk
-_WHITE = np.array([0.0, 1, 10, 100, 1000])  # variance of white noise, in mean squares of the steps
 
 
 class SeriesJudgement(NamedTuple):
@@ -83,6 +78,8 @@ def judge_energies(times: Any, energies: Any, failed: bool = False) -> SeriesJud
     if len(times) < MIN_SAMPLES:
         return SeriesJudgement(_too_early(len(times), MIN_SAMPLES, "samples"))
     floor = max(_last_digit(energies), ROUNDING * float(np.abs(energies).max()))
+    if np.abs(energies[-(len(energies) // 4) :]).max() < AT_REST * abs(float(energies[0])):
+        return SeriesJudgement(Judgement("loses"))
     first = _transient(times, energies, floor)
     found = _judge(times[first:], energies[first:], floor)
     if found.first:
@@ -90,8 +87,9 @@ def judge_energies(times: Any, energies: Any, failed: bool = False) -> SeriesJud
         found = _judge(times[first:], energies[first:], floor, again=True)
     sizes = np.abs(energies[first:])
     if sizes.max() > MULTIPLIED * sizes.min() > 0 and np.ptp(np.sign(energies[first:])) == 0:
-        logarithm = _judge(times[first:], np.log(sizes), ROUNDING, again=True).judgement
-        found = found._replace(judgement=found.judgement._replace(verdict=logarithm.verdict))
+        logarithms = np.sign(energies[first:]) * np.log(sizes)
+        verdict = _judge(times[first:], logarithms, ROUNDING, again=True).judgement.verdict
+        found = found._replace(judgement=found.judgement._replace(verdict=verdict))
     span = float(times[-1] - times[first])
     judgement = found.judgement
     if judgement.slope is not None and judgement.uncertainty is not None:
@@ -141,7 +139,7 @@ def _judge(times: Any, energies: Any, floor: float, again: bool = False) -> Seri
         return SeriesJudgement(_too_early(len(blocks.means), MIN_BLOCKS, "blocks with samples"))
     if float(np.ptp(energies)) <= 2 * floor:
         return SeriesJudgement(Judgement("bounded", 0.0, floor))
-    if verdict := _runs_away(blocks) or _gets_wider(blocks, floor):
+    if verdict := _runs_away(blocks):
         return SeriesJudgement(Judgement(verdict))
     stories = _best_stories(blocks, count, floor)
     rest = energies - np.polyval(np.polyfit(at, energies, 1), at)
@@ -155,7 +153,10 @@ def _judge(times: Any, energies: Any, floor: float, again: bool = False) -> Seri
     if judgement.verdict == "caught" and len(at) >= 2 * MIN_SAMPLES:
         half = len(at) // 2
         later = _judge(times[half:], energies[half:], floor, again=True).judgement
-        judgement = later if later.verdict in ("grows", "loses") else judgement
+        moves = abs(later.slope or 0.0) > STILL_MOVING * abs(stories.settled.amplitude)
+        judgement = later if moves and later.verdict in ("grows", "loses") else judgement
+    if judgement.verdict in ("bounded", "too early") and _gets_wider(blocks, floor):
+        judgement = Judgement("wanders")
     slope = stories.line.amplitude
     if abs(slope) < 2 * floor and judgement.verdict in ("grows", "loses"):
         judgement = Judgement("bounded")
@@ -221,91 +222,26 @@ def _runs_away(blocks: _Blocks) -> Verdict | None:
     return "grows" if end > high else "loses"
 
 
-def _gets_wider(blocks: _Blocks, floor: float) -> Verdict | None:
-    """Return `wanders` if the wobble within blocks gets wider from third to third of the record."""
+def _gets_wider(blocks: _Blocks, floor: float) -> bool:
+    """Whether the wobble within blocks gets wider from third to third of the record."""
     firsts = np.arange(0, len(blocks.means), 4)
     lasts = np.append(firsts[1:], len(blocks.means)) - 1
     moved = np.abs(blocks.means[lasts] - blocks.means[firsts])
     highs = np.maximum.reduceat(blocks.highs, firsts)
     widths = highs - np.minimum.reduceat(blocks.lows, firsts) - moved
     third = len(widths) // 3
-    early = float(np.median(widths[:third]))
-    middle = float(np.median(widths[third:-third]))
-    late = float(np.median(widths[-third:]))
-    steadily = late > 1.2 * middle > 1.44 * early and late > WIDER * early + 2 * floor
-    return "wanders" if steadily and late > float(blocks.means.std()) else None
-
-
-class _Fit(NamedTuple):
-    """One description fitted: its likelihood, and the amplitude of its last regressor."""
-
-    likelihood: float  # logarithm, of the best noise
-    amplitude: float  # averaged over the noises
-    deviation: float
-    walks: float  # logarithm of the likelihood ratio of a random walk and of noise about a level
-
-    @property
-    def sigmas(self) -> float:
-        """The amplitude in its standard deviations."""
-        return abs(self.amplitude) / self.deviation
-
-
-class _Noises:
-    """The noises, as matrices that make each of them white."""
-
-    def __init__(self, blocks: _Blocks, count: int, rounding: float) -> None:
-        """`count`: the blocks with and without samples; `rounding`: of their means."""
-        lags = np.abs(blocks.places[:, None] - blocks.places[None, :]) / count
-        white = np.diag(blocks.sizes.mean() / blocks.sizes)
-        matrices = [white]
-        for time in _CORRELATION_TIMES:
-            noise, step = _covariance(lags, time, 1 / count)
-            matrices += [noise / step + share * white for share in _WHITE]
-        roots = np.linalg.cholesky(np.array(matrices))
-        self.times = np.concatenate([[0.0], np.repeat(_CORRELATION_TIMES, len(_WHITE))])
-        self._rounding = len(blocks.means) * rounding**2 / 12
-        self._whiten = np.linalg.inv(roots)
-        self._log_determinants = 2 * np.log(np.diagonal(roots, axis1=1, axis2=2)).sum(axis=1)
-
-    def fit(self, regressors: list[Any], means: Any) -> _Fit:
-        """Fit the means by regressors with every noise."""
-        freedom = len(means) - len(regressors)
-        columns = self._whiten @ np.column_stack([*regressors, means])
-        products = columns.transpose(0, 2, 1) @ columns
-        inverse = np.linalg.inv(products[:, :-1, :-1])
-        amplitudes = (inverse @ products[:, :-1, -1:])[..., 0]
-        explained = (amplitudes * products[:, :-1, -1]).sum(axis=1)
-        squares = np.maximum(products[:, -1, -1] - explained, 0) + self._rounding
-        whole = -(self._log_determinants + len(means) * np.log(squares)) / 2
-        design = np.linalg.slogdet(products[:, :-1, :-1])[1]
-        restricted = -(self._log_determinants + design + freedom * np.log(squares)) / 2
-        weights = np.exp(restricted - restricted.max())
-        weights /= weights.sum()
-        deviations = np.sqrt(squares / freedom * np.maximum(inverse[:, -1, -1], 0))
-        return _Fit(
-            likelihood=float(whole.max()),
-            amplitude=float(weights @ amplitudes[:, -1]),
-            deviation=math.exp(float(weights @ np.log(deviations))),
-            walks=float(restricted[self.times >= WALK_TIME].max() - restricted[self.times <= LEVEL_TIME].max()),
-        )
-
-
-def _covariance(lags: Any, time: float, width: float) -> tuple[Any, float]:
-    """Return the covariance of block means of noise with a correlation time, and of their steps."""
-    blocks = width / time
-    noise = np.exp(-lags / time) * (math.sinh(blocks / 2) / (blocks / 2)) ** 2
-    next_one = math.exp(-blocks) * (math.sinh(blocks / 2) / (blocks / 2)) ** 2
-    np.fill_diagonal(noise, 2 * (blocks - 1 + math.exp(-blocks)) / blocks**2)
-    return noise, 2 * (float(noise[0, 0]) - next_one)
+    early = float(widths[:third].max())
+    late = float(widths[-third:].min())
+    return late > WIDER * early + 2 * floor and late > float(blocks.means.std())
 
 
 class _Stories(NamedTuple):
     """The best of each kind of description."""
 
-    level: _Fit
-    line: _Fit
-    moving: _Fit
-    settled: _Fit
+    level: Fit
+    line: Fit
+    moving: Fit
+    settled: Fit
     settling: float  # the share of the record after which an approach is over; 1 for a step
     cycles: float  # of the slowest wave; infinite without waves
     likelihood: float  # of the best, less a penalty for its parameters
@@ -319,16 +255,16 @@ class _Stories(NamedTuple):
 def _best_stories(blocks: _Blocks, count: int, floor: float) -> _Stories:
     """Fit all descriptions, with waves if they make a better one."""
     means = blocks.means - float(blocks.means.mean())
-    noises = _Noises(blocks, count, floor)
+    noises = Noises(blocks.places, blocks.sizes, count, floor)
     plain = _stories(blocks.times, means, noises, [])
-    waves = _waves(blocks.times, means)
-    wavy = _stories(blocks.times, means, noises, waves) if waves else plain
+    found = waves(blocks.times, means)
+    wavy = _stories(blocks.times, means, noises, found) if found else plain
     return max(plain, wavy, key=lambda each: each.likelihood)
 
 
-def _stories(times: Any, means: Any, noises: _Noises, waves: list[float]) -> _Stories:
+def _stories(times: Any, means: Any, noises: Noises, frequencies: list[float]) -> _Stories:
     """Fit all descriptions, with waves of these frequencies."""
-    base = [np.ones(len(times)), *_regressors(waves, times)]
+    base = [np.ones(len(times)), *regressors(frequencies, times)]
     level = noises.fit(base, means)
     line = noises.fit([*base, times], means)
     curves = [np.expm1(rate * times) / math.expm1(rate) for rate in (*_RATES, *-_RATES[_RATES < 4])]
@@ -353,8 +289,8 @@ def _stories(times: Any, means: Any, noises: _Noises, waves: list[float]) -> _St
         moving=best,
         settled=settled,
         settling=settling,
-        cycles=min(waves, default=math.inf),
-        likelihood=likelihood - 1.5 * len(waves) * penalty - (WAVES if waves else 0),
+        cycles=min(frequencies, default=math.inf),
+        likelihood=likelihood - 1.5 * len(frequencies) * penalty - (WAVES if frequencies else 0),
     )
 
 
@@ -374,51 +310,3 @@ def _best(family: list[Any], base: list[Any], means: Any) -> int:
     members = members - (members @ basis) @ basis.T
     lengths = np.maximum((members**2).sum(axis=1), 1e-12)
     return int(np.argmax((members @ means) ** 2 / lengths))
-
-
-def _regressors(frequencies: list[float], times: Any) -> list[Any]:
-    """Return cosine and sine of each frequency [cycles in the record]."""
-    angles = [math.tau * frequency * times for frequency in frequencies]
-    return [wave for angle in angles for wave in (np.cos(angle), np.sin(angle))]
-
-
-def _waves(times: Any, means: Any) -> list[float]:
-    """Return the frequencies of waves about a line that stand out of white noise."""
-    found: list[float] = []
-    grid = np.arange(1, len(times) / 2, 0.25)  # a line and less than a cycle look alike
-    penalty = 3 * math.log(len(times)) + 6  # of three parameters, and of the search
-    while len(found) < MAX_WAVES:
-        base = [np.ones(len(times)), times, *_regressors(found, times)]
-        basis = np.linalg.qr(np.column_stack(base))[0]
-        rest = means - basis @ (basis.T @ means)
-        before = float(rest @ rest)
-        if before < 1e-20 * float(means @ means):
-            break
-        gains = _gains(grid, times, basis, rest)
-        best = float(grid[np.argmax(gains)])
-        for width in (0.25, 0.05, 0.01):
-            near = np.maximum(best + width * np.linspace(-1, 1, 11), 1.0)
-            gains = _gains(near, times, basis, rest)
-            best = float(near[np.argmax(gains)])
-        after = max(before - float(gains.max()), 1e-12 * before)
-        apart = min((abs(best - other) for other in found), default=1.0)
-        if len(times) * math.log(before / after) < 2 * penalty or best < MIN_WAVE or apart < 0.75:
-            break
-        found.append(best)
-    return found
-
-
-def _gains(frequencies: Any, times: Any, basis: Any, rest: Any) -> Any:
-    """Return how much of the rest a wave of each frequency explains, in squares."""
-    angles = math.tau * np.asarray(frequencies)[:, None] * times
-    cosines = np.cos(angles)
-    sines = np.sin(angles)
-    cosines = cosines - (cosines @ basis) @ basis.T
-    sines = sines - (sines @ basis) @ basis.T
-    first = cosines @ rest
-    second = sines @ rest
-    squares = (cosines**2).sum(axis=1)
-    others = (sines**2).sum(axis=1)
-    mixed = (cosines * sines).sum(axis=1)
-    determinant = np.maximum(squares * others - mixed**2, 1e-6 * squares * others)
-    return (others * first**2 - 2 * mixed * first * second + squares * second**2) / determinant
