@@ -36,9 +36,7 @@ class Replay(Source):
         self.marks = marks
         self.playhead = Playhead()
         self.pace = Pace()
-        self.ends: tuple[float | None, float | None] = (None, None)
-        """Of the loop, on the recording clock [s]; None: the recording's own."""
-        self.looping = False
+        self.looping = False  # plays the recording again and again
         self._closed = False
         self._clock = clock
         self._cursor = ReplayCursor(recording)
@@ -55,16 +53,6 @@ class Replay(Source):
     @property
     def run(self) -> "Run":
         return self._cursor.run
-
-    @property
-    def loop(self) -> tuple[float, float] | None:
-        """From where to where to play again and again [s]."""
-        return self.stretch(*self.ends) if self.looping else None
-
-    def stretch(self, start: float | None, end: float | None) -> tuple[float, float] | None:
-        """What a loop with these ends would play [s]; None if that has no length."""
-        start, end = 0.0 if start is None else start, self.length if end is None else end
-        return (min(start, end), max(start, end)) if start != end else None
 
     @property
     def events(self) -> Sequence[Event]:
@@ -205,11 +193,12 @@ class Replay(Source):
         self.recording.close()
 
     def _stay_inside(self) -> None:
-        position, backwards = self.playhead.position, self.playhead.speed < 0
-        start, end = self.loop or (0.0, self.length)
-        if start <= position <= end:
+        position = self.playhead.position
+        if 0.0 <= position <= self.length:
             return
-        if self.loop is not None:
-            self.playhead = self.playhead.moved_to(end if backwards else start)
-        elif backwards == (position < start):
-            self.playhead = self.playhead._replace(paused=True).moved_to(start if backwards else end)
+        backwards = self.playhead.speed < 0
+        if self.looping and self.length:
+            self.playhead = self.playhead.moved_to(self.length if backwards else 0.0)
+        elif backwards == (position < 0.0):
+            end = 0.0 if backwards else self.length
+            self.playhead = self.playhead._replace(paused=True).moved_to(end)

@@ -14,12 +14,10 @@ from tui.playback.replay import Replay
 from tui.screens.base import ALREADY, SourceScreen
 from tui.screens.seek_bar import SeekBar
 
-NO_LENGTH = "A loop cannot start and end at the same moment: move along the recording, then set the other end."
 LONG = 100_000  # steps; a quarter of a second
 _SECONDS = Binding.Group("back, forward 1 s")
 _ENDS = Binding.Group("to the start, to the end")
 _TENTHS = Binding.Group("back, forward 10 %")
-_LOOP = Binding.Group("loop: start, end, on/off")
 
 
 class ReplayScreen(SourceScreen):
@@ -34,9 +32,7 @@ class ReplayScreen(SourceScreen):
         Binding("pageup", "part(-0.1)", "back 10 %", False, "pgup", group=_TENTHS),
         Binding("pagedown", "part(0.1)", "forward 10 %", False, "pgdn", group=_TENTHS),
         Binding("b", "reverse", "Back", tooltip="play back in time"),
-        Binding("A,shift+a", "loop_end(0)", "loop: start here", False, "A", group=_LOOP),
-        Binding("B,shift+b", "loop_end(1)", "loop: end here", False, "B", group=_LOOP),
-        Binding("L,shift+l", "loop", "loop: on or off", False, "L", group=_LOOP),
+        Binding("L,shift+l", "loop", "play again and again", False, "L"),
         Binding("f", "live", "Live", tooltip="continue live from here"),
         Binding("plus,equals_sign,minus,p,P,shift+p,i,M,shift+m,r,n,T,shift+t", "change"),
     ]
@@ -92,21 +88,8 @@ class ReplayScreen(SourceScreen):
             self.notify(text, timeout=2)
         self.show_now()
 
-    def action_loop_end(self, number: int) -> None:
-        """Set the loop's start (0) or end (1) here."""
-        ends = list(self.replay.ends)
-        ends[number] = self.replay.playhead.position
-        if self.replay.stretch(*ends) is None:
-            self.notify(NO_LENGTH, severity="warning")
-            return
-        self.replay.ends = (ends[0], ends[1])
-        self.replay.looping = None not in ends or self.replay.looping
-        self.show_now()
-
     def action_loop(self) -> None:
-        if self.replay.stretch(*self.replay.ends) is None:
-            self.notify(NO_LENGTH, severity="warning")
-            return
+        """Play the recording again and again, or once."""
         self.replay.looping = not self.replay.looping
         self.show_now()
 

@@ -18,27 +18,18 @@ from tui.words.numbers import seconds
 MIN_WIDTH = 24  # columns for the bar
 
 
-def bar(
-    position: float,
-    length: float,
-    ticks: Sequence[float],
-    ends: Sequence[tuple[float, str]],
-    width: int,
-) -> Row:
-    """Return the bar: heavy up to the position, a tick for each event, letters at the loop's ends."""
+def bar(position: float, length: float, ticks: Sequence[float], width: int) -> Row:
+    """Return the bar: heavy up to the position, and a tick for each event."""
 
     def column(clock: float) -> int:
         return min(int(clock / length * width), width - 1) if length > 0 else 0
 
     here = column(position)
     events = {column(clock) for clock in ticks}
-    letters = {column(clock): letter for clock, letter in ends}
     row: list[tuple[str, int]] = []
     for at in range(width):
         if at == here:
             row.append(("█", WARN))
-        elif at in letters:
-            row.append((letters[at], TEXT))
         elif at < here:
             row.append(("┿" if at in events else "━", TEXT))
         else:
@@ -60,7 +51,7 @@ def facts(replay: Replay, room: int) -> str:
         f"step {_of(replay.sample.step, replay.run.steps)}",
         f"event {_of(bisect_right(ticks, replay.playhead.position), len(ticks))}",
     ]
-    for part in (["loop"] if replay.loop else []) + parts:
+    for part in (["loop"] if replay.looping else []) + parts:
         if len(text) + len(part) + 2 <= room:
             text += f"  {part}"
     return text
@@ -91,8 +82,7 @@ class SeekBar(Pane):
         text = facts(replay, self.room.width - MIN_WIDTH - 3)
         self._length = replay.length
         self._columns = max(self.room.width - len(text) - 3, 1)
-        ends = [(clock, letter) for clock, letter in zip(replay.ends, "AB", strict=True) if clock is not None]
-        row = bar(replay.playhead.position, replay.length, replay.ticks, ends, self._columns)
+        row = bar(replay.playhead.position, replay.length, replay.ticks, self._columns)
         return Picture([[(" ", TEXT), *row, ("  " + text, TEXT)]])
 
     def on_mouse_down(self, event: events.MouseDown) -> None:

@@ -14,7 +14,7 @@ from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay
 from tui.screens.live import LiveScreen
-from tui.screens.replay import NO_LENGTH, ReplayScreen
+from tui.screens.replay import ReplayScreen
 from tui.screens.seek_bar import SeekBar
 from tui.screens.status_line import StatusLine
 from tui.views.lab.event_list import EventList
@@ -78,28 +78,6 @@ async def test_a_click_on_an_event_goes_there(path):
         assert theatre.source.playhead.position == pytest.approx(marked[0], abs=1 / 30)
         assert (theatre.source.sample.run, theatre.source.sample.step) == (1, marked[1].step)
         assert theatre.source.playhead.paused
-
-
-async def test_a_loop_is_set_and_left_and_a_mark_becomes_a_tick(path):
-    async with player(path) as theatre:
-        replay = theatre.source
-        await theatre.press("right", "A", "right", "B")
-        assert replay.loop == (1, 2)
-        assert "loop" in theatre.text(SeekBar)
-        await theatre.run(1.5)
-        assert 1 <= replay.playhead.position <= 2
-        await theatre.press("L")
-        assert replay.loop is None
-        await theatre.press("home", "right", "m")
-        assert 1 in replay.ticks
-
-
-async def test_a_loop_without_a_length_is_refused_in_a_sentence(path):
-    async with player(path) as theatre:
-        await theatre.press("space", "A", "B")
-        assert theatre.source.ends == (0.0, None)
-        assert theatre.source.loop is None
-        assert [notice.message for notice in theatre.app._notifications] == [NO_LENGTH]
 
 
 async def test_a_click_and_a_drag_on_the_bar_go_there(path):
@@ -177,3 +155,13 @@ async def test_keys_that_would_change_a_lab_say_once_that_a_recording_stays_as_i
         assert told.message == "A recording cannot be changed: f continues it live, and then it can."
         await theatre.press("m", "t", "b", "comma")  # the replay has its own
         assert len([each for each in theatre.app._notifications if each.message == told.message]) == 1
+
+
+async def test_a_loop_is_set_and_left_and_a_mark_becomes_a_tick(path):
+    async with player(path) as theatre:
+        await theatre.press("L")
+        assert theatre.source.looping
+        assert "loop" in theatre.text(SeekBar)
+        await theatre.press("L", "right", "m")
+        assert not theatre.source.looping
+        assert 1 in theatre.source.ticks

@@ -89,7 +89,7 @@ class Pendulum(Pane):
         place = self._place
         if place is None:
             places = self.places
-            self.write_titles("Pendulums (O)", self._below(source, "dotted: exact"))
+            self.write_titles("Pendulums", self._below(source, "dotted: exact"))
         elif place < len(self.cast):
             places = [place]
             self.write_titles(f"{mark(place, self.cast[place])} {self.cast[place].label}", self._below(source, ""))
