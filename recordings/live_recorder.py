@@ -1,4 +1,4 @@
-"""LiveRecorder: records the lab, and goes on when the disk fails."""
+"""LiveRecorder: records the lab, and goes on in a new file when the disk fails."""
 
 import time
 from contextlib import suppress
@@ -6,7 +6,7 @@ from pathlib import Path
 
 from engine.run.lockstep import Sample
 from recordings.errors import DiskError, NameTakenError, writing
-from recordings.events import Entry, Event
+from recordings.events import Event
 from recordings.library import free_path
 from recordings.recorder import Recorder, WallClock
 
@@ -14,18 +14,18 @@ RETRY_EVERY = 5.0  # s of the recording clock
 
 
 class LiveRecorder:
-    """A recorder that survives a failing disk: the lab goes on, and so does the recording, in a new file.
+    """A recorder that survives a failing disk.
 
-    Opening the first file may raise DiskError; nothing after that does.  With `or_next`, a name that
-    another lab has taken meanwhile becomes the next free one.  `failed` is a sentence on why nothing is
-    being recorded now, or None.  Every file begins with the start of its run, its changes of h and what
-    was noticed of it, so each replays and verifies by itself.
+    Opening the first file may raise DiskError; nothing after that does.  With `or_next`, a name that is
+    taken becomes the next free one.  `failed` is a sentence on why nothing is being recorded now, or None.
+    Every file begins with the start of its run, its changes of h and what was noticed of it, so each
+    replays and verifies by itself.
     """
 
     def __init__(self, path: Path, wall: WallClock = time.time_ns, or_next: bool = False) -> None:
         self.failed: str | None = None
-        self._closed = False
         self.files: list[Path] = []  # that hold something and are no longer written to
+        self._closed = False
         self._path = path
         self._wall = wall
         self._run: list[Event] = []  # of the run: its start, its changes of h and what was noticed
@@ -49,32 +49,29 @@ class LiveRecorder:
     def event(self, event: Event, clock: float) -> None:
         if event.kind == "start":
             self._run = []
-        self._write(Entry(clock, event))
+        self._write(event, clock)
         if event.kind in ("start", "set_h", "noticed"):
             self._run.append(event)
 
     def sample(self, sample: Sample, clock: float) -> None:
-        self._write(Entry(clock, sample))
+        self._write(sample, clock)
 
     def close(self) -> None:
         """Finish the file; `failed` is set if that was impossible.  Nothing after it is recorded."""
         self._closed = True
         if self.failed is None:
             try:
-                with suppress(NameTakenError):  # it has another name then, and the lab shows which
+                with suppress(NameTakenError):  # it has another name then
                     self._recorder.close()
                 self._keep(self._recorder.path)
             except DiskError as error:
                 self._fail(error, self._failed_at)
 
-    def _write(self, entry: Entry) -> None:
-        clock, value = entry
-        if self._closed:
+    def _write(self, value: Sample | Event, clock: float) -> None:
+        if self._closed or (self.failed and clock < self._failed_at + RETRY_EVERY):
             return
         try:
-            if self.failed is not None:
-                if clock < self._failed_at + RETRY_EVERY:
-                    return
+            if self.failed:
                 self._reopen(clock)
             if isinstance(value, Event):
                 self._recorder.event(value, clock - self._zero)
@@ -101,9 +98,8 @@ class LiveRecorder:
     def _reopen(self, clock: float) -> None:
         with writing(self._path):
             self._path.parent.mkdir(parents=True, exist_ok=True)
-            recorder = self._opened()
-        self._recorder = recorder
+            self._recorder = self._opened()
         self._zero = clock
         for event in self._run:
-            recorder.event(event, 0.0)
+            self._recorder.event(event, 0.0)
         self.failed = None

@@ -339,8 +339,9 @@ class Decoder:
             except SceneError as error:
                 why = f"run {event.run} cannot have been recorded: {error}"
                 raise RecordingError(why) from error
-        if scene is not None and event.milestone is not None:
-            if not {event.milestone.method, event.milestone.other} <= {*scene.cast, None}:
+        if scene is not None and (milestone := event.milestone) is not None:
+            others = {milestone.method, milestone.other} - {*scene.cast, None}
+            if others:
                 raise RecordingError("a milestone is of a method that the run does not have")
         return event
 

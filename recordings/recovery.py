@@ -35,37 +35,27 @@ def recover(path: Path, out: Path, progress: ShowProgress | None = None, overwri
     """
     if out.exists() and path.exists() and out.samefile(path):
         raise DiskError("is the recording to recover; choose another name", out)
-    with named(path), open_file(path) as stream:
+    with named(path), open_file(path) as stream, ExitStack() as stack:
         scan = Scan(stream, progress)
         decoder = Decoder(scan.channels)
         recorder: Recorder | None = None
         lost = 0
-        with ExitStack() as stack:
-            for _, messages in scan:
-                for clock, value in decoder.entries(messages):
-                    if recorder is None:
-                        about = decoder.about | {"recovered": "yes"}
-                        recorder = Recorder(out, None, overwrite, about)
-                        stack.callback(recorder.abandon, delete=True)
-                    if isinstance(value, Event):
-                        recorder.event(value, clock)
-                        continue
-                    has_gap = scan.entries_lost > lost
-                    lost = scan.entries_lost
-                    recorder.sample(without_extremes(value) if has_gap else value, clock)
-            if recorder is None or not recorder.samples:
-                raise RecordingError(scan.reason or "it has no samples")
-            stack.pop_all()
-            recorder.close()
-        return Recovery(
-            file=path,
-            out=recorder.path,
-            damaged=scan.damaged,
-            reason=scan.reason,
-            samples_kept=recorder.samples,
-            entries_lost=scan.entries_lost,
-            runs_lost=len(decoder.lost_runs),
-        )
+        for _, messages in scan:
+            for clock, value in decoder.entries(messages):
+                if recorder is None:
+                    recorder = Recorder(out, None, overwrite, decoder.about | {"recovered": "yes"})
+                    stack.callback(recorder.abandon, delete=True)
+                if isinstance(value, Event):
+                    recorder.event(value, clock)
+                    continue
+                has_gap = scan.entries_lost > lost
+                lost = scan.entries_lost
+                recorder.sample(without_extremes(value) if has_gap else value, clock)
+        if recorder is None or not recorder.samples:
+            raise RecordingError(scan.reason or "it has no samples")
+        recorder.close()
+        kept, runs_lost = recorder.samples, len(decoder.lost_runs)
+        return Recovery(path, recorder.path, scan.damaged, scan.reason, kept, scan.entries_lost, runs_lost)
 
 
 def rescue(leftover: Path, progress: ShowProgress | None = None) -> str:
@@ -82,14 +72,16 @@ def rescue(leftover: Path, progress: ShowProgress | None = None) -> str:
         try:
             recovery = recover(leftover, free_path(name), progress)
         except RecordingError as error:
-            kept = leftover.rename(free_path(leftover.with_name(leftover.name + ".unreadable")))
-            return f"An unfinished recording cannot be recovered: {error} It is kept as {printable(str(kept))}."
-        sentence = ""
+            return f"An unfinished recording cannot be recovered: {error}{_put_aside(leftover, '.unreadable')}"
+        kept = f" {recovery.entries_lost} samples and events are lost." if recovery.damaged else ""
         if recovery.damaged:
-            kept = leftover.rename(free_path(leftover.with_name(leftover.name + ".damaged")))
-            lost = f"{recovery.entries_lost} samples and events are lost"
-            sentence = f" {lost}. The original is kept as {printable(str(kept))}."
+            kept += _put_aside(leftover, ".damaged")
         else:
             leftover.unlink()
         saved = recovery.out if name.exists() else recovery.out.rename(name)
-        return f"An unfinished recording was recovered: {printable(str(saved))}.{sentence}"
+        return f"An unfinished recording was recovered: {printable(str(saved))}.{kept}"
+
+
+def _put_aside(leftover: Path, suffix: str) -> str:
+    kept = leftover.rename(free_path(leftover.with_name(leftover.name + suffix)))
+    return f" The original is kept as {printable(str(kept))}."

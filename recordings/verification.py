@@ -2,9 +2,8 @@
 
 If this machine's sin differs from the recording's, samples need not have the same bits, but must lie within
 a tolerance: as far as the same run strays when its start is changed by one part in 10^11 (which is
-simulated, too), and at least one part in 10^11 of the number.  Another libm's sin differs by 1e-16 in one
-value of 1400; the tests use one that differs in every second value.  Once the changed run is off by a
-thousandth of a radian, as happens in chaos, that method is no longer compared.
+simulated, too), and at least one part in 10^11 of the number.  Once the changed run is off by a thousandth
+of a radian, as happens in chaos, that method is no longer compared.
 """
 
 from collections import defaultdict
@@ -16,6 +15,7 @@ from engine.run import NUMERICS
 from engine.run.compiled import TieredLoops
 from engine.run.lockstep import Lockstep, Sample
 from engine.run.stepping import Stepping
+from engine.scenes import Scene
 from recordings.errors import RecordingError, named
 from recordings.events import Event, check_present
 from recordings.fields import EXTREMES, STATE, VALUES, distance, same_bits, ulps, values_of
@@ -27,9 +27,8 @@ Only = Collection[str] | None
 
 TOLERANCE = 1e-11
 LOST = 1e-3  # rad, or rad/s
-STEPS_AT_ONCE = 50_000  # a fifth of a second
+STEPS_AT_ONCE = 50_000  # a fifth of a second, after which an interrupt is heard
 MAX_STEPS = 10_000_000  # simulated again of a file, unless more are asked for: less than a minute
-STEP_SECONDS = 5e-6  # of all four methods in plain Python, about
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,20 +66,16 @@ class Verification:
 
 
 def verify(
-    path: Path,
-    progress: ShowProgress | None = None,
-    max_steps: int = MAX_STEPS,
-    only: Only = None,
+    path: Path, progress: ShowProgress | None = None, max_steps: int = MAX_STEPS, only: Only = None
 ) -> Verification:
     """Verify a recording up to where it is first damaged; `only`: compare the methods of these keys.
 
     Raises RecordingError if it is not a recording, is inconsistent, has no samples, or claims more than
-    `max_steps` steps.
+    `max_steps` steps: the number is in the file's hands.
     """
     result = Verification(path)
     with named(path), open_file(path) as stream:
         scan = Scan(stream, progress)
-        budget = StepBudget(max_steps)
         decoder = Decoder(scan.channels)
         rerun: Rerun | None = None
         for _, messages in scan:
@@ -88,10 +83,13 @@ def verify(
                 break
             for _, value in decoder.entries(messages):
                 if isinstance(value, Event) and value.scene is not None:
-                    rerun = _begin(value, rerun, result, budget, only)
+                    if rerun is not None and value.run <= rerun.run:
+                        raise RecordingError("its runs are not in order")
+                    max_steps -= rerun.steps if rerun else 0
+                    rerun = Rerun(value, value.scene, result, max_steps, only)
                 if rerun is None or value.run != rerun.run:
                     raise RecordingError(f"data of run {value.run} lies outside that run")
-                _compare(value, rerun, result)
+                rerun.take(value)
         if decoder.lost_runs:
             raise RecordingError(f"run {min(decoder.lost_runs)} has no start")
         if result.samples == 0:
@@ -102,71 +100,24 @@ def verify(
     return result
 
 
-def _begin(start: Event, before: "Rerun | None", result: Verification, budget: "StepBudget", only: Only) -> "Rerun":
-    if before is not None and start.run <= before.run:
-        raise RecordingError("its runs are not in order")
-    assert start.scene is not None
-    assert start.arithmetic is not None
-    check_present(start.scene, only)
-    result.runs += 1
-    result.numerics = start.arithmetic.numerics
-    result.other_functions = start.arithmetic.other_functions()
-    return Rerun(start, exact=not result.other_functions, budget=budget, only=only)
-
-
-def _compare(value: Sample | Event, rerun: "Rerun", result: Verification) -> None:
-    if isinstance(value, Event):
-        rerun.follow(value)
-        return
-    result.samples += 1
-    for difference in rerun.compare(value):
-        result.first_difference = result.first_difference or difference
-    result.max_difference = max(result.max_difference, rerun.max_difference)
-
-
-class StepBudget:
-    """How many steps may be simulated: a file's number of steps is not to be trusted."""
-
-    def __init__(self, steps: int) -> None:
-        self._steps = steps
-        self._left = steps
-
-    def spend(self, run: int, step: int, steps: int) -> None:
-        """Take steps off, or raise RecordingError."""
-        if steps > self._left:
-            needed = self._steps - self._left + steps
-            raise RecordingError(
-                f"run {run} claims to reach step {step}; to simulate {needed} steps takes about"
-                f" {needed * STEP_SECONDS / 60:,.0f} minutes, and the limit is {self._steps} steps; if you"
-                f" trust the file, use --max-steps {needed}"
-            )
-        self._left -= steps
-
-
 class Rerun:
-    """One run, simulated again.  `exact`: its sin is this machine's, so every bit must be the same.
+    """One run, simulated again, and compared with what was recorded."""
 
-    `max_difference`: the largest so far of any number, within tolerance or not.
-    """
-
-    def __init__(
-        self,
-        start: Event,
-        exact: bool = True,
-        budget: StepBudget | None = None,
-        only: Only = None,
-    ) -> None:
-        scene = start.scene
-        assert scene is not None
+    def __init__(self, start: Event, scene: Scene, result: Verification, max_steps: int, only: Only) -> None:
+        check_present(scene, only)
+        assert start.arithmetic is not None
+        result.runs += 1
+        result.numerics = start.arithmetic.numerics
+        result.other_functions = start.arithmetic.other_functions()
         self.run = start.run
-        self.max_difference = 0.0
+        self._result = result
+        self._is_exact = not result.other_functions
         scenes = [scene]
-        if not exact:
+        if not self._is_exact:
             nearer = {name: getattr(scene, name) * (1 - TOLERANCE) for name in ("theta", "omega")}
             scenes.append(replace(scene, **nearer))
         self._locksteps = [Lockstep(each, self.run, TieredLoops) for each in scenes]
-        self._exact = exact
-        self._budget = budget or StepBudget(MAX_STEPS)
+        self._max_steps = max_steps
         self._only = only
         self._changes: list[Event] = []  # that no sample has come after yet
         self._allowed: dict[tuple[str, str], float] = defaultdict(float)
@@ -175,31 +126,42 @@ class Rerun:
         if only is not None and not set(only) & set(self._methods):
             raise RecordingError(f"run {self.run} has none of the methods {', '.join(only)}")
         self._sampled = -1
-        self._reached = 0  # the step of the last change
+        self._changed = 0  # the step of the last change
 
-    def follow(self, event: Event) -> None:
-        """Take a recorded event.  It is applied at the next sample, which shows that its step was reached."""
-        if event.h is None:
-            return
-        if event.step < max(self._reached, self._sampled):
-            raise RecordingError(f"the steps of run {self.run} are not in order")
-        self._reached = event.step
-        self._changes.append(event)
+    @property
+    def steps(self) -> int:
+        """How many steps have been simulated."""
+        return self._locksteps[0].step
 
-    def compare(self, recorded: Sample) -> list[Difference]:
-        """Return the differences from a recorded sample."""
+    def take(self, value: Sample | Event) -> None:
+        """Take what was recorded.  A change is applied at the next sample, which shows that it was reached."""
+        if isinstance(value, Sample):
+            self._compare(value)
+        elif value.h is not None:
+            if value.step < max(self._changed, self._sampled):
+                raise RecordingError(f"the steps of run {self.run} are not in order")
+            self._changed = value.step
+            self._changes.append(value)
+
+    def _compare(self, recorded: Sample) -> None:
         computed, *astray = self._reach(recorded.step)
         for other in astray:
             self._widen(computed, other)
-        if self._exact and computed.t == recorded.t and all(map(same_bits, recorded.readings, computed.readings)):
-            return []
-        return list(self._differences(recorded, computed))
+        self._result.samples += 1
+        are_same = computed.t == recorded.t and all(map(same_bits, recorded.readings, computed.readings))
+        if not (self._is_exact and are_same):
+            for difference in self._differences(recorded, computed):
+                self._result.first_difference = self._result.first_difference or difference
 
     def _reach(self, step: int) -> list[Sample]:
-        """Return the run's sample at this step; if not `exact`, also that of the changed start."""
-        if step <= self._sampled or step < self._reached:
+        """Return the run's sample at this step; if not exact, also that of the changed start."""
+        if step <= self._sampled or step < self._changed:
             raise RecordingError(f"the steps of run {self.run} are not in order")
-        self._budget.spend(self.run, step, step - self._locksteps[0].step)
+        if step > self._max_steps:
+            raise RecordingError(
+                f"run {self.run} claims to reach step {step}, more than may be simulated; if you trust the file,"
+                f" use --max-steps {MAX_STEPS + step}"
+            )
         self._sampled = step
         for change in self._changes:
             assert change.h is not None
@@ -211,15 +173,15 @@ class Rerun:
         return [lockstep.sample() for lockstep in self._locksteps]
 
     def _go(self, step: int) -> None:
-        """Go to a step, in parts between which an interrupt is heard."""
         for lockstep in self._locksteps:
             while lockstep.step < step:
                 lockstep.advance(min(step - lockstep.step, STEPS_AT_ONCE))
 
     def _differences(self, recorded: Sample, computed: Sample) -> Iterator[Difference]:
-        if recorded.t != computed.t:
-            self.max_difference = max(self.max_difference, distance(recorded.t, computed.t))
-            yield Difference(self.run, recorded.step, recorded.t, "", "t", recorded.t, computed.t)
+        run, step, t, _ = recorded
+        if t != computed.t:
+            self._measure(t, computed.t)
+            yield Difference(run, step, t, "", "t", t, computed.t)
         for method, was, now in zip(self._methods, recorded.readings, computed.readings, strict=True):
             if self._only is not None and method not in self._only:
                 continue
@@ -227,18 +189,20 @@ class Rerun:
             for field, a, b in zip(VALUES, values_of(was), values_of(now), strict=True):
                 if field in EXTREMES and a == was.energy_error:
                     continue  # such an extreme holds no information: see fields.without_extremes
-                self.max_difference = max(self.max_difference, distance(a, b))
+                self._measure(a, b)
                 if not is_lost and not self._is_equal(method, field, a, b):
-                    yield Difference(self.run, recorded.step, recorded.t, method, field, a, b)
+                    yield Difference(run, step, t, method, field, a, b)
+
+    def _measure(self, a: float | None, b: float | None) -> None:
+        self._result.max_difference = max(self._result.max_difference, distance(a, b))
 
     def _is_equal(self, method: str, field: str, a: float | None, b: float | None) -> bool:
-        if self._exact:
+        if self._is_exact:
             return a == b and not ulps(a, b)
-        allowed = max(self._allowed[method, field], TOLERANCE * max(1.0, abs(b or 0.0)))
-        return distance(a, b) <= allowed
+        return distance(a, b) <= max(self._allowed[method, field], TOLERANCE * max(1.0, abs(b or 0.0)))
 
     def _widen(self, computed: Sample, astray: Sample) -> None:
         for method, a, b in zip(self._methods, computed.readings, astray.readings, strict=True):
             for field, one, other in zip(VALUES, values_of(a), values_of(b), strict=True):
-                apart = distance(one, other)
-                self._allowed[method, field] = max(self._allowed[method, field], apart)
+                allowed = self._allowed[method, field]
+                self._allowed[method, field] = max(allowed, distance(one, other))

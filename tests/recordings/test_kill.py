@@ -68,7 +68,7 @@ def test_a_lab_killed_while_paused_has_every_single_step_on_disk(tmp_path):
     with PtyLab("live", "--record", str(tmp_path / "a.mcap")) as lab:
         lab.wait_for("RK4")
         lab.type(" ")
-        lab.run(0.3)
+        lab.wait_for("paused")
         lab.type("." * 7)
         lab.run(0.5)
         lab.signal(signal.SIGKILL)

@@ -128,7 +128,7 @@ def test_ulps_count_doubles_across_zero_too(value, n):
         ([*two_runs()[:4], Entry(1.0, Event("set_h", 1, 6, 0.6, h=0.0))], "cannot have been recorded: h = 0 s"),
         (
             [*two_runs()[:4], Entry(1.0, two_runs()[3].value._replace(step=10**15))],
-            r"the limit is .* --max-steps 10+\.$",
+            r"use --max-steps \d+\.$",
         ),
         ([Entry(0.0, start()._replace(step=5)), *two_runs()[1:3]], "does not begin at its start"),
         ([*two_runs()[:4], Entry(1.0, start(1))], "runs are not in order"),
@@ -228,5 +228,5 @@ def test_a_recording_of_one_method_verifies(tmp_path):
 def test_no_more_steps_are_simulated_than_samples_need(tmp_path):
     far = Entry(1.0, Event("set_h", 1, 10**15, 0.6, h=0.1))
     assert verify(record(tmp_path / "a.mcap", [*two_runs()[:4], far]), max_steps=6).identical
-    with pytest.raises(RecordingError, match=r"claims to reach step 6; .* the limit is 5 steps; .* use --max-steps 6"):
+    with pytest.raises(RecordingError, match="claims to reach step 6"):
         verify(tmp_path / "a.mcap", max_steps=5)
