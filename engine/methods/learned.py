@@ -2,31 +2,32 @@
 
 Both are sums of the same 60 random features, each fitted to the same 600 measurements by one least-squares problem
 (tests/bench/learn.py); only in one of them the field is made of the slopes of one function, which it then conserves.
-These methods know no other pendulum than the one that was measured, and never ask for the force.
+The one that was measured had w0² = 9.81 s⁻²; what was learned is in units of w0, so it holds for any w0.  These methods
+take w0 from the model, and never ask for the force.
 """
 
 import math
-from collections.abc import Iterator
-from functools import cache
-from typing import Any
+from collections.abc import Callable, Iterator
+from functools import cache, lru_cache
 
 from engine.methods.learned_numbers import FEATURES, FIELD, HAMILTONIAN
 from engine.methods.method import Method
 from engine.methods.runge_kutta import rk4_on_rates
-from engine.models.model import Phase, Rates
-
-W0_SQUARED = 9.81  # s⁻², of the pendulum that was measured
-
-
-def _rows(numbers: str) -> list[tuple[float, ...]]:
-    return [tuple(map(float, row.split(","))) for row in numbers.split()]
+from engine.models.model import Model, Phase, Rates
 
 
 @cache
-def learned_field() -> Rates:
+def _rows(coefficients: str) -> list[tuple[float, ...]]:
+    """Return for each feature its three numbers and its coefficients."""
+    features, sums = ([tuple(map(float, row.split(","))) for row in text.split()] for text in (FEATURES, coefficients))
+    return [(*feature, *each) for feature, each in zip(features, sums, strict=True)]
+
+
+@lru_cache(maxsize=16)
+def learned_field(w0_squared: float) -> Rates:
     """Return (theta, omega) -> (theta', omega') with a sum for each."""
-    w0 = math.sqrt(W0_SQUARED)
-    rows = [(*feature, *sums) for feature, sums in zip(_rows(FEATURES), _rows(FIELD), strict=True)]
+    w0 = math.sqrt(w0_squared)
+    rows = _rows(FIELD)
 
     def field(phase: Phase) -> Phase:
         theta, omega = phase
@@ -35,16 +36,16 @@ def learned_field() -> Rates:
             feature = math.tanh(a * theta + b / w0 * omega + c)
             drift += to_theta * feature
             kick += to_omega * feature
-        return w0 * drift, W0_SQUARED * kick
+        return w0 * drift, w0_squared * kick
 
     return field
 
 
-@cache
-def learned_hamiltonian() -> Rates:
+@lru_cache(maxsize=16)
+def learned_hamiltonian(w0_squared: float) -> Rates:
     """Return (theta, omega) -> (dH/d omega, -dH/d theta) of one sum H(theta, omega)."""
-    w0 = math.sqrt(W0_SQUARED)
-    rows = [(*feature, *sums) for feature, sums in zip(_rows(FEATURES), _rows(HAMILTONIAN), strict=True)]
+    w0 = math.sqrt(w0_squared)
+    rows = _rows(HAMILTONIAN)
 
     def field(phase: Phase) -> Phase:
         theta, omega = phase
@@ -54,17 +55,23 @@ def learned_hamiltonian() -> Rates:
             slope = coefficient * (1 - feature * feature)
             drift += b * slope
             kick -= a * slope
-        return w0 * drift, W0_SQUARED * kick
+        return w0 * drift, w0_squared * kick
 
     return field
 
 
 def _learned(
-    key: str, label: str, letter: str, field: Rates, formula: str, note: str, used: str | None = None
+    key: str,
+    label: str,
+    letter: str,
+    field: Callable[[float], Rates],
+    formula: str,
+    note: str,
+    used: str | None = None,
 ) -> Method:
-    def phases(parts: Any, phase: Phase, h: float) -> Iterator[Phase]:
-        """RK4 on what was learned, whatever the model."""
-        return rk4_on_rates(field, phase, h)
+    def phases(model: Model, phase: Phase, h: float) -> Iterator[Phase]:
+        """RK4 on what was learned."""
+        return rk4_on_rates(field(model.w0_squared), phase, h)
 
     return Method(
         key=key,
@@ -88,18 +95,19 @@ RK4_LEARNED_FIELD = _learned(
     "rk4_learned_field",
     "Learned field",
     "j",
-    learned_field(),
+    learned_field,
     "RK4 on (theta', omega') = sums of 60 tanh(a theta + b omega + c), fitted to 600 measurements",
-    "It conserves nothing: the true energy is off by a third after 100 s, or by all of it.",
+    "It conserves nothing: within 100 s the true energy is off by 36 % from 1 rad, 60 % from 1.5, ninefold from 0.2.",
 )
 
 RK4_LEARNED_HAMILTONIAN = _learned(
     "rk4_learned_hamiltonian",
     "Learned H",
     "g",
-    learned_hamiltonian(),
+    learned_hamiltonian,
     "RK4 on the slopes of H = a sum of 60 tanh(a theta + b omega + c), fitted to 600 measurements",
-    "Its field is as inexact as the learned field, yet it conserves its H, so the true energy is off by a percent.",
+    "Its field is as inexact as the learned field, yet it conserves its H: the true energy is off by 1.2 % from 1 rad, "
+    "0.3 % from 2 rad, 12 % from 0.2 rad.",
     "learned dynamics that conserve: DiffEqFlux, HamiltonianNN [docs.sciml.ai, Hamiltonian Neural Network]",
 )
 

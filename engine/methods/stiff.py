@@ -36,7 +36,8 @@ def respa(inner: Phases, n: int) -> Phases:
 def implicit_midpoint(parts: SpringParts, phase: Phase, h: float) -> Iterator[Phase]:
     """The implicit midpoint rule: z' = z + h (w + w')/2, w' = w + h a((z + z')/2), solved for the middle.
 
-    Order 2, symplectic and reversible, stable at any h.  Hairer, Lubich & Wanner (2006), II.1.1 and VI.4.
+    Order 2, symplectic and reversible; small vibrations are stable at any h.
+    Hairer, Lubich & Wanner (2006), II.1.1 and VI.4.
     """
     z, w = phase
     while True:
@@ -117,7 +118,7 @@ IMEX_EULER = Method(
     other_names=("implicit-explicit Euler",),
     reference="Ascher, Ruuth & Spiteri, Appl. Numer. Math. 25 (1997) 151",
     used="equations with a stiff part: OrdinaryDiffEq.jl, IMEXEuler [docs.sciml.ai, IMEX SDIRK Methods]",
-    note="Stable at any h; it takes the energy out of the spring within a period, and then out of the swing.",
+    note="Stable at any h; it takes energy out of the spring, the faster the longer h is, and then out of the swing.",
     models=("spring",),
     takes_parts=True,
 )

@@ -153,11 +153,12 @@ class Judge:
         )
 
     def _progress(self) -> Progress | None:
-        """How far it is to the verdict that stays away longest; None where it depends on what happens."""
+        """How far it is to the first verdict, or then to the last; None where it depends on what happens."""
         if self._map:
             have, need, unit = self._map.progress(self._steps, self._periods)
         else:
-            steps = max(MAX_BINS * self._width, LONG)
+            first = len(self._energy.bins) < MIN_BINS
+            steps = MIN_BINS * self._width if first else max(MAX_BINS * self._width, LONG)
             have, need, unit = int(self._periods), math.ceil(steps * self._h / self._period), "swings"
         return Progress(have, need, unit) if have < need else None
 

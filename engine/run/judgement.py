@@ -39,6 +39,9 @@ class Progress(NamedTuple):
     need: int
     unit: str  # "swings", "steps", "independent samples"
 
+    def __str__(self) -> str:
+        return f"{self.have} of {self.need} {self.unit}"
+
 
 class Judgement(NamedTuple):
     """The verdict on an energy error up to a look point, and its slope as far as there is evidence for one."""
@@ -50,6 +53,10 @@ class Judgement(NamedTuple):
     periods: float = 0.0  # how many periods the verdict rests on
     lyapunov: float | None = None  # 1/s; only where the verdict rests on it
     progress: Progress | None = None  # only while it is too early
+
+    def __str__(self) -> str:
+        """Return the verdict, with the progress to it if it is too early for one."""
+        return f"{self.verdict}: {self.progress}" if self.progress else self.verdict
 
     @property
     def trend(self) -> float | None:

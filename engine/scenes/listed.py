@@ -50,7 +50,7 @@ _FIRST_LOOK = (
         theta=math.radians(179.9),
         h=0.02,
         speed=4.0,
-        watch="RK4's energy error is smallest, yet from 30 s on it falls at the wrong time.",
+        watch="RK4's energy error is smallest, yet soon it falls at the wrong time.",
     ),
     Scene(
         "spin",

@@ -1,7 +1,7 @@
 """Chaos in a method's own map: the pendulum is not chaotic, but at large steps its numerical motion is.
 
 Symplectic Euler on the pendulum is the Chirikov standard map with K = z²; velocity Verlet is the same map,
-seen half a kick earlier.  Up to Greene's threshold invariant curves fence the chaotic orbits in; above
+seen half a kick later.  Up to Greene's threshold invariant curves fence the chaotic orbits in; above
 it they wander off without bound.  Greene, J. Math. Phys. 20 (1979) 1183.
 """
 

@@ -5,6 +5,7 @@ import textwrap
 from collections.abc import Mapping
 
 from engine.methods import Method
+from engine.run.judgement import DEFINITIONS, Verdict
 from engine.scenes import SCENES, UNITS, Scene
 from tui.words.motion import motion_text
 from tui.words.numbers import counted, z_name
@@ -13,6 +14,15 @@ WIDTH = 72  # characters; of 80 columns, frame and scroll bar take the rest
 _HEAD = 14
 
 
+SIGNS: dict[Verdict, str] = {
+    "bounded": "=",
+    "grows": "+",
+    "loses": "-",
+    "caught": "=",
+    "wanders": "~",
+    "chaotic": "!",
+    "too early": "",
+}
 GLOSSARY = {
     "h": "the step size [s]: methods know the pendulum only at times 0, h, 2h, ...",
     "z": "h w0, the step in units of the swing; w0 = sqrt(g/L). Methods become unstable beyond a z of their own",
@@ -21,13 +31,7 @@ GLOSSARY = {
     "largest": "the largest |dE/E0| of the run so far",
     "trend": "the mean change of dE/E0 per second; a bounded error can be larger than one that grows",
     "E/Es": "the energy over that of the separatrix: below 1 it swings (libration), above it turns (rotation)",
-    "= bounded": "the error stays in a band however long it runs: no trend",
-    "+ grows": "the method gains energy",
-    "- loses": "the method loses energy steadily",
-    "= caught": "the error has left its start and stays in another band",
-    "~ wanders": "the error moves about without a trend, and in no band",
-    "too early": "not enough swings yet to tell",
-    "! chaotic": "starts next to each other part exponentially",
+    **{f"{sign} {verdict}".strip(): DEFINITIONS[verdict] for verdict, sign in SIGNS.items()},
     "colours": "each method keeps its own, and its letter, wherever it is shown; its digit is its place and its key",
     "×": "in the chart: one error passes another, and stays above it",
     "dotted": "the exact motion",

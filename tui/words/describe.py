@@ -52,8 +52,8 @@ def method_sentence(source: Source, index: int) -> str:
         return " ".join(sentence(each) for each in parts if each)
     if source.judgements[index].verdict == "bounded":
         return f"{method.label} stays bounded: its largest energy error is {reading.max_energy_error:.2g}."
-    known = source.judgements[index].verdict
-    verdict = "it is too early for a verdict" if known == "too early" else f"verdict: {known}"
+    judgement = source.judgements[index]
+    verdict = str(judgement) if judgement.verdict == "too early" else f"verdict: {judgement.verdict}"
     if found := drift(source, index):
         return sentence(found)
     return f"{method.label} has an energy error of {reading.energy_error:+.2g}; {verdict}."

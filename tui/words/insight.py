@@ -42,6 +42,7 @@ SENTENCES = {
     "caught": "{0} has settled at an energy error of about {error:+.3g}.",
     "lost": "{0} has lost {share:percent} of its energy.",
     "gains": "{0} gains {rate:two} of {unit} per s.",
+    "multiplies": "{0}'s energy grows tenfold every {seconds:about}.",
     "loses": "{0} loses {rate:two} of {unit} per s.",
     "will pass": "{0} loses {rate:two} of E0 per s; its error will pass {1}'s in about {seconds:about}.",
     "exceeds": "{0} {gains} {rate:two} of {unit} per s; its error is {ratio:two} times {1}'s maximum.",
@@ -145,8 +146,9 @@ def lasting(source: Source, hidden: Collection[str] = ()) -> list[Insight]:
     ended = {index: each for index, each in endings(source).items() if each.method.key not in hidden}
     found = list(_on_methods(source, ended, hidden))
     watch = _watch(source, hidden)
+    outdated = any(short_name(each.method) in source.scene.watch for each in ended.values())
     if found:
-        return [*found, watch] if watch else found
+        return [*found, watch] if watch and not outdated else found
     return [_so_far(source, hidden)]
 
 
@@ -223,6 +225,8 @@ def drift(source: Source, index: int) -> Insight | None:
     slope = {"grows": 1, "loses": -1}.get(judgement.verdict, 0) * (judgement.trend or 0)
     if slope <= 0:
         return None
+    if conserved and error > 1:
+        return Insight("multiplies", (method,), {"seconds": math.log(10) * error / slope})
     unit = "E0" if conserved else "the true energy"
     values = {"rate": slope, "unit": unit, "gains": "loses" if loses else "gains"}
     if ahead := forecast(source, index):

@@ -41,10 +41,11 @@ def test_the_first_minute_of_the_default_scene():
     for second in range(1, 46):
         lab.run(1)
         chosen[second] = insight(lab.live)
-    assert chosen[5].kind == chosen[31].kind == "watch"
+    assert chosen[5].kind == "watch"
+    assert "watch" not in {chosen[second].kind for second in range(20, 46)}  # Explicit Euler, which it names, is gone
     assert (chosen[8].kind, chosen[8].methods[0].letter) == ("over the top with", "e")
     assert (chosen[18].kind, [each.letter for each in chosen[18].methods]) == ("bounded", ["s", "v"])
-    assert chosen[45].kind == "bounded"
+    assert chosen[45].kind in ("bounded", "will pass", "over the top with")
 
 
 def test_every_insight_of_every_scene_has_words_and_events_fit_the_smallest_pane():
@@ -71,7 +72,7 @@ def test_lasting_insights_take_turns():
     lab = Lab(SCENES["drift"])
     lab.run(40)
     shown = []
-    for _ in range(4):
+    for _ in kinds(lab.live):
         lab.run(TURN)
         shown.append(insight(lab.live).kind)
     assert sorted(shown) == sorted(kinds(lab.live))

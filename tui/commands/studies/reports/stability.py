@@ -126,7 +126,8 @@ def _swings(grid: Grid, cells: Cells) -> Iterator[dict[str, Any]]:
 def _words(scene: Scene, steps: int) -> Iterator[str]:
     """Yield what is to be known of the pendulum's table."""
     yield f"""
-Pendulum: a swing is lost if it goes over the top or becomes chaotic. A method that is not symplectic also fails
+Pendulum: a swing is lost if it goes over the top, or is chaotic and gets 10 % wider than on the linear oscillator;
+chaos in narrower swings is not looked for. A method that is not symplectic also fails
 if its energy leaves the linear oscillator's band by {100 * BAND:.0f} %. A limit moves down with more steps (--steps).
 Margin = limit / z, of the scene's z = {scene.z:.4g}. Below 1, the scene is beyond the limit."""
     swing = amplitude(scene)
