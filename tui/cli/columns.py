@@ -169,7 +169,8 @@ class _Text:
         self._head: Head | None = None
         self._has_rows = False
         self._delimiter: str | None = None
-        self._singles: list[int] = []  # the places, where none are to be added
+        self._width = 0  # fields of a row
+        self._above: list[str] = []  # the first row: where it comes again, a table begins
 
     def records(self, lines: Iterator[str]) -> Records:
         """Yield heads and rows."""
@@ -178,7 +179,7 @@ class _Text:
             if row:
                 yield row
             elif line.lstrip().startswith("NSTEP") and len(_PAIR.findall(line[:MAX_NAME])) > 1:
-                yield from _of_objects(_pairs(chain([line], lines)), self._wanted)
+                yield from _of_objects(_pairs(chain([line], lines)), self._wanted, "kcal/mol")
                 return
             else:
                 yield from self._other(line)
@@ -191,11 +192,11 @@ class _Text:
         """Return a row like the one before it."""
         assert self._head is not None
         fields = line.split(self._delimiter) if '"' not in line else _fields(line, self._delimiter)
+        if len(fields) != self._width:
+            return None
         try:
-            if self._singles:
-                return [float(fields[place]) for place in self._singles]
             return [sum([float(fields[place]) for place in group]) for group in self._head.places]
-        except (ValueError, IndexError):
+        except ValueError:
             return None
 
     def _other(self, line: str) -> Records:
@@ -214,15 +215,19 @@ class _Text:
             self._head = self._head or self._head_of_legend(len(fields))
             if self._head:
                 self._delimiter = delimiter
+                self._width = len(fields)
                 self._has_rows = True
-                singles = [group[0] for group in self._head.places]
-                self._singles = singles if max(map(len, self._head.places)) == 1 else []
                 yield self._head
         if self._has_rows and self._head and text.strip() and not is_comment:
-            yield _row(fields, self._head.places)
+            yield _row(fields if len(fields) == self._width else [], self._head.places)
 
     def _read_header(self, text: str, fields: list[str], is_comment: bool) -> None:
         """Look for the names of columns in a line, or for the units below them."""
+        if len(fields) > 1 and not is_comment:
+            if self._has_rows and fields == self._above:
+                self._has_rows = False
+            elif not self._has_rows:
+                self._above = fields
         ways = [fields, re.split(r"\s{2,}", text.strip())]  # names may hold single blanks
         for names in ways:
             if places := _places(names[:MAX_NAMES], self._wanted, named=True):
@@ -298,6 +303,8 @@ def _places(fields: Sequence[str], wanted: Sequence[str], named: bool = False) -
 
 def _place(fields: Sequence[str], name: str) -> int | None:
     """Return the place of a column: by number, name, name but for case, or but for its unit."""
+    if not name.strip():
+        return None
     if name.strip().isdecimal():
         place = int(name[:9]) - 1
         return place if 0 <= place < len(fields) else None
@@ -341,8 +348,8 @@ def _missing(wanted: Sequence[str], names: Sequence[str]) -> UserError:
     return UserError(f"there is no column {printable(lost, 40)!r}{hint or others}")
 
 
-def _of_objects(objects: Iterable[dict[str, Any]], wanted: Sequence[str]) -> Records:
-    """Yield a head and the rows of objects with names."""
+def _of_objects(objects: Iterable[dict[str, Any]], wanted: Sequence[str], unit: str = "") -> Records:
+    """Yield a head and the rows of objects with names; `unit` is that of energies without one."""
     names: list[str] = []
     places: tuple[tuple[int, ...], ...] | None = None
     for number, item in enumerate(objects):
@@ -350,7 +357,7 @@ def _of_objects(objects: Iterable[dict[str, Any]], wanted: Sequence[str]) -> Rec
             names = list(item)
             now = _places(names[:MAX_NAMES], wanted)
             if now and not places:
-                yield Head(now, tuple(_unit(names[group[0]]) for group in now))
+                yield Head(now, tuple(_unit(names[group[0]]) or unit for group in now))
             places = now or places
         if places:
             yield _row([str(value) for value in item.values()], places)

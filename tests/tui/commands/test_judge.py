@@ -100,8 +100,8 @@ np.savez(NPZ, time=np.arange(3.0), E=np.full(3, 1.5))
         (CP2K, ("Time", "Cons Qty[a.u.]"), ("fs", "a.u."), [n / 2 for n in range(9)], [-17 + n / 8 for n in range(9)]),
         (CP2K, ("step nr.", "Kin.+Pot."), ("", "a.u."), list(range(9)), [-17.0] * 9),
         (LINES, ("t", "E"), ("", ""), [0, 1, 2], [1.5] * 3),
-        (MDOUT, ("TIME(PS)", "Etot"), ("PS", ""), [0, 1, 2], [-5606.5] * 3),
-        (MDOUT, ("time", "EKtot+EPtot"), ("PS", ""), [0, 1, 2], [-5606.5] * 3),
+        (MDOUT, ("TIME(PS)", "Etot"), ("PS", "kcal/mol"), [0, 1, 2], [-5606.5] * 3),
+        (MDOUT, ("time", "EKtot+EPtot"), ("PS", "kcal/mol"), [0, 1, 2], [-5606.5] * 3),
         (NPZ.getvalue(), ("time", "E"), ("", ""), [0, 1, 2], [1.5] * 3),
     ],
 )
@@ -124,6 +124,18 @@ def test_a_time_that_starts_again_begins_a_table():
     again = table() + "".join(f"{t!r},{energy + 7!r}\n" for t, energy in ROWS) + "29.95"  # cut while it was written
     answer = judge(again, "--json").json
     assert (answer["table"], answer["tables"], answer["first_energy"], answer["samples"]) == (2, 2, 107, 300)
+
+
+FOOTER = "Loop time of 1 on 1 procs for 9 steps with 9 atoms\nNlocal: 9 ave 9 max 9 min\nHistogram: 1 0 0 0 0 0 0 0\n"
+
+
+@pytest.mark.parametrize("names", [("Time", "TotEng"), ("2", "4")])
+def test_a_second_header_begins_a_table_and_a_footer_none(names):
+    head = "   Step   Time   Temp   TotEng\n"
+    first = head + "".join(f"{n} {t} 300. {energy - 9}\n" for n, (t, energy) in enumerate(ROWS)) + FOOTER
+    second = head + "".join(f"{n} {t + 30} 300. {energy}\n" for n, (t, energy) in enumerate(ROWS)) + FOOTER
+    found = read(first + second, *names)
+    assert (found.number, found.count, len(found.columns[0]), found.columns[1][0]) == (2, 2, 300, 100)
 
 
 def test_rows_before_a_time_are_left_out():
@@ -253,6 +265,7 @@ def test_junit_has_the_check_as_a_test_and_replaces_an_older_report(expression, 
         ("1 2\n", ("t", "E"), 2, ["give columns by number"]),
         ("t,E\na,b\n", ("t", "E"), 3, ["no row has a number in each column"]),
         ("t,E\n1,nan\n", ("t", "E"), 3, ["no row has a usable"]),
+        (table(), ("", ""), 2, ["there is no column ''; choose from t, E"]),
         ("\x1b[31m,\x07\n", ("t", "E"), 2, ["there is no column 't'"]),
     ],
 )
@@ -293,12 +306,13 @@ def test_a_table_of_several_methods_is_refused():
         (b"\x89MCAP0\r\nrest", "a recording"),
         (b"\0" * 5000, "no text"),
         (b"x" * (1 << 21), "longer than 1 MB"),
-        (b"y\n" * 100_002, "lines without a row"),
-        (b"t,E\n" + b"y\n" * 100_002, "lines without a row"),
+        (b"y\n" * 1002, "lines without a row"),
+        (b"t,E\n" + b"y\n" * 1002, "lines without a row"),
         (b"PK\x03\x04rest", "npz cannot be read"),
     ],
 )
-def test_what_is_no_table_is_refused_within_bounds(data, words):
+def test_what_is_no_table_is_refused_within_bounds(data, words, monkeypatch):
+    monkeypatch.setattr("tui.cli.columns.MAX_LINES_BEFORE", 1000)
     assert judge(data).refused(3, words)
 
 

@@ -79,6 +79,8 @@ def _size(table: Table, energies: Any, scale: float | str) -> float:
 def _trend_fields(table: Table, slope: float | None, uncertainty: float | None, size: float) -> dict[str, Any]:
     """Return the trend, absolute and relative to a size, with units."""
     time_unit = printable(table.units[0], 20)
+    if time_unit.casefold() in NANOSECONDS:
+        time_unit = time_unit.casefold()
     known = slope is not None and uncertainty is not None
     return {
         "time_unit": time_unit,
@@ -99,14 +101,13 @@ def _per_atom(fields: dict[str, Any], atoms: int | None, temperature: float | No
         return {}
     time_unit = fields["time_unit"]
     energy_unit = fields["energy_unit"]
-    if time_unit not in NANOSECONDS and time_unit.casefold() not in NANOSECONDS:
+    if time_unit not in NANOSECONDS:
         raise UserError(
             "--atoms needs the unit of the times in the head of the column, such as Time (ps);"
             f" units: {', '.join(NANOSECONDS)}."
         )
-    ns = NANOSECONDS.get(time_unit) or NANOSECONDS[time_unit.casefold()]
     slope = fields["absolute_trend"]
-    each = None if slope is None else slope / ns / atoms
+    each = None if slope is None else slope / NANOSECONDS[time_unit] / atoms
     found = {"atoms": atoms, "energy_per_ns_per_atom": each}
     if temperature is None:
         return found
