@@ -1,20 +1,17 @@
 """The options --methods and --method."""
 
 import os
-import random
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from engine.methods import EXPLICIT_EULER, GENERAL, METHODS, RK4, SYMPLECTIC_EULER, USUAL_CAST, VELOCITY_VERLET, Cast
 from engine.methods.own import OwnMethod
-from engine.run.lockstep import Lockstep
 from engine.scenes import DEFAULT_SCENE, MOST_METHODS, Scene
 from tests.tui.command_line import pendu
 from tui.cli import cast as cast_options
-from tui.cli.errors import Exit, UserError
+from tui.cli.errors import UserError
 from tui.cli.options import Parser
 from tui.cli.scene import add_scene_options, scene_of
 
@@ -114,12 +111,6 @@ def test_a_wrong_list_is_one_sentence_and_exit_2(text, words):
     assert pendu("run", "--time", "2", "--methods", text).refused(2, "--methods: ", words)
 
 
-def test_other_methods_take_what_to_watch_with_them():
-    assert scene_from("--methods", "rk4").watch == ""
-    assert scene_from("--methods", "rk4").name == "drift"
-    assert scene_from("--methods", ",".join(m.key for m in USUAL_CAST[::-1])).watch == DEFAULT_SCENE.watch
-
-
 def test_a_method_of_ones_own_comes_last_in_the_scenes_cast(mine):
     *usual, own = cast_from("--method", f"{mine}:kick_drift")
     assert tuple(usual) == USUAL_CAST
@@ -130,12 +121,6 @@ def test_a_method_of_ones_own_comes_last_in_the_scenes_cast(mine):
 def test_a_method_of_ones_own_stands_where_methods_names_it_or_last(mine):
     for named, keys in (("kick,rk4", ["kick_drift", "rk4"]), ("rk4", ["rk4", "kick_drift"])):
         assert [method.key for method in cast_from("--method", f"{mine}:kick_drift", "--methods", named)] == keys
-
-
-def test_a_method_of_ones_own_has_the_letter_given_or_a_free_one(mine):
-    assert cast_from("--method", f"{mine}:kick_drift,letter=x")[-1].letter == "x"
-    free = cast_from("--method", f"{mine}:kick_drift")[-1].letter
-    assert free not in {method.letter for method in METHODS}
 
 
 @pytest.mark.parametrize(
@@ -162,11 +147,6 @@ def test_a_wrong_method_option_is_one_sentence(mine, text, code, words):
     assert pendu("run", "--time", "2", "--method", text).refused(code, words)
 
 
-def test_a_file_that_is_not_text_is_one_sentence_and_exit_3(mine):
-    Path(mine).write_bytes(b"\xff\xfe")
-    assert pendu("run", "--time", "2", "--method", f"{mine}:rk4x").refused(3, "it is not text in UTF-8")
-
-
 def test_a_method_that_never_yields_is_interrupted(mine, monkeypatch):
     monkeypatch.setattr(cast_options, "MAX_SECONDS", 0.2)
     assert pendu("run", "--time", "2", "--method", f"{mine}:endless").refused(2, "more than 0.2 s", "ever yield?")
@@ -184,44 +164,6 @@ def test_more_than_six_are_too_many_for_a_stage(mine):
 casts = st.lists(st.sampled_from(GENERAL), min_size=1, max_size=6, unique=True).map(tuple)
 
 
-@given(casts)
-@settings(max_examples=30, deadline=None)
-def test_a_run_lists_its_cast_in_order_and_each_method_as_if_it_were_alone(cast):
-    """However the start of each name is cut that is still the only one."""
-    answer = pendu("run", "--time", "3", "--methods", ",".join(method.key for method in cast), "--json").json
-    assert answer["scene"]["methods"] == [row["method"] for row in answer["methods"]] == [m.key for m in cast]
-    for method, row in zip(cast, answer["methods"], strict=True):
-        alone = Lockstep(DEFAULT_SCENE.with_cast((method,)))
-        alone.advance(60)
-        assert row["theta"] == alone.sample().readings[0].theta
-        assert row["force_evaluations"] == method.evaluations(60)
-
-
-@given(casts, st.randoms())
-def test_every_unique_start_of_a_name_finds_it(cast, chance: random.Random):
-    keys = [method.key for method in GENERAL]
-    for method in cast:
-        starts = [method.key[:n] for n in range(1, len(method.key) + 1)]
-        only = [start for start in starts if sum(key.startswith(start) for key in keys) == 1]
-        assert cast_options.find(chance.choice(only), METHODS) is method
-
-
-@pytest.mark.parametrize(
-    ("name", "key"), [("verlet", "velocity_verlet"), ("verlet_c", "verlet_compensated"), ("l", "lagged_verlet")]
-)
-def test_a_name_is_looked_for_among_the_general_methods_first(name, key):
-    assert cast_options.find(name, METHODS).key == key
-
-
-def test_the_gate_knows_the_methods_of_the_cast_and_names_them(mine):
-    gate = ("--fail-if", "kick_drift.max_energy_error > 1")
-    assert pendu("run", "--time", "2", "--method", f"{mine}:kick_drift", *gate).code == Exit.FINE
-    tripped = pendu("run", "--time", "2", "--method", f"{mine}:kick_drift", "--fail-if", "kick_drift.theta < 9")
-    assert tripped.code == Exit.CHECK_FAILED
-    refused = pendu("run", "--time", "2", "--methods", "rk4,s", "--fail-if", "velocity_verlet.theta > 1")
-    assert refused.refused(2, "no method 'velocity_verlet': choose from rk4, symplectic_euler.")
-
-
 def test_ones_own_method_has_null_claims_and_what_is_measured(mine):
     *_, told = pendu("methods", "--method", f"{mine}:kick_drift", "--json").json["methods"]
     assert (told["key"], told["label"]) == ("kick_drift", "Kick drift")
@@ -235,27 +177,11 @@ def test_ones_own_method_has_null_claims_and_what_is_measured(mine):
     assert [line.split()[0] for line in table[1:3]] == ["kick_drift", "rk4"]
 
 
-def test_studies_list_the_cast_and_ones_own_method_in_it(mine):
-    own = ("--method", f"{mine}:kick_drift", "--methods", "rk4")
-    answer = pendu("accuracy", "--time", "2", "--h-values", "0.1:0.01:3", "--target", "1e-2", *own, "--json").json
-    assert [order["method"] for order in answer["orders"]] == ["rk4", "kick_drift"]
-    assert [order["claimed"] for order in answer["orders"]] == [4, None]
-    assert answer["recommendation"]["method"] in ("rk4", "kick_drift")
-    answer = pendu("stability", "--steps", "30", "--z-values", "0.5,2.5", "--theta-values", "1", *own, "--json").json
-    assert [row["method"] for row in answer["pendulum"]] == ["rk4", "kick_drift"]
-    assert [row["theory_z"] for row in answer["linear"]] == [RK4.linear_limit, None]
-
-
 @pytest.mark.skipif((os.cpu_count() or 1) < 2, reason="one processor")
 def test_workers_and_this_process_agree_about_ones_own_method(mine):
     command = ("stability", "--steps", "30", "--z-values", "0.5,2.5", "--theta-values", "1,2", "--csv")
     own = ("--method", f"{mine}:kick_drift", "--methods", "kick_drift")
     assert pendu(*command, *own).out == pendu(*command, *own, "--workers", "2").out
-
-
-@pytest.mark.parametrize("command", ["live", "run", "accuracy", "stability", "methods", "snapshot"])
-def test_the_help_says_whose_rights_the_code_has(command):
-    assert "with your rights" in " ".join(pendu(command, "--help").out.split())
 
 
 def test_a_replay_shows_only_the_methods_asked_for(monkeypatch):

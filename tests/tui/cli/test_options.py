@@ -20,11 +20,6 @@ def test_without_options_the_scene_is_the_default_one():
     assert scene_from() == DEFAULT_SCENE
 
 
-@pytest.mark.parametrize("name", SCENES)
-def test_every_scene_is_found_by_its_name(name):
-    assert scene_from("--scene", name) == SCENES[name]
-
-
 def test_options_override_the_scene_and_its_name_becomes_custom():
     scene = scene_from("--scene", "spin", "--omega", "7", "--h", "0.01")
     assert (scene.name, scene.theta, scene.omega, scene.h) == ("custom", 0.0, 7.0, 0.01)
@@ -32,14 +27,6 @@ def test_options_override_the_scene_and_its_name_becomes_custom():
 
 def test_an_option_equal_to_the_scenes_value_keeps_the_scenes_name():
     assert scene_from("--scene", "crossover", "--h", "0.2") == SCENES["crossover"]
-
-
-def test_without_a_name_the_options_change_the_usual_scene_as_that_of_a_ghost():
-    parser = Parser(prog="pendu-tui test")
-    add_scene_options(parser)
-    assert scene_of(parser.parse_args([]), SCENES["spin"]) == SCENES["spin"]
-    assert scene_of(parser.parse_args(["--h", "0.01"]), SCENES["spin"]) == SCENES["spin"].altered(h=0.01)
-    assert scene_of(parser.parse_args(["--scene", "drift"]), SCENES["spin"]) == SCENES["drift"]
 
 
 def test_degrees_become_radians():
@@ -100,11 +87,6 @@ def test_text_that_is_not_a_number_is_refused_with_an_example(arguments):
 def test_an_unknown_scene_is_answered_with_the_nearest_one():
     with pytest.raises(UserError, match="did you mean near-separatrix"):
         scene_from("--scene", "near-seperatrix")
-
-
-def test_an_unknown_scene_with_no_similar_name_names_the_list():
-    with pytest.raises(UserError, match="pendu-tui scenes lists them"):
-        scene_from("--scene", "q")
 
 
 def test_a_scene_name_with_an_escape_sequence_is_not_printed_raw():

@@ -9,39 +9,17 @@ import pytest
 
 from engine.accuracy.growth import Growth
 from engine.accuracy.references import ABSENT, OTHER_MODEL, UNFAIR
-from engine.accuracy.study import REASONS, Study, ladder, orders
-from engine.methods import METHODS, USUAL_CAST
+from engine.accuracy.study import Study, ladder, orders
+from engine.methods import USUAL_CAST
 from engine.run.compiled import TieredLoops, available
 from engine.run.loops import PlainLoops
 from engine.scenes import SCENES
-from tests.tui.command_line import own_method, pendu
+from tests.tui.command_line import pendu
 from tui.commands.studies.reports.accuracy import order_remarks
 from tui.views.accuracy.chart import accuracy_chart, accuracy_series
 
 QUICK = ("accuracy", "--time", "5", "--h-values", "0.2:0.01:4")
 KEYS = [method.key for method in USUAL_CAST]
-CHART = """\
-theta error [rad], the largest distance from the exact swing
-     │        x
-    1┤        s⠍⠍⡉⡑⡒⡒⠒⠢⠤⠤⠤⢄e⣀⣀⡀
-     │        v⡟⡭⡭⢍⣒⣒⠓⠓⠣⠥⠥⠦s⣂⣂⣌⣩⡩⠩⠩⢒⢒⢒⢒e
- 1e-3┤           ⠁⠁⠂⠆⡍r⣖⡒⡢⠤v⣀⣀  ⠈⠉⠉⠉⠉⠑⠒s⠈⠈⠈⠈⠐⠐⠐h
-     │                ⠁⠂⠋⠖⡣⢅⣂⠂⠍⠩⠱⢒⢒⠤⠤⣀⣀⡀
- 1e-6┤                     ⠁⠂⠍⡒⠤⢄⡀ ⠈⠈⠐⠐v⠠⠠⢀⢀
-     │                         ⠈⠈⠘r⢒⠤⣀⡀     ⠈⠈⠈h²
- 1e-9┤                              ⠈⠐⠨⢑⢢⠤⣀
-     │                                   ⠈⠐⠩⢒⠢⢄r
-1e-12┤                                       ⠈⠐h⁴
-     │
-1e-15┤
-     └┬───────────┬────────────┬───────────┬───────────┬────
-      10         100          1e3         1e4         1e5
-                                           force evaluations
-"""
-
-
-def strip(text):
-    return "\n".join(line.rstrip() for line in text.splitlines())
 
 
 def test_the_table_has_a_row_for_each_step_and_the_orders():
@@ -55,11 +33,6 @@ def test_the_table_has_a_row_for_each_step_and_the_orders():
 
 def charted(points, width, height):
     return accuracy_chart(accuracy_series(points, "theta", "evaluations"), "theta", "evaluations", width, height)
-
-
-def test_the_chart_has_letters_for_points_and_dotted_lines_for_orders():
-    points = list(Study(SCENES["drift"], 5.0).points(ladder(5.0, 0.1, 0.001, 3)))
-    assert strip(charted(points, 60, 16).text) == strip(CHART)
 
 
 def test_every_point_on_the_chart_is_where_its_cost_and_its_error_are():
@@ -86,21 +59,6 @@ def test_as_json_it_holds_points_orders_and_recommendation():
 
 def test_the_numbers_are_the_same_without_numba():
     assert pendu(*QUICK, "--json").json == pendu(*QUICK, "--json", "--no-compiled").json
-
-
-def test_useless_points_are_kept_with_their_reason():
-    ladder = ("--time", "20", "--h-values", "0.2:0.0001:4", "--methods", "explicit,rk4")
-    points = pendu("accuracy", *ladder, "--json").json["points"]
-    assert {(p["method"], p["reason"]) for p in points if not p["valid"]} == {
-        ("explicit_euler", REASONS["lost"]),
-        ("rk4", REASONS["rounding"]),
-    }
-
-
-def test_seconds_are_measured_when_they_are_the_cost():
-    points = pendu(*QUICK, "--cost", "seconds", "--no-compiled", "--json").json["points"]
-    assert all(point["seconds"] > 0 and point["spread"] >= 0 for point in points)
-    assert pendu(*QUICK, "--json").json["points"][0]["seconds"] is None
 
 
 def test_a_budget_is_answered_with_the_smallest_error_for_it():
@@ -199,22 +157,8 @@ def test_the_linear_oscillator_is_compared_with_its_cosine():
     assert verlet["theta_error"] == pytest.approx(apart, rel=1e-10)
 
 
-def test_seconds_of_ones_own_method_are_compared_without_numba(tmp_path, monkeypatch):
-    monkeypatch.setattr("engine.run.compiled.compiled", None)
-    own = ("--method", own_method(tmp_path), "--methods", "mine,explicit_euler", "--cost", "seconds")
-    points = pendu("accuracy", "--time", "2", "--h-values", "0.01:0.001:2", *own, "--json").json["points"]
-    assert {point["method"] for point in points if point["seconds"] > 0} == {"mine", "explicit_euler"}
-
-
 ALL = ("accuracy", "--all", "--time", "20", "--h-values", "0.5:0.01:7")
 needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed")
-
-
-def test_all_methods_are_those_there_are_and_ones_own(tmp_path):
-    keys = [method.key for method in METHODS if method.general]
-    assert pendu(*ALL, "--json").json["scene"]["methods"] == keys
-    own = pendu(*ALL, "--method", own_method(tmp_path), "--json").json
-    assert own["scene"]["methods"] == [*keys[:4], "mine", *keys[4:]]  # the cast first
 
 
 def test_of_all_methods_it_names_the_cheapest_and_by_which_factor():
@@ -255,12 +199,6 @@ def hurried(monkeypatch):
     monkeypatch.setattr("engine.run.compiled.compiled", PlainLoops)
     monkeypatch.setattr("engine.accuracy.study.orders", lambda *_: [])
     monkeypatch.setattr("engine.accuracy.growth.growth", lambda _, method: Growth(method, [], [], None))
-
-
-def test_csv_has_the_reference_lines_with_empty_fields(hurried):
-    told = pendu(*SMALL, "--csv").out
-    read = list(csv.DictReader(io.StringIO(told)))
-    assert {row["method"] for row in read if not row["h"]} == {"closed_form", *["taylor_20"] * available()}
 
 
 @pytest.mark.parametrize(("more", "words"), [(("--scene", "linear"), OTHER_MODEL), (("--no-compiled",), UNFAIR)])

@@ -1,7 +1,6 @@
 """`stability --section`: the phase portrait of a method's own map, and the orbits of the scene's start."""
 
 import math
-from pathlib import Path
 
 import pytest
 
@@ -40,17 +39,6 @@ def test_json_has_the_rotation_numbers_and_lyapunov_numbers_of_the_start():
         "stability", "--section", "--theta", "2.3", "--h", "0.351203", "--methods", "verlet", "--json"
     ).json["orbits"]
     assert (chaotic["rotation"], chaotic["fraction"], chaotic["chaotic"]) == (None, None, True)
-
-
-def test_an_infinite_energy_is_null():
-    answer = section("--scene", "linear", "--h", "5", "--methods", "explicit", "--json").json
-    assert (answer["orbits"][0]["energy_error"], answer["orbits"][0]["steps"] < 4000) == (None, True)
-
-
-@pytest.mark.parametrize("scene", ["linear", "spin", "near-separatrix", "drift"])
-def test_every_kind_of_scene_has_one(scene):
-    for key in ("explicit", "symplectic", "verlet", "rk4"):
-        assert section("--scene", scene, "--methods", key, *FEW).code == 0
 
 
 @pytest.mark.parametrize("theme", ["dark", "light", "ansi"])
@@ -93,13 +81,3 @@ def test_one_may_draw_a_method_of_ones_own(tmp_path):
 )
 def test_what_cannot_be_is_one_sentence(words, said):
     assert section(*words).refused(2, *said)
-
-
-def test_an_interrupt_leaves_no_file(tmp_path: Path, monkeypatch):
-    def interrupt(*_: object):
-        raise KeyboardInterrupt
-        yield
-
-    monkeypatch.setattr("tui.commands.studies.reports.section.pieces", interrupt)
-    assert section(*FEW, "-o", tmp_path / "map.svg").code == 130
-    assert not [*tmp_path.iterdir()]

@@ -46,28 +46,6 @@ def test_the_limit_for_a_tenth_of_the_steps_shows_how_it_moves_with_them():
     assert long[1]["first_failure_z"] < long[1]["first_failure_z_early"]  # RK4 loses more in more steps
 
 
-def test_json_has_the_fields_of_the_design():
-    answer = pendu("stability", *SMALL, "--json").json
-    assert answer["schema"] == "pendu.stability/1"
-    assert answer["map"] is None
-    for linear, method in zip(answer["linear"], USUAL_CAST, strict=True):
-        assert linear["method"] == method.key
-        assert linear["limit_z"] == pytest.approx(linear["theory_z"], abs=1e-9)
-    assert [(row["method"], row["theta"]) for row in answer["pendulum"]] == [(k, t) for k in KEYS for t in (0.5, 2.0)]
-    for row in answer["pendulum"]:
-        assert row["reason"] in ("over the top", "grows", "loses", "chaotic")
-        assert row["first_failure_z"] > 0
-        assert row["at_scene"]["fate"] in FATES
-
-
-def test_the_scenes_own_swing_and_step_are_tried():
-    answer = pendu("stability", "--scene", "large-swing", "--h", "0.5", "--steps", 50, "--json").json
-    (row,) = (r for r in answer["pendulum"] if r["method"] == "velocity_verlet" and r["theta"] == 2.5)
-    assert answer["z"] == pytest.approx(0.5 * math.sqrt(9.81))
-    assert row["at_scene"]["fate"] == "over the top"
-    assert row["first_failure_z"] < answer["z"]
-
-
 def test_a_swing_that_is_never_lost_has_null_and_a_hyphen():
     few = ("--steps", 5, "--z-values", "0.01,0.02", "--theta-values", "1", "--h", "0.005")
     assert {row["first_failure_z"] for row in pendu("stability", *few, "--json").json["pendulum"]} == {None}
@@ -106,15 +84,6 @@ def test_the_map_is_drawn_in_characters_where_there_is_no_colour():
     assert "| linear limit" in out
 
 
-def test_the_map_is_drawn_in_half_blocks_where_there_is(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setenv("FORCE_COLOR", "1")
-    monkeypatch.setenv("COLORTERM", "truecolor")
-    monkeypatch.delenv("NO_COLOR", raising=False)
-    out = pendu("stability", *SMALL, "--map").out
-    assert "▀" in out
-    assert "\x1b[" in out
-
-
 def test_worker_processes_print_the_same_to_the_last_bit():
     arguments = ("stability", *SMALL, "--json", "--map")
     assert pendu(*arguments, "--workers", 2).out == pendu(*arguments).out
@@ -148,22 +117,6 @@ def test_ctrl_c_keeps_the_part_of_a_map_that_is_done(interrupted, tmp_path):
     with np.load(file) as map_:
         assert (map_["cells"]["fate"][:5] != UNKNOWN).all()
         assert (map_["cells"]["fate"][5:] == UNKNOWN).all()
-
-
-def test_ctrl_c_during_the_table_keeps_the_swings_already_lost(interrupted):
-    outcome = pendu("stability", *SMALL, "--json")
-    assert outcome.code == 130
-    assert outcome.json["interrupted"]
-    rows = outcome.json["pendulum"]
-    assert {(row["method"], row["theta"]) for row in rows} >= {("explicit_euler", 0.5), ("explicit_euler", 2.0)}
-    assert all(row["first_failure_z"] < 1 for row in rows)
-    table = pendu("stability", *SMALL)
-    assert (table.code, table.out.count(" deg ")) == (130, len(rows))
-
-
-def test_interrupted_before_the_scenes_z_its_cell_is_null(interrupted):
-    late = ("--h", "0.9", *SMALL)
-    assert {row["at_scene"] for row in pendu("stability", *late, "--json").json["pendulum"]} == {None}
 
 
 @pytest.mark.parametrize("error", [BrokenProcessPool, CancelledError, ConnectionError])
@@ -232,13 +185,6 @@ def test_of_the_linear_oscillator_there_are_the_lines_of_theory_and_a_sentence()
     answer = pendu("stability", "--scene", "linear", "--json").json
     assert (answer["pendulum"], answer["map"]) == ([], None)
     assert [row["limit_z"] for row in answer["linear"]] == pytest.approx([m.linear_limit for m in USUAL_CAST], abs=1e-9)
-
-
-@pytest.mark.parametrize(
-    "words", [("--map",), ("--csv",), ("-o", "map.npz"), ("--theta-values", "1"), ("--z-values", "1")], ids=" ".join
-)
-def test_what_is_only_about_a_pendulum_says_so_of_the_linear_oscillator(words):
-    assert pendu("stability", "--scene", "linear", *words).refused(2, f"{words[0]} is about a pendulum")
 
 
 def test_a_start_that_is_no_amplitude_is_given_one():
