@@ -72,7 +72,7 @@ def _value(name: str, value: Any) -> Any:
         except argparse.ArgumentTypeError as error:
             raise UserError(f"{name}: {error}.") from None
     if isinstance(value, bool) or not isinstance(value, int | float):
-        example = getattr(DEFAULT_SCENE, name)
+        example = getattr(DEFAULT_SCENE, name, None) or 1.0
         raise UserError(f"{name} is not a number; use for example {name} = {example}.")
     try:
         return float(value)
