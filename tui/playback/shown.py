@@ -1,4 +1,4 @@
-"""Shown: the methods and quantities on screen, and how they are drawn.  Nothing in it changes a number."""
+"""Shown: the methods and quantities on screen.  Nothing in it changes a number."""
 
 from typing import Any, NamedTuple
 

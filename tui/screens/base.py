@@ -91,7 +91,14 @@ class SourceScreen(Screen[None]):
         Binding("escape", "back", "chart: back from the zoom", False, "esc"),
         Binding("v", "view", "View", tooltip="next view"),
         *(
-            Binding(f"f{n}", f"view({name!r})", f"view: {VIEWS[name].title}", False, f"F{n}", group=_VIEWS)
+            Binding(
+                f"f{n}",
+                f"view({name!r})",
+                f"view: {VIEWS[name].title}",
+                False,
+                f"F{n}",
+                group=_VIEWS,
+            )
             for n, name in enumerate(VIEWS, 2)
         ),
         Binding("E,shift+e", "events", "list all events", show=False),
@@ -99,12 +106,16 @@ class SourceScreen(Screen[None]):
         Binding("s", "screenshot", "save a screenshot", show=False),
         Binding("u", "undo", "Undo", tooltip="undo the last change"),
         Binding("question_mark", "help", "Help", True, "?", tooltip="this help"),
-        Binding("ctrl+p", "app.command_palette", "Find", True, "ctrl+p", True, "find scenes, themes, …"),
+        Binding(
+            "ctrl+p", "app.command_palette", "Find", True, "ctrl+p", True, "find scenes, themes, …"
+        ),
         Binding("ctrl+z", "app.suspend_process", "suspend to the shell", show=False),
         Binding("q", "quit", "Quit", tooltip="finish the recording, quit"),
     ]
 
-    source: var[Source] = var(Initialize(lambda screen: cast(Source, cast(Any, screen).first_source)))
+    source: var[Source] = var(
+        Initialize(lambda screen: cast(Source, cast(Any, screen).first_source))
+    )
     shown: var[Shown] = var(Shown())
     view: var[str] = var("lab")
 
@@ -115,7 +126,7 @@ class SourceScreen(Screen[None]):
         prepare: Callable[[], None] = lambda: None,
         notices: Sequence[str] = (),
     ) -> None:
-        """`prepare` is called after the first paint, since it may take time; it may raise OSError."""
+        """`prepare` is called after the first paint, for it may take time; it may raise OSError."""
         super().__init__()
         self._prepare = prepare
         self._notices = notices
@@ -156,7 +167,7 @@ class SourceScreen(Screen[None]):
         return line.data_bind(SourceScreen.source, SourceScreen.shown)
 
     def on_resize(self, event: Resize) -> None:
-        """Leave out a size that the terminal no longer has: two could call each other up for ever."""
+        """Leave out a size that the terminal has no longer: two could evoke each other for ever."""
         if event.size != self.app.size:
             event.prevent_default()
 
@@ -256,7 +267,9 @@ class SourceScreen(Screen[None]):
         if self.source.go_to(run, step):
             self.show_now()
         else:
-            self.notify(f"That event belongs to run {run}; replay the recording to see it.", markup=False)
+            self.notify(
+                f"That event belongs to run {run}; replay the recording to see it.", markup=False
+            )
 
     def action_speed(self, doublings: int) -> None:
         self.action_set_speed(doubled(self.source.playhead.speed, doublings))
@@ -298,7 +311,9 @@ class SourceScreen(Screen[None]):
         self._view_in_front.zoom(factor)
 
     def on_zoomed(self, message: Zoomed) -> None:
-        self.shown = self.shown.zoomed(message.stretch)  # w leads back: no undo of every turn of the wheel
+        self.shown = self.shown.zoomed(
+            message.stretch
+        )  # w leads back: no undo of every turn of the wheel
 
     # Undo
 
@@ -340,7 +355,9 @@ class SourceScreen(Screen[None]):
 
     def action_view(self, name: str = "") -> None:
         """Show a view, or the next one."""
-        self.call_next(self._show_view, name or following(self.view))  # data_bind works in the screen's own turn only
+        self.call_next(
+            self._show_view, name or following(self.view)
+        )  # data_bind works in the screen's own turn only
 
     async def _show_view(self, name: str) -> None:
         views = self.query_one("#views")
@@ -359,7 +376,11 @@ class SourceScreen(Screen[None]):
         if not self.app.is_web:  # it may name a file
             yield SystemCommand("copy the command for this moment", "", self.action_copy_command)
         yield SystemCommand("normal speed (1×)", "", lambda: self.action_set_speed(1.0))
-        yield SystemCommand("all pendulums on one pivot, or one pane each", "", lambda: self.action_switch("overlay"))
+        yield SystemCommand(
+            "all pendulums on one pivot, or one pane each",
+            "",
+            lambda: self.action_switch("overlay"),
+        )
         yield from self._view_in_front.commands()
 
     def show_text(self, title: str, *paragraphs: str) -> None:
@@ -401,10 +422,14 @@ class SourceScreen(Screen[None]):
             self.notify(f"Saved {picture} and {text.name}", markup=False)
 
     def action_copy_command(self) -> None:
-        """Copy the command that shows this again, and show it: not every terminal has a clipboard."""
+        """Copy the command for this moment, and show it: not every terminal has a clipboard."""
         text = command(self.source)
         self.app.copy_to_clipboard(text)
-        rest = "" if reproduces(self.source) else " (start values only; later changes of h are in the recording)"
+        rest = (
+            ""
+            if reproduces(self.source)
+            else " (start values only; later changes of h are in the recording)"
+        )
         self.notify(f"Copied: {text}{rest}", markup=False, timeout=15)
 
     def action_replay(self, path: str) -> None:

@@ -45,7 +45,7 @@ def key_lines(bindings: Iterable[Binding]) -> Iterator[str]:
 
 
 def section(owner: type[DOMNode], width: int) -> str:
-    """Return the keys of a class below its title, in two columns if there is room, and its mouse."""
+    """Return the keys of a class below its title, in two columns if they fit, and its mouse."""
     lines = list(key_lines(bindings_of(owner)))
     if width >= TWO_COLUMNS:
         half = (len(lines) + 1) // 2

@@ -32,8 +32,13 @@ def footer(active: Iterable[ActiveBinding], order: Sequence[str]) -> list[Active
     return sorted(by_action.values(), key=place)
 
 
-def key_row(bindings: Sequence[ActiveBinding], width: int) -> tuple[Row, list[tuple[int, int, str]]]:
-    """Return the line, and (first column, end, key) of each key that fits; grouped keys share a hint."""
+def key_row(
+    bindings: Sequence[ActiveBinding], width: int
+) -> tuple[Row, list[tuple[int, int, str]]]:
+    """Return the line, and (first column, end, key) of each key that fits.
+
+    Grouped keys share a hint.
+    """
     row: list[tuple[str, int]] = []
     places: list[tuple[int, int, str]] = []
     column = 0

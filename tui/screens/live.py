@@ -24,7 +24,15 @@ class LiveScreen(SourceScreen):
 
     BINDING_GROUP_TITLE = "Lab"
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("plus,equals_sign", "larger_h(1)", "Step", True, "+", tooltip="larger step h", group=_STEP),
+        Binding(
+            "plus,equals_sign",
+            "larger_h(1)",
+            "Step",
+            True,
+            "+",
+            tooltip="larger step h",
+            group=_STEP,
+        ),
         Binding("minus", "larger_h(-1)", "Step", True, "-", tooltip="smaller step h", group=_STEP),
         Binding("p", "next_scene", "Scene", tooltip="next scene"),
         Binding("P,shift+p", "scenes", "choose a scene", show=False),
@@ -47,7 +55,7 @@ class LiveScreen(SourceScreen):
         return self.source
 
     def frame(self) -> None:
-        """Pause where time that runs backwards is back at 0, and keep each method's distance from its start."""
+        """Pause where reversed time is back at 0, and mark how far each method misses its start."""
         before = self.source.history.returned
         super().frame()
         returned = self.source.history.returned

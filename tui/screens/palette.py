@@ -35,12 +35,7 @@ def entries(screen: SourceScreen) -> Iterator[Entry]:
     if screen.source.kind == "LIVE":
         for scene in SCENES.values():
             yield Entry(f"scene {scene.name}: {scene.watch}", f"start_scene({scene.name!r})")
-    done: set[str] = set()
-    for node, binding, enabled, _ in screen.active_bindings.values():
-        ours = {each.action for each in bindings_of(type(node))}
-        if enabled and binding.action in ours - done:
-            done.add(binding.action)
-            yield Entry(purpose(binding), partial(screen.app.simulate_key, binding.key), key_text(binding))
+    yield from key_entries(screen)
     for command in screen.commands():
         yield Entry(command.title, command.callback)
     if screen.host.open_replay is not None and not screen.app.is_web:
@@ -49,6 +44,17 @@ def entries(screen: SourceScreen) -> Iterator[Entry]:
                 yield Entry(f"replay {item.path.stem}", f"replay({str(item.path)!r})")
     for method in METHODS:
         yield Entry(f"method {method.label}", f"card({method.key!r})")
+
+
+def key_entries(screen: SourceScreen) -> Iterator[Entry]:
+    """Yield what the keys do, each action once."""
+    done: set[str] = set()
+    for node, binding, enabled, _ in screen.active_bindings.values():
+        ours = {each.action for each in bindings_of(type(node))}
+        if enabled and binding.action in ours - done:
+            done.add(binding.action)
+            press = partial(screen.app.simulate_key, binding.key)
+            yield Entry(purpose(binding), press, key_text(binding))
 
 
 def line(entry: Entry, width: int) -> str:
@@ -70,7 +76,10 @@ class LabCommands(Provider):
             run = entry.action
             if isinstance(run, str):
                 run = partial(screen.run_action, run)
-            yield line(entry, width), partial(screen.call_later, run)  # once the screen is in front again
+            yield (
+                line(entry, width),
+                partial(screen.call_later, run),
+            )  # once the screen is in front again
 
     async def discover(self) -> Hits:
         for text, run in self._lines():

@@ -21,7 +21,7 @@ _TENTHS = Binding.Group("back, forward 10 %")
 
 
 class ReplayScreen(SourceScreen):
-    """Shows a replay.  `go_live` makes the screen for a lab that continues from the replayed moment."""
+    """Shows a replay.  `go_live` makes the screen of a lab that continues from its moment."""
 
     BINDING_GROUP_TITLE = "Replay"
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -60,7 +60,9 @@ class ReplayScreen(SourceScreen):
 
     def action_change(self) -> None:
         """Answer a key of the lab."""
-        self.notify("A recording cannot be changed: f continues it live, and then it can.", timeout=4)
+        self.notify(
+            "A recording cannot be changed: f continues it live, and then it can.", timeout=4
+        )
 
     def seek(self, position: float) -> None:
         self.replay.seek(position)
@@ -83,7 +85,9 @@ class ReplayScreen(SourceScreen):
         try:
             self.replay.mark()
         except OSError as error:
-            self.notify(f"The mark cannot be saved: {error.strerror}.", severity="warning", markup=False)
+            self.notify(
+                f"The mark cannot be saved: {error.strerror}.", severity="warning", markup=False
+            )
         else:
             self.notify(text, timeout=2)
         self.show_now()
@@ -106,7 +110,9 @@ class ReplayScreen(SourceScreen):
         try:
             lab = self._go_live(live)
         except (OSError, UserError) as error:
-            self.notify(f"Cannot start recording: {explained(error)}", severity="warning", markup=False)
+            self.notify(
+                f"Cannot start recording: {explained(error)}", severity="warning", markup=False
+            )
             return
         self.end()
         self.app.push_screen(lab)

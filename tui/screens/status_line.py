@@ -45,7 +45,7 @@ def coarse(value: float) -> str:
 def limit_warning(cast: Cast, zs: Sequence[float]) -> str:
     """Return as "unstable: e, s v (z > 2), r (z > 2.83)"; "" below all limits.
 
-    `zs` are in the order of the cast.  Explicit Euler is never stable, so it is named only beside others.
+    `zs` are in the order of the cast.  Explicit Euler, never stable, is named only beside others.
     """
     letters: dict[float, list[str]] = {}
     for method, z in zip(cast, zs, strict=True):

@@ -104,7 +104,7 @@ class TourGuide:
 
 
 def tour_rows(title: str, keys: str, text: tuple[str, ...], width: int, height: int) -> list[Row]:
-    """Return the title line, and the sentences each on lines of its own, the last of them in full."""
+    """Return the title and the sentences, each on lines of its own, the last of them in full."""
     room = max(width - len(title) - 4, 0)
     heads = [(f" {title} ", TITLE), ("  ", TEXT), (keys[:room], EXACT)]
     wrapped = [textwrap.wrap(sentence, max(width - 2, 2)) for sentence in text]

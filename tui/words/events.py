@@ -37,16 +37,19 @@ class EventLine(NamedTuple):
 
 
 def event_lines(source: Source) -> list[EventLine]:
-    """Starts, changes and marks of all runs, and the milestones of the one on screen; earliest first.
+    """Return starts, changes and marks of all runs, and the milestones of this one; earliest first.
 
     Pauses and speeds are not listed: they change no number.
     """
     run = source.sample.run
     conserved = source.scene.equations.energy_error.conserved
     milestones = [
-        EventLine(run, m.step, m.t, milestone_text(m, conserved), "milestone", m.method) for m in source.milestones
+        EventLine(run, m.step, m.t, milestone_text(m, conserved), "milestone", m.method)
+        for m in source.milestones
     ]
-    return sorted([*_inputs(source), *milestones], key=lambda line: line[:2])  # stable: inputs first
+    return sorted(
+        [*_inputs(source), *milestones], key=lambda line: line[:2]
+    )  # stable: inputs first
 
 
 def numbered(lines: Sequence[EventLine]) -> list[str]:
@@ -61,7 +64,9 @@ def _inputs(source: Source) -> Iterator[EventLine]:
         where = event.run, event.step, event.t
         if event.kind == "mark":
             marks += 1
-            yield EventLine(*where, f"mark {marks}" + (f": {event.text}" if event.text else ""), "mark")
+            yield EventLine(
+                *where, f"mark {marks}" + (f": {event.text}" if event.text else ""), "mark"
+            )
         elif event.kind in ("start", "set_h"):
             yield EventLine(*where, change_text(event, backwards), "change")
             backwards = event.h is not None and event.h < 0
@@ -71,7 +76,8 @@ def change_text(event: Event, was_backwards: bool = False) -> str:
     """A start, or a change of the step size, after which time may run forwards again."""
     if event.scene is not None:
         scene = event.scene
-        return f"start {start(scene.theta, scene.omega) if scene.name == 'custom' else scene.name}, h {scene.h:.4g} s"
+        name = start(scene.theta, scene.omega) if scene.name == "custom" else scene.name
+        return f"start {name}, h {scene.h:.4g} s"
     assert event.h is not None
     way = "time reversed, " if event.h < 0 else "time forwards again, " if was_backwards else ""
     return f"{way}h {abs(event.h):.4g} s{', equal cost' if event.equal_cost else ''}"
@@ -82,8 +88,14 @@ def milestone_text(milestone: Milestone, conserved: bool = True) -> str:
     name = short_name(milestone.method)
     if milestone.kind == "over the top":
         unit = "E0" if conserved else "E(t)"
-        error = milestone.energy_error if conserved else math.expm1(min(milestone.energy_error, 700.0))
-        energy = f"{two_digits(1 + error)} {unit}" if not 1e-4 < abs(error) < 0.1 else f"{100 * error:+.2g} %"
+        error = (
+            milestone.energy_error if conserved else math.expm1(min(milestone.energy_error, 700.0))
+        )
+        energy = (
+            f"{two_digits(1 + error)} {unit}"
+            if not 1e-4 < abs(error) < 0.1
+            else f"{100 * error:+.2g} %"
+        )
         return f"{name} over the top, {energy}"
     if milestone.other:
         other = short_name(milestone.other)

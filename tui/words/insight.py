@@ -31,8 +31,12 @@ SENTENCES = {
     "watch": "{text}",
     "failed": "{0} failed at {t:.4g} s: its energy error is no longer finite.",
     "over the top": "{0} went over the top at {t:.3g} s.",
-    "over the top with": "{0} went over the top at {t:.3g} s with {ratio:two} times its initial energy.",
-    "over the top with true": "{0} went over the top at {t:.3g} s with {ratio:two} times the true energy.",
+    "over the top with": (
+        "{0} went over the top at {t:.3g} s with {ratio:two} times its initial energy."
+    ),
+    "over the top with true": (
+        "{0} went over the top at {t:.3g} s with {ratio:two} times the true energy."
+    ),
     "errors cross": "{0}'s error passed {1}'s at {t:.4g} s: smaller at first, it kept growing.",
     "bounded": "{names} bounded; no trend over {seconds:about}.",
     "chaotic": "{0} is chaotic: nearby starts separate exponentially.",
@@ -44,8 +48,8 @@ SENTENCES = {
     "gains": "{0} gains {rate:two} of {unit} per s.",
     "multiplies": "{0}'s energy grows tenfold every {seconds:about}.",
     "loses": "{0} loses {rate:two} of {unit} per s.",
-    "will pass": "{0} loses {rate:two} of E0 per s; its error will pass {1}'s in about {seconds:about}.",
-    "exceeds": "{0} {gains} {rate:two} of {unit} per s; its error is {ratio:two} times {1}'s maximum.",
+    "will pass": "{0} loses {rate:two} of E0 per s; its error will pass {1}'s in {seconds:about}.",
+    "exceeds": "{0} {gains} {rate:two} of {unit} per s; its error is {ratio:two} × {1}'s maximum.",
     "so far": "Energy errors so far: {least:.2g} ({0}) to {most:.2g} ({1}).",
 }
 
@@ -85,7 +89,7 @@ def sentence(found: Insight) -> str:
 
 
 def short_name(method: Method) -> str:
-    """Return the last word of a name if no other name ends with it: "Verlet", but "Symplectic Euler"."""
+    """Return the last word of a name if no other ends with it: "Verlet", but "Symplectic Euler"."""
     last = method.label.split()[-1]
     alone = sum(each.label.endswith(last) for each in GENERAL) == 1
     return last if alone and method.general else method.label
@@ -97,7 +101,7 @@ def insight_text(source: Source, hidden: Collection[str] = ()) -> str:
 
 
 def insight(source: Source, hidden: Collection[str] = ()) -> Insight:
-    """Choose: equilibrium, the return to t = 0, news, the scene's own sentence, or the lasting ones in turn.
+    """Choose: equilibrium, the return to t = 0, news, the scene's own, or the lasting ones in turn.
 
     Methods whose keys are `hidden` are not mentioned.
     """
@@ -118,11 +122,15 @@ def insight(source: Source, hidden: Collection[str] = ()) -> Insight:
 
 
 def _news(source: Source, seconds: float, hidden: Collection[str]) -> Insight | None:
-    """Return the latest milestone; failures come first, then over the top, errors that cross, verdicts."""
+    """Return the latest milestone: failures first, then over the top, crossings, verdicts."""
     kinds = ("verdict", "errors cross", "over the top", "failed")
     since = source.sample.step - seconds / abs(source.stepping.h)
-    recent = [each for each in source.milestones if each.step > since and each.method.key not in hidden]
-    for milestone in sorted(recent, key=lambda each: (kinds.index(each.kind), each.step), reverse=True):
+    recent = [
+        each for each in source.milestones if each.step > since and each.method.key not in hidden
+    ]
+    for milestone in sorted(
+        recent, key=lambda each: (kinds.index(each.kind), each.step), reverse=True
+    ):
         if milestone.kind != "verdict":
             return milestone_insight(milestone, source.scene.equations.energy_error.conserved)
         index = source.scene.cast.index(milestone.method)
@@ -142,8 +150,10 @@ def _watch(source: Source, hidden: Collection[str]) -> Insight | None:
 
 
 def lasting(source: Source, hidden: Collection[str] = ()) -> list[Insight]:
-    """Return all insights on the methods that are not hidden, the most important first; at least one."""
-    ended = {index: each for index, each in endings(source).items() if each.method.key not in hidden}
+    """Return all insights on the methods that are shown, the most important first; at least one."""
+    ended = {
+        index: each for index, each in endings(source).items() if each.method.key not in hidden
+    }
     found = list(_on_methods(source, ended, hidden))
     watch = _watch(source, hidden)
     outdated = any(short_name(each.method) in source.scene.watch for each in ended.values())
@@ -152,7 +162,9 @@ def lasting(source: Source, hidden: Collection[str] = ()) -> list[Insight]:
     return [_so_far(source, hidden)]
 
 
-def _on_methods(source: Source, ended: Mapping[int, Milestone], hidden: Collection[str]) -> Iterator[Insight]:
+def _on_methods(
+    source: Source, ended: Mapping[int, Milestone], hidden: Collection[str]
+) -> Iterator[Insight]:
     conserved = source.scene.equations.energy_error.conserved
     for milestone in sorted(ended.values(), key=lambda each: (each.kind != "failed", each.step)):
         yield milestone_insight(milestone, conserved)
@@ -167,10 +179,12 @@ def _on_methods(source: Source, ended: Mapping[int, Milestone], hidden: Collecti
 
 
 def endings(source: Source) -> dict[int, Milestone]:
-    """Return by index the methods that failed or went over the top: their verdict no longer matters."""
+    """Return by index the methods that failed or went over the top."""
     ended = [each for each in source.milestones if each.kind in ("over the top", "failed")]
     index = source.scene.cast.index
-    return {index(each.method): each for each in sorted(ended, key=lambda each: each.kind == "failed")}
+    return {
+        index(each.method): each for each in sorted(ended, key=lambda each: each.kind == "failed")
+    }
 
 
 def milestone_insight(milestone: Milestone, conserved: bool = True) -> Insight:
@@ -208,7 +222,9 @@ def irregular(method: Method, judgement: Judgement, error: float) -> Insight | N
         return None
     if not judgement.lyapunov:
         return Insight(judgement.verdict, (method,))
-    return Insight(f"{judgement.verdict} at", (method,), {"seconds": math.log(10) / judgement.lyapunov})
+    return Insight(
+        f"{judgement.verdict} at", (method,), {"seconds": math.log(10) / judgement.lyapunov}
+    )
 
 
 def drift(source: Source, index: int) -> Insight | None:
@@ -240,9 +256,9 @@ def drift(source: Source, index: int) -> Insight | None:
 
 
 def forecast(source: Source, index: int) -> tuple[float, Method] | None:
-    """Return when [s] a steady loss of energy will exceed the smallest maximum that it is still below.
+    """Return when [s] a steady loss will exceed the smallest maximum that it is still below.
 
-    None unless the slope is certain to a tenth; after a change of the step, because the maxima belong
+    None unless the slope is certain to a tenth; after a change of h, because the maxima belong
     to another step; where the period depends on the energy, and the rate of loss with it; and
     if the maximum is too large or the time too long.
     """
@@ -250,7 +266,12 @@ def forecast(source: Source, index: int) -> tuple[float, Method] | None:
     error = source.sample.readings[index].energy_error
     slope = judgement.slope
     uncertainty = judgement.uncertainty
-    if judgement.verdict != "loses" or not slope or uncertainty is None or 10 * uncertainty > abs(slope):
+    if (
+        judgement.verdict != "loses"
+        or not slope
+        or uncertainty is None
+        or 10 * uncertainty > abs(slope)
+    ):
         return None
     if any(event.kind == "set_h" and event.run == source.sample.run for event in source.events):
         return None
@@ -265,11 +286,15 @@ def forecast(source: Source, index: int) -> tuple[float, Method] | None:
 def _bands(source: Source) -> list[tuple[float, int]]:
     """Return the largest energy error of each bounded method, with its index, smallest first."""
     pairs = enumerate(zip(source.sample.readings, source.judgements, strict=True))
-    return sorted((reading.max_energy_error, i) for i, (reading, judged) in pairs if judged.verdict == "bounded")
+    return sorted(
+        (reading.max_energy_error, i)
+        for i, (reading, judged) in pairs
+        if judged.verdict == "bounded"
+    )
 
 
 def _so_far(source: Source, hidden: Collection[str] = ()) -> Insight:
-    """Return the largest energy errors of the best and of the worst method, before there is a verdict."""
+    """Return the largest energy errors of the best and of the worst method."""
     cast = source.scene.cast
     errors = [(reading.max_energy_error, at) for at, reading in enumerate(source.sample.readings)]
     shown = sorted(each for each in errors if cast[each[1]].key not in hidden)

@@ -21,6 +21,8 @@ def energy_share(w0: float, theta: float, omega: float) -> str:
 
 def motion_text(scene: Scene, exact: ExactMotion) -> str:
     """As "exact period 2.139 s  E/Es 0.2298  libration"."""
-    share = f"E/Es {energy_share(scene.w0, scene.theta, scene.omega)}" if scene.equations.turns else ""
+    share = (
+        f"E/Es {energy_share(scene.w0, scene.theta, scene.omega)}" if scene.equations.turns else ""
+    )
     period = "" if exact.period is None else f"exact period {exact.period:.6g} s"
     return "  ".join(filter(None, [period, share, exact.regime]))

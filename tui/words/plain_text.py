@@ -66,7 +66,7 @@ def print_tour(
     clock: Callable[[], float] = time.monotonic,
     sleep: Callable[[float], object] = time.sleep,
 ) -> None:
-    """Emit the shots with their questions and, after a pause, the truths, until the last or until `stopped`."""
+    """Emit the shots: question and, after a pause, truth, until the last or until `stopped`."""
     tour = Tour(live)
     live.tick(clock())
 

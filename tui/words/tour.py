@@ -1,4 +1,7 @@
-"""SHOTS: the tour as data: a run, its moment, a question with two answers, and the truth.  Tests measure the truths."""
+"""SHOTS: the tour as data: a run, its moment, a question, two answers, and the truth.
+
+Tests measure the truths.
+"""
 
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -52,8 +55,10 @@ SHOTS = (
         question="Nothing pushes this pendulum. Do the other three keep their energy?",
         answers=("All three, nearly.", "Only RK4, the most accurate."),
         right=0,
-        truth="Symplectic Euler to 8 %, Verlet to 0.6 %: their errors come and go. RK4 lost only 0.002 %, but a little"
-        " more with each swing.",
+        truth=(
+            "Symplectic Euler to 8 %, Verlet to 0.6 %: their errors come and go. RK4 lost only "
+            "0.002 %, but a little more with each swing."
+        ),
     ),
     Shot(
         title="why",
@@ -62,27 +67,41 @@ SHOTS = (
         view="phase",
         watch="A small swing in phase space, almost an ellipse. Watch Explicit Euler step by step.",
         moment=5.5,
-        happened="Each step of Explicit Euler follows the tangent and lands outside: its energy grows by about z²,"
-        " 25 % a step.",
-        question="Symplectic Euler differs in one thing: it moves theta with the new omega. Is that enough?",
+        happened=(
+            "Each step of Explicit Euler follows the tangent and lands outside: its energy grows "
+            "by about z², 25 % a step."
+        ),
+        question=(
+            "Symplectic Euler differs in one thing: it moves theta with the new omega. Is that "
+            "enough?"
+        ),
         answers=("Yes, its energy stays bounded.", "No, it gains, only slower."),
         right=0,
-        truth="Its orbit is an ellipse, too, only a tilted one: the energy error stays between -20 % and +33 %,"
-        " however long it runs.",
+        truth=(
+            "Its orbit is an ellipse, too, only a tilted one: the energy error stays between -20 "
+            "% and +33 %, however long it runs."
+        ),
     ),
     Shot(
         title="smaller h",
         scene=replace(SCENES["drift"], h=0.025),
         speed=2.0,
         view="lab",
-        watch="The first scene with half the step, at twice the speed, until Verlet has its verdict.",
+        watch=(
+            "The first scene with half the step, at twice the speed, until Verlet has its verdict."
+        ),
         moment=17.6,
-        happened="Half the step: Verlet's largest energy error is a quarter, 0.14 % instead of 0.57 %. Its order is 2.",
+        happened=(
+            "Half the step: Verlet's largest energy error is a quarter, 0.14 % instead of 0.57 %."
+            " Its order is 2."
+        ),
         question="RK4 has order 4. By how much did its energy error shrink?",
         answers=("To a sixteenth.", "To a thirty-second."),
         right=1,
-        truth="A thirty-second: its loss of energy goes with the fifth power of h. Explicit Euler still goes over the"
-        " top, only later.",
+        truth=(
+            "A thirty-second: its loss of energy goes with the fifth power of h. Explicit Euler "
+            "still goes over the top, only later."
+        ),
     ),
     Shot(
         title="the crossing",
@@ -95,23 +114,32 @@ SHOTS = (
         question="Would a smaller step save RK4?",
         answers=("Yes, it would stay below.", "It would only buy time."),
         right=1,
-        truth="It buys time: with h = 0.05 s the errors cross after half an hour. Verlet's stays bounded, RK4's grows"
-        " with each swing.",
+        truth=(
+            "It buys time: with h = 0.05 s the errors cross after half an hour. Verlet's stays "
+            "bounded, RK4's grows with each swing."
+        ),
     ),
     Shot(
         title="time reversed",
         scene=SCENES["drift"],
         speed=1.5,
         view="lab",
-        watch="When Explicit Euler goes over the top, time turns round: the same steps with -h, back to 0.",
+        watch=(
+            "When Explicit Euler goes over the top, time turns round: the same steps with -h, "
+            "back to 0."
+        ),
         moment=7.15,
-        happened="Back at t = 0, only Verlet is back at its start, to the last digits. Symplectic Euler misses it"
-        " visibly.",
+        happened=(
+            "Back at t = 0, only Verlet is back at its start, to the last digits. Symplectic "
+            "Euler misses it visibly."
+        ),
         question="Verlet made errors on the way there. Why does it come home?",
         answers=("It is the most accurate here.", "Its step is symmetric."),
         right=1,
-        truth="A step of -h undoes one of h, errors and all. RK4 is merely accurate: in angle and speed it misses its"
-        " start by 0.00004 rad.",
+        truth=(
+            "A step of -h undoes one of h, errors and all. RK4 is merely accurate: in angle and "
+            "speed it misses its start by 0.00004 rad."
+        ),
         returns=True,
     ),
     Shot(
@@ -119,45 +147,66 @@ SHOTS = (
         scene=SCENES["drift"],
         speed=0.5,
         view="phase",
-        watch="The rings are neighbouring starts, carried along by each method. Watch them for two swings.",
+        watch=(
+            "The rings are neighbouring starts, carried along by each method. Watch them for two "
+            "swings."
+        ),
         moment=4.3,
-        happened="Symplectic Euler and Verlet keep the area of their rings exactly; Explicit Euler's is 2.4 times as"
-        " large.",
+        happened=(
+            "Symplectic Euler and Verlet keep the area of their rings exactly; Explicit Euler's "
+            "is 2.4 times as large."
+        ),
         question="What has area to do with energy?",
         answers=("Where it stays, no orbit spirals out.", "Nothing, it is a coincidence."),
         right=0,
-        truth="Where area stays, orbits cannot spiral out or in. Explicit Euler's step multiplies it by"
-        " 1 + z² cos(theta), RK4's by a little less than 1.",
+        truth=(
+            "Where area stays, orbits cannot spiral out or in. Explicit Euler's step multiplies "
+            "it by 1 + z² cos(theta), RK4's by a little less than 1."
+        ),
     ),
     Shot(
         title="where it breaks",
         scene=SCENES["verlet-limit-above"],
         speed=2.0,
         view="stability",
-        watch="z = h·sqrt(g/L) goes to the right, the amplitude up; @ is here, just above Verlet's limit 2.",
+        watch=(
+            "z = h·sqrt(g/L) goes to the right, the amplitude up; @ is here, just above Verlet's "
+            "limit 2."
+        ),
         moment=20.2,
-        happened="In ten steps Verlet's swing grew from 0.1 to almost 0.5 rad. For a linear spring that would never"
-        " end.",
+        happened=(
+            "In ten steps Verlet's swing grew from 0.1 to almost 0.5 rad. For a linear spring "
+            "that would never end."
+        ),
         question="Does it go over the top here?",
         answers=("Yes.", "No."),
         right=1,
-        truth="At 0.48 rad a swing takes longer, so that the same step is small enough again. RK4 lasts to z = 2.83,"
-        " Explicit Euler is never stable.",
+        truth=(
+            "At 0.48 rad a swing takes longer, so that the same step is small enough again. RK4 "
+            "lasts to z = 2.83, Explicit Euler is never stable."
+        ),
     ),
     Shot(
         title="what it costs",
         scene=SCENES["drift"],
         speed=0.25,
         view="accuracy",
-        watch="To the right: more force evaluations. Down: smaller errors. At equal cost RK4's step is four times as"
-        " long.",
+        watch=(
+            "To the right: more force evaluations. Down: smaller errors. At equal cost RK4's step"
+            " is four times as long."
+        ),
         moment=1.8,
-        happened="With as many force evaluations for all, RK4's energy error passed Verlet's after two seconds.",
+        happened=(
+            "With as many force evaluations for all, RK4's energy error passed Verlet's after two"
+            " seconds."
+        ),
         question="Is Verlet the better method, then?",
         answers=("Yes.", "It depends on the accuracy."),
         right=1,
-        truth="For an error of 1 % Verlet needs half of RK4's evaluations. For 1e-6 RK4 needs an eighth of Verlet's:"
-        " its line is steeper.",
+        truth=(
+            "For an error of 1 % Verlet needs half of RK4's evaluations. For 1e-6 RK4 needs an "
+            "eighth of Verlet's: its line is steeper."
+        ),
         equal_cost=True,
     ),
 )

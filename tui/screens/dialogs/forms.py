@@ -1,4 +1,4 @@
-"""The forms over the lab: a scene, the methods, or the start values, checked while they are typed."""
+"""The forms over the lab: a scene, the methods, or the start values."""
 
 import argparse
 from collections.abc import Callable
@@ -67,7 +67,7 @@ def _line(scene: Scene) -> Table:
 
 
 def method_line(method: Method, cast: Cast) -> str:
-    """Return as "2 v Velocity Verlet  order 2  1 force a step  symplectic": its digit if it is taken."""
+    """Return as "2 v Velocity Verlet  order 2  1 force a step  symplectic"; no digit: not taken."""
     digit = str(cast.index(method) + 1) if method in cast else " "
     forces = f"{counted(method.force_evaluations, 'force')} a step"
     kind = "symplectic" if method.symplectic else "not symplectic"
@@ -129,9 +129,12 @@ FIELDS: dict[str, tuple[str, Callable[[str], float]]] = {
     "h": ("s, the step size", number),
     "length": ("m", number),
     "gravity": ("m/s²", number),
-    **{each.name: (f"{each.unit}, {each.min:g} to {each.max:g}", number) for each in PARAMETERS.values()},
+    **{
+        each.name: (f"{each.unit}, {each.min:g} to {each.max:g}", number)
+        for each in PARAMETERS.values()
+    },
 }
-"""The unit of what may be typed in, and how it is read; of PARAMETERS those of the scene's model."""
+"""The unit and the parser of each number; of PARAMETERS only those of the scene's model."""
 
 
 class StartForm(Form[Scene | None]):

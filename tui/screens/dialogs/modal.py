@@ -19,12 +19,12 @@ class _Once(Screen[ScreenResultType]):
             field.cursor_blink = self.app.animation_level != "none"
 
     def on_resize(self, event: events.Resize) -> None:
-        """Leave out a size that the terminal no longer has: two could call each other up for ever."""
+        """Leave out a size that the terminal has no longer: two could evoke each other for ever."""
         if event.size != self.app.size:
             event.prevent_default()
 
     def dismiss(self, result: ScreenResultType | None = None) -> AwaitComplete:
-        """Close with a result; a second call, or one from below another screen, would close that one."""
+        """Close with a result, once; a second call would close the screen below."""
         if self._dismissed or self.app.screen is not self:
             return AwaitComplete()
         self._dismissed = True
@@ -47,7 +47,7 @@ _gather = CommandPalette._gather_commands.__wrapped__  # type: ignore[attr-defin
 
 
 class Commands(CommandPalette, _Once[None]):
-    """The command palette; Textual 8.2's raises errors if keys come faster than it opens and closes."""
+    """The command palette; Textual 8.2's raises errors if keys come faster than it opens."""
 
     @work(exclusive=True, group=CommandPalette._GATHER_COMMANDS_GROUP)
     async def _gather_commands(self, search_value: str) -> None:
