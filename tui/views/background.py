@@ -7,21 +7,14 @@ import asyncio
 import multiprocessing
 import os
 import signal
-import sys
 from collections.abc import AsyncIterator, Callable, Iterator
-from concurrent.futures import ProcessPoolExecutor
-from contextlib import contextmanager, redirect_stderr
-from multiprocessing import resource_tracker
+from multiprocessing.connection import Connection
 from threading import Thread
-from types import ModuleType
-from typing import Any, TypeVar
+from typing import TypeVar
 
 Item = TypeVar("Item")
 
-ENVIRONMENT = {"PYTHONSAFEPATH": "1", "PYTHONWARNINGS": "ignore"}
-"""No module from the current folder, and no word of semaphores if the lab is killed."""
-
-_items: Iterator[Any]  # in the other process: what is left to compute
+DONE = "done"
 
 
 async def computed(function: Callable[..., Iterator[Item]], *arguments: object) -> AsyncIterator[Item]:
@@ -30,50 +23,36 @@ async def computed(function: Callable[..., Iterator[Item]], *arguments: object) 
     The function must be importable, and all values picklable.  The process is killed when this task
     is cancelled, and ends when this process does, even if that is killed.
     """
-    loop, others = asyncio.get_running_loop(), set(multiprocessing.active_children())
-    with _spawning():
-        executor = ProcessPoolExecutor(1, multiprocessing.get_context("spawn"), _begin, (function, arguments))
-        item = loop.run_in_executor(executor, _next)
-    ours = set(multiprocessing.active_children()) - others
+    os.environ["PYTHONSAFEPATH"] = "1"  # or the process would import modules from the current folder
+    context = multiprocessing.get_context("spawn")
+    results, sending = context.Pipe(duplex=False)
+    process = context.Process(target=_send_all, args=(sending, function, arguments), daemon=True)
+    process.start()
+    sending.close()
     try:
-        while (found := await asyncio.shield(item)) is not None:  # an executor stumbles over cancelled items
-            yield found
-            item = loop.run_in_executor(executor, _next)
+        while (result := await asyncio.to_thread(results.recv)) != DONE:
+            if isinstance(result, Exception):
+                raise result
+            yield result
+    except EOFError:
+        raise RuntimeError("The process that computes for this view has ended.") from None
     finally:
-        for process in ours:
-            process.kill()
-        item.add_done_callback(asyncio.Future.exception)  # else asyncio complains that nobody asked for it
-        executor.shutdown()
+        process.kill()
+        process.join()
 
 
-@contextmanager
-def _spawning() -> Iterator[None]:
-    """Let processes be started: with the real stderr, deaf to Ctrl+C, and in ENVIRONMENT."""
-    before = {name: os.environ.get(name, "") for name in ENVIRONMENT}  # empty is as good as not set
-    script = sys.modules["__main__"]
-    os.environ.update(ENVIRONMENT)
-    try:
-        with redirect_stderr(sys.__stderr__):  # Textual's has no file number
-            resource_tracker.ensure_running()  # or it would be started now, and unblock the signal
-            signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-            sys.modules["__main__"] = ModuleType("__main__")  # or the script that started the lab would be run again
-            yield
-    finally:
-        sys.modules["__main__"] = script
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
-        os.environ.update(before)
-
-
-def _begin(function: Callable[..., Iterator[Item]], arguments: tuple[object, ...]) -> None:
-    global _items
+def _send_all(results: Connection, function: Callable[..., Iterator[Item]], arguments: tuple[object, ...]) -> None:
+    """Compute and send; the main function of the other process."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # nothing is to be written across the screen
     os.nice(10)  # the lab comes first
     Thread(target=_end_with_parent, daemon=True).start()
-    _items = function(*arguments)
-
-
-def _next() -> Any:
-    return next(_items, None)
+    try:
+        for item in function(*arguments):
+            results.send(item)
+        results.send(DONE)
+    except Exception as error:
+        results.send(error)
 
 
 def _end_with_parent() -> None:
