@@ -1,6 +1,6 @@
-"""CellWidget: a widget that shows a Picture.  Only rows that changed are sent to the terminal."""
+"""CellWidget: a widget that shows a Picture.  Only rows that changed are made anew and sent to the terminal."""
 
-from collections.abc import Sequence
+from typing import Self
 
 from rich.segment import Segment
 from rich.style import Style
@@ -9,7 +9,7 @@ from textual.strip import Strip
 from textual.widget import Widget
 
 from tui.drawing.palette import NOBODY, palette
-from tui.drawing.picture import Ink, Picture, Row
+from tui.drawing.picture import Ink, Picture
 
 
 class CellWidget(Widget):
@@ -21,6 +21,9 @@ class CellWidget(Widget):
         super().__init__(id=id, classes=classes)
         self._picture = Picture()
         self._styles: dict[Ink, Style] = {}
+        self._lines: list[Strip] = []  # of all that is visible, border included
+        self._crop: Region | None = None  # of the lines; None: they are out of date
+        self._changed: set[int] = set()  # rows
         self.room = Size()
         """Columns and rows of a picture.  Textual walks through the screen for `size`."""
 
@@ -39,12 +42,11 @@ class CellWidget(Widget):
     def on_show(self) -> None:
         self.draw()
 
-    def show(self, picture: Picture | Sequence[Row]) -> None:
+    def show(self, picture: Picture) -> None:
         """Show a picture in place of the one before."""
-        if not isinstance(picture, Picture):  # until all callers hand over pictures
-            picture = Picture(picture)
         changed = picture.changed_rows(self._picture)
         self._picture = picture
+        self._changed.update(changed)
         if changed:
             self.refresh(*(Region(0, y, self.room.width, 1) for y in changed))
 
@@ -52,6 +54,34 @@ class CellWidget(Widget):
     def text(self) -> str:
         """What is shown, without colours."""
         return self._picture.text
+
+    def refresh(self, *regions: Region, repaint: bool = True, layout: bool = False, recompose: bool = False) -> Self:
+        """Paint these regions anew, or everything."""
+        if not regions:
+            self._crop = None
+        return super().refresh(*regions, repaint=repaint, layout=layout, recompose=recompose)
+
+    def render_lines(self, crop: Region) -> list[Strip]:
+        """Return the visible lines.  For rows inside an unchanged border, Textual would go through the whole sheet."""
+        if crop != self._crop:
+            self._lines = super().render_lines(crop)
+            self._crop = crop if crop == Region(0, 0, *self.outer_size) else None
+            top, right, _, left = self.gutter
+            self._top = top
+            line = self._lines[top] if top < len(self._lines) else Strip.blank(crop.width, self.rich_style)
+            self._left = [*line.crop(0, left)]
+            self._right = [*line.crop(crop.width - right)]
+            self._filters = self.get_line_filters()
+            self._background = self.background_colors[1]
+        else:
+            for y in self._changed:
+                if y < self.room.height:
+                    row = self.render_line(y)
+                    for one in self._filters:
+                        row = row.apply_filter(one, self._background)
+                    self._lines[self._top + y] = Strip([*self._left, *row, *self._right], crop.width)
+        self._changed.clear()
+        return self._lines
 
     def render_line(self, y: int) -> Strip:
         rows = self._picture.rows
@@ -67,6 +97,7 @@ class CellWidget(Widget):
         """Forget styles that the theme or the sheet has changed."""
         super().notify_style_update()
         self._styles = {}
+        self._crop = None
 
     def _style(self, ink: Ink) -> Style:
         style = self._styles.get(ink)
