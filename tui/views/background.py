@@ -7,7 +7,9 @@ import asyncio
 import multiprocessing
 import os
 import signal
+import sys
 from collections.abc import AsyncIterator, Callable, Iterator
+from contextlib import redirect_stderr
 from multiprocessing.connection import Connection
 from threading import Thread
 from typing import TypeVar
@@ -27,7 +29,8 @@ async def computed(function: Callable[..., Iterator[Item]], *arguments: object) 
     context = multiprocessing.get_context("spawn")
     results, sending = context.Pipe(duplex=False)
     process = context.Process(target=_send_all, args=(sending, function, arguments), daemon=True)
-    process.start()
+    with redirect_stderr(sys.__stderr__):  # Textual's has no file number
+        process.start()
     sending.close()
     try:
         while (result := await asyncio.to_thread(results.recv)) != DONE:

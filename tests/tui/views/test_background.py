@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import aclosing
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
@@ -83,6 +84,14 @@ async def test_a_task_that_is_cancelled_leaves_no_process_and_no_complaint(funct
     await asyncio.sleep(0.05)
     gc.collect()
     assert not caplog.records
+
+
+async def test_it_starts_where_stderr_has_no_file_number(monkeypatch):
+    monkeypatch.setattr("multiprocessing.resource_tracker._resource_tracker._fd", None)  # or it has been started
+    monkeypatch.setattr("sys.stderr", StringIO())
+    monkeypatch.setattr("sys.stderr.fileno", lambda: -1)
+    async with aclosing(computed(forever)) as found:
+        assert await anext(found) != os.getpid()
 
 
 async def test_the_process_is_deaf_to_ctrl_c():
