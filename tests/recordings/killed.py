@@ -10,13 +10,24 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
-from engine.methods import USUAL_CAST
+from engine.methods import GENERAL, USUAL_CAST
+from engine.methods.examine import load
 from engine.run.lockstep import Sample
 from recordings.live_recorder import LiveRecorder
 from tests.recordings.examples import SCENE
 from tui.playback.live import Live
 
 FRAME = 1 / 30  # s
+HEUN = """
+def heun(force, phase, h):
+    theta, omega = phase
+    while True:
+        a = force(theta)
+        b = force(theta + h * omega)
+        theta, omega = theta + h / 2 * (2 * omega + h * a), omega + h / 2 * (a + b)
+        yield theta, omega
+"""
+OWN = (load(HEUN, "heun", "h", "heun.py"),)
 KEYS = (
     *4 * [lambda live: live.pause(not live.playhead.paused)],
     *8 * [lambda live: live.step(1)],
@@ -25,6 +36,7 @@ KEYS = (
     lambda live: live.set_stepping(live.stepping._replace(h=0.02)),
     lambda live: live.set_stepping(live.stepping._replace(h=-0.05)),
     lambda live: live.start(replace(live.scene, cast=tuple(random.sample(USUAL_CAST, 3)), model="pendulum")),
+    lambda live: live.start(replace(live.scene, cast=GENERAL[:5] + OWN, model="pendulum")),
     lambda live: live.start(replace(live.scene, model="linear")),
     lambda live: live.mark("here"),
     lambda live: live.restart(),

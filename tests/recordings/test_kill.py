@@ -8,10 +8,12 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from recordings.events import remember
 from recordings.library import leftovers
 from recordings.recording import Recording
 from recordings.recovery import rescue
 from recordings.verification import verify
+from tests.recordings.killed import OWN
 from tests.tui.pty_lab import PtyLab
 
 KILLS = 4  # tests/bench/kill.py kills more
@@ -48,6 +50,7 @@ def kill_one(folder, after):
         there = last_sample(recording)
     lost = [when for when, run, step in knew if (run, step) > there]
     loss = knew[-1][0] - lost[0] if lost else 0.0
+    remember(OWN)
     assert verify(part).identical
     rescue(part)
     return loss, verify(folder / "a.mcap")

@@ -91,34 +91,27 @@ def _list(options: argparse.Namespace) -> Report:
     from recordings import library
 
     rows = [_facts(item) for item in library.listing()]
-    folder = library.folder()
-    title = ""
-    if not rows:
-        title = f"No recordings in {printable(str(folder))} yet; start pendu-tui to make one."
-    notes = [f"recording now: {printable(str(path.with_suffix('')))}" for path in library.being_made()]
-    notes += [
+    folder = printable(str(library.folder()))
+    being_made = [f"recording now: {printable(str(path.with_suffix('')))}" for path in library.being_made()]
+    unfinished = [
         f"unfinished: {printable(str(path))}; will be recovered the next time the lab starts"
         for path in library.leftovers()
     ]
     columns = (
         Column("recording, newest first", "file"),
-        Column("finished", _finished),
+        Column("finished", lambda row: time.strftime("%Y-%m-%d %H:%M", time.localtime(row["modified"]))),
         Column("scenes", lambda row: row["reason"] or ", ".join(row["scenes"])),
         Column("length", lambda row: row["seconds"] and seconds(row["seconds"]), right=True),
         Column("size", lambda row: file_size(row["bytes"]), right=True),
     )
     return Report(
         name="recordings",
-        title=title,
+        title="" if rows else f"No recordings in {folder} yet; start pendu-tui to make one.",
         columns=columns if rows else (),
         rows=rows,
-        fields={"folder": str(folder), "recordings": rows},
-        notes=notes,
+        fields={"folder": str(library.folder()), "recordings": rows},
+        notes=being_made + unfinished,
     )
-
-
-def _finished(row: dict[str, Any]) -> str:
-    return time.strftime("%Y-%m-%d %H:%M", time.localtime(row["modified"]))
 
 
 def _facts(item: "Item") -> dict[str, Any]:
@@ -128,11 +121,7 @@ def _facts(item: "Item") -> dict[str, Any]:
     try:
         with Recording.open(item.path) as recording:
             scenes = list(dict.fromkeys(run.scene.name for run in recording.runs))
-            return facts | {
-                "seconds": recording.length,
-                "scenes": scenes,
-                "reason": recording.reason,
-            }
+            return facts | {"seconds": recording.length, "scenes": scenes, "reason": recording.reason}
     except RecordingError as error:
         return facts | {"seconds": None, "scenes": [], "reason": str(error)}
 
@@ -150,8 +139,11 @@ def _show(options: argparse.Namespace) -> Report:
 
 
 def _contents(recording: "Recording") -> Report:
-    from recordings.format import FORMAT_VERSION
-
+    runs = [
+        {"run": run.number, "scene": run.scene.fields(), "steps": run.steps, "time": run.t}
+        | {"seconds": run.end - run.begin, "inputs": run.inputs, "numerics": run.arithmetic.numerics}
+        for run in recording.runs
+    ]
     health = recording.reason or "complete"
     facts = {
         "file": str(recording.path),
@@ -161,52 +153,37 @@ def _contents(recording: "Recording") -> Report:
         "methods": ", ".join(recording.methods),
         **recording.about,
     }
-    runs = [
-        {
-            "run": run.number,
-            "scene": run.scene.fields(),
-            "steps": run.steps,
-            "time": run.t,
-            "seconds": run.end - run.begin,
-            "inputs": run.inputs,
-            "numerics": run.arithmetic.numerics,
-        }
-        for run in recording.runs
-    ]
     columns = (
         Column("run", "run", right=True),
         Column("scene", lambda run: run["scene"]["name"]),
-        Column("theta [rad]", lambda run: f"{run['scene']['theta']:g}", right=True),
-        Column("omega [rad/s]", lambda run: f"{run['scene']['omega']:g}", right=True),
-        Column("h [s]", lambda run: f"{run['scene']['h']:g}", right=True),
+        *(_number_of_scene(head) for head in ("theta [rad]", "omega [rad/s]", "h [s]")),
         Column("steps", "steps", right=True),
         Column("simulated s", "time", "g"),
         Column("recorded s", "seconds", ".2f"),
         Column("inputs", "inputs", right=True),
     )
     more = len(runs) - MAX_RUNS_SHOWN
-    notes: list[Any] = [Table(columns, runs[:MAX_RUNS_SHOWN])]
-    if more > 0:
-        notes.append(f"... and {more} more runs; --json lists all.")
+    names = ("complete", "damaged", "reason", "methods", "samples", "bytes", "about")
     return Report(
         name="recordings-show",
         columns=(Column("", "name"), Column("", "value")),
         rows=[{"name": name, "value": value} for name, value in facts.items()],
         fields={
             "file": str(recording.path),
-            "format": int(FORMAT_VERSION),
-            "complete": recording.complete,
-            "damaged": recording.damaged,
-            "reason": recording.reason,
             "runs": runs,
-            "methods": recording.methods,
-            "samples": recording.samples,
             "seconds": recording.length,
-            "bytes": recording.bytes,
-            "about": recording.about,
+            **{name: getattr(recording, name) for name in names},
         },
-        notes=notes,
+        notes=[
+            Table(columns, runs[:MAX_RUNS_SHOWN]),
+            *([f"... and {more} more runs; --json lists all."] if more > 0 else []),
+        ],
     )
+
+
+def _number_of_scene(head: str) -> Column:
+    name = head.partition(" ")[0]
+    return Column(head, lambda run: f"{run['scene'][name]:g}", right=True)
 
 
 def _recover(options: argparse.Namespace) -> Report:
