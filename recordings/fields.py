@@ -84,6 +84,7 @@ READING = (
     Field("energy_error_low", about="since the sample before", required=False),
     Field("energy_error_high", about="since the sample before", required=False),
     Field("diverged_at", "s", required=False),
+    Field("max_invariant_error", about="over every step so far", required=False),
 )
 """One method in a sample: the attributes of a Reading but `extra`.  `verify` compares all of them."""
 
@@ -122,6 +123,7 @@ SOURCE = tuple(Field(name, type="string") for name in ("method", "letter", "sha2
 
 NUMBERS = tuple(field.name for field in READING if field.required)
 EXTREMES = ("energy_error_low", "energy_error_high")
+OPTIONAL = tuple(each.name for each in READING if not (each.required or each.name in EXTREMES))
 EXTRA_NAMES = tuple(dict.fromkeys(field.name for fields in EXTRA.values() for field in fields))
 VALUES = (*(field.name for field in READING), *EXTRA_NAMES)
 STATE = {

@@ -9,14 +9,16 @@ Energy and |s|, the probability, are conserved for any nu.  Tully, Faraday Discu
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache, partial
+from operator import itemgetter
 from typing import Any, ClassVar
 
 from engine.models.model import (
     Energy,
     ExactMotion,
+    ExtraColumn,
     Model,
     Observation,
     Parameter,
@@ -62,6 +64,14 @@ class MeanField(Model):
             is_state=False,
         ),
     )
+    extra_columns: ClassVar[tuple[ExtraColumn, ...]] = (
+        ExtraColumn(
+            "|s|",
+            "probability",
+            "the length of the Bloch vector, the probability, which the true motion keeps at 1",
+            itemgetter("probability"),
+        ),
+    )
     frequency_symbol: ClassVar[str] = "nu"
     caption: ClassVar[str] = "a projection: angle and angular velocity, without the two levels"
     without_force: ClassVar[str] = "Maps and studies are for one angle; the mean field has a Bloch vector as well."
@@ -83,15 +93,15 @@ class MeanField(Model):
 
     def observe(self, phase: Phase) -> Observation:
         theta, omega, sx, sy, sz = phase
-        extra = {"sx": sx, "sy": sy, "sz": sz, "probability": self.invariant(phase)}
+        extra = {"sx": sx, "sy": sy, "sz": sz, "probability": _length(phase)}
         return Observation(theta, omega, extra)
 
     def phase_of(self, theta: float, omega: float, extra: Mapping[str, float]) -> Phase:
         return theta, omega, extra["sx"], extra["sy"], extra["sz"]
 
-    def invariant(self, phase: Phase) -> float:
-        """Return |s|, which the true motion conserves besides the energy."""
-        return math.hypot(*phase[2:])
+    def invariant(self) -> Callable[[Phase], float]:
+        """Return |s|, the probability, as a function of the phase."""
+        return _length
 
     def rates(self, sin: Sine = math.sin) -> Rates:
         def mean_field_rates(phase: Phase) -> Phase:
@@ -150,6 +160,10 @@ class MeanField(Model):
             return State(*_reference(self, theta, omega).at(t)[:2])
 
         return ExactMotion(at, "libration", accuracy=ACCURACY)
+
+
+def _length(phase: Phase) -> float:
+    return math.hypot(*phase[2:])
 
 
 def strang(model: MeanField, phase: Phase, h: float) -> Phase:

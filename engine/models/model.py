@@ -221,6 +221,10 @@ class Model(ABC):
         start: float = self.energy()(self.start(theta, omega))
         return EnergyReference(start, start if start > 0 else 2 * self.w0_squared)
 
+    def invariant(self) -> Callable[[Phase], float] | None:
+        """Return a quantity above zero that the true motion keeps besides the energy; None: there is none."""
+        return None
+
     def exact_length(self, theta: float, omega: float, t: float) -> float:
         """Return the exact distance of the bob from the pivot at a time [s], over the length at rest."""
         return 1.0

@@ -3,13 +3,14 @@
 import copy
 import math
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import NamedTuple
 
 from engine.models.model import NO_EXTRA
 from engine.run.judge import stride
 from engine.run.judgement import Judgement, LookPoint, Milestone
 from engine.run.judges import Judges
-from engine.run.loops import Advance, LoopsOf, PlainLoops, advance_with_errors
+from engine.run.loops import Advance, Errors, LoopsOf, PlainLoops, advance_with_errors
 from engine.run.stepping import Stepping
 from engine.scenes import Scene, check_h
 
@@ -29,6 +30,7 @@ class Reading(NamedTuple):
     energy_error_low: float  # smallest and largest energy error over the steps since the previous sample,
     energy_error_high: float  # so that a chart of samples loses no extreme
     diverged_at: float | None = None  # s; first time at which the method's numbers were not finite
+    max_invariant_error: float | None = None  # relative, of `Model.invariant` over every step of the run so far
     extra: Mapping[str, float] = NO_EXTRA  # the values of the model's own variables, `Model.variables`
 
 
@@ -58,6 +60,7 @@ class _Track:
         self.diverged_at: float | None = None
         self.parts = 1  # how many steps of its own it takes in one of the lockstep
         self.turns = 0  # taken off theta
+        self.invariant_error = 0.0  # the largest so far
 
     def reduce(self) -> None:
         """Take whole turns off theta if it is beyond one, because its rounding grows with it.
@@ -99,7 +102,10 @@ class Lockstep:
         self._base_step = 0
         self._model = model = scene.equations
         self._reference = model.reference(scene.theta, scene.omega)
-        start = model.observe(model.start(scene.theta, scene.omega)).extra
+        start_phase = model.start(scene.theta, scene.omega)
+        self._invariant = model.invariant()
+        self._invariant_start = self._invariant(start_phase) if self._invariant else 0.0
+        start = model.observe(start_phase).extra
         self._scales = {each.name: start[each.name] or 1.0 for each in model.variables if each.relative}
         self._limit = min(1.0, self._reference.scale) * 1e300  # so that relative errors are finite, too
         self._tracks = [_Track(loops(method, model).advance, scene, self._reference.start) for method in scene.cast]
@@ -168,7 +174,7 @@ class Lockstep:
             h = self.stepping.h / track.parts
             steps = n * track.parts
             begin = (self._t_base, (self.step - self._base_step) * track.parts)
-            went = advance_with_errors(track.advance, self._reference, track.phase, h, steps, self._limit, begin)
+            went = self._advance_track(track, h, steps, begin)
             if went.done:
                 track.phase = went.phase
                 track.energy = went.energy
@@ -184,6 +190,23 @@ class Lockstep:
                     step = self.step + math.ceil((went.done + 1) / track.parts)
                     self._judges.note("failed", index, step, track.diverged_at, track.error)
         self.step += n
+
+    def _advance_track(self, track: _Track, h: float, steps: int, begin: tuple[float, int]) -> Errors:
+        """Advance by the method's own steps: at once, or one by one where the model has an invariant to watch."""
+        advance = partial(advance_with_errors, track.advance, self._reference)
+        if self._invariant is None:
+            return advance(track.phase, h, steps, self._limit, begin)
+        went = Errors(0, track.phase, track.energy, track.error, math.inf, -math.inf)
+        for done in range(steps):
+            step = advance(went.phase, h, 1, self._limit, (begin[0], begin[1] + done))
+            if not step.done:
+                break
+            error = abs(self._invariant(step.phase) - self._invariant_start) / self._invariant_start
+            track.invariant_error = max(track.invariant_error, error)
+            low = min(went.low, step.low)
+            high = max(went.high, step.high)
+            went = step._replace(done=done + 1, low=low, high=high)
+        return went
 
     def _stop(self) -> None:
         """Look where it is time to, and choose the next stop."""
@@ -269,5 +292,6 @@ class Lockstep:
             energy_error_low=low,
             energy_error_high=high,
             diverged_at=track.diverged_at,
+            max_invariant_error=None if self._invariant is None else track.invariant_error,
             extra=extra,
         )

@@ -18,18 +18,18 @@ from typing import Any
 
 from engine.methods import USUAL_CAST, Cast
 from engine.run.judgement import VERDICTS
-from recordings.fields import EXTRA_NAMES, NUMBERS
+from recordings.fields import EXTRA_NAMES, NUMBERS, OPTIONAL
 from tui.cli.errors import UserError
 from tui.cli.options import did_you_mean
 
 FIELDS = (
     *NUMBERS,
+    *OPTIONAL,
     "log_energy_error",
     *EXTRA_NAMES,
     "theta_error",
     "drift_per_second",
     "force_evaluations",
-    "diverged_at",
 )
 """The fields of `run --json` that are numbers."""
 

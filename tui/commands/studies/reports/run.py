@@ -18,7 +18,7 @@ def rows_of(scene: Scene, sample: "Sample", lockstep: "Lockstep", stopped: bool)
     Where evaluations vary they are counted, by running again, unless somebody waits for the end.
     """
     from engine.run.loops import count_evaluations
-    from recordings.fields import NUMBERS
+    from recordings.fields import NUMBERS, OPTIONAL
 
     model = scene.equations
     exact = scene.exact().at(sample.t).theta
@@ -34,6 +34,9 @@ def rows_of(scene: Scene, sample: "Sample", lockstep: "Lockstep", stopped: bool)
         row = {"method": method.key, **fields_of(reading, *NUMBERS)}
         if not model.energy_error.conserved:
             row["log_energy_error"] = reading.energy_error
+        for name in OPTIONAL:
+            if (value := getattr(reading, name)) is not None:
+                row[name] = value
         for variable in model.variables:
             row[variable.name] = reading.extra.get(variable.name)
         rows.append(
