@@ -7,7 +7,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from engine.methods import METHODS
+from engine.methods import METHODS, Cast
 from engine.models import MODELS, PARAMETERS
 from engine.scenes import DEFAULT_SCENE, SCENES, Scene, SceneError
 from recordings.errors import printable
@@ -56,11 +56,7 @@ def _value(name: str, value: Any) -> Any:
         advice = did_you_mean(name, FIELDS) or f"; choose from {', '.join(FIELDS)}."
         raise UserError(f"a scene has no field {printable(name, 40)}{advice}")
     if name == "methods":
-        if not isinstance(value, list) or not value or not all(isinstance(key, str) for key in value):
-            raise UserError('methods is not a list of names; use for example ["velocity_verlet", "rk4"].')
-        if len(set(value)) < len(value):
-            raise UserError("methods has a name twice; name each method once.")
-        return tuple(find(key, METHODS) for key in value)
+        return _methods(value)
     if name in TEXTS:
         if not isinstance(value, str) or (name == "model" and value not in MODELS):
             allowed = f"one of {', '.join(MODELS)}" if name == "model" else "a text"
@@ -78,6 +74,14 @@ def _value(name: str, value: Any) -> Any:
         return float(value)
     except OverflowError:
         raise UserError(f"{name} is out of range; use a number of ordinary size.") from None
+
+
+def _methods(value: Any) -> Cast:
+    if not isinstance(value, list) or not value or not all(isinstance(key, str) for key in value):
+        raise UserError('methods is not a list of names; use for example ["velocity_verlet", "rk4"].')
+    if len(set(value)) < len(value):
+        raise UserError("methods has a name twice; name each method once.")
+    return tuple(find(key, METHODS, "methods") for key in value)
 
 
 def _line(text: str, name: str) -> int:

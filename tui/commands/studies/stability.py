@@ -84,17 +84,42 @@ def run(options: argparse.Namespace) -> int:
     scene = general_scene_of(options)
     suffix = "" if options.output is None else options.output.suffix.lower()
     if options.section:
-        if options.csv or suffix in (".npz", ".csv"):
-            raise UserError("--section is a picture; write it to a file that ends in .svg or .txt, or use --json.")
-        from tui.commands.studies.reports import section
-
-        return section.run(scene, options, options.steps or SECTION_STEPS)
+        return _section(scene, options, suffix)
     if suffix in (".svg", ".txt"):
         raise UserError(f"only --section writes {suffix} files; use .npz, .csv or .json.")
     steps = options.steps or STEPS
     _check(scene, options, steps)
-    from engine.stability.study import ladder_of, map_of
+    grids = _grids(scene, options, steps, suffix)
+    computed = []
+    ended = None
+    with _workers(options) as executor:
+        for grid in grids:
+            if ended is None:
+                swings, ended = compute(grid, executor)
+                computed.append((grid, swings))
     from tui.commands.studies.reports.stability import report, write_map
+
+    if suffix == ".npz":
+        write_map(options.output, options.force, *computed[0])
+    else:
+        publish(report(scene, steps, computed, is_whole=ended is None), options)
+    if ended is None:
+        return Exit.FINE
+    warn(str(ended))
+    return ended.code
+
+
+def _section(scene: Scene, options: argparse.Namespace, suffix: str) -> int:
+    if options.csv or suffix in (".npz", ".csv"):
+        raise UserError("--section is a picture; write it to a file that ends in .svg or .txt, or use --json.")
+    from tui.commands.studies.reports import section
+
+    return section.run(scene, options, options.steps or SECTION_STEPS)
+
+
+def _grids(scene: Scene, options: argparse.Namespace, steps: int, suffix: str) -> "list[Grid]":
+    """Return the grid of the table, where there is one, and that of the map, where it is asked for."""
+    from engine.stability.study import ladder_of, map_of
 
     grids = []
     if scene.equations.turns and suffix != ".npz":
@@ -106,21 +131,7 @@ def run(options: argparse.Namespace) -> int:
             raise UserError(f"{math.prod(grid.shape)} swings are too many; use at most {MAX_SWINGS}.")
     if options.output:
         check_free(options.output, options.force)
-    computed = []
-    ended = None
-    with _workers(options) as executor:
-        for grid in grids:
-            if ended is None:
-                swings, ended = compute(grid, executor)
-                computed.append((grid, swings))
-    if suffix == ".npz":
-        write_map(options.output, options.force, *computed[0])
-    else:
-        publish(report(scene, steps, computed, is_whole=ended is None), options)
-    if ended is None:
-        return Exit.FINE
-    warn(str(ended))
-    return ended.code
+    return grids
 
 
 def compute(grid: "Grid", executor: "Executor | None") -> "tuple[Cells, UserError | None]":
