@@ -1,13 +1,13 @@
 """Energies without a method: a verdict on any program, from times and energies alone.
 
-The record is cut into up to 64 blocks of equal time.  The means of the blocks are held against a few
-descriptions: a level, a line, a curve that still moves, a curve or a step that has settled, each with
-or without slow waves, and all with correlated noise (engine.run.noise).
+The record is cut into up to 64 blocks of equal time.  The means of the blocks are held against a
+few descriptions: a level, a line, a curve that still moves, a curve or a step that has settled, each
+with or without slow waves, and all with correlated noise (engine.run.noise).
 
-In this order: energies that move by no more than rounding are `bounded`; a start outside the band of
-the rest is left out; what settles after a change of level is `caught`; a trend `grows` or `loses`;
-no trend, in a record of enough independent samples, is `bounded`; a record that has moved further
-than any noise about a level would is one that `wanders`.
+In this order: energies that move by no more than rounding are `bounded`; a start outside the band
+of the rest is left out; what settles after a change of level is `caught`; a trend `grows` or
+`loses`; no trend, in a record of enough independent samples, is `bounded`; a record that has moved
+further than any noise about a level would is one that `wanders`.
 """
 
 import math
@@ -181,7 +181,7 @@ def _conclude(stories: "_Stories", independent: float, has_settled: bool) -> Jud
     trend = sure or (not walk_like and stories.moving.sigmas > TREND)
     if trend and line > STEEP and clear:
         return Judgement("grows" if stories.line.amplitude > 0 else "loses")
-    if line < STILL and not few:
+    if line < STILL and not few and not has_settled:
         return Judgement("bounded")
     if line < STILL and stories.level.walks > WALKS and not math.isfinite(stories.cycles):
         return Judgement("wanders")

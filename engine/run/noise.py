@@ -1,9 +1,9 @@
 """Least squares where noise is correlated: lines, curves and waves through the means of blocks.
 
-The noise may have any correlation time, from none to that of a random walk, with white noise on top.
-Likelihoods are averaged over a grid of such noises (generalised least squares with restricted maximum
-likelihood: Harville, J. Am. Stat. Assoc. 72 (1977) 320), so the uncertainty of a slope holds for
-correlated values, too: 68, 95 and 99.7 % up to a correlation time of a fifth of the record.
+The noise may have any correlation time, from none to that of a random walk, with white noise on
+top.  Likelihoods are averaged over a grid of such noises (generalised least squares with restricted
+maximum likelihood: Harville, J. Am. Stat. Assoc. 72 (1977) 320), so the uncertainty of a slope
+holds for correlated values, too.
 """
 
 import math

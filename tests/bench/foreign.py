@@ -2,9 +2,9 @@
 
     python tests/bench/foreign.py [TRIALS]
 
-A kind is made with 100 to 6000 samples, at a random scale and zero of energy and time.  `too early`
-is never wrong; it is counted where the effect has five standard deviations or more and the record at
-least 50 independent samples.
+A kind is made with 100 to 6000 samples, at a random scale and zero of energy and time.  `too
+early` is never wrong; it is counted where the effect has five standard deviations or more and the
+record at least 50 independent samples.
 """
 
 import json

@@ -287,7 +287,10 @@ def _delimiter(line: str) -> str | None:
 
 
 def _places(fields: Sequence[str], wanted: Sequence[str], named: bool = False) -> tuple[tuple[int, ...], ...] | None:
-    """Return the fields that make up each wanted column, if all are there; `named`: not by numbers only."""
+    """Return the fields that make up each wanted column, if all are there.
+
+    `named`: only if one of them is asked for by name.
+    """
     if named and all(part.isdecimal() for name in wanted for part in name.split("+")):
         return None
     found: list[tuple[int, ...]] = []

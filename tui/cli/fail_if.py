@@ -51,7 +51,7 @@ _EXAMPLE = "velocity_verlet.max_energy_error > 1e-2"
 
 
 def parse(text: str, fields: Sequence[str] = (), cast: Cast = USUAL_CAST) -> Gate:
-    """Return the gate that `text` states of the methods of a cast.  Raises UserError for anything else.
+    """Return the gate that `text` states of a cast.  Raises UserError for anything else.
 
     With `fields`, comparisons name one of these, or `verdict`, and no method; their values stand
     under the key "".

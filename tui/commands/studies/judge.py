@@ -8,7 +8,6 @@ import argparse
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import partial
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -29,7 +28,7 @@ examples:
   pendu-tui judge energy.xvg --time 1 --energy "Total Energy" --fail-if 'verdict != bounded'
   pendu-tui judge log.lammps --time Step --energy KinEng+PotEng --scale std --junit judge.xml
   pendu-tui judge md.csv --time 'Time (ps)' --energy total --atoms 648 --temperature 300
-  pendu-tui judge fine.csv coarse.csv --steps 1,2 --time t --energy E --fail-if 'fluctuation_order < 1.8'
+  pendu-tui judge a.csv b.csv --steps 1,2 --time t --energy E --fail-if 'fluctuation_order < 1.8'
   ./game --headless | pendu-tui judge - --time 1 --energy 4 --fail-if 'max_energy_error > 1e-2'
 
 verdicts:
@@ -51,27 +50,22 @@ FIELDS = (
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_file(parser, "files", metavar="FILE", nargs="+", help="a table of times and energies; - for stdin")
-    column = partial(parser.add_argument, metavar="COLUMN", required=True)
-    column("--time", help="the column of times, by name or number from 1")
-    column("--energy", help="the column of total energies, likewise, or several joined by +")
-    parser.add_argument("--table", metavar="N", type=count, help="judge table N (default: the last one)")
-    parser.add_argument("--from", metavar="T", dest="start", type=float, default=-LATEST, help="judge from time T on")
-    parser.add_argument(
-        "--scale",
-        metavar="SCALE",
-        default="first",
-        help="errors are relative to the first energy, std (of the energies), kinetic:COLUMN (its mean) or a number",
-    )
-    parser.add_argument("--atoms", metavar="N", type=count, help="give the trend per ns and atom")
-    parser.add_argument("--temperature", metavar="K", type=positive, help="give it in kT, too")
-    parser.add_argument("--steps", metavar="H,H", help="the step sizes of the files: how do the errors follow them?")
-    parser.add_argument(
+    add = parser.add_argument
+    for name, what in (("--time", "of times"), ("--energy", "of total energies, or several joined by +")):
+        add(name, metavar="COLUMN", required=True, help=f"the column {what}, by name or number from 1")
+    add("--table", metavar="N", type=count, help="judge table N (default: the last one)")
+    add("--from", metavar="T", dest="start", type=float, default=-LATEST, help="judge from time T on")
+    add("--scale", default="first", help="errors are relative to first, std, kinetic:COLUMN, or a number")
+    add("--atoms", metavar="N", type=count, help="give the trend per ns and atom")
+    add("--temperature", metavar="K", type=positive, help="give it in kT, too")
+    add("--steps", metavar="H,H", help="the step sizes of the files: how do the errors follow them?")
+    add(
         "--fail-if",
         metavar="EXPR",
         choices=Suggestions((*FIELDS, "verdict")),
         help=f"exit 1 if the expression is true; fields: {', '.join(FIELDS)}, verdict",
     )
-    add_file(parser, "--junit", metavar="FILE", type=Path, help="also write the check as JUnit XML, over an older FILE")
+    add_file(parser, "--junit", metavar="FILE", type=Path, help="also write the check as JUnit XML")
     add_report_options(parser)
 
 
@@ -128,9 +122,8 @@ def _scale(text: str) -> float | str:
     try:
         return positive(text)
     except (argparse.ArgumentTypeError, ValueError):
-        raise UserError(
-            f"--scale {printable(text, 40)!r} is none of first, std, kinetic:COLUMN and a positive number."
-        ) from None
+        name = repr(printable(text, 40))
+        raise UserError(f"--scale {name} is none of first, std, kinetic:COLUMN and a positive number.") from None
 
 
 def _judge(name: str, options: argparse.Namespace, scale: float | str) -> dict[str, Any]:
@@ -149,8 +142,8 @@ def _check(table: Table) -> None:
     rows = len(table.columns[0])
     if table.skipped["time_not_later"] > rows:
         raise UserError(
-            "most rows are not later than the row before: there seem to be several methods in this table;"
-            " judge one of them, for example filtered with grep.",
+            "most rows are not later than the row before: there seem to be several methods in this"
+            " table; judge one of them, for example filtered with grep.",
             Exit.INPUT_UNREADABLE,
         )
     if rows == 0:

@@ -31,7 +31,7 @@ examples:
   pendu-tui run --scene crossover --time 100 --record crossover.mcap
   pendu-tui run --time 60 --methods rk4,verlet --method mine.py:my_step,letter=m
   pendu-tui run --theta 170deg --time 60 --json | jq '.methods[] | {method, verdict}'
-  pendu-tui run --time 60 --fail-if 'velocity_verlet.max_energy_error > 1e-2 or rk4.verdict == loses'
+  pendu-tui run --time 60 --fail-if 'rk4.max_energy_error > 1e-2 or rk4.verdict == grows'
 
 verdicts:
 """ + "\n".join(f"  {verdict}: {text}" for verdict, text in DEFINITIONS.items())
@@ -53,7 +53,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--fail-if",
         metavar="EXPR",
         choices=Suggestions(names),
-        help="exit 1 if the expression is true, e.g. rk4.max_energy_error > 1e-3 (fields: see --json)",
+        help="exit 1 if it is true, e.g. rk4.max_energy_error > 1e-3 (fields: see --json)",
     )
     parser.add_argument("--no-compiled", action="store_true", help="do not use Numba (same results)")
     add_report_options(parser, csv=True)
@@ -139,4 +139,5 @@ def _warn_of_size(steps: int, every: int) -> None:
     if size > LARGE:
         enough = math.ceil(steps * SAMPLE_BYTES / LARGE)
         about, large = file_size(round(size)), file_size(round(LARGE))
-        warn(f"the recording will be about {about}; --sample-every {enough} would reduce it to {large}.")
+        advice = f"--sample-every {enough} would reduce it to {large}"
+        warn(f"the recording will be about {about}; {advice}.")

@@ -27,7 +27,7 @@ BOLTZMANN = {  # in the unit a kelvin; the 2019 SI
 
 
 def judged(table: Table, scale: float | str, atoms: int | None, temperature: float | None) -> dict[str, Any]:
-    """Return the fields of the result for a table of times, energies and perhaps kinetic energies."""
+    """Return the fields of the result for a table of times, energies and kinetic energies."""
     import numpy as np
 
     from engine.run.energies import judge_energies
@@ -113,8 +113,8 @@ def _per_atom(fields: dict[str, Any], atoms: int | None, temperature: float | No
         return found
     if energy_unit.casefold() not in BOLTZMANN:
         raise UserError(
-            "--temperature needs the unit of the energies in the head of the column, such as E (eV);"
-            f" units: {', '.join(BOLTZMANN)}."
+            "--temperature needs the unit of the energies in the head of the column,"
+            f" such as E (eV); units: {', '.join(BOLTZMANN)}."
         )
     kt = BOLTZMANN[energy_unit.casefold()] * temperature
     return found | {"temperature": temperature, "kt_per_ns_per_atom": None if each is None else each / kt}
