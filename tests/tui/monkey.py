@@ -15,7 +15,7 @@ from textual.events import Key, Resize
 from textual.geometry import Size
 
 from engine.accuracy.study import ladder
-from engine.scenes import DEFAULT_SCENE
+from engine.scenes import DEFAULT_SCENE, Scene
 from recordings.library import new_path
 from recordings.live_recorder import LiveRecorder
 from recordings.recording import Recording
@@ -180,11 +180,11 @@ async def still(theatre: Theatre) -> None:
         await theatre.pilot.pause(0.001)
 
 
-def wild_stage(library: Path) -> Callable[[Callable[[], float]], LiveScreen]:
+def wild_stage(library: Path, scene: Scene = DEFAULT_SCENE) -> Callable[[Callable[[], float]], LiveScreen]:
     """Makes a lab that is recorded in a library."""
 
     def make(clock: Callable[[], float]) -> LiveScreen:
-        return _recorded(Live(DEFAULT_SCENE, clock=_looks()), library, clock)
+        return _recorded(Live(scene, clock=_looks()), library, clock)
 
     return make
 

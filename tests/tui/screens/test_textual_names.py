@@ -14,8 +14,6 @@ from textual.message_pump import MessagePump
 import tui
 
 MEANT = {
-    "Commands": {"_gather_commands", "_action_command_list", "_watch__list_visible", "_watch__show_busy"},
-    "Guarded": {"_dispatch_message"},
     "PenduApp": {"_handle_exception"},
 }
 """What replaces Textual's own, by class."""

@@ -1,11 +1,8 @@
 """Screens over the lab, each of which closes once, however fast the clicks and keys come."""
 
-from contextlib import suppress
-
-from textual import events, work
+from textual import events
 from textual.await_complete import AwaitComplete
-from textual.command import CommandList, CommandPalette
-from textual.css.query import NoMatches
+from textual.command import CommandPalette
 from textual.screen import ModalScreen, Screen, ScreenResultType
 from textual.widgets import Input
 
@@ -43,25 +40,5 @@ class Form(Modal[ScreenResultType]):
             self.dismiss(None)
 
 
-_gather = CommandPalette._gather_commands.__wrapped__  # type: ignore[attr-defined]
-
-
 class Commands(CommandPalette, _Once[None]):
-    """The command palette; Textual 8.2's raises errors if keys come faster than it opens."""
-
-    @work(exclusive=True, group=CommandPalette._GATHER_COMMANDS_GROUP)
-    async def _gather_commands(self, search_value: str) -> None:
-        if self.query(CommandList):  # else it was closed meanwhile
-            await _gather(self, search_value)
-
-    def _watch__list_visible(self) -> None:
-        with suppress(NoMatches):  # it was closed while it searched
-            super()._watch__list_visible()
-
-    async def _watch__show_busy(self) -> None:
-        with suppress(NoMatches):
-            await super()._watch__show_busy()
-
-    def _action_command_list(self, action: str) -> None:
-        with suppress(KeyError):  # the list is not laid out yet
-            super()._action_command_list(action)
+    """The command palette; the app ignores its errors, which come of fast keys."""
