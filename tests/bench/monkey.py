@@ -11,7 +11,7 @@ import time
 from collections import Counter
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from traceback import extract_tb
+from traceback import extract_tb, print_exception
 from unittest.mock import patch
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
@@ -50,7 +50,7 @@ def sitting(scene: Scene, events: int, seed: int) -> Counter[str]:
         except Exception as error:
             place = extract_tb(error.__traceback__)[-1]
             name = f"{type(error).__name__} {Path(place.filename).name}:{place.lineno} seed {seed}"
-            print(name, error, file=sys.stderr)
+            print_exception(error, limit=-8)
             counts = Counter({"events": events, "early_ends": 1, name: 1})
         recordings = list(library.glob("*.mcap"))
         unfinished = list(library.glob("*.part"))

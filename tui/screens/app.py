@@ -8,7 +8,7 @@ from traceback import walk_tb
 from typing import ClassVar
 
 from textual import command
-from textual.app import App
+from textual.app import App, ScreenStackError
 from textual.binding import Binding, BindingType
 from textual.command import CommandPalette
 from textual.filter import LineFilter
@@ -103,6 +103,8 @@ class PenduApp(App[Exit | BaseException]):
         The command palette is only closed: Textual 8.2's stumbles over keys that come faster than
         it opens and closes.
         """
+        if isinstance(error, ScreenStackError):
+            return  # a key came when the screens were gone
         if is_of_palette(error):
             if isinstance(self.screen, CommandPalette):
                 self.call_later(self.screen.dismiss)
