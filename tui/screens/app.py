@@ -151,7 +151,7 @@ class PenduApp(App[Exit | BaseException]):
         from tui.screens.dialogs.modal import Commands
         from tui.screens.palette import LabCommands
 
-        if not isinstance(self.screen, Commands):
+        if self.screen is self.source_screen:
             self.push_screen(Commands([LabCommands], placeholder="scene, theme, key, recording, method …"))
 
     def action_use_theme(self, name: str) -> None:
