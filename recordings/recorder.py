@@ -41,9 +41,7 @@ from recordings.format import (
 )
 from recordings.library import free_path, hold, part_of
 
-FLUSH_EVERY = 0.8  # s of real time; with a slow frame's delay kill -9 loses less than 1 s
-FIRST_FLUSH = 0.2  # s; from there on the time between flushes doubles until it is FLUSH_EVERY
-FLUSH_EVENTS_EVERY = 0.25  # s; a key held down gives 30 events a second
+FLUSH_EVERY = 0.7  # s of the recording clock; with a slow frame's delay kill -9 loses less than 1 s
 MAX_CHUNK = 1 << 17  # bytes of messages; the only limit in headless runs
 MAX_CLOCK = 1e10  # s; log_time has 64 bits of nanoseconds
 
@@ -83,10 +81,7 @@ class Recorder:
         self._log_time = CLOCK_OFFSET
         self._paused = False
         self._stopped = False
-        self._event_waits = False
-        self._began = 0.0 if wall is None else wall() / 1e9  # s, real time
-        self._now = self._began
-        self._flushed = 0.0, self._began  # s: on the recording clock, and real time
+        self._flushed_at = 0.0  # s, on the recording clock
         self._unflushed = 0  # bytes
         if is_stream(path):
             raise DiskError("is a device or a pipe; a recording needs a file", path)
@@ -102,7 +97,7 @@ class Recorder:
         self._writer.start(PROFILE, program())
 
     def event(self, event: Event, clock: float) -> None:
-        """Write an event; it is on disk within a quarter of a second."""
+        """Write an event; a pause, and whatever is done while paused, is on disk at once."""
         data = encode_event(event)
         if event.scene is not None:
             self._last = None
@@ -110,19 +105,16 @@ class Recorder:
         self._add([(EVENTS, data)], clock)
         self._stopped = event.kind == "stop"
         self._paused = event.kind == "pause" or (self._paused and event.kind != "resume")
-        self._event_waits = True
         self._flush_if_due(urgent=self._paused)
 
     def sample(self, sample: Sample, clock: float) -> None:
         """Write a sample, unless it was the last one written.
 
-        Steps ascend within a run.  Extremes are those since the previous sample, so a run's first has none.
+        Extremes are those since the previous sample, so a run's first has none.
         """
         last = self._last
-        if last is not None and last.step >= sample.step:
-            if last.step == sample.step:
-                return
-            raise ValueError(f"step {sample.step} of run {sample.run} comes after {last.step}")
+        if last is not None and last.step == sample.step:
+            return
         messages = encode_readings(sample if last else without_extremes(sample))
         self._add(list(zip(self._topics, messages, strict=True)), clock)
         self.samples += 1
@@ -136,9 +128,8 @@ class Recorder:
             if not self._is_ours():
                 raise DiskError("the file was replaced", self.part)
         self.bytes = self._file.tell()
-        self._flushed = self.seconds, self._now
+        self._flushed_at = self.seconds
         self._unflushed = 0
-        self._event_waits = False
 
     def close(self) -> None:
         """Finish the recording: a stop, the summary, and its final name.  Without a start, leave no file.
@@ -233,7 +224,6 @@ class Recorder:
         self._log_time = max(self._log_time, CLOCK_OFFSET + round(clock * 1e9))
         self.seconds = max(self.seconds, clock)
         publish_time = self._log_time if self._wall is None else self._wall()
-        self._now = publish_time / 1e9
         number = self._entries % (1 << 32)
         with writing(self.part):
             for name, data in messages:
@@ -243,17 +233,9 @@ class Recorder:
         self._entries += 1
 
     def _flush_if_due(self, urgent: bool = False) -> None:
-        if urgent or self._unflushed > MAX_CHUNK or self._is_late():
+        is_late = self._wall is not None and self.seconds >= self._flushed_at + FLUSH_EVERY
+        if urgent or is_late or self._unflushed > MAX_CHUNK:
             self.flush()
-
-    def _is_late(self) -> bool:
-        """Return whether more than the last second is in memory only.  A wall clock may be set back."""
-        if self._wall is None:  # it can be made again
-            return False
-        clock, real = self._flushed
-        age = max(self.seconds - clock, self._now - real)
-        every = min(max(clock, real - self._began, FIRST_FLUSH), FLUSH_EVERY)
-        return age >= (min(every, FLUSH_EVENTS_EVERY) if self._event_waits else every)
 
 
 def program() -> str:

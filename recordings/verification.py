@@ -61,7 +61,6 @@ class Verification:
     numerics: int = NUMERICS  # the version of the numbers
     other_functions: tuple[str, ...] = ()  # that this machine computes differently
     identical: bool = False  # every sample, or within the tolerance where sin differs; no damage
-    max_difference: float = 0.0  # of any number, in its unit, within tolerance or not
     first_difference: Difference | None = None
 
 
@@ -180,7 +179,6 @@ class Rerun:
     def _differences(self, recorded: Sample, computed: Sample) -> Iterator[Difference]:
         run, step, t, _ = recorded
         if t != computed.t:
-            self._measure(t, computed.t)
             yield Difference(run, step, t, "", "t", t, computed.t)
         for method, was, now in zip(self._methods, recorded.readings, computed.readings, strict=True):
             if self._only is not None and method not in self._only:
@@ -189,12 +187,8 @@ class Rerun:
             for field, a, b in zip(VALUES, values_of(was), values_of(now), strict=True):
                 if field in EXTREMES and a == was.energy_error:
                     continue  # such an extreme holds no information: see fields.without_extremes
-                self._measure(a, b)
                 if not is_lost and not self._is_equal(method, field, a, b):
                     yield Difference(run, step, t, method, field, a, b)
-
-    def _measure(self, a: float | None, b: float | None) -> None:
-        self._result.max_difference = max(self._result.max_difference, distance(a, b))
 
     def _is_equal(self, method: str, field: str, a: float | None, b: float | None) -> bool:
         if self._is_exact:

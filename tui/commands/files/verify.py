@@ -104,7 +104,6 @@ def _row(path: Path, refusal: RecordingError | None, options: argparse.Namespace
     return {
         **asdict(result),
         "file": str(result.file),
-        "max_difference": min(result.max_difference, 1e300),
         "first_difference": first and _difference_fields(first),
         "passes": passes,
         "error": refusal and str(refusal),
