@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from operator import attrgetter
 from typing import Any, NamedTuple, get_args
 
-from engine.models import MODELS, PARAMETERS
+from engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
 from engine.run.lockstep import Reading, Sample
 from recordings.errors import RecordingError, printable
 from recordings.events import EventKind
@@ -172,7 +172,7 @@ SOURCE_SCHEMA = schema_of("pendu.Source", SOURCE)
 
 def sample_schema(model: str) -> dict[str, Any]:
     """Return the schema of the samples of a model."""
-    title = "pendu.Sample" if model == "pendulum" else f"pendu.Sample.{model}"
+    title = "pendu.Sample" if model == DEFAULT_MODEL else f"pendu.Sample.{model}"
     return schema_of(title, (*MOMENT, *READING, *EXTRA[model]))
 
 

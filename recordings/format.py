@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any, get_args
 
-from engine.models import MODELS, PARAMETERS
+from engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
 from engine.run.judgement import VERDICTS, Milestone, MilestoneKind
 from engine.run.lockstep import Reading, Sample
 from engine.scenes import MOST_METHODS, Scene, SceneError
@@ -26,16 +26,15 @@ EVENTS = "/pendu/events"
 ABOUT = "/pendu/about"
 SOURCES = "/pendu/sources"
 CLOCK_OFFSET = 1_000_000_000  # ns: the clock's zero in log_time; several readers mishandle a time of 0
-MODEL = "pendulum"  # the one that topics do not name
 EVIDENCE = ("trend", "lyapunov")  # of a verdict
 
 _EVENT = (*MOMENT, *EVENT)
 _SAMPLE = {model: (*MOMENT, *READING, *extra) for model, extra in EXTRA.items()}
 
 
-def topic(method: str, model: str = MODEL) -> str:
+def topic(method: str, model: str = DEFAULT_MODEL) -> str:
     """Return the topic of a method's readings."""
-    return f"/pendu/{method}" if model == MODEL else f"/pendu/{model}/{method}"
+    return f"/pendu/{method}" if model == DEFAULT_MODEL else f"/pendu/{model}/{method}"
 
 
 @lru_cache(256)
@@ -44,7 +43,7 @@ def keys_of(name: str) -> tuple[str, str] | None:
     start, *keys = name.removeprefix("/").split("/")
     if name in (EVENTS, ABOUT, SOURCES) or start != PROFILE or len(keys) not in (1, 2):
         return None
-    model, method = keys if len(keys) == 2 else (MODEL, keys[0])
+    model, method = keys if len(keys) == 2 else (DEFAULT_MODEL, keys[0])
     return (model, method) if model in MODELS and _is_key(method) else None
 
 
@@ -65,7 +64,7 @@ def encode_readings(sample: Sample) -> list[bytes]:
     return messages
 
 
-def decode_reading(data: bytes, model: str = MODEL) -> tuple[int, int, float, Reading]:
+def decode_reading(data: bytes, model: str = DEFAULT_MODEL) -> tuple[int, int, float, Reading]:
     """Return (run, step, t, reading) of a message, with the values of its model's own variables."""
     fields = _loads(data, _SAMPLE[model])
     moment = fields.pop("run"), fields.pop("step"), fields.pop("t")

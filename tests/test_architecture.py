@@ -1,5 +1,6 @@
 """Rules of the architecture, each executable."""
 
+import ast
 import pkgutil
 import re
 import subprocess
@@ -10,6 +11,7 @@ from pathlib import Path
 import pytest
 
 import tui.commands
+from engine.models import MODELS
 from tui.cli.dispatch import COMMANDS
 
 ROOT = Path(__file__).parent.parent
@@ -51,6 +53,49 @@ def test_the_import_contracts_hold():
     done = subprocess.run([lint, "--no-cache"], cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout
     assert "0 broken" in done.stdout
+
+
+OUTSIDE = [
+    path
+    for path in MODULES
+    if path.relative_to(ROOT).parts[:2] not in {("engine", "models"), ("engine", "methods"), ("engine", "scenes")}
+]
+MODEL_CLASSES = {"Model", *(model.__name__ for model in MODELS.values())}
+MODEL_MODULES = {model.__module__ for model in MODELS.values()}
+
+
+def asks_which_model(node):
+    """Whether a node of a syntax tree compares a model's key, takes its type apart, or imports its module."""
+    match node:
+        case ast.Compare(left, _, others):
+            elements = [each for side in (left, *others) for each in getattr(side, "elts", [side])]
+            return any(isinstance(each, ast.Constant) and each.value in MODELS for each in elements)
+        case ast.Call(ast.Name("isinstance"), [_, kinds]):
+            return any(getattr(each, "id", "") in MODEL_CLASSES for each in getattr(kinds, "elts", [kinds]))
+        case ast.ImportFrom(module):
+            return module in MODEL_MODULES
+    return False
+
+
+@pytest.mark.parametrize("path", OUTSIDE, ids=lambda path: str(path.relative_to(ROOT)))
+def test_nobody_outside_asks_which_model_it_is(path):
+    found = [node.lineno for node in ast.walk(ast.parse(path.read_text("utf-8"))) if asks_which_model(node)]
+    assert not found
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        'model.key == "spring"',
+        '"pendulum" != model',
+        'scene.model in ("linear", "damped")',
+        "isinstance(model, Spring)",
+        "isinstance(model, (int, Pendulum))",
+        "from engine.models.pendulum import energy",
+    ],
+)
+def test_such_a_question_would_be_found(text):
+    assert any(map(asks_which_model, ast.walk(ast.parse(text))))
 
 
 PACKAGES = sorted({path.parent.relative_to(ROOT) for path in MODULES})

@@ -21,5 +21,7 @@ MODELS: dict[str, type[Model]] = {
 FIRST_ORDER = tuple(key for key, model in MODELS.items() if not model.second_order)
 """The keys of the models that methods integrate by their rates."""
 
+DEFAULT_MODEL = Pendulum.key
+
 PARAMETERS: dict[str, Parameter] = {each.name: each for model in MODELS.values() for each in model.parameters}
 """The parameters that models have besides length and gravity, by name."""

@@ -146,6 +146,11 @@ class Model(ABC):
 
     w0_squared: float  # the square of the frequency of small swings [s⁻²]
 
+    @classmethod
+    def quantities(cls) -> tuple[Variable, ...]:
+        """Return the variables that are not a part of the state, which charts can show."""
+        return tuple(each for each in cls.variables if not each.is_state)
+
     @property
     def has_force(self) -> bool:
         """Whether it is one angle and a force that keeps energy: studies, maps and modified energies apply."""

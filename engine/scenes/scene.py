@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any
 
 from engine.methods import USUAL_CAST, Cast
-from engine.models import MODELS, PARAMETERS
+from engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
 from engine.models.model import ExactMotion, Model
 
 LIMITS = {  # inclusive; a value beyond them is a typing error
@@ -58,7 +58,7 @@ class Scene:
     gravity: float = 9.81  # m/s²
     h: float = 0.05  # s, the step size; positive at a start
     watch: str = ""
-    model: str = "pendulum"  # a key of MODELS
+    model: str = DEFAULT_MODEL  # a key of MODELS
     cast: Cast = USUAL_CAST  # the methods, in order
     parameters: Mapping[str, float] = field(default_factory=dict, hash=False)  # the model's own, such as friction
     speed: float = field(default=1.0, compare=False)  # times real time, at which a lab starts: it changes no number

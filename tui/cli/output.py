@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from time import monotonic
 from typing import TYPE_CHECKING, Any, TextIO
 
+from engine.models import DEFAULT_MODEL
 from engine.scenes import LIMITS, Scene
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ def fields_of(value: object, *names: str) -> dict[str, Any]:
 def scene_line(scene: Scene, *more: str) -> str:
     """Return the scene's name and numbers, and `more` of its attributes."""
     numbers = fields_of(scene, *LIMITS, *more)
-    model = "" if scene.model == "pendulum" else f" ({scene.equations.equation})"
+    model = "" if scene.model == DEFAULT_MODEL else f" ({scene.equations.equation})"
     return f"{scene.name}{model}: {', '.join(f'{name} {value:g}' for name, value in numbers.items())} (SI units)"
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from engine.methods import METHODS, Cast
-from engine.models import MODELS, PARAMETERS
+from engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
 from engine.scenes import DEFAULT_SCENE, SCENES, Scene, SceneError
 from recordings.errors import printable
 from tui.cli.cast import find
@@ -39,7 +39,7 @@ def read_scene(path: Path) -> Scene:
             values["cast" if name == "methods" else name] = _value(name, value)
         except UserError as error:
             raise UserError(f"{path}, line {_line(text, name)}: {error}", Exit.INPUT_UNREADABLE) from None
-    model = values.get("model", "pendulum")
+    model = values.get("model", DEFAULT_MODEL)
     values.setdefault("cast", next(scene.cast for scene in SCENES.values() if scene.model == model))
     parameters = {name: values.pop(name) for name in PARAMETERS if name in values}
     try:

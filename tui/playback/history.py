@@ -34,7 +34,7 @@ class ErrorHistory:
         self._reference = model.reference(scene.theta, scene.omega)
         self._methods = len(scene.cast)
         self._energy = [] if model.energy_error.conserved else ["energy"]
-        self._extra = [each.name for each in model.variables if not each.is_state]
+        self._extra = [each.name for each in model.quantities()]
         self._theta_error = model.theta_error
         self._repeats = (exact.period or 0.0) / (2 if exact.regime == "libration" else 1)
         self._capacity = capacity

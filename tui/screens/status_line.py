@@ -89,8 +89,7 @@ def _stepping(source: Source) -> Iterator[Segment]:
     fastest = source.scene.equations.fastest
     warning = limit_warning(source.scene.cast, [abs(h) * fastest for h in stepping.own])
     yield Segment(11, f"h {stepping.h:.4g} s{' equal cost' if stepping.equal_cost else ''}")
-    name = "h·omega_s" if source.scene.model == "spring" else "z"
-    yield Segment(10, f"{name} {abs(stepping.h) * fastest:.3g}", WARN if warning else TEXT)
+    yield Segment(10, f"z {abs(stepping.h) * fastest:.3g}", WARN if warning else TEXT)
     if warning:
         yield Segment(9, warning, WARN)
     is_slow = abs(stepping.h / source.playhead.speed) >= SLOW

@@ -5,10 +5,11 @@ import textwrap
 from collections.abc import Mapping
 
 from engine.methods import Method
+from engine.models import MODELS
 from engine.run.judgement import DEFINITIONS, Verdict
 from engine.scenes import SCENES, UNITS, Scene
 from tui.words.motion import motion_text
-from tui.words.numbers import counted, z_name
+from tui.words.numbers import counted, z_text
 
 WIDTH = 72  # characters; of 80 columns, frame and scroll bar take the rest
 _HEAD = 14
@@ -37,18 +38,17 @@ GLOSSARY = {
     "dotted": "the exact motion",
     "dim": "a recording laid under the lab, maybe with another h: pendu-tui live --ghost FILE",
 }
-HEADS = {
+HEADS: dict[tuple[str, ...], str] = {
     ("h",): GLOSSARY["h"],
     ("theta", "omega"): GLOSSARY["theta, omega"],
-    ("dE/E0", "dE/E0 now"): GLOSSARY["dE/E0"],
-    ("ln E/Et", "ln E/Etr"): "the logarithm of the energy over that of the exact motion, which loses energy, too",
+    ("dE/E0",): GLOSSARY["dE/E0"],
     ("largest",): GLOSSARY["largest"],
     ("per s", "trend per s"): GLOSSARY["trend"],
     ("verdict",): "what the energy error does in the long run; ? explains each word",
     ("th.err", "theta error"): "the distance from the exact angle [rad]",
     ("f", "evals/step"): "force evaluations a step: what the method costs",
-    ("length",): "the length of the rod over its length at rest",
-    ("spring", "spring E"): "the energy in the spring over that at the start",
+    **{(each.head, each.wide_head): each.about for model in MODELS.values() for each in model.extra_columns},
+    **{(model.energy_error.symbol,): model.energy_error.about for model in MODELS.values()},
 }
 """What the heads of the table's columns mean."""
 
@@ -112,7 +112,7 @@ def scene_card(scene: Scene, now: str = "") -> str:
             "start": f"theta {math.degrees(scene.theta):.5g}°, omega {scene.omega:.5g} rad/s",
             "pendulum": f"length {scene.length:.5g} m, gravity {scene.gravity:.5g} m/s², w0 = {scene.w0:.4g} 1/s",
             **{name: f"{value:.5g} {UNITS[name]}" for name, value in scene.parameters.items()},
-            "step": f"h = {scene.h:.5g} s, {z_name(scene.model)} = {scene.z:.4g}",
+            "step": f"h = {scene.h:.5g} s, {z_text(scene)}",
             "now": now,
             "motion": motion_text(scene, exact),
             "compared with": reference if exact.accuracy and scene == SCENES.get(scene.name) else None,

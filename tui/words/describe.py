@@ -34,9 +34,8 @@ def step_text(source: Source) -> str:
     """The current step: "0.2 s, z = 0.626; at equal cost, the cheaper methods split it; time runs backwards"."""
     parts = "; at equal cost, the cheaper methods split it" if source.stepping.equal_cost else ""
     backwards = "; time runs backwards" if source.stepping.h < 0 else ""
-    name = "h·omega_s" if source.scene.model == "spring" else "z"
     z = abs(source.stepping.h) * source.scene.equations.fastest
-    return f"{abs(source.stepping.h):.4g} s, {name} = {z:.3g}{parts}{backwards}"
+    return f"{abs(source.stepping.h):.4g} s, z = {z:.3g}{parts}{backwards}"
 
 
 def method_sentence(source: Source, index: int) -> str:

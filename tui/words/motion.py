@@ -1,28 +1,30 @@
 """The exact motion in words: regime, energy and period."""
 
-from engine.models.model import ExactMotion
-from engine.models.pendulum import separatrix_margin
+from engine.models.model import ExactMotion, Model
 from engine.scenes import Scene
 
 
-def regime(w0: float, theta: float, omega: float) -> str:
-    """The kind of exact motion through a state: "libration", "rotation" or "separatrix"."""
-    value = separatrix_margin(w0, theta, omega)
-    return "separatrix" if value == 0 else "libration" if value > 0 else "rotation"
+def regime(model: Model, theta: float, omega: float) -> str:
+    """Return the kind of exact motion through a state: "libration", "rotation" or "separatrix"."""
+    level = model.level(theta, omega)
+    if level == 0:
+        return "separatrix"
+    return "libration" if level > 0 else "rotation"
 
 
-def energy_share(w0: float, theta: float, omega: float) -> str:
-    """Energy over the energy of the separatrix; near 1, as the difference from 1: "1 - 2.5e-13"."""
-    value = separatrix_margin(w0, theta, omega)
-    if value != 0 and abs(value) < 1e-3:
-        return f"1 {'-' if value > 0 else '+'} {abs(value):.1e}"
-    return f"{1 - value:.4g}"
+def energy_share(model: Model, theta: float, omega: float) -> str:
+    """Return energy over that of the separatrix; near 1, as the difference from 1: "1 - 2.5e-13"."""
+    level = model.level(theta, omega)
+    if level != 0 and abs(level) < 1e-3:
+        return f"1 {'-' if level > 0 else '+'} {abs(level):.1e}"
+    return f"{1 - level:.4g}"
 
 
 def motion_text(scene: Scene, exact: ExactMotion) -> str:
-    """As "exact period 2.139 s  E/Es 0.2298  libration"."""
-    share = (
-        f"E/Es {energy_share(scene.w0, scene.theta, scene.omega)}" if scene.equations.turns else ""
-    )
-    period = "" if exact.period is None else f"exact period {exact.period:.6g} s"
-    return "  ".join(filter(None, [period, share, exact.regime]))
+    """Return the motion from a scene's start: "exact period 2.139 s  E/Es 0.2298  libration"."""
+    parts = []
+    if exact.period is not None:
+        parts.append(f"exact period {exact.period:.6g} s")
+    if scene.equations.has_separatrix:
+        parts.append(f"E/Es {energy_share(scene.equations, scene.theta, scene.omega)}")
+    return "  ".join([*parts, exact.regime])

@@ -5,6 +5,8 @@ Tables get the width that they ask for, and a hyphen instead of "nan" or "inf".
 
 import math
 
+from engine.scenes import Scene
+
 
 def counted(number: int, noun: str) -> str:
     """As "1 sample" or "3 samples"."""
@@ -97,6 +99,6 @@ def factor(value: float) -> str:
     return f"{value:.0f}" if 1e3 <= abs(value) < 1e9 else f"{value:.4g}"
 
 
-def z_name(model: str) -> str:
-    """What a scene's z is: of a bob on a spring the step times the spring's frequency."""
-    return "h·omega_s" if model == "spring" else "z = h·w0"
+def z_text(scene: Scene, digits: int = 4) -> str:
+    """Return a scene's z and what it is: "z = h·w0 = 0.1566"."""
+    return f"z = h·{scene.equations.frequency_symbol} = {scene.z:.{digits}g}"

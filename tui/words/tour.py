@@ -6,6 +6,7 @@ Tests measure the truths.
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from engine.models import DEFAULT_MODEL
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene
 from tui.playback.live import Live
@@ -62,7 +63,7 @@ SHOTS = (
     ),
     Shot(
         title="why",
-        scene=SCENES["linear"].altered(theta=0.3, model="pendulum"),
+        scene=SCENES["linear"].altered(theta=0.3, model=DEFAULT_MODEL),
         speed=0.5,
         view="phase",
         watch="A small swing in phase space, almost an ellipse. Watch Explicit Euler step by step.",
@@ -71,10 +72,7 @@ SHOTS = (
             "Each step of Explicit Euler follows the tangent and lands outside: its energy grows "
             "by about z², 25 % a step."
         ),
-        question=(
-            "Symplectic Euler differs in one thing: it moves theta with the new omega. Is that "
-            "enough?"
-        ),
+        question=("Symplectic Euler differs in one thing: it moves theta with the new omega. Is that enough?"),
         answers=("Yes, its energy stays bounded.", "No, it gains, only slower."),
         right=0,
         truth=(
@@ -87,13 +85,10 @@ SHOTS = (
         scene=replace(SCENES["drift"], h=0.025),
         speed=2.0,
         view="lab",
-        watch=(
-            "The first scene with half the step, at twice the speed, until Verlet has its verdict."
-        ),
+        watch=("The first scene with half the step, at twice the speed, until Verlet has its verdict."),
         moment=17.6,
         happened=(
-            "Half the step: Verlet's largest energy error is a quarter, 0.14 % instead of 0.57 %."
-            " Its order is 2."
+            "Half the step: Verlet's largest energy error is a quarter, 0.14 % instead of 0.57 %. Its order is 2."
         ),
         question="RK4 has order 4. By how much did its energy error shrink?",
         answers=("To a sixteenth.", "To a thirty-second."),
@@ -124,14 +119,10 @@ SHOTS = (
         scene=SCENES["drift"],
         speed=1.5,
         view="lab",
-        watch=(
-            "When Explicit Euler goes over the top, time turns round: the same steps with -h, "
-            "back to 0."
-        ),
+        watch=("When Explicit Euler goes over the top, time turns round: the same steps with -h, back to 0."),
         moment=7.15,
         happened=(
-            "Back at t = 0, only Verlet is back at its start, to the last digits. Symplectic "
-            "Euler misses it visibly."
+            "Back at t = 0, only Verlet is back at its start, to the last digits. Symplectic Euler misses it visibly."
         ),
         question="Verlet made errors on the way there. Why does it come home?",
         answers=("It is the most accurate here.", "Its step is symmetric."),
@@ -147,14 +138,10 @@ SHOTS = (
         scene=SCENES["drift"],
         speed=0.5,
         view="phase",
-        watch=(
-            "The rings are neighbouring starts, carried along by each method. Watch them for two "
-            "swings."
-        ),
+        watch=("The rings are neighbouring starts, carried along by each method. Watch them for two swings."),
         moment=4.3,
         happened=(
-            "Symplectic Euler and Verlet keep the area of their rings exactly; Explicit Euler's "
-            "is 2.4 times as large."
+            "Symplectic Euler and Verlet keep the area of their rings exactly; Explicit Euler's is 2.4 times as large."
         ),
         question="What has area to do with energy?",
         answers=("Where it stays, no orbit spirals out.", "Nothing, it is a coincidence."),
@@ -169,14 +156,10 @@ SHOTS = (
         scene=SCENES["verlet-limit-above"],
         speed=2.0,
         view="stability",
-        watch=(
-            "z = h·sqrt(g/L) goes to the right, the amplitude up; @ is here, just above Verlet's "
-            "limit 2."
-        ),
+        watch=("z = h·sqrt(g/L) goes to the right, the amplitude up; @ is here, just above Verlet's limit 2."),
         moment=20.2,
         happened=(
-            "In ten steps Verlet's swing grew from 0.1 to almost 0.5 rad. For a linear spring "
-            "that would never end."
+            "In ten steps Verlet's swing grew from 0.1 to almost 0.5 rad. For a linear spring that would never end."
         ),
         question="Does it go over the top here?",
         answers=("Yes.", "No."),
@@ -196,10 +179,7 @@ SHOTS = (
             " is four times as long."
         ),
         moment=1.8,
-        happened=(
-            "With as many force evaluations for all, RK4's energy error passed Verlet's after two"
-            " seconds."
-        ),
+        happened=("With as many force evaluations for all, RK4's energy error passed Verlet's after two seconds."),
         question="Is Verlet the better method, then?",
         answers=("Yes.", "It depends on the accuracy."),
         right=1,

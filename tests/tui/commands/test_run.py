@@ -226,7 +226,7 @@ def test_with_friction_errors_are_logarithms_of_the_ratio_to_the_true_energy():
 
 
 def test_the_step_of_a_stiff_scene_is_given_in_units_of_its_springs_frequency():
-    assert "h·omega_s = 1\n" in pendu("run", "--scene", "stiff-slow", "--time", "1").out
+    assert "z = h·omega_s = 1\n" in pendu("run", "--scene", "stiff-slow", "--time", "1").out
 
 
 def test_other_mistakes_are_told_before_a_missing_time():

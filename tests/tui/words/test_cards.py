@@ -57,4 +57,4 @@ def test_what_is_often_said_stands_on_the_cards_of_scenes_and_where_there_is_no_
     for name, scene in SCENES.items():
         card = words(scene_card(scene))
         assert ("often said" in card) == (name in OFTEN_SAID)
-        assert ("right to 1e-10 rad" in card) == (scene.model in ("damped", "spring"))
+        assert ("right to 1e-10 rad" in card) == (scene.exact().accuracy > 0)

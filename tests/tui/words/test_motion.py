@@ -8,6 +8,7 @@ from engine.scenes import Scene
 from tui.words.motion import energy_share, motion_text, regime
 
 W0 = Scene().w0
+MODEL = Scene().equations
 
 
 @pytest.mark.parametrize(
@@ -23,14 +24,14 @@ W0 = Scene().w0
     ],
 )
 def test_the_regime_of_a_state(theta, omega, expected):
-    assert regime(W0, theta, omega) == expected
+    assert regime(MODEL, theta, omega) == expected
 
 
 def test_the_energy_near_the_separatrix_is_written_as_its_distance_from_it():
-    assert energy_share(W0, 0.0, W0) == "0.25"
-    assert energy_share(W0, 0.0, 4 * W0) == "4"
-    assert energy_share(W0, math.pi - 1e-6, 0.0) == "1 - 2.5e-13"
-    assert energy_share(W0, math.pi, 2e-6 * W0) == "1 + 1.0e-12"
+    assert energy_share(MODEL, 0.0, W0) == "0.25"
+    assert energy_share(MODEL, 0.0, 4 * W0) == "4"
+    assert energy_share(MODEL, math.pi - 1e-6, 0.0) == "1 - 2.5e-13"
+    assert energy_share(MODEL, math.pi, 2e-6 * W0) == "1 + 1.0e-12"
 
 
 def test_the_exact_motion_has_its_period():

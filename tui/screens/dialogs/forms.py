@@ -19,7 +19,7 @@ from engine.models import PARAMETERS
 from engine.scenes import GROUPS, MOST_METHODS, SCENES, Scene
 from tui.cli.options import angle, number
 from tui.screens.dialogs.modal import Form
-from tui.words.numbers import counted, z_name
+from tui.words.numbers import counted, z_text
 
 
 class _Paged(OptionList):
@@ -129,10 +129,7 @@ FIELDS: dict[str, tuple[str, Callable[[str], float]]] = {
     "h": ("s, the step size", number),
     "length": ("m", number),
     "gravity": ("m/s²", number),
-    **{
-        each.name: (f"{each.unit}, {each.min:g} to {each.max:g}", number)
-        for each in PARAMETERS.values()
-    },
+    **{each.name: (f"{each.unit}, {each.min:g} to {each.max:g}", number) for each in PARAMETERS.values()},
 }
 """The unit and the parser of each number; of PARAMETERS only those of the scene's model."""
 
@@ -198,4 +195,4 @@ class StartForm(Form[Scene | None]):
         scene = self._scene
         if scene is None:
             return ""
-        return f"w0 = {scene.w0:.4g} 1/s, {z_name(scene.model)} = {scene.z:.3g}{self._note}"
+        return f"w0 = {scene.w0:.4g} 1/s, {z_text(scene, 3)}{self._note}"

@@ -57,7 +57,7 @@ COLUMNS = (
         ("omega [rad/s]", 13),
         lambda line, width: decimal(line.reading.omega, width, max(width - 8, 3)),
     ),
-    Column(7, ("dE/E0", 8), ("dE/E0 now", 9), lambda line, width: scientific(line.reading.energy_error, width)),
+    Column(7, ("dE/E0", 8), ("dE/E0", 9), lambda line, width: scientific(line.reading.energy_error, width)),
     Column(
         6, ("largest", 7), ("largest", 8), lambda line, width: scientific(line.reading.max_energy_error, width, 1, "-")
     ),
@@ -68,14 +68,23 @@ COLUMNS = (
     Column(3, ("th.err", 7), ("theta error", 11), lambda line, width: scientific(theta_error(line), width, 1, "-")),
     Column(1, ("f", 1), ("evals/step", 10), lambda line, width: evaluations(line.method, width)),
 )
-SPRING = (
-    Column(8, ("length", 6), ("length", 7), lambda line, width: short(line.model.length(line.reading.extra), width)),
-    Column(8, ("spring", 7), ("spring E", 8), lambda line, width: short(line.reading.extra["spring_energy"], width)),
-)
-"""Of a bob on a spring: its length over that at rest, and the energy in it over that at the start."""
+
+
+def extra_columns(model: Model) -> list[Column]:
+    """Return the columns that only this model has."""
+    return [
+        Column(
+            8,
+            (each.head, 7),
+            (each.wide_head, max(len(each.wide_head), 7)),
+            lambda line, width, value=each.value: short(value(line.reading.extra), width),  # type: ignore[misc]
+        )
+        for each in model.extra_columns
+    ]
+
+
 NAME = 20  # columns of a name and its mark, or as many as the longest takes
 MOST_GAP = 3
-_LOGARITHM = {"dE/E0": "ln E/Et", "dE/E0 now": "ln E/Etr"}  # to the true energy
 
 
 def evaluations(method: Method, width: int) -> str:
@@ -125,15 +134,13 @@ def table(source: Source, sample: Sample, shown: Shown, width: int) -> list[Row]
     """The table's rows, its head first; each method's own step size where they differ."""
     cast, judgements, h = source.scene.cast, source.judgements, source.stepping.own
     model, exact = source.scene.equations, source.exact.at(sample.t)
-    conserved = model.energy_error.conserved
     every = COLUMNS[len(set(h)) == 1 :]
-    if not model.rigid:
-        every = (*every[:-1], *SPRING, every[-1])
+    every = (*every[:-1], *extra_columns(model), every[-1])
     room = max([NAME, *(len(f"{mark(place, method)} {method.label}") for place, method in enumerate(cast))])
     columns = chosen(every, width - room)
     spare = width - room - sum(size + 1 for _, size, _ in columns)
     gap = " " * (1 + min(spare // max(len(columns), 1), MOST_GAP))
-    heads = [(head if conserved else _LOGARITHM.get(head, head), size) for head, size, _ in columns]
+    heads = [(head.replace("dE/E0", model.energy_error.symbol), size) for head, size, _ in columns]
     names = [(gap + head.rjust(size), QUIET) for head, size in heads]
     rows: list[Row] = [[("method".ljust(room), QUIET), *names]]
     for place in shown.places(cast):

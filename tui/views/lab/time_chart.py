@@ -30,8 +30,6 @@ READING = "reading what came before …"
 HELP = "e: quantity, w: window, z: zoom, y: log"
 HELP_ZOOMED = "z: zoom, w: back, ctrl+p: earlier, later"
 MIN_ROWS = 8  # of the history in a stretch; an hour ago they are seconds apart
-LOGARITHM = ("ln(E/E_true)", "|ln(E/E_true)|")
-"""The energy error where the true motion does not keep its energy."""
 
 
 def modified_energy_of(cast: Cast) -> str:
@@ -43,7 +41,7 @@ def modified_energy_of(cast: Cast) -> str:
 def names(quantity: Quantity, model: Model) -> tuple[str, str]:
     """Return the name of a quantity, and that of its magnitude."""
     if quantity == "energy_error" and not model.energy_error.conserved:
-        return LOGARITHM
+        return model.energy_error.name, f"|{model.energy_error.name}|"
     labels = {variable.name: variable.label for variable in model.variables}
     return NAMES[quantity] if quantity in NAMES else (labels[quantity], labels[quantity])
 

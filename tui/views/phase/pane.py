@@ -5,12 +5,12 @@ from typing import TYPE_CHECKING, ClassVar
 from textual import events
 from textual.binding import Binding, BindingType
 from textual.content import Content
-from textual.message import Message
 from textual.reactive import var
 
 from engine.models.model import State
 from engine.run.lockstep import Sample
 from engine.scenes import SceneError
+from tui.drawing.picture import Picture
 from tui.playback.source import Source
 from tui.views.messages import Asked, SceneChosen
 from tui.views.phase.viewport import Viewport
@@ -18,7 +18,6 @@ from tui.views.view import Chooser
 
 if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
     from engine.phase_space.area import Neighbourhood, Neighbours
-    from tui.drawing.picture import Picture
 
 TITLE = "Phase space (F3): theta [rad], omega [rad/s]"
 DOTS = 4  # that an arrow moves the crosshair
@@ -36,19 +35,15 @@ class PhasePane(Chooser[State]):
         Binding("up", "move(0, 1)"),
         Binding("down", "move(0, -1)"),
         Binding("enter", "choose", "Start", tooltip="start at the crosshair"),
-        Binding("escape", "cancel", "leave it, then all in view", False, "esc"),
+        Binding("escape", "cancel", "no crosshair; then all in view", False, "esc"),
         Binding("z", "zoom(0.5)", "Zoom", tooltip="zoom in at the crosshair"),
-        Binding("g", "radius", "Ring", tooltip="ring of neighbours, radii"),
+        Binding("g", "radius", "Ring", tooltip="ring of neighbours: next, none"),
     ]
 
     NEEDS_NUMPY = True
 
-    wrap: var[bool] = var(True)
     radius: var[float | None] = var(None)
     """Of the ring of neighbours [rad]; None: no ring."""
-
-    class RingMoved(Message):
-        """The ring has moved on towards the sample, which is the same."""
 
     def __init__(self, radius: float | None = None) -> None:
         super().__init__()
@@ -57,28 +52,21 @@ class PhasePane(Chooser[State]):
         self.ring: Neighbourhood | None = None
         self.pointer: tuple[int, int] | None = None  # the cell under it
         self.aiming = False  # the pointer is about to choose a start
-        self._catching_up = False
         self.zoomed: Viewport | None = None  # None: the whole portrait
-        self._whole: Viewport | None = None
-        self._plot: Picture | None = None
+        self._catching_up = False
         self._panning: tuple[int, int] | None = None  # the cell where the picture was last moved to
 
     @property
     def settled(self) -> bool:
         """Whether the ring shown is that of the sample."""
-        return self.sample is not None and not (self.drawable and self._catching_up)
+        if self.sample is None or not self.drawable or self.neighbours is None:
+            return self.sample is not None
+        return self.neighbours.step == self.sample.step
 
     def watch_source(self) -> None:
         self.border_title = Content(TITLE)
         self.border_subtitle = f"{'click: start, ' if self.is_live else ''}wheel: zoom"
         super().watch_source()
-
-    def watch_shown(self) -> None:
-        self.watch_source()
-
-    def watch_wrap(self) -> None:
-        self._whole = self.zoomed = None
-        self.draw()
 
     def watch_radius(self) -> None:
         """Begin another ring at the run's start."""
@@ -93,52 +81,46 @@ class PhasePane(Chooser[State]):
     @property
     def viewport(self) -> Viewport:
         assert self.source is not None
-        if self.zoomed is not None:
-            found = self.zoomed = self.zoomed.resized(*self.cells)
-        else:
-            found = Viewport.portrait(*self.cells, self.source.scene, self.wrap).steadied(self._whole)
-            self._whole = found
-        return found
+        if self.zoomed is None:
+            return Viewport.portrait(*self.cells, self.source.scene)
+        self.zoomed = self.zoomed.resized(*self.cells)
+        return self.zoomed
 
     @property
     def aim(self) -> State | None:
         """The state at the crosshair or, if there is none, under the pointer."""
         return self.cursor or (None if self.pointer is None else self.viewport.at_cell(*self.pointer))
 
-    def picture(self, source: Source, sample: Sample) -> "Picture":
-        from tui.views.phase.picture import source_picture
+    def picture(self, source: Source, sample: Sample) -> Picture:
+        from tui.views.phase.facts import caption
+        from tui.views.phase.picture import method_points, phase_picture
+        from tui.views.phase.portrait import Portrait
 
+        self._carry_ring(source, sample)
+        portrait = Portrait.of(self.viewport, source.scene.equations)
         orbit = self.aim if self.aiming or self.cursor is not None else None
-        self._follow(source, sample)
-        self._plot = source_picture(self.viewport, source, sample, self.shown, self.ring, self.cursor, orbit)
-        return self._captioned(source, self._plot)
+        points = method_points(source, sample, self.shown, self.ring)
+        plot = phase_picture(portrait, points, self.cursor, orbit)
+        return Picture((*plot.rows, caption(source, self.aim, self.room.width)))
 
-    def _follow(self, source: Source, sample: Sample) -> None:
+    def _carry_ring(self, source: Source, sample: Sample) -> None:
         """Let the ring keep up; where it has not, go on without waiting for the next sample."""
-        if self.radius is not None and not source.scene.why_no_ring:
-            from engine.phase_space.area import Neighbours
+        if self.radius is None or source.scene.why_no_ring:
+            self.neighbours = self.ring = None
+            return
+        from engine.phase_space.area import Neighbours
 
-            self.neighbours = self.neighbours or Neighbours(self.radius)
-            self.ring = self.neighbours.follow(source.scene, sample.run, sample.step, source.changes, RING_STEPS)
-            if self.neighbours.step < sample.step and not self._catching_up:
-                self._catching_up = True
-                self.set_timer(1 / 30, self._catch_up)
+        self.neighbours = self.neighbours or Neighbours(self.radius)
+        self.ring = self.neighbours.follow(source.scene, sample.run, sample.step, source.changes, RING_STEPS)
+        if self.neighbours.step < sample.step and not self._catching_up:
+            self._catching_up = True
+            self.set_timer(1 / 30, self._catch_up)
 
     def _catch_up(self) -> None:
         self._catching_up = False
         self.draw()
-        self.post_message(self.RingMoved())
 
-    def tell(self) -> None:
-        """Describe what is under the pointer now."""
-        if self.source is not None and self._plot is not None:
-            self.show(self._captioned(self.source, self._plot))
-
-    def _captioned(self, source: Source, plot: "Picture") -> "Picture":
-        """Return the plot, and a line below it about what is at the crosshair or under the pointer."""
-        from tui.views.phase.facts import captioned
-
-        return captioned(plot, source.scene, source.exact, self.aim, self.room.width)
+    # The keyboard
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         cancels = self.aiming or self.zoomed is not None
@@ -151,7 +133,7 @@ class PhasePane(Chooser[State]):
         viewport = self.viewport
         here = self.aim or State(self.source.scene.theta, self.source.scene.omega)
         self.cursor, moved = viewport.stepped(here, DOTS * right, DOTS * up)
-        goes_round = self.wrap and self.zoomed is None and moved.omega == viewport.omega
+        goes_round = moved.wrap and self.zoomed is None and moved.omega == viewport.omega
         if moved != viewport and not goes_round:
             self.zoomed = moved
         self.draw()
@@ -160,7 +142,7 @@ class PhasePane(Chooser[State]):
         """Ask for a run from here with the step size in force."""
         assert self.source is not None
         try:
-            scene = self.source.scene.altered(theta=state.theta, omega=state.omega, h=self.source.stepping.smallest)
+            scene = self.source.scene.altered(**state._asdict(), h=self.source.stepping.smallest)
         except SceneError as error:  # far out, omega may be beyond a scene's limits
             self.notify(str(error), severity="warning")
         else:
@@ -176,17 +158,14 @@ class PhasePane(Chooser[State]):
 
     def action_zoom(self, factor: float) -> None:
         """Zoom at the crosshair, which comes to the middle, or at the pointer, or else at the middle."""
-        middle = self.viewport.middle
+        viewport = self.viewport
+        x, y = viewport.middle
         if (at := self.cursor) is not None:
-            right, down = middle[0] - float(self.viewport.x(at.theta)), middle[1] - float(self.viewport.y(at.omega))
-            self.zoomed = self.viewport.panned(right, down)
+            viewport = viewport.panned(x - float(viewport.x(at.theta)), y - float(viewport.y(at.omega)))
         elif self.pointer is not None:
-            middle = 2 * self.pointer[0] + 1, 4 * self.pointer[1] + 2
-        self._zoom(factor, *middle)
-
-    def toggle_wrap(self) -> None:
-        """Draw angles within a turn, or unwrapped."""
-        self.wrap = not self.wrap
+            x, y = 2 * self.pointer[0] + 1, 4 * self.pointer[1] + 2
+        self.zoomed = viewport.zoomed(factor, x, y)
+        self.draw()
 
     def action_radius(self) -> None:
         """Take the next larger ring, after the largest none."""
@@ -194,6 +173,8 @@ class PhasePane(Chooser[State]):
 
         radii = (None, *RADII)
         self.radius = radii[(radii.index(self.radius) + 1) % len(radii)]
+
+    # The mouse
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
         """Begin to choose a start or, with a modifier or another button, to move the picture."""
@@ -210,14 +191,12 @@ class PhasePane(Chooser[State]):
             self.draw()
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
-        self.pointer = self._cell(event, clamp=(held := self.aiming or self._panning is not None))
+        self.pointer = self._cell(event, clamp=self.aiming or self._panning is not None)
         if self._panning is not None and self.pointer is not None:
             right, down = self.pointer[0] - self._panning[0], self.pointer[1] - self._panning[1]
-            self._panning, self.zoomed = self.pointer, self.viewport.panned(2 * right, 4 * down)
-        if held:
-            self.draw()
-        else:
-            self.tell()
+            self._panning = self.pointer
+            self.zoomed = self.viewport.panned(2 * right, 4 * down)
+        self.draw()
 
     def on_mouse_up(self, event: events.MouseUp) -> None:
         """Choose the start under the pointer, or stop moving the picture."""
@@ -230,7 +209,7 @@ class PhasePane(Chooser[State]):
     def on_leave(self) -> None:
         if not self.aiming:
             self.pointer = None
-            self.tell()
+            self.draw()
 
     def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
         self._wheel(event, 0.8)
@@ -240,15 +219,12 @@ class PhasePane(Chooser[State]):
 
     def _wheel(self, event: events.MouseEvent, factor: float) -> None:
         if (cell := self._cell(event)) is not None:
-            self._zoom(factor, 2 * cell[0] + 1, 4 * cell[1] + 2)
+            self.zoomed = self.viewport.zoomed(factor, 2 * cell[0] + 1, 4 * cell[1] + 2)
             event.stop()
-
-    def _zoom(self, factor: float, x: float, y: float) -> None:
-        self.zoomed = self.viewport.zoomed(factor, x, y)
-        self.draw()
+            self.draw()
 
     def _cell(self, event: events.MouseEvent, clamp: bool = False) -> tuple[int, int] | None:
-        """The plot's cell under the pointer, or the nearest."""
+        """Return the plot's cell under the pointer; clamp: or the nearest."""
         x, y = event.get_content_offset_capture(self)
         columns, rows = self.cells
         nearest = min(max(x, 0), columns - 1), min(max(y, 0), rows - 1)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.models.pendulum import separatrix_margin
+from engine.models.model import Model
 from tui.drawing.axes import nice, omega_ticks, theta_ticks
 from tui.drawing.canvas import Canvas
 from tui.drawing.palette import EXACT, FAINT, FRAME, QUIET, TEXT
@@ -18,7 +18,7 @@ from tui.views.phase.viewport import Viewport
 Dots = tuple[NDArray[np.intp], NDArray[np.intp]]  # x, y
 Cells = NDArray[np.bool_]  # (rows, columns)
 Word = tuple[int, int, str, int]  # column, row, text, ink
-_CURVES = 8  # about so many energies are in view
+CURVES = 8  # about so many energies are in view
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -26,9 +26,8 @@ class Portrait:
     """The part that does not move, for one viewport: computed once, drawn in each frame."""
 
     viewport: Viewport
-    w0: float
-    model: str  # its key
-    margin: NDArray[np.float64]  # (dots down, dots right), at the dots' centres
+    model: Model
+    levels: NDArray[np.float64]  # (dots down, dots right), at the dots' centres
     curves: Dots
     separatrix: Dots
     ground: Canvas  # with both
@@ -36,41 +35,30 @@ class Portrait:
 
     @classmethod
     @lru_cache(maxsize=2)  # for the lab's pane and the view's
-    def of(cls, viewport: Viewport, w0: float, model: str = "pendulum") -> "Portrait":
-        """Draw the portrait of all pendulums with natural frequency w0 [rad/s], or of another model.
-
-        Of the linear oscillator it has ellipses, with friction curves that the motion crosses, and of a bob in the
-        plane, whose phase space has four dimensions, none.
-        """
-        x, y = np.arange(2 * viewport.columns) + 0.5, np.arange(4 * viewport.rows) + 0.5
-        omega = viewport.omega_at(y)[:, None]
-        field = _field(model, w0, viewport.theta_at(x), omega)
-        curves, separatrix = _border(_level(field)), np.zeros(field.shape, np.bool_)
-        if model == "pendulum":
-            separatrix = _border(field < 0, heavy=True)
-            words = _words(viewport, curves, separatrix, field, omega)
-        else:
-            words = tuple(axes(viewport))
-        shown = _dots(curves), _dots(separatrix)
+    def of(cls, viewport: Viewport, model: Model) -> "Portrait":
+        """Draw the portrait of a model."""
+        theta = viewport.theta_at(np.arange(2 * viewport.columns) + 0.5)
+        omega = viewport.omega_at(np.arange(4 * viewport.rows) + 0.5)[:, None]
+        levels = model.level(theta, omega, np.cos)
+        curves = _border(_bands(levels))
+        separatrix = _border((levels < 0) & model.has_separatrix, heavy=True)
+        words = axes(viewport)
+        if model.has_separatrix:
+            words += _names(levels, omega, separatrix, words)
         ground = Canvas(viewport.columns, viewport.rows)
-        ground.scatter(*shown[0], FRAME)
-        ground.scatter(*shown[1], TEXT)
-        return cls(viewport, w0, model, field, *shown, ground, words)
-
-    def write_words(self, canvas: Canvas) -> None:
-        write_words(canvas, self.words)
+        ground.scatter(*_dots(curves), FRAME)
+        ground.scatter(*_dots(separatrix), TEXT)
+        return cls(viewport, model, levels, _dots(curves), _dots(separatrix), ground, tuple(words))
 
     def orbit(self, theta: float, omega: float) -> Dots:
-        """The exact orbit through a state, where it is a curve of equal energy."""
-        if self.model not in ("pendulum", "linear"):
-            return np.zeros(0, np.intp), np.zeros(0, np.intp)
-        value = _field(self.model, self.w0, theta, omega)
-        curve = _border(self.margin < value)
-        if (
-            value < 0 and self.model == "pendulum"
-        ):  # the same energy belongs to two orbits, one for each sense of rotation
+        """Return the exact orbit through a state, where orbits are curves of equal energy."""
+        if self.model.caption:
+            return _dots(np.zeros((0, 0), np.bool_))
+        level = self.model.level(theta, omega)
+        curve = _border(self.levels < level)
+        if self.model.has_separatrix and level < 0:  # two orbits have this energy, one for each sense of rotation
             rows = self.viewport.omega_at(np.arange(len(curve)) + 0.5)
-            curve &= (rows > 0)[:, None] if omega > 0 else (rows < 0)[:, None]
+            curve &= (rows * omega > 0)[:, None]
         return _dots(curve)
 
 
@@ -85,24 +73,32 @@ def write_words(canvas: Canvas, words: Sequence[Word]) -> None:
                 canvas.label(column + at, row, character, ink)
 
 
-def _field(model: str, w0: float, theta: Any, omega: Any) -> Any:
-    """What is equal along a curve: 1 - E/E_separatrix, or of the linear oscillator less than 0, too."""
-    if model == "spring":
-        return 0 * (theta + omega)
-    if model == "linear":
-        return -(theta * theta + omega * omega / w0**2) / 4
-    return separatrix_margin(w0, theta, omega, np.cos)
+def axes(viewport: Viewport) -> list[Word]:
+    """Return numbers along the left edge (rad/s) and the lower one (pi or rad)."""
+    columns, bottom = viewport.columns, viewport.rows - 1
+    low, high = viewport.omega_at(4.0 * bottom), viewport.omega_at(0.0)
+    words: list[Word] = [
+        (0, math.floor(viewport.y(omega) / 4), label[:columns], TEXT)
+        for omega, label in omega_ticks(low, high, max(bottom // 3, 1))
+    ]
+    left, right = viewport.theta_at(0.0), viewport.theta_at(2.0 * columns + 1)  # pi may be at the very edge
+    for theta, label in theta_ticks(left, right, min(columns // 9 + 1, 8), viewport.wrap):
+        middle = math.floor((theta - left) / viewport.theta_per_dot / 2)
+        begin = max(min(middle - len(label) // 2, columns - len(label)) - 1, 0)
+        text = f" {label} " if begin else f"{label} "  # with blanks between it and the curves
+        words.append((begin, bottom, text[: columns - begin], TEXT))
+    return words
 
 
-def _level(field: NDArray[np.float64]) -> NDArray[np.int64]:
-    """The band of energy of each dot: evenly spaced in amplitude, for rotations in their smallest omega."""
-    spacing = np.where(field > 0, np.arcsin(np.sqrt(np.clip(field, 0, 1))), -np.sqrt(np.maximum(-field, 0)))
-    step = nice(float(spacing.max() - spacing.min()) / _CURVES or 1.0)
+def _bands(levels: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Return the band of energy of each dot: evenly spaced in amplitude, for rotations in their smallest omega."""
+    spacing = np.where(levels > 0, np.arcsin(np.sqrt(np.clip(levels, 0, 1))), -np.sqrt(np.maximum(-levels, 0)))
+    step = nice(float(np.ptp(spacing)) / CURVES or 1.0)
     return np.floor(spacing / step).astype(np.int64)
 
 
 def _border(values: NDArray[Any], heavy: bool = False) -> NDArray[np.bool_]:
-    """Dots whose value differs from that of the dot to the right or below; heavy: also those beyond."""
+    """Return dots whose value differs from that of the dot to the right or below; heavy: also those beyond."""
     border = np.zeros(values.shape, np.bool_)
     right, below = values[:, 1:] != values[:, :-1], values[1:] != values[:-1]
     border[:, :-1] |= right
@@ -118,89 +114,51 @@ def _dots(mask: NDArray[np.bool_]) -> Dots:
     return x, y
 
 
+def _names(levels: Any, omega: Any, separatrix: NDArray[np.bool_], taken: Sequence[Word]) -> list[Word]:
+    """Name the regimes, each near the middle of its region where there is room, and the separatrix beside it."""
+    curve: Cells = np.any(_cells(separatrix), axis=2)
+    free: Cells = ~curve
+    words: list[Word] = []
+    for word in taken:
+        _take(free, word)
+    spins = levels < 0
+    for name, region in (("libration", ~spins), ("rotation", spins & (omega > 0)), ("rotation", spins & (omega < 0))):
+        inside: Cells = np.all(_cells(region), axis=2) & free
+        rows, columns = np.nonzero(inside)
+        text = f" {name} "
+        if len(rows) and (place := _nearest(_room(inside, len(text)), rows.mean(), columns.mean() - len(text) / 2)):
+            words.append((place[1], place[0], text, QUIET))
+            _take(free, words[-1])
+    beside = _room(free, len("separatrix") + 1)[:, 1:]
+    beside &= curve[:, : beside.shape[1]]
+    if place := _nearest(beside, 0.3 * len(curve), 0.6 * curve.shape[1]):
+        words.append((place[1] + 1, place[0], "separatrix", TEXT))
+    return words
+
+
 def _cells(dots: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Dots as (rows, columns, 8): the dots of each cell."""
+    """Return dots as (rows, columns, 8): the dots of each cell."""
     rows, columns = dots.shape[0] // 4, dots.shape[1] // 2
     return dots.reshape(rows, 4, columns, 2).swapaxes(1, 2).reshape(rows, columns, 8)
 
 
-def _windows(cells: NDArray[np.bool_], length: int) -> NDArray[np.bool_]:
-    """Where `length` cells in a row all are true, by the first of them."""
+def _take(free: Cells, word: Word) -> None:
+    """Mark a word's cells, and one on both sides, as no longer free."""
+    column, row, text, _ = word
+    free[row, max(column - 1, 0) : column + len(text) + 1] = False
+
+
+def _room(cells: Cells, length: int) -> Cells:
+    """Return where `length` cells in a row all are true, by the first of them."""
     if cells.shape[1] < length:
         return np.zeros((len(cells), 0), np.bool_)
-    windows: Cells = np.all(np.lib.stride_tricks.sliding_window_view(cells, length, axis=1), axis=2)
-    return windows
+    return np.array(np.lib.stride_tricks.sliding_window_view(cells, length, axis=1).all(axis=2))
 
 
-def _nearest(places: NDArray[np.bool_], row: float, column: float) -> tuple[int, int] | None:
-    """The true place nearest to a point, a row counting as two columns."""
+def _nearest(places: Cells, row: float, column: float) -> tuple[int, int] | None:
+    """Return row and column of the true place nearest to a point, a row counting as two columns."""
     rows, columns = np.nonzero(places)
     if not len(rows):
         return None
     best = int(np.argmin(4 * (rows - row) ** 2 + (columns - column) ** 2))
     return int(rows[best]), int(columns[best])
-
-
-def _words(
-    viewport: Viewport,
-    curves: NDArray[np.bool_],
-    separatrix: NDArray[np.bool_],
-    field: NDArray[np.float64],
-    omega: NDArray[np.float64],
-) -> tuple[Word, ...]:
-    """The axes' numbers and the names of the regimes, each where it has room."""
-    words = axes(viewport)
-    bare: Cells = ~np.any(_cells(separatrix), axis=2)
-    free = bare.copy()
-    for word in words:
-        _take(free, word)
-    blank = free & ~np.any(_cells(curves), axis=2)
-    regimes = {"libration": field > 0, "rotation": (field < 0) & (omega > 0), " rotation": (field < 0) & (omega < 0)}
-    for name, region in regimes.items():
-        cells: Cells = np.all(_cells(region), axis=2)
-        for word in _inside(name.strip(), cells, [cells & blank, cells & free]):
-            _take(free, word)
-            words.append(word)
-    return (*words, *_beside("separatrix", ~bare, free))
-
-
-def _take(free: NDArray[np.bool_], word: Word) -> None:
-    """A word's cells, and one on both sides, are no longer free."""
-    column, row, text, _ = word
-    free[row, max(column - 1, 0) : column + len(text) + 1] = False
-
-
-def _inside(name: str, region: NDArray[np.bool_], preferred: Sequence[NDArray[np.bool_]]) -> list[Word]:
-    """The name as near to the middle of its region as it fits, with a blank cell on both sides."""
-    if not region.any():
-        return []
-    rows, columns = np.nonzero(region)
-    middle = rows.mean(), columns.mean() - len(name) / 2 - 1
-    for cells in preferred:
-        if (place := _nearest(_windows(cells, len(name) + 2), *middle)) is not None:
-            return [(place[1], place[0], f" {name} ", QUIET)]
-    return []
-
-
-def _beside(name: str, curve: NDArray[np.bool_], free: NDArray[np.bool_]) -> list[Word]:
-    """The name to the right of a curve."""
-    places = _windows(free, len(name) + 1)[:, 1:]
-    place = _nearest(curve[:, : places.shape[1]] & places, 0.3 * len(curve), 0.6 * curve.shape[1])
-    return [] if place is None else [(place[1] + 1, place[0], name, TEXT)]
-
-
-def axes(viewport: Viewport) -> list[Word]:
-    """Numbers along the left edge (rad/s) and the lower one (pi or rad)."""
-    columns, bottom = viewport.columns, viewport.rows - 1
-    low, high = viewport.omega_at(4.0 * bottom), viewport.omega_at(0.0)
-    words: list[Word] = [
-        (0, math.floor(viewport.y(omega) / 4), label[:columns], TEXT)
-        for omega, label in omega_ticks(low, high, max(bottom // 3, 1))
-    ]
-    left, right = viewport.theta_at(0.0), viewport.theta_at(2.0 * columns + 1)  # pi may be at the very edge
-    for theta, label in theta_ticks(left, right, min(columns // 9 + 1, 8), viewport.wrap):
-        column = math.floor((theta - left) / viewport.theta_per_dot / 2) - len(label) // 2
-        begin = max(min(column, columns - len(label)), 0)
-        text = f" {label} " if begin else f"{label} "  # with blanks between it and the curves
-        words.append((max(begin - 1, 0), bottom, text[: columns - max(begin - 1, 0)], TEXT))
-    return words

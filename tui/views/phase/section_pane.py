@@ -9,18 +9,19 @@ from textual.message import Message
 from textual.reactive import var
 
 from engine.methods import Method
-from engine.models.model import Model, Phase, State
+from engine.models.model import Model, State
 from engine.run.lockstep import Sample
+from tui.drawing.palette import TEXT, inks
+from tui.drawing.picture import Picture
 from tui.playback.source import Source
 from tui.views.phase.pane import PhasePane
 from tui.views.phase.viewport import Viewport
 
 if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
     from engine.phase_space.section import OrbitKind, Points
-    from tui.drawing.picture import Picture
     from tui.views.phase.section import Section
 
-STEPS = 2000  # of the orbit that is described: some ms
+STEPS = 2000  # of an orbit: some ms
 
 
 class Wanted(NamedTuple):
@@ -36,8 +37,8 @@ class SectionPane(PhasePane):
     """The portrait or, after x, the section of the method that is described."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("x", "section", "Map", tooltip="a method's own map"),
-        Binding("tab", "next_map", "map of the next method", show=False),
+        Binding("x", "section", "Map", tooltip="a method's own map: islands, …"),
+        Binding("tab", "next_map", "the map of the next method", show=False),
     ]
 
     shows_section: var[bool] = var(False)
@@ -50,82 +51,65 @@ class SectionPane(PhasePane):
         self.wanted: Wanted | None = None
         self.share = 0.0  # of the section that is there
         self._section: Section | None = None
-        self._drawn: object = None
 
     @property
     def settled(self) -> bool:
-        return super().settled and not (self.drawable and self.shows_section and self.share < 1)
+        return self.share == 1 if self.drawable and self.shows_section else super().settled
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         return super().check_action(action, parameters) and (action != "next_map" or self.shows_section)
 
-    def watch_shown(self) -> None:
-        if self.shows_section:
-            self.draw()
-        else:
-            super().watch_shown()
-
     def watch_shows_section(self) -> None:
         if not self.shows_section:
-            self.wanted, self._section, self._drawn = None, None, None
+            self.wanted = self._section = None
             self.watch_source()
             self.post_message(self.SectionWanted())
         self.draw()
 
-    def picture(self, source: Source, sample: Sample) -> "Picture":
+    def picture(self, source: Source, sample: Sample) -> Picture:
         if self.shows_section and (why := source.scene.why_not_mapped):
             self.notify(why, severity="warning")
             self.shows_section = False
-        if not self.shows_section:
-            return super().picture(source, sample)
-        from tui.drawing.palette import inks
+        if self.shows_section:
+            return self._section_picture(source)
+        return super().picture(source, sample)
+
+    def _section_picture(self, source: Source) -> Picture:
+        """Return the section, and a line about the orbit at the crosshair, under the pointer, or of the start."""
         from tui.views.phase.section import Section
+        from tui.words.orbit import sentence
 
         method, model, h = self.cast[self.index], source.scene.equations, abs(source.stepping.own[self.index])
         wanted = Wanted(method, model, h, self.viewport)
         if wanted != self.wanted or self._section is None:
             self.wanted, self.share = wanted, 0.0
             self._section = Section(wanted.viewport, model, method, inks(self.cast)[self.index])
-            self.tell_progress()
+            self._retitle()
             self.post_message(self.SectionWanted())
         start = self.cursor or State(source.scene.theta, source.scene.omega)
-        drawn = wanted, self.share, start, self.cursor
-        if drawn != self._drawn or self._plot is None:  # a section does not move
-            self._drawn = drawn
-            points, _ = followed(method, model, h, start)
-            self._plot = self._section.picture(points, start, self.cursor)
-        return self._captioned(source, self._plot)
+        points, _ = followed(method, model, h, start)
+        plot = self._section.picture(points, start, self.cursor)
+        aim = self.aim
+        _, kind = followed(method, model, h, aim or start)
+        where = "start" if aim is None else f"{aim.theta:g}, {aim.omega:g}"
+        return Picture.stacked(plot, Picture.of_line(f"{where}: {sentence(method, kind)}", TEXT))
 
     def fill(self, wanted: Wanted, points: "Points", share: float) -> None:
-        """Take in some orbits of a section, unless another one is wanted by now."""
+        """Add some orbits to a section, unless another one is wanted by now."""
         if wanted == self.wanted and self._section is not None:
             self._section.add(points)
             self.share = share
-            self.tell_progress()
+            self._retitle()
             self.draw()
 
-    def tell_progress(self) -> None:
-        """Say in the title what is shown; a new title has Textual send all of the pane, so in tenths."""
+    def _retitle(self) -> None:
+        """Name what is shown; a new title has Textual send all of the pane, so progress is in tenths."""
         if self.wanted is not None:
             method, model, h, _ = self.wanted
             done = "" if self.share == 1 else f", computing {int(10 * self.share) / 10:.0%}"
             title = f"Own map of {method.label}: h {h:g} s, z {h * model.w0:.4g}{done}"
             if title != str(self.border_title):
                 self.border_title = Content(title)
-
-    def _captioned(self, source: Source, plot: "Picture") -> "Picture":
-        """In a section, describe the orbit at the crosshair, under the pointer, or of the scene's start."""
-        if not self.shows_section or self.wanted is None:
-            return super()._captioned(source, plot)
-        from tui.drawing.palette import TEXT
-        from tui.drawing.picture import Picture
-        from tui.words.orbit import sentence
-
-        method, model, h, _ = self.wanted
-        aim = self.aim
-        where = "start" if aim is None else f"{aim.theta:g}, {aim.omega:g}"
-        _, kind = followed(method, model, h, aim or State(source.scene.theta, source.scene.omega))
-        return Picture.stacked(plot, Picture.of_line(f"{where}: {sentence(method, kind)}", TEXT))
 
     def action_section(self) -> None:
         self.shows_section = not self.shows_section
@@ -135,8 +119,8 @@ class SectionPane(PhasePane):
 
 
 @lru_cache(maxsize=64)
-def followed(method: Method, model: Model, h: float, start: Phase) -> "tuple[Points, OrbitKind]":
-    """The orbit of a start, and its kind."""
+def followed(method: Method, model: Model, h: float, start: State) -> "tuple[Points, OrbitKind]":
+    """Return the orbit of a start, and its kind."""
     from engine.phase_space.section import kind_of, orbit
 
     points = orbit(method, model, h, start, STEPS)

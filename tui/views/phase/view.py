@@ -1,24 +1,24 @@
 """PhaseView: phase space over the whole screen, with a table of what the methods do to area, or of their orbits."""
 
 import asyncio
-from collections.abc import Iterable
 from functools import partial
 
-from textual.app import ComposeResult, SystemCommand
+from textual.app import ComposeResult
 
+from engine.models.model import State
 from engine.run.lockstep import Sample
 from tui.drawing.cells import CellWidget
+from tui.drawing.palette import TEXT
 from tui.drawing.picture import Picture, Row
 from tui.views.background import computed
 from tui.views.phase.facts import fact_rows
-from tui.views.phase.section_pane import SectionPane, Wanted, followed
+from tui.views.phase.section_pane import STEPS, SectionPane, Wanted, followed
 from tui.views.view import View
 
 RADIUS = 0.1  # rad; large enough to be seen, small enough to stay a ring for a while
-
-ROOMY = 18  # rows from which on there is room for the table
-STARTS, STEPS = 300, 2000  # of a section
-SOON = 0.1  # s that a picture has to stand before its section is computed: a wheel turns on and on
+MIN_ROWS = 18  # of the screen, with the table
+STARTS = 300  # of a section
+DELAY = 0.1  # s that a picture has to stand before its section is computed: a wheel turns on and on
 
 
 class PhaseView(View):
@@ -28,16 +28,12 @@ class PhaseView(View):
         yield self.every_frame(SectionPane(radius=RADIUS))
         yield CellWidget(id="facts")
 
-    def commands(self) -> Iterable[SystemCommand]:
-        pane = self.query_one(SectionPane)
-        yield SystemCommand("phase space: angles within a turn, or unwrapped", "", pane.toggle_wrap)
-
     def on_show(self) -> None:
         self.query_one(SectionPane).focus()
 
     def on_resize(self) -> None:
         """Where there is little room, leave all of it to the portrait."""
-        self.query_one("#facts").display = self.size.height >= ROOMY
+        self.query_one("#facts").display = self.size.height >= MIN_ROWS
 
     def wake(self) -> None:
         super().wake()
@@ -46,15 +42,11 @@ class PhaseView(View):
     def follow(self, sample: Sample, read: bool = True) -> None:
         """Follow h, too: another one brings no other sample."""
         super().follow(sample, read)
-        if not read:
-            return
-        for pane in self.query(SectionPane):
+        if read:
+            pane = self.query_one(SectionPane)
             if pane.shows_section:
                 pane.draw()
-        self._write_facts()
-
-    def on_phase_pane_ring_moved(self) -> None:
-        self._write_facts()
+            self._write_facts()
 
     def on_section_pane_section_wanted(self) -> None:
         """Compute what is wanted, and nothing else any more."""
@@ -65,7 +57,7 @@ class PhaseView(View):
         self._write_facts()
 
     async def _fill(self, pane: SectionPane, wanted: Wanted) -> None:
-        await asyncio.sleep(SOON)
+        await asyncio.sleep(DELAY)
         from engine.phase_space.section import pieces
         from tui.views.phase.section import starts
 
@@ -78,21 +70,23 @@ class PhaseView(View):
     def _write_facts(self) -> None:
         facts, pane = self.query_one("#facts", CellWidget), self.query_one(SectionPane)
         if self.source is not None and facts.drawable:
-            rows = self._facts(pane, facts.size.width)
+            width = facts.size.width
+            if pane.shows_section:
+                rows = self._orbit_rows(width)
+            else:
+                rows = fact_rows(self.source, self.shown, pane.neighbours, width)
             facts.styles.height = len(rows)  # more methods, more rows
             facts.show(Picture(rows))
 
-    def _facts(self, pane: SectionPane, width: int) -> list[Row]:
-        assert self.source is not None
-        scene = self.source.scene
-        if not pane.shows_section:
-            return [*fact_rows(self.source, self.shown, pane.neighbours, width)]
-        from tui.drawing.palette import TEXT
+    def _orbit_rows(self, width: int) -> list[Row]:
         from tui.words.orbit import kind_rows
 
-        known = []
+        assert self.source is not None
+        scene = self.source.scene
+        start = State(scene.theta, scene.omega)
+        kinds = []
         for place in self.shown.places(scene.cast):
-            method, h = scene.cast[place], abs(self.source.stepping.own[place])
-            known.append((place, method, followed(method, scene.equations, h, (scene.theta, scene.omega))[1]))
+            h = abs(self.source.stepping.own[place])
+            kinds.append((place, followed(scene.cast[place], scene.equations, h, start)[1]))
         head = " The start's orbit under each method's own map (x: back, tab: next method)"
-        return [[(head[:width], TEXT)], *kind_rows(scene.cast, known, width)]
+        return [((head[:width], TEXT),), *kind_rows(scene.cast, kinds, width)]

@@ -14,7 +14,7 @@ from engine.scenes import SCENES, Scene
 from tui.playback.live import Live
 from tui.views.messages import SceneChosen
 from tui.views.phase.pane import DOTS, PhasePane
-from tui.views.phase.viewport import NARROWEST
+from tui.views.phase.viewport import MIN_SPAN
 
 DRIFT = SCENES["drift"]
 
@@ -185,7 +185,7 @@ async def test_z_zooms_in_to_a_millionth_of_a_radian_at_the_unstable_point():
         await pilot.press("up", "down", "z")
         for _ in range(30):
             pane.action_zoom(0.5)
-        assert pane.viewport.theta_span == pytest.approx(NARROWEST)
+        assert pane.viewport.theta_span == pytest.approx(MIN_SPAN)
         assert abs(abs(pane.cursor.theta) - math.pi) < 1e-15  # no dot away from it, at any zoom
         assert all(word in pane.text for word in ("separatrix", "libration", "rotation", "pi", "+2e-7"))
         for _ in range(30):
@@ -209,15 +209,6 @@ async def test_a_start_that_no_pendulum_has_is_refused_with_a_sentence():
         await pilot.click(pane, offset=at(20, 0))
         assert not pilot.app.chosen
         assert "out of range" in str(next(iter(pilot.app._notifications)).message)
-
-
-async def test_angles_can_be_unwrapped():
-    live = Live(Scene(theta=7.0))
-    async with shown(live) as (_, pane):
-        assert pane.viewport.x(7.0) == pytest.approx(pane.viewport.x(7.0 - math.tau))
-        pane.toggle_wrap()
-        assert pane.viewport.x(7.0) > pane.viewport.x(math.pi)
-        assert "2pi" in pane.text
 
 
 async def test_a_ring_has_the_radius_one_chooses_or_is_not_there():

@@ -15,7 +15,7 @@ from tui.views.phase.viewport import Viewport
 
 DRIFT = SCENES["drift"]
 SMALL = Viewport.portrait(46, 15, DRIFT)
-PORTRAIT = Portrait.of(SMALL, DRIFT.w0)
+PORTRAIT = Portrait.of(SMALL, DRIFT.equations)
 
 
 def dots(picture, ink: int) -> set[tuple[int, int]]:
@@ -27,14 +27,14 @@ def test_the_portrait():
 
 
 PICTURE = """\
-          ⢀⣀⡠⠤⠒⠒⠉⠉⠁         ⠉⠉⠙⠒⠲⠤⣄⣀⡀
+          ⢀⣀⡠⠤⠒⠒⠉ rotation  ⠉⠉⠙⠒⠲⠤⣄⣀⡀
 ⣀⣀⣀⣀⣀⠤⠤⠔⠒⠉⠁     ⣀⡠⠤⠤⠒⠒⢒⣒⡒⠒⠲⠤⠤⣄⣀     ⠉⠙⠒⠦⠤⢤⣀⣀⣀⣀
-  rotation ⣀⠤⠒⢊⣩⣤⠶⢶⣛⣛⠿⠯⠭⠽⢿⣛⣛⡶⠶⣬⣍⡓separatrix
+           ⣀⠤⠒⢊⣩⣤⠶⢶⣛⣛⠿⠯⠭⠽⢿⣛⣛⡶⠶⣬⣍⡓separatrix
 5     ⢀⡠⠔⠊⢉⣠⡴⠞⣋⠥⠒⠉⠁         ⠉⠙⠲⢬⣙⠳⢦⣌⡉⠓⠦⣄⡀
 ⠤⠤⠤⠔⠒⠉⠁⢀⣤⠞⠋⡡⠔⠉     ⣀⠤⠤⠔⠒⠦⠤⢤⣀    ⠈⠙⠦⣌⠙⠳⣤⡀⠉⠙⠒⠦⠤⠤
     ⢀⣤⠞⠋ ⡠⠊     ⢀⠔⠉        ⠈⠙⢦⡀    ⠈⠳⣄ ⠙⠳⣤⡀
-  ⣠⠶⠋  ⢀⠎      ⡔⠁ libration   ⠙⡆     ⠈⢧   ⠙⠶⣄
-0⣿⡁    ⢸      ⠰⡅      ⠮⠭⠇      ⡹      ⢸     ⢈⣿
+  ⣠⠶⠋  ⢀⠎      ⡔⠁             ⠙⡆     ⠈⢧   ⠙⠶⣄
+0⣿⡁    ⢸      ⠰⡅  libration    ⡹      ⢸     ⢈⣿
   ⠙⠶⣄  ⠈⢧⡀     ⠳⣄             ⡠⠃     ⢀⠎   ⣠⠶⠋
     ⠈⠛⢦⣄ ⠙⢦⡀    ⠈⠳⢤⣀       ⣀⠤⠊     ⢀⠔⠁ ⣠⡴⠛⠁
 ⠉⠉⠉⠓⠲⠤⣄⡈⠛⢦⣄⡉⠳⢤⣀    ⠈⠉⠉⠓⠒⠊⠉⠉     ⣀⠤⠊⢁⣠⡴⠛⢁⡠⠤⠒⠊⠉⠉
@@ -62,14 +62,15 @@ def test_every_method_has_its_letter_where_several_coincide():
 
 
 def test_dots_of_different_methods_in_one_cell_all_stay():
-    blank = Portrait.of(SMALL.zoomed(0.01, 46, 30), DRIFT.w0)  # so close that no curve passes the corner
+    blank = Portrait.of(SMALL.zoomed(0.01, 46, 30), DRIFT.equations)  # so close that no curve passes the corner
     viewport = blank.viewport
     a = (viewport.theta_at(20.5), viewport.omega_at(8.5))  # two dots of cell (10, 2)
     b = (viewport.theta_at(21.5), viewport.omega_at(11.5))
 
     def cell(*trails) -> int:
-        tracks = [(FAINT, (np.array([theta]), np.array([omega]))) for theta, omega in trails]
-        return ord(cells(phase_picture(blank, [], tracks))[2, 10][0])
+        tracks = [(np.array([theta]), np.array([omega])) for theta, omega in trails]
+        points = [PhasePoint(math.nan, math.nan, 0, "e", track) for track in tracks]
+        return ord(cells(phase_picture(blank, points))[2, 10][0])
 
     assert cell(a, b) - 0x2800 == (cell(a) - 0x2800) | (cell(b) - 0x2800)
     assert cell(a) != cell(b)
@@ -77,7 +78,7 @@ def test_dots_of_different_methods_in_one_cell_all_stay():
 
 def test_a_trail_is_faint_and_where_the_method_was():
     theta, omega = np.linspace(0.5, 1.0, 5), np.linspace(1.0, 2.0, 5)
-    picture = phase_picture(PORTRAIT, [PhasePoint(1.5, 3.0, 1, "s")], [(1 + FAINT, (theta, omega))])
+    picture = phase_picture(PORTRAIT, [PhasePoint(1.5, 3.0, 1, "s", (theta, omega))])
     expected = {
         (int(SMALL.x(a)) // 2, int(SMALL.y(b)) // 4) for a, b in zip(theta.tolist(), omega.tolist(), strict=True)
     }

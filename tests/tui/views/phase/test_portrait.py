@@ -7,14 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.models.pendulum import separatrix_margin
 from engine.scenes import SCENES, Scene
 from tui.drawing.axes import in_pi, omega_ticks, theta_ticks
 from tui.views.phase.portrait import Portrait
 from tui.views.phase.viewport import Viewport
 
 DRIFT = SCENES["drift"]
-W0 = DRIFT.w0
+MODEL = DRIFT.equations
 
 
 def at_the_top(span: float, columns: int = 47, rows: int = 17) -> Viewport:
@@ -26,16 +25,16 @@ def at_the_top(span: float, columns: int = 47, rows: int = 17) -> Viewport:
 @pytest.mark.parametrize("span", [math.tau, 0.1, 1e-6])
 def test_the_separatrix_is_where_libration_and_rotation_meet_at_every_zoom(span):
     viewport = at_the_top(span)
-    portrait = Portrait.of(viewport, W0)
+    portrait = Portrait.of(viewport, MODEL)
     assert len(portrait.separatrix[0])
     for x, y in zip(*portrait.separatrix, strict=True):
         around = [(x + i + 0.5, y + j + 0.5) for i in (-1, 0, 1) for j in (-1, 0, 1)]
-        values = [separatrix_margin(W0, viewport.theta_at(i), viewport.omega_at(j)) for i, j in around]
+        values = [MODEL.level(viewport.theta_at(i), viewport.omega_at(j)) for i, j in around]
         assert min(values) <= 0 <= max(values)
 
 
 def test_the_separatrix_is_heavier_than_the_other_curves():
-    portrait = Portrait.of(Viewport.portrait(47, 17, DRIFT), W0)
+    portrait = Portrait.of(Viewport.portrait(47, 17, DRIFT), MODEL)
     down_the_middle = [int(np.sum(dots[0] == 47)) for dots in (portrait.separatrix, portrait.curves)]
     crossings = len({y // 3 for x, y in zip(*portrait.curves, strict=True) if x == 47})
     assert down_the_middle[0] == 2 * 2  # crossed twice, two dots each time
@@ -46,7 +45,7 @@ def test_the_separatrix_is_heavier_than_the_other_curves():
 @pytest.mark.parametrize("size", [(46, 15), (78, 17), (150, 55)])
 def test_the_three_regimes_are_named_where_they_are(scene, size):
     viewport = Viewport.portrait(*size, scene)
-    portrait = Portrait.of(viewport, scene.w0)
+    portrait = Portrait.of(viewport, scene.equations)
     names = [word[2].strip() for word in portrait.words]
     assert names.count("libration") == 1
     assert names.count("rotation") == 2  # one for each sense
@@ -54,13 +53,13 @@ def test_the_three_regimes_are_named_where_they_are(scene, size):
     for column, row, text, _ in portrait.words:
         if text.strip() in ("libration", "rotation"):
             for at in range(column, column + len(text)):
-                value = separatrix_margin(scene.w0, viewport.theta_at(2.0 * at + 1), viewport.omega_at(4.0 * row + 2))
+                value = scene.equations.level(viewport.theta_at(2.0 * at + 1), viewport.omega_at(4.0 * row + 2))
                 assert (value > 0) == (text.strip() == "libration")
 
 
 @pytest.mark.parametrize("size", [(4, 2), (10, 3), (20, 6), (46, 15), (78, 17)])
 def test_words_do_not_overlap_nor_leave_the_picture(size):
-    portrait = Portrait.of(Viewport.portrait(*size, DRIFT), W0)
+    portrait = Portrait.of(Viewport.portrait(*size, DRIFT), MODEL)
     cells = [(row, at) for column, row, text, _ in portrait.words for at in range(column, column + len(text))]
     assert len(cells) == len(set(cells))
     assert all(0 <= row < size[1] and 0 <= column < size[0] for row, column in cells)
@@ -70,7 +69,7 @@ def test_words_do_not_overlap_nor_leave_the_picture(size):
 def test_the_orbit_through_a_state_is_where_the_exact_swing_goes(theta, omega):
     scene = Scene(theta=theta, omega=omega)
     viewport = Viewport.portrait(80, 30, scene)
-    x, y = Portrait.of(viewport, scene.w0).orbit(theta, omega)
+    x, y = Portrait.of(viewport, scene.equations).orbit(theta, omega)
     orbit = set(zip(x.tolist(), y.tolist(), strict=True))
     exact = scene.exact()
     assert exact.period is not None

@@ -79,7 +79,7 @@ def test_it_fits_every_size_and_method(method, size):
     viewport = Viewport.portrait(*size, SCENE)
     section = Section(viewport, MODEL, method, MINE)
     section.add(iterate(method, MODEL, 50.0, starts(viewport, 20), 300))
-    picture = section.picture(orbit(method, MODEL, 50.0, START, 300), START, (0.5, 0.5))
+    picture = section.picture(orbit(method, MODEL, 50.0, START, 300), START, State(0.5, 0.5))
     assert drawn.size(picture) == size
 
 

@@ -108,7 +108,7 @@ async def test_the_ring_catches_up_while_the_lab_is_paused():
             if shown(theatre).settled:
                 break
         assert shown(theatre).neighbours.step == theatre.source.sample.step
-        await theatre.pilot.pause()
+        theatre.stage.show_now()
         text = theatre.stage.query_one("#facts", CellWidget).text
         assert "behind" not in text
         assert f"{shown(theatre).ring.area_ratios[3]:.9f}" in text

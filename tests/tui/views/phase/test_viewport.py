@@ -8,7 +8,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from engine.scenes import SCENES, Scene
-from tui.views.phase.viewport import NARROWEST, Viewport, roundest
+from tui.views.phase.viewport import MIN_SPAN, Viewport, roundest
 
 DRIFT = SCENES["drift"]
 sizes = st.tuples(st.integers(2, 200), st.integers(2, 60))
@@ -18,10 +18,10 @@ def cell_of(viewport: Viewport, theta: float, omega: float) -> tuple[int, int]:
     return math.floor(viewport.x(theta) / 2), math.floor(viewport.y(omega) / 4)
 
 
-@pytest.mark.parametrize("wrap", [True, False])
+@pytest.mark.parametrize("scene", [DRIFT, SCENES["linear"]])
 @pytest.mark.parametrize("size", [(9, 5), (8, 4)])
-def test_every_cell_leads_to_the_state_that_is_drawn_in_its_middle(size, wrap):
-    viewport = Viewport.portrait(*size, DRIFT, wrap)
+def test_every_cell_leads_to_the_state_that_is_drawn_in_its_middle(size, scene):
+    viewport = Viewport.portrait(*size, scene)
     for column in range(size[0]):
         for row in range(size[1]):
             theta, omega = viewport.at_cell(column, row)
@@ -32,7 +32,7 @@ def test_every_cell_leads_to_the_state_that_is_drawn_in_its_middle(size, wrap):
 
 @given(sizes, st.floats(-3, 3), st.floats(-20, 20), st.floats(1e-7, 1), st.data())
 def test_zoomed_and_panned_anywhere_cells_still_lead_to_what_is_drawn_there(size, theta, omega, factor, data):
-    viewport = Viewport.portrait(*size, DRIFT, wrap=False)
+    viewport = Viewport.portrait(*size, DRIFT)._replace(wrap=False)
     viewport = viewport.panned(-theta / viewport.theta_per_dot, omega / viewport.omega_per_dot)
     viewport = viewport.zoomed(factor, size[0], 2 * size[1])
     column, row = data.draw(st.integers(0, size[0] - 1)), data.draw(st.integers(0, size[1] - 1))
@@ -57,7 +57,7 @@ def test_every_angle_of_a_turn_is_on_the_portrait_and_every_turn_shows_the_same(
 
 
 def test_unwrapped_a_turn_leads_away():
-    viewport = Viewport.portrait(40, 10, DRIFT, wrap=False)
+    viewport = Viewport.portrait(40, 10, SCENES["linear"])
     assert viewport.x(math.tau) - viewport.x(0.0) == pytest.approx(math.tau / viewport.theta_per_dot)
 
 
@@ -82,10 +82,10 @@ def test_zoom_goes_to_a_millionth_of_a_radian_and_no_further():
     viewport = viewport.panned(-math.pi / viewport.theta_per_dot, 0)
     for _ in range(100):
         viewport = viewport.zoomed(0.5, 47, 34)
-    assert viewport.theta_span == pytest.approx(NARROWEST)
+    assert viewport.theta_span == pytest.approx(MIN_SPAN)
     around_the_top = [viewport.at_cell(column, 8).theta % math.tau - math.pi for column in range(47)]
     steps = [b - a for a, b in itertools.pairwise(around_the_top)]
-    assert all(0.4 * NARROWEST / 47 < step < 1.6 * NARROWEST / 47 for step in steps)  # half a dot of rounding each
+    assert all(0.4 * MIN_SPAN / 47 < step < 1.6 * MIN_SPAN / 47 for step in steps)  # half a dot of rounding each
 
 
 def test_panning_moves_the_picture_by_so_many_dots():

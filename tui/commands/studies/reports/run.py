@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 from engine.scenes import Scene
 from tui.cli.output import fields_of, scene_line
 from tui.cli.report import Column
-from tui.words.numbers import z_name
+from tui.words.numbers import z_text
 
 if TYPE_CHECKING:
     from engine.run.lockstep import Lockstep, Sample
@@ -58,14 +58,13 @@ def title_of(scene: Scene, sample: "Sample", wall_seconds: float) -> str:
     million = sample.step / max(wall_seconds, 1e-9) / 1e6
     pace = f", {million:.3g} million a second" if wall_seconds > 1 else ""
     return (
-        f"{scene_line(scene, 'h')}, {z_name(scene.model)} = {scene.z:.4g}\n"
+        f"{scene_line(scene, 'h')}, {z_text(scene)}\n"
         f"{sample.step} steps to t = {sample.t:g} s in {wall_seconds:.2f} s{pace}\n"
     )
 
 
 def columns_of(scene: Scene, lockstep: "Lockstep") -> list[Column]:
     """Return the columns of the table."""
-    error = "energy error" if scene.equations.energy_error.conserved else "ln(E/E_true)"
     labels = {method.key: method.label for method in scene.cast}
     judgements = dict(zip(labels, lockstep.judgements, strict=True))
 
@@ -84,8 +83,8 @@ def columns_of(scene: Scene, lockstep: "Lockstep") -> list[Column]:
     return [
         Column("method", lambda row: labels[row["method"]]),
         Column("verdict", verdict),
-        *(Column(each.label, each.name, ".4g") for each in scene.equations.variables if not each.is_state),
-        Column(error, "energy_error", "+.2e"),
+        *(Column(each.label, each.name, ".4g") for each in scene.equations.quantities()),
+        Column(scene.equations.energy_error.name, "energy_error", "+.2e"),
         Column("largest", "max_energy_error", ".2e"),
         Column("per second", trend, right=True),
         Column("theta error [rad]", "theta_error", ".2e"),

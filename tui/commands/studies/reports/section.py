@@ -70,7 +70,7 @@ def portrait(
 ) -> list[Text]:
     """Return the lines of the phase portrait of a method's map, in the colours and characters of the options."""
     model, start = scene.equations, State(scene.theta, scene.omega)
-    viewport = Viewport.portrait(*size, scene, wrap=model.turns)
+    viewport = Viewport.portrait(*size, scene)
     section = Section(viewport, model, method, ink_of(method, scene.cast))
     done = 0
     with progress("section") as show:
