@@ -134,7 +134,7 @@ class StatusLine(Pane):
     def picture(self, source: Source, sample: Sample) -> Picture:
         return Picture([status_row(source, self.room.width)])
 
-    def style_of(self, owner: int, base: Style) -> Style:
-        if owner == BADGE:
+    def style_of(self, ink: int, base: Style) -> Style:
+        if ink == BADGE:
             return super().style_of(WARN, base) + Style(reverse=True, bold=True)
-        return super().style_of(owner, base)
+        return super().style_of(ink, base)

@@ -129,7 +129,7 @@ class TourPanel(CellWidget):
     def on_click(self) -> None:
         self.app.simulate_key("enter")
 
-    def style_of(self, owner: int, base: Style) -> Style:
-        if owner == TITLE:
+    def style_of(self, ink: int, base: Style) -> Style:
+        if ink == TITLE:
             return super().style_of(WARN, base) + Style(reverse=True, bold=True)
-        return super().style_of(owner, base)
+        return super().style_of(ink, base)

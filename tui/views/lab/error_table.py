@@ -115,9 +115,11 @@ def verdict_of(reading: Reading, judgement: Judgement) -> str:
     return f"{SIGNS.get(word, '')} {word}".strip()
 
 
-def owner_of(text: str) -> int:
-    """Whose colour a verdict has."""
-    return GOOD if text.startswith("=") else WARN if text[:1] in "+-!~" else QUIET
+def verdict_ink(text: str) -> int:
+    """Return the ink of a verdict."""
+    if text.startswith("="):
+        return GOOD
+    return WARN if text[:1] in "+-!~" else QUIET
 
 
 def chosen(columns: Sequence[Column], room: int) -> list[tuple[str, int, Callable[[TableLine, int], str]]]:
@@ -151,8 +153,10 @@ def table(source: Source, sample: Sample, shown: Shown, width: int) -> list[Row]
         rows.append([(name, inks(cast)[place])])
         for head, size, cell in columns:
             text = gap + cell(line, size)
-            owner = owner_of(text.strip()) if head == "verdict" else WARN if failed else TEXT
-            rows[-1] = [*rows[-1], (text, owner)]
+            ink = WARN if failed else TEXT
+            if head == "verdict":
+                ink = verdict_ink(text.strip())
+            rows[-1] = [*rows[-1], (text, ink)]
     return rows
 
 
