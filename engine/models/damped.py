@@ -89,7 +89,9 @@ class DampedPendulum(Pendulum):
             value: float = energy(_reference(self, theta, omega).at(t))
             return value
 
-        return super().reference(theta, omega)._replace(true=true)
+        start = super().reference(theta, omega)
+        least = 1e-24 * min(self.w0_squared, start.scale)  # of an amplitude of 1e-12 rad
+        return start._replace(true=true, least=least)
 
     def area_share(self, t: float) -> float:
         return math.exp(-self.friction * t)

@@ -84,17 +84,18 @@ class EnergyReference(NamedTuple):
     scale: float  # s⁻², the same, or 2 w0² where that is zero
     true: Callable[[float], float] | None = None
     """The true motion's energy [s⁻²] at a time [s], where it is not conserved."""
+    least: float = 1e-300
+    """An energy [s⁻²] below which rounding decides, so that logarithms stop there."""
 
     def error(self, energy: float, t: float = 0.0) -> float:
         """(E - E0)/E0, or where energy is not conserved ln(E/E_true) at this time [s]."""
         if self.true is None:
             return (energy - self.start) / self.scale
-        return _log(energy) - _log(self.true(t))
+        return self._log(energy) - self._log(self.true(t))
 
-
-def _log(energy: float) -> float:
-    """The logarithm of an energy [s⁻²], finite also where there is none left, or too much for a double."""
-    return math.log(min(max(energy, 1e-300), 1e300))
+    def _log(self, energy: float) -> float:
+        """The logarithm of an energy [s⁻²], finite also where there is none left, or too much for a double."""
+        return math.log(min(max(energy, self.least), 1e300))
 
 
 Regime = Literal["libration", "rotation", "separatrix", "equilibrium"]

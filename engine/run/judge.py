@@ -138,15 +138,12 @@ class Judge:
 
     def _judge(self) -> None:
         verdict = self._symplectic(self._map) if self._map else self._other()
-        slope, uncertainty, significant = self._trend(verdict)
+        trend = self._trend(verdict)
         lyapunov = None
         if self._map and verdict in ("chaotic", "wanders"):
             lyapunov = self._map.lyapunov
-        self.judgement = Judgement(
+        self.judgement = trend._replace(
             verdict=verdict,
-            slope=slope,
-            uncertainty=uncertainty,
-            significant=significant,
             periods=self._periods,
             lyapunov=lyapunov,
             progress=self._progress() if verdict == "too early" else None,
@@ -162,28 +159,30 @@ class Judge:
             have, need, unit = int(self._periods), math.ceil(steps * self._h / self._period), "swings"
         return Progress(have, need, unit) if have < need else None
 
-    def _trend(self, verdict: Verdict) -> tuple[float | None, float | None, bool]:
-        """Return the recent slope, its uncertainty and whether it is significant; None without evidence.
+    def _trend(self, verdict: Verdict) -> Judgement:
+        """Return a judgement with the recent slope as far as there is evidence for one.
 
         A symplectic method has none before its verdict.  Beyond the initial energy the line is one through the
         logarithms, and the slope is the error times the rate at which its logarithm grows.
         """
         if self._map and verdict == "too early":
-            return None, None, False
+            return Judgement()
         flat = self._map is not None and self._map.is_conserved
         bands = self._map.modified if self._map and flat and self._map.modified.bins else self._energy
         recent = bands.recent(0.5) if len(bands.bins) >= MAX_BINS / 2 else bands.bins
         folded = [self._fold(each) for each in recent]
         trend = line(folded)
         shift = abs(trend.slope) * (recent[-1].step - recent[0].step)
-        seen = max(self._floor, (1 - math.cos(min(self._z, math.pi / 2))) * bands.width)
-        significant = trend.sigmas > SIGMAS and shift > seen
-        size = math.exp(max(0.0, abs(folded[-1].middle) - 1))
+        width = median(each.width for each in folded)
+        sampled = (1 - math.cos(min(self._z, math.pi / 2))) * width  # by which the extremes of a wobble are missed
+        significant = trend.sigmas > SIGMAS and shift > max(self._floor, sampled)
+        size = math.exp(max(0.0, abs(folded[-1].middle) - 1)) if self._relative else 1.0
         slope = trend.slope / self._h * size
         uncertainty = trend.uncertainty / self._h * size
         if not math.isfinite(slope + uncertainty) or not (significant or verdict != "too early"):
-            return None, None, False
-        return slope, uncertainty, significant
+            return Judgement()
+        growth = trend.slope / self._h if size > 1 else None
+        return Judgement(slope=slope, uncertainty=uncertainty, significant=significant, growth=growth)
 
     def _fold(self, band: Bin) -> Bin:
         """Return a band of errors with their logarithms where they are beyond the initial energy."""

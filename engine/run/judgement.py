@@ -53,6 +53,7 @@ class Judgement(NamedTuple):
     periods: float = 0.0  # how many periods the verdict rests on
     lyapunov: float | None = None  # 1/s; only where the verdict rests on it
     progress: Progress | None = None  # only while it is too early
+    growth: float | None = None  # 1/s, of the logarithm of the error; only beyond the initial energy
 
     def __str__(self) -> str:
         """Return the verdict, with the progress to it if it is too early for one."""
@@ -60,10 +61,11 @@ class Judgement(NamedTuple):
 
     @property
     def trend(self) -> float | None:
-        """The slope where it is significant; what stays in a band, or wanders, has none."""
-        if self.verdict not in ("too early", "grows", "loses") or not self.significant:
+        """The slope where it is significant and goes the verdict's way; what stays in a band, or wanders, has none."""
+        if self.slope is None or not self.significant:
             return None
-        return self.slope
+        ways = {"grows": self.slope > 0, "loses": self.slope < 0, "too early": True}
+        return self.slope if ways.get(self.verdict) else None
 
 
 MilestoneKind = Literal["over the top", "failed", "verdict", "errors cross"]

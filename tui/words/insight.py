@@ -225,8 +225,8 @@ def drift(source: Source, index: int) -> Insight | None:
     slope = {"grows": 1, "loses": -1}.get(judgement.verdict, 0) * (judgement.trend or 0)
     if slope <= 0:
         return None
-    if conserved and error > 1:
-        return Insight("multiplies", (method,), {"seconds": math.log(10) * error / slope})
+    if judgement.growth and judgement.verdict == "grows":
+        return Insight("multiplies", (method,), {"seconds": math.log(10) / judgement.growth})
     unit = "E0" if conserved else "the true energy"
     values = {"rate": slope, "unit": unit, "gains": "loses" if loses else "gains"}
     if ahead := forecast(source, index):

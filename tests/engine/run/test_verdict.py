@@ -168,6 +168,7 @@ def test_a_verdict_is_taken_back_when_the_error_comes_back() -> None:
     [
         ("loses", True, True),
         ("too early", True, True),
+        ("grows", True, False),
         ("loses", False, False),
         ("bounded", True, False),
         ("caught", True, False),
