@@ -16,7 +16,6 @@ SMALL_MAP = ("--map", "--theta-values", "1", "--z-values", "0.1:2:4", "--steps",
 SECTION = ("--section", "--starts", "9", "--steps", "50", "-o", "map.svg")
 ARGUMENTS: dict[str, list[tuple[str, ...]]] = {
     "snapshot": [("--time", "0.1", "-o", "out.svg")],
-    "keys": [()],
     "accuracy": [("--time", "1")],
     "stability": [
         (*SMALL_MAP, "--workers", "2"),
@@ -26,11 +25,9 @@ ARGUMENTS: dict[str, list[tuple[str, ...]]] = {
     "run": [("--time", "1", "--record", "run.mcap"), ("--time", "1", "--json")],
     "verify": [("drift.mcap",)],
     "judge": [("energies.csv", "--time", "1", "--energy", "2")],
-    "info": [("drift.mcap",), ("drift",)],
     "diff": [("drift.mcap", "drift.mcap")],
-    "recover": [("drift.mcap", "-o", "recovered.mcap")],
     "export": [("drift.mcap", "-o", "out.csv")],
-    "recordings": [()],
+    "recordings": [(), ("show", "drift.mcap"), ("show", "drift"), ("recover", "drift.mcap", "-o", "out.mcap")],
     "scenes": [()],
     "methods": [()],
     "doctor": [()],
