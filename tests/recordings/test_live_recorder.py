@@ -137,13 +137,6 @@ class Looks:
         return self.found[-1]
 
 
-def test_a_given_name_is_not_changed(tmp_path):
-    recorder = LiveRecorder(tmp_path / "mine.mcap")
-    with pytest.raises(DiskError, match="choose another name"):
-        LiveRecorder(tmp_path / "mine.mcap")
-    recorder.close()
-
-
 def test_a_lasting_failure_is_retried_now_and_then_and_leaves_no_files(lab, tmp_path, monkeypatch):
     lab.run(1.0)
     tries = []

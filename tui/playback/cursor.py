@@ -1,7 +1,7 @@
 """ReplayCursor: where in a recording a replay stands, and how the past of that moment is read."""
 
 import math
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator
 from itertools import pairwise
 from operator import attrgetter
@@ -39,23 +39,19 @@ class ReplayCursor:
     def changes(self, position: float) -> list[SteppingChange]:
         """Return how the run steps, up to the sample and to a moment of the recording clock [s]."""
         by_step = bisect_right(self._changes, self.so_far.sample.step, key=attrgetter("step"))
-        by_clock = bisect_right(self._clocks, position)
-        return self._changes[: max(1, min(by_step, by_clock))]
+        return self._changes[: max(1, min(by_step, bisect_right(self._clocks, position)))]
 
     def go_to(self, position: float) -> None:
         """Go to the last sample before a moment [s], through those between where they are few."""
-        recording = self.recording
-        target = recording.at(position + NANOSECOND) or self._place
-        ahead: list[SamplePlace] = []
+        target = self.recording.at(position + NANOSECOND) or self._place
+        ahead = [target] if target < self._place else []
         at = self._place
-        while at < target and len(ahead) < MAX_FOLLOWED and (following := recording.next(at)):
+        while at < target and len(ahead) < MAX_FOLLOWED and (following := self.recording.next(at)):
             at = following
             ahead.append(at)
         if at < target:
             self._jump(target)
             return
-        if target < self._place:
-            ahead = [target]
         for place in ahead:
             self._move(place)
 
@@ -64,36 +60,27 @@ class ReplayCursor:
         run = self.recording.run_of(number)
         if run is None:
             return None
-        early, late = run.begin, run.end
-        while late - early > NANOSECOND:
-            middle = (early + late) / 2
-            at = self.recording.at(middle)
-            sample = None if at is None else self.recording.sample(at).value
-            if isinstance(sample, Sample) and (sample.run, sample.step) < (number, step):
-                early = middle
-            else:
-                late = middle
-        return late
+
+        def step_at(nanosecond: int) -> int:
+            at = self.recording.at(nanosecond * NANOSECOND)
+            sample = self.recording.sample(at).value if at else None
+            return sample.step if isinstance(sample, Sample) and sample.run == number else -1
+
+        begin, end = round(run.begin / NANOSECOND), round(run.end / NANOSECOND)
+        return (begin + bisect_left(range(begin, end), step, key=step_at)) * NANOSECOND
 
     def step(self, n: int) -> None:
         """Go n samples forward, or back where n is negative."""
+        move = self.recording.next if n > 0 else self.recording.previous
         for _ in range(abs(n)):
-            move = self.recording.next if n > 0 else self.recording.previous
-            place = move(self._place)
-            if place is None:
-                break
-            self._move(place)
+            if place := move(self._place):
+                self._move(place)
 
     def fill(self, is_time_left: Callable[[], bool]) -> bool:
         """Read more of the past; return whether all of it that will be read has been."""
         while self._filling is not None and is_time_left():
             if next(self._filling, self) is self:
                 self._filling = None
-        return self.knows_past
-
-    @property
-    def knows_past(self) -> bool:
-        """Whether the past of the sample has been read."""
         return self._filling is None
 
     def _move(self, place: "SamplePlace") -> None:
@@ -111,17 +98,16 @@ class ReplayCursor:
         """Show the sample at any place: the trails' past at once, the rest during the next frames."""
         self._place = place
         self.clock, sample = self.recording.sample(place)
-        assert isinstance(sample, Sample)
         run = self.recording.run_of(sample.run)
+        assert isinstance(sample, Sample)
         assert run is not None
         self.run = run
+        set_h = [(clock, event) for clock, event in run.events if event.h is not None]
+        self._clocks = [-math.inf, *(clock for clock, _ in set_h)]  # s, of these changes:
         self._changes = [SteppingChange(0, 0.0, Stepping(run.scene.h, cast=run.scene.cast))]
-        self._clocks = [-math.inf]  # s, of those changes
-        for clock, event in run.events:
-            if event.h is not None:
-                stepping = Stepping(event.h, event.equal_cost, run.scene.cast)
-                self._changes.append(SteppingChange(event.step, event.t, stepping))
-                self._clocks.append(clock)
+        for _, event in set_h:
+            stepping = Stepping(event.h or 0.0, event.equal_cost, run.scene.cast)
+            self._changes.append(SteppingChange(event.step, event.t, stepping))
         self.so_far = RunSoFar(run.scene, self._changes)
         for _ in self._read(self.so_far, max(run.begin, self.clock - TAIL), self.clock, sample.step):
             pass
@@ -131,9 +117,8 @@ class ReplayCursor:
     def _fill(self) -> Iterator[None]:
         """Read the recent past, then all, and then the samples that have come since."""
         run = self.run
-        for begin in sorted({max(run.begin, self.clock - RECENT), run.begin}, reverse=True):
+        for start in sorted({max(run.begin, self.clock - RECENT), run.begin}, reverse=True):
             so_far = RunSoFar(run.scene, self._changes)
-            start = begin
             while start < self.clock:
                 end = self.clock
                 for piece in pieces(start, end):
@@ -144,11 +129,10 @@ class ReplayCursor:
 
     def _read(self, so_far: RunSoFar, start: float, end: float, last: int) -> Iterator[None]:
         """Add the run's samples of a piece of the recording clock before step `last`, one by one."""
-        run = self.run.number
         for _, sample in self.recording.samples_between(start, end):
-            if sample.run > run:
-                return
-            if sample.run == run and so_far.step < sample.step < last:
+            before = getattr(so_far, "sample", None)
+            is_new = before is None or sample.step > before.step
+            if sample.run == self.run.number and is_new and sample.step < last:
                 so_far.add(sample)
                 yield
 
@@ -157,7 +141,5 @@ def pieces(start: float, end: float) -> list[tuple[float, float]]:
     """Return what to read of [start, end]: the last DENSE seconds, and pieces of what lies before."""
     middle = max(start, end - DENSE)
     count = min(MAX_PIECES, math.ceil(middle - start))
-    if not count:
-        return [(middle, end)]
-    edges = [start + (middle - start) * n / count for n in range(count + 1)]
+    edges = [start + (middle - start) * n / count for n in range(count + 1)] if count else []
     return [(begin, min(begin + 1.0, until)) for begin, until in pairwise(edges)] + [(middle, end)]

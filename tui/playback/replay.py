@@ -104,7 +104,7 @@ class Replay(Source):
 
     @property
     def knows_past(self) -> bool:
-        return self._cursor.knows_past
+        return self._cursor.fill(lambda: False)
 
     @property
     def is_at_rest(self) -> bool:
