@@ -1,4 +1,4 @@
-"""The lab on a slow line: how long a key takes to be seen, and whether time goes on as it should.
+"""The lab at 5 frames a second on a slow line: how long a key takes to be seen, and whether time goes on as it should.
 
 The real program on a pseudo-terminal of 120×40 that takes 64 KiB/s.  Prints one JSON object.
 """
@@ -18,7 +18,7 @@ from tests.tui.pty_lab import PtyLab
 RATE = 64 * 1024  # bytes/s
 VIEWS = {"lab": "\x1bOQ", "phase": "\x1bOR", "accuracy": "\x1bOS", "stability": "\x1b[15~"}
 SETTLED, SECONDS = 4.0, 10.0  # s until a view has been painted; and of simulated time that are compared
-BUDGETS = {"key_p95_ms": 300, "key_max_ms": 300, "time_slip_ms": 300}
+BUDGETS = {"key_max_ms": 1000, "time_slip_ms": 1000}
 TIME = re.compile(rb"t (\d+\.\d+) s")
 
 
@@ -38,7 +38,7 @@ def slip(lab: PtyLab) -> float:
 
 def measure(key: str) -> dict[str, float]:
     """Look at a view for a while."""
-    with tempfile.TemporaryDirectory() as folder, PtyLab(*LAB, rate=RATE, PENDU_RECORDINGS=folder) as lab:
+    with tempfile.TemporaryDirectory() as folder, PtyLab(*LAB, "--fps", "5", rate=RATE, PENDU_RECORDINGS=folder) as lab:
         lab.wait_for("REC 2 s")
         lab.type(key)
         lab.run(SETTLED)

@@ -9,10 +9,9 @@ from pathlib import Path
 import pytest
 from rich.cells import cell_len
 
-from tui.terminal.screenshot import text_of
-
 SNAPSHOTS = Path(__file__).parent / "snapshots"
 CELL = 12.2  # units of a picture, across
+TEXT = re.compile(r'<text [^>]*x="([\d.]+)"[^>]*clip-path="url\(#terminal-(?:\d+-)?line-(\d+)\)">([^<]*)</text>')
 
 Hold = Callable[[str, str], None]
 
@@ -102,3 +101,12 @@ def cells_of(svg: str) -> dict[tuple[str, int], tuple[str, str]]:
 def lines_of(svg: str) -> list[str]:
     """The words of a picture, without their places."""
     return [text.replace("&#160;", " ").rstrip() for text in re.findall(r">([^<>\n]+)</text>", svg)]
+
+
+def text_of(svg: str) -> str:
+    """The characters of an SVG of the screen, line by line, without trailing blanks."""
+    lines: dict[int, str] = {}
+    for x, line, text in TEXT.findall(svg):
+        before = lines.get(int(line), "")
+        lines[int(line)] = before.ljust(round(float(x) / CELL)) + html.unescape(text).replace("\xa0", " ")
+    return "\n".join(lines.get(line, "").rstrip() for line in range(max(lines, default=-1) + 1))

@@ -33,7 +33,6 @@ from tui.screens.insight_line import InsightLine
 from tui.screens.key_line import KeyLine
 from tui.screens.status_line import StatusLine
 from tui.screens.too_small import TooSmall
-from tui.terminal.screenshot import save_screenshot
 from tui.terminal.writer import is_writing
 from tui.views import VIEWS, create, following
 from tui.views.messages import Asked, MethodChosen, Zoomed
@@ -405,11 +404,12 @@ class SourceScreen(Screen[None]):
     def action_screenshot(self) -> None:
         """Save the screen next to the recordings."""
         try:
-            picture, text = save_screenshot(self.app.export_screenshot(), library.folder())
+            library.folder().mkdir(parents=True, exist_ok=True)
+            picture = self.app.save_screenshot(path=str(library.folder()))
         except OSError as error:
             self.notify(f"Screenshot failed: {explained(error)}", severity="warning", markup=False)
         else:
-            self.notify(f"Saved {picture} and {text.name}", markup=False)
+            self.notify(f"Saved {picture}", markup=False)
 
     def action_copy_command(self) -> None:
         """Copy the command for this moment, and show it: not every terminal has a clipboard."""

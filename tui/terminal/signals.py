@@ -3,6 +3,7 @@
 import os
 import select
 import signal
+import termios
 import time
 from asyncio import AbstractEventLoop
 from collections.abc import Callable
@@ -15,9 +16,12 @@ from tui.terminal.check import is_gone
 MARGIN = 0.1  # s; of two signals that come closer than that, the order is unknown
 LOOK_INTERVAL = 1.0  # s between looks at the terminal
 MAX_LEAVE_TIME = 5.0  # s that the event loop has to end the program
-MAX_CLOSE_TIME = 3.0  # s to finish the recording and give the terminal back without the loop
-GIVE_BACK = "\x1b[<u\x1b[?1049l\x1b[?25h\x1b[?7h\x1b[?1000l\x1b[?1003l\x1b[?1006l\x1b[?1004l\x1b[?2004l"
-"""Leave the alternate screen, show the cursor, report no more mouse, focus and paste."""
+MAX_CLOSE_TIME = 3.0  # s to finish the recording without the loop
+ENDING = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+"""The signals that ask for an end."""
+
+PLAIN_SCREEN = b"\x1b[<u\x1b[?1049l\x1b[?25h\x1b[?7h\x1b[?1000l\x1b[?1003l\x1b[?1006l\x1b[?1004l\x1b[?2004l"
+"""Ends the alternate screen, and reports of mouse, focus and paste."""
 
 
 class Job:
@@ -78,7 +82,7 @@ class SignalThread(Thread):
         os.set_blocking(written, False)
         signal.set_wakeup_fd(written, warn_on_full_buffer=False)
         self._handlers: dict[int, Callable[[], object]] = {}
-        for number in ending_signals():
+        for number in ENDING:
             if signal.getsignal(number) != signal.SIG_IGN:  # as under nohup
                 self._handlers[number] = leave
                 signal.signal(number, lambda *_: None)
@@ -92,46 +96,24 @@ class SignalThread(Thread):
             ready, _, _ = select.select([self._pipe], [], [], LOOK_INTERVAL)
             numbers = os.read(self._pipe, 4096) if ready else b""
             called = [self._handlers[number] for number in numbers if number in self._handlers]
-            if self._is_alone:
+            if is_gone() if self._has_terminal else os.getppid() != self._server:
                 called.append(self._leave)
             with suppress(RuntimeError):  # the loop is closed: the program is leaving
                 for handler in called:
                     self._loop.call_soon_threadsafe(handler)
             if self._leave in called:
                 time.sleep(MAX_LEAVE_TIME)
-                self._end()
-
-    @property
-    def _is_alone(self) -> bool:
-        """Whether the terminal is gone, or the web server that started this program."""
-        return is_gone() if self._has_terminal else os.getppid() != self._server
+                closing = Thread(target=self._end, daemon=True)  # may wait for what the loop holds
+                closing.start()
+                closing.join(MAX_CLOSE_TIME)
+                os._exit(Exit.INTERRUPTED)
 
     def _end(self) -> None:
-        closing = Thread(target=self._finish, daemon=True)  # which may need what the loop holds
-        closing.start()
-        closing.join(MAX_CLOSE_TIME)
-        os._exit(Exit.INTERRUPTED)
-
-    def _finish(self) -> None:
-        try:
-            self._close()
-        finally:
-            if self._has_terminal:
-                give_terminal_back()
-
-
-def ending_signals() -> list[int]:
-    """Return the signals that ask for an end."""
-    return [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
-
-
-def give_terminal_back() -> None:
-    """Set the terminal to lines and echo, as a shell expects it."""
-    import termios
-
-    with suppress(termios.error, OSError):
-        attributes = termios.tcgetattr(0)
-        attributes[0] |= termios.ICRNL | termios.IXON
-        attributes[3] |= termios.ECHO | termios.ICANON | termios.IEXTEN | termios.ISIG
-        termios.tcsetattr(0, termios.TCSANOW, attributes)
-        os.write(2, GIVE_BACK.encode())
+        """Finish the recording, and set the terminal to lines and echo, as a shell expects it."""
+        self._close()
+        with suppress(termios.error, OSError):
+            attributes = termios.tcgetattr(0)
+            attributes[0] |= termios.ICRNL | termios.IXON
+            attributes[3] |= termios.ECHO | termios.ICANON | termios.IEXTEN | termios.ISIG
+            termios.tcsetattr(0, termios.TCSANOW, attributes)
+            os.write(2, PLAIN_SCREEN)

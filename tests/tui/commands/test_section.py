@@ -5,7 +5,7 @@ import math
 import pytest
 
 from tests.tui.command_line import own_method, pendu
-from tui.terminal.screenshot import text_of
+from tests.tui.conftest import text_of
 
 
 def section(*arguments):

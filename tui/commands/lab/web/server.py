@@ -16,7 +16,7 @@ from aiohttp import web
 from textual_serve.server import Server
 
 from tui.commands.lab.web.served import Settings
-from tui.terminal.signals import ending_signals
+from tui.terminal.signals import ENDING
 
 CONNECTIONS_PER_LAB = 10  # a browser opens six at most
 MAX_IDLE_TIME = 10.0  # s that a connection may be without a whole request
@@ -41,7 +41,7 @@ class LabServer(Server):  # type: ignore[misc]
         logging.disable()  # whoever can reach the server can cause errors that do not matter
         loop = asyncio.get_running_loop()
         stop = asyncio.Event()
-        for number in ending_signals():
+        for number in ENDING:
             loop.add_signal_handler(number, stop.set)
         app = await self._make_app()
         app.middlewares.append(self.check)
