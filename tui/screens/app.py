@@ -71,13 +71,6 @@ class PenduApp(App[Exit | BaseException]):
         self._last_notice = ""
         self._job = Job(self.suspend)
 
-    def refresh_css(self, animate: bool = True) -> None:
-        """Apply the theme; before anything is mounted there is nothing to apply it to, and it waits for that."""
-        if self.is_running:
-            super().refresh_css(animate)
-        else:
-            self.stylesheet.set_variables(self.get_css_variables())
-
     @property
     def source_screen(self) -> SourceScreen:
         """The screen that follows the clock; a text or a form may lie over it."""
