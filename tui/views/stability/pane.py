@@ -14,7 +14,7 @@ from tui.drawing.palette import NOBODY, Palette, palette
 from tui.drawing.picture import Picture, Row
 from tui.playback.source import Source
 from tui.views.messages import SceneChosen
-from tui.views.stability.picture import MARGIN, Segments, legend, panel, place_at, side_by_side, title
+from tui.views.stability.picture import MARGIN, legend, panel, place_at, side_by_side, title
 from tui.views.stability.words import note, verdict
 from tui.views.view import Chooser
 
@@ -52,7 +52,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
         self.pieces = 0  # of the map that have been computed
         self.complete = False
         self.cursor = None
-        self._panels: list[list[Segments]] = []
+        self._panels: list[list[Row]] = []
         self._drawn: object = None
 
     @property
@@ -106,9 +106,9 @@ class StabilityPane(Chooser[tuple[int, int]]):
         ]
         words = [*textwrap.wrap(self._verdict(), max(self.room.width - 1, 1)), "", ""][:WORDS]
         below: list[Row] = [[(f" {line}", NOBODY)] for line in words]
-        return Picture([*map(_row, side_by_side(panels, 2)), *below, *map(_row, self._legend())])
+        return Picture([*side_by_side(panels, 2), *below, *self._legend()])
 
-    def _panel(self, index: int, columns: int, rows: int) -> list[Segments]:
+    def _panel(self, index: int, columns: int, rows: int) -> list[Row]:
         """Return a method's panel, with a mark at the cursor or, if there is none, at the present h."""
         assert self.source is not None
         here = self.here(index)
@@ -126,7 +126,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
         lines = -(-len(self.places) // 2) or 1
         return (self.room.width - 2) // 2, max(1, (self.room.height - WORDS - len(self._legend())) // lines - 2)
 
-    def _legend(self) -> list[Segments]:
+    def _legend(self) -> list[Row]:
         lines = legend(self.grid.steps, self._colours, self.room.width + 2)  # as if the frame were part of it
         return lines if self.room.height >= ROOMY else lines[:1]
 
@@ -181,7 +181,3 @@ class StabilityPane(Chooser[tuple[int, int]]):
             return None
         self.describe(shown[number])
         return place_at(self.grid, row - 1, column - MARGIN, rows, columns - MARGIN)
-
-
-def _row(segments: Segments) -> Row:
-    return [(segment.text, segment.style or NOBODY) for segment in segments]

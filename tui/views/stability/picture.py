@@ -6,11 +6,11 @@ them, so that no failure vanishes.
 
 import math
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from itertools import groupby
 
 import numpy as np
 from numpy.typing import NDArray
-from rich.segment import Segment
 from rich.style import Style
 
 from engine.methods import Method
@@ -19,7 +19,8 @@ from engine.methods.verlet import VELOCITY_VERLET
 from engine.stability.chaos import GREENE_Z
 from engine.stability.grid import Grid
 from engine.stability.outcomes import HELD, UNKNOWN, Cells
-from tui.drawing.palette import Palette, ink_of, inks, mark, mixed
+from tui.drawing.palette import NOBODY, Palette, ink_of, inks, mark, mixed
+from tui.drawing.picture import Ink, Picture, Row
 
 EXACT_ENOUGH = 1e-12  # energy errors below it are drawn alike
 LIMIT, THRESHOLD, CATCHING, HERE = "│", "┊", "•", "@"
@@ -29,7 +30,7 @@ MARGIN = 4  # for the labels of the amplitudes
 SHADES = 16  # from lost at once to lost at the end, and again from there to held exactly
 
 Scores = NDArray[np.float64]
-Segments = list[Segment]
+Cell = tuple[str, Ink]
 
 
 def scores(cells: Cells, steps: int) -> Scores:
@@ -42,22 +43,22 @@ def scores(cells: Cells, steps: int) -> Scores:
     return np.select([cells["fate"] == UNKNOWN, np.isin(cells["fate"], HELD)], [-1.0, 1 + digits], survived)
 
 
-def picture(grid: Grid, cells: Cells, columns: int, palette: Palette | None) -> list[Segments]:
-    """All panels and the legend, `columns` wide; with no palette, characters instead of colours."""
+def picture(grid: Grid, cells: Cells, columns: int, palette: Palette | None) -> Picture:
+    """Draw all panels and the legend, `columns` wide; with no palette, characters instead of colours."""
     across = 2 if columns >= 70 else 1
     width = (columns - 2 * (across - 1)) // across
     rows = max(6, (width - MARGIN) // 4)  # a cell is twice as high as wide, so panels are about 2:1
     panels = [panel(grid, cells, index, width, rows, palette) for index in range(len(grid.methods))]
-    return [*side_by_side(panels, across), *legend(grid.steps, palette, columns)]
+    return Picture([*side_by_side(panels, across), *legend(grid.steps, palette, columns)])
 
 
-def side_by_side(panels: Sequence[Sequence[Segments]], across: int) -> list[Segments]:
-    """The lines of panels of one size, `across` of them next to each other."""
-    return [
-        [segment for number, line in enumerate(lines) for segment in ([Segment("  ")] if number else []) + line]
-        for first in range(0, len(panels), across)
-        for lines in zip(*panels[first : first + across], strict=True)
-    ]
+def side_by_side(panels: Sequence[Sequence[Row]], across: int) -> list[Row]:
+    """Put panels of one size next to each other, `across` of them in a line."""
+    rows: list[Row] = []
+    for first in range(0, len(panels), across):
+        for left, *others in zip(*panels[first : first + across], strict=True):
+            rows.append([*left, *(cell for row in others for cell in (("  ", NOBODY), *row))])
+    return rows
 
 
 def panel(
@@ -70,50 +71,74 @@ def panel(
     *,
     here: tuple[float, float] | None = None,
     w0: float | None = None,
-) -> list[Segments]:
-    """One method's panel: its title, `rows` of the map, and the axis.
+) -> list[Row]:
+    """Draw one method's panel: its title, `rows` of the map, and the axis.
 
     `here` is a (z, theta) to mark.  With w0 [1/s] the axis shows h instead of z.
     """
     method, width = grid.methods[index], columns - MARGIN
-    ink = inks(grid.methods)[index]
-    overlay: dict[tuple[int, int] | None, str] = {
-        _place(grid, z, theta, width, rows): sign for z, theta, sign in theory(method, grid, rows)
-    }
+    signs = {_place(grid, z, theta, width, rows): sign for z, theta, sign in theory(method, grid, rows)}
     if here:
-        overlay[_place(grid, here[0], here[1], width, rows)] = HERE
+        signs[_place(grid, here[0], here[1], width, rows)] = HERE
     values = scores(cells[:, index], grid.steps)
-    character_set = worst(values, width, rows if palette is None else 2 * rows).tolist()
-    levels = range(-SHADES, 2 * SHADES + 1)
-    shades = [] if palette is None else [colour(level / SHADES, ink, palette) for level in levels]
+    if palette is None:
+        lines = _in_characters(worst(values, width, rows), grid.steps)
+        ink: Ink = NOBODY
+    else:
+        lines = _in_colours(worst(values, width, 2 * rows), inks(grid.methods)[index], palette)
+    for place, sign in signs.items():
+        if place is not None:
+            row, column = place
+            if palette is None:
+                lines[row][column] = _WITHOUT_COLOUR[sign], ink
+            else:
+                lower = lines[row][column][1]
+                assert isinstance(lower, Style)
+                lines[row][column] = sign, lower + Style(color=palette.text, reverse=sign == HERE)
+    panel: list[Row] = [title(index, method, columns, palette)]
+    for row, line in enumerate(lines):
+        degrees = f"{math.degrees(_theta_of_row(grid, row, rows)):3.0f} "
+        label = degrees if row in (0, rows // 2, rows - 1) else " " * MARGIN
+        panel.append([(label, NOBODY), *_joined(line)])
+    return [*panel, [(" " * MARGIN + _axis(grid, width, w0), NOBODY)]]
 
-    def drawn(row: int, column: int) -> tuple[str, str, str, bool]:
-        """The character, its colour, the colour behind it, and whether they change places."""
-        sign = overlay.get((row, column))
-        if palette is None:
-            return _WITHOUT_COLOUR[sign] if sign else character(character_set[row][column], grid.steps), "", "", False
-        upper, lower = (shades[round((character_set[2 * row + half][column] + 1) * SHADES)] for half in (0, 1))
-        return sign or "▀", palette.text if sign else upper, lower, sign == HERE
 
-    lines = [title(index, method, columns, palette)]
-    for row in range(rows):
-        degrees = math.degrees(_theta_of_row(grid, row, rows))
-        line = [Segment(f"{degrees:3.0f} " if row in (0, rows // 2, rows - 1) else " " * MARGIN)]
-        for (sign, front, back, reverse), run in groupby(drawn(row, column) for column in range(width)):
-            style = Style(color=front, bgcolor=back, reverse=reverse) if back else None
-            line.append(Segment(sign * len(list(run)), style))
-        lines.append(line)
+def _in_characters(values: Scores, steps: int) -> list[list[Cell]]:
+    return [[(character(value, steps), NOBODY) for value in line] for line in values.tolist()]
+
+
+def _in_colours(values: Scores, ink: int, palette: Palette) -> list[list[Cell]]:
+    """Return half-blocks, two rows of pixels in each."""
+    shades = [colour(level / SHADES, ink, palette) for level in range(-SHADES, 2 * SHADES + 1)]
+    levels = np.rint((values + 1) * SHADES).astype(int).tolist()
+    pairs = zip(levels[::2], levels[1::2], strict=True)
+    return [[("▀", _style(shades[up], shades[low])) for up, low in zip(*pair, strict=True)] for pair in pairs]
+
+
+@lru_cache(maxsize=10_000)
+def _style(front: str, back: str) -> Style:
+    return Style(color=front, bgcolor=back)
+
+
+def _joined(line: Sequence[Cell]) -> Iterator[Cell]:
+    """Yield the cells of a row, those that look alike as one."""
+    for (text, ink), cells in groupby(line):
+        yield text * len(list(cells)), ink
+
+
+def _axis(grid: Grid, width: int, w0: float | None) -> str:
     symbol, scale = ("z", 1.0) if w0 is None else ("h", w0)
     first, middle, last = (f"{value / scale:.3g}" for value in (grid.z[0], np.median(grid.z), grid.z[-1]))
-    axis = first + f"{symbol} {middle}".center(width)[len(first) : width - len(last)] + last
-    return [*lines, [Segment(" " * MARGIN + axis)]]
+    return first + f"{symbol} {middle}".center(width)[len(first) : width - len(last)] + last
 
 
-def title(place: int, method: Method, columns: int, palette: Palette | None, note: str = "") -> Segments:
-    """The line above a panel, with a note behind the method's name or, where there is no room, instead of it."""
-    texts = [f"{'':{MARGIN}}{mark(place, method)} {name}{note}" for name in (f"{method.label}  ", "")]
-    text = next((text for text in texts if len(text) <= columns), texts[-1])
-    return [Segment(text[:columns].ljust(columns), Style(bold=True) if palette else None)]
+def title(place: int, method: Method, columns: int, palette: Palette | None, note: str = "") -> Row:
+    """Return the line above a panel, with a note behind the method's name or, if there is no room, instead of it."""
+    mine = f"{'':{MARGIN}}{mark(place, method)} "
+    text = f"{mine}{method.label}  {note}"
+    if len(text) > columns:
+        text = mine + note
+    return [(text[:columns].ljust(columns), Style(bold=True) if palette else NOBODY)]
 
 
 def theory(method: Method, grid: Grid, rows: int) -> Iterator[tuple[float, float, str]]:
@@ -161,22 +186,22 @@ def character(score: float, steps: int) -> str:
     return "#" if score > 1 + 4 / 12 else "+" if score > 1 + 1 / 12 else "-"
 
 
-def legend(steps: int, palette: Palette | None, columns: int = 80) -> list[Segments]:
-    """What colours, characters and lines mean."""
+def legend(steps: int, palette: Palette | None, columns: int = 80) -> list[Row]:
+    """Explain colours, characters and lines."""
     limit, threshold, catching = (sign if palette else _WITHOUT_COLOUR[sign] for sign in (LIMIT, THRESHOLD, CATCHING))
-    lines = [Segment(f"{limit} linear limit   {threshold} global chaos above   ")]
-    orbit = [Segment(f"{catching} stable 2-cycle   y: amplitude [°]")]
-    if palette is None:
-        held = [Segment("held: error <1e-4 #  <0.1 +  above -   ")]
-        lost = [Segment("lost: at step <10 .  <100 1  <1000 2")]
-    else:
-        held, lost = (
-            [Segment("█", Style(color=colour(low + 0.999 * part / 7, EXAMPLE, palette))) for part in range(8)]
-            for low in (1.0, 0.0)
-        )
-        held = [Segment("held, energy error 1 "), *held, Segment(" 1e-12   ")]
-        lost = [Segment("lost at step 1 "), *lost, Segment(f" {steps}")]
+    lines = [(f"{limit} linear limit   {threshold} global chaos above   ", NOBODY)]
+    orbit = [(f"{catching} stable 2-cycle   y: amplitude [°]", NOBODY)]
+    held: list[Cell] = [("held: error <1e-4 #  <0.1 +  above -   ", NOBODY)]
+    lost: list[Cell] = [("lost: at step <10 .  <100 1  <1000 2", NOBODY)]
+    if palette is not None:
+        held = [("held, energy error 1 ", NOBODY), *_scale(1.0, palette), (" 1e-12   ", NOBODY)]
+        lost = [("lost at step 1 ", NOBODY), *_scale(0.0, palette), (f" {steps}", NOBODY)]
     return [held + lost, lines + orbit] if columns >= 80 else [held, lost, lines, orbit]
+
+
+def _scale(low: float, palette: Palette) -> list[Cell]:
+    """Return the colours of scores from `low` to 1 more."""
+    return [("█", Style(color=colour(low + 0.999 * part / 7, EXAMPLE, palette))) for part in range(8)]
 
 
 def _theta_of_row(grid: Grid, row: int, rows: int) -> float:

@@ -9,6 +9,7 @@ from engine.methods import GENERAL
 from engine.stability.grid import Grid
 from engine.stability.outcomes import CELL, GROWS, HOLDS, LOSES, UNKNOWN
 from tui.drawing.palette import PALETTES
+from tui.drawing.picture import Picture
 from tui.views.stability.picture import (
     CATCHING,
     LIMIT,
@@ -40,7 +41,7 @@ def half_lost(fate: int = GROWS) -> tuple[Grid, np.ndarray]:
 
 
 def text(lines: list) -> str:
-    return "\n".join("".join(segment.text for segment in line).rstrip() for line in lines)
+    return Picture(lines).text
 
 
 def test_a_panel_without_colour_is_readable_characters():
@@ -83,7 +84,7 @@ def test_theory_is_drawn_for_the_methods_that_it_is_about():
 def test_the_whole_picture_fits_eighty_columns_and_names_every_method():
     grid, cells = half_lost()
     for palette in (None, *PALETTES.values()):
-        lines = text(picture(grid, cells, 80, palette)).splitlines()
+        lines = picture(grid, cells, 80, palette).text.splitlines()
         assert max(map(len, lines)) <= 80
         assert len(lines) <= 24
         for index, method in enumerate(grid.methods, 1):

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from rich.style import Style
 from rich.text import Text
 
 from engine.methods import Method
@@ -167,8 +168,8 @@ def _picture(grid: Grid, cells: Cells) -> list[Text]:
     """Return the lines of the map, in colour where the terminal has colours."""
     on = console()
     plain = on.color_system is None or on.no_color or "utf" not in on.encoding
-    lines = picture(grid, cells, max(40, on.width), None if plain else PALETTES["dark"])
-    return [Text.assemble(*((text, style or "") for text, style, _ in line)) for line in lines]
+    drawn = picture(grid, cells, max(40, on.width), None if plain else PALETTES["dark"])
+    return [Text.assemble(*((text, ink if isinstance(ink, Style) else "") for text, ink in row)) for row in drawn.rows]
 
 
 def write_map(path: Path, force: bool, grid: Grid, cells: Cells) -> None:
