@@ -176,8 +176,7 @@ def small_studies(library: Path) -> Iterator[None]:
 async def still(theatre: Theatre) -> None:
     """Wait for what was asked for, in other threads, too; but not for charts and for answers to dialogs."""
     await theatre.pilot.pause(0)
-    asked = [each for each in theatre.app.workers if each.group != "chart" and "action" not in each.name]
-    while not all(worker.is_finished for worker in asked):
+    while not all(worker.is_finished for worker in theatre.app.workers if worker.group != "form"):
         await theatre.pilot.pause(0.001)
 
 

@@ -47,7 +47,6 @@ READ_RATE = 5  # updates a second of what people read
 STALL = 1.0  # s; a longer gap between frames is no simulated time: Ctrl+Z, sleep, a dead line
 MAX_UNDOS = 30  # each may hold a run
 FOOTER = ("Step", "Scene", "Pause", "View", "Help", "Find", "", "Back", "Tour", "Undo")
-ALREADY = "Already marked"
 
 _SPEED = Binding.Group("half, double speed")
 _STEPS = Binding.Group("one step back, forward")
@@ -263,6 +262,17 @@ class SourceScreen(Screen[None]):
             self.show_now()
         else:
             self.notify(f"That event belongs to run {run}; replay the recording to see it.", markup=False)
+
+    def action_mark(self) -> None:
+        """Leave a mark at the sample, unless it has one; a replay keeps it next to the recording."""
+        is_marked = self.source.is_marked
+        text = "Already marked" if is_marked else f"Mark at {self.source.sample.t:.2f} s"
+        try:
+            self.source.mark()
+        except OSError as error:
+            text = f"The mark cannot be saved: {error.strerror}."
+        self.notify(text, timeout=4, markup=False)
+        self.show_now()
 
     def action_speed(self, doublings: int) -> None:
         self.action_set_speed(doubled(self.source.playhead.speed, doublings))

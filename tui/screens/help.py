@@ -41,7 +41,7 @@ def key_lines(bindings: Iterable[Binding]) -> Iterator[str]:
         keys = [key_text(each) for each in members]
         text = " ".join(keys) if len(keys) < 4 else f"{keys[0]} … {keys[-1]}"
         does = group.description if isinstance(group, Binding.Group) else purpose(group)
-        yield f"{text:<{KEY_WIDTH}}{does}"
+        yield f"{text:<{KEY_WIDTH - 1}} {does}"
 
 
 def section(owner: type[DOMNode], width: int) -> str:

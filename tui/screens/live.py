@@ -11,7 +11,7 @@ from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene, SceneError
 from tui.playback.live import Live
 from tui.playback.state import State
-from tui.screens.base import ALREADY, SourceScreen
+from tui.screens.base import SourceScreen
 from tui.screens.tour import TourGuide
 from tui.views.messages import SceneChosen, StepSizeChosen
 from tui.words.insight import return_text
@@ -130,21 +130,16 @@ class LiveScreen(SourceScreen):
     def action_start_scene(self, name: str) -> None:
         self.start(SCENES[name], SCENES[name].speed)
 
-    def action_mark(self) -> None:
-        text = ALREADY if self.live.is_marked else f"Mark at {self.live.sample.t:.2f} s"
-        self.live.mark()
-        self.notify(text, timeout=2)
-
     # Forms; they are imported when they are needed
 
-    @work
+    @work(group="form")
     async def action_scenes(self) -> None:
         from tui.screens.dialogs.forms import SceneList
 
         if name := await self.app.push_screen_wait(SceneList(self.live.scene.name)):
             self.action_start_scene(name)
 
-    @work
+    @work(group="form")
     async def action_start_values(self) -> None:
         from tui.screens.dialogs.forms import StartForm
 
@@ -152,7 +147,7 @@ class LiveScreen(SourceScreen):
         if scene := await self.app.push_screen_wait(StartForm(self._scene_now(), backwards)):
             self.start(scene)
 
-    @work
+    @work(group="form")
     async def action_methods(self) -> None:
         from tui.screens.dialogs.forms import CastForm
 

@@ -11,7 +11,7 @@ from textual.widget import Widget
 from tui.cli.errors import UserError, explained
 from tui.playback.live import Live
 from tui.playback.replay import Replay
-from tui.screens.base import ALREADY, SourceScreen
+from tui.screens.base import SourceScreen
 from tui.screens.seek_bar import SeekBar
 
 LONG = 100_000  # steps; a quarter of a second
@@ -75,17 +75,6 @@ class ReplayScreen(SourceScreen):
 
     def action_reverse(self) -> None:
         self.replay.set_speed(-self.replay.playhead.speed)
-        self.show_now()
-
-    def action_mark(self) -> None:
-        """Leave a mark next to the recording, which itself stays as it is."""
-        text = ALREADY if self.replay.is_marked else f"Mark at {self.replay.sample.t:.2f} s"
-        try:
-            self.replay.mark()
-        except OSError as error:
-            self.notify(f"The mark cannot be saved: {error.strerror}.", severity="warning", markup=False)
-        else:
-            self.notify(text, timeout=2)
         self.show_now()
 
     def action_loop(self) -> None:
