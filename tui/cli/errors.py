@@ -5,7 +5,7 @@ from enum import IntEnum
 
 
 class Exit(IntEnum):
-    """What the process returns."""
+    """The exit codes of the process."""
 
     FINE = 0
     CHECK_FAILED = 1
@@ -26,7 +26,7 @@ class UserError(Exception):
 
 
 def explained(error: BaseException) -> UserError:
-    """The error as a sentence for the user.  Raises it again if it is a bug."""
+    """Return the error as a sentence for the user.  Raises it again if it is a bug."""
     if isinstance(error, UserError):
         return error
     if isinstance(error, KeyboardInterrupt) or isinstance(error.__context__, KeyboardInterrupt):

@@ -33,7 +33,7 @@ class Parser(argparse.ArgumentParser):
         return super().parse_args(arguments, namespace)
 
     def unknown_option(self, arguments: Sequence[str]) -> UserError | None:
-        """The error for the first option that does not exist; argparse would complain about a missing one first."""
+        """Return the error for the first option that does not exist; argparse would report a missing one first."""
         for argument in arguments:
             name = argument.partition("=")[0] if argument.startswith("--") else argument[:2]
             if argument == "--" or " " in name or name in self._option_string_actions:
@@ -45,7 +45,7 @@ class Parser(argparse.ArgumentParser):
 
 
 class Suggestions(list[str]):
-    """What the tab key offers for an option, as its `choices`; any other text is left to the command."""
+    """The `choices` that the tab key offers for an option; the command judges any other text."""
 
     def __contains__(self, text: object) -> bool:
         return True
@@ -68,7 +68,7 @@ def add_recording(
 
 
 def angle(text: str) -> float:
-    """An angle [rad] from `2`, `2rad`, `115deg` or `115°`."""
+    """Return an angle [rad] from `2`, `2rad`, `115deg` or `115°`."""
     try:
         value = float(re.sub(r"(deg|°|rad)$", "", text))
     except ValueError:
@@ -77,7 +77,7 @@ def angle(text: str) -> float:
 
 
 def start_angle(text: str) -> float:
-    """An angle [rad]; warns if degrees seem to be meant."""
+    """Return an angle [rad]; warn if degrees seem to be meant."""
     value = angle(text)
     if math.tau < abs(value) <= LIMITS["theta"][1] and not text.endswith(("deg", "°", "rad")):
         warn(f"--theta {text} is {text} rad, {abs(value) / math.tau:.3g} turns; for degrees write {text}deg.")
@@ -85,7 +85,7 @@ def start_angle(text: str) -> float:
 
 
 def number(text: str) -> float:
-    """Any number; the caller checks its range."""
+    """Return any number; the caller checks its range."""
     try:
         return float(text)
     except ValueError:
@@ -93,7 +93,7 @@ def number(text: str) -> float:
 
 
 def positive(text: str) -> float:
-    """A number above zero, and finite."""
+    """Return a number above zero, and finite."""
     value = number(text)
     if not 0 < value < math.inf:
         raise argparse.ArgumentTypeError(f"{text!r} is out of range; use a number above zero")
@@ -101,13 +101,13 @@ def positive(text: str) -> float:
 
 
 def count(text: str) -> int:
-    """A whole number, 1 or more."""
+    """Return a whole number, 1 or more."""
     if not re.fullmatch(r"\d{1,18}", text) or int(text) < 1:
         raise argparse.ArgumentTypeError(f"{text!r} is not a count; use a whole number, 1 or more")
     return int(text)
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """The end of a sentence about a word that is not known."""
+    """Return the end of a sentence about an unknown word."""
     near = difflib.get_close_matches(word, known, n=1)
     return f": did you mean {near[0]}?" if near else ""

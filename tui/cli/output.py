@@ -22,7 +22,7 @@ def warn(sentence: str) -> None:
 
 
 def _wrapped(text: str) -> str:
-    """On lines as wide as the terminal, which would break words; a path, for example, stays whole."""
+    """Wrap a text to the terminal, which would break words; a path, for example, stays whole."""
     columns = shutil.get_terminal_size().columns
     return "\n".join(
         textwrap.fill(line, columns, break_long_words=False, break_on_hyphens=False) for line in text.split("\n")

@@ -56,7 +56,7 @@ def scene_named(name: str) -> Scene:
 
 
 def general_scene_of(options: argparse.Namespace) -> Scene:
-    """The scene that the options describe, if it can be mapped and its errors charted.  Raises UserError as well."""
+    """Return the scene of the options if it can be mapped and its errors charted.  Raises UserError as well."""
     scene = scene_of(options)
     if why := scene.why_not_mapped:
         raise UserError(why)

@@ -15,14 +15,13 @@ from engine.methods.own import OwnMethod
 from engine.scenes import Scene
 from engine.stability.grid import Grid
 from engine.stability.linear import amplification
-from engine.stability.outcomes import BAND, CHAOTIC, FATES, UNKNOWN, Cells, is_lost
+from engine.stability.outcomes import BAND, FATES, UNKNOWN, Cells
 from engine.stability.study import Row, amplitude, early_steps, table
 from tui.cli.files import whole_file
 from tui.cli.output import console
 from tui.cli.report import Column, Report, Table
 from tui.drawing.palette import PALETTES
 from tui.views.stability.picture import picture
-from tui.views.stability.words import said
 
 CELL_FIELDS = ("fate", "steps_survived", "max_energy_error")
 LINEAR = """\
@@ -39,7 +38,7 @@ def report(scene: Scene, steps: int, computed: Sequence[Computed], *, is_whole: 
         [row for row in table(scene, *computed[0]) if row.failure or is_whole or len(computed) > 1] if computed else []
     )
     pendulum = [_row_fields(row) for row in rows]
-    notes: list[Any] = [*_words(scene, steps), Table(_columns(scene, steps), rows)] if computed else [LINEAR]
+    notes: list[Any] = [*_words(scene), Table(_columns(scene, steps), rows)] if computed else [LINEAR]
     maps = computed[1:]
     for grid, cells in maps:
         notes += ["", *_picture(grid, cells)]
@@ -124,13 +123,14 @@ def _swings(grid: Grid, cells: Cells) -> Iterator[dict[str, Any]]:
             yield place | dict(zip(CELL_FIELDS, (FATES[fate], steps, error), strict=True))
 
 
-def _words(scene: Scene, steps: int) -> Iterator[str]:
+def _words(scene: Scene) -> Iterator[str]:
     """Yield what is to be known of the pendulum's table."""
-    yield f"""
-Pendulum: a swing is lost if it goes over the top, or is chaotic and gets 10 % wider than on the linear oscillator;
-chaos in narrower swings is not looked for. A method that is not symplectic also fails
-if its energy leaves the linear oscillator's band by {100 * BAND:.0f} %. A limit moves down with more steps (--steps).
-Margin = limit / z, of the scene's z = {scene.z:.4g}. Below 1, the scene is beyond the limit."""
+    yield "\nPendulum: the z from which a swing is lost in so many steps; more steps move it down (--steps)."
+    yield (
+        "Lost: it goes over the top, or is chaotic and 10 % wider than on the linear oscillator; without a symplectic"
+        f" method also if its energy leaves the linear oscillator's band by {100 * BAND:.0f} %."
+    )
+    yield f"Margin = limit / z, of the scene's z = {scene.z:.4g}. Below 1, the scene is beyond the limit."
     swing = amplitude(scene)
     if swing is not None and not math.isclose(swing, scene.theta):
         speed = f" with {scene.omega:g} rad/s" if scene.omega else ""
@@ -142,26 +142,15 @@ def _columns(scene: Scene, steps: int) -> list[Column]:
     def of_failure(head: str, write: Callable[[Any], str]) -> Column:
         return Column(head, lambda row: row.failure and write(row.failure), right=head != "failure")
 
-    early = f"lost from z, {early_steps(steps):,} steps"
     return [
         Column("method", lambda row: row.method.label),
-        Column("amplitude", lambda row: f"{math.degrees(row.theta):.4g} deg", right=True),
-        Column(early, lambda row: row.early and f"{row.early.z:.4g}", right=True),
-        of_failure(f"{steps:,} steps", lambda failure: f"{failure.z:.4g}"),
+        Column("from", lambda row: f"{math.degrees(row.theta):.4g}°", right=True),
+        Column(f"in {early_steps(steps):,}", lambda row: row.early and f"{row.early.z:.4g}", right=True),
+        of_failure(f"in {steps:,}", lambda failure: f"{failure.z:.4g}"),
         of_failure("h [s]", lambda failure: f"{failure.z / scene.w0:.3g}"),
         of_failure("failure", lambda failure: failure.reason),
-        of_failure("at step", lambda failure: "-" if failure.reason == FATES[CHAOTIC] else str(failure.steps + 1)),
-        Column(f"at z = {scene.z:.4g}", lambda row: _here(row.here)),
         of_failure("margin", lambda failure: f"{failure.z / scene.z:.3g}"),
     ]
-
-
-def _here(cell: Any) -> str | None:
-    if cell["fate"] == UNKNOWN:
-        return None
-    if is_lost(cell) and cell["fate"] != CHAOTIC:
-        return f"lost at step {cell['steps'] + 1}"
-    return said(cell)
 
 
 def _picture(grid: Grid, cells: Cells) -> list[Text]:
