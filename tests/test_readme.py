@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from engine.run.judgement import DEFINITIONS
 from engine.run.lockstep import Lockstep
 from engine.run.stepping import Stepping
 from engine.scenes import DEFAULT_SCENE
@@ -234,3 +235,8 @@ def test_with_time_reversed_verlet_comes_back_and_symplectic_euler_does_not():
     }
     assert missed["velocity_verlet"] < 1e-12
     assert missed["symplectic_euler"] > 1e-3
+
+
+def test_verdicts_have_the_definitions_of_the_help():
+    for verdict, text in DEFINITIONS.items():
+        assert f"| `{verdict}` | {text} |" in README

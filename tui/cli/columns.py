@@ -20,6 +20,7 @@ from tui.cli.options import did_you_mean
 
 MAX_LINE = 1 << 20  # bytes
 MAX_LINES_BEFORE = 100_000  # the first row
+MAX_PAGE = 64  # rows below a header that comes again on each page, as NAMD's; fewer are no table
 MAX_NAME = 200  # characters of a column's name
 MAX_NAMES = 200  # columns of a header
 MAX_ARRAY = 1 << 30  # bytes of an array in an .npz
@@ -97,37 +98,63 @@ def read_table(stream: BinaryIO, wanted: Sequence[str], number: int | None = Non
     A column is a name, a number from 1, or several of them joined by +.  Rows before `start` are
     left out.  Raises UserError if there is no such table.
     """
-    current = Table((), [])
-    found = None
-    last = -LATEST
-    count = 0
+    tables = _Tables(len(wanted), number)
     for record in _records(stream, wanted):
         if isinstance(record, Head):
-            current = Table(record.units, [array("d") for _ in wanted])
-            last = -LATEST
-            continue
-        if None in record:
-            current.skipped["without_numbers"] += 1
-            continue
-        now = record[0]
-        if -LATEST < now < last:  # type: ignore[operator]
-            current = Table(current.units, [array("d") for _ in wanted])
-            last = -LATEST
-        if not current.number and abs(now) < LATEST:  # type: ignore[arg-type]
-            count += 1
-            current.number = count
-            found = current if number in (None, count) else found
-        if last <= now < LATEST:  # type: ignore[operator]
-            last = now  # type: ignore[assignment]
-        for column, value in zip(current.columns, record):  # noqa: B905
-            column.append(value)
-    if found is None and count:
-        raise _unreadable(f"there is no table {number}; the input has {count}.")
-    if found is None:
+            tables.add_head(record)
+        elif None in record:
+            tables.current.skipped["without_numbers"] += 1
+        else:
+            tables.add_row(record)  # type: ignore[arg-type]
+    if tables.found is None and tables.count:
+        raise _unreadable(f"there is no table {number}; the input has {tables.count}.")
+    if tables.found is None:
         raise _unreadable("no row has a number in each column; columns count from 1.")
-    found.count = count
-    found.finish(start)
-    return found
+    tables.found.count = tables.count
+    tables.found.finish(start)
+    return tables.found
+
+
+class _Tables:
+    """Tables while they are read; the wanted one and the current one are kept."""
+
+    def __init__(self, width: int, number: int | None) -> None:
+        """`number` is that of the wanted table; None: the last one."""
+        self.count = 0
+        self.current = Table((), [])
+        self.found: Table | None = None
+        self._width = width
+        self._number = number
+        self._head: Head | None = None
+        self._rows = 0  # since the head
+        self._last = -LATEST  # time of the current table
+
+    def add_head(self, head: Head) -> None:
+        """Begin a table, unless it is the header of the next page."""
+        if head != self._head or not 0 < self._rows < MAX_PAGE:
+            self._begin(head.units)
+        self._head = head
+        self._rows = 0
+
+    def _begin(self, units: tuple[str, ...]) -> None:
+        self.current = Table(units, [array("d") for _ in range(self._width)])
+        self._last = -LATEST
+
+    def add_row(self, row: Sequence[float]) -> None:
+        """Add a row; where its time starts again, to another table."""
+        now = row[0]
+        self._rows += 1
+        if -LATEST < now < self._last or (now == self._last and self._rows == 1):
+            self._begin(self.current.units)
+        if abs(now) < LATEST:
+            self._last = max(self._last, now)
+            if not self.current.number:
+                self.count += 1
+                self.current.number = self.count
+                if self._number in (None, self.count):
+                    self.found = self.current
+        for column, value in zip(self.current.columns, row, strict=True):
+            column.append(value)
 
 
 def _unreadable(sentence: str) -> UserError:
@@ -169,6 +196,7 @@ class _Text:
         self._head: Head | None = None
         self._has_rows = False
         self._delimiter: str | None = None
+        self._is_numbered = True  # no header has the names
         self._width = 0  # fields of a row
         self._above: list[str] = []  # the first row: where it comes again, a table begins
 
@@ -211,15 +239,30 @@ class _Text:
         fields = _fields(text, delimiter)
         if sum(_number(each) is not None for each in fields) < 2:
             self._read_header(text, fields, is_comment)
-        elif not is_comment and not self._has_rows:
-            self._head = self._head or self._head_of_legend(len(fields))
-            if self._head:
-                self._delimiter = delimiter
-                self._width = len(fields)
-                self._has_rows = True
-                yield self._head
+        elif not is_comment:
+            yield from self._begin(fields, delimiter)
         if self._has_rows and self._head and text.strip() and not is_comment:
             yield _row(fields if len(fields) == self._width else [], self._head.places)
+
+    def _begin(self, fields: list[str], delimiter: str | None) -> Records:
+        """Yield the head of the table whose first row this is, if it is one."""
+        if self._is_numbered:
+            is_other = len(fields) != self._width and None not in map(_number, fields)
+            head = None
+            if is_other or not self._has_rows:
+                head = self._head_of_legend(len(fields))
+            begins = head is not None and None not in _row(fields, head.places)
+        else:
+            head = self._head
+            begins = head is not None and not self._has_rows
+        if begins and head:
+            self._head = head
+            self._delimiter = delimiter
+            self._width = len(fields)
+            self._has_rows = True
+            yield head
+        elif self._head is None and len(fields) == len(self._above):
+            self._names = self._above
 
     def _read_header(self, text: str, fields: list[str], is_comment: bool) -> None:
         """Look for the names of columns in a line, or for the units below them."""
@@ -232,12 +275,13 @@ class _Text:
         for names in ways:
             if places := _places(names[:MAX_NAMES], self._wanted, named=True):
                 self._head = Head(places, tuple(_unit(names[group[0]]) for group in places))
+                self._is_numbered = False
                 self._names = names
                 self._has_rows = False
                 return
         if self._head is None:
-            longer = len(fields) > len(self._names) and not is_comment
-            self._names = fields[:MAX_NAMES] if longer else self._names
+            if not self._names and not is_comment:
+                self._names = fields[:MAX_NAMES]
         elif len(fields) == len(self._names) and not self._has_rows and not any(self._head.units):
             units = tuple(fields[group[0]].strip("()[]")[:20] for group in self._head.places)
             self._head = self._head._replace(units=units)

@@ -132,10 +132,22 @@ FOOTER = "Loop time of 1 on 1 procs for 9 steps with 9 atoms\nNlocal: 9 ave 9 ma
 @pytest.mark.parametrize("names", [("Time", "TotEng"), ("2", "4")])
 def test_a_second_header_begins_a_table_and_a_footer_none(names):
     head = "   Step   Time   Temp   TotEng\n"
-    first = head + "".join(f"{n} {t} 300. {energy - 9}\n" for n, (t, energy) in enumerate(ROWS)) + FOOTER
+    first = (
+        "1 by 1 by 1 grid\n"
+        + head
+        + "".join(f"{n} {t} 300. {energy - 9}\n" for n, (t, energy) in enumerate(ROWS))
+        + FOOTER
+    )
     second = head + "".join(f"{n} {t + 30} 300. {energy}\n" for n, (t, energy) in enumerate(ROWS)) + FOOTER
     found = read(first + second, *names)
     assert (found.number, found.count, len(found.columns[0]), found.columns[1][0]) == (2, 2, 300, 100)
+
+
+def test_a_header_on_each_page_begins_no_table():
+    pages = [ROWS[at : at + 20] for at in range(0, 300, 20)]
+    rows = ["".join(f"ENERGY: {t} 1.5 {energy}\n" for t, energy in page) for page in pages]
+    found = read("".join(f"ETITLE: TS BOND TOTAL\n{page}\n" for page in rows), "TS", "TOTAL")
+    assert (found.count, len(found.columns[0])) == (1, 300)
 
 
 def test_rows_before_a_time_are_left_out():
@@ -266,6 +278,7 @@ def test_junit_has_the_check_as_a_test_and_replaces_an_older_report(expression, 
         ("t,E\na,b\n", ("t", "E"), 3, ["no row has a number in each column"]),
         ("t,E\n1,nan\n", ("t", "E"), 3, ["no row has a usable"]),
         (table(), ("", ""), 2, ["there is no column ''; choose from t, E"]),
+        ("words\na b c\nStep TotEng\n1 2\na | b | c | d\n", ("Step", "E"), 2, ["choose from Step, TotEng."]),
         ("\x1b[31m,\x07\n", ("t", "E"), 2, ["there is no column 't'"]),
     ],
 )
