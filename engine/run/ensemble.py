@@ -1,8 +1,7 @@
 """Many swings at once: a method's phases on arrays, in NumPy or compiled by Numba from the same generator.
 
-The compiled loop has its own sine, which the compiler turns into instructions for many numbers together.  Its last
-bits are not NumPy's, so a picture made with it is the same on one machine however it is cut and whoever computes
-it, but not the same as without Numba.
+The last bits of Numba's sine need not be NumPy's, so a picture made with it is the same on one machine however it is
+cut and whoever computes it, but perhaps not the same as without Numba.
 """
 
 import math
@@ -72,27 +71,6 @@ def sharing(w0_squared: float) -> tuple[Force, Energy]:
     return force, energy
 
 
-def sine(x: Any) -> Any:
-    """sin x to 4e-16 for |x| < 3e6, with + and * only, so that many are computed together.
-
-    x is brought to within pi/2 by a multiple of pi, in three parts of which the first two have 20 bits to spare (Cody &
-    Waite, Software Manual for the Elementary Functions, 1980); then a Taylor polynomial.
-    """
-    turns = (x * (1 / math.pi) + _ROUND) - _ROUND
-    r = ((x - turns * _PI_1) - turns * _PI_2) - turns * _PI_3
-    s = r * r
-    p = _C13 + s * (_C15 + s * (_C17 + s * (_C19 + s * _C21)))
-    p = r + r * s * (_C3 + s * (_C5 + s * (_C7 + s * (_C9 + s * (_C11 + s * p)))))
-    half = turns * 0.5
-    odd = half - ((half + _ROUND) - _ROUND)  # 0, or 1/2 either way
-    return p * (1 - 8 * odd * odd)
-
-
-_ROUND = 6755399441055744.0  # 1.5·2^52: added and taken away, it rounds to a whole number
-_PI_1, _PI_2, _PI_3 = 3.14159265346825122833, 1.215420101260793195e-10, 4.0445324974223329116e-21
-_C3, _C5, _C7, _C9, _C11, _C13, _C15, _C17, _C19, _C21 = ((-1) ** k / math.factorial(2 * k + 1) for k in range(1, 11))
-
-
 @cache
 def plain(method: Method, model: Pendulum) -> Watch:
     """The loop in NumPy."""
@@ -120,8 +98,8 @@ def compiled(method: Method, model: Pendulum) -> Watch:
     numba: Any = import_module("numba")
     inner = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)  # never called by Python: compiles twice as fast
     phases = numba.njit(COMPILABLE.get(method.phases, method.phases))
-    force, energy = inner(model.force(numba.vectorize(sine))), model.energy
-    look = numba.njit(_looking(inner(energy(inner(sine)))))
+    force, energy = inner(model.force(np.sin)), model.energy
+    look = numba.njit(_looking(inner(energy(np.sin))))
 
     # The loop over phases is Python's: in compiled code Numba 0.68 never frees what a generator yields.  What the
     # generator itself holds when it is given up, a few arrays, is never freed (numba/numba#1278), so make few of them.

@@ -162,8 +162,8 @@ class Judge:
     def _trend(self, verdict: Verdict) -> Judgement:
         """Return a judgement with the recent slope as far as there is evidence for one.
 
-        A symplectic method has none before its verdict.  Beyond the initial energy the line is one through the
-        logarithms, and the slope is the error times the rate at which its logarithm grows.
+        A symplectic method has none before its verdict.  Where the errors beyond the initial energy follow a line
+        better in the logarithm, the slope is the error times the rate at which its logarithm grows.
         """
         if self._map and verdict == "too early":
             return Judgement()
@@ -171,12 +171,16 @@ class Judge:
         bands = self._map.modified if self._map and flat and self._map.modified.bins else self._energy
         recent = bands.recent(0.5) if len(bands.bins) >= MAX_BINS / 2 else bands.bins
         folded = [self._fold(each) for each in recent]
-        trend = line(folded)
+        size = 1.0
+        trend = line(recent)
+        if abs(folded[-1].middle) > 1 and (logarithmic := line(folded)).sigmas > trend.sigmas:
+            trend = logarithmic
+            size = math.exp(abs(folded[-1].middle) - 1)
+            recent = folded
         shift = abs(trend.slope) * (recent[-1].step - recent[0].step)
-        width = median(each.width for each in folded)
+        width = median(each.width for each in recent)
         sampled = (1 - math.cos(min(self._z, math.pi / 2))) * width  # by which the extremes of a wobble are missed
         significant = trend.sigmas > SIGMAS and shift > max(self._floor, sampled)
-        size = math.exp(max(0.0, abs(folded[-1].middle) - 1)) if self._relative else 1.0
         slope = trend.slope / self._h * size
         uncertainty = trend.uncertainty / self._h * size
         if not math.isfinite(slope + uncertainty) or not (significant or verdict != "too early"):

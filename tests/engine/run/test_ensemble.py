@@ -6,13 +6,11 @@ from resource import RUSAGE_SELF, getrusage
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from engine.methods import GENERAL, VELOCITY_VERLET, Method
 from engine.models import Pendulum
 from engine.run.compiled import available
-from engine.run.ensemble import Watched, compiled, plain, sharing, sine
+from engine.run.ensemble import Watched, compiled, plain, sharing
 
 needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed")
 each_method = pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
@@ -34,11 +32,6 @@ def path(method: Method, h: float, steps: int, fast: bool, which: slice = slice(
         start, np.full(len(start[0]), h), watched(-1.0, which), steps
     )
     return np.array([np.array(phase) for _, phase in stops])
-
-
-@given(st.floats(-1e4, 1e4))
-def test_the_sine_is_right_to_four_ulp_of_one(x: float) -> None:
-    assert sine(x) == pytest.approx(math.sin(x), rel=0, abs=4.5e-16)
 
 
 @each_way
