@@ -35,9 +35,9 @@ class PhasePane(Chooser[State]):
         Binding("up", "move(0, 1)"),
         Binding("down", "move(0, -1)"),
         Binding("enter", "choose", "Start", tooltip="start at the crosshair"),
-        Binding("escape", "cancel", "no crosshair; then all in view", False, "esc"),
+        Binding("escape", "cancel", "leave it, then all in view", False, "esc"),
         Binding("z", "zoom(0.5)", "Zoom", tooltip="zoom in at the crosshair"),
-        Binding("g", "radius", "Ring", tooltip="ring of neighbours: next, none"),
+        Binding("g", "radius", "Ring", tooltip="ring of neighbours, radii"),
     ]
 
     NEEDS_NUMPY = True

@@ -37,8 +37,8 @@ class SectionPane(PhasePane):
     """The portrait or, after x, the section of the method that is described."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("x", "section", "Map", tooltip="a method's own map: islands, …"),
-        Binding("tab", "next_map", "the map of the next method", show=False),
+        Binding("x", "section", "Map", tooltip="a method's own map"),
+        Binding("tab", "next_map", "map of the next method", show=False),
     ]
 
     shows_section: var[bool] = var(False)
