@@ -23,12 +23,12 @@ class Parser(argparse.ArgumentParser):
         raise UserError(f"{message.removeprefix('argument ')}; {self.prog} --help shows the options.")
 
     def parse_args(self, arguments: Sequence[str], namespace: Any = None) -> Any:  # type: ignore[override]
-        """Parse the arguments; a SCENE may also follow options."""
+        """Parse the arguments; optional words, such as a SCENE, may also follow options."""
         for argument in arguments:
             if re.fullmatch(r"(--?[\w-]+=|-\w)--", argument):  # Python 3.11 makes a list of it
                 self.error(f"{argument.removesuffix('--').removesuffix('=')}: expected one argument")
-        takes_scene = any(action.dest == "scene" for action in self._actions)
-        if takes_scene and not {"-h", "--help"} & {*arguments}:  # whose text intermixing changes
+        has_optional = any(each.nargs == "?" and not each.option_strings for each in self._actions)
+        if has_optional and not {"-h", "--help"} & {*arguments}:  # whose text intermixing changes
             return self.parse_intermixed_args(arguments, namespace)
         return super().parse_args(arguments, namespace)
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from recordings.errors import printable
 from tui.cli.errors import Exit, UserError
 from tui.cli.files import text_file, whole_file
+from tui.cli.install import install_advice
 from tui.cli.options import add_file, add_recording
 from tui.cli.output import progress, warn, write_csv
 from tui.words.numbers import file_size
@@ -73,7 +74,8 @@ def _write_parquet(path: Path, force: bool, columns: tuple[str, ...], rows: Rows
         import pyarrow
         from pyarrow.parquet import ParquetWriter
     except ImportError:
-        raise UserError("--format parquet needs pyarrow: pip install pyarrow.") from None
+        advice = install_advice("pyarrow", "parquet")
+        raise UserError(f"--format parquet needs pyarrow: {advice}.") from None
 
     types = {"run": pyarrow.int64(), "step": pyarrow.int64(), "method": pyarrow.string()}
     schema = pyarrow.schema([(name, types.get(name, pyarrow.float64())) for name in columns])
