@@ -27,7 +27,7 @@ KEYS = [method.key for method in METHODS]
 
 
 def add_cast_options(parser: argparse._ActionsContainer, default: str = "the scene's") -> None:
-    """Add the options that choose methods, by default those in words; `cast_of` reads them."""
+    """Add the options that choose methods, for `cast_of`; the help calls those without --methods `default`."""
     parser.add_argument(
         "--methods",
         metavar="KEY,KEY",

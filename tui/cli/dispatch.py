@@ -68,9 +68,7 @@ exit codes: 0 fine, 1 a check failed, 2 usage error, 3 unreadable input, 4 unsui
 130 interrupted.
 
 examples:
-  pendu-tui
   pendu-tui crossover
-  pendu-tui --theta 170deg --h 0.02
   pendu-tui replay latest
   pendu-tui run crossover --time 100
 """

@@ -62,13 +62,9 @@ def test_a_negative_number_after_an_option_is_its_value(text):
     "arguments",
     [
         ("--h", "0"),
-        ("--h", "nan"),
-        ("--h", "1e9"),
         ("--h", "-0.05"),
         ("--length", "0"),
-        ("--length", "-1"),
         ("--gravity", "0"),
-        ("--gravity", "-9.81"),
         ("--theta", "inf"),
         ("--omega", "nan"),
     ],

@@ -1,5 +1,7 @@
 """--scene FILE.toml: the fields of scenes --json, and errors that name line and field."""
 
+import math
+
 import pytest
 
 from engine.scenes import SCENES
@@ -39,6 +41,10 @@ def test_without_methods_it_has_those_that_are_for_its_model(tmp_path, name):
         ("model = 'cubic'", "line 1: model is not one of pendulum"),
         ("theta = 1\nmethods = ['rk5']", "line 2: "),
         ("theta = 1\nfriction = 0.1", "line 2: the model pendulum has no friction"),
+        ("friction = 'x'", "line 1: friction is not a number"),
+        ("theta = '1 turn'", "line 1: theta: '1 turn' is not an angle"),
+        (f"theta = {'9' * 5000}", "is not TOML"),
+        ("x" * 100_001, "longer than"),
         ("theta = = 1", "is not TOML: Invalid value (at line 1"),
     ],
 )
@@ -53,3 +59,8 @@ def test_a_missing_file_is_one_sentence():
     answer = pendu("run", "--scene", "none.toml", "--time", "1")
     assert answer.code == 3
     assert "cannot read none.toml" in answer.err
+
+
+def test_it_may_begin_with_a_byte_order_mark_and_give_angles_in_degrees(tmp_path):
+    (tmp_path / "mine.toml").write_text("\ufefftheta = '180deg'", encoding="utf-8")
+    assert read_scene(tmp_path / "mine.toml").theta == math.pi
