@@ -100,7 +100,7 @@ def main() -> None:
     parser.add_argument("--closed", type=int, default=100)
     options = parser.parse_args()
     chance = random.Random(2)
-    cont = (signal.SIGCONT, signal.SIGCONT)
+    cont = (signal.SIGCONT,)
     report = {
         "continues": survives(options.continues, cont),
         "stops": survives(options.stops, STOPS, cont),

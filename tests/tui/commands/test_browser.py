@@ -4,12 +4,13 @@ import asyncio
 import json
 
 import pyte
+import pytest
 
 from tests.tui.chromium import NEEDED, Page, chromium
 from tests.tui.commands.test_serve import serving
 from tui.drawing.palette import PALETTES
 
-pytestmark = NEEDED
+pytestmark = [NEEDED, pytest.mark.slow]
 
 METHODS = [*PALETTES["dark"].methods[:4]]
 

@@ -35,7 +35,7 @@ from tui.screens.base import SourceScreen
 from tui.screens.live import LiveScreen
 from tui.screens.replay import ReplayScreen
 
-pytestmark = pytest.mark.other_process  # what is computed is left again at once
+pytestmark = [pytest.mark.other_process, pytest.mark.slow]  # what is computed is left again at once
 
 PRESSES, WILD = 300, 120
 SEED = int(os.environ.get("PENDU_MONKEY", "1"))

@@ -5,7 +5,6 @@ import random
 import re
 import signal
 import time
-from contextlib import suppress
 from pathlib import Path
 
 from engine.run.lockstep import Sample
@@ -131,25 +130,6 @@ def stopped(pendu: PtyLab) -> bytes:
         pendu.run(0.02)
     pendu.run(0.1)
     return bytes(pendu.output[start:])
-
-
-def test_signals_that_come_while_the_lab_writes_do_not_freeze_it(tmp_path):
-    chance = random.Random(1)
-    with session(tmp_path) as pendu:
-        pendu.wait_for(RECORDING)
-        for number in [signal.SIGCONT] * 100 + [signal.SIGTSTP, signal.SIGCONT] * 10:
-            pendu.signal(number)
-            pendu.run(chance.uniform(0, 0.03))
-        for _ in range(20):  # what is typed while the terminal is being set up again is discarded
-            pendu.type(" ")
-            with suppress(TimeoutError):
-                pendu.wait_for("paused", 1.0)
-                break
-        assert "paused" in pendu.output.decode(errors="replace")
-        pendu.type("q")
-        assert pendu.end() == 0
-    (path,) = tmp_path.iterdir()
-    assert verify(path).identical
 
 
 def standing(pendu: PtyLab) -> list[str]:
