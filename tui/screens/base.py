@@ -356,9 +356,10 @@ class SourceScreen(Screen[None]):
 
     def action_view(self, name: str = "") -> None:
         """Show a view, or the next one."""
-        self.call_next(self._show_view, name or following(self.view))  # data_bind works in the screen's own turn only
+        self.call_next(self._show_view, name)  # data_bind works in the screen's own turn only
 
     async def _show_view(self, name: str) -> None:
+        name = name or following(self.view)
         views = self.query_one("#views")
         if not views.query(f"#{name}"):
             await views.mount(self._bound(create(name)))
