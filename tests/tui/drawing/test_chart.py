@@ -190,17 +190,6 @@ def test_only_shown_methods_have_letters(shown):
     assert {letter for letter in letters if letter.isalpha()} == {USUAL_CAST[index].letter for index in shown}
 
 
-def test_zeros_are_drawn_at_the_floor():
-    picture = chart(window([1, 2, 3, 4], [0, 0, 0, 0]), 40, 12, shown=[3])
-    assert picture.text.splitlines()[9].rstrip().endswith("r")  # the last row above the axis of time
-    assert "⣀" in picture.text or "⠤" in picture.text
-
-
-def test_a_line_has_the_ink_of_its_method():
-    picture = chart(window([1, 2, 3], [1, 1, 1]), shown=[2])
-    assert inks(picture) == {2, FRAME, TEXT}
-
-
 def test_a_failed_method_leaves_room_for_the_others():
     picture = chart(window([1, 2], [[1e300, 1e-3, 1e-3, 1e-5]] * 2))
     labels = [float(line.partition("┤")[0]) for line in picture.text.splitlines() if "┤" in line]
@@ -217,12 +206,6 @@ def test_after_a_reversal_the_axis_is_labelled_as_time_run():
 @pytest.mark.parametrize("size", [(MIN_COLUMNS - 1, 30), (80, MIN_ROWS - 1)])
 def test_a_chart_that_is_too_small_is_replaced_by_a_sentence(size):
     assert "A chart needs 20×5" in " ".join(chart(window([1, 2], [1, 2]), *size).text.split())
-
-
-def test_the_smallest_chart_still_has_its_lines_and_labels():
-    assert chart(window(range(20), np.geomspace(1e-4, 1, 20)), MIN_COLUMNS, MIN_ROWS, seconds=20).text == (
-        "    1┤        ⣀⠤esvr\n     │    ⢀⡠⠒⠉\n 1e-3┤⢀⠤⠔⠊⠁\n     └┬────────┬────\n      0       20 s"
-    )
 
 
 def test_plotext_is_loaded_with_the_first_chart_and_not_before():

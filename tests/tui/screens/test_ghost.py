@@ -68,11 +68,11 @@ async def test_it_is_faint_behind_the_same_methods_and_says_which_step_size_it_h
         await theatre.settled()
         first = theatre.stage.query_one(LabView).pendulums[1]
         colour = faint(ink_of(DEFAULT_SCENE.cast[1], DEFAULT_SCENE.cast))
-        assert colour in inks(first._picture)
+        assert colour in inks(first.picture(theatre.source, theatre.source.sample))
         assert first.border_subtitle == "dim: h 0.1 s" or "dim: swing, h 0.1 s" in first.border_subtitle
         chart = theatre.stage.query(TimeChart).first()
-        assert chart._plot is not None
-        assert colour in inks(chart._picture)
+        assert chart.plot is not None
+        assert colour in inks(chart.plot.picture)
         assert "dim: swing, h 0.1 s" in str(chart.border_subtitle)
         theatre.stage.start(SCENES["stiff-slow"])
         assert theatre.source.ghost is None  # another model

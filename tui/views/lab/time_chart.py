@@ -90,7 +90,7 @@ class TimeChart(Pane):
         """`ahead`: the number of quantities from the chosen one to the one that is charted."""
         super().__init__()
         self._ahead = ahead
-        self._plot: TimePlot | None = None
+        self.plot: TimePlot | None = None
         self._plotted: object = None
         self._pointer: int | None = None  # the column under it
 
@@ -106,12 +106,12 @@ class TimeChart(Pane):
     def picture(self, source: Source, sample: Sample) -> Picture:
         look = self._look(source)
         plotted = sample, look, self.room, source.ghost, source.history, source.history.rewound, source.knows_past
-        if self._plot is None or plotted != self._plotted:  # the run may be paused
+        if self.plot is None or plotted != self._plotted:  # the run may be paused
             self._plotted = plotted
-            self._plot = self._charted(source, sample, look)
+            self.plot = self._charted(source, sample, look)
         above = title(look, source.exact, source.scene.equations)
         self.write_titles(above, self._below(source, look, self.room.width - 6))
-        return self._plot.picture
+        return self.plot.picture
 
     def _charted(self, source: Source, sample: Sample, look: Shown) -> "TimePlot":
         from tui.drawing.time_chart import time_chart
@@ -129,7 +129,7 @@ class TimeChart(Pane):
 
     def _below(self, source: Source, look: Shown, room: int) -> str:
         """Return what is under the pointer, or how to change the chart."""
-        plot = self._plot
+        plot = self.plot
         if plot is not None and self._pointer is not None and (reading := plot.at(self._pointer)) is not None:
             return read_out(reading, [self.cast[place].letter for place in plot.places], room)
         if look.quantity == "shadow_error" and (known := modified_energy_of(self.cast)):
@@ -168,7 +168,7 @@ class TimeChart(Pane):
 
     def zoom(self, factor: float, shift: float = 0.0) -> None:
         """Ask for `factor` times the stretch about the pointer, or a `shift` of it later, if that has MIN_ROWS."""
-        source, plot = self.source, self._plot
+        source, plot = self.source, self.plot
         if source is None or plot is None or plot.values is None:
             return
         stretch = self._look(source).stretch

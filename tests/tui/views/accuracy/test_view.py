@@ -102,13 +102,6 @@ async def test_enter_uses_the_h_of_the_cursors_point_and_u_takes_it_back():
         assert live.stepping.h == 0.05
 
 
-async def test_while_time_runs_backwards_the_chosen_h_is_negative():
-    async with accuracy_view() as (pilot, pane, live):
-        await pilot.press("b", "left", "enter")
-        await complete(pilot, pane)
-        assert live.stepping.h == pytest.approx(-5.0 / RUNGS[1])
-
-
 async def test_at_equal_cost_every_method_is_at_its_own_h():
     async with accuracy_view() as (pilot, pane, live):
         await pilot.press("n")
@@ -226,15 +219,6 @@ async def test_all_methods_and_the_reference_lines_are_charted_over_seconds(monk
         await complete(pilot, pane)
         assert live.stepping.h == 5.0 / RUNGS[0]
         assert pane.cast == USUAL_CAST
-
-
-async def test_the_first_arrow_leads_where_it_points():
-    async with accuracy_view() as (pilot, pane, _live):
-        here = pane.study.here[pane.index]
-        await pilot.press("right")
-        assert pane.study.steps[pane.cursor] > here
-        await pilot.press("escape", "left")
-        assert pane.study.steps[pane.cursor] < here
 
 
 async def test_the_cursor_stays_on_the_ladder_and_esc_leaves_it():

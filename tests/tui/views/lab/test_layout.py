@@ -7,8 +7,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from textual.geometry import Region
 
-from engine.methods import USUAL_CAST
-from tui.drawing.palette import mark
 from tui.views.lab.layout import CHART, PANE, Places, places
 
 BODIES = {  # of the terminal: the cells above the table of four methods
@@ -62,16 +60,6 @@ def test_each_method_has_a_pane_where_there_is_room_else_they_share_one(name, me
     for region in found.pendulums:
         assert region.width >= PANE.width
         assert region.height >= PANE.height
-
-
-def test_the_names_of_the_usual_cast_fit_over_the_narrowest_pane():
-    frame = 6  # two corners, two lines, two spaces
-    assert max(len(mark(0, method)) + 1 + len(method.label) for method in USUAL_CAST) + frame <= PANE.width
-
-
-def test_three_methods_leave_no_hole():
-    first, second, third = places(*BODIES["120x40"], methods=3).pendulums
-    assert first.width + second.width == third.width
 
 
 def test_where_there_is_much_room_there_is_a_second_chart():

@@ -23,30 +23,9 @@ def test_a_pendulum_at_one_radian_that_came_from_the_other_side():
     )
 
 
-def test_over_the_top_it_stays_in_its_pane():
-    assert picture(11, 5, Bob(math.pi, 0)).text == "     ⢿⠂\n     ⢸\n     ⠾\n\n"
-
-
 def test_four_that_coincide_show_their_letters_side_by_side():
     assert picture(16, 8, *(Bob(-2.0, index, letter="esvr"[index]) for index in range(4))).text == (
         "\n\n esvr\n  ⠈⠋⠑⠒⠤⣀⡀\n       ⠈⠁\n\n\n"
-    )
-
-
-def test_at_the_edge_every_letter_still_has_a_cell():
-    text = picture(16, 8, *(Bob(1.0, index, letter="esvr"[index]) for index in range(4))).text
-    assert all(letter in text for letter in "esvr")
-
-
-def test_the_exact_swing_is_dotted_and_hollow():
-    assert picture(16, 8, Bob(1.0, EXACT, ghost=True)).text == (
-        "\n\n\n       ⢀⡀\n       ⠈⠁⠠\n           ⠁⠠⡠⢄\n             ⠉⠉\n"
-    )
-
-
-def test_a_method_that_diverged_is_crossed_out():
-    assert picture(16, 8, Bob(1.0, 0, diverged=True)).text == (
-        "\n\n\n       ⢀⡀\n       ⠈⠁⠠\n           ⠁⠰⢄⡠⠂\n            ⠠⠊⠑⠄\n"
     )
 
 

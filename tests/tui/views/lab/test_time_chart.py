@@ -88,12 +88,6 @@ def test_a_title_says_the_ends_of_a_stretch_as_exactly_as_they_differ():
         assert title(Shown(stretch=Stretch(1, *ends, True)), exact, WHOLE.equations) == f"max |dE/E0|, {span}"
 
 
-def test_another_run_is_shown_as_before_the_zoom():
-    shown = Shown(seconds=20.0, stretch=Stretch(1, 3.0, 4.0, False))
-    assert shown.of(1) == shown
-    assert shown.of(2) == shown.next_window() == Shown(seconds=20.0)
-
-
 async def test_the_pointer_reads_the_chart_out_the_wheel_zooms_there_and_keys_lead_on_and_back():
     async with lab() as theatre:
         await theatre.run(12)
@@ -102,7 +96,7 @@ async def test_the_pointer_reads_the_chart_out_the_wheel_zooms_there_and_keys_le
         await theatre.pilot.hover(chart, offset=(30, 4))
         told = str(chart.border_subtitle)
         assert [word for word in told.split() if word in "esvr"] == ["e", "s", "v", "r"]
-        t = chart._plot.at(29).t
+        t = chart.plot.at(29).t
         assert told.startswith(f"{t:.2f} s:")
         scroll = {"delta_x": 0, "delta_y": -1, "button": 0, "shift": False, "meta": False, "ctrl": False}
         x, y = chart.content_region.offset
@@ -111,8 +105,8 @@ async def test_the_pointer_reads_the_chart_out_the_wheel_zooms_there_and_keys_le
         await theatre.settled()
         stretch = theatre.stage.shown.stretch
         assert stretch.end - stretch.begin == pytest.approx(0.7 * 12, rel=0.01)
-        assert chart._plot.at(29).t == pytest.approx(t, abs=0.02)
-        assert str(chart.border_subtitle).startswith(f"{chart._plot.at(29).t:.2f} s:")
+        assert chart.plot.at(29).t == pytest.approx(t, abs=0.02)
+        assert str(chart.border_subtitle).startswith(f"{chart.plot.at(29).t:.2f} s:")
         await theatre.run(2)  # the past stays there
         assert theatre.stage.shown.stretch == stretch
         assert chart.border_title == title(theatre.stage.shown, WHOLE.exact(), WHOLE.equations)
@@ -142,7 +136,7 @@ async def test_after_a_jump_in_a_replay_the_chart_shows_the_past_as_soon_as_it_i
             await theatre.pilot.pause(0)
             await theatre.settled()
         assert "quantity" in str(chart.border_subtitle)
-        known = ~np.isnan(chart._plot.values).all(axis=1)
+        known = ~np.isnan(chart.plot.values).all(axis=1)
         assert known.mean() > 0.8
 
 

@@ -51,16 +51,6 @@ async def test_it_says_what_becomes_of_the_swing_on_screen(monkeypatch: pytest.M
         assert "Velocity Verlet at h 0.0539 s, 58.1 deg: held" in pane.text
 
 
-async def test_at_equal_cost_each_method_is_where_its_own_step_is(monkeypatch: pytest.MonkeyPatch):
-    async with stability_view(monkeypatch) as (pilot, pane, live):
-        await pilot.press("n")
-        pane.draw()
-        z, theta = pane.here(VERLET)
-        assert pane.here(RK4) == (pytest.approx(4 * z), theta)
-        assert z == pytest.approx(live.scene.z)
-        assert "Velocity Verlet at h 0.0539 s" in pane.text  # the cell nearest to 0.05
-
-
 async def test_enter_starts_with_the_cursors_amplitude_and_step(monkeypatch: pytest.MonkeyPatch):
     async with stability_view(monkeypatch) as (pilot, pane, live):
         z, theta = pane.aim(VERLET)
