@@ -5,7 +5,7 @@ from textual.widgets import Tooltip
 from engine.methods import METHODS
 from engine.scenes import SCENES
 from tests.tui.harness import lab
-from tui.views.lab.error_table import COLUMNS, SPRING, ErrorTable, evaluations
+from tui.views.lab.error_table import COLUMNS, ErrorTable, evaluations, extra_columns
 from tui.views.phase.pane import PhasePane
 from tui.words.cards import head_text
 
@@ -49,7 +49,7 @@ async def test_tab_goes_from_head_to_head_and_says_what_each_means_and_esc_leave
 
 
 def test_every_head_has_a_meaning():
-    for column in (*COLUMNS, *SPRING):
+    for column in (*COLUMNS, *extra_columns(SCENES["stiff-limit"].equations)):
         assert head_text(column.wide[0]) is not None
         assert head_text(column.wide[0]) == head_text(column.narrow[0])
 
