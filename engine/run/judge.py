@@ -162,8 +162,8 @@ class Judge:
     def _trend(self, verdict: Verdict) -> Judgement:
         """Return a judgement with the recent slope as far as there is evidence for one.
 
-        A symplectic method has none before its verdict.  Where the errors beyond the initial energy follow a line
-        better in the logarithm, the slope is the error times the rate at which its logarithm grows.
+        A symplectic method has none before its verdict.  Where the logarithm of the energy follows a line better
+        than the energy, the slope is the energy times the rate at which its logarithm grows.
         """
         if self._map and verdict == "too early":
             return Judgement()
@@ -173,23 +173,27 @@ class Judge:
         folded = [self._fold(each) for each in recent]
         size = 1.0
         trend = line(recent)
-        if abs(folded[-1].middle) > 1 and (logarithmic := line(folded)).sigmas > trend.sigmas:
+        logarithmic = line(folded)
+        if folded[-1].middle > 0 and abs(logarithmic.sigmas) > abs(trend.sigmas):
             trend = logarithmic
-            size = math.exp(abs(folded[-1].middle) - 1)
+            size = math.exp(folded[-1].middle)
             recent = folded
         shift = abs(trend.slope) * (recent[-1].step - recent[0].step)
         width = median(each.width for each in recent)
         sampled = (1 - math.cos(min(self._z, math.pi / 2))) * width  # by which the extremes of a wobble are missed
-        significant = trend.sigmas > SIGMAS and shift > max(self._floor, sampled)
+        certain = trend.sigmas > SIGMAS
+        if verdict in ("grows", "loses"):  # evidence of its own
+            certain = abs(trend.slope) > SIGMAS * trend.uncertainty
+        significant = certain and shift > max(self._floor, sampled)
         slope = trend.slope / self._h * size
         uncertainty = trend.uncertainty / self._h * size
         if not math.isfinite(slope + uncertainty) or not (significant or verdict != "too early"):
             return Judgement()
-        growth = trend.slope / self._h if size > 1 else None
+        growth = trend.slope / self._h if size > 2 else None
         return Judgement(slope=slope, uncertainty=uncertainty, significant=significant, growth=growth)
 
     def _fold(self, band: Bin) -> Bin:
-        """Return a band of errors with their logarithms where they are beyond the initial energy."""
+        """Return a band of errors with ln(E/E0) where energy was gained."""
         return Bin(band.step, _folded(band.low), _folded(band.high)) if self._relative else band
 
     def _symplectic(self, evidence: "_SymplecticEvidence") -> Verdict:
@@ -289,8 +293,8 @@ class Judge:
 
 
 def _folded(error: float) -> float:
-    """Return an error up to the initial energy as it is, and beyond in the logarithm; its slope is continuous."""
-    return error if abs(error) <= 1 else math.copysign(1 + math.log(abs(error)), error)
+    """Return ln(E/E0) of an error where energy was gained; small ones hardly change."""
+    return math.log1p(error) if error > 0 else error
 
 
 class _SymplecticEvidence:
