@@ -9,13 +9,12 @@ import pytest
 
 from engine.accuracy.growth import Growth
 from engine.accuracy.references import ABSENT, OTHER_MODEL, UNFAIR
-from engine.accuracy.study import Study, ladder, orders
+from engine.accuracy.study import Study, ladder
 from engine.methods import USUAL_CAST
-from engine.run.compiled import TieredLoops, available
+from engine.run.compiled import available
 from engine.run.loops import PlainLoops
 from engine.scenes import SCENES
 from tests.tui.command_line import pendu
-from tui.commands.studies.reports.accuracy import order_remarks
 from tui.views.accuracy.chart import accuracy_chart, accuracy_series
 
 QUICK = ("accuracy", "--time", "5", "--h-values", "0.2:0.01:4")
@@ -201,15 +200,6 @@ def test_where_there_is_no_series_it_says_why(more, words, hurried):
     assert answer["absent"] == (words if available() or words == OTHER_MODEL else ABSENT)
     assert "taylor_20" not in {point["method"] for point in answer["points"]}
     assert answer["absent"] in pendu(*SMALL, *more).out
-
-
-@pytest.mark.parametrize(
-    ("scene", "differing"),
-    [(SCENES["drift"], []), (SCENES["spin"], ["Symplectic Euler"]), (SCENES["near-separatrix"], ["RK4"])],
-)
-def test_a_measured_order_that_is_not_the_claimed_one_is_remarked_on(scene, differing):
-    remarks = list(order_remarks(scene, orders(scene, 20.0, TieredLoops)))
-    assert [remark.partition(" reads")[0] for remark in remarks] == differing
 
 
 def test_the_points_of_a_method_are_joined_once_they_are_all_there():

@@ -14,7 +14,6 @@ from engine.accuracy.growth import Growth
 from engine.accuracy.references import CLOSED_FORM, AnyPoint, References
 from engine.accuracy.study import REASONS, ErrorKind, Order, Point
 from engine.methods import Method
-from engine.methods.euler import SYMPLECTIC_EULER
 from engine.methods.own import OwnMethod
 from engine.scenes import Scene
 from tui.cli.output import console, fields_of, scene_line
@@ -24,7 +23,6 @@ from tui.views.accuracy.chart import ERROR_LABELS, MARKS, accuracy_chart, accura
 from tui.words.accuracy import WORTH_SAYING, factor_words, front_words, growth_words, length
 
 CHART_SIZE = (100, 24)  # columns at most, rows
-APART = 0.25  # of two orders; larger differences get a remark
 NUMBERS = ("h", "steps", "force_evaluations", "seconds", "spread", "theta_error", "energy_error", "final_error")
 TRUTH = "the exact motion, against which errors are taken"
 
@@ -135,7 +133,6 @@ def _notes(found: Findings) -> Iterator[Any]:
     flaws = {flaw for point in found.points if (flaw := point.flaw(found.kind))}
     yield from sorted(f"{MARKS[flaw]} {REASONS[flaw]}" for flaw in flaws)
     yield "order measured on the theta error over at most one period; n/step: force evaluations"
-    yield from order_remarks(found.scene, found.orders)
     if growth := growth_words(found.growth):
         yield f"at h = {found.scene.h:g} s, {growth}"
     if found.references:
@@ -151,20 +148,6 @@ def _notes(found: Findings) -> Iterator[Any]:
         yield from _advice_notes(found, advice)
     if len(found.advice) > 1:
         yield f"\n{winners(found.advice)}"
-
-
-def order_remarks(scene: Scene, orders: Sequence[Order]) -> Iterator[str]:
-    """Yield why a measured order is not the claimed one."""
-    for method, measured in orders:
-        order = claimed(method)
-        if measured is None or order is None or abs(measured - order) < APART:
-            continue
-        why = "its errors do not follow a single power over these h"
-        if method == SYMPLECTIC_EULER and math.remainder(scene.theta, math.pi) == 0:
-            why = "from theta = 0 its angles are velocity Verlet's"
-        elif not method.symplectic and round(measured) == order + 1:
-            why = f"near the upright position the phase depends on the energy, which it loses as h^{measured:.0f}"
-        yield f"{method.label} reads {measured:.2f}, not {order}: {why}"
 
 
 def claimed(method: Method) -> int | None:
