@@ -57,7 +57,7 @@ def test_a_verdict_has_a_colour_and_a_sign():
 def test_a_wide_table_has_units_and_more_digits():
     head, *_, last = rows(lab(), 120).splitlines()
     heads = [part.strip() for part in re.split("  +", head)]
-    assert heads[1:5] == ["theta [rad]", "omega [rad/s]", "dE/E0 now", "largest"]
+    assert heads[1:5] == ["theta [rad]", "omega [rad/s]", "dE/E0", "largest"]
     assert heads[5:] == ["trend per s", "verdict", "theta error", "evals/step"]
     assert last.split() == [
         "4",
