@@ -25,7 +25,7 @@ def add_scene_options(parser: argparse.ArgumentParser) -> None:
         *((each.name, "NUMBER", number, f"{each.about} in {each.unit}") for each in PARAMETERS.values()),
         ("h", "S", number, "step size in s"),
     ):
-        group.add_argument(f"--{name}", metavar=metavar, type=read, help=meaning)
+        group.add_argument(f"--{name.replace('_', '-')}", metavar=metavar, type=read, help=meaning)
     add_cast_options(group)
 
 

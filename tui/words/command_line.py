@@ -62,7 +62,7 @@ def scene_arguments(scene: Scene) -> list[str]:
     arguments = ["--scene", base.name]
     for name, value in scene.numbers.items():
         if value != base.numbers[name]:
-            arguments += [f"--{name}", repr(value)]
+            arguments += [f"--{name.replace('_', '-')}", repr(value)]
     if scene.cast != base.cast:
         arguments += ["--methods", ",".join(method.key for method in scene.cast)]
     for method in scene.cast:
