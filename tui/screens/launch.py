@@ -1,21 +1,21 @@
 """Open the lab or a replay, show it (or print it as sentences), and say where the recording is."""
 
 import argparse
+import gc
 import os
 import shlex
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from traceback import walk_tb
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from engine.models import MODELS
 from tui.cli.errors import Exit, UserError, explained
 from tui.cli.output import progress, warn
 
 if TYPE_CHECKING:  # Textual is imported only where there is a screen, NumPy and mcap only when they are needed
-    from engine.methods import Cast
     from recordings.recording import Recording
     from tui.playback.ghost import Ghost
     from tui.playback.live import Live
@@ -24,6 +24,15 @@ if TYPE_CHECKING:  # Textual is imported only where there is a screen, NumPy and
     from tui.screens.base import SourceScreen
     from tui.screens.live import LiveScreen
     from tui.screens.replay import ReplayScreen
+
+
+def check(options: argparse.Namespace) -> None:
+    """Raise UserError if a screen is asked for and the terminal cannot show it."""
+    if not options.plain:
+        from tui.terminal.check import check_terminal
+
+        check_terminal()
+        gc.disable()  # until the screen is up: collections would delay the first paint by a thirtieth
 
 
 def recording_path(file: Path | None) -> Path:
@@ -42,16 +51,6 @@ def recording_path(file: Path | None) -> Path:
             Exit.DISK,
         )
     return path
-
-
-def recover_leftovers(folder: Path) -> list[str]:
-    """Recover what killed labs left unfinished in a folder, and print a sentence about each."""
-    from tui.words import recovered
-
-    sentences = recovered.recover_leftovers(folder)
-    for sentence in sentences:
-        warn(sentence)
-    return sentences
 
 
 def start_recording(live: "Live", path: Path | None, or_next: bool) -> None:
@@ -143,17 +142,32 @@ def _sentence(error: BaseException) -> UserError:
         )
 
 
-def print_sentences(source: "Source", only: "Cast | None" = None) -> int:
-    """Print what happens, or `only` what these methods do, as sentences until a signal such as Ctrl+C.
+def open_lab(live: "Live", options: argparse.Namespace, with_tour: bool = False) -> int:
+    """Record and show a lab, or print it as sentences; returns the exit code."""
+    from tui.words.recovered import recover_leftovers
 
-    That is how it should end.
-    """
+    path = None if options.no_record else recording_path(options.record)
+    notices = [] if path is None else recover_leftovers(path.parent)
+    for notice in notices:
+        warn(notice)
+    or_next = options.record is None
+    if options.plain:
+        from tui.words.plain_text import print_run, print_tour
+
+        start_recording(live, path, or_next)
+        return print_sentences(live, print_tour if with_tour else print_run)
+    screen = live_screen(live, path, notices, or_next)
+    screen.begins_with_tour = with_tour
+    return show(screen, options)
+
+
+def print_sentences(source: Any, write: Callable[..., None]) -> int:
+    """Have `write` print what happens until a signal such as Ctrl+C, which is how it should end."""
     from tui.cli.files import stop_requests
-    from tui.words.plain_text import print_run
 
     try:
         with stop_requests() as stopped:
-            print_run(source, partial(print, flush=True), stopped, only=only)
+            write(source, partial(print, flush=True), stopped)
     finally:
         source.close()
     return say_goodbye(source)

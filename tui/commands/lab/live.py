@@ -1,7 +1,6 @@
 """The lab: four pendulums, their errors over time, and a recording."""
 
 import argparse
-import gc
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -55,7 +54,6 @@ def lab_of(scene: Scene, options: argparse.Namespace) -> "Live":
 
 def run(options: argparse.Namespace) -> int:
     from tui.screens import launch
-    from tui.terminal.check import check_terminal
 
     ghost = None
     if options.ghost is not None:
@@ -68,15 +66,7 @@ def run(options: argparse.Namespace) -> int:
             f"--ghost: the recording is of the model {ghost.scene.model}, the scene of {scene.model};"
             " leave out --scene, or choose one of that model."
         )
-    if not options.plain:
-        check_terminal()
-        gc.disable()  # until the screen is up: collections while importing would delay the first paint by a thirtieth
-    path = None if options.no_record else launch.recording_path(options.record)
-    notices = [] if path is None else launch.recover_leftovers(path.parent)
-    or_next = options.record is None
+    launch.check(options)
     live = lab_of(scene, options)
     live.laid_under = ghost
-    if options.plain:
-        launch.start_recording(live, path, or_next)
-        return launch.print_sentences(live)
-    return launch.show(launch.live_screen(live, path, notices, or_next), options)
+    return launch.open_lab(live, options)

@@ -1,6 +1,7 @@
 """A recording on the lab's screen: pause, step, seek, loop, play backwards, continue live from any moment."""
 
 import argparse
+from functools import partial
 
 from engine.methods import METHODS
 from tui.cli.cast import add_cast_options, cast_of, own_methods
@@ -34,13 +35,11 @@ def run(options: argparse.Namespace) -> int:
     from recordings.events import remember
     from recordings.library import resolve
     from tui.screens import launch
-    from tui.terminal.check import check_terminal
 
     path = resolve(options.file)
     remember(own_methods(options))
     only = None if options.methods is None else cast_of(options, ())
-    if not options.plain:
-        check_terminal()
+    launch.check(options)
     replay = launch.open_replay(path)
     if not 0 <= options.start_at <= replay.length:
         raise UserError(f"--start-at {options.start_at:g} is outside the recording; use 0 to {replay.length:.2f} s.")
@@ -49,7 +48,9 @@ def run(options: argparse.Namespace) -> int:
     replay.seek(options.start_at)
     replay.pause(options.paused)
     if options.plain:
-        return launch.print_sentences(replay, only)
+        from tui.words.plain_text import print_run
+
+        return launch.print_sentences(replay, partial(print_run, only=only))
     screen = launch.replay_screen(replay, options.no_record)
     if only is not None:
         hidden = {method.key for method in (*METHODS, *replay.scene.cast) if method not in only}
