@@ -1,12 +1,12 @@
-"""Shown: the methods and quantities on screen.  Nothing in it changes a number."""
+"""Shown: the settings of the screen.  Nothing in it changes a number."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from engine.methods import Cast
 from engine.scenes import Scene
 
 Quantity = str
-"""A quantity of the chart: one of QUANTITIES, or a variable of the model outside its state."""
+"""One of QUANTITIES, or a variable of the model outside its state."""
 QUANTITIES: tuple[Quantity, ...] = ("energy_error", "theta_error", "shadow_error", "energy")
 
 WINDOWS: tuple[float | None, ...] = (None, 20.0, 60.0, 300.0, 1800.0, 5.0)
@@ -17,7 +17,7 @@ LARGEST = 1e6
 
 
 def quantities(scene: Scene) -> tuple[Quantity, ...]:
-    """Return what a chart can show of a scene: only some methods have a modified energy."""
+    """Return what a chart can show of a scene."""
     model = scene.equations
     has_shadow = model.has_force and any(method.modified_energy for method in scene.cast)
     common = [each for each in QUANTITIES if has_shadow or each != "shadow_error"]
@@ -34,11 +34,11 @@ class Stretch(NamedTuple):
 
 
 class Shown(NamedTuple):
-    """The settings of the screen."""
+    """The methods, the quantities and the range of time on screen."""
 
     hidden: frozenset[str] = frozenset()  # keys of methods
     exact: bool = False  # the exact motion, dotted
-    overlay: bool = False  # all pendulums on one pivot, even where there is room for a pane each
+    overlay: bool = False  # all pendulums on one pivot
     trails: bool = True
     quantity: Quantity = "energy_error"  # of the chart
     log: bool = True
@@ -55,11 +55,6 @@ class Shown(NamedTuple):
             return self._replace(exact=not self.exact)
         return self._replace(hidden=self.hidden ^ {cast[place].key})
 
-    def switched(self, name: str) -> "Shown":
-        """Turn a setting on or off."""
-        changes: dict[str, Any] = {name: not getattr(self, name)}
-        return self._replace(**changes)
-
     def alone(self, place: int, cast: Cast) -> "Shown":
         """Show this method alone, or all of them if it is alone already."""
         if self.places(cast) == [place]:
@@ -71,9 +66,6 @@ class Shown(NamedTuple):
         known = quantities(scene)
         index = known.index(self.quantity) if self.quantity in known else 0
         return known[(index + ahead) % len(known)]
-
-    def next_quantity(self, scene: Scene) -> "Shown":
-        return self._replace(quantity=self.quantity_ahead(1, scene))
 
     def next_window(self) -> "Shown":
         """Leave the zoom, or take the next window."""

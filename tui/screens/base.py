@@ -294,13 +294,15 @@ class SourceScreen(Screen[None]):
         self.change_shown(self.shown.toggled(number, self.source.scene.cast))
 
     def action_switch(self, name: str) -> None:
-        self.change_shown(self.shown.switched(name))
+        changes: dict[str, Any] = {name: not getattr(self.shown, name)}
+        self.change_shown(self.shown._replace(**changes))
 
     def on_method_chosen(self, message: MethodChosen) -> None:
         self.change_shown(self.shown.alone(message.place, self.source.scene.cast))
 
     def action_quantity(self) -> None:
-        self.change_shown(self.shown.next_quantity(self.source.scene))
+        quantity = self.shown.quantity_ahead(1, self.source.scene)
+        self.change_shown(self.shown._replace(quantity=quantity))
 
     def action_window(self) -> None:
         self.change_shown(self.shown.of(self.source.sample.run).next_window())

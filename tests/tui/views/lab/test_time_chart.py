@@ -35,9 +35,9 @@ def test_a_chart_goes_through_what_a_scene_has_and_no_more():
     assert quantities(drift) == ("energy_error", "theta_error", "shadow_error", "energy")
     shown = Shown()
     for _ in range(3):
-        shown = shown.next_quantity(spring)
+        shown = shown._replace(quantity=shown.quantity_ahead(1, spring))
     assert shown.quantity == "spring_energy"
-    assert shown.next_quantity(spring) == Shown()
+    assert shown.quantity_ahead(1, spring) == Shown().quantity
     assert shown.quantity_ahead(0, drift) == "energy_error"  # what the next scene lacks is not shown
 
 
