@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 
 from tui.cli.errors import Exit, UserError
+from tui.cli.install import install_advice
 from tui.cli.options import add_file, count
 from tui.cli.output import warn
 from tui.cli.scene import add_scene_options, scene_of
@@ -37,7 +38,7 @@ def run(options: argparse.Namespace) -> int:
         from tui.commands.lab.web.served import Settings
         from tui.commands.lab.web.server import serve
     except ImportError as error:
-        raise UserError(f"serve needs {error.name}: pip install textual-serve (the extra web).") from None
+        raise UserError(f"serve needs {error.name}: {install_advice('textual-serve', 'web')}.") from None
     folder = None if options.record is None else recording_folder(options.record)
     settings = Settings(scene, terminal_options_of(options, {}, "utf-8"), folder)
 
