@@ -146,9 +146,12 @@ def _judge(times: Any, energies: Any, floor: float, again: bool = False) -> Seri
     error = max(stories.line.deviation, floor / len(at))
     independent = min(len(at), 24 * float(np.mean(rest**2)) / error**2)
     within = float(np.mean(energies**2) - np.average(blocks.means**2, weights=blocks.sizes))
+    within = max(within, 0.0)
     has_settled = stories.settled_gain > SETTLED and stories.settled.amplitude**2 > within
     if has_settled and stories.settling <= TRANSIENT and not again:
-        return SeriesJudgement(Judgement(), first=int(np.searchsorted(at, stories.settling)))
+        times_over = math.log(abs(stories.settled.amplitude) / max(math.sqrt(within), floor)) + 1
+        end = stories.settling / 3 * min(max(times_over, 3.0), 6.0)
+        return SeriesJudgement(Judgement(), first=int(np.searchsorted(at, end)))
     judgement = _conclude(stories, independent, has_settled)
     if judgement.verdict == "caught" and len(at) >= 2 * MIN_SAMPLES:
         half = len(at) // 2
