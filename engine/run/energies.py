@@ -35,7 +35,7 @@ CLEAR = math.log(10)  # of a likelihood ratio, between curves of as many paramet
 WALKS = 3.5  # of a likelihood ratio: noise with a correlation time of T/5 exceeds it in 1 of 100
 MIN_CYCLES = 4.0  # of a slow wave that is called bounded: thirds of the record look alike
 WAVES = 12.0  # log likelihood that waves must gain: in random walks they gained up to 10
-TRANSIENT = 0.05  # of the record: a start that is over so early belongs to the preparation
+TRANSIENT = 0.1  # of the record: a start that is over so early belongs to the preparation
 RUNAWAY = 1.65  # exponent of structure functions: 2 for a smooth curve, 1.3 for means of a walk
 WIDER = 1.5  # times as wide, all of the last third as any of the first: never by chance
 ROUNDING = 1e-12  # of the energy: a random walk of 1e7 roundings of 1e-16
@@ -176,7 +176,7 @@ def _conclude(stories: "_Stories", independent: float, has_settled: bool) -> Jud
     line = stories.line.sigmas
     few = independent < MIN_INDEPENDENT or stories.cycles < MIN_CYCLES
     walk_like = few or independent < 2 * MIN_INDEPENDENT
-    if has_settled and stories.settled.sigmas > (CURVE_OF_FEW if walk_like else CHANGE):
+    if has_settled and stories.settled.sigmas > (CURVE_OF_FEW if few else CHANGE):
         return Judgement("caught")
     curved = stories.moving.likelihood - stories.line.likelihood > CLEAR
     clear = not curved or stories.settled_gain < -CLEAR
