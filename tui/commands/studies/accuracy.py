@@ -166,7 +166,8 @@ def _ladder(scene: Scene, time: float, given: tuple[float, float, int] | None, a
     from engine.accuracy.study import ALL_LADDER, Z_LADDER, ladder
 
     z_max, z_min, rungs = ALL_LADDER if all else Z_LADDER
-    largest, smallest = min(z_max / scene.w0, time), z_min / scene.w0
+    largest = min(z_max / scene.w0, time)
+    smallest = z_min / scene.w0
     if given:
         largest, smallest, rungs = given
     for h in (largest, smallest):

@@ -40,7 +40,8 @@ examples:
 
 MAX_VALUES = 1_000_000  # of an axis
 MAX_SWINGS = 20_000_000  # of a grid: 320 MB in memory
-STEPS, SECTION_STEPS = 10_000, 4000
+STEPS = 10_000
+SECTION_STEPS = 4000
 LIST = "FIRST:LAST:HOW_MANY"
 
 
@@ -146,9 +147,11 @@ def compute(grid: "Grid", executor: "Executor | None") -> "tuple[Cells, UserErro
                 show(done, len(grid.z))
         return computed, None
     except KeyboardInterrupt:
-        why, code = "interrupted", Exit.INTERRUPTED
+        why = "interrupted"
+        code = Exit.INTERRUPTED
     except (CancelledError, OSError, RuntimeError) as error:  # of a cluster, or of worker processes
-        why, code = f"workers are lost ({type(error).__name__})", Exit.INPUT_UNREADABLE
+        why = f"workers are lost ({type(error).__name__})"
+        code = Exit.INPUT_UNREADABLE
     ended = UserError(f"{why}; {done} of {len(grid.z)} z are computed and kept.", code)
     if not done:
         raise ended

@@ -69,7 +69,8 @@ def portrait(
     scene: Scene, method: Method, options: argparse.Namespace, steps: int, size: tuple[int, int]
 ) -> list[Text]:
     """Return the lines of the phase portrait of a method's map, in the colours and characters of the options."""
-    model, start = scene.equations, State(scene.theta, scene.omega)
+    model = scene.equations
+    start = State(scene.theta, scene.omega)
     viewport = Viewport.portrait(*size, scene)
     section = Section(viewport, model, method, ink_of(method, scene.cast))
     done = 0
@@ -103,7 +104,9 @@ def write(file: Path, suffix: str, size: tuple[int, int], lines: list[Text], is_
 
 def report(scene: Scene, method: Method, steps: int, picture: list[Text]) -> Report:
     """Return the report of the orbits of the scene's start, below the picture."""
-    model, h, start = scene.equations, scene.h, State(scene.theta, scene.omega)
+    model = scene.equations
+    h = scene.h
+    start = State(scene.theta, scene.omega)
     kinds = [(each, kind_of(each, model, h, orbit(each, model, h, start, steps))) for each in scene.cast]
     (words,) = (sentence(each, kind) for each, kind in kinds if each == method)
     columns = [Column(head, itemgetter(at), right=at > 1) for at, head in enumerate(("method", *HEADS))]
