@@ -12,7 +12,6 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache, partial
-from operator import itemgetter
 from typing import Any, ClassVar
 
 from engine.models.model import (
@@ -34,6 +33,10 @@ START = (1.0, 0.0, 0.0)
 """The Bloch vector of every start: an equal superposition of both levels."""
 STEP = 0.4  # of the reference, times the fastest frequency
 ACCURACY = 1e-10  # rad
+
+
+def _probability(extra: Mapping[str, float]) -> float:
+    return 1 + extra["probability_error"]
 
 
 @dataclass(frozen=True)
@@ -58,9 +61,9 @@ class MeanField(Model):
         Variable("sy", about="of the Bloch vector"),
         Variable("sz", about="of the Bloch vector"),
         Variable(
-            "probability",
-            about="length of the Bloch vector, which the true motion keeps",
-            label="probability",
+            "probability_error",
+            about="length of the Bloch vector - 1, which the true motion keeps at 0",
+            label="probability error",
             is_state=False,
         ),
     )
@@ -69,7 +72,7 @@ class MeanField(Model):
             "|s|",
             "probability",
             "the length of the Bloch vector, the probability, which the true motion keeps at 1",
-            itemgetter("probability"),
+            _probability,
         ),
     )
     frequency_symbol: ClassVar[str] = "nu"
@@ -93,7 +96,7 @@ class MeanField(Model):
 
     def observe(self, phase: Phase) -> Observation:
         theta, omega, sx, sy, sz = phase
-        extra = {"sx": sx, "sy": sy, "sz": sz, "probability": _length(phase)}
+        extra = {"sx": sx, "sy": sy, "sz": sz, "probability_error": _length(phase) - 1}
         return Observation(theta, omega, extra)
 
     def phase_of(self, theta: float, omega: float, extra: Mapping[str, float]) -> Phase:

@@ -21,7 +21,8 @@ def quantities(scene: Scene) -> tuple[Quantity, ...]:
     model = scene.equations
     has_shadow = model.has_force and any(method.modified_energy for method in scene.cast)
     common = [each for each in QUANTITIES if has_shadow or each != "shadow_error"]
-    return *common, *(each.name for each in model.quantities())
+    own = (each.name for each in model.quantities())
+    return common[0], *own, *common[1:]
 
 
 class Stretch(NamedTuple):
