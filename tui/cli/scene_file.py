@@ -9,7 +9,7 @@ from typing import Any
 
 from engine.methods import METHODS, Cast
 from engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
-from engine.scenes import DEFAULT_SCENE, SCENES, Scene, SceneError
+from engine.scenes import DEFAULT_SCENE, MOST_METHODS, SCENES, Scene, SceneError
 from recordings.errors import printable
 from tui.cli.cast import find
 from tui.cli.errors import Exit, UserError
@@ -40,7 +40,9 @@ def read_scene(path: Path) -> Scene:
         except UserError as error:
             raise UserError(f"{path}, line {_line(text, name)}: {error}", Exit.INPUT_UNREADABLE) from None
     model = values.get("model", DEFAULT_MODEL)
-    values.setdefault("cast", next(scene.cast for scene in SCENES.values() if scene.model == model))
+    casts = (scene.cast for scene in SCENES.values() if scene.model == model)
+    suited = tuple(method for method in METHODS if model in method.models)
+    values.setdefault("cast", next(casts, suited[:MOST_METHODS]))
     parameters = {name: values.pop(name) for name in PARAMETERS if name in values}
     try:
         return Scene(parameters=parameters, **values)

@@ -1,0 +1,105 @@
+"""A model is added by a file of its own and its place in the list; nothing else asks which models there are."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[3]
+MODEL = '''
+import math
+from dataclasses import dataclass
+from functools import partial
+from typing import ClassVar
+
+from engine.models.model import ExactMotion, ExtraColumn, Model, Observation, Parameter, State, Variable
+
+
+@dataclass(frozen=True)
+class Decaying(Model):
+    w0_squared: float
+    decay: float
+
+    key: ClassVar[str] = "decaying"
+    equation: ClassVar[str] = "theta'' = -w0² theta, u' = -decay u"
+    parameters: ClassVar = (Parameter("decay", "s⁻¹", "of u", 0.0, 10.0, default=0.5),)
+    turns: ClassVar[bool] = False
+    second_order: ClassVar[bool] = False
+    variables: ClassVar = (Variable("u", about="decays"), Variable("square", label="u²", is_state=False))
+    extra_columns: ClassVar = (ExtraColumn("u²", "square", "the square of u", lambda extra: extra["square"]),)
+    caption: ClassVar[str] = "a projection, without u"
+    without_force: ClassVar[str] = "Maps and studies are for one angle; this model has u as well."
+    without_ring: ClassVar[str] = "No ring in three dimensions."
+
+    def start(self, theta, omega):
+        return theta, omega, 1.0
+
+    def observe(self, phase):
+        theta, omega, u = phase
+        return Observation(theta, omega, {"u": u, "square": u * u})
+
+    def phase_of(self, theta, omega, extra):
+        return theta, omega, extra["u"]
+
+    def rates(self, sin=math.sin):
+        return lambda phase: (phase[1], -self.w0_squared * phase[0], -self.decay * phase[2])
+
+    def energy(self, sin=math.sin):
+        return lambda phase: phase[1] * phase[1] / 2 + self.w0_squared * phase[0] * phase[0] / 2
+
+    def exact(self, theta, omega):
+        return ExactMotion(partial(self._at, theta, omega), "libration", math.tau / self.w0)
+
+    def _at(self, theta, omega, t):
+        c, s = math.cos(self.w0 * t), math.sin(self.w0 * t)
+        return State(theta * c + omega / self.w0 * s, omega * c - theta * self.w0 * s)
+'''
+
+
+@pytest.fixture(scope="module")
+def pendu(tmp_path_factory):
+    """The command line of a copy of the program with one more model."""
+    copy = tmp_path_factory.mktemp("copy")
+    for package in ("engine", "recordings", "tui"):
+        shutil.copytree(ROOT / package, copy / package, ignore=shutil.ignore_patterns("__pycache__"))
+    models = copy / "engine" / "models"
+    (models / "decaying.py").write_text(MODEL, "utf-8")
+    listed = (models / "__init__.py").read_text("utf-8")
+    imported = "from engine.models.decaying import Decaying\n"
+    at = listed.index("from engine.models.damped")
+    changed = (listed[:at] + imported + listed[at:]).replace("MeanField)", "MeanField, Decaying)")
+    assert changed.count("Decaying") == 2
+    (models / "__init__.py").write_text(changed, "utf-8")
+    (copy / "scene.toml").write_text('model = "decaying"\ndecay = 2.0\nmethods = ["explicit_euler", "rk4"]\n', "utf-8")
+
+    def run(*arguments: str) -> str:
+        environment = os.environ | {"PYTHONPATH": str(copy), "PENDU_RECORDINGS": str(copy / "recordings-made")}
+        code = "import sys; from tui.cli.dispatch import main; sys.exit(main(sys.argv[1:]))"
+        command = [sys.executable, "-c", code, *arguments]
+        done = subprocess.run(command, cwd=copy, env=environment, capture_output=True, text=True, check=False)
+        assert not done.returncode, done.stderr
+        return done.stdout
+
+    return run
+
+
+def test_another_model_runs_with_its_variables_and_its_parameter(pendu):
+    rows = json.loads(pendu("run", "--scene", "scene.toml", "--time", "2", "--json"))["methods"]
+    assert [row["method"] for row in rows] == ["explicit_euler", "rk4"]
+    assert rows[1]["square"] == pytest.approx(2.718281828**-8, rel=1e-3)
+    slower = json.loads(pendu("run", "--scene", "scene.toml", "--decay", "1", "--time", "2", "--json"))["methods"]
+    assert slower[1]["square"] == pytest.approx(2.718281828**-4, rel=1e-3)
+
+
+def test_another_model_is_recorded_and_verified(pendu):
+    pendu("run", "--scene", "scene.toml", "--time", "2", "--record", "a.mcap")
+    assert "identical" in pendu("verify", "a.mcap")
+    pendu("export", "a.mcap", "-o", "a.csv")
+
+
+def test_another_model_has_a_picture_of_the_lab(pendu):
+    pendu("snapshot", "--scene", "scene.toml", "--size", "200x60", "--time", "2", "-o", "a.svg")
