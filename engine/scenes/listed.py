@@ -133,6 +133,8 @@ _STABILITY = (
         cast=_RESONANT,
         speed=16.0,
         watch="h over the golden ratio: no resonance, but nor at 5/8 h: irrational is no cure.",
+        often_said="h over the golden ratio avoids resonances because it is irrational. 5/8 of h "
+        "does, too: it is far from the resonance that counts.",
     ),
 )
 
@@ -146,6 +148,8 @@ _STRUCTURE = (
         cast=_cast("explicit_euler", "lagged_verlet", "conformal_verlet", "rk4"),
         speed=2.0,
         watch="Explicit Euler gains energy against friction, and spins; the others slow down.",
+        often_said="RK4 is to be preferred where energy is lost. True from an accuracy of 0.1 % on; "
+        "at 1 % conformal Verlet costs half.",
     ),
     Scene(
         "halving",
@@ -154,6 +158,7 @@ _STRUCTURE = (
         cast=_cast("halving_verlet", "halving_richardson", "velocity_verlet", "rk4"),
         speed=4.0,
         watch="Step doubling gains 19 % a minute; Verlet, 8 times cheaper, stays within 8 %.",
+        often_said="Adaptive steps are better. They make the energy of a symplectic method drift.",
     ),
 )
 
@@ -166,6 +171,7 @@ _STIFFNESS = (
         cast=_SPRING,
         speed=0.5,
         watch="h·omega = 1: RK4 takes the energy out of the spring, IMEX Euler all of it.",
+        often_said="IMEX Euler is stable at any h. True, but it stops the swing as well as the spring.",
     ),
     Scene(
         "stiff-limit",
@@ -184,6 +190,7 @@ _STIFFNESS = (
         cast=_SPRING,
         speed=0.5,
         watch="A period of the spring a step: r-RESPA resonates, implicit midpoint holds.",
+        often_said="With impulses h follows the slow motion. But not where it comes near the spring's period.",
     ),
 )
 
@@ -213,6 +220,8 @@ _LEARNING = (
         cast=_cast("rk4_learned_field", "rk4_learned_hamiltonian", "rk4"),
         speed=8.0,
         watch="Of the same data, in 100 s: the field loses 60 %, the Hamiltonian not even 1 %.",
+        often_said="A learned Hamiltonian conserves energy. It conserves the learned one; the true "
+        "one errs by a percent.",
     ),
 )
 

@@ -61,6 +61,7 @@ class Scene:
     model: str = DEFAULT_MODEL  # a key of MODELS
     cast: Cast = USUAL_CAST  # the methods, in order
     parameters: Mapping[str, float] = field(default_factory=dict, hash=False)  # the model's own, such as friction
+    often_said: str = field(default="", compare=False)  # what is often said about such scenes, and what is true of it
     speed: float = field(default=1.0, compare=False)  # times real time, at which a lab starts: it changes no number
 
     def __post_init__(self) -> None:
@@ -158,7 +159,7 @@ class Scene:
         if others:
             fields["parameters"] = {**fields.get("parameters", self.parameters), **others}
         other = replace(self, **fields)
-        return self if other == self else replace(other, name="custom", watch="")
+        return self if other == self else replace(other, name="custom", watch="", often_said="")
 
     def with_cast(self, cast: Cast) -> "Scene":
         """This scene with other methods; it keeps `watch` if it keeps all methods that show it."""

@@ -16,7 +16,8 @@ from tui.cli.errors import Exit, UserError
 from tui.cli.options import angle, did_you_mean
 
 TEXTS = ("name", "watch", "model")
-FIELDS = (*(field.name for field in fields(Scene) if field.name not in ("cast", "parameters")), *PARAMETERS, "methods")
+NO_FIELDS = ("cast", "parameters", "often_said")
+FIELDS = (*(field.name for field in fields(Scene) if field.name not in NO_FIELDS), *PARAMETERS, "methods")
 MAX_BYTES = 100_000
 
 

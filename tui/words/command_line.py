@@ -3,7 +3,7 @@
 import shlex
 
 from engine.methods.own import OwnMethod
-from engine.scenes import SCENES, Scene
+from engine.scenes import DEFAULT_SCENE, SCENES, Scene
 from tui.playback.live import Live
 from tui.playback.replay import Replay
 from tui.playback.source import Source
@@ -53,7 +53,9 @@ def _moment(file: str, position: float) -> str:
 def _listed(scene: Scene) -> Scene:
     """The listed scene of its name, or else the first of its model."""
     base = SCENES.get(scene.name)
-    return base if base and base.model == scene.model else next(s for s in SCENES.values() if s.model == scene.model)
+    if base is not None and base.model == scene.model:
+        return base
+    return next((each for each in SCENES.values() if each.model == scene.model), DEFAULT_SCENE)
 
 
 def scene_arguments(scene: Scene) -> list[str]:
@@ -61,7 +63,7 @@ def scene_arguments(scene: Scene) -> list[str]:
     base = _listed(scene)
     arguments = ["--scene", base.name]
     for name, value in scene.numbers.items():
-        if value != base.numbers[name]:
+        if value != base.numbers.get(name):
             arguments += [f"--{name.replace('_', '-')}", repr(value)]
     if scene.cast != base.cast:
         arguments += ["--methods", ",".join(method.key for method in scene.cast)]

@@ -9,7 +9,7 @@ from tui.words.numbers import about, seconds
 
 
 def description(source: Source, only: Cast | None = None) -> list[str]:
-    """The run, each method, or `only` these, and the recording, one sentence each."""
+    """Return sentences on the run, each method, or `only` these, and the recording."""
     shown = [index for index, method in enumerate(source.scene.cast) if only is None or method in only]
     return [*_run(source), *(method_sentence(source, index) for index in shown), _recording(source)]
 
@@ -19,27 +19,30 @@ def _run(source: Source) -> list[str]:
     kind = "The lab" if source.kind == "LIVE" else "The replay"
     speed = "in real time" if playhead.speed == 1 else f"at {playhead.speed:.4g} times real time"
     state = "is paused" if playhead.paused else f"runs {speed} and is"
-    cycle = {"libration": "swing", "rotation": "turn"}.get(source.exact.regime)
-    motion = f"; one {cycle} takes {about(source.exact.period)}" if cycle and source.exact.period else ""
-    return [
+    motion = ""
+    if source.exact.period is not None:
+        cycle = "turn" if source.exact.regime == "rotation" else "swing"
+        motion = f"; one {cycle} takes {about(source.exact.period)}"
+    lines = [
         f'{kind} {state} at {seconds(sample.t)} of run {sample.run} of the scene "{scene.name}".',
         f"The pendulum is {scene.length:.4g} m long and started at {math.degrees(scene.theta):.4g} degrees "
         f"with {scene.omega:.4g} radians per second{motion}.",
         f"The step size is {step_text(source)}.",
-        *([f"Under it, {source.ghost.label(60)}."] if source.ghost else []),
     ]
+    return [*lines, f"Under it, {source.ghost.label(60)}."] if source.ghost else lines
 
 
 def step_text(source: Source) -> str:
-    """The current step: "0.2 s, z = 0.626; at equal cost, the cheaper methods split it; time runs backwards"."""
-    parts = "; at equal cost, the cheaper methods split it" if source.stepping.equal_cost else ""
-    backwards = "; time runs backwards" if source.stepping.h < 0 else ""
-    z = abs(source.stepping.h) * source.scene.equations.fastest
-    return f"{abs(source.stepping.h):.4g} s, z = {z:.3g}{parts}{backwards}"
+    """Return the current step: "0.2 s, z = 0.626; at equal cost, the cheaper methods split it"."""
+    h = source.stepping.h
+    text = f"{abs(h):.4g} s, z = {abs(h) * source.scene.equations.fastest:.3g}"
+    if source.stepping.equal_cost:
+        text += "; at equal cost, the cheaper methods split it"
+    return f"{text}; time runs backwards" if h < 0 else text
 
 
 def method_sentence(source: Source, index: int) -> str:
-    """Whether a method failed or went over the top; if not, its verdict or its error so far."""
+    """Return how a method failed or went over the top; if it did not, its verdict or its error so far."""
     method, reading = source.scene.cast[index], source.sample.readings[index]
     if milestone := endings(source).get(index):
         conserved = source.scene.equations.energy_error.conserved

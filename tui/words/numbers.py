@@ -51,20 +51,20 @@ def start(theta: float, omega: float) -> str:
 
 
 def seconds(value: float) -> str:
-    """A time or a duration: "12.34 s", "3 min 05 s", "1 h 02 min", "3 d 04 h"."""
+    """Return a time or a duration: "12.34 s", "3 min 05 s", "1 h 02 min", "3 d 04 h"."""
     if not math.isfinite(value):
         return "-"
-    sign, value = "-" if round(value, 2) < 0 else "", abs(value)
-    if round(value, 2) < 60:
-        return f"{sign}{value:.2f} s"
-    minutes, rest = divmod(round(value), 60)
-    if minutes < 60:
+    sign, size = "-" if round(value, 2) < 0 else "", abs(value)
+    if round(size, 2) < 60:
+        return f"{sign}{size:.2f} s"
+    if round(size) < 3600:
+        minutes, rest = divmod(round(size), 60)
         return f"{sign}{minutes} min {rest:02d} s"
-    hours, rest = divmod(round(value / 60), 60)
-    if hours < 24:
+    if round(size / 60) < 24 * 60:
+        hours, rest = divmod(round(size / 60), 60)
         return f"{sign}{hours} h {rest:02d} min"
-    days, rest = divmod(round(value / 3600), 24)
-    return f"{sign}{days} d {rest:02d} h" if days < 10_000 else f"{sign}{value:.1e} s"
+    days, rest = divmod(round(size / 3600), 24)
+    return f"{sign}{days} d {rest:02d} h" if days < 10_000 else f"{sign}{size:.1e} s"
 
 
 def about(seconds: float) -> str:
@@ -87,11 +87,6 @@ def file_size(count: int) -> str:
     power = next((power for power in (1, 2, 3) if round(count / 1000**power) < 1000), 4)
     value, unit = count / 1000**power, ("kB", "MB", "GB", "TB")[power - 1]
     return f"{value:.1f} {unit}" if round(value, 1) < 10 else f"{value:.0f} {unit}"
-
-
-def percent(share: float) -> str:
-    """A share of 1 as "62 %"."""
-    return f"{100 * share:.0f} %" if math.isfinite(share) else "-"
 
 
 def factor(value: float) -> str:

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[3]
-MODEL = '''
+MODEL = """
 import math
 from dataclasses import dataclass
 from functools import partial
@@ -57,7 +57,7 @@ class Decaying(Model):
     def _at(self, theta, omega, t):
         c, s = math.cos(self.w0 * t), math.sin(self.w0 * t)
         return State(theta * c + omega / self.w0 * s, omega * c - theta * self.w0 * s)
-'''
+"""
 
 
 @pytest.fixture(scope="module")

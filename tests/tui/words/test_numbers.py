@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tui.words.numbers import angle, decimal, file_size, percent, scientific, seconds
+from tui.words.numbers import angle, decimal, file_size, scientific, seconds
 
 ANY = st.floats(allow_nan=True, allow_infinity=True) | st.none()
 WIDTHS = st.integers(1, 14)
@@ -91,11 +91,6 @@ def test_times_read_as_people_say_them(value, text):
 )
 def test_sizes_have_two_or_three_digits(count, text):
     assert file_size(count) == text
-
-
-def test_percentages_are_whole():
-    assert percent(0.624) == "62 %"
-    assert percent(math.nan) == "-"
 
 
 def test_an_angle_beyond_a_turn_is_turns_and_the_rest():
