@@ -44,10 +44,15 @@ class Job:
 
     def stop(self) -> None:
         """Stop, unless somebody has already continued the program, and then take the terminal."""
-        with self._suspend():
-            if self._continued_at + MARGIN < self._asked_at:
-                os.kill(os.getpid(), signal.SIGSTOP)
-        self._taken_at = time.monotonic()
+        if self._is_due:
+            with self._suspend():
+                if self._is_due:
+                    os.kill(os.getpid(), signal.SIGSTOP)
+            self._taken_at = time.monotonic()
+
+    @property
+    def _is_due(self) -> bool:
+        return self._continued_at + MARGIN < self._asked_at
 
     def take_terminal(self) -> None:
         """Take the whole terminal after a stop that nobody announced: a shell may have used it."""

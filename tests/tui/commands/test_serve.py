@@ -335,7 +335,7 @@ def test_what_cannot_be_served_is_one_sentence(server, tmp_path, monkeypatch):
     assert pendu("serve", "--port", "70000").refused(2, "70000")
     assert pendu("serve", "--at-most", "0").refused(2, "count")
     (tmp_path / "file").touch()
-    assert pendu("serve", "--record", tmp_path / "file").refused(5, "is a file")
+    assert pendu("serve", "--record", tmp_path / "file").refused(5, "exists")
     assert pendu("serve", "--record", tmp_path / "no" / "folder").refused(5, "create the folder")
     monkeypatch.setitem(sys.modules, "textual_serve.server", None)
     monkeypatch.delitem(sys.modules, "tui.commands.lab.web.server", raising=False)

@@ -35,12 +35,11 @@ def run(options: argparse.Namespace) -> int:
     scene = scene_of(options)
 
     try:
-        from tui.commands.lab.web.served import Settings
         from tui.commands.lab.web.server import serve
     except ImportError as error:
         raise UserError(f"serve needs {error.name}: {install_advice('textual-serve', 'web')}.") from None
     folder = None if options.record is None else recording_folder(options.record)
-    settings = Settings(scene, terminal_options_of(options, {}, "utf-8"), folder)
+    settings = (scene, terminal_options_of(options, {}, "utf-8"), folder)
 
     def listening(address: str) -> None:
         if not is_local(options.host):
@@ -52,11 +51,11 @@ def run(options: argparse.Namespace) -> int:
 
     try:
         serve(settings, options.host, options.port, options.at_most, listening)
-    except OSError as error:
-        why = os.strerror(error.errno) if error.errno and error.errno > 0 else error.strerror or str(error)
-        raise UserError(
-            f"cannot listen on {options.host} port {options.port}: {why}; choose another --port or --host."
-        ) from error
+    except (OSError, UnicodeError) as error:
+        number = getattr(error, "errno", 0) or 0
+        why = os.strerror(number) if number > 0 else error
+        where = f"{options.host} port {options.port}"
+        raise UserError(f"cannot listen on {where}: {why}; choose another --port or --host.") from None
     return Exit.FINE
 
 
@@ -76,9 +75,7 @@ def is_local(host: str) -> bool:
 
 
 def recording_folder(folder: Path) -> Path:
-    """The folder, made if it is not there.  Raises UserError or OSError if nothing can be written into it."""
-    if folder.exists() and not folder.is_dir():
-        raise UserError(f"{folder} is a file: choose another folder for --record.", Exit.DISK)
+    """Return the folder, made if it is not there.  Raises UserError or OSError if it cannot be written to."""
     folder.mkdir(exist_ok=True)
     if not os.access(folder, os.W_OK | os.X_OK):
         raise UserError(f"{folder} is not writable: choose another folder for --record.", Exit.DISK)

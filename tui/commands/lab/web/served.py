@@ -1,32 +1,18 @@
-"""A lab in a browser, in a process of its own.
-
-The visitor is not necessarily the person who started the server, so no action names a file.
-"""
+"""A lab in a browser, in a process of its own."""
 
 import os
 import pickle
 import sys
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from textual.drivers.web_driver import WebDriver
 
-from engine.scenes import Scene
 from recordings import library
 from tui.playback.live import Live
 from tui.screens.app import PenduApp
 from tui.screens.launch import live_screen
-from tui.terminal.options import LARGEST, TerminalOptions
-
-
-@dataclass(frozen=True, slots=True)
-class Settings:
-    """The scene, the look and the folder of recordings of each lab that is served."""
-
-    scene: Scene
-    terminal: TerminalOptions
-    folder: Path | None
+from tui.terminal.options import LARGEST
 
 
 class BoundedDriver(WebDriver):
@@ -34,24 +20,24 @@ class BoundedDriver(WebDriver):
 
     def on_meta(self, packet_type: str, payload: dict[str, Any]) -> None:
         if packet_type == "resize":
-            payload["width"] = bounded(payload["width"], LARGEST[0])
-            payload["height"] = bounded(payload["height"], LARGEST[1])
+            size = payload["width"], payload["height"]
+            payload["width"], payload["height"] = bounded(*size)
         super().on_meta(packet_type, payload)
 
 
-def bounded(size: float, largest: int) -> int:
-    """Return a size in cells within reason."""
-    return int(min(max(size, 1), largest))
+def bounded(columns: float, rows: float) -> tuple[int, int]:
+    """Return a size within reason."""
+    return int(min(max(columns, 1), LARGEST[0])), int(min(max(rows, 1), LARGEST[1]))
 
 
 def main() -> None:
-    """Show the lab of the settings in a file, and record it if they have a folder."""
-    settings: Settings = pickle.loads(Path(sys.argv[1]).read_bytes())
-    for name, largest in zip(("COLUMNS", "ROWS"), LARGEST, strict=True):
-        os.environ[name] = str(bounded(int(os.environ[name]), largest))
-    live = Live(settings.scene)
-    path = settings.folder and library.new_path(settings.folder)
-    app = PenduApp(live_screen(live, path), terminal=settings.terminal)
+    """Show a lab of the scene, look and folder of recordings that a file holds."""
+    scene, terminal, folder = pickle.loads(Path(sys.argv[1]).read_bytes())
+    columns, rows = bounded(int(os.environ["COLUMNS"]), int(os.environ["ROWS"]))
+    os.environ.update(COLUMNS=str(columns), ROWS=str(rows))
+    live = Live(scene)
+    path = None if folder is None else library.new_path(folder)
+    app = PenduApp(live_screen(live, path), terminal=terminal)
     app.driver_class = BoundedDriver
     try:
         app.run()

@@ -15,16 +15,12 @@ from urllib.parse import urlsplit
 from aiohttp import web
 from textual_serve.server import Server
 
-from tui.commands.lab.web.served import Settings
 from tui.terminal.signals import ENDING
 
 CONNECTIONS_PER_LAB = 10  # a browser opens six at most
 MAX_IDLE_TIME = 10.0  # s that a connection may be without a whole request
 MAX_STOP_TIME = 1.0  # s that labs are waited for at the end
-HEADERS = {
-    "Content-Security-Policy": "default-src 'self' 'unsafe-inline' data: ws: wss:; frame-ancestors 'none'",
-    "X-Frame-Options": "DENY",
-}
+POLICY = "default-src 'self' 'unsafe-inline' data: ws: wss:; frame-ancestors 'none'"
 
 
 class LabServer(Server):  # type: ignore[misc]
@@ -45,9 +41,10 @@ class LabServer(Server):  # type: ignore[misc]
             loop.add_signal_handler(number, stop.set)
         app = await self._make_app()
         app.middlewares.append(self.check)
-        app.on_response_prepare.append(add_headers)
-        limits = {"keepalive_timeout": MAX_IDLE_TIME, "shutdown_timeout": MAX_STOP_TIME}
-        runner = web.AppRunner(app, **limits)
+        app.on_response_prepare.append(add_policy)
+        runner = web.AppRunner(
+            app, keepalive_timeout=MAX_IDLE_TIME, shutdown_timeout=MAX_STOP_TIME
+        )
         await runner.setup()
 
         def connect() -> Any:
@@ -91,9 +88,9 @@ class LabServer(Server):  # type: ignore[misc]
             self._labs -= 1
 
 
-def serve(settings: Settings, host: str, port: int, max_labs: int, listening: Callable[[str], None]) -> None:
-    """Serve labs; their settings, which may hold code, are in a file of the user's own."""
-    with tempfile.NamedTemporaryFile(prefix="pendu-") as file:  # mode 0600
+def serve(settings: object, host: str, port: int, max_labs: int, listening: Callable[[str], None]) -> None:
+    """Serve labs with these settings, which may hold code: they are in a file of mode 0600."""
+    with tempfile.NamedTemporaryFile(prefix="pendu-") as file:
         Path(file.name).write_bytes(pickle.dumps(settings))
         asyncio.run(LabServer(file.name, max_labs, host).run(port, listening))
 
@@ -101,7 +98,7 @@ def serve(settings: Settings, host: str, port: int, max_labs: int, listening: Ca
 def is_ours(authority: str, host: str) -> bool:
     """Return whether host:port is an IP address, localhost, or the host that the user gave.
 
-    The name server of an attacker may lead any other name here.
+    An attacker's name server may lead any other name here.
     """
     try:
         name = urlsplit(f"//{authority}").hostname or ""
@@ -110,6 +107,6 @@ def is_ours(authority: str, host: str) -> bool:
         return False
 
 
-async def add_headers(request: web.Request, response: web.StreamResponse) -> None:
-    """Forbid other pages to frame the lab, and the page to load anything from elsewhere."""
-    response.headers.update(HEADERS)
+async def add_policy(request: web.Request, response: web.StreamResponse) -> None:
+    """Let no page frame the lab, and the lab load nothing from elsewhere."""
+    response.headers["Content-Security-Policy"] = POLICY
