@@ -200,7 +200,7 @@ def test_trails_are_the_last_states_of_methods_and_of_the_exact_swing():
 def test_an_angle_in_the_plane_is_off_by_half_a_turn_at_most():
     scene = SCENES["stiff-slow"]
     history = ErrorHistory(scene)
-    reading = Reading(3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, None, {"spring_energy": 1.0})
+    reading = Reading(3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, extra={"spring_energy": 1.0})
     history.add(Sample(1, 0, 0.0, (reading,) * len(scene.cast)), State(-3.0, 0.0))
     assert history.window().low["theta_error"][0, 0] == pytest.approx(6 - math.tau)
 
