@@ -72,7 +72,9 @@ SHOTS = (
             "Each step of Explicit Euler follows the tangent and lands outside: its energy grows "
             "by about z², 25 % a step."
         ),
-        question=("Symplectic Euler differs in one thing: it moves theta with the new omega. Is that enough?"),
+        question=(
+            "Symplectic Euler differs in one thing: it moves theta with the new omega. Is that enough?"
+        ),
         answers=("Yes, its energy stays bounded.", "No, it gains, only slower."),
         right=0,
         truth=(
@@ -85,7 +87,9 @@ SHOTS = (
         scene=replace(SCENES["drift"], h=0.025),
         speed=2.0,
         view="lab",
-        watch=("The first scene with half the step, at twice the speed, until Verlet has its verdict."),
+        watch=(
+            "The first scene with half the step, at twice the speed, until Verlet has its verdict."
+        ),
         moment=17.6,
         happened=(
             "Half the step: Verlet's largest energy error is a quarter, 0.14 % instead of 0.57 %. Its order is 2."
@@ -119,7 +123,9 @@ SHOTS = (
         scene=SCENES["drift"],
         speed=1.5,
         view="lab",
-        watch=("When Explicit Euler goes over the top, time turns round: the same steps with -h, back to 0."),
+        watch=(
+            "When Explicit Euler goes over the top, time turns round: the same steps with -h, back to 0."
+        ),
         moment=7.15,
         happened=(
             "Back at t = 0, only Verlet is back at its start, to the last digits. Symplectic Euler misses it visibly."
@@ -138,7 +144,9 @@ SHOTS = (
         scene=SCENES["drift"],
         speed=0.5,
         view="phase",
-        watch=("The rings are neighbouring starts, carried along by each method. Watch them for two swings."),
+        watch=(
+            "The rings are neighbouring starts, carried along by each method. Watch them for two swings."
+        ),
         moment=4.3,
         happened=(
             "Symplectic Euler and Verlet keep the area of their rings exactly; Explicit Euler's is 2.4 times as large."
@@ -156,7 +164,9 @@ SHOTS = (
         scene=SCENES["verlet-limit-above"],
         speed=2.0,
         view="stability",
-        watch=("z = h·sqrt(g/L) goes to the right, the amplitude up; @ is here, just above Verlet's limit 2."),
+        watch=(
+            "z = h·sqrt(g/L) goes to the right, the amplitude up; @ is here, just above Verlet's limit 2."
+        ),
         moment=20.2,
         happened=(
             "In ten steps Verlet's swing grew from 0.1 to almost 0.5 rad. For a linear spring that would never end."
@@ -179,7 +189,9 @@ SHOTS = (
             " is four times as long."
         ),
         moment=1.8,
-        happened=("With as many force evaluations for all, RK4's energy error passed Verlet's after two seconds."),
+        happened=(
+            "With as many force evaluations for all, RK4's energy error passed Verlet's after two seconds."
+        ),
         question="Is Verlet the better method, then?",
         answers=("Yes.", "It depends on the accuracy."),
         right=1,
