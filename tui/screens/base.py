@@ -270,7 +270,7 @@ class SourceScreen(Screen[None]):
             )
 
     def action_mark(self) -> None:
-        """Leave a mark at the sample, unless it has one; a replay keeps it next to the recording."""
+        """Leave a mark at the sample, unless it has one; that of a replay is next to its file."""
         is_marked = self.source.is_marked
         text = "Already marked" if is_marked else f"Mark at {self.source.sample.t:.2f} s"
         try:

@@ -13,7 +13,7 @@ def regime(model: Model, theta: float, omega: float) -> str:
 
 
 def energy_share(model: Model, theta: float, omega: float) -> str:
-    """Return energy over that of the separatrix; near 1, as the difference from 1: "1 - 2.5e-13"."""
+    """Return energy over that of the separatrix; near 1, as the difference: "1 - 2.5e-13"."""
     level = model.level(theta, omega)
     if level != 0 and abs(level) < 1e-3:
         return f"1 {'-' if level > 0 else '+'} {abs(level):.1e}"

@@ -44,6 +44,8 @@ class Shot:
         return round(self.moment / self.stepping.h)
 
 
+# The formatter would join the sentences to longer lines.
+# fmt: off
 SHOTS = (
     Shot(
         title="who gains",
@@ -73,7 +75,8 @@ SHOTS = (
             "by about z², 25 % a step."
         ),
         question=(
-            "Symplectic Euler differs in one thing: it moves theta with the new omega. Is that enough?"
+            "Symplectic Euler differs in one thing: it moves theta with the new omega. Is that "
+            "enough?"
         ),
         answers=("Yes, its energy stays bounded.", "No, it gains, only slower."),
         right=0,
@@ -88,11 +91,13 @@ SHOTS = (
         speed=2.0,
         view="lab",
         watch=(
-            "The first scene with half the step, at twice the speed, until Verlet has its verdict."
+            "The first scene with half the step, at twice the speed, until Verlet has its "
+            "verdict."
         ),
         moment=17.6,
         happened=(
-            "Half the step: Verlet's largest energy error is a quarter, 0.14 % instead of 0.57 %. Its order is 2."
+            "Half the step: Verlet's largest energy error is a quarter, 0.14 % instead of 0.57 %."
+            " Its order is 2."
         ),
         question="RK4 has order 4. By how much did its energy error shrink?",
         answers=("To a sixteenth.", "To a thirty-second."),
@@ -124,11 +129,13 @@ SHOTS = (
         speed=1.5,
         view="lab",
         watch=(
-            "When Explicit Euler goes over the top, time turns round: the same steps with -h, back to 0."
+            "When Explicit Euler goes over the top, time turns round: the same steps with -h, "
+            "back to 0."
         ),
         moment=7.15,
         happened=(
-            "Back at t = 0, only Verlet is back at its start, to the last digits. Symplectic Euler misses it visibly."
+            "Back at t = 0, only Verlet is back at its start, to the last digits. Symplectic "
+            "Euler misses it visibly."
         ),
         question="Verlet made errors on the way there. Why does it come home?",
         answers=("It is the most accurate here.", "Its step is symmetric."),
@@ -145,11 +152,13 @@ SHOTS = (
         speed=0.5,
         view="phase",
         watch=(
-            "The rings are neighbouring starts, carried along by each method. Watch them for two swings."
+            "The rings are neighbouring starts, carried along by each method. Watch them for two "
+            "swings."
         ),
         moment=4.3,
         happened=(
-            "Symplectic Euler and Verlet keep the area of their rings exactly; Explicit Euler's is 2.4 times as large."
+            "Symplectic Euler and Verlet keep the area of their rings exactly; Explicit Euler's "
+            "is 2.4 times as large."
         ),
         question="What has area to do with energy?",
         answers=("Where it stays, no orbit spirals out.", "Nothing, it is a coincidence."),
@@ -165,11 +174,13 @@ SHOTS = (
         speed=2.0,
         view="stability",
         watch=(
-            "z = h·sqrt(g/L) goes to the right, the amplitude up; @ is here, just above Verlet's limit 2."
+            "z = h·sqrt(g/L) goes to the right, the amplitude up; @ is here, just above Verlet's "
+            "limit 2."
         ),
         moment=20.2,
         happened=(
-            "In ten steps Verlet's swing grew from 0.1 to almost 0.5 rad. For a linear spring that would never end."
+            "In ten steps Verlet's swing grew from 0.1 to almost 0.5 rad. For a linear spring "
+            "that would never end."
         ),
         question="Does it go over the top here?",
         answers=("Yes.", "No."),
@@ -190,7 +201,8 @@ SHOTS = (
         ),
         moment=1.8,
         happened=(
-            "With as many force evaluations for all, RK4's energy error passed Verlet's after two seconds."
+            "With as many force evaluations for all, RK4's energy error passed Verlet's after two"
+            " seconds."
         ),
         question="Is Verlet the better method, then?",
         answers=("Yes.", "It depends on the accuracy."),
@@ -202,6 +214,7 @@ SHOTS = (
         equal_cost=True,
     ),
 )
+# fmt: on
 
 
 class Tour:
