@@ -25,10 +25,10 @@ RING_STEPS = 100  # a frame; 52 µs each, so a ring that has to catch up costs 5
 
 
 class PhasePane(Chooser[State]):
-    """Click or enter chooses a start; a drag shows the orbit through the pointer, or with shift moves the picture."""
+    """Click or enter chooses a start; a drag shows the orbit through the pointer."""
 
     BINDING_GROUP_TITLE = "Phase space"
-    HELP = "A click starts there, a drag shows the orbit first; shift+drag moves, the wheel zooms."
+    HELP = "A click starts there, a drag shows the orbit first; the wheel zooms, arrows move."
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("left", "move(-1, 0)", "crosshair: choose a start", False, "arrows"),
         Binding("right", "move(1, 0)"),
@@ -54,7 +54,6 @@ class PhasePane(Chooser[State]):
         self.aiming = False  # the pointer is about to choose a start
         self.zoomed: Viewport | None = None  # None: the whole portrait
         self._catching_up = False
-        self._panning: tuple[int, int] | None = None  # the cell where the picture was last moved to
 
     @property
     def settled(self) -> bool:
@@ -177,31 +176,24 @@ class PhasePane(Chooser[State]):
     # The mouse
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Begin to choose a start or, with a modifier or another button, to move the picture."""
+        """Begin to choose a start."""
         if (cell := self._cell(event)) is None:
             if event.y == 0:
                 self.post_message(Asked("view('phase')"))
             return
         self.focus(scroll_visible=False)
-        self.capture_mouse()
-        if event.button != 1 or event.shift or event.ctrl or event.meta:
-            self._panning = cell
-        elif self.is_live:
+        if self.is_live and event.button == 1:
+            self.capture_mouse()
             self.cursor, self.pointer, self.aiming = None, cell, True
             self.draw()
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
-        self.pointer = self._cell(event, clamp=self.aiming or self._panning is not None)
-        if self._panning is not None and self.pointer is not None:
-            right, down = self.pointer[0] - self._panning[0], self.pointer[1] - self._panning[1]
-            self._panning = self.pointer
-            self.zoomed = self.viewport.panned(2 * right, 4 * down)
+        self.pointer = self._cell(event, clamp=self.aiming)
         self.draw()
 
     def on_mouse_up(self, event: events.MouseUp) -> None:
-        """Choose the start under the pointer, or stop moving the picture."""
+        """Choose the start under the pointer."""
         self.release_mouse()
-        self._panning = None
         if self.aiming and (cell := self._cell(event, clamp=True)) is not None:
             self.aiming = False
             self.choose(self.viewport.at_cell(*cell))

@@ -19,6 +19,7 @@ Dots = tuple[NDArray[np.intp], NDArray[np.intp]]  # x, y
 Cells = NDArray[np.bool_]  # (rows, columns)
 Word = tuple[int, int, str, int]  # column, row, text, ink
 CURVES = 8  # about so many energies are in view
+LABEL = 4  # columns of the numbers along the left edge
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,7 +45,7 @@ class Portrait:
         separatrix = _border((levels < 0) & model.has_separatrix, heavy=True)
         words = axes(viewport)
         if model.has_separatrix:
-            words += _names(levels, omega, separatrix, words)
+            words += _names(levels, omega)
         ground = Canvas(viewport.columns, viewport.rows)
         ground.scatter(*_dots(curves), FRAME)
         ground.scatter(*_dots(separatrix), TEXT)
@@ -114,51 +115,27 @@ def _dots(mask: NDArray[np.bool_]) -> Dots:
     return x, y
 
 
-def _names(levels: Any, omega: Any, separatrix: NDArray[np.bool_], taken: Sequence[Word]) -> list[Word]:
-    """Name the regimes, each near the middle of its region where there is room, and the separatrix beside it."""
-    curve: Cells = np.any(_cells(separatrix), axis=2)
-    free: Cells = ~curve
-    words: list[Word] = []
-    for word in taken:
-        _take(free, word)
+def _names(levels: Any, omega: Any) -> list[Word]:
+    """Name the regimes in the middle of what is in view of them, and the separatrix beside it, where there is room."""
     spins = levels < 0
+    words: list[Word] = []
     for name, region in (("libration", ~spins), ("rotation", spins & (omega > 0)), ("rotation", spins & (omega < 0))):
-        inside: Cells = np.all(_cells(region), axis=2) & free
-        rows, columns = np.nonzero(inside)
+        inside = _whole_cells(region)
         text = f" {name} "
-        if len(rows) and (place := _nearest(_room(inside, len(text)), rows.mean(), columns.mean() - len(text) / 2)):
-            words.append((place[1], place[0], text, QUIET))
-            _take(free, words[-1])
-    beside = _room(free, len("separatrix") + 1)[:, 1:]
-    beside &= curve[:, : beside.shape[1]]
-    if place := _nearest(beside, 0.3 * len(curve), 0.6 * curve.shape[1]):
-        words.append((place[1] + 1, place[0], "separatrix", TEXT))
+        column = round(float(np.nonzero(inside)[1].mean())) - len(text) // 2 if inside.any() else 0
+        rows = [row for row, cells in enumerate(inside[:-1]) if cells[column : column + len(text)].sum() == len(text)]
+        if rows and column > LABEL:
+            words.append((column, rows[len(rows) // 2], text, QUIET))
+    beside = ~(_whole_cells(spins) | _whole_cells(~spins))
+    for row, cells in enumerate(beside[:-1]):
+        end = int(np.flatnonzero(cells)[-1]) + 1 if cells.any() else 0
+        if LABEL < end <= len(cells) - len("separatrix"):
+            words.append((end, row, "separatrix", TEXT))
+            break
     return words
 
 
-def _cells(dots: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return dots as (rows, columns, 8): the dots of each cell."""
+def _whole_cells(dots: NDArray[np.bool_]) -> Cells:
+    """Return the cells all of whose dots are in a region."""
     rows, columns = dots.shape[0] // 4, dots.shape[1] // 2
-    return dots.reshape(rows, 4, columns, 2).swapaxes(1, 2).reshape(rows, columns, 8)
-
-
-def _take(free: Cells, word: Word) -> None:
-    """Mark a word's cells, and one on both sides, as no longer free."""
-    column, row, text, _ = word
-    free[row, max(column - 1, 0) : column + len(text) + 1] = False
-
-
-def _room(cells: Cells, length: int) -> Cells:
-    """Return where `length` cells in a row all are true, by the first of them."""
-    if cells.shape[1] < length:
-        return np.zeros((len(cells), 0), np.bool_)
-    return np.array(np.lib.stride_tricks.sliding_window_view(cells, length, axis=1).all(axis=2))
-
-
-def _nearest(places: Cells, row: float, column: float) -> tuple[int, int] | None:
-    """Return row and column of the true place nearest to a point, a row counting as two columns."""
-    rows, columns = np.nonzero(places)
-    if not len(rows):
-        return None
-    best = int(np.argmin(4 * (rows - row) ** 2 + (columns - column) ** 2))
-    return int(rows[best]), int(columns[best])
+    return np.array(dots.reshape(rows, 4, columns, 2).all(axis=(1, 3)))

@@ -187,21 +187,10 @@ async def test_z_zooms_in_to_a_millionth_of_a_radian_at_the_unstable_point():
             pane.action_zoom(0.5)
         assert pane.viewport.theta_span == pytest.approx(MIN_SPAN)
         assert abs(abs(pane.cursor.theta) - math.pi) < 1e-15  # no dot away from it, at any zoom
-        assert all(word in pane.text for word in ("separatrix", "libration", "rotation", "pi", "+2e-7"))
+        assert all(word in pane.text for word in ("separatrix", "rotation", "pi", "+2e-7"))
         for _ in range(30):
             pane.action_zoom(2.0)
         assert pane.viewport.theta_span > 6
-
-
-@pytest.mark.parametrize("how", [{"shift": True}, {"ctrl": True}, {"meta": True}, {"button": 2}, {"button": 3}])
-async def test_a_drag_with_a_modifier_or_another_button_moves_the_picture_and_chooses_nothing(how):
-    async with shown() as (pilot, pane):
-        before = pane.viewport
-        for kind, cell in ((events.MouseDown, (20, 8)), (events.MouseMove, (25, 6)), (events.MouseUp, (25, 6))):
-            await mouse(pilot, pane, kind, cell, **how)
-        assert not pilot.app.chosen
-        assert pane.viewport.x(0.3) == pytest.approx(before.x(0.3) + 10)
-        assert pane.viewport.y(0.3) == pytest.approx(before.y(0.3) - 8)
 
 
 async def test_a_start_that_no_pendulum_has_is_refused_with_a_sentence():
