@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from engine.run.judgement import Judgement, Progress, Verdict
+from engine.run.judgement import Judgement, Progress
 from engine.run.noise import Fit, Noises, regressors, waves
 
 MIN_SAMPLES = 64  # 32 blocks: a line, three waves and a noise leave 20 degrees of freedom
@@ -36,13 +36,12 @@ WALKS = 3.5  # of a likelihood ratio: noise with a correlation time of T/5 excee
 MIN_CYCLES = 4.0  # of a slow wave that is called bounded: thirds of the record look alike
 WAVES = 12.0  # log likelihood that waves must gain: in random walks they gained up to 10
 TRANSIENT = 0.1  # of the record: a start that is over so early belongs to the preparation
-RUNAWAY = 1.65  # exponent of structure functions: 2 for a smooth curve, 1.3 for means of a walk
 WIDER = 1.5  # times as wide, all of the last third as any of the first: never by chance
 ROUNDING = 1e-12  # of the energy: a random walk of 1e7 roundings of 1e-16
 AT_REST = 0.01  # of the first energy: losing all of it is no other level
 MULTIPLIED = 1e3  # times the smallest energy: what multiplies is judged in its logarithm
 
-_RATES = 1.0 * np.geomspace(1, 25, 20)  # of exponential curves, per record: these still move
+_RATES = np.geomspace(1, 25, 20)  # of exponential curves, per record: these still move
 _LOGARITHMS = np.geomspace(1, 3000, 15)  # of log(1 + k t), which never settles
 _SETTLING = np.geomspace(6, 600, 30)  # exponential approaches that are over within the record
 
@@ -77,26 +76,33 @@ def judge_energies(times: Any, energies: Any, failed: bool = False) -> SeriesJud
         return SeriesJudgement(Judgement("failed"))
     if len(times) < MIN_SAMPLES:
         return SeriesJudgement(_too_early(len(times), MIN_SAMPLES, "samples"))
-    floor = max(_last_digit(energies), ROUNDING * float(np.abs(energies).max()))
+    unit = float(np.abs(energies).max()) or 1.0
+    energies = energies / unit  # squares must not overflow
     if np.abs(energies[-(len(energies) // 4) :]).max() < AT_REST * abs(float(energies[0])):
         return SeriesJudgement(Judgement("loses"))
+    floor = max(_last_digit(energies * unit) / unit, ROUNDING)
     first = _transient(times, energies, floor)
     found = _judge(times[first:], energies[first:], floor)
     if found.first:
         first += found.first
         found = _judge(times[first:], energies[first:], floor, again=True)
-    sizes = np.abs(energies[first:])
-    if sizes.max() > MULTIPLIED * sizes.min() > 0 and np.ptp(np.sign(energies[first:])) == 0:
-        logarithms = np.sign(energies[first:]) * np.log(sizes)
-        verdict = _judge(times[first:], logarithms, ROUNDING, again=True).judgement.verdict
-        found = found._replace(judgement=found.judgement._replace(verdict=verdict))
-    span = float(times[-1] - times[first])
     judgement = found.judgement
+    rest = energies[first:]
+    if 0 < MULTIPLIED * np.abs(rest).min() < np.abs(rest).max() and rest.min() * rest.max() > 0:
+        logarithms = np.sign(rest) * np.log(np.abs(rest))
+        verdict = _judge(times[first:], logarithms, ROUNDING, again=True).judgement.verdict
+        judgement = judgement._replace(verdict=verdict)
     if judgement.slope is not None and judgement.uncertainty is not None:
-        slope = judgement.slope / span
-        judgement = judgement._replace(slope=slope, uncertainty=judgement.uncertainty / span)
-    transient = float(times[first] - times[0])
-    return SeriesJudgement(judgement, transient, first, found.independent, found.fluctuation)
+        rate = unit / float(times[-1] - times[first])
+        slope = judgement.slope * rate
+        judgement = judgement._replace(slope=slope, uncertainty=judgement.uncertainty * rate)
+    return SeriesJudgement(
+        judgement=judgement,
+        transient=float(times[first] - times[0]),
+        first=first,
+        independent=found.independent,
+        fluctuation=None if found.fluctuation is None else found.fluctuation * unit,
+    )
 
 
 def _too_early(have: float, need: float, unit: str) -> Judgement:
@@ -139,8 +145,6 @@ def _judge(times: Any, energies: Any, floor: float, again: bool = False) -> Seri
         return SeriesJudgement(_too_early(len(blocks.means), MIN_BLOCKS, "blocks with samples"))
     if float(np.ptp(energies)) <= 2 * floor:
         return SeriesJudgement(Judgement("bounded", 0.0, floor))
-    if verdict := _runs_away(blocks):
-        return SeriesJudgement(Judgement(verdict))
     stories = _best_stories(blocks, count, floor)
     rest = energies - np.polyval(np.polyfit(at, energies, 1), at)
     error = max(stories.line.deviation, floor / len(at))
@@ -157,7 +161,7 @@ def _judge(times: Any, energies: Any, floor: float, again: bool = False) -> Seri
         half = len(at) // 2
         later = _judge(times[half:], energies[half:], floor, again=True).judgement
         moves = abs(later.slope or 0.0) > STILL_MOVING * abs(stories.settled.amplitude)
-        judgement = later if moves and later.verdict in ("grows", "loses") else judgement
+        judgement = later if moves and later.significant else judgement
     if judgement.verdict in ("bounded", "too early") and _gets_wider(blocks, floor):
         judgement = Judgement("wanders")
     slope = stories.line.amplitude
@@ -207,22 +211,6 @@ def _cut(at: Any, energies: Any, count: int) -> _Blocks:
         highs=np.maximum.reduceat(energies, firsts),
         sizes=sizes,
     )
-
-
-def _runs_away(blocks: _Blocks) -> Verdict | None:
-    """Return the direction in which the last quarter moves smoothly, far beyond all before it."""
-    quarter = len(blocks.means) // 4
-    low = float(blocks.lows[:-quarter].min())
-    high = float(blocks.highs[:-quarter].max())
-    end = float(blocks.means[-1])
-    moves = np.diff(blocks.means[-max(quarter, 6) :])
-    one_way = np.all(moves > 0) or np.all(moves < 0)
-    if not one_way or max(end - high, low - end) <= (high - low) / 2:
-        return None
-    near, far = (float(np.mean((blocks.means[by:] - blocks.means[:-by]) ** 2)) for by in (1, 2))
-    if far < 2**RUNAWAY * near:
-        return None
-    return "grows" if end > high else "loses"
 
 
 def _gets_wider(blocks: _Blocks, floor: float) -> bool:

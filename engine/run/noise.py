@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-TIMES = 1 / np.array([0.5, 1, 2, 4, 7, 10, 14, 20, 28, 40, 64])  # correlation times, of the record
+TIMES = 1 / np.array([0.5, 2, 7, 14, 28, 64])  # correlation times, of the record
 WHITE = np.array([0.0, 1, 10, 100, 1000])  # variance of white noise, in mean squares of the steps
 WALK_TIME = 1.9  # of the record: from here on noise looks like a random walk
 LEVEL_TIME = 0.21  # of the record: up to here noise comes back to its level

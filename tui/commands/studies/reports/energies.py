@@ -9,6 +9,7 @@ from tui.cli.columns import REASONS, Table
 from tui.cli.errors import UserError
 from tui.words.numbers import counted
 
+MAX_ERROR = 1e300  # larger ones are not finite, and JSON has no word for them
 NANOSECONDS = {"fs": 1e-6, "ps": 1e-3, "ns": 1.0, "us": 1e3, "µs": 1e3, "ms": 1e6, "s": 1e9}
 BOLTZMANN = {  # in the unit a kelvin; the 2019 SI
     "ev": 8.617333262e-5,
@@ -37,7 +38,8 @@ def judged(table: Table, scale: float | str, atoms: int | None, temperature: flo
     found = judge_energies(times, energies, failed=table.failed_at is not None)
     rest = energies[found.first :]
     size = _size(table, rest, scale)
-    errors = (rest - rest[0]) / size
+    with np.errstate(over="ignore"):
+        errors = np.clip((rest - rest[0]) / size, -MAX_ERROR, MAX_ERROR)
     fields = {
         "table": table.number,
         "tables": table.count,
@@ -67,7 +69,8 @@ def _size(table: Table, energies: Any, scale: float | str) -> float:
     if scale == "first":
         size = abs(float(energies[0]))
     elif scale == "std":
-        size = float(energies.std())
+        largest = abs(energies).max() or 1.0
+        size = float((energies / largest).std() * largest)  # squares must not overflow
     else:
         size = abs(sum(table.columns[2]) / len(table.columns[2]))
     if not 0 < size < math.inf:
@@ -82,14 +85,15 @@ def _trend_fields(table: Table, slope: float | None, uncertainty: float | None, 
     if time_unit.casefold() in NANOSECONDS:
         time_unit = time_unit.casefold()
     known = slope is not None and uncertainty is not None
+    known = known and (abs(slope) + uncertainty) / size < MAX_ERROR  # type: ignore[arg-type, operator]
     return {
         "time_unit": time_unit,
         "energy_unit": printable(table.units[1], 20),
         "trend": slope / size if known else None,  # type: ignore[operator]
         "uncertainty": uncertainty / size if known else None,  # type: ignore[operator]
         "trend_unit": f"1/{time_unit}" if time_unit else "",
-        "absolute_trend": slope,
-        "absolute_uncertainty": uncertainty,
+        "absolute_trend": slope if known else None,
+        "absolute_uncertainty": uncertainty if known else None,
     }
 
 
