@@ -24,7 +24,7 @@ from recordings.format import CLOCK_OFFSET
 from recordings.library import open_file
 from recordings.reader import Decoder, Place, Scan, ShowProgress, check_format, read_chunk, read_summary
 
-MAX_EVENTS = 100_000  # 30 MB; a lesson has a few hundred
+MAX_EVENTS = 30_000  # 10 MB; a lesson has a few hundred
 MAX_CHECKED = 1 << 26  # bytes that are checked whenever a file is opened: 50 ms
 CHUNKS_KEPT = 3  # decoded; playing meets the same one thirty times, stepping about an edge two
 
@@ -216,13 +216,16 @@ class Recording:
                     run.events.append((clock, event))
         if not self.runs:
             raise RecordingError(self.reason or "it has no runs")
-        ends = [
-            SamplePlace(chunk, index)
+        places = {
+            entry.value.run: SamplePlace(chunk, index)
             for chunk in dict.fromkeys(starts)
             for index, entry in enumerate(self._decode(chunk)[0])
             if isinstance(entry.value, Event) and entry.value.kind == "start"
-        ]
-        for run, end in zip(self.runs, [*ends[1:], SamplePlace(len(self._places), 0)], strict=True):
+        }
+        ends = [places.get(run.number) for run in self.runs[1:]]
+        for run, end in zip(self.runs, [*ends, SamplePlace(len(self._places), 0)], strict=True):
+            if end is None:  # its chunk is damaged but for its events
+                continue
             last = self.previous(end)
             clock, sample = self.sample(last) if last else (0.0, None)
             if isinstance(sample, Sample) and sample.run == run.number:

@@ -71,6 +71,12 @@ def begun() -> Iterator[list[Part]]:
     yield sample(first_sample())
 
 
+def cut_run(run: int) -> Iterator[list[Part]]:
+    """A run of whose sample a method is missing."""
+    yield event(start(run))
+    yield sample(first_sample(run))[:-1]
+
+
 def raw(data: bytes, name: str = EVENTS) -> Iterator[list[Part]]:
     """One run, and a message of these bytes."""
     yield from begun()

@@ -9,6 +9,7 @@ from recordings.events import Entry, Event
 from recordings.headless import simulate
 from recordings.recorder import Recorder
 from recordings.recording import Recording
+from tests.recordings import hostile
 from tests.recordings.examples import METHOD_KEYS, SCENE, record, start, two_runs
 
 
@@ -143,3 +144,15 @@ def test_a_run_without_samples_has_no_length(tmp_path):
             (0, 1.0, 1.0),
             (0, 1.0, 1.0),
         ]
+
+
+def test_a_chunk_whose_samples_are_impossible_costs_itself_only(tmp_path):
+    def entries():
+        yield from hostile.begun()
+        yield from hostile.cut_run(2)
+
+    hostile.write(tmp_path / "a.mcap", entries())
+    with Recording.open(tmp_path / "a.mcap") as recording:
+        assert [run.number for run in recording.runs] == [1, 2]
+        assert list(recording.entries()) == []
+        assert recording.damaged
