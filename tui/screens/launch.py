@@ -5,7 +5,9 @@ import gc
 import os
 import shlex
 import sys
+from asyncio import CancelledError
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from traceback import walk_tb
@@ -118,8 +120,10 @@ def show(screen: "SourceScreen", options: argparse.Namespace) -> int:
     assert sys.__stderr__ is not None  # where Textual draws
     terminal = terminal_options_of(options, os.environ, sys.__stderr__.encoding)
     app = PenduApp(screen, lambda path: replay_screen(open_replay(path), options.no_record), terminal)
+    result: Exit | BaseException | None = None
     try:
-        result = app.run(mouse=terminal.mouse)
+        with suppress(CancelledError):  # of a dialog that closes while Textual 8.2 does
+            result = app.run(mouse=terminal.mouse)
     finally:
         app.finish()
     codes = [say_goodbye(each.source) for each in app.source_screens]

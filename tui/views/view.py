@@ -16,6 +16,7 @@ from tui.drawing.cells import CellWidget
 from tui.drawing.picture import Picture
 from tui.playback.shown import Shown
 from tui.playback.source import Source
+from tui.terminal.options import SMALLEST
 
 Place = TypeVar("Place")
 
@@ -149,6 +150,8 @@ class Pane(CellWidget):
         source, sample = self.source, self.sample
         if source is None or sample is None or not self.drawable:
             return
+        if self.app.size.width < SMALLEST[0] or self.app.size.height < SMALLEST[1]:
+            return  # too small: there is a message instead
         if sample.run == source.sample.run:  # else another run has just begun, maybe with other methods
             self.show(self.picture(source, sample))
 

@@ -91,7 +91,7 @@ def period_sentence(source: Source) -> str:
 def kind_rows(cast: Cast, kinds: Sequence[tuple[int, OrbitKind]], width: int) -> list[Row]:
     """Return heads and a row for each place in the cast and the kind of its orbit; the first columns that fit."""
     widths = list(COLUMNS.values())
-    while sum(widths) > width - LABEL:
+    while widths and sum(widths) > width - LABEL:
         widths.pop()
     heads = "".join(head.rjust(size) for head, size in zip(HEADS, widths, strict=False))
     rows: list[Row] = [[(" " * LABEL + heads, FRAME)]]
