@@ -36,7 +36,6 @@ WALKS = 3.5  # of a likelihood ratio: noise with a correlation time of T/5 excee
 MIN_CYCLES = 4.0  # of a slow wave that is called bounded: thirds of the record look alike
 WAVES = 12.0  # log likelihood that waves must gain: in random walks they gained up to 10
 TRANSIENT = 0.1  # of the record: a start that is over so early belongs to the preparation
-WIDER = 1.5  # times as wide, all of the last third as any of the first: never by chance
 ROUNDING = 1e-12  # of the energy: a random walk of 1e7 roundings of 1e-16
 AT_REST = 0.01  # of the first energy: losing all of it is no other level
 MULTIPLIED = 1e3  # times the smallest energy: what multiplies is judged in its logarithm
@@ -62,8 +61,6 @@ class _Blocks(NamedTuple):
     places: Any  # numbers of the blocks
     times: Any
     means: Any
-    lows: Any
-    highs: Any
     sizes: Any  # samples
 
 
@@ -162,8 +159,11 @@ def _judge(times: Any, energies: Any, floor: float, again: bool = False) -> Seri
         later = _judge(times[half:], energies[half:], floor, again=True).judgement
         moves = abs(later.slope or 0.0) > STILL_MOVING * abs(stories.settled.amplitude)
         judgement = later if moves and later.significant else judgement
-    if judgement.verdict in ("bounded", "too early") and _gets_wider(blocks, floor):
-        judgement = Judgement("wanders")
+    if judgement.verdict == "bounded" and not again:
+        wobble = np.abs(rest)
+        wider = _judge(times, wobble, floor, again=True).judgement
+        if wider.verdict == "grows" and (wider.slope or 0.0) > float(np.mean(wobble)):
+            judgement = Judgement("wanders")  # it triples
     slope = stories.line.amplitude
     if abs(slope) < 2 * floor and judgement.verdict in ("grows", "loses"):
         judgement = Judgement("bounded")
@@ -207,23 +207,8 @@ def _cut(at: Any, energies: Any, count: int) -> _Blocks:
         places=places[firsts],
         times=np.add.reduceat(at, firsts) / sizes,
         means=means,
-        lows=np.minimum.reduceat(energies, firsts),
-        highs=np.maximum.reduceat(energies, firsts),
         sizes=sizes,
     )
-
-
-def _gets_wider(blocks: _Blocks, floor: float) -> bool:
-    """Whether the wobble within blocks gets wider from third to third of the record."""
-    firsts = np.arange(0, len(blocks.means), 4)
-    lasts = np.append(firsts[1:], len(blocks.means)) - 1
-    moved = np.abs(blocks.means[lasts] - blocks.means[firsts])
-    highs = np.maximum.reduceat(blocks.highs, firsts)
-    widths = highs - np.minimum.reduceat(blocks.lows, firsts) - moved
-    third = len(widths) // 3
-    early = float(widths[:third].max())
-    late = float(widths[-third:].min())
-    return late > WIDER * early + 2 * floor and late > float(blocks.means.std())
 
 
 class _Stories(NamedTuple):
