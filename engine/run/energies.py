@@ -40,7 +40,7 @@ ROUNDING = 1e-12  # of the energy: a random walk of 1e7 roundings of 1e-16
 AT_REST = 0.01  # of the first energy: losing all of it is no other level
 MULTIPLIED = 1e3  # times the smallest energy: what multiplies is judged in its logarithm
 
-_RATES = np.geomspace(1, 25, 20)  # of exponential curves, per record: these still move
+_RATES = np.array([-4, -3, -2, -1.4, -1, *np.geomspace(1, 25, 15)])  # exponentials that still move
 _LOGARITHMS = np.geomspace(1, 3000, 15)  # of log(1 + k t), which never settles
 _SETTLING = np.geomspace(6, 600, 30)  # exponential approaches that are over within the record
 
@@ -190,7 +190,7 @@ def _conclude(stories: "_Stories", independent: float, has_settled: bool) -> Jud
         return Judgement("grows" if stories.line.amplitude > 0 else "loses")
     if line < STILL and not few and not has_settled:
         return Judgement("bounded")
-    if line < STILL and stories.level.walks > WALKS and not math.isfinite(stories.cycles):
+    if line < STILL and stories.walks > WALKS and not math.isfinite(stories.cycles):
         return Judgement("wanders")
     if stories.cycles < MIN_CYCLES:
         return _too_early(stories.cycles, MIN_CYCLES, "cycles of its slowest wave")
@@ -212,9 +212,9 @@ def _cut(at: Any, energies: Any, count: int) -> _Blocks:
 
 
 class _Stories(NamedTuple):
-    """The best of each kind of description."""
+    """The best description of each kind."""
 
-    level: Fit
+    walks: float  # of noise about a level: log likelihood ratio of a random walk
     line: Fit
     moving: Fit
     settled: Fit
@@ -232,10 +232,9 @@ def _best_stories(blocks: _Blocks, count: int, floor: float) -> _Stories:
     """Fit all descriptions, with waves if they make a better one."""
     means = blocks.means - float(blocks.means.mean())
     noises = Noises(blocks.places, blocks.sizes, count, floor)
-    plain = _stories(blocks.times, means, noises, [])
     found = waves(blocks.times, means)
-    wavy = _stories(blocks.times, means, noises, found) if found else plain
-    return max(plain, wavy, key=lambda each: each.likelihood)
+    stories = [_stories(blocks.times, means, noises, some) for some in ([], found)[: 1 + bool(found)]]
+    return max(stories, key=lambda each: each.likelihood)
 
 
 def _stories(times: Any, means: Any, noises: Noises, frequencies: list[float]) -> _Stories:
@@ -243,46 +242,37 @@ def _stories(times: Any, means: Any, noises: Noises, frequencies: list[float]) -
     base = [np.ones(len(times)), *regressors(frequencies, times)]
     level = noises.fit(base, means)
     line = noises.fit([*base, times], means)
-    curves = [np.expm1(rate * times) / math.expm1(rate) for rate in (*_RATES, *-_RATES[_RATES < 4])]
-    logarithms = [np.log1p(rate * times) for rate in _LOGARITHMS]
-    moving = [line]
-    for family in (curves, logarithms):
-        moving.append(noises.fit([*base, family[_best(family, base, means)]], means))
-    approaches = [-np.expm1(-rate * times) for rate in _SETTLING]
-    approach = _best(approaches, base, means)
-    settled = noises.fit([*base, approaches[approach]], means)
-    settling = 3 / float(_SETTLING[approach])  # to a 20th of the way
-    steps = _steps(len(times))
-    step = noises.fit([*base, steps[_best(steps, base, means)]], means)
-    if step.likelihood > settled.likelihood:
-        settled, settling = step, 1.0
-    best = max(moving, key=lambda fit: fit.likelihood)
+    curves = np.expm1(_RATES[:, None] * times) / np.expm1(_RATES)[:, None]
+    logarithms = np.log1p(_LOGARITHMS[:, None] * times)
+    approaches = -np.expm1(-_SETTLING[:, None] * times)
+    best = [_best(family, base, means) for family in (curves, logarithms, approaches, _steps(len(times)))]
+    curve, logarithm, approach, step = (noises.fit([*base, family], means) for family, _ in best)
+    moving = max(line, curve, logarithm, key=lambda fit: fit.likelihood)
+    is_step = step.likelihood > approach.likelihood
     penalty = math.log(len(times))
-    likelihood = max(level.likelihood, best.likelihood - penalty, settled.likelihood - penalty)
+    likelihood = max(level.likelihood, *(fit.likelihood - penalty for fit in (moving, approach, step)))
     return _Stories(
-        level=level,
+        walks=level.walks,
         line=line,
-        moving=best,
-        settled=settled,
-        settling=settling,
+        moving=moving,
+        settled=step if is_step else approach,
+        settling=1.0 if is_step else 3 / float(_SETTLING[best[2][1]]),  # to a 20th of the way
         cycles=min(frequencies, default=math.inf),
         likelihood=likelihood - 1.5 * len(frequencies) * penalty - (WAVES if frequencies else 0),
     )
 
 
-def _steps(count: int) -> list[Any]:
+def _steps(count: int) -> Any:
     """Return steps of 1 in the middle three quarters of so many blocks, and within a block."""
-    places = np.arange(count)
     edge = max(2, count // 8)
-    return [
-        np.clip(places - place + share, 0, 1) for place in range(edge, count - edge) for share in (0.25, 0.5, 0.75, 1.0)
-    ]
+    places = np.arange(edge, count - edge, 0.25)
+    return np.clip(np.arange(count) - places[:, None] + 1, 0, 1)
 
 
-def _best(family: list[Any], base: list[Any], means: Any) -> int:
-    """Return the index of the member that explains most of the means, beside the base."""
+def _best(family: Any, base: list[Any], means: Any) -> tuple[Any, int]:
+    """Return the member that explains most of the means, beside the base, and its index."""
     basis = np.linalg.qr(np.column_stack(base))[0]
-    members = np.array(family)
-    members = members - (members @ basis) @ basis.T
+    members = family - (family @ basis) @ basis.T
     lengths = np.maximum((members**2).sum(axis=1), 1e-12)
-    return int(np.argmax((members @ means) ** 2 / lengths))
+    index = int(np.argmax((members @ means) ** 2 / lengths))
+    return family[index], index
