@@ -68,6 +68,7 @@ class CellWidget(Widget):
             self._crop = crop if crop == Region(0, 0, *self.outer_size) else None
             top, right, _, left = self.gutter
             self._top = top
+            self._inside = len(self._lines) - self.gutter.height  # `room` may be of another size yet
             line = self._lines[top] if top < len(self._lines) else Strip.blank(crop.width, self.rich_style)
             self._left = [*line.crop(0, left)]
             self._right = [*line.crop(crop.width - right)]
@@ -75,7 +76,7 @@ class CellWidget(Widget):
             self._background = self.background_colors[1]
         else:
             for y in self._changed:
-                if y < self.room.height:
+                if y < self._inside:
                     row = self.render_line(y)
                     for one in self._filters:
                         row = row.apply_filter(one, self._background)
