@@ -5,48 +5,42 @@ that has the wanted names, or where the time starts again; one of the tables is 
 """
 
 import io
-import json
 import re
-import zipfile
 from array import array
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import chain
-from typing import Any, BinaryIO, NamedTuple
+from typing import Any, BinaryIO
 
-from recordings.errors import printable
-from tui.cli.errors import Exit, UserError
-from tui.cli.options import did_you_mean
+from tui.cli.heads import (
+    MAX_LINES_BEFORE,
+    MAX_NAME,
+    MAX_NAMES,
+    Head,
+    Records,
+    Row,
+    delimiter_of,
+    fields_of,
+    missing,
+    number_of,
+    places_of,
+    row_of,
+    unit_of,
+    unreadable,
+)
+from tui.cli.objects import is_mdout, of_arrays, of_objects, pairs, parsed
 
 MAX_LINE = 1 << 20  # bytes
-MAX_LINES_BEFORE = 100_000  # the first row
 MAX_PAGE = 64  # rows below a header that comes again on each page, as NAMD's; fewer are no table
-MAX_NAME = 200  # characters of a column's name
-MAX_NAMES = 200  # columns of a header
-MAX_ARRAY = 1 << 30  # bytes of an array in an .npz
 LATEST = 1e300  # a time; squares and differences of later ones overflow
 
 _LEGEND = re.compile(r'@\s*(?:s(\d{1,3})\s+legend|([xy])axis\s+label)\s+"([^"]*)"')
-_PAIR = re.compile(r"([A-Za-z][\w()/-]*(?: [\w()/-]+)?)\s*=\s*([-+.\w*]+)")
 _BINARY = {
     b"\x1f\x8b": "a gzip file; unpack it first",
     b"\xff\xfe": "text in UTF-16; save it as UTF-8",
     b"\xfe\xff": "text in UTF-16; save it as UTF-8",
     b"\x89MCAP": "a recording; pendu-tui export makes a table of it",
 }
-
-
-class Head(NamedTuple):
-    """The wanted columns of a table: the fields that add up to each, and its unit."""
-
-    places: tuple[tuple[int, ...], ...]
-    units: tuple[str, ...]
-
-
-Row = Sequence[float | None]  # a number for each wanted column; None: text or a gap
-Records = Iterator[Head | Row]
-
-
 REASONS = {
     "without_numbers": "without numbers",
     "time_not_later": "whose time is not later",
@@ -107,9 +101,9 @@ def read_table(stream: BinaryIO, wanted: Sequence[str], number: int | None = Non
         else:
             tables.add_row(record)  # type: ignore[arg-type]
     if tables.found is None and tables.count:
-        raise _unreadable(f"there is no table {number}; the input has {tables.count}.")
+        raise unreadable(f"there is no table {number}; the input has {tables.count}.")
     if tables.found is None:
-        raise _unreadable("no row has a number in each column; columns count from 1.")
+        raise unreadable("no row has a number in each column; columns count from 1.")
     tables.found.count = tables.count
     tables.found.finish(start)
     return tables.found
@@ -157,20 +151,16 @@ class _Tables:
             column.append(value)
 
 
-def _unreadable(sentence: str) -> UserError:
-    return UserError(sentence, Exit.INPUT_UNREADABLE)
-
-
 def _records(stream: BinaryIO, wanted: Sequence[str]) -> Records:
     """Return heads and rows of any input."""
     head = stream.peek(4096) if isinstance(stream, io.BufferedReader) else b""
     if head.startswith(b"PK\x03\x04"):
-        return _of_arrays(stream, wanted)
+        return of_arrays(stream, wanted)
     kind = next((text for start, text in _BINARY.items() if head.startswith(start)), None)
     if kind or b"\0" in head:
-        raise _unreadable(f"this is {kind or 'no text'}.")
+        raise unreadable(f"this is {kind or 'no text'}.")
     if head.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"{"):
-        return _of_objects(_parsed(_lines(stream)), wanted)
+        return of_objects(parsed(_lines(stream)), wanted)
     return _Text(wanted).records(_lines(stream))
 
 
@@ -179,11 +169,11 @@ def _lines(stream: BinaryIO) -> Iterator[str]:
     encoding = "utf-8-sig"
     while line := stream.readline(MAX_LINE + 1):
         if len(line) > MAX_LINE:
-            raise _unreadable("a line is longer than 1 MB; is this a table?")
+            raise unreadable("a line is longer than 1 MB; is this a table?")
         yield line.decode(encoding, errors="replace")
         encoding = "utf-8"
     if encoding == "utf-8-sig":
-        raise _unreadable("the input is empty; nothing to judge.")
+        raise unreadable("the input is empty; nothing to judge.")
 
 
 class _Text:
@@ -206,20 +196,20 @@ class _Text:
             row = self._plain_row(line) if self._has_rows else None
             if row:
                 yield row
-            elif line.lstrip().startswith("NSTEP") and len(_PAIR.findall(line[:MAX_NAME])) > 1:
-                yield from _of_objects(_pairs(chain([line], lines)), self._wanted, "kcal/mol")
+            elif is_mdout(line):
+                yield from of_objects(pairs(chain([line], lines)), self._wanted, "kcal/mol")
                 return
             else:
                 yield from self._other(line)
             if number > MAX_LINES_BEFORE and not self._has_rows:
-                raise _unreadable(f"{number:,} lines without a row of these columns; is this a table?")
+                raise unreadable(f"{number:,} lines without a row of these columns; is this a table?")
         if self._head is None:
-            raise _missing(self._wanted, list(self._legend.values()) or self._names)
+            raise missing(self._wanted, list(self._legend.values()) or self._names)
 
     def _plain_row(self, line: str) -> Row | None:
         """Return a row like the one before it."""
         assert self._head is not None
-        fields = line.split(self._delimiter) if '"' not in line else _fields(line, self._delimiter)
+        fields = line.split(self._delimiter) if '"' not in line else fields_of(line, self._delimiter)
         if len(fields) != self._width:
             return None
         try:
@@ -235,23 +225,23 @@ class _Text:
             return
         is_comment = line.lstrip()[:1] in ("#", "@")
         text = line.lstrip("#@ \t") if is_comment else line
-        delimiter = _delimiter(text)
-        fields = _fields(text, delimiter)
-        if sum(_number(each) is not None for each in fields) < 2:
+        delimiter = delimiter_of(text)
+        fields = fields_of(text, delimiter)
+        if sum(number_of(each) is not None for each in fields) < 2:
             self._read_header(text, fields, is_comment)
         elif not is_comment:
             yield from self._begin(fields, delimiter)
         if self._has_rows and self._head and text.strip() and not is_comment:
-            yield _row(fields if len(fields) == self._width else [], self._head.places)
+            yield row_of(fields if len(fields) == self._width else [], self._head.places)
 
     def _begin(self, fields: list[str], delimiter: str | None) -> Records:
         """Yield the head of the table whose first row this is, if it is one."""
         if self._is_numbered:
-            is_other = len(fields) != self._width and None not in map(_number, fields)
+            is_other = len(fields) != self._width and None not in map(number_of, fields)
             head = None
             if is_other or not self._has_rows:
                 head = self._head_of_legend(len(fields))
-            begins = head is not None and None not in _row(fields, head.places)
+            begins = head is not None and None not in row_of(fields, head.places)
         else:
             head = self._head
             begins = head is not None and not self._has_rows
@@ -273,8 +263,8 @@ class _Text:
                 self._above = fields
         ways = [fields, re.split(r"\s{2,}", text.strip())]  # names may hold single blanks
         for names in ways:
-            if places := _places(names[:MAX_NAMES], self._wanted, named=True):
-                self._head = Head(places, tuple(_unit(names[group[0]]) for group in places))
+            if places := places_of(names[:MAX_NAMES], self._wanted, named=True):
+                self._head = Head(places, tuple(unit_of(names[group[0]]) for group in places))
                 self._is_numbered = False
                 self._names = names
                 self._has_rows = False
@@ -289,175 +279,9 @@ class _Text:
     def _head_of_legend(self, width: int) -> Head | None:
         """Return the head of a table without a header, by legend or by numbers."""
         names = [self._legend.get(place, "") for place in range(width)]
-        places = _places(names, self._wanted)
+        places = places_of(names, self._wanted)
         if places is None:
             return None
-        units = [_unit(names[group[0]]) for group in places]
-        shared = _unit(self._legend.get(-1, ""))
+        units = [unit_of(names[group[0]]) for group in places]
+        shared = unit_of(self._legend.get(-1, ""))
         return Head(places, (units[0], *(unit or shared for unit in units[1:])))
-
-
-def _row(fields: Sequence[str], places: Iterable[Iterable[int]]) -> Row:
-    """Return the numbers of a row, also with decimal commas or with Fortran's D."""
-    row: list[float | None] = []
-    for group in places:
-        numbers = [_number(fields[place]) if place < len(fields) else None for place in group]
-        present = [number for number in numbers if number is not None]
-        row.append(sum(present) if len(present) == len(numbers) else None)
-    return row
-
-
-def _number(text: str) -> float | None:
-    try:
-        return float(text.replace(",", ".").replace("D", "e").replace("d", "e"))
-    except ValueError:
-        return None
-
-
-def _fields(line: str, delimiter: str | None) -> list[str]:
-    """Return the fields of a line, without quotes."""
-    if '"' not in line:
-        return [text.strip() for text in line.split(delimiter)]
-    if delimiter is None:
-        return [quoted or bare for quoted, bare in re.findall(r'"([^"]*)"|(\S+)', line)]
-    parts = re.findall(r'((?:"[^"]*"|[^"' + delimiter + r"])*)(?:" + delimiter + r"|$)", line.strip())
-    return [text.strip().strip('#" ') for text in parts]
-
-
-def _delimiter(line: str) -> str | None:
-    """Return a tab, a semicolon or a comma outside quotes; None for blanks."""
-    bare = re.sub(r'"[^"]*"', "", line)
-    return next((sign for sign in "\t;," if sign in bare), None)
-
-
-def _places(fields: Sequence[str], wanted: Sequence[str], named: bool = False) -> tuple[tuple[int, ...], ...] | None:
-    """Return the fields that make up each wanted column, if all are there.
-
-    `named`: only if one of them is asked for by name.
-    """
-    if named and all(part.isdecimal() for name in wanted for part in name.split("+")):
-        return None
-    found: list[tuple[int, ...]] = []
-    for name in wanted:
-        whole = _place(fields, name)
-        parts = [whole] if whole is not None else [_place(fields, part) for part in name.split("+")]
-        places = tuple(place for place in parts if place is not None)
-        if len(places) < len(parts):
-            return None
-        found.append(places)
-    return tuple(found)
-
-
-def _place(fields: Sequence[str], name: str) -> int | None:
-    """Return the place of a column: by number, name, name but for case, or but for its unit."""
-    if not name.strip():
-        return None
-    if name.strip().isdecimal():
-        place = int(name[:9]) - 1
-        return place if 0 <= place < len(fields) else None
-    ways: tuple[Callable[[str], str], ...] = (str.strip, lambda text: text.strip().casefold(), _plain)
-    for like in ways:
-        asked = like(name)
-        for place, text in enumerate(fields):
-            if len(text) <= MAX_NAME and like(text) == asked:
-                return place
-    return None
-
-
-def _unit(name: str) -> str:
-    """Return the unit in a name, such as ps in `Time (ps)`, `time [ps]` or `t/ps`."""
-    return _split(name)[1]
-
-
-def _plain(name: str) -> str:
-    """Return a name without its unit, in lower case."""
-    return _split(name)[0].casefold()
-
-
-def _split(name: str) -> tuple[str, str]:
-    """Split a name and its unit."""
-    name = name.strip()[:MAX_NAME]
-    for opening, closing in ("()", "[]"):
-        bare, found, unit = name.rpartition(opening)
-        if found and name.endswith(closing):
-            return bare.rstrip(), unit[:-1].strip()
-    bare, _, unit = name.rpartition("/")
-    return (bare, unit) if bare and unit.isalpha() else (name, "")
-
-
-def _missing(wanted: Sequence[str], names: Sequence[str]) -> UserError:
-    lost = next((name for name in wanted if not name.isdecimal() and not _places(names, [name])), None)
-    if lost is None:
-        return _unreadable("no row has a number in each column; columns count from 1.")
-    present = [printable(name, 40) for name in names[:20] if name]
-    others = f"; choose from {', '.join(present)}." if present else "; give columns by number, from 1."
-    hint = did_you_mean(lost, present) if len(lost) <= MAX_NAME else None
-    return UserError(f"there is no column {printable(lost, 40)!r}{hint or others}")
-
-
-def _of_objects(objects: Iterable[dict[str, Any]], wanted: Sequence[str], unit: str = "") -> Records:
-    """Yield a head and the rows of objects with names; `unit` is that of energies without one."""
-    names: list[str] = []
-    places: tuple[tuple[int, ...], ...] | None = None
-    for number, item in enumerate(objects):
-        if list(item) != names:
-            names = list(item)
-            now = _places(names[:MAX_NAMES], wanted)
-            if now and not places:
-                yield Head(now, tuple(_unit(names[group[0]]) or unit for group in now))
-            places = now or places
-        if places:
-            yield _row([str(value) for value in item.values()], places)
-        elif number > MAX_LINES_BEFORE:
-            break
-    if not places:
-        raise _missing(wanted, names)
-
-
-def _parsed(lines: Iterable[str]) -> Iterator[dict[str, Any]]:
-    """Yield the objects of JSON lines; an empty one for a line that is none."""
-    for line in lines:
-        try:
-            item = json.loads(line)
-        except (ValueError, RecursionError):
-            item = None
-        if line.strip():
-            yield item if isinstance(item, dict) else {}
-
-
-def _pairs(lines: Iterable[str]) -> Iterator[dict[str, Any]]:
-    """Yield the records of Amber's mdout, `NSTEP = 10  TIME(PS) = 0.02 …`, up to its averages."""
-    record: dict[str, Any] = {}
-    for line in lines:
-        ends = line.lstrip().startswith("A V E R A G E S")
-        if record and (ends or line.lstrip().startswith("NSTEP")):
-            yield record
-            record = {}
-        if ends:
-            return
-        record |= dict(_PAIR.findall(line[:MAX_NAME]))
-    if record:
-        yield record
-
-
-def _of_arrays(stream: BinaryIO, wanted: Sequence[str]) -> Records:
-    """Yield the head and the rows of the arrays in an .npz."""
-    import numpy as np
-
-    try:
-        source = stream if stream.seekable() else io.BytesIO(stream.read(MAX_ARRAY))
-        with np.load(source, allow_pickle=False) as arrays:
-            names = list(arrays)
-            places = _places(names[:MAX_NAMES], wanted)
-            if places is None:
-                raise _missing(wanted, names)
-            sizes = {item.filename.removesuffix(".npy"): item.file_size for item in arrays.zip.infolist()}
-            if any(sizes[names[place]] > MAX_ARRAY for place in chain(*places)):
-                raise _unreadable("an array is larger than 1 GB.")
-            columns = [
-                np.sum([np.ravel(arrays[names[place]]).astype(float) for place in group], axis=0) for group in places
-            ]
-    except (OSError, ValueError, TypeError, KeyError, EOFError, zipfile.BadZipFile) as error:
-        raise _unreadable(f"this .npz cannot be read: {printable(str(error), 100)}.") from None
-    yield Head(places, tuple(_unit(names[group[0]]) for group in places))
-    yield from zip(*(column.tolist() for column in columns), strict=False)
