@@ -2,7 +2,7 @@
 
 mcap takes records and chunks apart.  A chunk is the unit that is intact or lost: its checksum covers all
 that is in it.  A finished file ends with a summary of where its chunks are; without one, or to check
-every byte, `Scan` reads the file from its start and searches for intact chunks behind damage.
+every byte, a scan reads the file from its start and searches for intact chunks behind damage.
 Sizes are bounded before anything is decompressed: all work stays in proportion to the file's bytes.
 """
 
@@ -10,6 +10,7 @@ import json
 import struct
 import zlib
 from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass, field
 from io import SEEK_END, BytesIO
 from itertools import groupby
 from operator import attrgetter
@@ -42,6 +43,7 @@ MAX_RECORD = 1 << 22  # bytes of a chunk, and of what it decompresses to; a reco
 MAX_EXPANSION = 128  # times its compressed size, besides SMALL_CHUNK; a recorder's reach 69
 SMALL_CHUNK = 1 << 14  # bytes
 MAX_SUMMARY = 1 << 26  # bytes; four days
+MAX_CHECKED = 1 << 26  # bytes that are checked whenever a file is opened: 50 ms
 _RECORD = struct.Struct("<BQ")  # opcode, length of what follows
 _DATA_END = struct.Struct("<BQI")  # with the checksum of all before it
 _FOOTER = struct.Struct("<BQQQI8s")  # with the summary's start and checksum, and MAGIC
@@ -72,19 +74,44 @@ class Place(NamedTuple):
     start: int  # ns, log_time of its first message
     end: int  # ns, of its last
     has_events: bool
+    is_after_gap: bool = False  # entries before it are lost
 
 
-class Summary(NamedTuple):
-    """The summary of a finished file; its checksum was right."""
+@dataclass(slots=True)
+class Contents:
+    """The intact chunks of a file.
 
-    channels: dict[int, Channel]
-    places: list[Place]
-    data_end: int  # where the data before it end in the file
-    data_crc: int  # their checksum
+    `complete`: finished by the recorder, and nothing is wrong; `damaged`: something was changed or lost,
+    not only not finished; `reason`: the first thing wrong, a clause.
+    """
+
+    channels: dict[int, Channel] = field(default_factory=dict)
+    places: list[Place] = field(default_factory=list)
+    reason: str | None = None
+    damaged: bool = False
+    entries_lost: int = 0  # as far as the numbers of the others show
+    data_end: int = 0  # where the data before the summary end in the file
+    data_crc: int = 0  # their checksum
+
+    def damage(self, reason: str) -> None:
+        """Note that something is wrong."""
+        self.damaged = True
+        self.reason = self.reason or reason
 
 
-def read_summary(stream: BinaryIO) -> Summary | None:
-    """Return the summary of a file; None if it has none, or one with a wrong checksum."""
+def read_contents(stream: BinaryIO, check: bool, progress: ShowProgress | None) -> Contents:
+    """Find the chunks of a file by its summary, or with `check` or without a summary by a scan."""
+    summary = read_summary(stream)
+    if summary is not None:
+        check_format(summary.channels)
+        is_long = summary.data_end > MAX_CHECKED
+        if not check and (is_long or _checksum(stream, summary.data_end) == summary.data_crc):
+            return summary
+    return _scan(stream, summary, progress or (lambda done, size: None))
+
+
+def read_summary(stream: BinaryIO) -> Contents | None:
+    """Return what the summary of a finished file says; None without one, or if it is damaged."""
     size = stream.seek(0, SEEK_END)
     stream.seek(max(0, size - _FOOTER.size))
     try:
@@ -95,20 +122,19 @@ def read_summary(stream: BinaryIO) -> Summary | None:
         stream.seek(data_end)
         data = stream.read()[: -len(MAGIC)]
         *head, data_crc = _DATA_END.unpack_from(data)
-        if head != [Opcode.DATA_END, 4] or zlib.crc32(data[_DATA_END.size : -4]) != crc or not data_crc:
+        is_right = zlib.crc32(data[_DATA_END.size : -4]) == crc and data_crc
+        if head != [Opcode.DATA_END, 4] or not is_right:
             return None
-        return Summary(*_read_index(data[_DATA_END.size :]), data_end, data_crc)
+        contents = Contents(data_end=data_end, data_crc=data_crc)
+        _read_index(data[_DATA_END.size :], contents)
     except _BROKEN:
         return None
+    return contents
 
 
-def _read_index(data: bytes) -> tuple[dict[int, Channel], list[Place]]:
-    """Return the channels and chunks that a summary lists.
-
-    Chunk indexes are unpacked here because a day has 108 000 of them.
-    """
-    channels: dict[int, Channel] = {}
-    places: list[Place] = []
+def _read_index(data: bytes, contents: Contents) -> None:
+    """Unpack a summary; chunk indexes here and not by mcap, because a day has 108 000 of them."""
+    channels = contents.channels
     at = 0
     while at < len(data):
         opcode, length = _RECORD.unpack_from(data, at)
@@ -122,8 +148,7 @@ def _read_index(data: bytes) -> tuple[dict[int, Channel], list[Place]]:
             begin += _INDEX.size
             indexed = _INDEX_MAP.iter_unpack(data[begin : begin + map_length])
             has_events = any(channels[number].topic == EVENTS for number, _ in indexed)
-            places.append(Place(offset, start, end, has_events))
-    return channels, places
+            contents.places.append(Place(offset, start, end, has_events))
 
 
 def check_format(channels: Mapping[int, Channel]) -> None:
@@ -136,36 +161,14 @@ def check_format(channels: Mapping[int, Channel]) -> None:
         raise RecordingError(f"it was made by {maker}; this version reads format {FORMAT_VERSION}")
 
 
-class OpenChunk(NamedTuple):
-    """What is in an intact chunk."""
+def read_chunk(stream: BinaryIO, offset: int) -> tuple[dict[int, Channel], list[Message]]:
+    """Return the channels declared in a chunk, and its messages.
 
-    channels: dict[int, Channel]  # declared in it
-    messages: list[Message]
-
-
-def read_chunk(stream: BinaryIO, offset: int) -> OpenChunk:
-    """Read the chunk there.  Raises RecordingError if it is damaged, EOFError if it is cut off."""
+    Raises RecordingError if it is damaged, EOFError if it is cut off.
+    """
     opcode, content = _read_record(stream, offset)
     if opcode != Opcode.CHUNK:
         raise RecordingError("there is no chunk where one should be")
-    return _open_chunk(content)
-
-
-def _read_record(stream: BinaryIO, offset: int) -> tuple[int, bytes]:
-    stream.seek(offset)
-    head = stream.read(_RECORD.size)
-    if len(head) < _RECORD.size:
-        raise EOFError
-    opcode, length = _RECORD.unpack(head)
-    if length > MAX_RECORD:
-        raise RecordingError(f"unexpected record of {length} bytes")
-    content = stream.read(length)
-    if len(content) < length:
-        raise EOFError
-    return opcode, content
-
-
-def _open_chunk(content: bytes) -> OpenChunk:
     try:
         chunk = Chunk.read(ReadDataStream(BytesIO(content)))
         size = chunk.uncompressed_size
@@ -186,113 +189,109 @@ def _open_chunk(content: bytes) -> OpenChunk:
     header = [chunk.message_start_time, chunk.message_end_time]
     if times != sorted(times) or [*times[:1], *times[-1:]] != header:
         raise RecordingError("a chunk's times are wrong")
-    channels = {record.id: record for record in records if isinstance(record, Channel)}
-    return OpenChunk(channels, messages)
+    return {record.id: record for record in records if isinstance(record, Channel)}, messages
 
 
-class Scan:
-    """The intact chunks of a file, in order.
+def _read_record(stream: BinaryIO, offset: int) -> tuple[int, bytes]:
+    stream.seek(offset)
+    head = stream.read(_RECORD.size)
+    if len(head) < _RECORD.size:
+        raise EOFError
+    opcode, length = _RECORD.unpack(head)
+    if length > MAX_RECORD:
+        raise RecordingError(f"unexpected record of {length} bytes")
+    content = stream.read(length)
+    if len(content) < length:
+        raise EOFError
+    return opcode, content
 
-    Its attributes are final after the last chunk.  `complete`: finished by the recorder, and every checksum
-    right.  `damaged`: something was changed or lost; a recording that was only not finished is not.
-    `reason`: the first thing wrong, a clause.
-    """
 
-    def __init__(self, stream: BinaryIO, progress: ShowProgress | None = None) -> None:
-        self.complete = False
-        self.damaged = False
-        self.reason: str | None = None
-        self.entries_lost = 0  # as far as the numbers of the others show
-        self.size = stream.seek(0, SEEK_END)
-        if not self.size:
-            raise RecordingError("the file is empty")
-        self._stream = stream
-        self._progress = progress or (lambda done, size: None)
-        self._summary = read_summary(stream)
-        self.channels: dict[int, Channel] = {}
-        if self._summary:
-            self.channels |= self._summary.channels
-            check_format(self.channels)
-        self._sequence = 0  # the number of the next entry
-
-    def __iter__(self) -> Iterator[tuple[Place, list[Message]]]:
-        self._stream.seek(0)
-        start = self._stream.read(len(MAGIC))
-        if start != MAGIC[: len(start)]:
-            self._damage("its first bytes are damaged" if self.channels else "this is not an MCAP file")
-        offset = intact_end = len(MAGIC)
-        crc = zlib.crc32(MAGIC)
-        while True:
-            self._progress(offset, self.size)
-            chunk = None
-            try:
-                opcode, content = _read_record(self._stream, offset)
-                if opcode == Opcode.CHUNK:
-                    chunk = _open_chunk(content)
-                elif opcode == Opcode.DATA_END:
-                    self._check_end(offset, content, crc)
-                    return
-                elif opcode not in (Opcode.HEADER, Opcode.MESSAGE_INDEX):
-                    raise RecordingError("there is no record where one should begin")
-            except (RecordingError, EOFError) as error:
-                following = self._search(intact_end)
-                if following is not None or not isinstance(error, EOFError):
-                    self._damage(str(error) or "a record's length is wrong")
-                if following is None:
-                    self.reason = self.reason or "the recording was not finished"
-                    return
-                offset = following
-                continue
-            crc = zlib.crc32(content, zlib.crc32(_RECORD.pack(opcode, len(content)), crc))
-            if chunk:
-                yield self._take(offset, chunk), chunk.messages
+def _scan(stream: BinaryIO, summary: Contents | None, progress: ShowProgress) -> Contents:
+    """Read a file from its first byte to its last, past any damage, and check everything."""
+    size = stream.seek(0, SEEK_END)
+    if not size:
+        raise RecordingError("the file is empty")
+    contents = Contents(dict(summary.channels) if summary else {})
+    stream.seek(0)
+    start = stream.read(len(MAGIC))
+    if start != MAGIC[: len(start)]:
+        contents.damage("its first bytes are damaged" if summary else "this is not an MCAP file")
+    offset = intact_end = len(MAGIC)
+    sequence = 0  # the number of the next entry
+    crc = zlib.crc32(MAGIC)
+    while True:
+        progress(offset, size)
+        try:
+            opcode, content = _read_record(stream, offset)
+            if opcode == Opcode.CHUNK:
+                sequence = _take_chunk(stream, offset, sequence, contents)
                 intact_end = offset + _RECORD.size + len(content)
-            offset += _RECORD.size + len(content)
+            elif opcode == Opcode.DATA_END:
+                if content != crc.to_bytes(4, "little"):
+                    contents.damage("its checksum is wrong")
+                if summary is None or summary.data_end != offset:
+                    contents.reason = contents.reason or "its summary is cut off or damaged"
+                return contents
+            elif opcode not in (Opcode.HEADER, Opcode.MESSAGE_INDEX):
+                raise RecordingError("there is no record where one should begin")
+        except (RecordingError, EOFError) as error:
+            following = _search(stream, intact_end)
+            if following is not None or not isinstance(error, EOFError):
+                contents.damage(str(error) or "a record's length is wrong")
+            if following is None:
+                contents.reason = contents.reason or "the recording was not finished"
+                return contents
+            offset = following
+            continue
+        crc = zlib.crc32(content, zlib.crc32(_RECORD.pack(opcode, len(content)), crc))
+        offset += _RECORD.size + len(content)
 
-    def _take(self, offset: int, chunk: OpenChunk) -> Place:
-        self.channels |= chunk.channels
-        if chunk.channels:
-            check_format(self.channels)
-        first = chunk.messages[0]
-        last = chunk.messages[-1]
-        missing = (first.sequence - self._sequence) % (1 << 32)
-        if missing:
-            self.entries_lost += missing
-            self._damage(f"{missing} entries are lost")
-        self._sequence = (last.sequence + 1) % (1 << 32)
-        numbers = {message.channel_id for message in chunk.messages}
-        events = {number for number, each in self.channels.items() if each.topic == EVENTS}
-        return Place(offset, first.log_time, last.log_time, bool(numbers & events))
 
-    def _check_end(self, offset: int, content: bytes, crc: int) -> None:
-        """Check all that follows the data."""
-        if content != crc.to_bytes(4, "little"):
-            self._damage("its checksum is wrong")
-        if self._summary is None or self._summary.data_end != offset:
-            self.reason = self.reason or "its summary is cut off or damaged"
-        self.complete = self.reason is None
+def _take_chunk(stream: BinaryIO, offset: int, sequence: int, contents: Contents) -> int:
+    """Add a chunk to the contents; return the number of the next entry."""
+    channels, messages = read_chunk(stream, offset)
+    contents.channels |= channels
+    if channels:
+        check_format(contents.channels)
+    first, last = messages[0], messages[-1]
+    missing = (first.sequence - sequence) % (1 << 32)
+    if missing:
+        contents.entries_lost += missing
+        contents.damage(f"{missing} entries are lost")
+    known = contents.channels
+    numbers = {message.channel_id for message in messages} & known.keys()
+    has_events = any(known[number].topic == EVENTS for number in numbers)
+    contents.places.append(Place(offset, first.log_time, last.log_time, has_events, bool(missing)))
+    return (last.sequence + 1) % (1 << 32)
 
-    def _damage(self, reason: str) -> None:
-        self.damaged = True
-        self.reason = self.reason or reason
 
-    def _search(self, offset: int) -> int | None:
-        """Return where the next intact chunk from `offset` on begins."""
-        before = _RECORD.size + _BEFORE_ZSTD
-        while True:
-            self._stream.seek(offset)
-            block = self._stream.read(_BLOCK)
-            at = block.find(_ZSTD, before)
-            while at >= 0:
-                try:
-                    read_chunk(self._stream, offset + at - before)
-                except (RecordingError, EOFError):
-                    at = block.find(_ZSTD, at + 1)
-                else:
-                    return offset + at - before
-            if len(block) < _BLOCK:
-                return None
-            offset += len(block) - before - len(_ZSTD) + 1
+def _search(stream: BinaryIO, offset: int) -> int | None:
+    """Return where the next intact chunk from `offset` on begins."""
+    before = _RECORD.size + _BEFORE_ZSTD
+    while True:
+        stream.seek(offset)
+        block = stream.read(_BLOCK)
+        at = block.find(_ZSTD, before)
+        while at >= 0:
+            try:
+                read_chunk(stream, offset + at - before)
+            except (RecordingError, EOFError):
+                at = block.find(_ZSTD, at + 1)
+            else:
+                return offset + at - before
+        if len(block) < _BLOCK:
+            return None
+        offset += len(block) - before - len(_ZSTD) + 1
+
+
+def _checksum(stream: BinaryIO, size: int) -> int:
+    """Return the checksum of a file's first bytes."""
+    crc = 0
+    stream.seek(0)
+    while size and (block := stream.read(min(size, _BLOCK))):
+        crc = zlib.crc32(block, crc)
+        size -= len(block)
+    return crc
 
 
 class Decoder:

@@ -3,12 +3,12 @@
 An unfinished or damaged file opens with what is intact in it.
 """
 
-import zlib
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import lru_cache
 from io import SEEK_END
+from itertools import islice
 from math import inf
 from operator import attrgetter
 from pathlib import Path
@@ -22,10 +22,10 @@ from recordings.errors import RecordingError, named
 from recordings.events import NOT_DONE, Entry, Event
 from recordings.format import CLOCK_OFFSET
 from recordings.library import open_file
-from recordings.reader import Decoder, Place, Scan, ShowProgress, check_format, read_chunk, read_summary
+from recordings.reader import Contents, Decoder, ShowProgress, read_chunk, read_contents
 
-MAX_EVENTS = 30_000  # 10 MB; a lesson has a few hundred
-MAX_CHECKED = 1 << 26  # bytes that are checked whenever a file is opened: 50 ms
+MAX_EVENTS = 100_000  # 30 MB; a lesson has a few hundred
+MAX_RUNS = 20_000
 CHUNKS_KEPT = 3  # decoded; playing meets the same one thirty times, stepping about an edge two
 
 
@@ -69,17 +69,17 @@ class Recording:
     plays.  Clocks are in s, from 0 to `length`.
     """
 
-    def __init__(self, path: Path, stream: BinaryIO, check: bool, progress: ShowProgress | None) -> None:
+    def __init__(self, path: Path, stream: BinaryIO, contents: Contents) -> None:
         self.path = path
         self.bytes = stream.seek(0, SEEK_END)
-        self.complete = True
-        self.damaged = False
-        self.reason: str | None = None
+        self.damaged = contents.damaged
+        self.reason = contents.reason
+        self.entries_lost = contents.entries_lost
         self.events: list[tuple[float, Event]] = []  # each with its clock [s], in the order of recording
         self.runs: list[Run] = []
         self._stream = stream
-        self._lost = 0  # entries
-        self._places = self._find_places(check, progress)
+        self._places = contents.places
+        self._decoder = Decoder(contents.channels)
         self._decode = lru_cache(CHUNKS_KEPT)(self._decode_chunk)
         self._sampled = bytearray(b"\1" * len(self._places))  # 0: no samples in this chunk
         self._find_runs()
@@ -98,7 +98,7 @@ class Recording:
         with named(path):
             stream = open_file(path)
             try:
-                return cls(path, stream, check, progress)
+                return cls(path, stream, read_contents(stream, check, progress))
             except BaseException:
                 stream.close()
                 raise
@@ -113,19 +113,29 @@ class Recording:
         self.close()
 
     @property
+    def complete(self) -> bool:
+        """Whether it was finished, and nothing is wrong."""
+        return self.reason is None
+
+    @property
+    def runs_lost(self) -> int:
+        """The number of runs of which something was read, but not the start."""
+        return len(self._decoder.lost_runs)
+
+    @property
     def samples(self) -> int:
         """The number of samples."""
         try:
-            last = read_chunk(self._stream, self._places[-1].offset).messages[-1]
+            last = read_chunk(self._stream, self._places[-1].offset)[1][-1]
         except (RecordingError, OSError, EOFError):
             return 0
-        return last.sequence + 1 - self._lost - self._decoder.others
+        return last.sequence + 1 - self.entries_lost - self._decoder.others
 
     def at(self, clock: float) -> SamplePlace | None:
         """Return the last sample at or before that time, or else the first; None if there are none."""
-        clock, log_time = _as_recorded(clock)
-        chunk = bisect_right(self._places, log_time, key=attrgetter("start")) - 1
-        later = bisect_right(self._decode(chunk)[0], clock, key=_clock) if chunk >= 0 else 0
+        chunk = bisect_right(self._places, _as_recorded(clock), key=attrgetter("start")) - 1
+        entries = self._decode(chunk)[0] if chunk >= 0 else []
+        later = bisect_right(entries, round(clock, 9), key=attrgetter("clock"))
         return self.previous(SamplePlace(chunk, later)) or self.next(SamplePlace(0, -1))
 
     def sample(self, place: SamplePlace) -> Entry:
@@ -136,10 +146,9 @@ class Recording:
         """Return the next sample; None after the last."""
         chunk = place.chunk
         while (chunk := self._sampled.find(1, max(chunk, 0))) >= 0:
-            samples = self._decode(chunk)[1]
-            at = bisect_right(samples, place.entry) if chunk == place.chunk else 0
-            if at < len(samples):
-                return SamplePlace(chunk, samples[at])
+            for index in self._decode(chunk)[1]:
+                if (chunk, index) > place:
+                    return SamplePlace(chunk, index)
             chunk += 1
         return None
 
@@ -147,21 +156,26 @@ class Recording:
         """Return the sample before; None before the first."""
         chunk = place.chunk
         while (chunk := self._sampled.rfind(1, 0, max(chunk, -1) + 1)) >= 0:
-            samples = self._decode(chunk)[1]
-            at = bisect_left(samples, place.entry) if chunk == place.chunk else len(samples)
-            if at > 0:
-                return SamplePlace(chunk, samples[at - 1])
+            for index in reversed(self._decode(chunk)[1]):
+                if (chunk, index) < place:
+                    return SamplePlace(chunk, index)
             chunk -= 1
         return None
 
+    def chunks(self, start: float = 0.0, end: float = inf) -> Iterator[tuple[bool, list[Entry]]]:
+        """Yield the entries of each chunk that reaches into that time, and whether it follows a gap."""
+        first, last = _as_recorded(start), _as_recorded(min(end, self.length))
+        begin = bisect_left(self._places, first, key=attrgetter("end"))
+        for chunk, place in enumerate(islice(self._places, begin, None), begin):
+            if place.start > last:
+                return
+            yield place.is_after_gap, self._decode(chunk)[0]
+
     def entries(self, start: float = 0.0, end: float = inf) -> Iterator[Entry]:
         """Yield all samples and events from `start` to `end` [s], both included, in order."""
-        start, log_time = _as_recorded(start)
-        end, last = _as_recorded(min(end, self.length))
-        for chunk in range(bisect_left(self._places, log_time, key=attrgetter("end")), len(self._places)):
-            if self._places[chunk].start > last:
-                return
-            for entry in self._decode(chunk)[0]:
+        start, end = round(start, 9), round(end, 9)  # as files round
+        for _, entries in self.chunks(start, end):
+            for entry in entries:
                 if start <= entry.clock <= end:
                     yield entry
 
@@ -181,23 +195,6 @@ class Recording:
         run = self.run_of(number)
         return tuple(method.key for method in run.scene.cast) if run else ()
 
-    def _find_places(self, check: bool, progress: ShowProgress | None) -> list[Place]:
-        summary = None if check else read_summary(self._stream)
-        if summary is not None:
-            is_long = summary.data_end > MAX_CHECKED
-            if is_long or _checksum(self._stream, summary.data_end) == summary.data_crc:
-                check_format(summary.channels)
-                self._decoder = Decoder(summary.channels)
-                return summary.places
-        scan = Scan(self._stream, progress)
-        places = [place for place, _ in scan]
-        self._decoder = Decoder(scan.channels)
-        self._lost = scan.entries_lost
-        self.complete = scan.complete
-        self.damaged = scan.damaged
-        self.reason = scan.reason
-        return places
-
     def _find_runs(self) -> None:
         """Read all events, and the last sample of each run, which is the last before the next start."""
         starts: list[int] = []  # chunks
@@ -209,8 +206,8 @@ class Recording:
                         raise RecordingError("its runs are not in order")
                     self.runs.append(Run(event.run, event.scene, event.arithmetic, clock, clock))
                     starts.append(chunk)
-                if len(self.events) == MAX_EVENTS:
-                    raise RecordingError(f"it has more than {MAX_EVENTS} events")
+                if len(self.events) == MAX_EVENTS or len(self.runs) > MAX_RUNS:
+                    raise RecordingError(f"it has more than {MAX_EVENTS} events or {MAX_RUNS} runs")
                 self.events.append((clock, event))
                 if run := self.run_of(event.run):
                     run.events.append((clock, event))
@@ -235,12 +232,11 @@ class Recording:
         """Return a chunk's entries; none if it turns out to be damaged."""
         place = self._places[chunk]
         try:
-            messages = read_chunk(self._stream, place.offset).messages
+            _, messages = read_chunk(self._stream, place.offset)
             if (messages[0].log_time, messages[-1].log_time) != (place.start, place.end):
                 raise RecordingError("a chunk differs from its entry in the summary")
             return list(self._decoder.entries(messages, only_events))
         except (RecordingError, OSError, EOFError) as error:
-            self.complete = False
             self.damaged = True
             self.reason = self.reason or str(error) or "a chunk is cut off"
             return []
@@ -253,20 +249,6 @@ class Recording:
         return entries, samples
 
 
-_clock = attrgetter("clock")
-
-
-def _checksum(stream: BinaryIO, size: int) -> int:
-    """Return the checksum of a file's first bytes."""
-    crc = 0
-    stream.seek(0)
-    while size and (block := stream.read(min(size, 1 << 20))):
-        crc = zlib.crc32(block, crc)
-        size -= len(block)
-    return crc
-
-
-def _as_recorded(clock: float) -> tuple[float, int]:
-    """Return the nearest clock that a file can hold, in s and as log_time: files round to nanoseconds."""
-    nanoseconds = round(max(clock, 0.0) * 1e9)
-    return nanoseconds / 1e9, CLOCK_OFFSET + nanoseconds
+def _as_recorded(clock: float) -> int:
+    """Return the log_time of a clock [s]: files round to nanoseconds."""
+    return CLOCK_OFFSET + round(max(clock, 0.0) * 1e9)

@@ -3,16 +3,16 @@
 Chunks are kept or dropped as they are; no number is repaired, guessed or changed.
 """
 
-from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
-from recordings.errors import DiskError, RecordingError, named, printable
+from recordings.errors import DiskError, RecordingError, printable
 from recordings.events import Event
 from recordings.fields import without_extremes
-from recordings.library import PART, alone_with, free_path, open_file
-from recordings.reader import Decoder, Scan, ShowProgress
+from recordings.library import PART, alone_with, free_path
+from recordings.reader import ShowProgress
 from recordings.recorder import Recorder
+from recordings.recording import Recording
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,27 +35,31 @@ def recover(path: Path, out: Path, progress: ShowProgress | None = None, overwri
     """
     if out.exists() and path.exists() and out.samefile(path):
         raise DiskError("is the recording to recover; choose another name", out)
-    with named(path), open_file(path) as stream, ExitStack() as stack:
-        scan = Scan(stream, progress)
-        decoder = Decoder(scan.channels)
-        recorder: Recorder | None = None
-        lost = 0
-        for _, messages in scan:
-            for clock, value in decoder.entries(messages):
-                if recorder is None:
-                    recorder = Recorder(out, None, overwrite, decoder.about | {"recovered": "yes"})
-                    stack.callback(recorder.abandon, delete=True)
-                if isinstance(value, Event):
-                    recorder.event(value, clock)
-                    continue
-                has_gap = scan.entries_lost > lost
-                lost = scan.entries_lost
-                recorder.sample(without_extremes(value) if has_gap else value, clock)
-        if recorder is None or not recorder.samples:
-            raise RecordingError(scan.reason or "it has no samples")
-        recorder.close()
-        kept, runs_lost = recorder.samples, len(decoder.lost_runs)
-        return Recovery(path, recorder.path, scan.damaged, scan.reason, kept, scan.entries_lost, runs_lost)
+    with Recording.open(path, check=True, progress=progress) as recording:
+        about = recording.about | {"recovered": "yes"}
+        recorder = Recorder(out, None, overwrite, about)
+        try:
+            for is_after_gap, entries in recording.chunks():
+                for clock, value in entries:
+                    if isinstance(value, Event):
+                        recorder.event(value, clock)
+                        continue
+                    recorder.sample(without_extremes(value) if is_after_gap else value, clock)
+                    is_after_gap = False
+            if not recorder.samples:
+                raise RecordingError(f"{printable(str(path))}: {recording.reason or 'it has no samples'}.")
+            recorder.close()
+        finally:
+            recorder.abandon(delete=True)
+        return Recovery(
+            path,
+            recorder.path,
+            recording.damaged,
+            recording.reason,
+            recorder.samples,
+            recording.entries_lost,
+            recording.runs_lost,
+        )
 
 
 def rescue(leftover: Path, progress: ShowProgress | None = None) -> str:

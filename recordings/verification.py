@@ -19,8 +19,8 @@ from engine.scenes import Scene
 from recordings.errors import RecordingError, named
 from recordings.events import Event, check_present
 from recordings.fields import EXTREMES, STATE, VALUES, distance, same_bits, ulps, values_of
-from recordings.library import open_file
-from recordings.reader import Decoder, Scan, ShowProgress
+from recordings.reader import ShowProgress
+from recordings.recording import Recording
 
 Only = Collection[str] | None
 """Keys of the methods to compare; None: all."""
@@ -73,29 +73,25 @@ def verify(
     `max_steps` steps: the number is in the file's hands.
     """
     result = Verification(path)
-    with named(path), open_file(path) as stream:
-        scan = Scan(stream, progress)
-        decoder = Decoder(scan.channels)
+    with Recording.open(path, check=True, progress=progress) as recording, named(path):
         rerun: Rerun | None = None
-        for _, messages in scan:
-            if scan.damaged:
+        for is_after_gap, entries in recording.chunks():
+            if is_after_gap:
                 break
-            for _, value in decoder.entries(messages):
+            for _, value in entries:
                 if isinstance(value, Event) and value.scene is not None:
-                    if rerun is not None and value.run <= rerun.run:
-                        raise RecordingError("its runs are not in order")
                     max_steps -= rerun.steps if rerun else 0
                     rerun = Rerun(value, value.scene, result, max_steps, only)
                 if rerun is None or value.run != rerun.run:
                     raise RecordingError(f"data of run {value.run} lies outside that run")
                 rerun.take(value)
-        if decoder.lost_runs:
-            raise RecordingError(f"run {min(decoder.lost_runs)} has no start")
+        if recording.runs_lost and not recording.damaged:
+            raise RecordingError("a run has no start")
         if result.samples == 0:
-            raise RecordingError(scan.reason or "it has no samples")
-        result.complete = scan.complete
-        result.reason = scan.reason
-        result.identical = result.first_difference is None and not scan.damaged
+            raise RecordingError(recording.reason or "it has no samples")
+        result.complete = recording.complete
+        result.reason = recording.reason
+        result.identical = result.first_difference is None and not recording.damaged
     return result
 
 

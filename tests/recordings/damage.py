@@ -13,7 +13,7 @@ from engine.run.lockstep import Sample
 from recordings.errors import RecordingError
 from recordings.events import Event
 from recordings.fields import without_extremes
-from recordings.reader import Scan
+from recordings.reader import read_contents
 from recordings.recording import Recording
 from recordings.recovery import recover
 from recordings.verification import verify
@@ -38,7 +38,7 @@ class Damaged:
             self.runs = [run.scene for run in recording.runs]
             self.about = recording.about
         with self.path.open("rb") as stream:
-            self.chunks = [(place, len(messages)) for place, messages in Scan(stream)]
+            self.chunks = read_contents(stream, check=True, progress=None).places
         self.samples = sum(isinstance(value, Sample) for _, value in self.entries)
         self._verified = verify(self.path).samples
 
@@ -118,19 +118,15 @@ class Damaged:
         self.path.write_bytes(self.data[:begin] + noise + self.data[end:])
         intact = [place.offset for place, following in self._with_ends() if following <= begin or place.offset >= end]
         with self.path.open("rb") as stream:
-            scan = Scan(stream)
-            try:
-                found = [place.offset for place, _ in scan]
-            except RecordingError:  # the chunk that declares the channels is lost, and the summary
-                assert self.chunks[0][0].offset not in intact
-                return len(self.chunks)
+            contents = read_contents(stream, check=True, progress=None)
+            found = [place.offset for place in contents.places]
         assert set(intact) <= set(found)
         self._check_recovered()
         return len(self.chunks) - len(found)
 
     def _with_ends(self):
-        ends = [place.offset for place, _ in self.chunks[1:]] + [len(self.data)]
-        return [(place, end) for (place, _), end in zip(self.chunks, ends, strict=True)]
+        ends = [place.offset for place in self.chunks[1:]] + [len(self.data)]
+        return zip(self.chunks, ends, strict=True)
 
     def _check_recovered(self) -> None:
         """Check that what is saved is what was recorded."""

@@ -6,7 +6,7 @@ from engine.run.lockstep import Lockstep, Sample
 from recordings.errors import DiskError, RecordingError
 from recordings.events import Event
 from recordings.library import leftovers
-from recordings.reader import Scan
+from recordings.reader import read_contents
 from recordings.recorder import Recorder
 from recordings.recording import Recording
 from recordings.recovery import recover, rescue
@@ -33,7 +33,7 @@ def ten_seconds(path):
 def spoil(path, *numbers):
     """Change a byte in each of these chunks."""
     with path.open("rb") as stream:
-        offsets = [place.offset for place, _ in Scan(stream)]
+        offsets = [place.offset for place in read_contents(stream, check=True, progress=None).places]
     data = bytearray(path.read_bytes())
     for number in numbers:
         data[offsets[number] + 80] ^= 0xFF
