@@ -188,9 +188,10 @@ def _conclude(stories: "_Stories", independent: float, has_settled: bool) -> Jud
     trend = sure or (not walk_like and stories.moving.sigmas > TREND)
     if trend and line > STEEP and clear:
         return Judgement("grows" if stories.line.amplitude > 0 else "loses")
-    if line < STILL and not few and not has_settled:
+    still = line < STILL and not has_settled
+    if still and not few:
         return Judgement("bounded")
-    if line < STILL and stories.walks > WALKS and not math.isfinite(stories.cycles):
+    if still and stories.walks > WALKS and not math.isfinite(stories.cycles):
         return Judgement("wanders")
     if stories.cycles < MIN_CYCLES:
         return _too_early(stories.cycles, MIN_CYCLES, "cycles of its slowest wave")
