@@ -13,7 +13,7 @@ FUNCTIONS = ("sin", "sqrt")
 
 
 class Arithmetic(NamedTuple):
-    """The version of the numerics, and fingerprints of the library functions, where a run was made."""
+    """The version of the numerics and fingerprints of library functions, where a run was made."""
 
     numerics: int
     sin: str

@@ -50,7 +50,7 @@ def writing(path: Path) -> Iterator[None]:
 
 
 def printable(text: str, limit: int = MAX_TEXT) -> str:
-    """Return the text without what controls a terminal: escapes, line ends, bidirectional overrides."""
+    """Return the text without what controls a terminal: escapes, line ends, overrides."""
     text = text if len(text) <= limit else text[: limit - 1] + "…"
     if text.isprintable():
         return text

@@ -23,7 +23,8 @@ NOT_DONE = ("start", "stop", "noticed")
 
 
 class Event(NamedTuple):
-    """An action in the lab, or a milestone that the lab noticed.  It applies before `step` of `run`.
+    """An action in the lab, or a milestone that the lab noticed.  It applies before `step` of
+    `run`.
 
     A `start` (the scene with its model and methods) and the `set_h` after it determine a run; the
     other kinds change no number.  A run that continues from an earlier step of another one begins

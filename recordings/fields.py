@@ -1,7 +1,7 @@
 """Fields: the one table of names and units of what a recording holds.
 
-Messages, their schemas, tables, `verify`, `run --json` and `--fail-if` use it.  To record another value of
-a reading, add it to `Reading` and to READING.
+Messages, their schemas, tables, `verify`, `run --json` and `--fail-if` use it.  To record another
+value of a reading, add it to `Reading` and to READING.
 """
 
 import math
@@ -44,7 +44,7 @@ class Field(NamedTuple):
         return schema
 
     def checked(self, value: Any) -> Any:
-        """Return the value of a message, or raise RecordingError: numbers are finite, texts printable."""
+        """Return a value that is finite or printable, or raise RecordingError."""
         if self.type == "number":
             if type(value) is int and abs(value) < MAX_INTEGER:  # other writers drop the ".0"
                 return float(value)
@@ -86,7 +86,7 @@ READING = (
     Field("diverged_at", "s", required=False),
     Field("max_invariant_error", about="over every step so far", required=False),
 )
-"""One method in a sample: the attributes of a Reading but `extra`.  `verify` compares all of them."""
+"""One method in a sample: the attributes of a Reading but `extra`.  `verify` compares them."""
 
 EXTRA = {
     key: tuple(Field(each.name, _ascii(each.unit), each.about) for each in model.variables)
@@ -138,7 +138,7 @@ _scalars_of = attrgetter(*(field.name for field in READING))
 
 
 def values_of(reading: Reading) -> tuple[float | None, ...]:
-    """Return the values of a reading in the order of VALUES; None for those that it does not have."""
+    """Return the values of a reading in the order of VALUES; None for missing ones."""
     return *_scalars_of(reading), *map(reading.extra.get, EXTRA_NAMES)
 
 

@@ -1,7 +1,7 @@
 """Files that are written whole or not at all.
 
-A file is written under a temporary name beside its target, and gets its name only once it is finished and
-only if the name is still free, or may be replaced.
+A file is written under a temporary name beside its target, and gets its name only once it is
+finished and only if the name is still free, or may be replaced.
 """
 
 import os
@@ -14,7 +14,7 @@ from recordings.errors import DiskError, NameTakenError, printable, writing
 
 
 def check_target(path: Path, force: bool = False) -> None:
-    """Raise DiskError if a file cannot become `path`: the name is taken, or its folder is missing."""
+    """Raise DiskError if the name is taken, or its folder is missing."""
     if os.path.lexists(path) and (not force or path.is_dir()):
         advice = "" if path.is_dir() else ", or --force to overwrite it"
         raise NameTakenError(f"already exists; choose another name{advice}", path)
@@ -31,8 +31,8 @@ def is_stream(path: Path) -> bool:
 def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
     """Yield the path to write to; what is there at the end gets the name `path`.
 
-    If the block raises, nothing is left of it and an older file stays as it was.  A device or a pipe is
-    written to as it is.  Raises DiskError before the block if the name is taken.
+    If the block raises, nothing is left of it and an older file stays as it was.  A device or a
+    pipe is written to as it is.  Raises DiskError before the block if the name is taken.
     """
     if is_stream(path):
         yield path

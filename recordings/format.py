@@ -1,9 +1,9 @@
 """Format 3: samples and events to messages and back, by name, side by side.
 
-One topic per method and model, one message per reading: scalars that Foxglove, PlotJuggler and pandas plot
-directly.  The messages of a sample are consecutive, in the order of the run's methods, with one clock and
-one sequence number.  An unknown field is ignored, a missing optional one is None; anything else that
-is not written here raises RecordingError.
+One topic per method and model, one message per reading: scalars that Foxglove, PlotJuggler and
+pandas plot directly.  The messages of a sample are consecutive, in the order of the run's methods,
+with one clock and one sequence number.  An unknown field is ignored, a missing optional one is
+None; anything else that is not written here raises RecordingError.
 """
 
 import json

@@ -1,4 +1,4 @@
-"""Headless runs.  Their recording clock is the simulated time, so the same run gives the same bytes."""
+"""Headless runs.  Their clock is the simulated time, so the same run gives the same bytes."""
 
 from collections.abc import Iterator
 
@@ -26,11 +26,12 @@ def simulate(
 ) -> Iterator[Sample]:
     """Run a scene for `time` [s]; record and yield its samples, of which the last is the result.
 
-    Milestones are recorded, too.  A caller that reads them, or verdicts, passes the `lockstep` of the scene.
+    Milestones are recorded, too.  A caller that reads them, or verdicts, passes the `lockstep` of
+    the scene.
 
-    Samples are `sample_every` steps apart, or 1/30 s rounded to whole steps; always the first and the
-    last step.  Memory does not grow.  The caller closes the recorder; without a wall clock, the recording has the
-    same bytes each time.
+    Samples are `sample_every` steps apart, or 1/30 s rounded to whole steps; always the first and
+    the last step.  Memory does not grow.  The caller closes the recorder; without a wall clock, the
+    recording has the same bytes each time.
     """
     lockstep = lockstep or Lockstep(scene, loops=loops, judged=recorder is not None)
     last = steps_for(scene, time)

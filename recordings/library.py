@@ -1,7 +1,8 @@
 """Library: the folder of recordings, their names and locks.
 
-A writer holds an exclusive lock on a recording, a reader a shared one.  A lock ends with its process, so a
-leftover differs from a recording in progress.  Only POSIX has such locks; elsewhere nothing is locked.
+A writer holds an exclusive lock on a recording, a reader a shared one.  A lock ends with its
+process, so a leftover differs from a recording in progress.  Only POSIX has such locks; elsewhere
+nothing is locked.
 """
 
 import os
@@ -114,7 +115,7 @@ def being_made(where: Path | None = None) -> list[Path]:
 
 
 def to_prune(items: Sequence[Item], keep: int | None = None, size: int | None = None) -> list[Item]:
-    """Return what to delete so that the `keep` newest are left, with at most `size` bytes in all."""
+    """Return what to delete so that the `keep` newest and at most `size` bytes are left."""
     newest_first = sorted(items, key=lambda item: item.modified, reverse=True)
     total = 0
     for place, item in enumerate(newest_first):
@@ -125,7 +126,7 @@ def to_prune(items: Sequence[Item], keep: int | None = None, size: int | None = 
 
 
 def prune(items: Iterable[Item]) -> list[Item]:
-    """Delete these recordings with their marks, except those in use; return what could be deleted."""
+    """Delete recordings with their marks, except those in use; return what was deleted."""
     deleted = []
     for item in items:
         with suppress(OSError):

@@ -16,10 +16,10 @@ RETRY_EVERY = 5.0  # s of the recording clock
 class LiveRecorder:
     """A recorder that survives a failing disk.
 
-    Opening the first file may raise DiskError; nothing after that does.  With `or_next`, a name that is
-    taken becomes the next free one.  `failed` is a sentence on why nothing is being recorded now, or None.
-    Every file begins with the start of its run, its changes of h and what was noticed of it, so each
-    replays and verifies by itself.
+    Opening the first file may raise DiskError; nothing after that does.  With `or_next`, a name
+    that is taken becomes the next free one.  `failed` is a sentence on why nothing is being
+    recorded now, or None. Every file begins with the start of its run, its changes of h and what
+    was noticed of it, so each replays and verifies by itself.
     """
 
     def __init__(self, path: Path, wall: WallClock = time.time_ns, or_next: bool = False) -> None:
@@ -57,7 +57,7 @@ class LiveRecorder:
         self._write(sample, clock)
 
     def close(self) -> None:
-        """Finish the file; `failed` is set if that was impossible.  Nothing after it is recorded."""
+        """Finish the file; `failed` is set if that was impossible."""
         self._closed = True
         if self.failed is None:
             try:

@@ -1,9 +1,10 @@
 """Reader: the chunks of an MCAP file, past any damage, and their entries.
 
-mcap takes records and chunks apart.  A chunk is the unit that is intact or lost: its checksum covers all
-that is in it.  A finished file ends with a summary of where its chunks are; without one, or to check
-every byte, a scan reads the file from its start and searches for intact chunks behind damage.
-Sizes are bounded before anything is decompressed: all work stays in proportion to the file's bytes.
+mcap takes records and chunks apart.  A chunk is the unit that is intact or lost: its checksum
+covers all that is in it.  A finished file ends with a summary of where its chunks are; without one,
+or to check every byte, a scan reads the file from its start and searches for intact chunks behind
+damage. Sizes are bounded before anything is decompressed: all work stays in proportion to the
+file's bytes.
 """
 
 import json
@@ -81,8 +82,8 @@ class Place(NamedTuple):
 class Contents:
     """The intact chunks of a file.
 
-    `complete`: finished by the recorder, and nothing is wrong; `damaged`: something was changed or lost,
-    not only not finished; `reason`: the first thing wrong, a clause.
+    `complete`: finished by the recorder, and nothing is wrong; `damaged`: something was changed or
+    lost, not only not finished; `reason`: the first thing wrong, a clause.
     """
 
     channels: dict[int, Channel] = field(default_factory=dict)

@@ -52,9 +52,9 @@ WallClock = Callable[[], int]
 class Recorder:
     """Writes one recording, which begins with a start.
 
-    Clocks are in seconds since the recording began, pauses excluded.  Headless recordings have no `wall`
-    clock: nothing in them depends on when or where they were made, so the same run gives the same bytes.
-    A failing disk raises DiskError; after that, only `abandon` is of use.
+    Clocks are in seconds since the recording began, pauses excluded.  Headless recordings have no
+    `wall` clock: nothing in them depends on when or where they were made, so the same run gives the
+    same bytes. A failing disk raises DiskError; after that, only `abandon` is of use.
     """
 
     def __init__(
@@ -132,10 +132,11 @@ class Recorder:
         self._unflushed = 0
 
     def close(self) -> None:
-        """Finish the recording: a stop, the summary, and its final name.  Without a start, leave no file.
+        """Finish the recording: a stop, the summary, and its final name.  Without a start, leave no
+        file.
 
-        If the name was taken meanwhile, the recording gets the next free one, `path`, and NameTakenError
-        is raised.
+        If the name was taken meanwhile, the recording gets the next free one, `path`, and
+        NameTakenError is raised.
         """
         if self._file.closed:
             return
@@ -167,7 +168,7 @@ class Recorder:
             self.path = free_path(wanted)
 
     def abandon(self, delete: bool = False) -> None:
-        """Leave the file as it is: what was flushed stays in NAME.mcap.part, and an empty one is deleted."""
+        """Leave what was flushed in NAME.mcap.part; an empty file is deleted."""
         if self._file.closed:
             return
         with suppress(OSError):
@@ -216,7 +217,7 @@ class Recorder:
             self._channels[name] = number
 
     def _add(self, messages: Sequence[tuple[str, bytes]], clock: float) -> None:
-        """Write the messages of one entry.  All are checked first: a rejected one spoils its chunk."""
+        """Write the messages of one entry, all checked: a rejected one spoils its chunk."""
         if not self._channels:
             raise ValueError("a recording begins with a start")
         if not 0 <= clock <= MAX_CLOCK:  # nor nan

@@ -64,9 +64,9 @@ class Run:
 class Recording:
     """A recording that is open for reading.
 
-    `complete`: finished, and nothing is wrong; `damaged`: something was changed or lost; `reason`: what is
-    wrong, a clause, or None.  Of a file too long to be checked at opening, damage may show only while it
-    plays.  Clocks are in s, from 0 to `length`.
+    `complete`: finished, and nothing is wrong; `damaged`: something was changed or lost; `reason`:
+    what is wrong, a clause, or None.  Of a file too long to be checked at opening, damage may show
+    only while it plays.  Clocks are in s, from 0 to `length`.
     """
 
     def __init__(self, path: Path, stream: BinaryIO, contents: Contents) -> None:
@@ -132,7 +132,7 @@ class Recording:
         return last.sequence + 1 - self.entries_lost - self._decoder.others
 
     def at(self, clock: float) -> SamplePlace | None:
-        """Return the last sample at or before that time, or else the first; None if there are none."""
+        """Return the last sample at or before that time, or else the first, if any."""
         chunk = bisect_right(self._places, _as_recorded(clock), key=attrgetter("start")) - 1
         entries = self._decode(chunk)[0] if chunk >= 0 else []
         later = bisect_right(entries, round(clock, 9), key=attrgetter("clock"))
@@ -163,7 +163,7 @@ class Recording:
         return None
 
     def chunks(self, start: float = 0.0, end: float = inf) -> Iterator[tuple[bool, list[Entry]]]:
-        """Yield the entries of each chunk that reaches into that time, and whether it follows a gap."""
+        """Yield the entries of each chunk of that time, and whether it follows a gap."""
         first, last = _as_recorded(start), _as_recorded(min(end, self.length))
         begin = bisect_left(self._places, first, key=attrgetter("end"))
         for chunk, place in enumerate(islice(self._places, begin, None), begin):
@@ -196,7 +196,7 @@ class Recording:
         return tuple(method.key for method in run.scene.cast) if run else ()
 
     def _find_runs(self) -> None:
-        """Read all events, and the last sample of each run, which is the last before the next start."""
+        """Read all events, and the last sample of each run, the last before the next start."""
         starts: list[int] = []  # chunks
         for chunk, place in enumerate(self._places):
             for clock, event in self._entries(chunk, only_events=True) if place.has_events else ():
@@ -242,7 +242,7 @@ class Recording:
             return []
 
     def _decode_chunk(self, chunk: int) -> tuple[list[Entry], list[int]]:
-        """Return a chunk's entries, their clocks ascending, and where the samples among them are."""
+        """Return a chunk's entries, and where the samples among them are."""
         entries = self._entries(chunk)
         samples = [at for at, (_, value) in enumerate(entries) if isinstance(value, Sample)]
         self._sampled[chunk] = bool(samples)

@@ -65,8 +65,8 @@ def recover(path: Path, out: Path, progress: ShowProgress | None = None, overwri
 def rescue(leftover: Path, progress: ShowProgress | None = None) -> str:
     """Make a recording of a leftover, and return a sentence about it.
 
-    The leftover is removed once all of it is in the recording, or if it was empty; otherwise it is renamed,
-    so that it is not found again.  Raises OSError if the disk fails.
+    The leftover is removed once all of it is in the recording, or if it was empty; otherwise it is
+    renamed, so that it is not found again.  Raises OSError if the disk fails.
     """
     with alone_with(leftover):
         if leftover.stat().st_size == 0:

@@ -1,9 +1,10 @@
-"""Verify: simulate a recording's runs again from their events, and compare every sample bit for bit.
+"""Verify: simulate a recording's runs again from their events, and compare every sample bit for
+bit.
 
-If this machine's sin differs from the recording's, samples need not have the same bits, but must lie within
-a tolerance: as far as the same run strays when its start is changed by one part in 10^11 (which is
-simulated, too), and at least one part in 10^11 of the number.  Once the changed run is off by a thousandth
-of a radian, as happens in chaos, that method is no longer compared.
+If this machine's sin differs from the recording's, samples need not have the same bits, but must
+lie within a tolerance: as far as the same run strays when its start is changed by one part in 10^11
+(which is simulated, too), and at least one part in 10^11 of the number.  Once the changed run is
+off by a thousandth of a radian, as happens in chaos, that method is no longer compared.
 """
 
 from collections import defaultdict
@@ -51,7 +52,7 @@ class Difference:
 
 @dataclass(slots=True)
 class Verification:
-    """The result of `verify`.  Complete and identical: nothing was changed or lost since it was recorded."""
+    """The result of `verify`.  Complete and identical: nothing was changed or lost."""
 
     file: Path
     complete: bool = False  # finished, and every checksum right
@@ -67,10 +68,11 @@ class Verification:
 def verify(
     path: Path, progress: ShowProgress | None = None, max_steps: int = MAX_STEPS, only: Only = None
 ) -> Verification:
-    """Verify a recording up to where it is first damaged; `only`: compare the methods of these keys.
+    """Verify a recording up to where it is first damaged; `only`: compare the methods of these
+    keys.
 
-    Raises RecordingError if it is not a recording, is inconsistent, has no samples, or claims more than
-    `max_steps` steps: the number is in the file's hands.
+    Raises RecordingError if it is not a recording, is inconsistent, has no samples, or claims more
+    than `max_steps` steps: the number is in the file's hands.
     """
     result = Verification(path)
     with Recording.open(path, check=True, progress=progress) as recording, named(path):

@@ -160,3 +160,10 @@ def test_only_the_methods_asked_for_are_compared(tmp_path):
     assert pendu("run", "--time", "2", "--methods", "rk4", "--record", tmp_path / "alone.mcap").code == 0
     assert pendu("verify", tmp_path / "alone.mcap", "--methods", "rk4").code == 0
     assert pendu("verify", tmp_path / "alone.mcap", "--methods", "s,v").refused(3, "run 1 has none of the methods sym")
+
+
+def test_a_recording_of_other_numerics_is_named_as_such(tmp_path, monkeypatch):
+    with monkeypatch.context() as earlier:
+        earlier.setattr("recordings.arithmetic.NUMERICS", 1)
+        path = record(tmp_path / "earlier.mcap", two_runs())
+    assert "made with version 1 of the numerics, this is version" in pendu("verify", path).out
