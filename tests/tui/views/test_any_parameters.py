@@ -20,7 +20,7 @@ from tui.views.lab.pendulums import Bob, pendulum_picture
 from tui.views.phase.facts import fact_rows
 from tui.words.command_line import scene_arguments
 from tui.words.describe import description
-from tui.words.insight import insight, lasting
+from tui.words.insight import insight_text, lasting, sentence
 
 
 def numbers(low: float, high: float) -> st.SearchStrategy[float]:
@@ -54,14 +54,14 @@ def on_screen(live) -> str:
         *fact_rows(live, Shown(), None, 120),
     ]
     charts = [
-        time_chart(history.window(), scene.cast, quantity, 60, 14, log=log).picture.text
+        time_chart(history.window(), scene.cast, Shown(quantity=quantity, log=log), 60, 14).picture.text
         for quantity in quantities(scene)
         for log in (True, False)
     ]
     lengths = [scene.equations.length(reading.extra) for reading in sample.readings]
     bobs = [Bob(reading.theta, 0, length=length) for reading, length in zip(sample.readings, lengths, strict=True)]
     picture = pendulum_picture(40, 12, bobs).text
-    sentences = [*description(live), insight(live), *lasting(live)]
+    sentences = [*description(live), insight_text(live), *map(sentence, lasting(live))]
     return "\n".join(["".join(text for text, _ in row) for row in rows] + charts + [picture] + sentences)
 
 

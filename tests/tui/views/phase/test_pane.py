@@ -28,15 +28,18 @@ class Recording(Live):
 class PhaseApp(App[None]):
     """A pane, and what it asked for."""
 
-    CSS = "PhasePane { border: round; height: 1fr; }"
+    CSS = "PhasePane { border: round; }"
 
-    def __init__(self, live: Live) -> None:
+    def __init__(self, live: Live, columns: int, rows: int) -> None:
         super().__init__()
         self.live = live
+        self.pane = PhasePane()
+        self.pane.styles.width = columns + 2
+        self.pane.styles.height = rows + 3
         self.chosen: list[tuple[float, float]] = []
 
     def compose(self) -> ComposeResult:
-        yield PhasePane()
+        yield self.pane
 
     def on_mount(self) -> None:
         pane = self.query_one(PhasePane)
@@ -50,8 +53,8 @@ class PhaseApp(App[None]):
 @asynccontextmanager
 async def shown(live: Live | None = None, columns: int = 46, rows: int = 16) -> AsyncIterator[tuple[Pilot, PhasePane]]:
     """The pane with so many cells of plot, and a row of text below; its border comes on top."""
-    app = PhaseApp(live or Live(DRIFT))
-    async with app.run_test(size=(columns + 2, rows + 3)) as pilot:
+    app = PhaseApp(live or Live(DRIFT), columns, rows)
+    async with app.run_test(size=(max(columns + 2, 60), max(rows + 3, 16))) as pilot:
         await pilot.pause()
         yield pilot, app.query_one(PhasePane)
 

@@ -64,6 +64,7 @@ async def test_the_view_shows_the_area_ratios_of_the_ring_around_the_start():
         ring = Neighbourhood(DRIFT, RADIUS)
         ring.advance(theatre.source.sample.step, Stepping(DRIFT.h))
         assert shown(theatre).ring.area_ratios == ring.area_ratios
+        theatre.stage.show_now()
         lines = theatre.stage.query_one("#facts", CellWidget).text.splitlines()
         assert "radius 0.1 rad" in lines[0]
         assert f"{ring.area_ratios[3]:.9f}" in lines[5]

@@ -42,9 +42,7 @@ class LabServer(Server):  # type: ignore[misc]
         app = await self._make_app()
         app.middlewares.append(self.check)
         app.on_response_prepare.append(add_policy)
-        runner = web.AppRunner(
-            app, keepalive_timeout=MAX_IDLE_TIME, shutdown_timeout=MAX_STOP_TIME
-        )
+        runner = web.AppRunner(app, keepalive_timeout=MAX_IDLE_TIME, shutdown_timeout=MAX_STOP_TIME)
         await runner.setup()
 
         def connect() -> Any:
