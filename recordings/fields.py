@@ -115,12 +115,6 @@ EVENT = (
 )
 """An event: its kind, and what that kind needs."""
 
-ABOUT = (Field("program", type="string"), *_optional("string", "python", "platform", "started", "recovered"))
-"""Where and how a recording was made, for people."""
-
-SOURCE = tuple(Field(name, type="string") for name in ("method", "letter", "sha256", "source"))
-"""A user's own method.  Reading a recording never executes it."""
-
 NUMBERS = tuple(field.name for field in READING if field.required)
 EXTREMES = ("energy_error_low", "energy_error_high")
 OPTIONAL = tuple(each.name for each in READING if not (each.required or each.name in EXTREMES))
@@ -166,8 +160,8 @@ def schema_of(title: str, fields: Sequence[Field]) -> dict[str, Any]:
 
 
 EVENT_SCHEMA = schema_of("pendu.Event", (*MOMENT, *EVENT))
-ABOUT_SCHEMA = schema_of("pendu.About", ABOUT)
-SOURCE_SCHEMA = schema_of("pendu.Source", SOURCE)
+TEXT_SCHEMA = schema_of("pendu.Text", ())
+"""Texts by name: how a recording was made, and the source of a user's own method."""
 
 
 def sample_schema(model: str) -> dict[str, Any]:

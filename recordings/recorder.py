@@ -20,13 +20,7 @@ from engine.run.lockstep import Sample
 from engine.scenes import Scene
 from recordings.errors import DiskError, NameTakenError, writing
 from recordings.events import Event
-from recordings.fields import (
-    ABOUT_SCHEMA,
-    EVENT_SCHEMA,
-    SOURCE_SCHEMA,
-    sample_schema,
-    without_extremes,
-)
+from recordings.fields import EVENT_SCHEMA, TEXT_SCHEMA, sample_schema, without_extremes
 from recordings.files import check_target, is_stream, publish
 from recordings.format import (
     ABOUT,
@@ -193,11 +187,11 @@ class Recorder:
         """Register the channels of a run, and in the first chunk describe the recording."""
         if not self._channels:
             self._register(EVENTS, EVENT_SCHEMA)
-            self._register(ABOUT, ABOUT_SCHEMA)
+            self._register(ABOUT, TEXT_SCHEMA)
             self._add([(ABOUT, json.dumps(self._about).encode())], clock)
         for method in scene.cast:
             if isinstance(method, OwnMethod):
-                self._register(SOURCES, SOURCE_SCHEMA)
+                self._register(SOURCES, TEXT_SCHEMA)
                 names = ("letter", "sha256", "source")
                 source = {"method": method.key, **{name: getattr(method, name) for name in names}}
                 self._add([(SOURCES, json.dumps(source).encode())], clock)

@@ -73,7 +73,7 @@ def test_every_message_is_valid_against_its_schema_and_found_through_the_index(t
         count = 0
         for schema, channel, message in reader.iter_messages():
             assert schema.encoding == "jsonschema"
-            names = {"/pendu/events": "pendu.Event", "/pendu/about": "pendu.About"}
+            names = {"/pendu/events": "pendu.Event", "/pendu/about": "pendu.Text"}
             assert schema.name == names.get(channel.topic, "pendu.Sample")
             jsonschema.validate(json.loads(message.data), json.loads(schema.data))
             count += 1
