@@ -188,6 +188,7 @@ class _Text:
         self._delimiter: str | None = None
         self._is_numbered = True  # no header has the names
         self._width = 0  # fields of a row
+        self._singles: list[int] = []  # the places, if no columns are to be added
         self._above: list[str] = []  # the first row: where it comes again, a table begins
 
     def records(self, lines: Iterator[str]) -> Records:
@@ -213,6 +214,8 @@ class _Text:
         if len(fields) != self._width:
             return None
         try:
+            if self._singles:
+                return [float(fields[place]) for place in self._singles]
             return [sum([float(fields[place]) for place in group]) for group in self._head.places]
         except ValueError:
             return None
@@ -249,6 +252,8 @@ class _Text:
             self._head = head
             self._delimiter = delimiter
             self._width = len(fields)
+            is_sum = any(len(group) > 1 for group in head.places)
+            self._singles = [] if is_sum else [group[0] for group in head.places]
             self._has_rows = True
             yield head
         elif self._head is None and len(fields) == len(self._above):
