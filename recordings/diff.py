@@ -32,16 +32,6 @@ class Difference(NamedTuple):
 
 
 @dataclass(slots=True)
-class MethodErrors:
-    """A method's errors in both recordings, at equal times."""
-
-    a: float = 0.0  # the largest energy error
-    b: float = 0.0
-    theta_difference: float = 0.0  # rad, the largest
-    t: float | None = None  # s, simulated, where theta differs most
-
-
-@dataclass(slots=True)
 class Comparison:
     """The result of `compare`."""
 
@@ -52,7 +42,9 @@ class Comparison:
     different: int = 0  # of them
     only_in_a: int = 0  # samples
     only_in_b: int = 0
-    errors: dict[str, MethodErrors] = field(default_factory=dict)  # by method
+    errors: dict[str, dict[str, float]] = field(default_factory=dict)
+    """By method, at equal times: the largest energy error in a and in b, the largest difference in
+    theta [rad], and the simulated time t of that [s]."""
 
     @property
     def identical(self) -> bool:
@@ -135,16 +127,17 @@ def _take(result: Comparison, a: Sample, b: Sample, ours: dict[str, Reading], th
     """Take a pair of samples into the result."""
     result.samples += 1
     is_same = True
-    for key in [key for key in ours if key in theirs]:
-        x, y = ours[key], theirs[key]
-        errors = result.errors.setdefault(key, MethodErrors())
-        errors.a = max(errors.a, x.max_energy_error)
-        errors.b = max(errors.b, y.max_energy_error)
+    for key, x in ours.items():
+        if (y := theirs.get(key)) is None:
+            continue
+        errors = result.errors.setdefault(key, dict.fromkeys(("a", "b", "theta_difference", "t"), 0.0))
+        errors["a"] = max(errors["a"], x.max_energy_error)
+        errors["b"] = max(errors["b"], y.max_energy_error)
         if same_bits(x, y):
             continue
         apart = distance(x.theta, y.theta)
-        if apart > errors.theta_difference:
-            errors.theta_difference, errors.t = apart, a.t
+        if apart > errors["theta_difference"]:
+            errors |= {"theta_difference": apart, "t": a.t}
         for name, value, other in zip(VALUES, values_of(x), values_of(y), strict=True):
             if name not in EXTREMES and (value != other or ulps(value, other)):
                 is_same = False

@@ -51,7 +51,7 @@ def run(options: argparse.Namespace) -> int:
 def _report(result: "Comparison") -> Report:
     title = f"{result.samples} samples at equal times, {result.different} different"
     title += f"; {result.only_in_a} only in A, {result.only_in_b} only in B"
-    rows = [{"method": key, **asdict(errors)} for key, errors in result.errors.items()]
+    rows = [{"method": key, **errors} for key, errors in result.errors.items()]
     notes: list[Any] = [_first(result.first)] if result.first else []
     if result.done:
         columns = (Column("done differently", "at"), Column("A", "a"), Column("B", "b"))
