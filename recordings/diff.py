@@ -10,7 +10,7 @@ from math import isclose
 from typing import NamedTuple
 
 from engine.run.lockstep import Reading, Sample
-from recordings.events import NOT_DONE
+from recordings.events import NOT_DONE, name_of
 from recordings.fields import EXTREMES, VALUES, distance, same_bits, ulps, values_of
 from recordings.reader import ShowProgress
 from recordings.recording import Recording, Run
@@ -79,7 +79,7 @@ def _inputs(run: Run | None) -> Iterator[tuple[str, str]]:
     if run is None:
         return
     yield "model", run.scene.model
-    yield "methods", ", ".join(method.key for method in run.scene.cast)
+    yield "methods", ", ".join(name_of(method) for method in run.scene.cast)
     yield from ((name, str(value)) for name, value in run.scene.numbers.items())
     for _, event in run.events:
         if event.kind not in NOT_DONE:

@@ -75,10 +75,10 @@ def judge_energies(times: Any, energies: Any, failed: bool = False) -> SeriesJud
         return SeriesJudgement(_too_early(len(times), MIN_SAMPLES, "samples"))
     unit = float(np.abs(energies).max()) or 1.0
     energies = energies / unit  # squares must not overflow
-    if np.abs(energies[-(len(energies) // 4) :]).max() < AT_REST * abs(float(energies[0])):
-        return SeriesJudgement(Judgement("loses"))
     floor = max(_last_digit(energies * unit) / unit, ROUNDING)
     first = _transient(times, energies, floor)
+    if np.abs(energies[-(len(energies) // 4) :]).max() < AT_REST * abs(float(energies[first])):
+        return SeriesJudgement(Judgement("loses" if energies[first] > 0 else "grows"), first=first)
     found = _judge(times[first:], energies[first:], floor)
     if found.first:
         first += found.first
@@ -112,6 +112,8 @@ def _last_digit(energies: Any) -> float:
     rounding = 8 * np.finfo(float).eps * float(np.abs(some).max())
     for exponent in range(8, -18, -1):
         digit = 10.0**exponent
+        if digit > np.abs(some).max():
+            continue
         if digit <= rounding:
             break
         if np.all(np.abs(some - np.round(some / digit) * digit) <= rounding):
@@ -123,6 +125,8 @@ def _transient(times: Any, energies: Any, floor: float) -> int:
     """Return how many samples at the start lie outside the band of the rest, by half its width."""
     at = (times - times[0]) / (times[-1] - times[0])
     early = int(np.searchsorted(at, TRANSIENT))
+    if early > len(at) // 2:  # a gap: the rest is the smaller part
+        return 0
     line = np.polyfit(at[early:], energies[early:], 1)
     rest = energies - np.polyval(line, at)
     low = float(rest[early:].min())

@@ -36,18 +36,19 @@ def of_objects(objects: Iterable[dict[str, Any]], wanted: Sequence[str], unit: s
     """Yield a head and the rows of objects with names; `unit` is that of energies without one."""
     names: list[str] = []
     places: tuple[tuple[int, ...], ...] | None = None
+    has_head = False
     for number, item in enumerate(objects):
         if list(item) != names:
             names = list(item)
-            now = places_of(names[:MAX_NAMES], wanted)
-            if now and not places:
-                yield Head(now, tuple(unit_of(names[group[0]]) or unit for group in now))
-            places = now or places
+            places = places_of(names[:MAX_NAMES], wanted)
+            if places and not has_head:
+                has_head = True
+                yield Head(places, tuple(unit_of(names[group[0]]) or unit for group in places))
         if places:
             yield row_of([str(value) for value in item.values()], places)
-        elif number > MAX_LINES_BEFORE:
+        elif number > MAX_LINES_BEFORE and not has_head:
             break
-    if not places:
+    if not has_head:
         raise missing(wanted, names)
 
 

@@ -47,7 +47,8 @@ class Marks:
 
     def add(self, mark: Mark) -> None:
         """Add a mark and save them all.  Raises OSError where that is impossible; the mark is there nevertheless."""
-        self._marks = sorted([*self._marks, mark], key=lambda each: each.clock)
+        others = {*_read(self.path), *self._marks}  # another replay may have added some
+        self._marks = sorted({*others, mark}, key=lambda each: each.clock)
         text = json.dumps({"schema": SCHEMA, "marks": [asdict(each) for each in self._marks]}, indent=1)
         self.path.parent.mkdir(parents=True, exist_ok=True)
         with whole_file(self.path, force=True) as part:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from engine.run.judgement import Judgement, Milestone
 from engine.run.lockstep import Sample
 from engine.run.stepping import Stepping, change_before
-from recordings.events import Event
+from recordings.events import Event, check_present
 from tui.playback.cursor import ReplayCursor
 from tui.playback.live import Live
 from tui.playback.marks import Mark, Marks, mark_event
@@ -72,14 +72,12 @@ class Replay(Source):
 
     @property
     def judgements(self) -> Sequence[Judgement]:
-        """The verdicts that the lab gave since the stepping last changed, with their trends."""
+        """The verdicts that the lab gave since the stepping last changed; trends are not recorded as they change."""
         since = change_before(self.changes, self.sample.step).step
         swings = (self.sample.step - since) * abs(self.stepping.h) / (self.exact.period or math.tau / self.scene.w0)
         given = {
             each.method: Judgement(
                 verdict=each.verdict,
-                slope=each.trend,
-                significant=each.trend is not None,
                 periods=swings,
                 lyapunov=each.lyapunov,
             )
@@ -105,11 +103,6 @@ class Replay(Source):
     @property
     def knows_past(self) -> bool:
         return self._cursor.fill(lambda: False)
-
-    @property
-    def is_at_rest(self) -> bool:
-        """Paused, with all of the past read."""
-        return self.playhead.paused and self.knows_past
 
     @property
     def recording_status(self) -> RecordingStatus:
@@ -184,7 +177,11 @@ class Replay(Source):
             self.marks.add(Mark(self.playhead.position, self.sample.run, self.sample.step, text))
 
     def live(self) -> Live:
-        """A lab that goes on from here with the same bits, and with what is known of the past."""
+        """Return a lab that goes on from here with the same bits.
+
+        Raises RecordingError if the run has a user's own method that was not given.
+        """
+        check_present(self.scene)
         return Live(self.scene, changes=self._cursor.changes(self.playhead.position)[1:], so_far=self.so_far)
 
     def close(self) -> None:

@@ -116,11 +116,6 @@ class Source(ABC):
         return True
 
     @property
-    def is_at_rest(self) -> bool:
-        """Whether the clock alone changes nothing."""
-        return self.playhead.paused
-
-    @property
     def is_marked(self) -> bool:
         """Whether the sample on screen has a mark."""
         here = self.sample.run, self.sample.step

@@ -13,7 +13,6 @@ from pathlib import Path
 from traceback import walk_tb
 from typing import TYPE_CHECKING, Any
 
-from engine.models import MODELS
 from tui.cli.errors import Exit, UserError, explained
 from tui.cli.output import progress, warn
 
@@ -77,6 +76,7 @@ def open_recording(path: Path) -> "Recording":
     with progress(f"reading {path.name}") as show_progress:
         recording = Recording.open(path, progress=show_progress)
     if recording.at(0.0) is None:
+        recording.close()
         raise UserError(f"{path} contains no samples.", Exit.INPUT_UNREADABLE)
     return recording
 
@@ -90,14 +90,11 @@ def open_replay(path: Path) -> "Replay":
 
 
 def open_ghost(path: Path) -> "Ghost":
-    """A recording to be laid under the lab.  Raises UserError if there is nothing in it, or nothing known."""
+    """A recording to be laid under the lab.  Raises UserError if there is nothing in it."""
     from tui.playback.ghost import Ghost
 
     with open_recording(path) as recording:
-        ghost = Ghost(recording)
-    if ghost.scene.model not in MODELS:
-        raise UserError(f"{path}: this version does not know the model {ghost.scene.model}.", Exit.INPUT_UNREADABLE)
-    return ghost
+        return Ghost(recording)
 
 
 def replay_screen(replay: "Replay", no_record: bool) -> "ReplayScreen":

@@ -8,6 +8,7 @@ from typing import ClassVar
 from textual.binding import Binding, BindingType
 from textual.widget import Widget
 
+from recordings.errors import RecordingError
 from tui.cli.errors import UserError, explained
 from tui.playback.live import Live
 from tui.playback.replay import Replay
@@ -91,7 +92,11 @@ class ReplayScreen(SourceScreen):
             await asyncio.sleep(0)
         if self.replay.sample.step > LONG:
             self.notify(f"Simulating {self.replay.sample.step} steps ...", timeout=2)
-        live = await asyncio.to_thread(self.replay.live)
+        try:
+            live = await asyncio.to_thread(self.replay.live)
+        except RecordingError as error:
+            self.notify(str(error), severity="warning", markup=False)
+            return
         try:
             lab = self._go_live(live)
         except (OSError, UserError) as error:

@@ -19,6 +19,7 @@ VERDICTS: dict[Verdict, str] = {
     "caught": "is caught",
     "wanders": "wanders",
     "failed": "failed",
+    "too early": "is undecided again",
 }
 
 

@@ -16,7 +16,6 @@ from engine.models.pendulum import energy
 from engine.run import compiled
 from engine.run.loops import PlainLoops
 from engine.scenes import SCENES, SceneError
-from tests.engine.run.test_loops import OVERFLOWING
 
 E, S, V, R = USUAL_CAST
 LOOPS = compiled.compiled if compiled.available() else PlainLoops  # the same bits
@@ -122,8 +121,16 @@ def test_a_failed_run_is_kept_with_the_flaw_lost(points):
     assert worst.flaws == ("lost", "lost", "lost")
 
 
+def overflowing(force, phase, h):
+    theta, omega = phase
+    while True:
+        theta, omega = theta + h * omega, 1e9 * (omega + force(theta))
+        yield theta, omega
+
+
 def test_a_method_that_overflows_has_the_flaw_diverged():
-    point = Study(DRIFT.altered(theta=1.5), 10.0).run(OVERFLOWING, 100)
+    method = replace(E, key="overflowing", phases=overflowing)
+    point = Study(DRIFT.altered(theta=1.5), 10.0).run(method, 100)
     assert point.flaws == ("diverged", "diverged", "diverged")
     assert math.isfinite(point.theta_error)
 

@@ -27,7 +27,7 @@ EXAMPLES = """\
 examples:
   pendu-tui recordings
   pendu-tui recordings show latest
-  pendu-tui recordings recover swing.mcap.part -o swing.mcap
+  pendu-tui recordings recover swing.mcap.part -o saved.mcap
   pendu-tui recordings prune --keep 20
   pendu-tui recordings prune --size 500MB --yes
 """
