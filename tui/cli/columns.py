@@ -104,6 +104,8 @@ def read_table(stream: BinaryIO, wanted: Sequence[str], number: int | None = Non
         raise unreadable(f"there is no table {number}; the input has {tables.count}.")
     if tables.found is None:
         raise unreadable("no row has a number in each column; columns count from 1.")
+    if tables.rows == tables.count > 1:
+        raise unreadable("its time goes back in every row; name the column of times with --time.")
     tables.found.count = tables.count
     tables.found.finish(start)
     return tables.found
@@ -121,7 +123,8 @@ class _Tables:
         self._number = number
         self._head: Head | None = None
         self._rows = 0  # since the head
-        self._last = -LATEST  # time of the current table
+        self._first: float | None = None  # time of the current table
+        self.rows = 0  # of all tables
 
     def add_head(self, head: Head) -> None:
         """Begin a table, unless it is the header of the next page."""
@@ -132,16 +135,20 @@ class _Tables:
 
     def _begin(self, units: tuple[str, ...]) -> None:
         self.current = Table(units, [array("d") for _ in range(self._width)])
-        self._last = -LATEST
+        self._first = None
 
     def add_row(self, row: Sequence[float]) -> None:
-        """Add a row; where its time starts again, to another table."""
+        """Add a row; where its time starts again, to another table.
+
+        A step back to a later time than the first is a restart from a checkpoint: the same table.
+        """
         now = row[0]
         self._rows += 1
-        if -LATEST < now < self._last or (now == self._last and self._rows == 1):
+        self.rows += 1
+        if self._first is not None and -LATEST < now <= self._first:
             self._begin(self.current.units)
         if abs(now) < LATEST:
-            self._last = max(self._last, now)
+            self._first = now if self._first is None else self._first
             if not self.current.number:
                 self.count += 1
                 self.current.number = self.count

@@ -193,7 +193,7 @@ def _trend(fields: dict[str, Any], energy_unit: str) -> list[tuple[str, str]]:
     uncertainty = fields["uncertainty"]
     time = fields["time_unit"] or "unit of time"
     absolute = f"{fields['absolute_trend']:+.2e} ± {fields['absolute_uncertainty']:.0e}{energy_unit}"
-    lines = [("trend", f"{slope:+.2e} ± {uncertainty:.0e} per {time}, {absolute} per {time}")]
+    lines = [("trend", f"relative {slope:+.2e} ± {uncertainty:.0e} per {time}, absolute {absolute} per {time}")]
     if (each := fields.get("energy_per_ns_per_atom")) is not None:
         kt = fields.get("kt_per_ns_per_atom")
         text = f"{each:+.2e}{energy_unit} per ns"
