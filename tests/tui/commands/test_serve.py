@@ -300,7 +300,9 @@ async def test_a_signal_ends_the_server_and_its_labs(number):
             server.process.send_signal(number)
             assert await tab.closed()
             assert await asyncio.to_thread(server.process.wait, PATIENCE) == 0
-    assert not Path(f"/proc/{lab}").exists()
+    async with asyncio.timeout(PATIENCE):
+        while Path(f"/proc/{lab}").exists() and "State:\tZ" not in Path(f"/proc/{lab}/status").read_text():
+            await asyncio.sleep(0.1)
 
 
 async def test_a_lab_ends_when_its_server_was_killed():
@@ -339,4 +341,4 @@ def test_what_cannot_be_served_is_one_sentence(server, tmp_path, monkeypatch):
     assert pendu("serve", "--record", tmp_path / "no" / "folder").refused(5, "create the folder")
     monkeypatch.setitem(sys.modules, "textual_serve.server", None)
     monkeypatch.delitem(sys.modules, "tui.commands.lab.web.server", raising=False)
-    assert pendu("serve").refused(2, "pip install textual-serve")
+    assert pendu("serve").refused(2, "install", "serve needs")
