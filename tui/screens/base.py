@@ -164,13 +164,6 @@ class SourceScreen(Screen[None]):
         """Leave out a size that the terminal has no longer: two could evoke each other for ever."""
         if event.size != self.app.size:
             event.prevent_default()
-        else:
-            self.call_after_refresh(self._redraw)
-
-    def _redraw(self) -> None:
-        """Draw all panes again: while the terminal was too small, they drew nothing."""
-        for pane in self.query(Pane):
-            pane.draw()
 
     def _bound(self, view: View) -> View:
         view.follow(self.source.sample, read=False)
