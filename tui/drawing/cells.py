@@ -36,7 +36,9 @@ class CellWidget(Widget):
         """Bring what is shown up to date."""
 
     def on_resize(self) -> None:
-        self.room = self.size
+        if self.room != self.size:  # lines may have been made for another room
+            self.room = self.size
+            self.refresh()
         self.draw()
 
     def on_show(self) -> None:

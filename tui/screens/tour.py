@@ -18,7 +18,7 @@ TITLE = -10
 
 FORWARD = {
     "watching": "enter to the moment",
-    "asked": "1 or 2 answer  enter the truth",
+    "asked": "1 2 answer  enter the truth",
     "answered": "enter go on",
 }
 
@@ -123,7 +123,7 @@ class TourPanel(CellWidget):
     def draw(self) -> None:
         if self.drawable:
             forward = "enter again" if self.tour.is_astray else FORWARD[self.tour.stage]
-            keys = f"{forward}  backspace back  esc leave"
+            keys = f"{forward}  esc leave  backspace back"
             self.show(Picture(tour_rows(self.tour.title, keys, self.tour.text, *self.room)))
 
     def on_click(self) -> None:
