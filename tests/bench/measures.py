@@ -25,7 +25,7 @@ CEILINGS = {
     "characters_of_tui": 610_500,
     "characters_of_tests": 973_500,
     "files": 219,
-    "long_lines": 1_500,
+    "long_lines": 1_229,
     "parallel_assignments": 199,
     "conditional_expressions_per_1000_lines": 29,
     "long_functions": 3,
