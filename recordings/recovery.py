@@ -6,9 +6,10 @@ Chunks are kept or dropped as they are; no number is repaired, guessed or change
 from dataclasses import dataclass
 from pathlib import Path
 
-from recordings.errors import DiskError, RecordingError, printable
+from recordings.errors import DiskError, NameTakenError, RecordingError, printable
 from recordings.events import Event
 from recordings.fields import without_extremes
+from recordings.files import publish
 from recordings.library import PART, alone_with, free_path
 from recordings.reader import ShowProgress
 from recordings.recorder import Recorder
@@ -82,7 +83,11 @@ def rescue(leftover: Path, progress: ShowProgress | None = None) -> str:
             kept += _put_aside(leftover, ".damaged")
         else:
             leftover.unlink()
-        saved = recovery.out if name.exists() else recovery.out.rename(name)
+        saved = name
+        try:
+            publish(recovery.out, name)
+        except NameTakenError:
+            saved = recovery.out
         return f"An unfinished recording was recovered: {printable(str(saved))}.{kept}"
 
 
