@@ -104,7 +104,9 @@ def _timed(recording: Recording) -> Iterator[Timed]:
         yield run, elapsed, sample
 
 
-def _paired(a: Iterator[Timed], b: Iterator[Timed]) -> Iterator[tuple[Sample | None, Sample | None]]:
+def _paired(
+    a: Iterator[Timed], b: Iterator[Timed]
+) -> Iterator[tuple[Sample | None, Sample | None]]:
     """Yield the samples of both in order, those of one time together."""
     one, other = next(a, None), next(b, None)
     while one or other:
@@ -123,14 +125,18 @@ def _readings(recording: Recording, sample: Sample) -> dict[str, Reading]:
     return dict(zip(recording.methods_of(sample.run), sample.readings, strict=True))
 
 
-def _take(result: Comparison, a: Sample, b: Sample, ours: dict[str, Reading], theirs: dict[str, Reading]) -> None:
+def _take(
+    result: Comparison, a: Sample, b: Sample, ours: dict[str, Reading], theirs: dict[str, Reading]
+) -> None:
     """Take a pair of samples into the result."""
     result.samples += 1
     is_same = True
     for key, x in ours.items():
         if (y := theirs.get(key)) is None:
             continue
-        errors = result.errors.setdefault(key, dict.fromkeys(("a", "b", "theta_difference", "t"), 0.0))
+        errors = result.errors.setdefault(
+            key, dict.fromkeys(("a", "b", "theta_difference", "t"), 0.0)
+        )
         errors["a"] = max(errors["a"], x.max_energy_error)
         errors["b"] = max(errors["b"], y.max_energy_error)
         if same_bits(x, y):

@@ -57,7 +57,11 @@ class Field(NamedTuple):
             return printable(value)
         elif self.type == "boolean" and type(value) is bool:
             return value
-        elif self.type == "array" and type(value) is list and all(type(each) is str for each in value):
+        elif (
+            self.type == "array"
+            and type(value) is list
+            and all(type(each) is str for each in value)
+        ):
             return list(map(printable, value))
         kind = {"number": "finite number", "integer": "whole number"}.get(self.type, self.type)
         raise RecordingError(f"{self.name!r} of a message is no {kind}")
@@ -125,7 +129,12 @@ STATE = {
     "omega",
     *(each.name for model in MODELS.values() for each in model.variables if each.is_state),
 }
-COLUMNS = ("clock_s", *(field.column for field in MOMENT), "method", *(field.column for field in READING))
+COLUMNS = (
+    "clock_s",
+    *(field.column for field in MOMENT),
+    "method",
+    *(field.column for field in READING),
+)
 """The columns of a table of samples: names with units; energies are per unit m·L²."""
 
 _scalars_of = attrgetter(*(field.name for field in READING))
@@ -141,7 +150,9 @@ def columns(models: Sequence[str]) -> tuple[str, ...]:
     return *COLUMNS, *dict.fromkeys(field.column for model in models for field in EXTRA[model])
 
 
-def rows(clock: float, sample: Sample, methods: Sequence[str], models: Sequence[str]) -> Iterator[tuple[object, ...]]:
+def rows(
+    clock: float, sample: Sample, methods: Sequence[str], models: Sequence[str]
+) -> Iterator[tuple[object, ...]]:
     """Yield a sample as rows of that table, one for each method."""
     names = dict.fromkeys(field.name for model in models for field in EXTRA[model])
     for method, reading in zip(methods, sample.readings, strict=True):

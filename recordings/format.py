@@ -25,7 +25,9 @@ PROFILE = "pendu"  # in the file's header
 EVENTS = "/pendu/events"
 ABOUT = "/pendu/about"
 SOURCES = "/pendu/sources"
-CLOCK_OFFSET = 1_000_000_000  # ns: the clock's zero in log_time; several readers mishandle a time of 0
+CLOCK_OFFSET = (
+    1_000_000_000  # ns: the clock's zero in log_time; several readers mishandle a time of 0
+)
 EVIDENCE = ("trend", "lyapunov")  # of a verdict
 
 _EVENT = (*MOMENT, *EVENT)
@@ -87,7 +89,9 @@ def encode_event(event: Event) -> bytes:
         fields["methods"] = [name_of(method) for method in scene.cast]
         fields |= (event.arithmetic or arithmetic_here())._asdict()
     if (milestone := event.milestone) is not None:
-        fields |= {name: getattr(milestone, name) for name in ("energy_error", "verdict", *EVIDENCE)}
+        fields |= {
+            name: getattr(milestone, name) for name in ("energy_error", "verdict", *EVIDENCE)
+        }
         fields |= {"milestone": milestone.kind, "method": name_of(milestone.method)}
         fields["other"] = milestone.other and name_of(milestone.other)
     return _dumps(fields)
@@ -103,7 +107,9 @@ def decode_event(data: bytes) -> Event:
                 made = Arithmetic(fields["numerics"], fields["sin"], fields["sqrt"])
                 return Event("start", *moment, scene=_scene(fields), arithmetic=made)
             case "set_h":
-                return Event("set_h", *moment, h=fields["h"], equal_cost=fields.get("equal_cost", False))
+                return Event(
+                    "set_h", *moment, h=fields["h"], equal_cost=fields.get("equal_cost", False)
+                )
             case "speed":
                 return Event("speed", *moment, speed=fields["speed"])
             case "mark":
@@ -124,7 +130,9 @@ _dumps_text = json.JSONEncoder(separators=(",", ":"), allow_nan=False).encode
 
 
 def _dumps(fields: dict[str, Any]) -> bytes:
-    return _dumps_text({name: value for name, value in fields.items() if value is not None}).encode()
+    return _dumps_text(
+        {name: value for name, value in fields.items() if value is not None}
+    ).encode()
 
 
 def _loads(data: bytes, fields: Sequence[Field]) -> dict[str, Any]:
@@ -151,7 +159,9 @@ def _scene(fields: dict[str, Any]) -> Scene:
     names = ("theta", "omega", "length", "gravity", "h", "model")
     parameters = {name: fields[name] for name in PARAMETERS if name in fields}
     given = {name: fields[name] for name in names}
-    return Scene(fields["scene"], cast=cast, parameters=parameters, watch=fields.get("watch", ""), **given)
+    return Scene(
+        fields["scene"], cast=cast, parameters=parameters, watch=fields.get("watch", ""), **given
+    )
 
 
 def _method(name: str) -> Any:

@@ -41,7 +41,9 @@ def part_of(path: Path) -> Path:
 def free_path(path: Path) -> Path:
     """Return `path`, or the first of NAME-2, NAME-3, … that no recording has, finished or not."""
     numbered = (path.with_name(f"{path.stem}-{n}{path.suffix}") for n in count(2))
-    return next(free for free in chain([path], numbered) if not lexists(free) and not lexists(part_of(free)))
+    return next(
+        free for free in chain([path], numbered) if not lexists(free) and not lexists(part_of(free))
+    )
 
 
 def folder() -> Path:
@@ -82,7 +84,9 @@ def resolve(name: str) -> Path:
     if name == "latest":
         items = listing(where)
         if not items:
-            raise RecordingError(f"no recordings in {printable(str(where))} yet; start pendu-tui to make one.")
+            raise RecordingError(
+                f"no recordings in {printable(str(where))} yet; start pendu-tui to make one."
+            )
         return items[0].path
     golden = golden_names()
     if name in golden:
@@ -146,7 +150,9 @@ def _files(where: Path, suffix: str) -> list[Path]:
 
 def hold(file: IO[Any], shared: bool = False) -> None:
     """Lock an open file until it is closed, where the file system has locks."""
-    with suppress(OSError):  # writers block (others only probe a new file); readers go on without the lock
+    with suppress(
+        OSError
+    ):  # writers block (others only probe a new file); readers go on without the lock
         _lock(file, shared, wait=not shared)
 
 

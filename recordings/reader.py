@@ -348,7 +348,9 @@ class Decoder:
     def _sample(self, parts: list[Message], keys: list[tuple[str, str]]) -> Sample:
         if len(keys) < len(parts):
             raise RecordingError("a sample is incomplete")
-        decoded = [decode_reading(part.data, model) for part, (model, _) in zip(parts, keys, strict=True)]
+        decoded = [
+            decode_reading(part.data, model) for part, (model, _) in zip(parts, keys, strict=True)
+        ]
         run, step, t, _ = decoded[0]
         scene = self.scenes.get(run)
         is_whole = scene is None or keys == [(scene.model, each.key) for each in scene.cast]

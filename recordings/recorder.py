@@ -87,7 +87,9 @@ class Recorder:
                 why = "is in use or left over from an unfinished recording; choose another name"
                 raise NameTakenError(why, self.part) from error
         hold(self._file)
-        self._writer = Writer(self._file, chunk_size=1 << 62, compression=CompressionType.ZSTD, enable_data_crcs=True)
+        self._writer = Writer(
+            self._file, chunk_size=1 << 62, compression=CompressionType.ZSTD, enable_data_crcs=True
+        )
         self._writer.start(PROFILE, program())
 
     def event(self, event: Event, clock: float) -> None:

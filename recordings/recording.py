@@ -75,7 +75,9 @@ class Recording:
         self.damaged = contents.damaged
         self.reason = contents.reason
         self.entries_lost = contents.entries_lost
-        self.events: list[tuple[float, Event]] = []  # each with its clock [s], in the order of recording
+        self.events: list[
+            tuple[float, Event]
+        ] = []  # each with its clock [s], in the order of recording
         self.runs: list[Run] = []
         self._stream = stream
         self._places = contents.places
@@ -179,7 +181,9 @@ class Recording:
                 if start <= entry.clock <= end:
                     yield entry
 
-    def samples_between(self, start: float = 0.0, end: float = inf) -> Iterator[tuple[float, Sample]]:
+    def samples_between(
+        self, start: float = 0.0, end: float = inf
+    ) -> Iterator[tuple[float, Sample]]:
         """Yield the samples of that time, each with its clock [s]."""
         for clock, value in self.entries(start, end):
             if isinstance(value, Sample):

@@ -29,7 +29,9 @@ class Recovery:
     runs_lost: int  # runs whose start was lost
 
 
-def recover(path: Path, out: Path, progress: ShowProgress | None = None, overwrite: bool = False) -> Recovery:
+def recover(
+    path: Path, out: Path, progress: ShowProgress | None = None, overwrite: bool = False
+) -> Recovery:
     """Write what is intact of `path` to `out`, which appears only when it is whole.
 
     Raises RecordingError if nothing can be saved, DiskError if `out` cannot be written.
@@ -48,7 +50,9 @@ def recover(path: Path, out: Path, progress: ShowProgress | None = None, overwri
                     recorder.sample(without_extremes(value) if is_after_gap else value, clock)
                     is_after_gap = False
             if not recorder.samples:
-                raise RecordingError(f"{printable(str(path))}: {recording.reason or 'it has no samples'}.")
+                raise RecordingError(
+                    f"{printable(str(path))}: {recording.reason or 'it has no samples'}."
+                )
             recorder.close()
         finally:
             recorder.abandon(delete=True)

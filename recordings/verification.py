@@ -100,7 +100,9 @@ def verify(
 class Rerun:
     """One run, simulated again, and compared with what was recorded."""
 
-    def __init__(self, start: Event, scene: Scene, result: Verification, max_steps: int, only: Only) -> None:
+    def __init__(
+        self, start: Event, scene: Scene, result: Verification, max_steps: int, only: Only
+    ) -> None:
         check_present(scene, only)
         assert start.arithmetic is not None
         result.runs += 1
@@ -145,7 +147,9 @@ class Rerun:
         for other in astray:
             self._widen(computed, other)
         self._result.samples += 1
-        are_same = computed.t == recorded.t and all(map(same_bits, recorded.readings, computed.readings))
+        are_same = computed.t == recorded.t and all(
+            map(same_bits, recorded.readings, computed.readings)
+        )
         if not (self._is_exact and are_same):
             for difference in self._differences(recorded, computed):
                 self._result.first_difference = self._result.first_difference or difference
@@ -178,7 +182,9 @@ class Rerun:
         run, step, t, _ = recorded
         if t != computed.t:
             yield Difference(run, step, t, "", "t", t, computed.t)
-        for method, was, now in zip(self._methods, recorded.readings, computed.readings, strict=True):
+        for method, was, now in zip(
+            self._methods, recorded.readings, computed.readings, strict=True
+        ):
             if self._only is not None and method not in self._only:
                 continue
             is_lost = max(self._allowed[method, name] for name in STATE) > LOST
@@ -191,7 +197,9 @@ class Rerun:
     def _is_equal(self, method: str, field: str, a: float | None, b: float | None) -> bool:
         if self._is_exact:
             return a == b and not ulps(a, b)
-        return distance(a, b) <= max(self._allowed[method, field], TOLERANCE * max(1.0, abs(b or 0.0)))
+        return distance(a, b) <= max(
+            self._allowed[method, field], TOLERANCE * max(1.0, abs(b or 0.0))
+        )
 
     def _widen(self, computed: Sample, astray: Sample) -> None:
         for method, a, b in zip(self._methods, computed.readings, astray.readings, strict=True):

@@ -10,4 +10,8 @@ settings.load_profile("pendu")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption("--snapshot-update", action="store_true", help="store pictures of the screen as they look now")
+    parser.addoption(
+        "--snapshot-update",
+        action="store_true",
+        help="store pictures of the screen as they look now",
+    )

@@ -15,7 +15,9 @@ from engine.models import MODELS
 from tui.cli.dispatch import COMMANDS
 
 ROOT = Path(__file__).parent.parent
-MODULES = [path for package in ("engine", "recordings", "tui") for path in (ROOT / package).rglob("*.py")]
+MODULES = [
+    path for package in ("engine", "recordings", "tui") for path in (ROOT / package).rglob("*.py")
+]
 HEAVY = {"textual", "numpy", "rich", "plotext", "mcap", "numba", "distributed"}
 
 LOADED = f"""
@@ -29,7 +31,9 @@ print(code, *sorted({HEAVY!r} & set(sys.modules)), file=sys.__stdout__)
 
 def loaded_by(*arguments: str) -> str:
     """The exit code and the heavy packages that this command line imports."""
-    done = subprocess.run([sys.executable, "-c", LOADED, *arguments], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", LOADED, *arguments], capture_output=True, text=True, check=True
+    )
     return done.stdout.strip()
 
 
@@ -44,13 +48,19 @@ def test_the_help_of_a_command_loads_nothing_heavy(name):
 
 
 def test_every_command_in_the_table_has_a_module_and_every_module_is_in_the_table():
-    modules = [module.name for module in pkgutil.walk_packages(tui.commands.__path__, "tui.commands.")]
-    assert {name.split(".")[-1] for name in modules if hasattr(import_module(name), "add_options")} == set(COMMANDS)
+    modules = [
+        module.name for module in pkgutil.walk_packages(tui.commands.__path__, "tui.commands.")
+    ]
+    assert {
+        name.split(".")[-1] for name in modules if hasattr(import_module(name), "add_options")
+    } == set(COMMANDS)
 
 
 def test_the_import_contracts_hold():
     lint = Path(sys.executable).with_name("lint-imports")
-    done = subprocess.run([lint, "--no-cache"], cwd=ROOT, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [lint, "--no-cache"], cwd=ROOT, capture_output=True, text=True, check=False
+    )
     assert done.returncode == 0, done.stdout
     assert "0 broken" in done.stdout
 
@@ -58,7 +68,8 @@ def test_the_import_contracts_hold():
 OUTSIDE = [
     path
     for path in MODULES
-    if path.relative_to(ROOT).parts[:2] not in {("engine", "models"), ("engine", "methods"), ("engine", "scenes")}
+    if path.relative_to(ROOT).parts[:2]
+    not in {("engine", "models"), ("engine", "methods"), ("engine", "scenes")}
 ]
 MODEL_CLASSES = {"Model", *(model.__name__ for model in MODELS.values())}
 MODEL_MODULES = {model.__module__ for model in MODELS.values()}
@@ -71,7 +82,9 @@ def asks_which_model(node):
             elements = [each for side in (left, *others) for each in getattr(side, "elts", [side])]
             return any(isinstance(each, ast.Constant) and each.value in MODELS for each in elements)
         case ast.Call(ast.Name("isinstance"), [_, kinds]):
-            return any(getattr(each, "id", "") in MODEL_CLASSES for each in getattr(kinds, "elts", [kinds]))
+            return any(
+                getattr(each, "id", "") in MODEL_CLASSES for each in getattr(kinds, "elts", [kinds])
+            )
         case ast.ImportFrom(module):
             return module in MODEL_MODULES
     return False
@@ -79,7 +92,11 @@ def asks_which_model(node):
 
 @pytest.mark.parametrize("path", OUTSIDE, ids=lambda path: str(path.relative_to(ROOT)))
 def test_nobody_outside_asks_which_model_it_is(path):
-    found = [node.lineno for node in ast.walk(ast.parse(path.read_text("utf-8"))) if asks_which_model(node)]
+    found = [
+        node.lineno
+        for node in ast.walk(ast.parse(path.read_text("utf-8")))
+        if asks_which_model(node)
+    ]
     assert not found
 
 

@@ -53,7 +53,9 @@ def folder(tmp_path, monkeypatch):
     rows = [f"{n},{10 + (-1) ** n}\n" for n in range(200)]
     (tmp_path / "energies.csv").write_text("t,E\n" + "".join(rows), encoding="utf-8")
     (tmp_path / "few.csv").write_text("t,E\n0,1\n1,2\n2,nan\n", encoding="utf-8")
-    recorded(tmp_path / "other.mcap", 1.0, Live.mark, lambda live: live.set_stepping(Stepping(0.1)), 0.5)
+    recorded(
+        tmp_path / "other.mcap", 1.0, Live.mark, lambda live: live.set_stepping(Stepping(0.1)), 0.5
+    )
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path / "library"))
     (tmp_path / "library").mkdir()
@@ -67,7 +69,11 @@ def folder(tmp_path, monkeypatch):
 def kinds(value: Any, path: str = "") -> dict[str, set[str]]:
     """Every path in a JSON value with the kinds of value that stand there."""
     found: dict[str, set[str]] = {path: {type(value).__name__}} if path else {}
-    inner = [(f"{path}.{key}".lstrip("."), each) for key, each in value.items()] if isinstance(value, dict) else []
+    inner = (
+        [(f"{path}.{key}".lstrip("."), each) for key, each in value.items()]
+        if isinstance(value, dict)
+        else []
+    )
     inner += [(f"{path}[]", each) for each in value] if isinstance(value, list) else []
     for where, each in inner:
         for name, kind in kinds(each, where).items():
@@ -77,10 +83,15 @@ def kinds(value: Any, path: str = "") -> dict[str, set[str]]:
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_every_json_field_is_there_with_its_kind(name, request):
-    seen = {path: " or ".join(sorted(kind)) for path, kind in sorted(kinds(pendu(*COMMANDS[name]).json).items())}
+    seen = {
+        path: " or ".join(sorted(kind))
+        for path, kind in sorted(kinds(pendu(*COMMANDS[name]).json).items())
+    }
     stored = json.loads(FIELDS.read_text(encoding="utf-8")) if FIELDS.exists() else {}
     if request.config.getoption("--snapshot-update"):
-        FIELDS.write_text(json.dumps(stored | {name: seen}, indent=1, sort_keys=True) + "\n", encoding="utf-8")
+        FIELDS.write_text(
+            json.dumps(stored | {name: seen}, indent=1, sort_keys=True) + "\n", encoding="utf-8"
+        )
     else:
         assert seen == stored[name]
 
@@ -101,11 +112,47 @@ def test_the_schema_is_that_of_the_command(name):
         (1, ["run", "--time", "2", "--fail-if", "rk4.max_energy_error >= 0"]),
         (1, ["verify", "cut.mcap"]),
         (1, ["run", "--time", "2", "--fail-if", "rk4.verdict == grows or rk4.verdict != grows"]),
-        (0, ["judge", "energies.csv", "--time", "t", "--energy", "E", "--fail-if", "verdict != bounded"]),
-        (1, ["judge", "energies.csv", "--time", "t", "--energy", "E", "--fail-if", "max_energy_error > 0.1"]),
+        (
+            0,
+            [
+                "judge",
+                "energies.csv",
+                "--time",
+                "t",
+                "--energy",
+                "E",
+                "--fail-if",
+                "verdict != bounded",
+            ],
+        ),
+        (
+            1,
+            [
+                "judge",
+                "energies.csv",
+                "--time",
+                "t",
+                "--energy",
+                "E",
+                "--fail-if",
+                "max_energy_error > 0.1",
+            ],
+        ),
         (2, ["judge", "energies.csv", "--time", "t", "--energy", "H"]),
         (3, ["judge", "absent.csv", "--time", "t", "--energy", "E"]),
-        (5, ["judge", "energies.csv", "--time", "t", "--energy", "E", "--junit", "absent/judge.xml"]),
+        (
+            5,
+            [
+                "judge",
+                "energies.csv",
+                "--time",
+                "t",
+                "--energy",
+                "E",
+                "--junit",
+                "absent/judge.xml",
+            ],
+        ),
         (2, ["run", "--time", "0"]),
         (2, ["run", "--time", "2", "--fail-if", "rk5.max_energy_error > 0"]),
         (0, ["run", "--time", "2", "--methods", "rk4", "--method", "mine.py:mine"]),

@@ -14,7 +14,9 @@ DIST_INFO = f"pendu_tui-{PROJECT['version']}.dist-info"
 
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory) -> ZipFile:
-    (path,) = WheelBuilder(str(ROOT)).build(directory=str(tmp_path_factory.mktemp("wheel")), versions=["standard"])
+    (path,) = WheelBuilder(str(ROOT)).build(
+        directory=str(tmp_path_factory.mktemp("wheel")), versions=["standard"]
+    )
     return ZipFile(path)
 
 

@@ -36,7 +36,9 @@ def block_with(language: str, word: str) -> str:
 
 
 def test_the_test_command_is_the_one_of_ci():
-    (extraction,) = re.findall(r"grep .* '(.*)' README.md", (ROOT / ".ci" / "run").read_text(encoding="utf-8"))
+    (extraction,) = re.findall(
+        r"grep .* '(.*)' README.md", (ROOT / ".ci" / "run").read_text(encoding="utf-8")
+    )
     assert re.search(extraction, README)[0] == (
         "python3 -m venv .venv && .venv/bin/pip install '.[test]' && .venv/bin/pytest"
     )
@@ -74,7 +76,12 @@ def shell(tmp_path):
 
     def run(line: str) -> str:
         done = subprocess.run(
-            ["bash", "-c", line], cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
+            ["bash", "-c", line],
+            cwd=tmp_path,
+            env=environment,
+            capture_output=True,
+            text=True,
+            check=False,
         )
         told = [
             text
@@ -90,7 +97,9 @@ def shell(tmp_path):
 def test_the_commands_of_the_blocks_do_what_they_say(shell, tmp_path):
     for line in "".join(blocks("sh")).splitlines():
         shell(line)
-    assert {"crossover.mcap", "crossover.csv", "saved.mcap"} <= {path.name for path in tmp_path.iterdir()}
+    assert {"crossover.mcap", "crossover.csv", "saved.mcap"} <= {
+        path.name for path in tmp_path.iterdir()
+    }
 
 
 @pytest.mark.parametrize("command", re.findall(r"^\$ (.*)$", README, re.MULTILINE))
@@ -111,9 +120,21 @@ def test_the_five_lines_for_pytest_are_a_test(tmp_path):
     (tmp_path / "whole.mcap").write_bytes(data)
     data[len(data) // 2] ^= 1
     (tmp_path / "damaged.mcap").write_bytes(data)
-    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "--rootdir", ".", "test_numbers.py"]
+    command = [
+        sys.executable,
+        "-m",
+        "pytest",
+        "-q",
+        "-p",
+        "no:cacheprovider",
+        "--rootdir",
+        ".",
+        "test_numbers.py",
+    ]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
+    )
     assert "1 failed, 1 passed" in done.stdout, done.stdout
 
 
@@ -126,7 +147,9 @@ def test_the_recipes_name_columns_that_the_csv_has():
 def test_the_recipe_reads_the_csv(package, tmp_path, monkeypatch):
     if find_spec(package) is None:
         pytest.skip(f"{package} is not installed")
-    (recipe,) = (line for line in block_with("python", "read_csv").splitlines() if line.startswith(package))
+    (recipe,) = (
+        line for line in block_with("python", "read_csv").splitlines() if line.startswith(package)
+    )
     assert pendu("export", "drift", "-o", tmp_path / "crossover.csv").code == 0
     monkeypatch.chdir(tmp_path)
     answer = eval(recipe, {package: __import__(package)})
@@ -171,32 +194,72 @@ def test_a_method_of_ones_own_is_measured_and_put_on_stage_as_described(shell, t
     assert float(words[2]) == pytest.approx(2, abs=0.01)
     assert re.search(r"Position verlet +bounded", on_stage)
     beside = shell(f"{commands[1]} --methods rk4")
-    assert re.findall(r"^(\w+(?: \w+)?)  +(?:bounded|loses|grows)", beside, re.MULTILINE) == ["RK4", "Position verlet"]
+    assert re.findall(r"^(\w+(?: \w+)?)  +(?:bounded|loses|grows)", beside, re.MULTILINE) == [
+        "RK4",
+        "Position verlet",
+    ]
 
 
 def test_a_method_is_added_to_the_project_as_described(tmp_path):
     for package in ("engine", "recordings", "tui"):
-        shutil.copytree(ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("__pycache__"))
+        shutil.copytree(
+            ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("__pycache__")
+        )
     family = tmp_path / "engine" / "methods" / "verlet.py"
     function, entry = block_with("python", "def position_verlet"), block_with("python", "Method(")
     source, of_family, members = family.read_text(encoding="utf-8").partition("FAMILY = (")
-    family.write_text(f"{source}{function}\n\n{entry}\n{of_family}POSITION_VERLET, {members}", encoding="utf-8")
-    program = [sys.executable, "-P", "-c", "import sys; from tui.cli.dispatch import main; sys.exit(main())"]
+    family.write_text(
+        f"{source}{function}\n\n{entry}\n{of_family}POSITION_VERLET, {members}", encoding="utf-8"
+    )
+    program = [
+        sys.executable,
+        "-P",
+        "-c",
+        "import sys; from tui.cli.dispatch import main; sys.exit(main())",
+    ]
     environment = {**os.environ, "PYTHONPATH": str(tmp_path)}
     for arguments, word in [
         (["methods"], "position_verlet"),
-        (["run", "--time", "60", "--methods", "position,rk4", "--record", "two.mcap"], "Position Verlet  bounded"),
+        (
+            ["run", "--time", "60", "--methods", "position,rk4", "--record", "two.mcap"],
+            "Position Verlet  bounded",
+        ),
         (["verify", "two.mcap", "golden"], "11 recordings, 11 identical"),
     ]:
         done = subprocess.run(
-            [*program, *arguments], cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
+            [*program, *arguments],
+            cwd=tmp_path,
+            env=environment,
+            capture_output=True,
+            text=True,
+            check=False,
         )
         assert done.returncode == 0, done.stderr
         assert word in done.stdout
-    claims = [str(ROOT / "tests" / "engine" / "methods" / "test_claims.py"), "-k", "position_verlet"]
-    pytest_alone = [sys.executable, "-P", "-m", "pytest", "-c", os.devnull, "--rootdir", ".", "-p", "no:cacheprovider"]
+    claims = [
+        str(ROOT / "tests" / "engine" / "methods" / "test_claims.py"),
+        "-k",
+        "position_verlet",
+    ]
+    pytest_alone = [
+        sys.executable,
+        "-P",
+        "-m",
+        "pytest",
+        "-c",
+        os.devnull,
+        "--rootdir",
+        ".",
+        "-p",
+        "no:cacheprovider",
+    ]
     done = subprocess.run(
-        [*pytest_alone, *claims], cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
+        [*pytest_alone, *claims],
+        cwd=tmp_path,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert re.search(r"= [7-9] passed, \d+ deselected", done.stdout), done.stdout
 
@@ -210,7 +273,9 @@ def methods_after(seconds: float, scene: str, *options: str) -> dict[str, dict]:
 def test_rk4_falls_behind_verlet_after_half_a_minute_in_crossover():
     for seconds, rk4_is_ahead in [(5, True), (20, True), (40, False), (100, False)]:
         rows = methods_after(seconds, "crossover")
-        assert (rows["rk4"]["max_energy_error"] < rows["velocity_verlet"]["max_energy_error"]) == rk4_is_ahead
+        assert (
+            rows["rk4"]["max_energy_error"] < rows["velocity_verlet"]["max_energy_error"]
+        ) == rk4_is_ahead
 
 
 def test_next_to_the_separatrix_rk4_has_the_best_energy_and_falls_at_the_wrong_time():

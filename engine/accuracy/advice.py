@@ -24,7 +24,9 @@ class Advice:
     time: float  # s
     attempts: Sequence[Attempt]
     point: Point | None  # None: nothing reaches the target
-    rk4: Point | None = None  # RK4's cheapest run within the same error; None: not tried, or there is none
+    rk4: Point | None = (
+        None  # RK4's cheapest run within the same error; None: not tried, or there is none
+    )
 
     @property
     def saves(self) -> float | None:
@@ -34,7 +36,9 @@ class Advice:
         return self.rk4.force_evaluations / self.point.force_evaluations
 
 
-def least_error(study: Study, kind: ErrorKind, budget: int, show: Callable[[float], None]) -> Advice:
+def least_error(
+    study: Study, kind: ErrorKind, budget: int, show: Callable[[float], None]
+) -> Advice:
     """The most accurate run within a budget of force evaluations; `show` is given the share of methods tried."""
     attempts: list[Attempt] = []
     for attempt in spend(study, kind, budget):

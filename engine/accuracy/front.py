@@ -22,7 +22,9 @@ class Cheapest:
     target: float  # of the error
     method: Method | Reference
     cost: float  # force evaluations or seconds
-    saves: float | None  # RK4's force evaluations over this method's; None: one of the two was not measured there
+    saves: (
+        float | None
+    )  # RK4's force evaluations over this method's; None: one of the two was not measured there
 
 
 def cost_of(point: AnyPoint, cost: Cost) -> float:
@@ -45,10 +47,15 @@ def front(points: Iterable[AnyPoint], kind: ErrorKind, cost: Cost) -> list[Cheap
     for decade in DECADES:
         target = 10.0**decade
         if any(
-            _usable(line[0], kind) and line[0].error(kind) <= target for line in map(_coarsest_first, lines.values())
+            _usable(line[0], kind) and line[0].error(kind) <= target
+            for line in map(_coarsest_first, lines.values())
         ):
             continue
-        costs = {method: read for method, line in lines.items() if (read := cost_at(line, kind, cost, target))}
+        costs = {
+            method: read
+            for method, line in lines.items()
+            if (read := cost_at(line, kind, cost, target))
+        }
         if costs:
             best = min(costs, key=lambda method: costs[method])
             ours, rk4 = (
@@ -62,7 +69,10 @@ def front(points: Iterable[AnyPoint], kind: ErrorKind, cost: Cost) -> list[Cheap
 def cost_at(line: Sequence[AnyPoint], kind: ErrorKind, cost: Cost, target: float) -> float | None:
     """The cost at which a method's error falls to `target`, interpolated; None if no point reaches it."""
     line = _coarsest_first(line)
-    at = next((n for n, point in enumerate(line) if _usable(point, kind) and point.error(kind) <= target), None)
+    at = next(
+        (n for n, point in enumerate(line) if _usable(point, kind) and point.error(kind) <= target),
+        None,
+    )
     if at is None or not (dear := cost_of(line[at], cost)):
         return None
     if at == 0 or not (cheap := cost_of(line[at - 1], cost)) or not line[at].error(kind):
@@ -76,8 +86,14 @@ def cost_at(line: Sequence[AnyPoint], kind: ErrorKind, cost: Cost, target: float
 
 def ranges(found: Sequence[Cheapest]) -> list[tuple[Method | Reference, Sequence[Cheapest]]]:
     """The front by method: each with its targets in a row, the largest error first."""
-    starts = [0, *(n for n, (one, other) in enumerate(pairwise(found), 1) if one.method != other.method), len(found)]
-    return [(found[start].method, found[start:end]) for start, end in pairwise(starts) if end > start]
+    starts = [
+        0,
+        *(n for n, (one, other) in enumerate(pairwise(found), 1) if one.method != other.method),
+        len(found),
+    ]
+    return [
+        (found[start].method, found[start:end]) for start, end in pairwise(starts) if end > start
+    ]
 
 
 def _coarsest_first(line: Sequence[AnyPoint]) -> list[AnyPoint]:

@@ -13,10 +13,16 @@ from engine.methods import Method
 from engine.phase_space.section import orbit
 from engine.scenes import Scene
 
-PERIODS, FEWEST = 100, 10  # of the motion that are followed, unless the error becomes too large before; for a fit
+PERIODS, FEWEST = (
+    100,
+    10,
+)  # of the motion that are followed, unless the error becomes too large before; for a fit
 MOST_STEPS = 100_000
 LARGEST = 0.4  # rad; larger errors no longer grow freely, for they begin to wrap
-STRAIGHT, WHOLE = 0.05, 0.15  # largest departure of ln error from the line, and of its slope from a whole number
+STRAIGHT, WHOLE = (
+    0.05,
+    0.15,
+)  # largest departure of ln error from the line, and of its slope from a whole number
 _LOOKS = 30  # in each period
 
 
@@ -32,7 +38,9 @@ class Growth:
     @property
     def name(self) -> str:
         """The method and its power of t, if there is one, for people."""
-        return self.method.label if self.power is None else f"{self.method.label} t^{self.power:.2f}"
+        return (
+            self.method.label if self.power is None else f"{self.method.label} t^{self.power:.2f}"
+        )
 
 
 def duration(scene: Scene) -> float | None:
@@ -52,7 +60,11 @@ def growth(scene: Scene, method: Method) -> Growth:
     theta, _ = orbit(method, scene.equations, scene.h, (scene.theta, scene.omega), steps)
     errors: list[float] = []
     for number in range(1, PERIODS + 1):
-        looks = np.linspace((number - 1) * width, min(number * width, steps), _LOOKS).astype(int).tolist()
+        looks = (
+            np.linspace((number - 1) * width, min(number * width, steps), _LOOKS)
+            .astype(int)
+            .tolist()
+        )
         if looks[-1] >= len(theta):  # the numbers have overflowed
             break
         errors.append(max(abs(float(theta[k]) - exact.at(k * scene.h).theta) for k in looks))
@@ -65,7 +77,9 @@ def growth(scene: Scene, method: Method) -> Growth:
 
 def growths(scene: Scene, own: Sequence[float]) -> Iterator[Growth]:
     """The growth of each method of the cast at its own h [s]; for another process, which has only the arguments."""
-    return (growth(scene.altered(h=abs(h)), method) for method, h in zip(scene.cast, own, strict=True))
+    return (
+        growth(scene.altered(h=abs(h)), method) for method, h in zip(scene.cast, own, strict=True)
+    )
 
 
 def _power(times: Sequence[float], errors: Sequence[float]) -> float | None:

@@ -60,7 +60,9 @@ def spend(study: Study, kind: ErrorKind, budget: int) -> Iterator[Attempt]:
             yield Attempt(method, None, _no_h(budget))
             continue
         point = study.run(method, steps, CONFIRMING_COMPARISONS)
-        while point.flaw(kind) == "rounding" and (steps := steps // 2):  # fewer steps round less often
+        while point.flaw(kind) == "rounding" and (
+            steps := steps // 2
+        ):  # fewer steps round less often
             coarser = study.run(method, steps, CONFIRMING_COMPARISONS)
             if coarser.error(kind) > point.error(kind):
                 break
@@ -84,7 +86,9 @@ def most_accurate(attempts: Sequence[Attempt], kind: ErrorKind) -> Point | None:
 def _affordable(study: Study, method: Method, budget: int) -> int:
     """The most steps for this many evaluations; 0 where that leaves no usable h."""
     smallest, largest = REFINED * Z_LIMITS[0] / study.scene.w0, Z_LIMITS[1] / study.scene.w0
-    steps = min((budget - method.first_same_as_last) // method.force_evaluations, int(study.time / smallest))
+    steps = min(
+        (budget - method.first_same_as_last) // method.force_evaluations, int(study.time / smallest)
+    )
     return steps if steps * largest >= study.time else 0
 
 

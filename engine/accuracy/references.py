@@ -102,7 +102,9 @@ def references(scene: Scene, time: float, clock: Clock, fast: bool) -> Reference
     return References(seconds, tuple(taylor_points(scene, time, clock)))
 
 
-def closed_form_seconds(motion: Any, time: float, clock: Clock, compile: Any = lambda function: function) -> float:
+def closed_form_seconds(
+    motion: Any, time: float, clock: Clock, compile: Any = lambda function: function
+) -> float:
     """Return the seconds of an exact motion at COMPARISONS + 1 times."""
     times = np.linspace(0, time, COMPARISONS + 1)
     states = compile(_states)
@@ -171,7 +173,9 @@ def with_all_methods(scene: Scene) -> Scene:
     return scene.altered(cast=(*scene.cast, *others))
 
 
-def measured_front(scene: Scene, time: float, rungs: Sequence[int], clock: Clock) -> Iterator[Point | References]:
+def measured_front(
+    scene: Scene, time: float, rungs: Sequence[int], clock: Clock
+) -> Iterator[Point | References]:
     """Yield timed points of every method of the cast, then the reference lines."""
     yield from measured(scene, time, rungs, clock)
     yield references(scene, time, clock, compilable(scene.cast))

@@ -74,10 +74,14 @@ class Point:
         return self.method.evaluations(self.steps)
 
     def error(self, kind: ErrorKind) -> float:
-        return {"theta": self.theta_error, "energy": self.energy_error, "final": self.final_error}[kind]
+        return {"theta": self.theta_error, "energy": self.energy_error, "final": self.final_error}[
+            kind
+        ]
 
     def flaw(self, kind: ErrorKind) -> Flaw | None:
-        return {"theta": self.flaws.theta, "energy": self.flaws.energy, "final": self.flaws.final}[kind]
+        return {"theta": self.flaws.theta, "energy": self.flaws.energy, "final": self.flaws.final}[
+            kind
+        ]
 
 
 class Order(NamedTuple):
@@ -109,13 +113,20 @@ class Study:
         """
         errors, diverged = self._errors(method, steps, comparisons)
         if diverged:
-            return Point(method, self.time, steps, *errors, Flaws("diverged", "diverged", "diverged"))
-        floors = [floor * math.sqrt(steps) for floor in (self._theta_floor, self._energy_floor, self._theta_floor)]
+            return Point(
+                method, self.time, steps, *errors, Flaws("diverged", "diverged", "diverged")
+            )
+        floors = [
+            floor * math.sqrt(steps)
+            for floor in (self._theta_floor, self._energy_floor, self._theta_floor)
+        ]
         sizes = self._width, 1.0, self._width
         pairs = zip(errors, sizes, strict=True)
         flaws: list[Flaw | None] = ["lost" if error >= size else None for error, size in pairs]
         if any(error <= floor for error, floor in zip(errors, floors, strict=True)):
-            half, quarter = (self._errors(method, max(1, steps // part), comparisons)[0] for part in (2, 4))
+            half, quarter = (
+                self._errors(method, max(1, steps // part), comparisons)[0] for part in (2, 4)
+            )
             least = 2 ** (method.order - 1)
             for kind, (error, floor) in enumerate(zip(errors, floors, strict=True)):
                 refined = error * least <= half[kind] and half[kind] * least <= quarter[kind]
@@ -123,9 +134,13 @@ class Study:
                     flaws[kind] = "rounding"
         return Point(method, self.time, steps, *errors, Flaws(*flaws))
 
-    def _errors(self, method: Method, steps: int, comparisons: int) -> tuple[tuple[float, float, float], bool]:
+    def _errors(
+        self, method: Method, steps: int, comparisons: int
+    ) -> tuple[tuple[float, float, float], bool]:
         """The largest errors in theta [rad] and energy, the last in theta; and whether the numbers overflowed."""
-        lockstep = Lockstep(self.scene.altered(h=self.time / steps, cast=(method,)), loops=self.loops)
+        lockstep = Lockstep(
+            self.scene.altered(h=self.time / steps, cast=(method,)), loops=self.loops
+        )
         stride = max(1, steps // comparisons)
         theta_error = final_error = 0.0
         while lockstep.step < steps:
@@ -173,7 +188,9 @@ def compilable(cast: Cast) -> bool:
     return available() and not any(isinstance(method, OwnMethod) for method in cast)
 
 
-def measured(scene: Scene, time: float, rungs: Sequence[int], clock: Clock | None = None) -> Iterator[Point]:
+def measured(
+    scene: Scene, time: float, rungs: Sequence[int], clock: Clock | None = None
+) -> Iterator[Point]:
     """A point for every number of steps and every method, with its seconds where there is a clock.
 
     For another process, which has only the arguments.
@@ -194,7 +211,10 @@ def orders(scene: Scene, time: float, loops: LoopsOf = PlainLoops) -> list[Order
     """
     study = Study(scene, min(time, scene.exact().period or math.tau / scene.w0), loops)
     usable = [steps for steps in ORDER_STEPS if study.time / steps * scene.w0 >= Z_LIMITS[0]]
-    runs = {method: [study.run(method, steps, ORDER_COMPARISONS) for steps in usable] for method in scene.cast}
+    runs = {
+        method: [study.run(method, steps, ORDER_COMPARISONS) for steps in usable]
+        for method in scene.cast
+    }
     return [
         Order(method, _slope([point for point in points if not study.may_be_rounding(point)]))
         for method, points in runs.items()
@@ -206,5 +226,7 @@ def _slope(points: Sequence[Point]) -> float | None:
     fitted = [p for p in points if p.flaws.theta is None and p.theta_error < FITTED_BELOW][-FITTED:]
     if len(fitted) < 3:
         return None
-    line = linear_regression([math.log(p.h) for p in fitted], [math.log(p.theta_error) for p in fitted])
+    line = linear_regression(
+        [math.log(p.h) for p in fitted], [math.log(p.theta_error) for p in fitted]
+    )
     return line.slope

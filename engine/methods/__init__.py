@@ -14,7 +14,17 @@ text of a file; `examine` says whether it is one, and loads it.
 
 import copyreg
 
-from engine.methods import adaptive, damped, euler, learned, precision, runge_kutta, splitting, stiff, verlet
+from engine.methods import (
+    adaptive,
+    damped,
+    euler,
+    learned,
+    precision,
+    runge_kutta,
+    splitting,
+    stiff,
+    verlet,
+)
 from engine.methods.euler import EXPLICIT_EULER, SYMPLECTIC_EULER
 from engine.methods.method import Method as Method
 from engine.methods.runge_kutta import RK4
@@ -26,7 +36,14 @@ Cast = tuple[Method, ...]
 GENERAL: Cast = (*euler.FAMILY, *verlet.FAMILY, *runge_kutta.FAMILY, *splitting.FAMILY)
 """The methods for any force and any numbers.  The others belong to a scene that needs them."""
 
-METHODS: Cast = (*GENERAL, *damped.FAMILY, *adaptive.FAMILY, *precision.FAMILY, *stiff.FAMILY, *learned.FAMILY)
+METHODS: Cast = (
+    *GENERAL,
+    *damped.FAMILY,
+    *adaptive.FAMILY,
+    *precision.FAMILY,
+    *stiff.FAMILY,
+    *learned.FAMILY,
+)
 
 USUAL_CAST: Cast = (EXPLICIT_EULER, SYMPLECTIC_EULER, VELOCITY_VERLET, RK4)
 

@@ -13,18 +13,25 @@ from engine.models.model import Phase
 
 H = 0.05  # s
 STEPS = 6
-SAME = 1e-9  # relative; rounding makes far smaller differences, a wrong kind of number far larger ones
+SAME = (
+    1e-9  # relative; rounding makes far smaller differences, a wrong kind of number far larger ones
+)
 
 
 def load(source: str, key: str, letter: str, file: str) -> OwnMethod:
     """A user's method, examined and measured.  Raises OwnMethodError, whose text is a sentence for the user."""
     if len(source) > LONGEST_SOURCE:
-        raise OwnMethodError(f"{file} has {len(source):,} characters; use a file of at most {LONGEST_SOURCE:,}.")
+        raise OwnMethodError(
+            f"{file} has {len(source):,} characters; use a file of at most {LONGEST_SOURCE:,}."
+        )
     phases = own_phases(source, key, file)
     try:
         _examine(phases, f"{file}: {key}")
         found = measured(phases)
-    except (ValueError, ArithmeticError) as error:  # a run may overflow; these few small steps must not
+    except (
+        ValueError,
+        ArithmeticError,
+    ) as error:  # a run may overflow; these few small steps must not
         raise OwnMethodError(f"{file}: {key} overflows on an ordinary swing ({error}).") from None
     return own_method(source, key, letter, file, found)
 
@@ -35,7 +42,9 @@ def _examine(phases: Phases, who: str) -> None:
     if not all(math.isfinite(value) for phase in path for value in phase):
         raise OwnMethodError(f"{who} does not stay finite for {STEPS} steps of an ordinary swing.")
     if _path(phases, START) != path:
-        raise OwnMethodError(f"{who} gives other numbers when it is run again; a method must give the same bits.")
+        raise OwnMethodError(
+            f"{who} gives other numbers when it is run again; a method must give the same bits."
+        )
     middle = after(phases, force, START, H, STEPS // 2)
     if after(phases, force, middle, H, STEPS - STEPS // 2) != path[-1]:
         raise OwnMethodError(
@@ -44,11 +53,16 @@ def _examine(phases: Phases, who: str) -> None:
         )
     if not evaluations(phases)[0] > 0:
         raise OwnMethodError(f"{who} never evaluates the force.")
-    for kind, examined in (("NumPy arrays", _examine_arrays), ("complex numbers", _examine_complexes)):
+    for kind, examined in (
+        ("NumPy arrays", _examine_arrays),
+        ("complex numbers", _examine_complexes),
+    ):
         try:
             same = examined(phases, path, who)
         except OwnMethodError as error:
-            raise OwnMethodError(f"{str(error).rstrip('.')}; this was with {kind}, which stability needs.") from None
+            raise OwnMethodError(
+                f"{str(error).rstrip('.')}; this was with {kind}, which stability needs."
+            ) from None
         if not same:
             raise OwnMethodError(
                 f"{who} gives other numbers for {kind} than for floats; use only +, -, * and / on theta and omega."
@@ -65,12 +79,16 @@ def _examine_arrays(phases: Phases, path: list[Phase], who: str) -> bool:
     given = [each.copy() for each in (*start, h)]
     found: list[Any] = []
     copies: list[Any] = []
-    for phase in islice(phases(PENDULUM.force(np.sin), (start[0], start[1]), cast(float, h)), STEPS):
+    for phase in islice(
+        phases(PENDULUM.force(np.sin), (start[0], start[1]), cast(float, h)), STEPS
+    ):
         found += phase
         copies += [each.copy() for each in phase]
     pairs = zip((*start, h, *found), (*given, *copies), strict=True)
     if not all(np.array_equal(now, then) for now, then in pairs):
-        raise OwnMethodError(f"{who} changes an array in place; write theta = theta + x instead of theta += x.")
+        raise OwnMethodError(
+            f"{who} changes an array in place; write theta = theta + x instead of theta += x."
+        )
     return np.allclose([each[0] for each in found], np.ravel(path), rtol=SAME, atol=SAME)
 
 

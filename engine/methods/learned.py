@@ -19,7 +19,10 @@ from engine.models.model import Model, Phase, Rates
 @cache
 def _rows(coefficients: str) -> list[tuple[float, ...]]:
     """Return for each feature its three numbers and its coefficients."""
-    features, sums = ([tuple(map(float, row.split(","))) for row in text.split()] for text in (FEATURES, coefficients))
+    features, sums = (
+        [tuple(map(float, row.split(","))) for row in text.split()]
+        for text in (FEATURES, coefficients)
+    )
     return [(*feature, *each) for feature, each in zip(features, sums, strict=True)]
 
 

@@ -17,7 +17,10 @@ from engine.models.pendulum import Pendulum
 PENDULUM = Pendulum(9.81)
 START = (1.0, 0.3)
 LARGE_H = 0.2  # s: at small steps a high order hides a change of area, or a miss of the start
-WIDEST_Z, RUNGS = 16, 2048  # z is looked at up to here, in steps of 1/2048: two thirds of the narrowest gap, BM6's
+WIDEST_Z, RUNGS = (
+    16,
+    2048,
+)  # z is looked at up to here, in steps of 1/2048: two thirds of the narrowest gap, BM6's
 NO_LIMIT_BELOW = 0.1  # z up to which some unstable methods grow by less than rounding
 ROUNDING = 1e-12
 LINEAR_ROUNDING = 3e-13  # of a linear step; a limit moves by up to a thousand times as much
@@ -40,7 +43,14 @@ class Measured(NamedTuple):
 def measured(phases: Phases) -> Measured:
     """Measure them all.  Raises what the method raises."""
     each, more = evaluations(phases)
-    return Measured(order(phases), each, more, is_symplectic(phases), is_reversible(phases), linear_limit(phases))
+    return Measured(
+        order(phases),
+        each,
+        more,
+        is_symplectic(phases),
+        is_reversible(phases),
+        linear_limit(phases),
+    )
 
 
 def after(phases: Phases, force: Force, phase: Phase, h: Any, steps: int) -> Phase:
@@ -109,7 +119,10 @@ def is_symplectic(phases: Phases) -> bool:
 
 def is_reversible(phases: Phases) -> bool:
     """Whether a swing that turns round after 10 s, and takes as long again, meets its start."""
-    return all(out_and_back(phases, start, LARGE_H, 50) < RETURNED for start in ((2.0, 0.3), (0.5, 2.0), (0.3, 8.0)))
+    return all(
+        out_and_back(phases, start, LARGE_H, 50) < RETURNED
+        for start in ((2.0, 0.3), (0.5, 2.0), (0.3, 8.0))
+    )
 
 
 def out_and_back(phases: Phases, start: Phase, h: float, steps: int) -> float:

@@ -34,12 +34,12 @@ class Method:
     formula: str
     order: int  # global order on the nonlinear pendulum, over at most one period
     force_evaluations: int  # a step
-    first_same_as_last: bool = (
-        False  # the last force of a step is the next one's first: a run needs one more than its steps
-    )
+    first_same_as_last: bool = False  # the last force of a step is the next one's first: a run needs one more than its steps
     symplectic: bool = False  # the step's Jacobian has determinant 1
     reversible: bool = False  # the step and omega -> -omega undo each other
-    linear_limit: float | None = None  # largest stable z = h·w0 on the linear oscillator; 0: none; None: no one number
+    linear_limit: float | None = (
+        None  # largest stable z = h·w0 on the linear oscillator; 0: none; None: no one number
+    )
     other_names: tuple[str, ...] = ()
     reference: str
     used: str | None  # a program that uses it, with its page in brackets; None if we know of none
@@ -51,7 +51,9 @@ class Method:
     any_numbers: bool = True  # also arrays, complex and mpmath numbers
     longest_substep: float = 1.0  # of a symplectic splitting, in steps: chaos begins there first
     epsilon: float = 2.0**-53  # the relative error of a rounding
-    varies: bool = False  # its evaluations depend on the phase; `force_evaluations` is then an average
+    varies: bool = (
+        False  # its evaluations depend on the phase; `force_evaluations` is then an average
+    )
 
     @property
     def general(self) -> bool:

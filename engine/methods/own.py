@@ -65,7 +65,9 @@ def own_method(source: str, key: str, letter: str, file: str, measured: Measured
 
 
 # To another process it goes as its text: a function that was executed has no module to be found in.
-copyreg.pickle(OwnMethod, lambda own: (own_method, (own.source, own.key, own.letter, own.file, own.measured)))
+copyreg.pickle(
+    OwnMethod, lambda own: (own_method, (own.source, own.key, own.letter, own.file, own.measured))
+)
 
 
 @cache
@@ -80,7 +82,11 @@ def own_phases(source: str, name: str, file: str) -> Phases:
         raise OwnMethodError(_sentence(error, source, file, file)) from None
     function = namespace.get(name)
     if not callable(function) or isinstance(function, type):
-        functions = [key for key, value in namespace.items() if callable(value) and key != "print" and key[:1] != "_"]
+        functions = [
+            key
+            for key, value in namespace.items()
+            if callable(value) and key != "print" and key[:1] != "_"
+        ]
         there = f"; it has {', '.join(functions[:6])}" if functions else ""
         raise OwnMethodError(f"{file} has no function {name!r}{there}.")
     return _guarded(function, name, source, file)
@@ -109,7 +115,12 @@ def _guarded(function: Callable[..., Any], name: str, source: str, file: str) ->
             if not hasattr(following, "__next__"):
                 raise OwnMethodError(f"{where}: {name} returns {_short(following)}; {_FORM}.")
             for found in following:
-                if plain and type(found) is tuple and len(found) == 2 and type(found[0]) is type(found[1]) is float:
+                if (
+                    plain
+                    and type(found) is tuple
+                    and len(found) == 2
+                    and type(found[0]) is type(found[1]) is float
+                ):
                     yield found
                 else:
                     yield _phase(found, phase, f"{where}: {name}")

@@ -89,7 +89,10 @@ BLANES_MOAN_4 = Method(
     label="BM4",
     letter="b",
     phases=splitting(
-        mirrored((0.08298440641740502, 0.39630980149836807, -0.039056304922348436, 0.11952419401315068), odd=True),
+        mirrored(
+            (0.08298440641740502, 0.39630980149836807, -0.039056304922348436, 0.11952419401315068),
+            odd=True,
+        ),
         mirrored((0.24529895718427116, 0.60487266571107997, -0.35017162289535114), odd=False),
     ),
     formula="7 kicks and 6 drifts in turn: .083, .245, .396, .605, -.039, -.350, .120 and the same backwards, times h",

@@ -23,5 +23,7 @@ FIRST_ORDER = tuple(key for key, model in MODELS.items() if not model.second_ord
 
 DEFAULT_MODEL = Pendulum.key
 
-PARAMETERS: dict[str, Parameter] = {each.name: each for model in MODELS.values() for each in model.parameters}
+PARAMETERS: dict[str, Parameter] = {
+    each.name: each for model in MODELS.values() for each in model.parameters
+}
 """The parameters that models have besides length and gravity, by name."""

@@ -55,7 +55,9 @@ class DampedPendulum(Pendulum):
         about="the logarithm of the energy over that of the exact motion, which loses energy, too",
     )
     caption: ClassVar[str] = "curves of equal energy, which friction makes it cross inwards"
-    without_force: ClassVar[str] = "Maps and studies are for a pendulum that keeps its energy; friction takes it."
+    without_force: ClassVar[str] = (
+        "Maps and studies are for a pendulum that keeps its energy; friction takes it."
+    )
 
     def rates(self, sin: Sine = math.sin) -> Rates:
         force, friction = self.parts(sin)

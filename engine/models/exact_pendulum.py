@@ -30,7 +30,9 @@ class _Start(NamedTuple):
     w0: float  # rad/s
 
 
-def exact_pendulum(w0_squared: float, theta: float, omega: float, compile: Compile = _plain) -> ExactMotion:
+def exact_pendulum(
+    w0_squared: float, theta: float, omega: float, compile: Compile = _plain
+) -> ExactMotion:
     """Return the exact motion from theta [rad] and omega [rad/s]; `compile` may be numba.njit."""
     start = _Start(theta, omega, math.sqrt(w0_squared))
     with localcontext(Context(prec=100)):
@@ -122,7 +124,9 @@ def _separatrix(start: _Start) -> Motion:
     def motion(t: float) -> State:
         u = rate * t + offset
         decay = math.exp(-abs(u))  # cosh itself overflows at u = 711
-        return State(turns + 4 * math.atan(math.tanh(u / 2)), 4 * rate * decay / (1 + decay * decay))
+        return State(
+            turns + 4 * math.atan(math.tanh(u / 2)), 4 * rate * decay / (1 + decay * decay)
+        )
 
     return motion
 
@@ -132,7 +136,9 @@ def _carlson_rf(x: float, y: float, z: float) -> float:
     while True:
         mean = (x + y + z) / 3
         dx, dy, dz = 1 - x / mean, 1 - y / mean, 1 - z / mean
-        if max(abs(dx), abs(dy), abs(dz)) < 2e-3:  # the series below errs by the sixth power of this
+        if (
+            max(abs(dx), abs(dy), abs(dz)) < 2e-3
+        ):  # the series below errs by the sixth power of this
             break
         root_x, root_y, root_z = math.sqrt(x), math.sqrt(y), math.sqrt(z)
         shift = root_x * root_y + root_y * root_z + root_z * root_x

@@ -77,7 +77,9 @@ class MeanField(Model):
     )
     frequency_symbol: ClassVar[str] = "nu"
     caption: ClassVar[str] = "a projection: angle and angular velocity, without the two levels"
-    without_force: ClassVar[str] = "Maps and studies are for one angle; the mean field has a Bloch vector as well."
+    without_force: ClassVar[str] = (
+        "Maps and studies are for one angle; the mean field has a Bloch vector as well."
+    )
     without_ring: ClassVar[str] = (
         "A projection of five dimensions to two: no curves and no ring of neighbouring starts."
     )

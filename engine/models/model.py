@@ -5,7 +5,9 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from typing import Any, ClassVar, Literal, NamedTuple
 
-Number = Any  # float, complex, NumPy array or mpmath number: one definition of a method serves them all
+Number = (
+    Any  # float, complex, NumPy array or mpmath number: one definition of a method serves them all
+)
 
 Phase = tuple[Number, ...]
 """(theta, omega) as a method takes and yields it: a bare tuple, the quickest value CPython builds.
@@ -108,7 +110,9 @@ class ExactMotion(NamedTuple):
     """The state at a time [s], negative times included; theta continues from the start, unwrapped."""
     regime: Regime
     period: float | None = None  # s, per swing or, in rotation, per turn; None: not periodic
-    accuracy: float = 0.0  # rad; largest error of theta in the first minute; 0 where the motion has a closed form
+    accuracy: float = (
+        0.0  # rad; largest error of theta in the first minute; 0 where the motion has a closed form
+    )
 
 
 class EnergyError(NamedTuple):
@@ -129,17 +133,25 @@ class Model(ABC):
 
     key: ClassVar[str]  # in scenes, recordings and on the command line
     equation: ClassVar[str]  # for people
-    parameters: ClassVar[tuple[Parameter, ...]] = ()  # the dataclass' fields after w0_squared, in order
+    parameters: ClassVar[
+        tuple[Parameter, ...]
+    ] = ()  # the dataclass' fields after w0_squared, in order
     turns: ClassVar[bool]  # whether theta + 2 pi is the same place, and it can go over the top
     second_order: ClassVar[bool] = True  # theta'' = force(theta), in whatever numbers
-    counted_parts: ClassVar[tuple[str, ...]] = ("force",)  # of `parts`, those that cost a force evaluation
+    counted_parts: ClassVar[tuple[str, ...]] = (
+        "force",
+    )  # of `parts`, those that cost a force evaluation
     rigid: ClassVar[bool] = True  # whether the bob stays at one distance from the pivot
-    variables: ClassVar[tuple[Variable, ...]] = ()  # what its readings have besides theta, omega and energy
+    variables: ClassVar[
+        tuple[Variable, ...]
+    ] = ()  # what its readings have besides theta, omega and energy
     extra_columns: ClassVar[tuple[ExtraColumn, ...]] = ()
     energy_error: ClassVar[EnergyError] = EnergyError()
     frequency_symbol: ClassVar[str] = "w0"  # of `fastest`
     has_separatrix: ClassVar[bool] = False  # where `level` is 0
-    caption: ClassVar[str] = ""  # of its phase portrait, if the motion does not follow curves of equal energy
+    caption: ClassVar[str] = (
+        ""  # of its phase portrait, if the motion does not follow curves of equal energy
+    )
     without_force: ClassVar[str] = ""
     """Why studies and maps, made for one angle and a force that keeps the energy, do not apply; "": they do."""
     without_ring: ClassVar[str] = ""

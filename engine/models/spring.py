@@ -74,14 +74,19 @@ class Spring(Model):
     extra_columns: ClassVar[tuple[ExtraColumn, ...]] = (
         ExtraColumn("length", "length", "the length of the rod over its length at rest", _length),
         ExtraColumn(
-            "spring", "spring E", "the energy in the spring over that at the start", itemgetter("spring_energy")
+            "spring",
+            "spring E",
+            "the energy in the spring over that at the start",
+            itemgetter("spring_energy"),
         ),
     )
     counted_parts: ClassVar[tuple[str, ...]] = ("fast", "solve")
     rigid: ClassVar[bool] = False
     frequency_symbol: ClassVar[str] = "omega_s"
     caption: ClassVar[str] = "a projection: angle and angular velocity of the swing"
-    without_force: ClassVar[str] = "Maps and studies are for one angle; the bob on a spring has two coordinates."
+    without_force: ClassVar[str] = (
+        "Maps and studies are for one angle; the bob on a spring has two coordinates."
+    )
     without_ring: ClassVar[str] = (
         "Angle and angular velocity of the swing: a projection of four dimensions, without curves or ring."
     )
@@ -104,7 +109,13 @@ class Spring(Model):
     def observe(self, phase: Phase) -> Observation:
         """Return the swing's angle, within ±pi, and angular velocity, place, velocity, and the spring's energy."""
         z, w = phase
-        extra = {"x": z.real, "y": z.imag, "vx": w.real, "vy": w.imag, "spring_energy": self.spring_energy(phase)}
+        extra = {
+            "x": z.real,
+            "y": z.imag,
+            "vx": w.real,
+            "vy": w.imag,
+            "spring_energy": self.spring_energy(phase),
+        }
         return Observation(*self._swing(phase), extra)
 
     def phase_of(self, theta: float, omega: float, extra: Mapping[str, float]) -> Phase:
@@ -160,7 +171,11 @@ class Spring(Model):
         def total_energy(phase: Phase) -> Any:
             z, w = phase
             stretch = abs(z) - 1
-            return (w.real * w.real + w.imag * w.imag) / 2 + gravity * (z.imag + 1) + k / 2 * stretch * stretch
+            return (
+                (w.real * w.real + w.imag * w.imag) / 2
+                + gravity * (z.imag + 1)
+                + k / 2 * stretch * stretch
+            )
 
         return total_energy
 

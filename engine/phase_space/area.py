@@ -13,7 +13,9 @@ from engine.run.stepping import Stepping, SteppingChange, change_before
 from engine.run.tangent import jacobian
 from engine.scenes import Scene
 
-Ring = tuple[NDArray[np.float64], NDArray[np.float64]]  # theta [rad] and omega [rad/s] of the neighbours
+Ring = tuple[
+    NDArray[np.float64], NDArray[np.float64]
+]  # theta [rad] and omega [rad/s] of the neighbours
 RADII = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5)  # rad, worth looking at
 
 
@@ -40,7 +42,10 @@ class Neighbourhood:
         """Put `points` starts around the scene's, `radius` rad away in theta and radius·w0 in omega."""
         self._model = scene.equations
         angle = np.linspace(0.0, 2 * math.pi, points, endpoint=False)
-        ring = (scene.theta + radius * np.cos(angle), scene.omega + radius * scene.w0 * np.sin(angle))
+        ring = (
+            scene.theta + radius * np.cos(angle),
+            scene.omega + radius * scene.w0 * np.sin(angle),
+        )
         self._carried = [_Carried(method, scene, ring) for method in scene.cast]
 
     @property
@@ -96,10 +101,17 @@ class Neighbours:
         """The ring as far as it has been carried; None if it is not yet of this run."""
         return self._ring if self._begun == (scene, run) else None
 
-    def follow(self, scene: Scene, run: int, step: int, changes: Sequence[SteppingChange], most: int) -> Neighbourhood:
+    def follow(
+        self, scene: Scene, run: int, step: int, changes: Sequence[SteppingChange], most: int
+    ) -> Neighbourhood:
         """Carry the ring towards a step of a run, by at most `most` steps; `changes` are all of the run's, in order."""
         known = [change for change in changes if change.step < self.step]
-        if self._ring is None or self._begun != (scene, run) or step < self.step or known != self._taken:
+        if (
+            self._ring is None
+            or self._begun != (scene, run)
+            or step < self.step
+            or known != self._taken
+        ):
             self._ring = Neighbourhood(scene, self.radius)
             self._begun, self.step = (scene, run), 0
         target = min(step, self.step + most)

@@ -31,7 +31,10 @@ _CHUNK = 8  # steps between two looks at a displacement
 def spread(count: int, theta: tuple[float, float], omega: tuple[float, float]) -> Points:
     """`count` starts spread evenly over a rectangle, and so are the first n of them: Roberts' sequence R2 (2018)."""
     n = np.arange(1.0, count + 1)
-    across, up = n * 0.7548776662466927 % 1, n * 0.5698402909980532 % 1  # 1/p and 1/p², where p³ = p + 1
+    across, up = (
+        n * 0.7548776662466927 % 1,
+        n * 0.5698402909980532 % 1,
+    )  # 1/p and 1/p², where p³ = p + 1
     return theta[0] + (theta[1] - theta[0]) * across, omega[0] + (omega[1] - omega[0]) * up
 
 
@@ -45,7 +48,9 @@ def iterate(method: Method, model: Model, h: float, starts: Points, steps: int) 
     return theta, omega
 
 
-def pieces(method: Method, model: Model, h: float, starts: Points, steps: int, batch: int = 25) -> Iterator[Points]:
+def pieces(
+    method: Method, model: Model, h: float, starts: Points, steps: int, batch: int = 25
+) -> Iterator[Points]:
     """`iterate` in batches of starts, with the same bits."""
     for first in range(0, len(starts[0]), batch):
         part = slice(first, first + batch)
@@ -98,7 +103,11 @@ def kind_of(method: Method, model: Model, h: float, points: Points) -> OrbitKind
     chaotic = method.symplectic and parted  # else neighbours part while they spiral outwards, too
     rotation = None if chaotic or not moves else rotation_number(theta, omega, model.w0, spins)
     fraction = None if rotation is None else nearest_fraction(abs(rotation))
-    island = rotation is not None and fraction is not None and _is_island(points, model.w0, rotation, fraction, spins)
+    island = (
+        rotation is not None
+        and fraction is not None
+        and _is_island(points, model.w0, rotation, fraction, spins)
+    )
     error = model.reference(*start).error(model.energy()((float(theta[-1]), float(omega[-1]))))
     return OrbitKind(
         steps=steps,
@@ -176,7 +185,11 @@ def _is_island(points: Points, w0: float, rotation: float, fraction: Fraction, s
         return False
     theta, omega = points[0][::q], points[1][::q] / w0
     if spins:
-        theta = theta - math.copysign(math.tau * fraction.numerator, rotation) * np.arange(len(theta))
+        theta = theta - math.copysign(math.tau * fraction.numerator, rotation) * np.arange(
+            len(theta)
+        )
     x, y = theta - theta.mean(), omega - omega.mean()
     angle = np.unwrap(np.arctan2(y, x))
-    return bool(np.hypot(x, y).max() > 1e-9 and abs(angle[-1] - angle[0]) >= math.tau)  # not rounding that winds
+    return bool(
+        np.hypot(x, y).max() > 1e-9 and abs(angle[-1] - angle[0]) >= math.tau
+    )  # not rounding that winds

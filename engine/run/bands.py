@@ -63,7 +63,9 @@ class Bands:
         self._low = self._high = now
         if len(self.bins) == MAX_BINS:
             pairs = zip(self.bins[::2], self.bins[1::2], strict=True)
-            self.bins = [Bin((a.step + b.step) / 2, min(a.low, b.low), max(a.high, b.high)) for a, b in pairs]
+            self.bins = [
+                Bin((a.step + b.step) / 2, min(a.low, b.low), max(a.high, b.high)) for a, b in pairs
+            ]
             self._width = 2 * step / MAX_BINS
         return True
 
@@ -101,13 +103,19 @@ def fit(times: Sequence[float], values: Sequence[float]) -> Line:
     mean = sum(values) / n
     offsets = [time - mean_time for time in times]
     square = sum(offset * offset for offset in offsets)
-    slope = sum(offset * (value - mean) for offset, value in zip(offsets, values, strict=True)) / square
-    residuals = [value - mean - slope * offset for offset, value in zip(offsets, values, strict=True)]
+    slope = (
+        sum(offset * (value - mean) for offset, value in zip(offsets, values, strict=True)) / square
+    )
+    residuals = [
+        value - mean - slope * offset for offset, value in zip(offsets, values, strict=True)
+    ]
     total = sum(residual * residual for residual in residuals)
     if total == 0:
         return Line(slope, 0.0, math.inf if slope else 0.0)
     correlation = sum(a * b for a, b in pairwise(residuals)) / total
-    correlation = min(max(correlation, 0.0), 0.9)  # a poor estimate: neither shrink the result nor blow it up
+    correlation = min(
+        max(correlation, 0.0), 0.9
+    )  # a poor estimate: neither shrink the result nor blow it up
     uncertainty = math.sqrt(total / (n - 2) / square * (1 + correlation) / (1 - correlation))
     return Line(slope, uncertainty, sigmas(slope / uncertainty, n - 2))
 

@@ -173,7 +173,9 @@ def _judge(times: Any, energies: Any, floor: float, again: bool = False) -> Seri
         judgement = Judgement("bounded")
     significant = judgement.verdict in ("grows", "loses")
     return SeriesJudgement(
-        judgement._replace(slope=slope, uncertainty=stories.line.deviation, significant=significant),
+        judgement._replace(
+            slope=slope, uncertainty=stories.line.deviation, significant=significant
+        ),
         independent=independent,
         fluctuation=float(np.std(rest)),
     )
@@ -238,7 +240,9 @@ def _best_stories(blocks: _Blocks, count: int, floor: float) -> _Stories:
     means = blocks.means - float(blocks.means.mean())
     noises = Noises(blocks.places, blocks.sizes, count, floor)
     found = waves(blocks.times, means)
-    stories = [_stories(blocks.times, means, noises, some) for some in ([], found)[: 1 + bool(found)]]
+    stories = [
+        _stories(blocks.times, means, noises, some) for some in ([], found)[: 1 + bool(found)]
+    ]
     return max(stories, key=lambda each: each.likelihood)
 
 
@@ -250,12 +254,17 @@ def _stories(times: Any, means: Any, noises: Noises, frequencies: list[float]) -
     curves = np.expm1(_RATES[:, None] * times) / np.expm1(_RATES)[:, None]
     logarithms = np.log1p(_LOGARITHMS[:, None] * times)
     approaches = -np.expm1(-_SETTLING[:, None] * times)
-    best = [_best(family, base, means) for family in (curves, logarithms, approaches, _steps(len(times)))]
+    best = [
+        _best(family, base, means)
+        for family in (curves, logarithms, approaches, _steps(len(times)))
+    ]
     curve, logarithm, approach, step = (noises.fit([*base, family], means) for family, _ in best)
     moving = max(line, curve, logarithm, key=lambda fit: fit.likelihood)
     is_step = step.likelihood > approach.likelihood
     penalty = math.log(len(times))
-    likelihood = max(level.likelihood, *(fit.likelihood - penalty for fit in (moving, approach, step)))
+    likelihood = max(
+        level.likelihood, *(fit.likelihood - penalty for fit in (moving, approach, step))
+    )
     return _Stories(
         walks=level.walks,
         line=line,

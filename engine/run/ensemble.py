@@ -27,7 +27,9 @@ class Watched(NamedTuple):
     """What is watched of an ensemble while it swings; energies in s⁻², angles in rad."""
 
     start: Floats  # energies at the start
-    band: Floats  # how far energies may be from there; inf for swings that are not looked at any more
+    band: (
+        Floats  # how far energies may be from there; inf for swings that are not looked at any more
+    )
     top: Floats  # how large |theta| may be; likewise
     off: Floats  # energies, less the start's, after the last step
     worst: Floats  # largest |off| so far
@@ -96,7 +98,9 @@ def plain(method: Method, model: Pendulum) -> Watch:
 def compiled(method: Method, model: Pendulum) -> Watch:
     """The loop with the steps and what is watched compiled, which takes a second.  Raises ImportError without Numba."""
     numba: Any = import_module("numba")
-    inner = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)  # never called by Python: compiles twice as fast
+    inner = numba.njit(
+        no_cpython_wrapper=True, no_cfunc_wrapper=True
+    )  # never called by Python: compiles twice as fast
     phases = numba.njit(COMPILABLE.get(method.phases, method.phases))
     force, energy = inner(model.force(np.sin)), model.energy
     look = numba.njit(_looking(inner(energy(np.sin))))

@@ -27,7 +27,9 @@ from engine.run.tangent import Stretching, conserved_ellipse
 QUIET = 0.25  # z: below, chaos is thinner than exp(-pi²/z), rounding: Gelfreich & Lazutkin, Russ. Math. Surv. 56 (2001)
 FENCED = 0.9  # z: below, invariant curves fence orbits of SE and Verlet; the last breaks at 0.9857: Greene (1979)
 NEAR_TOP = 11.0  # w0·period: longer swings come within 30° of upright, where the fences break first
-CONSERVED = 0.045  # z² E: half of what the modified energy of order 4 moves by where its orbit is regular
+CONSERVED = (
+    0.045  # z² E: half of what the modified energy of order 4 moves by where its orbit is regular
+)
 ELLIPSE = 0.15  # relative: the ellipse of swings below 0.7 rad moves by theta²/4, half of it the other way
 SMALL = 0.7  # rad
 WALK = 8.0  # standard deviations of a random walk of roundings: it gets there once in 10^14 runs
@@ -111,7 +113,9 @@ class Judge:
         if full and len(self._energy.bins) >= MIN_BINS:
             self._judge()
         elif self.judgement.verdict == "too early":
-            self.judgement = self.judgement._replace(periods=self._periods, progress=self._progress())
+            self.judgement = self.judgement._replace(
+                periods=self._periods, progress=self._progress()
+            )
         if self._escapes and point.error > GONE and not (self._map and self._map.form):
             self.judgement = self.judgement._replace(verdict="grows", progress=None)
 
@@ -156,7 +160,11 @@ class Judge:
         else:
             first = len(self._energy.bins) < MIN_BINS
             steps = MIN_BINS * self._width if first else max(MAX_BINS * self._width, LONG)
-            have, need, unit = int(self._periods), math.ceil(steps * self._h / self._period), "swings"
+            have, need, unit = (
+                int(self._periods),
+                math.ceil(steps * self._h / self._period),
+                "swings",
+            )
         return Progress(have, need, unit) if have < need else None
 
     def _trend(self, verdict: Verdict) -> Judgement:
@@ -168,7 +176,9 @@ class Judge:
         if self._map and verdict == "too early":
             return Judgement()
         flat = self._map is not None and self._map.is_conserved
-        bands = self._map.modified if self._map and flat and self._map.modified.bins else self._energy
+        bands = (
+            self._map.modified if self._map and flat and self._map.modified.bins else self._energy
+        )
         recent = bands.recent(0.5) if len(bands.bins) >= MAX_BINS / 2 else bands.bins
         folded = [self._fold(each) for each in recent]
         size = 1.0
@@ -180,7 +190,9 @@ class Judge:
             recent = folded
         shift = abs(trend.slope) * (recent[-1].step - recent[0].step)
         width = median(each.width for each in recent)
-        sampled = (1 - math.cos(min(self._z, math.pi / 2))) * width  # by which the extremes of a wobble are missed
+        sampled = (
+            1 - math.cos(min(self._z, math.pi / 2))
+        ) * width  # by which the extremes of a wobble are missed
         certain = trend.sigmas > SIGMAS
         if verdict in ("grows", "loses"):  # evidence of its own
             certain = abs(trend.slope) > SIGMAS * trend.uncertainty
@@ -190,7 +202,9 @@ class Judge:
         if not math.isfinite(slope + uncertainty) or not (significant or verdict != "too early"):
             return Judgement()
         growth = trend.slope / self._h if size > 2 else None
-        return Judgement(slope=slope, uncertainty=uncertainty, significant=significant, growth=growth)
+        return Judgement(
+            slope=slope, uncertainty=uncertainty, significant=significant, growth=growth
+        )
 
     def _fold(self, band: Bin) -> Bin:
         """Return a band of errors with ln(E/E0) where energy was gained."""
@@ -206,7 +220,11 @@ class Judge:
         if known in ("bounded", "chaotic", "wanders"):
             return known
         enough = self._periods >= MIN_PERIODS and self._steps >= MIN_BINS * MIN_BIN_STEPS
-        return "bounded" if evidence.is_long_enough or (enough and evidence.is_regular) else "too early"
+        return (
+            "bounded"
+            if evidence.is_long_enough or (enough and evidence.is_regular)
+            else "too early"
+        )
 
     def _other(self) -> Verdict:
         known = self.judgement.verdict
@@ -216,7 +234,9 @@ class Judge:
         many = self._steps >= max(MAX_BINS * self._width, LONG)
         if many and (settled := self._settled(low, high)):
             return settled
-        if known in ("caught", "wanders") or (known in ("grows", "loses") and self._is_away(low, high)):
+        if known in ("caught", "wanders") or (
+            known in ("grows", "loses") and self._is_away(low, high)
+        ):
             return known
         if leaving := self._leaving():
             return leaving
@@ -235,7 +255,9 @@ class Judge:
         if away < max(folded.width, self._floor) / 2 or (gap < self._floor and not steady(bins)):
             return None
         if not self._escapes:
-            if self._period < 3 * self._h and gap <= 1:  # fewer than three steps a turn beat with it, for long
+            if (
+                self._period < 3 * self._h and gap <= 1
+            ):  # fewer than three steps a turn beat with it, for long
                 return None
             if self._z > THROWN and (len(bins) < 24 or 0.1 < rising(bins) < 0.9):
                 return None
@@ -344,7 +366,9 @@ class _SymplecticEvidence:
             self._neighbours.carry(self._phase, steps)
         self._phase = phase
         if self._start is not None and self._method.modified_energy is not None:
-            error = (self._method.modified_energy(self._model, phase, self._h) - self._start) / self._scale
+            error = (
+                self._method.modified_energy(self._model, phase, self._h) - self._start
+            ) / self._scale
             error = error if math.isfinite(error) else math.inf
             self.modified.add(point.step, error, error, error)
 
@@ -364,7 +388,9 @@ class _SymplecticEvidence:
             return self.form is not None
         z = self._z * self._method.longest_substep
         fastest = max(-self._omegas[0], self._omegas[1]) * abs(self._h)
-        if self._method.order > 2 and fastest >= math.pi:  # only the map of order 1 and 2 is periodic in h·omega
+        if (
+            self._method.order > 2 and fastest >= math.pi
+        ):  # only the map of order 1 and 2 is periodic in h·omega
             return False
         if z <= QUIET:
             return True

@@ -4,7 +4,9 @@ from typing import Literal, NamedTuple, get_args
 
 from engine.methods import Method
 
-Verdict = Literal["bounded", "grows", "loses", "chaotic", "caught", "wanders", "failed", "too early"]
+Verdict = Literal[
+    "bounded", "grows", "loses", "chaotic", "caught", "wanders", "failed", "too early"
+]
 VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 
 DEFINITIONS: dict[Verdict, str] = {
@@ -53,7 +55,9 @@ class Judgement(NamedTuple):
     periods: float = 0.0  # how many periods the verdict rests on
     lyapunov: float | None = None  # 1/s; only where the verdict rests on it
     progress: Progress | None = None  # only while it is too early
-    growth: float | None = None  # 1/s, of the logarithm of the error; only beyond the initial energy
+    growth: float | None = (
+        None  # 1/s, of the logarithm of the error; only beyond the initial energy
+    )
 
     def __str__(self) -> str:
         """Return the verdict, with the progress to it if it is too early for one."""

@@ -25,7 +25,9 @@ class Judges:
         self._period = period
         self._scale = scale
         self._judges: list[Judge] = []
-        self._below: set[tuple[int, int]] = set()  # methods that leave, and bounded ones that they were below
+        self._below: set[tuple[int, int]] = (
+            set()
+        )  # methods that leave, and bounded ones that they were below
         self._passed: set[tuple[int, int]] = set()  # once is enough
 
     @property
@@ -48,7 +50,9 @@ class Judges:
         self._passed = set()
         self._judges = []
         for method, h, point in zip(self._cast, steps, points, strict=True):
-            judge = Judge(h=h, period=self._period, method=method, model=self._model, scale=self._scale)
+            judge = Judge(
+                h=h, period=self._period, method=method, model=self._model, scale=self._scale
+            )
             self._judges.append(judge)
             if point is None:
                 judge.fail(0)
@@ -78,7 +82,9 @@ class Judges:
 
     def has(self, kind: MilestoneKind, index: int) -> bool:
         """Return whether this has happened to a method."""
-        return any(each.kind == kind and each.method == self._cast[index] for each in self.milestones)
+        return any(
+            each.kind == kind and each.method == self._cast[index] for each in self.milestones
+        )
 
     def fail(self, index: int, steps: int) -> None:
         """Note that a method's numbers have ended, so many of its steps after the restart."""
@@ -87,9 +93,20 @@ class Judges:
     def _crossings(self) -> list[tuple[int, int]]:
         """Return the pairs (passing, passed) that are new since the last look."""
         peaks = [(judge.judgement.verdict, judge.peak) for judge in self._judges]
-        bounded = [(other, peak) for other, (verdict, peak) in enumerate(peaks) if verdict == "bounded"]
-        leaving = [(index, peak) for index, (verdict, peak) in enumerate(peaks) if verdict in ("grows", "loses")]
-        ahead = {(index, other): mine - peak for index, mine in leaving for other, peak in bounded if peak > ROUNDING}
+        bounded = [
+            (other, peak) for other, (verdict, peak) in enumerate(peaks) if verdict == "bounded"
+        ]
+        leaving = [
+            (index, peak)
+            for index, (verdict, peak) in enumerate(peaks)
+            if verdict in ("grows", "loses")
+        ]
+        ahead = {
+            (index, other): mine - peak
+            for index, mine in leaving
+            for other, peak in bounded
+            if peak > ROUNDING
+        }
         passed = sorted(pair for pair in self._below - self._passed if ahead.get(pair, 0.0) > 0)
         self._below |= {pair for pair, distance in ahead.items() if distance <= 0}
         self._passed.update(passed)

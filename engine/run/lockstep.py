@@ -27,11 +27,17 @@ class Reading(NamedTuple):
     energy: float
     energy_error: float
     max_energy_error: float  # largest |energy error| over every step of the run so far
-    energy_error_low: float  # smallest and largest energy error over the steps since the previous sample,
+    energy_error_low: (
+        float  # smallest and largest energy error over the steps since the previous sample,
+    )
     energy_error_high: float  # so that a chart of samples loses no extreme
     diverged_at: float | None = None  # s; first time at which the method's numbers were not finite
-    max_invariant_error: float | None = None  # relative, of `Model.invariant` over every step of the run so far
-    extra: Mapping[str, float] = NO_EXTRA  # the values of the model's own variables, `Model.variables`
+    max_invariant_error: float | None = (
+        None  # relative, of `Model.invariant` over every step of the run so far
+    )
+    extra: Mapping[str, float] = (
+        NO_EXTRA  # the values of the model's own variables, `Model.variables`
+    )
 
 
 TAU_REST = 2.4492935982947064e-16  # 2 pi - math.tau
@@ -106,9 +112,16 @@ class Lockstep:
         self._invariant = model.invariant()
         self._invariant_start = self._invariant(start_phase) if self._invariant else 0.0
         start = model.observe(start_phase).extra
-        self._scales = {each.name: start[each.name] or 1.0 for each in model.variables if each.relative}
-        self._limit = min(1.0, self._reference.scale) * 1e300  # so that relative errors are finite, too
-        self._tracks = [_Track(loops(method, model).advance, scene, self._reference.start) for method in scene.cast]
+        self._scales = {
+            each.name: start[each.name] or 1.0 for each in model.variables if each.relative
+        }
+        self._limit = (
+            min(1.0, self._reference.scale) * 1e300
+        )  # so that relative errors are finite, too
+        self._tracks = [
+            _Track(loops(method, model).advance, scene, self._reference.start)
+            for method in scene.cast
+        ]
         exact = scene.exact()
         self._period = exact.period or math.tau / model.w0
         self._judges: Judges | None = None
@@ -156,7 +169,9 @@ class Lockstep:
         for track in self._tracks:
             track.look_low = track.look_high = track.error
         if self._judges:
-            self._judges.restart(self.stepping.own, [self._look_point(track) for track in self._tracks])
+            self._judges.restart(
+                self.stepping.own, [self._look_point(track) for track in self._tracks]
+            )
         self._next_stop = self._following_stop()
 
     def advance(self, n: int) -> None:
@@ -191,7 +206,9 @@ class Lockstep:
                     self._judges.note("failed", index, step, track.diverged_at, track.error)
         self.step += n
 
-    def _advance_track(self, track: _Track, h: float, steps: int, begin: tuple[float, int]) -> Errors:
+    def _advance_track(
+        self, track: _Track, h: float, steps: int, begin: tuple[float, int]
+    ) -> Errors:
         """Advance by the method's own steps: at once, or one by one where the model has an invariant to watch."""
         advance = partial(advance_with_errors, track.advance, self._reference)
         if self._invariant is None:
@@ -215,7 +232,9 @@ class Lockstep:
             for track in self._tracks:
                 track.reduce()
         if is_look_point and self._judges:
-            self._judges.look(self.step, self.t, [self._look_point(track) for track in self._tracks])
+            self._judges.look(
+                self.step, self.t, [self._look_point(track) for track in self._tracks]
+            )
             for track in self._tracks:
                 track.look_low = track.look_high = track.error
         self._note_tops()
@@ -272,10 +291,15 @@ class Lockstep:
 
     def sample(self) -> Sample:
         """Return the readings now.  Lows and highs of the next sample are taken from here on."""
-        return Sample(self.run, self.step, self.t, tuple(self._read(track) for track in self._tracks))
+        return Sample(
+            self.run, self.step, self.t, tuple(self._read(track) for track in self._tracks)
+        )
 
     def _read(self, track: _Track) -> Reading:
-        track.run_low, track.run_high = min(track.run_low, track.low), max(track.run_high, track.high)
+        track.run_low, track.run_high = (
+            min(track.run_low, track.low),
+            max(track.run_high, track.high),
+        )
         low, high = track.low, track.high
         track.low = track.high = track.error
         theta, omega, extra = self._model.observe(track.phase)

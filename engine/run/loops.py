@@ -29,7 +29,9 @@ class Loops(Protocol):
 LoopsOf = Callable[[Method, Model], Loops]
 
 
-def advance(phases: Iterator[Phase], energy: Energy, phase: Phase, n: int, limit: float) -> Advanced:
+def advance(
+    phases: Iterator[Phase], energy: Energy, phase: Phase, n: int, limit: float
+) -> Advanced:
     """Take n phases, or up to the last one whose energy is below `limit`; `phase` is the one before."""
     done, value, low, high = 0, math.nan, math.inf, -math.inf
     for following in phases:
@@ -105,7 +107,13 @@ class Errors(NamedTuple):
 
 
 def advance_with_errors(
-    advance: Advance, reference: EnergyReference, phase: Phase, h: float, n: int, limit: float, begin: tuple[float, int]
+    advance: Advance,
+    reference: EnergyReference,
+    phase: Phase,
+    h: float,
+    n: int,
+    limit: float,
+    begin: tuple[float, int],
 ) -> Errors:
     """Advance by n >= 1 steps; the first is after `begin`: a time [s] and the number of steps since.
 
@@ -113,7 +121,14 @@ def advance_with_errors(
     """
     if reference.true is None:
         done, phase, energy, low, high = advance(phase, h, n, limit)
-        return Errors(done, phase, energy, reference.error(energy), reference.error(low), reference.error(high))
+        return Errors(
+            done,
+            phase,
+            energy,
+            reference.error(energy),
+            reference.error(low),
+            reference.error(high),
+        )
     energy, error, low, high = math.nan, math.nan, math.inf, -math.inf
     for k in range(n):
         done, following, now, _, _ = advance(phase, h, 1, limit)

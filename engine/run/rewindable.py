@@ -36,7 +36,9 @@ class RewindableRun:
         self.run = run
         self.changes = [SteppingChange(0, 0.0, Stepping(scene.h, cast=scene.cast))]
         self.furthest = 0  # the last step sampled
-        self._x = [0.0]  # s, the simulated time run up to each change; it goes up even while t goes down
+        self._x = [
+            0.0
+        ]  # s, the simulated time run up to each change; it goes up even while t goes down
         self._applied = 1
         self._lockstep = Lockstep(scene, run, loops=loops, judged=True)
         self._copies = [self._copy()]
@@ -65,7 +67,9 @@ class RewindableRun:
     def x(self) -> float:
         """The simulated time run so far [s]; it goes up even while t goes down."""
         last = self._applied - 1
-        return self._x[last] + (self.step - self.changes[last].step) * abs(self.changes[last].stepping.h)
+        return self._x[last] + (self.step - self.changes[last].step) * abs(
+            self.changes[last].stepping.h
+        )
 
     @property
     def judgements(self) -> list[Judgement]:
@@ -94,7 +98,11 @@ class RewindableRun:
     def home(self) -> float:
         """The step ahead at which simulated time is back at 0; inf where it runs away from 0, or past it."""
         ahead = -self.t / self.stepping.h
-        return self.step + round(ahead) if ahead > 0.5 and abs(ahead - round(ahead)) < 1e-6 else math.inf
+        return (
+            self.step + round(ahead)
+            if ahead > 0.5 and abs(ahead - round(ahead)) < 1e-6
+            else math.inf
+        )
 
     def sample(self) -> Sample:
         self.furthest = max(self.furthest, self.step)
@@ -103,7 +111,9 @@ class RewindableRun:
     def forward(self, n: int) -> None:
         target = self.step + n
         while self.step < target:
-            while self._applied < len(self.changes) and self.changes[self._applied].step == self.step:
+            while (
+                self._applied < len(self.changes) and self.changes[self._applied].step == self.step
+            ):
                 self._lockstep.set_stepping(self.changes[self._applied].stepping)
                 self._applied += 1
             stops = [target]
@@ -150,6 +160,8 @@ class RewindableRun:
         kept = [0]
         for at in range(1, len(steps)):
             last = at == len(steps) - 1
-            if last or steps[at + 1] - steps[kept[-1]] > max(COPY_EVERY, (steps[-1] - steps[at]) // AGE_PER_GAP):
+            if last or steps[at + 1] - steps[kept[-1]] > max(
+                COPY_EVERY, (steps[-1] - steps[at]) // AGE_PER_GAP
+            ):
                 kept.append(at)
         self._copies = [self._copies[at] for at in kept]

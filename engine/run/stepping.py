@@ -89,7 +89,9 @@ def change_before(changes: Sequence[SteppingChange], step: int) -> SteppingChang
 def _next_rung(size: float, up: bool) -> float:
     """The next of 1, 2, 5, 10, … above a size, or below it."""
     decade = math.floor(math.log10(size))
-    ladder = [digit * 10.0**power for power in (decade - 1, decade, decade + 1) for digit in (1, 2, 5)]
+    ladder = [
+        digit * 10.0**power for power in (decade - 1, decade, decade + 1) for digit in (1, 2, 5)
+    ]
     if up:
         rung = min(rung for rung in ladder if rung > size * (1 + 1e-9))
     else:

@@ -16,7 +16,9 @@ from engine.models.model import Model, Phase
 _TINY = 1e-100  # a complex step has no subtraction, so it may be as small as one likes
 
 
-def tangent_map(phases: BoundPhases, phase: Phase, along: Phase, h: Any, steps: int = 1) -> tuple[Phase, Phase]:
+def tangent_map(
+    phases: BoundPhases, phase: Phase, along: Phase, h: Any, steps: int = 1
+) -> tuple[Phase, Phase]:
     """Return the phase after some steps, and what a small displacement `along` has become.
 
     `phases` takes complex numbers.

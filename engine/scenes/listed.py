@@ -20,7 +20,10 @@ _SPRING = _cast("velocity_verlet", "rk4", "respa", "implicit_midpoint", "imex_eu
 _STIFF = 2500.0  # s⁻²: the spring vibrates at 50 rad/s, the swing at 3
 
 _FIRST_LOOK = (
-    Scene("drift", watch="Explicit Euler gains energy, the symplectic ones keep it, RK4 loses a little."),
+    Scene(
+        "drift",
+        watch="Explicit Euler gains energy, the symplectic ones keep it, RK4 loses a little.",
+    ),
     Scene(
         "gentle",
         theta=0.1,

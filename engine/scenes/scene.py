@@ -44,7 +44,9 @@ def check_h(h: float, w0: float) -> None:
 def _check_range(name: str, value: float, low: float, high: float) -> None:
     if not low <= value <= high:  # also refuses nan
         unit = UNITS[name]
-        raise SceneError(f"{name} = {value:g} {unit} is out of range; use {low:g} to {high:g} {unit}.")
+        raise SceneError(
+            f"{name} = {value:g} {unit} is out of range; use {low:g} to {high:g} {unit}."
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,23 +62,36 @@ class Scene:
     watch: str = ""
     model: str = DEFAULT_MODEL  # a key of MODELS
     cast: Cast = USUAL_CAST  # the methods, in order
-    parameters: Mapping[str, float] = field(default_factory=dict, hash=False)  # the model's own, such as friction
-    often_said: str = field(default="", compare=False)  # what is often said about such scenes, and what is true of it
-    speed: float = field(default=1.0, compare=False)  # times real time, at which a lab starts: it changes no number
+    parameters: Mapping[str, float] = field(
+        default_factory=dict, hash=False
+    )  # the model's own, such as friction
+    often_said: str = field(
+        default="", compare=False
+    )  # what is often said about such scenes, and what is true of it
+    speed: float = field(
+        default=1.0, compare=False
+    )  # times real time, at which a lab starts: it changes no number
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "parameters", self._complete(self.parameters))
         for name, (low, high) in LIMITS.items():
             _check_range(name, getattr(self, name), low, high)
         for each in MODELS[self.model].parameters if self.model in MODELS else ():
-            _check_range(each.name, self.parameters[each.name], each.min, min(each.max, each.max_over_w0 * self.w0))
+            _check_range(
+                each.name,
+                self.parameters[each.name],
+                each.min,
+                min(each.max, each.max_over_w0 * self.w0),
+            )
         if self.h <= 0:
             raise SceneError(
                 f"h = {self.h:g} s is not a usable step; use a positive one, for example {0.15 / self.w0:.1g}."
             )
         check_h(self.h, self.w0)
         if not 0 < self.speed < math.inf:
-            raise SceneError(f"speed = {self.speed:g} is not usable; use a number above zero, 1 for real time.")
+            raise SceneError(
+                f"speed = {self.speed:g} is not usable; use a number above zero, 1 for real time."
+            )
         for method in self.cast:
             if self.model in MODELS and self.model not in method.models:
                 raise SceneError(
@@ -90,7 +105,9 @@ class Scene:
         own = {each.name: each.default for each in MODELS[self.model].parameters}
         for name, value in given.items():
             if name not in own and value:
-                raise SceneError(f"the model {self.model} has no {name}; leave it out, or use a model that has.")
+                raise SceneError(
+                    f"the model {self.model} has no {name}; leave it out, or use a model that has."
+                )
         return {name: given.get(name, default) for name, default in own.items()}
 
     @property
@@ -101,7 +118,13 @@ class Scene:
     @property
     def numbers(self) -> dict[str, float]:
         """The numbers that determine the run, the model's parameters last."""
-        common = {"theta": self.theta, "omega": self.omega, "length": self.length, "gravity": self.gravity, "h": self.h}
+        common = {
+            "theta": self.theta,
+            "omega": self.omega,
+            "length": self.length,
+            "gravity": self.gravity,
+            "h": self.h,
+        }
         return common | dict(self.parameters)
 
     def exact(self) -> ExactMotion:
@@ -134,7 +157,11 @@ class Scene:
         if why := self.equations.without_force:
             return why
         special = [method.label for method in self.cast if not method.general]
-        return f"Maps and studies are for methods that take any force, not for {', '.join(special)}." if special else ""
+        return (
+            f"Maps and studies are for methods that take any force, not for {', '.join(special)}."
+            if special
+            else ""
+        )
 
     @property
     def why_no_ring(self) -> str:
@@ -155,7 +182,9 @@ class Scene:
         others = {name: value for name, value in changes.items() if name not in fields}
         if "model" in fields:
             own = {each.name for each in MODELS[fields["model"]].parameters}
-            fields["parameters"] = {name: value for name, value in self.parameters.items() if name in own}
+            fields["parameters"] = {
+                name: value for name, value in self.parameters.items() if name in own
+            }
         if others:
             fields["parameters"] = {**fields.get("parameters", self.parameters), **others}
         other = replace(self, **fields)

@@ -40,4 +40,6 @@ def is_chaotic(method: Method, theta: Any, z: Any, steps: int = 10_000) -> Any:
     Over a million steps regular orbits part by at most e^14, chaotic ones by e^28 within some thousand.  From
     beside upright the exact swing alone parts neighbours by 1/cos²(theta/2), which counts as none.
     """
-    return parting(method, theta, 0.0 * theta, z, steps) > 15 + math.log(steps) - 2 * np.log(np.cos(theta / 2))
+    return parting(method, theta, 0.0 * theta, z, steps) > 15 + math.log(steps) - 2 * np.log(
+        np.cos(theta / 2)
+    )

@@ -13,7 +13,9 @@ from engine.stability.outcomes import CELL, UNKNOWN, Cells, Floats, outcomes
 STRIP = 4096
 """Swings a method in a strip: enough that NumPy's calls cost little, few enough that they stay in the cache."""
 
-COMPILED_FROM = 100_000_000  # steps of a method: in NumPy they take as long as importing and compiling
+COMPILED_FROM = (
+    100_000_000  # steps of a method: in NumPy they take as long as importing and compiling
+)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -24,7 +26,9 @@ class Grid:
     z: Floats  # h·w0, above 0
     steps: int
     methods: Cast = USUAL_CAST
-    fast: bool | None = None  # compiled by Numba, the same sin in other bits; None: where it is installed and pays
+    fast: bool | None = (
+        None  # compiled by Numba, the same sin in other bits; None: where it is installed and pays
+    )
 
     @property
     def shape(self) -> tuple[int, int, int]:
@@ -34,7 +38,10 @@ class Grid:
     def cells(self) -> Cells:
         """The outcome of every swing."""
         z, theta = (axis.ravel() for axis in np.meshgrid(self.z, self.theta, indexing="ij"))
-        each = [outcomes(m, theta, z, self.steps, self.compiled).reshape(len(self.z), -1) for m in self.methods]
+        each = [
+            outcomes(m, theta, z, self.steps, self.compiled).reshape(len(self.z), -1)
+            for m in self.methods
+        ]
         return np.stack(each, axis=1)
 
     @property
@@ -52,7 +59,10 @@ class Grid:
         """The grid cut along z.  However it is cut, the cells are the same to the last bit."""
         fast = self.compiled
         width = max(1, STRIP // len(self.theta))
-        return [replace(self, z=self.z[start : start + width], fast=fast) for start in range(0, len(self.z), width)]
+        return [
+            replace(self, z=self.z[start : start + width], fast=fast)
+            for start in range(0, len(self.z), width)
+        ]
 
     def compute(self, executor: Executor | None = None) -> Iterator[Cells]:
         """The cells of strip after strip, z ascending, from the executor's workers or from here.
@@ -79,10 +89,20 @@ def pieces(grid: Grid, passes: Sequence[int], width: int = 10) -> Iterator[Piece
 
     In NumPy, unless the grid says otherwise: compiling would delay the first piece.
     """
-    places = [(slice(z, z + width), m) for z in range(0, len(grid.z), width) for m in range(len(grid.methods))]
+    places = [
+        (slice(z, z + width), m)
+        for z in range(0, len(grid.z), width)
+        for m in range(len(grid.methods))
+    ]
     for steps in passes:
         for done, (z, m) in enumerate(places, 1):
-            part = replace(grid, z=grid.z[z], methods=grid.methods[m : m + 1], steps=steps, fast=bool(grid.fast))
+            part = replace(
+                grid,
+                z=grid.z[z],
+                methods=grid.methods[m : m + 1],
+                steps=steps,
+                fast=bool(grid.fast),
+            )
             yield Piece(z, m, part.cells()[:, 0], steps, done / len(places))
 
 
@@ -92,4 +112,6 @@ def default_grid(cast: Cast = USUAL_CAST) -> Grid:
     z goes up to 3, or where a method of the cast is still stable there, as BM4 is, up to 3.5.
     """
     top = 3 if all((method.linear_limit or 0) < 3 for method in cast) else 3.5
-    return Grid((np.arange(100) + 0.5) * np.pi / 100, (np.arange(200) + 0.5) * top / 200, 10_000, cast)
+    return Grid(
+        (np.arange(100) + 0.5) * np.pi / 100, (np.arange(200) + 0.5) * top / 200, 10_000, cast
+    )

@@ -57,7 +57,9 @@ def outcomes(method: Method, theta: Floats, z: Floats, steps: int, fast: bool = 
     model = Pendulum(1.0)
     watch = (compiled if fast else plain)(method, model)
     distinct, where = np.unique(z, return_inverse=True)
-    lowest, highest, widest = np.array([wobble(method, value) for value in distinct.tolist()]).T[:, where]
+    lowest, highest, widest = np.array([wobble(method, value) for value in distinct.tolist()]).T[
+        :, where
+    ]
     reach = widest * theta
     h, phase = z, (theta, np.zeros(len(theta)))
     start: Floats = model.energy(np.sin)(phase)
@@ -85,7 +87,10 @@ def outcomes(method: Method, theta: Floats, z: Floats, steps: int, fast: bool = 
                 break
         begun, kept = begun + done, ~parked
         index, h, up, down = (each[kept] for each in (index, h, up, down))
-        phase, watched = (phase[0][kept], phase[1][kept]), Watched(*(each[kept] for each in watched))
+        phase, watched = (
+            (phase[0][kept], phase[1][kept]),
+            Watched(*(each[kept] for each in watched)),
+        )
     cells["error"][index] = watched.worst / watched.start
     if method.symplectic and len(index):
         wobbling = index[(watched.width > WOBBLE * reach[index]) | (z[index] > method.linear_limit)]

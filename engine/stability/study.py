@@ -47,7 +47,9 @@ def early_steps(steps: int) -> int:
     return max(1, round(EARLY * steps))
 
 
-def ladder_of(scene: Scene, thetas: Sequence[float] | None, zs: Sequence[float] | None, steps: int) -> Grid:
+def ladder_of(
+    scene: Scene, thetas: Sequence[float] | None, zs: Sequence[float] | None, steps: int
+) -> Grid:
     """Return the grid of a table: amplitudes [rad] on a ladder of z, to which the scene's own z is added."""
     swing = amplitude(scene)
     own = () if swing is None else (swing,)
@@ -55,7 +57,9 @@ def ladder_of(scene: Scene, thetas: Sequence[float] | None, zs: Sequence[float] 
     return Grid(np.array(thetas or sorted({*THETAS, *own})), rungs, steps, scene.cast)
 
 
-def map_of(scene: Scene, thetas: Sequence[float] | None, zs: Sequence[float] | None, steps: int) -> Grid:
+def map_of(
+    scene: Scene, thetas: Sequence[float] | None, zs: Sequence[float] | None, steps: int
+) -> Grid:
     """Return the grid of a map, with the default amplitudes [rad] and z where none are given."""
     grid = default_grid(scene.cast)
     theta = grid.theta if thetas is None else np.array(thetas)

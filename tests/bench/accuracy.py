@@ -26,7 +26,9 @@ def seconds(arguments: list[str]) -> float:
     program, best = str(Path(sys.executable).with_name("pendu-tui")), float("inf")
     for _ in range(REPEATS):
         began = time.perf_counter()
-        told = subprocess.run([program, "accuracy", *arguments], check=True, capture_output=True, text=True)
+        told = subprocess.run(
+            [program, "accuracy", *arguments], check=True, capture_output=True, text=True
+        )
         best = min(best, time.perf_counter() - began)
         assert "force evaluations" in told.stdout
     return best
@@ -40,7 +42,11 @@ def main() -> None:
         for name, arguments in RUNS.items()
     }
     passed = all(measured[name] <= limits[name] for name in RUNS)
-    print(json.dumps({"bench": "accuracy", "seconds": measured, "limits": limits, "pass": passed}, indent=1))
+    print(
+        json.dumps(
+            {"bench": "accuracy", "seconds": measured, "limits": limits, "pass": passed}, indent=1
+        )
+    )
 
 
 if __name__ == "__main__":

@@ -25,11 +25,77 @@ from tui.cli.errors import Exit
 SECONDS = 15  # until it is ended
 TRACEBACK, SLOW = 99, -1
 VALUES = [
-    *("", "--", "-", "-1", "0", "1", "2", "5", "1e-3", "-1e-3", "0.05", "1e9", "1e308", "1e400", "nan", "inf", "-inf"),
-    *("9" * 400, "0x10", "1_000", "٣", "½", "\ud800", "\x1b[31m", "\x00"[:0], "θ", "a b", "'", "1,2", "0.1:3:5", ":::"),
-    *("120deg", "2rad", "90°", "pi/2", "5s", "latest", "drift", "golden", "absent.mcap", "whole.mcap", "cut.mcap"),
-    *("scene.toml", "bom.toml", "digits.toml", "zero.toml", "mine.py:mine", "mine.py:other", "mine.py", "energies.csv"),
-    *("out.csv", "out.json", "out.npz", "out.svg", "out.pdf", "absent/out.csv", ".", "/", "/dev/null", "80x24", "3x3"),
+    *(
+        "",
+        "--",
+        "-",
+        "-1",
+        "0",
+        "1",
+        "2",
+        "5",
+        "1e-3",
+        "-1e-3",
+        "0.05",
+        "1e9",
+        "1e308",
+        "1e400",
+        "nan",
+        "inf",
+        "-inf",
+    ),
+    *(
+        "9" * 400,
+        "0x10",
+        "1_000",
+        "٣",
+        "½",
+        "\ud800",
+        "\x1b[31m",
+        "\x00"[:0],
+        "θ",
+        "a b",
+        "'",
+        "1,2",
+        "0.1:3:5",
+        ":::",
+    ),
+    *(
+        "120deg",
+        "2rad",
+        "90°",
+        "pi/2",
+        "5s",
+        "latest",
+        "drift",
+        "golden",
+        "absent.mcap",
+        "whole.mcap",
+        "cut.mcap",
+    ),
+    *(
+        "scene.toml",
+        "bom.toml",
+        "digits.toml",
+        "zero.toml",
+        "mine.py:mine",
+        "mine.py:other",
+        "mine.py",
+        "energies.csv",
+    ),
+    *(
+        "out.csv",
+        "out.json",
+        "out.npz",
+        "out.svg",
+        "out.pdf",
+        "absent/out.csv",
+        ".",
+        "/",
+        "/dev/null",
+        "80x24",
+        "3x3",
+    ),
     *(method.key for method in METHODS[:4]),
     *list(SCENES)[:4],
 ]
@@ -127,7 +193,11 @@ def bench(number: int, seed: int) -> None:
             if code not in {SLOW, *Exit}:
                 print(f"{words!r} in {os.environ['PENDU_RECORDINGS']}: {code}\n{text}")
         os.chdir("/")
-    print(", ".join(f"{'slow' if code == SLOW else code}: {times}" for code, times in sorted(codes.items())))
+    print(
+        ", ".join(
+            f"{'slow' if code == SLOW else code}: {times}" for code, times in sorted(codes.items())
+        )
+    )
 
 
 if __name__ == "__main__":

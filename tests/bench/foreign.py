@@ -84,11 +84,15 @@ class Maker:
             yield Series(f"correlated T/{times}", noise, bounded, independent=times / 2)
         yield Series("constant", 0 * self.x, bounded)
         rare = self.random.uniform(size=self.count) < 0.01
-        yield Series("spikes", self.white() + rare * self.random.exponential(30, self.count), bounded)
+        yield Series(
+            "spikes", self.white() + rare * self.random.exponential(30, self.count), bounded
+        )
         yield Series("Student-2", self.random.standard_t(2, self.count), bounded)
         yield Series("walk", np.cumsum(self.white()), {"wanders"}, sigmas=0)
         walk = np.cumsum(self.white()) / math.sqrt(self.count)
-        yield Series("walk and white", walk + self.between(0.02, 0.3) * self.white(), {"wanders"}, sigmas=0)
+        yield Series(
+            "walk and white", walk + self.between(0.02, 0.3) * self.white(), {"wanders"}, sigmas=0
+        )
         few = self.white()[: self.random.integers(10, 64)]
         yield Series("few", few, set(), sigmas=0)
 
@@ -101,9 +105,13 @@ class Maker:
         for low, high in ((5, 10), (10, 300)):
             sigmas = self.between(low, high)
             drift = self.sign * sigmas * math.sqrt(12 / self.count) * self.x
-            yield Series(f"drift {low} to {high} sigma", self.white() + drift, self.way, sigmas, self.count)
+            yield Series(
+                f"drift {low} to {high} sigma", self.white() + drift, self.way, sigmas, self.count
+            )
         noise = correlated(self.count, 20, self.random)
-        yield Series("drift 10 sd, correlated T/20", noise + 10 * self.sign * self.x, self.way, 9, 10)
+        yield Series(
+            "drift 10 sd, correlated T/20", noise + 10 * self.sign * self.x, self.way, 9, 10
+        )
 
     def waves(self) -> Iterator[Series]:
         most = min(60, self.count / 3)
@@ -141,12 +149,16 @@ class Maker:
         curve = self.sign * np.expm1(self.between(4, 20) * self.x)
         yield Series("exponential growth", 0.01 * (self.white() + curve), self.way)
         start = self.white()
-        start[: self.random.integers(1, max(2, self.count // 60))] += self.sign * self.between(8, 300)
+        start[: self.random.integers(1, max(2, self.count // 60))] += self.sign * self.between(
+            8, 300
+        )
         yield Series("short start", start, {"bounded"})
 
     def digits(self) -> Iterator[Series]:
         for digit in (0.3, 1, 3):
-            yield Series(f"digits of {digit} sd", np.round(self.white() / digit) * digit, {"bounded"})
+            yield Series(
+                f"digits of {digit} sd", np.round(self.white() / digit) * digit, {"bounded"}
+            )
         still = np.round(0.2 * self.white() + self.random.uniform())
         yield Series("hardly a digit", still, {"bounded"})
         drift = self.sign * self.between(4, 30) * self.x + self.random.uniform()
@@ -182,7 +194,9 @@ def main(trials: int) -> None:
         "wrong %": round(100 * total["wrong"] / verdicts, 2),
         "too early % of clear ones": round(100 * total["clear, too early"] / total["clear"], 2),
         "ms each": round(1000 * (time.process_time() - began) / verdicts, 1),
-        "kinds": {kind: {name: n for name, n in found.items() if n} for kind, found in kinds.items()},
+        "kinds": {
+            kind: {name: n for name, n in found.items() if n} for kind, found in kinds.items()
+        },
     }
     print(json.dumps(result, indent=1))
 

@@ -24,7 +24,9 @@ def main() -> None:
     program = str(Path(sys.executable).with_name("pendu-tui"))
     helps = [seconds([program, "--help"]) for _ in range(REPEATS)]
     bare = [seconds([sys.executable, "-c", "pass"]) for _ in range(REPEATS)]
-    loaded = subprocess.run([sys.executable, "-c", LOADED], check=True, capture_output=True, text=True)
+    loaded = subprocess.run(
+        [sys.executable, "-c", LOADED], check=True, capture_output=True, text=True
+    )
     print(
         json.dumps(
             {

@@ -25,9 +25,15 @@ COMMANDS = {
 def measured(command: tuple[str, ...], file: Path) -> tuple[int, float, float]:
     """Return exit code, processor time [s] and peak memory [MB] of a command."""
     arguments = [sys.executable, "-c", MAIN, *command, str(file)]
-    process = subprocess.Popen(arguments, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=file.parent)
+    process = subprocess.Popen(
+        arguments, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=file.parent
+    )
     _, status, usage = os.wait4(process.pid, 0)
-    return os.waitstatus_to_exitcode(status), usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1000
+    return (
+        os.waitstatus_to_exitcode(status),
+        usage.ru_utime + usage.ru_stime,
+        usage.ru_maxrss / 1000,
+    )
 
 
 def write_file(path: Path, name: str, many: int) -> None:
@@ -43,13 +49,18 @@ def main() -> None:
     with TemporaryDirectory() as folder:
         for name in FILES:
             path = Path(folder) / "hostile.mcap"
-            writer = Process(target=write_file, args=(path, name, many))  # or commands inherit its memory
+            writer = Process(
+                target=write_file, args=(path, name, many)
+            )  # or commands inherit its memory
             writer.start()
             writer.join()
             for command in COMMANDS.values():
                 code, seconds, memory = measured(command, path)
                 codes.add(code)
-                print(f"{name:<22} {' '.join(command):<40} {code} {seconds:.1f} s {memory:.0f} MB", file=sys.stderr)
+                print(
+                    f"{name:<22} {' '.join(command):<40} {code} {seconds:.1f} s {memory:.0f} MB",
+                    file=sys.stderr,
+                )
                 worst["processor_seconds"] = round(max(worst["processor_seconds"], seconds), 2)
                 worst["memory_mb"] = round(max(worst["memory_mb"], memory))
     cases = len(FILES) * len(COMMANDS)

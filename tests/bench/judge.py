@@ -33,7 +33,13 @@ CELLS = {  # a million steps' truth -> what fewer steps, and energies alone, may
     "w": {"wanders", "caught", "bounded"},  # until it has left the band it is in
     "g": {"grows"},
     "d": {"loses", "caught"},  # at rest, where nothing is left to lose
-    "k": {"grows", "loses", "caught", "bounded", "wanders"},  # the course there is over before the first block is
+    "k": {
+        "grows",
+        "loses",
+        "caught",
+        "bounded",
+        "wanders",
+    },  # the course there is over before the first block is
     "K": {"grows", "loses", "caught", "bounded"},
     "B": {"bounded", "loses", "grows", "caught", "wanders"},  # by rounding, which walks, too
 }
@@ -42,7 +48,12 @@ CELLS = {  # a million steps' truth -> what fewer steps, and energies alone, may
 def samplings(n: int, random: np.random.Generator) -> dict[str, np.ndarray]:
     """Which of n samples each sampling takes."""
     some = np.sort(random.choice(np.arange(1, n), n // 5, replace=False))
-    return {"dense": np.arange(n), "7th": np.arange(0, n, 7), "13th": np.arange(0, n, 13), "random": np.r_[0, some]}
+    return {
+        "dense": np.arange(n),
+        "7th": np.arange(0, n, 7),
+        "13th": np.arange(0, n, 13),
+        "random": np.r_[0, some],
+    }
 
 
 def of_cells(every: int) -> tuple[dict[str, Counter[str]], list[tuple[object, ...]]]:
@@ -64,7 +75,9 @@ def of_cells(every: int) -> tuple[dict[str, Counter[str]], list[tuple[object, ..
             errors.append(reference.error(value))
         energies = 1 + np.array(errors)
         for name, which in samplings(len(energies), random).items():
-            verdict = judge_energies(which * stride * scene.h, energies[which], ended).judgement.verdict
+            verdict = judge_energies(
+                which * stride * scene.h, energies[which], ended
+            ).judgement.verdict
             table[f"{name} {letter}"][verdict] += 1
             if verdict not in CELLS[letter] | {"too early"}:
                 wrong.append((name, method.key, start, z, letter, verdict))
@@ -89,11 +102,14 @@ def of_time() -> dict[str, float]:
             file = Path(folder) / f"{name}.csv"
             energies = [f"{value:.12g}" for value in 1 + 1e-3 * random.standard_normal(LINES)]
             rows = (
-                f"{i * 0.01:.2f},0.5,0.3,{'' if every and i % every == 0 else energies[i]},1.0\n" for i in range(LINES)
+                f"{i * 0.01:.2f},0.5,0.3,{'' if every and i % every == 0 else energies[i]},1.0\n"
+                for i in range(LINES)
             )
             file.write_text("t,kinetic,potential,total,x\n" + "".join(rows))
             program = Path(sys.executable).with_name("pendu-tui")
-            found[name] = seconds(str(program), "judge", str(file), "--time", "t", "--energy", "total", "--json")
+            found[name] = seconds(
+                str(program), "judge", str(file), "--time", "t", "--energy", "total", "--json"
+            )
         reading = "import numpy, sys; numpy.loadtxt(sys.argv[1], delimiter=',', skiprows=1, usecols=(0, 3))"
         found["loadtxt"] = seconds(sys.executable, "-c", reading, str(Path(folder) / "clean.csv"))
     return found

@@ -36,14 +36,22 @@ def agreement(seconds: float) -> dict[str, Any]:
         while lockstep.step < steps:
             lockstep.advance(min(every, steps - lockstep.step))
             samples.append(lockstep.sample())
-        for index, (method, judgement) in enumerate(zip(scene.cast, lockstep.judgements, strict=True)):
+        for index, (method, judgement) in enumerate(
+            zip(scene.cast, lockstep.judgements, strict=True)
+        ):
             readings = [sample.readings[index] for sample in samples]
             conserved = scene.equations.energy_error.conserved
             energies = np.array(
-                [each.energy if conserved else each.energy_error for each in readings if each.diverged_at is None]
+                [
+                    each.energy if conserved else each.energy_error
+                    for each in readings
+                    if each.diverged_at is None
+                ]
             )
             times = np.array([abs(sample.t) for sample in samples[: len(energies)]])
-            alone = judge_energies(times, energies, failed=len(energies) < len(samples)).judgement.verdict
+            alone = judge_energies(
+                times, energies, failed=len(energies) < len(samples)
+            ).judgement.verdict
             cells += 1
             if alone != judgement.verdict:
                 where = (scene.name, method.key, judgement.verdict, alone)
@@ -71,7 +79,9 @@ def evaluations(name: str, seconds: float) -> dict[str, float]:
     counts = []
     for judged in (False, True):
         calls = [0, 0]
-        scene = SCENES[name].with_cast(tuple(counting(method, calls) for method in SCENES[name].cast))
+        scene = SCENES[name].with_cast(
+            tuple(counting(method, calls) for method in SCENES[name].cast)
+        )
         Lockstep(scene, judged=judged).advance(round(seconds / scene.h))
         counts.append(calls)
     (alone, _), (judged_too, tangents) = counts
@@ -98,7 +108,9 @@ def main() -> None:
     seconds = float(sys.argv[1]) if len(sys.argv) > 1 else SECONDS
     report = {
         "agreement": agreement(seconds),
-        "evaluations": {name: evaluations(name, seconds) for name in ("drift", "near-separatrix", "crossover")},
+        "evaluations": {
+            name: evaluations(name, seconds) for name in ("drift", "near-separatrix", "crossover")
+        },
         "early_trends": early_trends(),
     }
     print(json.dumps({"bench": "judging", **report}, indent=1))

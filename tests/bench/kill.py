@@ -21,10 +21,15 @@ def main() -> None:
     """Kill, rescue, verify and print."""
     kills = int(sys.argv[1]) if len(sys.argv) > 1 else KILLS
     chance = random.Random()
-    hogs = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(int((sys.argv + ["0"] * 2)[2]))]
+    hogs = [
+        subprocess.Popen([sys.executable, "-c", "while True: pass"])
+        for _ in range(int((sys.argv + ["0"] * 2)[2]))
+    ]
     with TemporaryDirectory() as folder, ThreadPoolExecutor(AT_ONCE) as pool:
         folders = (Path(folder) / str(i) for i in range(kills))
-        outcomes = list(pool.map(kill_one, folders, [chance.uniform(0.0, 5.0) for _ in range(kills)]))
+        outcomes = list(
+            pool.map(kill_one, folders, [chance.uniform(0.0, 5.0) for _ in range(kills)])
+        )
     for hog in hogs:
         hog.kill()
     losses = [loss for loss, _ in outcomes]
@@ -34,7 +39,9 @@ def main() -> None:
                 "benchmark": "kill",
                 "kills": kills,
                 "hogs": len(hogs),
-                "verified": sum(verification.identical and verification.complete for _, verification in outcomes),
+                "verified": sum(
+                    verification.identical and verification.complete for _, verification in outcomes
+                ),
                 "largest_loss_seconds": round(max(losses), 3),
                 "smallest_loss_seconds": round(min(losses), 3),
             }

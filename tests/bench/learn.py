@@ -33,7 +33,10 @@ def fitted(matrix, target):
     """Least squares with a little ridge, in the columns' own scale."""
     scale = np.sqrt((matrix**2).sum(0))
     ridge = np.vstack((matrix / scale, RIDGE * np.eye(matrix.shape[1])))
-    return np.linalg.lstsq(ridge, np.concatenate((target, np.zeros(matrix.shape[1]))), rcond=None)[0] / scale
+    return (
+        np.linalg.lstsq(ridge, np.concatenate((target, np.zeros(matrix.shape[1]))), rcond=None)[0]
+        / scale
+    )
 
 
 def learned(seed):
@@ -46,7 +49,8 @@ def learned(seed):
     slopes = 1 - features**2
     theta, omega = (fitted(features, rate) for rate in rates.T)
     energy = fitted(
-        np.vstack((slopes * weights[:, 1], -slopes * weights[:, 0])), np.concatenate((rates[:, 0], rates[:, 1]))
+        np.vstack((slopes * weights[:, 1], -slopes * weights[:, 0])),
+        np.concatenate((rates[:, 0], rates[:, 1])),
     )
     return weights, biases, theta, omega, energy
 
@@ -93,7 +97,9 @@ def text(model):
     """The module that holds the numbers."""
     weights, biases, theta, omega, energy = model
     columns = {
-        "FEATURES": " ".join(f"{a:g},{b:g},{c:g}" for (a, b), c in zip(weights, biases, strict=True)),
+        "FEATURES": " ".join(
+            f"{a:g},{b:g},{c:g}" for (a, b), c in zip(weights, biases, strict=True)
+        ),
         "FIELD": " ".join(f"{t:.6g},{o:.6g}" for t, o in zip(theta, omega, strict=True)),
         "HAMILTONIAN": " ".join(f"{e:.6g}" for e in energy),
     }
@@ -102,7 +108,9 @@ def text(model):
         "FIELD": "Its coefficients in theta'/w0 and in omega'/w0².",
         "HAMILTONIAN": "Its coefficient in H/w0².",
     }
-    lines = ['"""What tests/bench/learn.py learned from 600 noisy measurements of a pendulum with w0² = 9.81 s⁻²."""']
+    lines = [
+        '"""What tests/bench/learn.py learned from 600 noisy measurements of a pendulum with w0² = 9.81 s⁻²."""'
+    ]
     for name, numbers in columns.items():
         lines += ["", f'{name} = """']
         line = ""
@@ -119,7 +127,9 @@ def main():
     model = learned(SEED)
     if "--write" in sys.argv:
         NUMBERS.write_text(text(model), encoding="utf-8")
-    many = {h: np.array([energy_errors(learned(seed), h) for seed in range(12)]) for h in (False, True)}
+    many = {
+        h: np.array([energy_errors(learned(seed), h) for seed in range(12)]) for h in (False, True)
+    }
     report = {}
     for hamiltonian, name in ((False, "field"), (True, "hamiltonian")):
         runs = many[hamiltonian]

@@ -63,7 +63,16 @@ def compiled(folder: str) -> ctypes.CDLL | None:
         return None
     source, library = Path(folder, "loops.c"), Path(folder, "loops.so")
     source.write_text(C)
-    options = ["-O3", "-ffp-contract=off", "-shared", "-fPIC", "-o", str(library), str(source), "-lm"]
+    options = [
+        "-O3",
+        "-ffp-contract=off",
+        "-shared",
+        "-fPIC",
+        "-o",
+        str(library),
+        str(source),
+        "-lm",
+    ]
     subprocess.run([compiler, *options], check=True)
     return ctypes.CDLL(str(library))
 
@@ -90,7 +99,10 @@ def c_loop(library: ctypes.CDLL | None, method: Method, loop: str) -> Callable[[
     def run(steps: int) -> float:
         return float(function(scene.w0_squared, scene.theta, scene.omega, scene.h, steps, 1e300))
 
-    assert run(1000) == PlainLoops(method, scene.equations).travel((scene.theta, scene.omega), scene.h, 1000)[0]
+    assert (
+        run(1000)
+        == PlainLoops(method, scene.equations).travel((scene.theta, scene.omega), scene.h, 1000)[0]
+    )
     return run
 
 
@@ -104,17 +116,27 @@ def main() -> None:
         for method in USUAL_CAST:
             travel, advance = PlainLoops(method, scene.equations)
             runs = {
-                "without_energies": (partial(travel, start, scene.h, STEPS), c_loop(library, method, "travel")),
-                "with_energies": (partial(advance, start, scene.h, STEPS, 1e300), c_loop(library, method, "advance")),
+                "without_energies": (
+                    partial(travel, start, scene.h, STEPS),
+                    c_loop(library, method, "travel"),
+                ),
+                "with_energies": (
+                    partial(advance, start, scene.h, STEPS, 1e300),
+                    c_loop(library, method, "advance"),
+                ),
             }
             ours, c, of_c = {}, {}, {}
             for name, (run, in_c) in runs.items():
-                ours[name], *rest = rates((run, STEPS), *([(partial(in_c, STEPS), STEPS)] if in_c else []))
+                ours[name], *rest = rates(
+                    (run, STEPS), *([(partial(in_c, STEPS), STEPS)] if in_c else [])
+                )
                 c[name] = rest[0] if rest else None
                 of_c[name] = ours[name] / rest[0] if rest else None
             methods[method.key] = {"steps_per_second": ours, "c_steps_per_second": c, "of_c": of_c}
     (together,) = rates((partial(lockstep.advance, STEPS), STEPS))
-    bare = 1 / sum(1 / method["steps_per_second"]["without_energies"] for method in methods.values())
+    bare = 1 / sum(
+        1 / method["steps_per_second"]["without_energies"] for method in methods.values()
+    )
     report = {
         "bench": "lockstep",
         "lockstep_steps_per_second": together,

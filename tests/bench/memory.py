@@ -35,7 +35,9 @@ async def measure(folder: Path) -> dict[str, float]:
     """Run the hour."""
     now = 0.0
     live = Live(DEFAULT_SCENE, clock=lambda: 0.0)
-    stage = LiveScreen(live, clock=lambda: now, prepare=lambda: live.record(LiveRecorder(folder / "hour.mcap")))
+    stage = LiveScreen(
+        live, clock=lambda: now, prepare=lambda: live.record(LiveRecorder(folder / "hour.mcap"))
+    )
     app = PenduApp(stage)
     at: dict[int, float] = {}
     async with app.run_test(size=(120, 40)) as pilot:

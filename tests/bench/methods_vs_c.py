@@ -23,7 +23,9 @@ MANY = 10 * STEPS
 START = SCENE.theta, SCENE.omega
 
 
-def our_loop(loops_of: LoopsOf, method: Method, loop: str, steps: int) -> tuple[Callable[[], object], int]:
+def our_loop(
+    loops_of: LoopsOf, method: Method, loop: str, steps: int
+) -> tuple[Callable[[], object], int]:
     """Travel or advance by so many steps, compiled if it is."""
     loops = loops_of(method, SCENE.equations)
     go = loops.travel if loop == "travel" else partial(loops.advance, limit=math.inf)
@@ -69,7 +71,10 @@ def main() -> None:
     """Measure and print."""
     with tempfile.TemporaryDirectory() as folder:
         library = c_library(folder)
-        loops = {m.key: {loop: one_loop(library, m, loop) for loop in ("travel", "advance")} for m in USUAL_CAST}
+        loops = {
+            m.key: {loop: one_loop(library, m, loop) for loop in ("travel", "advance")}
+            for m in USUAL_CAST
+        }
     report = {
         "bench": "methods_vs_c",
         "methods": loops,

@@ -19,7 +19,14 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 from engine.scenes import SCENES, Scene
 from recordings.verification import verify
 from tests.tui.harness import on_stage
-from tests.tui.monkey import SIZE, play_on_stage, small_studies, wild_presses, wild_replay, wild_stage
+from tests.tui.monkey import (
+    SIZE,
+    play_on_stage,
+    small_studies,
+    wild_presses,
+    wild_replay,
+    wild_stage,
+)
 from tui.screens.app import PenduApp
 
 SITTING, BATCH = 500, 5  # events
@@ -55,7 +62,9 @@ def sitting(scene: Scene, events: int, seed: int) -> Counter[str]:
         recordings = list(library.glob("*.mcap"))
         unfinished = list(library.glob("*.part"))
         verified = sum(verify(path).identical for path in recordings)
-        return counts + Counter(recordings=len(recordings), verified=verified, unfinished=len(unfinished))
+        return counts + Counter(
+            recordings=len(recordings), verified=verified, unfinished=len(unfinished)
+        )
 
 
 def main() -> None:

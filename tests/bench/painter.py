@@ -122,7 +122,9 @@ class Painter(App[None]):
         if not 0 <= self._at + self._step < len(self._panes[0].frames):
             self._step = -self._step
         before, self._at = self._at, self._at + self._step
-        for painting, pane, changes in zip(self._paintings, self._panes, self._changes, strict=True):
+        for painting, pane, changes in zip(
+            self._paintings, self._panes, self._changes, strict=True
+        ):
             if regions := changes[min(before, self._at)]:
                 painting.strips = pane.frames[self._at]
                 painting.refresh(*regions)

@@ -31,7 +31,10 @@ TIMES = np.linspace(0, TIME, 401)[1:]
 MOTION = SCENE.exact()
 EXACT = np.array([MOTION.at(float(t)).theta for t in TIMES])
 TOO_LONG = 0.4  # s; a solver that takes longer is not asked for smaller errors
-ROUNDS, ENOUGH = 200, 0.5  # rounds of all runs, of which one that has taken so many seconds is left out
+ROUNDS, ENOUGH = (
+    200,
+    0.5,
+)  # rounds of all runs, of which one that has taken so many seconds is left out
 IN_A_ROW = 3  # runs in each turn: the first one finds the caches full of another solver's
 W0_SQUARED, START = SCENE.w0_squared, [SCENE.theta, SCENE.omega]
 
@@ -59,10 +62,14 @@ def taylor_solvers() -> Iterator[Solver]:
         return solve_by_taylor(W0_SQUARED, SCENE.theta, SCENE.omega, times, tolerance)[0][:, 0]
 
     end = np.array([TIME])
-    yield Solver("Taylor 20", lambda tol: lambda: solve(end, tol), lambda tol: off(solve(TIMES, tol)))
+    yield Solver(
+        "Taylor 20", lambda tol: lambda: solve(end, tol), lambda tol: off(solve(TIMES, tol))
+    )
 
 
-def fixed(name: str, travel: Callable[[tuple[float, float], float, int], tuple[float, float]]) -> Solver:
+def fixed(
+    name: str, travel: Callable[[tuple[float, float], float, int], tuple[float, float]]
+) -> Solver:
     """A method with a fixed step, compiled: from a phase, h and a number of steps to the phase."""
 
     def error(steps: int) -> float:
@@ -72,7 +79,12 @@ def fixed(name: str, travel: Callable[[tuple[float, float], float, int], tuple[f
             largest = max(largest, abs(phase[0] - MOTION.at(done * TIME / steps).theta))
         return largest
 
-    return Solver(name, lambda steps: partial(travel, (SCENE.theta, SCENE.omega), TIME / steps, steps), error, STEPS)
+    return Solver(
+        name,
+        lambda steps: partial(travel, (SCENE.theta, SCENE.omega), TIME / steps, steps),
+        error,
+        STEPS,
+    )
 
 
 def method_solvers() -> Iterator[Solver]:
@@ -91,10 +103,14 @@ def scipy_solvers() -> Iterator[Solver]:
     for method in ("DOP853", "LSODA"):
 
         def solve(tolerance: float, times: Any = None, method: str = method) -> Any:
-            return solve_ivp(slope, (0, TIME), START, method, times, rtol=max(tolerance, 3e-14), atol=tolerance).y[0]
+            return solve_ivp(
+                slope, (0, TIME), START, method, times, rtol=max(tolerance, 3e-14), atol=tolerance
+            ).y[0]
 
         yield Solver(
-            f"scipy {method}", lambda tol, solve=solve: lambda: solve(tol), lambda tol, s=solve: off(s(tol, TIMES))
+            f"scipy {method}",
+            lambda tol, solve=solve: lambda: solve(tol),
+            lambda tol, s=solve: off(s(tol, TIMES)),
         )
 
 
@@ -113,7 +129,12 @@ def diffrax_solvers() -> Iterator[Solver]:
         def solve(tolerance: Any, save: Any, solver: Any = solver) -> Any:
             control = diffrax.PIDController(rtol=tolerance, atol=tolerance)
             term, y = diffrax.ODETerm(slope), numpy.array(START)
-            limits = {"saveat": save, "stepsize_controller": control, "max_steps": 1_000_000, "throw": False}
+            limits = {
+                "saveat": save,
+                "stepsize_controller": control,
+                "max_steps": 1_000_000,
+                "throw": False,
+            }
             return diffrax.diffeqsolve(term, solver, 0.0, TIME, 0.01, y, **limits).ys
 
         end = jax.jit(lambda tol, solve=solve: solve(tol, diffrax.SaveAt(t1=True)))
@@ -167,7 +188,9 @@ def heyoka_solvers() -> Iterator[Solver]:
         return run
 
     def error(tolerance: float, fast: bool) -> float:
-        return off(prepared(tolerance, fast).propagate_grid(np.concatenate([[0.0], TIMES]))[-1][1:, 0])
+        return off(
+            prepared(tolerance, fast).propagate_grid(np.concatenate([[0.0], TIMES]))[-1][1:, 0]
+        )
 
     for name, fast in (("heyoka", False), ("heyoka, fast_math", True)):
         yield Solver(name, partial(to_the_end, fast=fast), partial(error, fast=fast))
@@ -226,7 +249,10 @@ def main() -> None:
                 began = time.perf_counter()
                 solver.to_the_end(solver.settings[0])()
                 solver.error(solver.settings[0])
-                rows[solver.name] = {"startup_seconds": round(time.perf_counter() - began, 2), "ours": package in ours}
+                rows[solver.name] = {
+                    "startup_seconds": round(time.perf_counter() - began, 2),
+                    "ours": package in ours,
+                }
                 for target, setting in zip(TARGETS, loosest(solver), strict=True):
                     rows[solver.name][f"{target:g}"] = setting and {"setting": setting}
                     if setting is not None:
@@ -237,10 +263,13 @@ def main() -> None:
         rows[name][f"{target:g}"]["ms"] = milliseconds
     columns = [f"{target:g}" for target in TARGETS]
     first = {
-        column: min((row[column]["ms"], name) for name, row in rows.items() if row[column])[1] for column in columns
+        column: min((row[column]["ms"], name) for name, row in rows.items() if row[column])[1]
+        for column in columns
     }
     ratios = {
-        name: {column: rows[name][column]["ms"] / rows["Taylor 20"][column]["ms"] for column in columns}
+        name: {
+            column: rows[name][column]["ms"] / rows["Taylor 20"][column]["ms"] for column in columns
+        }
         for name in rows
         if name.startswith("heyoka")
     }
@@ -249,7 +278,8 @@ def main() -> None:
         "bench": "peers",
         "scene": "theta 2 rad, 100 s, 1 m",
         "solvers": rows,
-        "closed_form_ms": 1e3 * references(SCENE, TIME, time.perf_counter, fast=True).floor,  # 401 states
+        "closed_form_ms": 1e3
+        * references(SCENE, TIME, time.perf_counter, fast=True).floor,  # 401 states
         "first": first,
         "ratio_to_taylor_20": ratios,
         "skipped": skipped,

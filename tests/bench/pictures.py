@@ -56,7 +56,11 @@ def scattered(random: np.random.Generator) -> Callable[[], Picture]:
 
 def long_run() -> tuple[ErrorHistory, float]:
     """A history of many frames, and what adding one took on average [ms]."""
-    lockstep, exact, history = Lockstep(DEFAULT_SCENE), DEFAULT_SCENE.exact(), ErrorHistory(DEFAULT_SCENE)
+    lockstep, exact, history = (
+        Lockstep(DEFAULT_SCENE),
+        DEFAULT_SCENE.exact(),
+        ErrorHistory(DEFAULT_SCENE),
+    )
     samples = []
     for _ in range(FRAMES):
         samples.append(lockstep.sample())
@@ -73,9 +77,13 @@ def fuzz(random: np.random.Generator, builds: int) -> None:
     awkward = np.array([np.nan, np.inf, -np.inf, 0.0, -0.0, 1e308, -1e308, 5e-324, 1e-17, 1.0])
     for _ in range(builds):
         count = int(random.integers(0, 300))
-        values = random.normal(size=(2, count, COUNT)) * 10.0 ** random.integers(-20, 20, size=(1, 1, COUNT))
+        values = random.normal(size=(2, count, COUNT)) * 10.0 ** random.integers(
+            -20, 20, size=(1, 1, COUNT)
+        )
         values = np.where(
-            random.random(values.shape) < random.random() / 3, random.choice(awkward, values.shape), values
+            random.random(values.shape) < random.random() / 3,
+            random.choice(awkward, values.shape),
+            values,
         )
         x = np.cumsum(random.random(count) * 10.0 ** random.integers(-3, 6))
         window = Window(
@@ -91,7 +99,9 @@ def fuzz(random: np.random.Generator, builds: int) -> None:
             bool(random.integers(2)),
             None if random.integers(3) == 0 else float(10.0 ** random.uniform(-1, 6)),
         )
-        assert time_chart(window, USUAL_CAST, Shown(log=log, seconds=seconds), width, height).picture.rows
+        assert time_chart(
+            window, USUAL_CAST, Shown(log=log, seconds=seconds), width, height
+        ).picture.rows
 
 
 def main() -> None:
@@ -105,7 +115,9 @@ def main() -> None:
         "chart_80x20": least(lambda: time_chart(window, USUAL_CAST, Shown(seconds=20.0), 80, 20)),
         "chart_160x40": least(lambda: time_chart(window, USUAL_CAST, Shown(seconds=20.0), 160, 40)),
         "chart_160x40_whole_run": least(lambda: time_chart(whole, USUAL_CAST, Shown(), 160, 40)),
-        "chart_160x40_linear": least(lambda: time_chart(window, USUAL_CAST, Shown(seconds=20.0, log=False), 160, 40)),
+        "chart_160x40_linear": least(
+            lambda: time_chart(window, USUAL_CAST, Shown(seconds=20.0, log=False), 160, 40)
+        ),
         "pendulum_23x18": least(lambda: pendulum_picture(23, 18, [Bob(1.0, 0, trail=trail)])),
         "history_add": add,
         "history_window_20_s": least(lambda: history.window(20.0)),

@@ -116,8 +116,14 @@ def main() -> None:
         long_recording(path, hours)
         size = path.stat().st_size
         command = [sys.executable, __file__, "--watch", str(path)]
-        watched = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
-    facts = {"microseconds_a_frame": round(cost * 1e6, 1), "hours": hours, "megabytes": round(size / 1e6, 1)}
+        watched = json.loads(
+            subprocess.run(command, check=True, capture_output=True, text=True).stdout
+        )
+    facts = {
+        "microseconds_a_frame": round(cost * 1e6, 1),
+        "hours": hours,
+        "megabytes": round(size / 1e6, 1),
+    }
     found = {name: round(value, 5) for name, value in watched.items()}
     print(json.dumps({"benchmark": "recording", "cores": os.cpu_count(), **facts, **found}))
 

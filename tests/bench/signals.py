@@ -107,7 +107,9 @@ def main() -> None:
         "ends": sum((ends(chance, closed=False) for _ in range(options.ends)), Counter()),
         "closed": sum((ends(chance, closed=True) for _ in range(options.closed)), Counter()),
     }
-    print(json.dumps({"bench": "signals", **{name: dict(counts) for name, counts in report.items()}}))
+    print(
+        json.dumps({"bench": "signals", **{name: dict(counts) for name, counts in report.items()}})
+    )
 
 
 if __name__ == "__main__":

@@ -17,7 +17,10 @@ from tests.tui.pty_lab import PtyLab
 
 RATE = 64 * 1024  # bytes/s
 VIEWS = {"lab": "\x1bOQ", "phase": "\x1bOR", "accuracy": "\x1bOS", "stability": "\x1b[15~"}
-SETTLED, SECONDS = 4.0, 10.0  # s until a view has been painted; and of simulated time that are compared
+SETTLED, SECONDS = (
+    4.0,
+    10.0,
+)  # s until a view has been painted; and of simulated time that are compared
 BUDGETS = {"key_max_ms": 1000, "time_slip_ms": 1000}
 TIME = re.compile(rb"t (\d+\.\d+) s")
 
@@ -38,7 +41,10 @@ def slip(lab: PtyLab) -> float:
 
 def measure(key: str) -> dict[str, float]:
     """Look at a view for a while."""
-    with tempfile.TemporaryDirectory() as folder, PtyLab(*LAB, "--fps", "5", rate=RATE, PENDU_RECORDINGS=folder) as lab:
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        PtyLab(*LAB, "--fps", "5", rate=RATE, PENDU_RECORDINGS=folder) as lab,
+    ):
         lab.wait_for("REC 2 s")
         lab.type(key)
         lab.run(SETTLED)

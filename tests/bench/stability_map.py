@@ -42,9 +42,15 @@ def map_seconds(fast: bool) -> tuple[float, int]:
 
 def kernel(fast: bool, sine: float) -> dict[str, object]:
     """One way's figures."""
-    theta, z = np.full(STRIP, 0.5), np.full(STRIP, 1e-3)  # small steps: no swing leaves the ensemble
+    theta, z = (
+        np.full(STRIP, 0.5),
+        np.full(STRIP, 1e-3),
+    )  # small steps: no swing leaves the ensemble
     first, _ = map_seconds(fast)
-    steps = {m.key: fastest(lambda m=m: outcomes(m, theta, z, STEPS, fast)) / STEPS / STRIP for m in GENERAL}
+    steps = {
+        m.key: fastest(lambda m=m: outcomes(m, theta, z, STEPS, fast)) / STEPS / STRIP
+        for m in GENERAL
+    }
     seconds, taken = map_seconds(fast)
     return {
         "ns_per_pendulum_step": {key: value * 1e9 for key, value in steps.items()},
@@ -59,9 +65,12 @@ def main() -> int:
     """Measure and print."""
     theta = np.full(STRIP, 0.5)
     sine = fastest(lambda: [np.sin(theta) for _ in range(STEPS)]) / STEPS / STRIP
-    ways = {name: kernel(name == "numba", sine) for name in LIMITS if name == "numpy" or available()}
+    ways = {
+        name: kernel(name == "numba", sine) for name in LIMITS if name == "numpy" or available()
+    }
     passed = all(
-        way["map_seconds"] <= LIMITS[name] and way["ns_per_pendulum_step"]["velocity_verlet"] <= NS_LIMITS[name]  # type: ignore[operator, index]
+        way["map_seconds"] <= LIMITS[name]
+        and way["ns_per_pendulum_step"]["velocity_verlet"] <= NS_LIMITS[name]  # type: ignore[operator, index]
         for name, way in ways.items()
     )
     answer = {
@@ -69,7 +78,8 @@ def main() -> int:
         "swings_together": STRIP,
         "ns_per_numpy_sine": sine * 1e9,
         **ways,
-        "peak_megabytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,  # Linux counts in KiB
+        "peak_megabytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+        / 1024,  # Linux counts in KiB
         "limits": {"map_seconds": LIMITS, "ns_per_verlet_step": NS_LIMITS},
         "pass": passed,
     }

@@ -65,7 +65,11 @@ def runner(method: Method):  # type: ignore[no-untyped-def]
                 theta, omega, along, across = advance(theta, omega, along, across, h)
                 if n % 8 == 7:
                     length = math.sqrt(along * along + (across / w0) ** 2)
-                    along, across, stretching = along / length, across / length, stretching + math.log(length)
+                    along, across, stretching = (
+                        along / length,
+                        across / length,
+                        stretching + math.log(length),
+                    )
                 error = (omega * omega / 2 + 2 * 9.81 * math.sin(theta / 2) ** 2 - start) / start
                 if not abs(error) < 1e280:
                     return
@@ -116,7 +120,9 @@ def main() -> None:
         for method in USUAL_CAST:
             run = runner(method)
 
-            def cell(start: str, z: float, method: Method = method, run: Callable[..., None] = run) -> str:
+            def cell(
+                start: str, z: float, method: Method = method, run: Callable[..., None] = run
+            ) -> str:
                 scene = scene_at(start, z)
                 found = np.full((len(WINDOWS), 5), np.nan)
                 run(scene.theta, scene.omega, scene.h, np.array(WINDOWS), found)

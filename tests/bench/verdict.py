@@ -52,7 +52,11 @@ def main() -> None:
             steps.append(given[0][1])
     report = {"cells": cells, "wrong": wrong, "undecided": undecided, "pass": not wrong}
     for name, waits in (("periods", sorted(periods)), ("steps", sorted(steps))):
-        report |= {f"{name}_until_verdict_{q}": waits[q * (len(waits) - 1) // 100] for q in (50, 90, 99) if waits}
+        report |= {
+            f"{name}_until_verdict_{q}": waits[q * (len(waits) - 1) // 100]
+            for q in (50, 90, 99)
+            if waits
+        }
     report["microseconds_per_look"] = {z: microseconds_per_look(z) for z in (0.1, 1.0)}
     print(json.dumps({"bench": "verdict", **report}, indent=1))
 

@@ -76,10 +76,15 @@ def watched(*programs: PtyLab) -> list[Figures]:
     before = [(program.cpu_seconds(), program.now, len(program.output)) for program in programs]
     times: dict[PtyLab, list[float]] = {program: [] for program in programs}
     for program, piece in drain(programs, SECONDS):
-        moved = any(int(column) <= PENDULUMS and 1 < int(row) < 30 for row, column in CURSOR.findall(piece))
+        moved = any(
+            int(column) <= PENDULUMS and 1 < int(row) < 30 for row, column in CURSOR.findall(piece)
+        )
         if moved and program.now - (times[program][-1] if times[program] else 0.0) > BURST:
             times[program].append(program.now)
-    return [_figures(program, *start, times[program]) for program, start in zip(programs, before, strict=True)]
+    return [
+        _figures(program, *start, times[program])
+        for program, start in zip(programs, before, strict=True)
+    ]
 
 
 def _figures(program: PtyLab, cpu: float, began: float, sent: int, times: list[float]) -> Figures:
@@ -130,7 +135,8 @@ def end(program: PtyLab) -> None:
 def of_rounds(rounds: list[Figures]) -> Figures:
     """The mean of some rounds; of what is late, the middle one, as no program is to blame for its neighbours."""
     return {
-        name: round((median if name.endswith("_ms") else mean)(each[name] for each in rounds), 2) for name in rounds[0]
+        name: round((median if name.endswith("_ms") else mean)(each[name] for each in rounds), 2)
+        for name in rounds[0]
     }
 
 
@@ -145,7 +151,11 @@ def beside(one_round: Callable[[], list[Figures]], names: tuple[str, str]) -> di
 
 def of_lab_and_painter(size: tuple[int, int] = SMALL, *key: str) -> list[Figures]:
     """Those of the lab, perhaps after F3, and of Textual alone painting as much."""
-    with tempfile.TemporaryDirectory() as folder, painter(size, *key) as textual, lab(folder, size=size) as ours:
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        painter(size, *key) as textual,
+        lab(folder, size=size) as ours,
+    ):
         ours.type(F3 if key else "")
         for _ in drain([ours, textual], film.BEGIN - 2.0):
             pass
@@ -201,7 +211,10 @@ def paused_lab() -> dict[str, Figures]:
         wakes = (program.wakes() - before) / SECONDS
         end(program)
     names = ("percent", "kilobytes_per_second")
-    return {"paused": {name: round(figures[name], 2) for name in names} | {"wakes_per_second": round(wakes, 1)}}
+    return {
+        "paused": {name: round(figures[name], 2) for name in names}
+        | {"wakes_per_second": round(wakes, 1)}
+    }
 
 
 def start_beside_empty() -> dict[str, Figures]:
@@ -238,4 +251,9 @@ BENCHES = {
 
 if __name__ == "__main__":
     wanted = sys.argv[1:] or list(BENCHES)
-    print(json.dumps({"bench": "yardstick", **{name: BENCHES[name]() for name in wanted}, "reach": REACH}, indent=1))
+    print(
+        json.dumps(
+            {"bench": "yardstick", **{name: BENCHES[name]() for name in wanted}, "reach": REACH},
+            indent=1,
+        )
+    )

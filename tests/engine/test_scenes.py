@@ -11,7 +11,16 @@ from hypothesis import strategies as st
 
 from engine.run.lockstep import Lockstep, Sample
 from engine.run.stepping import Stepping
-from engine.scenes import DEFAULT_SCENE, GROUPS, LIMITS, SCENES, Z_LIMITS, Scene, SceneError, check_h
+from engine.scenes import (
+    DEFAULT_SCENE,
+    GROUPS,
+    LIMITS,
+    SCENES,
+    Z_LIMITS,
+    Scene,
+    SceneError,
+    check_h,
+)
 
 EXPLICIT, SYMPLECTIC, VERLET, RK4 = range(4)
 
@@ -28,7 +37,9 @@ def watch(name: str, seconds: float, every: int = 1) -> list[Sample]:
 
 def over_the_top(samples: list[Sample], method: int) -> float:
     """When it first was above the pivot [s]; inf: never."""
-    return next((sample.t for sample in samples if abs(sample.readings[method].theta) > math.pi), math.inf)
+    return next(
+        (sample.t for sample in samples if abs(sample.readings[method].theta) > math.pi), math.inf
+    )
 
 
 def worst(samples: list[Sample], method: int) -> float:
@@ -51,7 +62,9 @@ def test_length_and_gravity_are_positive_and_of_this_world(field: str, value: fl
 
 @pytest.mark.parametrize("h", [0.0, -0.05, math.nan, math.inf, -math.inf, 1e9, 1e-12])
 def test_a_step_size_that_leads_nowhere_is_refused_and_a_good_one_is_named(h: float) -> None:
-    with pytest.raises(SceneError, match=r"^h = .* is not a usable step; use .* for example 0\.05\.$"):
+    with pytest.raises(
+        SceneError, match=r"^h = .* is not a usable step; use .* for example 0\.05\.$"
+    ):
         Scene(h=h)
 
 
@@ -68,7 +81,9 @@ def test_the_step_size_that_the_sentence_names_is_usable(length: float, gravity:
 def test_everything_within_the_limits_is_a_scene(
     theta: float, omega: float, length: float, gravity: float, z: float
 ) -> None:
-    scene = Scene(theta=theta, omega=omega, length=length, gravity=gravity, h=z / math.sqrt(gravity / length))
+    scene = Scene(
+        theta=theta, omega=omega, length=length, gravity=gravity, h=z / math.sqrt(gravity / length)
+    )
     assert scene.z == pytest.approx(z, rel=1e-15)  # a quotient and a product
     check_h(-scene.h, scene.w0)  # time may run backwards later
 
@@ -84,7 +99,9 @@ def test_every_scene_has_its_name_and_says_what_to_watch() -> None:
     assert SCENES["drift"] == DEFAULT_SCENE
     for name, scene in SCENES.items():
         assert scene.name == name
-        assert 20 < len(scene.watch) <= 79  # a line of the smallest terminal, and the blank before it
+        assert (
+            20 < len(scene.watch) <= 79
+        )  # a line of the smallest terminal, and the blank before it
         assert scene.watch.endswith(".")
 
 
@@ -99,15 +116,21 @@ def test_drift_explicit_euler_gains_the_symplectic_ones_keep_rk4_loses() -> None
     assert worst(samples, VERLET) < 0.006
     middle = samples[len(samples) // 2].readings
     assert last[EXPLICIT].energy_error > middle[EXPLICIT].energy_error > 10
-    assert last[RK4].energy_error == pytest.approx(2 * middle[RK4].energy_error, rel=0.05)  # steadily
+    assert last[RK4].energy_error == pytest.approx(
+        2 * middle[RK4].energy_error, rel=0.05
+    )  # steadily
     assert -4e-4 < last[RK4].energy_error < -3e-4
 
 
 def test_gentle_the_textbooks_formulas_hold() -> None:
     scene, samples = SCENES["gentle"], watch("gentle", 60)
     z, first, last = scene.z, samples[1].readings, samples[-1].readings
-    assert scene.exact().period == pytest.approx(2 * math.pi / scene.w0, rel=1e-3)  # theta²/16 longer
-    assert samples[40].readings[EXPLICIT].energy_error == pytest.approx((1 + z**2) ** 40 - 1, rel=0.02)
+    assert scene.exact().period == pytest.approx(
+        2 * math.pi / scene.w0, rel=1e-3
+    )  # theta²/16 longer
+    assert samples[40].readings[EXPLICIT].energy_error == pytest.approx(
+        (1 + z**2) ** 40 - 1, rel=0.02
+    )
     assert first[EXPLICIT].energy_error == pytest.approx(z**2, rel=0.01)
     assert last[RK4].energy_error / samples[-1].step == pytest.approx(-(z**6) / 72, rel=0.02)
     assert worst(samples, VERLET) == pytest.approx(z**2 / 4, rel=0.02)
@@ -118,11 +141,18 @@ def test_linear_theory_is_exact_at_any_size() -> None:
     z = scene.z
     assert z == 0.5
     for before, after in pairwise(samples):
-        ratios = [now.energy / then.energy for then, now in zip(before.readings, after.readings, strict=True)]
+        ratios = [
+            now.energy / then.energy
+            for then, now in zip(before.readings, after.readings, strict=True)
+        ]
         assert ratios[EXPLICIT] == pytest.approx(1 + z**2, rel=1e-14)  # 25 %
         assert ratios[RK4] == pytest.approx(1 - z**6 / 72 + z**8 / 576, rel=1e-14)
-    assert worst(samples, VERLET) == pytest.approx(z**2 / 4, rel=0.02)  # it swings between 1 - z²/4 and 1
-    assert worst(samples, SYMPLECTIC) == pytest.approx(1 / (1 - z / 2) - 1, rel=0.02)  # 1/(1 + z/2) and 1/(1 - z/2)
+    assert worst(samples, VERLET) == pytest.approx(
+        z**2 / 4, rel=0.02
+    )  # it swings between 1 - z²/4 and 1
+    assert worst(samples, SYMPLECTIC) == pytest.approx(
+        1 / (1 - z / 2) - 1, rel=0.02
+    )  # 1/(1 + z/2) and 1/(1 - z/2)
 
 
 def test_large_swing_is_slow_and_explicit_euler_never_finishes_its_first() -> None:
@@ -137,7 +167,9 @@ def test_large_swing_is_slow_and_explicit_euler_never_finishes_its_first() -> No
 
 def test_crossover_rk4_starts_far_ahead_of_verlet_and_falls_behind_after_half_a_minute() -> None:
     samples = watch("crossover", 60)
-    behind = [s.readings[RK4].max_energy_error > s.readings[VERLET].max_energy_error for s in samples]
+    behind = [
+        s.readings[RK4].max_energy_error > s.readings[VERLET].max_energy_error for s in samples
+    ]
     assert samples[behind.index(True)].t == pytest.approx(33.4)
     assert all(behind[behind.index(True) :])
     early = [sample for sample in samples if sample.t < 2.2]  # a swing
@@ -148,7 +180,9 @@ def test_crossover_rk4_starts_far_ahead_of_verlet_and_falls_behind_after_half_a_
     ("name", "seconds", "least", "most"),
     [("crossover", 60, 0, 1e-13), ("crossover", 600, 0, 1e-11), ("chaos-fenced", 200, 0.1, 100)],
 )
-def test_turned_round_verlet_comes_back_but_not_in_chaos(name: str, seconds: float, least: float, most: float) -> None:
+def test_turned_round_verlet_comes_back_but_not_in_chaos(
+    name: str, seconds: float, least: float, most: float
+) -> None:
     scene, lockstep = SCENES[name], Lockstep(SCENES[name])
     lockstep.advance(steps := round(seconds / scene.h))
     lockstep.set_stepping(Stepping(-scene.h))
@@ -161,7 +195,10 @@ def test_near_separatrix_the_best_energy_does_not_mean_the_right_time() -> None:
     exact, samples = SCENES["near-separatrix"].exact(), watch("near-separatrix", 120)
 
     def late(method: int) -> float:
-        return next((s.t for s in samples if abs(s.readings[method].theta - exact.at(s.t).theta) > 1), math.inf)
+        return next(
+            (s.t for s in samples if abs(s.readings[method].theta - exact.at(s.t).theta) > 1),
+            math.inf,
+        )
 
     assert worst(samples, RK4) < 1e-6 < 1e-4 < worst(samples, VERLET) < worst(samples, SYMPLECTIC)
     assert late(RK4) == pytest.approx(29.4, abs=0.1)
@@ -174,7 +211,9 @@ def test_spin_symplectic_euler_and_verlet_show_the_same_angle_a_turn_a_second() 
     last = samples[-1].readings
     for sample in samples:
         readings = sample.readings
-        assert readings[SYMPLECTIC].theta == pytest.approx(readings[VERLET].theta, abs=1e-10)  # 3000 roundings
+        assert readings[SYMPLECTIC].theta == pytest.approx(
+            readings[VERLET].theta, abs=1e-10
+        )  # 3000 roundings
     assert abs(last[SYMPLECTIC].omega - last[VERLET].omega) > 1e-3
     assert SCENES["spin"].exact().period == pytest.approx(1, abs=0.02)
     assert [round(reading.theta / math.tau) for reading in last] == [94, 61, 61, 61]
@@ -194,7 +233,9 @@ def test_euler_caught_half_a_turn_a_step_holds_explicit_euler_near_110_times_its
     assert max(energies[half:]) < 120
     assert fmean(turns[half:]) == pytest.approx(0.5, abs=0.005)
     caught = (math.pi / scene.h) ** 2 / 2 + scene.w0_squared  # as long above the pivot as below
-    assert fmean(energies[half:]) == pytest.approx(caught / scene.equations.energy()((1.0, 0.0)), rel=0.02)
+    assert fmean(energies[half:]) == pytest.approx(
+        caught / scene.equations.energy()((1.0, 0.0)), rel=0.02
+    )
     assert fmean(energies[half:]) == pytest.approx(110, abs=2)
     assert lockstep.judgements[EXPLICIT].verdict == "caught"
 
@@ -231,11 +272,18 @@ def test_rk4_limit_above_rk4_gains_energy_until_it_is_caught_at_0_2_rad() -> Non
 
 @pytest.mark.parametrize(
     ("below", "above", "limit"),
-    [("verlet-limit", "verlet-limit-above", 2.0), ("rk4-limit", "rk4-limit-above", 2 * math.sqrt(2))],
+    [
+        ("verlet-limit", "verlet-limit-above", 2.0),
+        ("rk4-limit", "rk4-limit-above", 2 * math.sqrt(2)),
+    ],
 )
-def test_the_limit_scenes_stand_on_either_side_of_their_limit(below: str, above: str, limit: float) -> None:
+def test_the_limit_scenes_stand_on_either_side_of_their_limit(
+    below: str, above: str, limit: float
+) -> None:
     assert SCENES[below].z < limit < SCENES[above].z
-    assert replace(SCENES[below], name="", watch="", h=1.0) == replace(SCENES[above], name="", watch="", h=1.0)
+    assert replace(SCENES[below], name="", watch="", h=1.0) == replace(
+        SCENES[above], name="", watch="", h=1.0
+    )
 
 
 def test_every_scene_is_in_one_group() -> None:
@@ -248,10 +296,14 @@ def test_resonance_verlet_doubles_its_energy_and_comes_back() -> None:
     assert max(errors) == pytest.approx(1.15, abs=0.01)
     assert max(errors[300:]) == pytest.approx(1.15, abs=0.01)
     assert min(abs(error) for error in errors[100:]) < 0.01
-    assert scene.exact().period / scene.h == pytest.approx(4.4, abs=0.1)  # exact; Verlet's is 4 steps
+    assert scene.exact().period / scene.h == pytest.approx(
+        4.4, abs=0.1
+    )  # exact; Verlet's is 4 steps
 
 
-def test_resonance_golden_there_is_no_resonance_at_an_irrational_or_at_a_rational_part_of_h() -> None:
+def test_resonance_golden_there_is_no_resonance_at_an_irrational_or_at_a_rational_part_of_h() -> (
+    None
+):
     scene, golden = SCENES["resonance"], SCENES["resonance-golden"]
     assert scene.h / golden.h == pytest.approx((1 + math.sqrt(5)) / 2, rel=1e-15)
     for h in (golden.h, 5 / 8 * scene.h):
@@ -322,7 +374,9 @@ def test_stiff_slow_rk4_takes_the_springs_energy_and_imex_euler_all() -> None:
 def test_stiff_limit_in_a_quarter_second_verlets_bob_is_gone() -> None:
     samples = watch("stiff-limit", 0.25)
     assert SCENES["stiff-limit"].z == pytest.approx(2.5)
-    verlet, _, *others = (SCENES["stiff-limit"].equations.length(each.extra) for each in samples[-1].readings)
+    verlet, _, *others = (
+        SCENES["stiff-limit"].equations.length(each.extra) for each in samples[-1].readings
+    )
     assert verlet > 10
     assert all(length < 1.05 for length in others)
 
@@ -334,7 +388,9 @@ def test_stiff_resonance_respa_resonates_and_the_implicit_midpoint_holds() -> No
     assert last[2].max_energy_error > 10
     assert last[3].max_energy_error < 0.4
     late = SCENES["stiff-resonance"].exact()
-    assert max(abs(s.readings[3].theta - late.at(s.t).theta) for s in samples) > 0.5  # yet at the wrong time
+    assert (
+        max(abs(s.readings[3].theta - late.at(s.t).theta) for s in samples) > 0.5
+    )  # yet at the wrong time
 
 
 def test_learned_the_field_loses_60_percent_and_the_hamiltonian_less_than_one() -> None:
@@ -372,7 +428,9 @@ MOMENTS = {  # simulated seconds until what the scene says is there to be seen
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_at_its_speed_a_scene_takes_a_few_steps_a_second_and_shows_its_point_within_half_a_minute(name: str) -> None:
+def test_at_its_speed_a_scene_takes_a_few_steps_a_second_and_shows_its_point_within_half_a_minute(
+    name: str,
+) -> None:
     scene = SCENES[name]
     assert scene.h / scene.speed < 0.4
     assert MOMENTS.get(name, 1.0) / scene.speed < 30

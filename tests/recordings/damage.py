@@ -92,7 +92,11 @@ class Damaged:
             for reading in sample.readings
         }
         for row in csv.DictReader(answer.out.splitlines()):
-            assert (int(row["step"]), float(row["theta_rad"]), float(row["energy_error"])) in numbers
+            assert (
+                int(row["step"]),
+                float(row["theta_rad"]),
+                float(row["energy_error"]),
+            ) in numbers
         return bool(answer.err)
 
     def is_noticed_by_replay(self) -> bool:
@@ -116,7 +120,11 @@ class Damaged:
         end = begin + chance.randrange(1, 5_000)
         noise = chance.randbytes(min(end, len(self.data)) - begin)
         self.path.write_bytes(self.data[:begin] + noise + self.data[end:])
-        intact = [place.offset for place, following in self._with_ends() if following <= begin or place.offset >= end]
+        intact = [
+            place.offset
+            for place, following in self._with_ends()
+            if following <= begin or place.offset >= end
+        ]
         with self.path.open("rb") as stream:
             contents = read_contents(stream, check=True, progress=None)
             found = [place.offset for place in contents.places]

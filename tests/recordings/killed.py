@@ -35,7 +35,9 @@ KEYS = (
     lambda live: live.step(-3),
     lambda live: live.set_stepping(live.stepping._replace(h=0.02)),
     lambda live: live.set_stepping(live.stepping._replace(h=-0.05)),
-    lambda live: live.start(replace(live.scene, cast=tuple(random.sample(USUAL_CAST, 3)), model="pendulum")),
+    lambda live: live.start(
+        replace(live.scene, cast=tuple(random.sample(USUAL_CAST, 3)), model="pendulum")
+    ),
     lambda live: live.start(replace(live.scene, cast=GENERAL[:5] + OWN, model="pendulum")),
     lambda live: live.start(replace(live.scene, model="linear")),
     lambda live: live.mark("here"),

@@ -28,12 +28,18 @@ class Golden(NamedTuple):
 
 RECORDINGS = {
     "drift": Golden(
-        Scene("drift", watch="Explicit Euler gains energy until it goes over the top; the symplectic ones keep it."),
+        Scene(
+            "drift",
+            watch="Explicit Euler gains energy until it goes over the top; the symplectic ones keep it.",
+        ),
         time=15,
         sample_every=2,
     ),
     "changes-of-h": Golden(
-        Scene("changes-of-h", watch="The step size changes at 3, 6 and 9 s, and with it every method's error."),
+        Scene(
+            "changes-of-h",
+            watch="The step size changes at 3, 6 and 9 s, and with it every method's error.",
+        ),
         time=12,
         sample_every=3,
         changes=[(60, 0.1), (90, 0.025), (210, 0.05)],
@@ -59,7 +65,9 @@ RECORDINGS = {
         sample_every=6,
     ),
     "spin": Golden(
-        Scene("spin", omega=8.0, theta=0.0, h=0.02, watch="Over the top, again and again: rotation."),
+        Scene(
+            "spin", omega=8.0, theta=0.0, h=0.02, watch="Over the top, again and again: rotation."
+        ),
         time=6,
         sample_every=3,
     ),
@@ -75,7 +83,10 @@ RECORDINGS = {
         sample_every=2,
     ),
     "verdicts": Golden(
-        Scene("verdicts", watch="Explicit Euler gains energy, RK4 loses some, the symplectic ones stay bounded."),
+        Scene(
+            "verdicts",
+            watch="Explicit Euler gains energy, RK4 loses some, the symplectic ones stay bounded.",
+        ),
         time=60,
         sample_every=24,
     ),
@@ -126,7 +137,11 @@ def make(name: str, path: Path) -> None:
     scene, time, sample_every, changes, then = RECORDINGS[name]
     with Recorder(path, wall=None, overwrite=True) as recorder:
         for run, cast in enumerate((scene.cast, *then), 1):
-            list(with_changes(replace(scene, cast=cast), time, Later(recorder, run), changes, sample_every))
+            list(
+                with_changes(
+                    replace(scene, cast=cast), time, Later(recorder, run), changes, sample_every
+                )
+            )
 
 
 if __name__ == "__main__":

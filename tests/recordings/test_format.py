@@ -19,7 +19,14 @@ from recordings.arithmetic import FUNCTIONS, fingerprint
 from recordings.errors import MAX_TEXT, RecordingError, printable
 from recordings.events import Event, noticed
 from recordings.fields import EVENT_SCHEMA, EXTRA, sample_schema, values_of, without_extremes
-from recordings.format import decode_event, decode_reading, encode_event, encode_readings, keys_of, topic
+from recordings.format import (
+    decode_event,
+    decode_reading,
+    encode_event,
+    encode_readings,
+    keys_of,
+    topic,
+)
 from tests.recordings.examples import SCENE, start
 
 SAMPLE_SCHEMA, PLANE_SCHEMA = sample_schema("pendulum"), sample_schema("spring")
@@ -67,22 +74,36 @@ def scenes_of(model):
         Scene,
         name=texts,
         model=st.just(model),
-        cast=st.lists(suited, min_size=1, max_size=6, unique_by=lambda method: method.key).map(tuple),
+        cast=st.lists(suited, min_size=1, max_size=6, unique_by=lambda method: method.key).map(
+            tuple
+        ),
         watch=texts,
         theta=st.floats(*LIMITS["theta"]),
         omega=st.floats(*LIMITS["omega"]),
         length=st.floats(0.1, 10),
         gravity=st.floats(0.1, 10),
         h=st.floats(1e-6, 1),
-        parameters=st.fixed_dictionaries({each.name: st.floats(1.0, 10.0) for each in MODELS[model].parameters}),
+        parameters=st.fixed_dictionaries(
+            {each.name: st.floats(1.0, 10.0) for each in MODELS[model].parameters}
+        ),
     )
 
 
 scenes = st.sampled_from([*MODELS]).flatmap(scenes_of)
-milestones = made(Milestone, st.sampled_from(["over the top", "failed"]), methods, counts, finite, finite) | made(
-    Milestone, st.just("verdict"), methods, counts, finite, finite, st.sampled_from(get_args(Verdict))
+milestones = made(
+    Milestone, st.sampled_from(["over the top", "failed"]), methods, counts, finite, finite
+) | made(
+    Milestone,
+    st.just("verdict"),
+    methods,
+    counts,
+    finite,
+    finite,
+    st.sampled_from(get_args(Verdict)),
 )
-milestones |= made(Milestone, st.just("errors cross"), methods, counts, finite, finite, other=methods)
+milestones |= made(
+    Milestone, st.just("errors cross"), methods, counts, finite, finite, other=methods
+)
 events = st.one_of(
     made(Event, st.just("start"), counts, counts, finite, scene=scenes),
     made(Event, st.just("set_h"), counts, counts, finite, h=finite, equal_cost=st.booleans()),
@@ -100,7 +121,9 @@ def test_every_finite_double_of_a_sample_reads_back_with_the_same_bits(sample):
         run, step, t, again = decode_reading(message, "spring" if reading.extra else "pendulum")
         assert (run, step, t) == (sample.run, sample.step, sample.t)
         assert again == reading
-        assert repr(values_of(again)) == repr(values_of(reading))  # -0.0 == 0.0, but their texts differ
+        assert repr(values_of(again)) == repr(
+            values_of(reading)
+        )  # -0.0 == 0.0, but their texts differ
         jsonschema.validate(json.loads(message), PLANE_SCHEMA if reading.extra else SAMPLE_SCHEMA)
         assert set(SPRING) & set(json.loads(message)) == set(reading.extra)
 
@@ -136,11 +159,15 @@ def test_extremes_equal_to_the_energy_error_are_left_out():
     assert without_extremes(Sample(1, 0, 0.0, (wide,))).readings == (plain,)
 
 
-GOOD = json.loads(encode_readings(Sample(1, 2, 0.5, (Reading(1.0, 0.0, 4.0, 0.5, 0.5, 0.5, 0.5),)))[0])
+GOOD = json.loads(
+    encode_readings(Sample(1, 2, 0.5, (Reading(1.0, 0.0, 4.0, 0.5, 0.5, 0.5, 0.5),)))[0]
+)
 
 
 @pytest.mark.parametrize("name", list(SAMPLE_SCHEMA["properties"]))
-@pytest.mark.parametrize("value", ["null", '"1.0"', "NaN", "Infinity", "1e999", "true", "[1.0]", "{}", "1" + 400 * "0"])
+@pytest.mark.parametrize(
+    "value", ["null", '"1.0"', "NaN", "Infinity", "1e999", "true", "[1.0]", "{}", "1" + 400 * "0"]
+)
 def test_a_field_that_is_not_a_finite_number_is_refused(name, value):
     text = json.dumps(GOOD | {name: "HERE"}).replace('"HERE"', value)
     with pytest.raises(RecordingError):
@@ -150,7 +177,9 @@ def test_a_field_that_is_not_a_finite_number_is_refused(name, value):
 @pytest.mark.parametrize("name", SAMPLE_SCHEMA["required"])
 def test_a_missing_field_is_refused(name):
     with pytest.raises(RecordingError, match=name):
-        decode_reading(json.dumps({key: value for key, value in GOOD.items() if key != name}).encode())
+        decode_reading(
+            json.dumps({key: value for key, value in GOOD.items() if key != name}).encode()
+        )
 
 
 def test_an_unknown_field_is_ignored_and_a_missing_optional_one_is_none():
@@ -215,7 +244,9 @@ def test_an_impossible_start_is_refused(wrong):
         decode_event(json.dumps(START | wrong).encode())
 
 
-@pytest.mark.parametrize("text", ["\x1b[2J", "\x9b31m", "a\nb", "\u202egpj.exe", "\ud800", "\x00", "é\u0301\x7f"])
+@pytest.mark.parametrize(
+    "text", ["\x1b[2J", "\x9b31m", "a\nb", "\u202egpj.exe", "\ud800", "\x00", "é\u0301\x7f"]
+)
 def test_texts_of_a_file_cannot_control_a_terminal(text):
     assert printable(text).isprintable()
     mark = Event("mark", 1, 0, 0.0, text=text)
@@ -224,7 +255,9 @@ def test_texts_of_a_file_cannot_control_a_terminal(text):
     assert named.name == named.watch == printable(text)
 
 
-NOTICED = json.loads(encode_event(noticed(1, Milestone("verdict", METHODS[0], 7, 0.7, 0.1, "grows"))))
+NOTICED = json.loads(
+    encode_event(noticed(1, Milestone("verdict", METHODS[0], 7, 0.7, 0.1, "grows")))
+)
 
 
 @pytest.mark.parametrize(
@@ -264,7 +297,9 @@ def test_other_topics_are_not_of_a_method(name):
 
 
 @pytest.mark.parametrize("function", FUNCTIONS)
-def test_a_fingerprint_is_the_same_each_time_and_differs_where_one_value_does(monkeypatch, function):
+def test_a_fingerprint_is_the_same_each_time_and_differs_where_one_value_does(
+    monkeypatch, function
+):
     here = fingerprint(function)
     fingerprint.cache_clear()
     assert fingerprint(function) == here

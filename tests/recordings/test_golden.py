@@ -29,7 +29,10 @@ def test_making_a_golden_recording_again_gives_the_same(name, tmp_path):
     make(name, tmp_path / "and again.mcap")
     again = (tmp_path / "again.mcap").read_bytes()
     assert (tmp_path / "and again.mcap").read_bytes() == again
-    with Recording.open(GOLDEN / f"{name}.mcap") as golden, Recording.open(tmp_path / "again.mcap") as made:
+    with (
+        Recording.open(GOLDEN / f"{name}.mcap") as golden,
+        Recording.open(tmp_path / "again.mcap") as made,
+    ):
         if not golden.runs[0].arithmetic.other_functions():  # bytes depend on zstd's version, too
             assert list(golden.entries()) == list(made.entries())
 
@@ -47,11 +50,22 @@ def test_a_recording_holds_runs_with_different_methods_and_says_what_the_lab_not
     assert casts == [["e", "s"], ["v", "r"], ["r", "v", "e", "s"]]
     assert {(sample.run, len(sample.readings)) for sample in samples} == {(1, 2), (2, 2), (3, 4)}
     ends = [[sample for sample in samples if sample.run == run][-1].readings for run in (1, 2, 3)]
-    assert (ends[2][2:], ends[2][:2]) == (ends[0], ends[1][::-1])  # the cast's order changes no number
+    assert (ends[2][2:], ends[2][:2]) == (
+        ends[0],
+        ends[1][::-1],
+    )  # the cast's order changes no number
     with Recording.open(GOLDEN / "verdicts.mcap") as recording:
-        said = [f"{each.method.letter} {each.kind} {each.verdict}" for each in recording.runs[0].milestones]
+        said = [
+            f"{each.method.letter} {each.kind} {each.verdict}"
+            for each in recording.runs[0].milestones
+        ]
     assert said[0] == "e over the top too early"
-    assert said[1:] == ["e verdict grows", "r verdict loses", "s verdict bounded", "v verdict bounded"]
+    assert said[1:] == [
+        "e verdict grows",
+        "r verdict loses",
+        "s verdict bounded",
+        "v verdict bounded",
+    ]
 
 
 def last_readings(name):
@@ -71,7 +85,9 @@ def test_each_golden_recording_shows_what_its_text_says():
     assert abs(end["symplectic_euler"].theta - scene.theta) > 0.01
     assert abs(end["explicit_euler"].theta - scene.theta) > 1
     scene, end = last_readings("linear")
-    assert end["explicit_euler"].energy_error == pytest.approx((1 + scene.z**2) ** 60 - 1)  # a factor each of 60 steps
+    assert end["explicit_euler"].energy_error == pytest.approx(
+        (1 + scene.z**2) ** 60 - 1
+    )  # a factor each of 60 steps
     assert scene.model == "linear"
     scene, end = last_readings("spin")
     assert all(reading.theta > 20 for reading in end.values())
@@ -97,6 +113,13 @@ def test_the_csv_has_a_row_for_each_sample_and_method_and_every_number(tmp_path)
         for method, reading in zip(USUAL_CAST, entry.value.readings, strict=True)
     )
     for row, (clock, sample, key, reading) in zip(rows, expected, strict=True):
-        assert (float(row[0]), int(row[1]), int(row[2]), float(row[3])) == (clock, sample.run, sample.step, sample.t)
+        assert (float(row[0]), int(row[1]), int(row[2]), float(row[3])) == (
+            clock,
+            sample.run,
+            sample.step,
+            sample.t,
+        )
         assert row[4] == key
-        assert row[5:] == ["" if value is None else repr(value) for value in values_of(reading)[: len(row) - 5]]
+        assert row[5:] == [
+            "" if value is None else repr(value) for value in values_of(reading)[: len(row) - 5]
+        ]

@@ -32,7 +32,9 @@ def test_the_last_sample_is_the_result():
     lockstep = Lockstep(SCENE)
     lockstep.advance(70)
     *_, last = simulate(SCENE, 7.0, sample_every=9)
-    assert [reading.theta for reading in last.readings] == [reading.theta for reading in lockstep.sample().readings]
+    assert [reading.theta for reading in last.readings] == [
+        reading.theta for reading in lockstep.sample().readings
+    ]
 
 
 def test_the_recording_clock_goes_forward_while_simulated_time_runs_backwards(tmp_path):
@@ -54,7 +56,9 @@ def test_a_long_headless_run_has_few_chunks(tmp_path):
     recover(tmp_path / "a.mcap", tmp_path / "copy.mcap")
     with Recording.open(tmp_path / "copy.mcap") as recording:
         assert recording.samples == samples
-    assert (tmp_path / "a.mcap").read_bytes().count(b"\x04\x00\x00\x00zstd") < 100  # in chunks and their index
+    assert (tmp_path / "a.mcap").read_bytes().count(
+        b"\x04\x00\x00\x00zstd"
+    ) < 100  # in chunks and their index
 
 
 def test_memory_does_not_grow_with_the_length_of_a_run():

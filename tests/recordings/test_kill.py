@@ -42,7 +42,9 @@ def kill_one(folder, after):
     finally:
         lab.kill()
         lab.wait()
-    knew = [(float(when), int(run), int(step)) for when, run, step in map(str.split, whole_lines(log))]
+    knew = [
+        (float(when), int(run), int(step)) for when, run, step in map(str.split, whole_lines(log))
+    ]
     (part,) = leftovers(folder)
     with Recording.open(part) as recording:
         assert not recording.complete

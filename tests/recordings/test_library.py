@@ -8,7 +8,17 @@ import pytest
 
 from recordings import library
 from recordings.errors import RecordingError
-from recordings.library import GOLDEN, Item, free_path, leftovers, listing, new_path, prune, resolve, to_prune
+from recordings.library import (
+    GOLDEN,
+    Item,
+    free_path,
+    leftovers,
+    listing,
+    new_path,
+    prune,
+    resolve,
+    to_prune,
+)
 from recordings.recorder import Recorder
 from recordings.recording import Recording
 from tests.recordings.examples import start, tiny
@@ -109,7 +119,11 @@ def test_pruning_keeps_the_newest_by_number_and_by_size(folder):
 
 
 def test_a_large_recording_does_not_make_room_for_older_ones(folder):
-    items = [Item(folder / "new", 100, 3.0), Item(folder / "large", 10_000, 2.0), Item(folder / "old", 100, 1.0)]
+    items = [
+        Item(folder / "new", 100, 3.0),
+        Item(folder / "large", 10_000, 2.0),
+        Item(folder / "old", 100, 1.0),
+    ]
     assert [item.path.name for item in to_prune(items, size=500)] == ["large", "old"]
 
 

@@ -94,7 +94,11 @@ def test_recording_resumes_in_a_new_file_that_replays_and_verifies_by_itself(lab
     with Recording.open(second) as recording:
         assert recording.complete
         assert recording.runs[0].scene == SCENE
-        assert [event.h for _, event in recording.events if event.kind == "set_h"] == [0.05, -0.02, 0.1]
+        assert [event.h for _, event in recording.events if event.kind == "set_h"] == [
+            0.05,
+            -0.02,
+            0.1,
+        ]
         assert recording.events[0][0] == 0.0  # its clock begins anew
         assert recording.length < RETRY_EVERY + 1
         assert recording.sample(recording.at(99.0)).value.step == lab.lockstep.step
@@ -199,7 +203,10 @@ print(*lab.recorder.files)
 
 def test_a_real_file_size_limit_is_survived(tmp_path):
     done = subprocess.run(
-        [sys.executable, "-c", LIMITED, str(tmp_path / "lab.mcap")], capture_output=True, text=True, check=True
+        [sys.executable, "-c", LIMITED, str(tmp_path / "lab.mcap")],
+        capture_output=True,
+        text=True,
+        check=True,
     )
     failed, later, files = done.stdout.splitlines()
     assert "File too large" in failed

@@ -53,7 +53,9 @@ def test_a_run_is_recorded_verified_exported_and_replayed(tmp_path, name):
         assert replay.sample.readings == samples[-1].readings
     assert pendu("export", path, "-o", tmp_path / "a.csv").code == 0
     rows = list(csv.DictReader((tmp_path / "a.csv").open()))
-    assert [float(row["theta_rad"]) for row in rows] == [each.theta for sample in samples for each in sample.readings]
+    assert [float(row["theta_rad"]) for row in rows] == [
+        each.theta for sample in samples for each in sample.readings
+    ]
     info = pendu("recordings", "show", path, "--json").json
     assert info["runs"][0]["scene"] == scene.fields()
     recover(path, tmp_path / "copy.mcap")
@@ -68,7 +70,9 @@ def test_a_bob_in_the_plane_has_its_whole_phase_in_the_table(tmp_path):
     samples = made(tmp_path / "a.mcap", SPRING)
     pendu("export", tmp_path / "a.mcap", "-o", tmp_path / "a.csv")
     rows = list(csv.DictReader((tmp_path / "a.csv").open()))
-    for row, reading in zip(rows, (each for sample in samples for each in sample.readings), strict=True):
+    for row, reading in zip(
+        rows, (each for sample in samples for each in sample.readings), strict=True
+    ):
         names = ("x", "y", "vx_per_s", "vy_per_s", "spring_energy")
         assert [float(row[name]) for name in names] == list(reading.extra.values())
 

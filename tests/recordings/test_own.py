@@ -27,7 +27,17 @@ def path(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(events, "_own", {})
     Path("mine.py").write_text(HEUN)
-    made = pendu("run", "--methods", "rk4", "--method", "mine.py:heun", "--time", "20", "--record", "own.mcap")
+    made = pendu(
+        "run",
+        "--methods",
+        "rk4",
+        "--method",
+        "mine.py:heun",
+        "--time",
+        "20",
+        "--record",
+        "own.mcap",
+    )
     assert made.code == 0
     return tmp_path / "own.mcap"
 

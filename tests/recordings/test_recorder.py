@@ -56,13 +56,22 @@ def test_a_recording_is_valid_to_mcaps_strict_reader(tmp_path):
     assert isinstance(records[-1], Footer)
     assert records[-1].summary_crc
     with path.open("rb") as file:
-        chunks = [record for record in StreamReader(file, emit_chunks=True).records if isinstance(record, Chunk)]
+        chunks = [
+            record
+            for record in StreamReader(file, emit_chunks=True).records
+            if isinstance(record, Chunk)
+        ]
     assert all(chunk.uncompressed_crc and chunk.compression == "zstd" for chunk in chunks)
     statistics = next(record for record in records if isinstance(record, Statistics))
     messages = [record for record in records if isinstance(record, Message)]
-    assert statistics.message_count == len(messages) == sum(statistics.channel_message_counts.values())
+    assert (
+        statistics.message_count == len(messages) == sum(statistics.channel_message_counts.values())
+    )
     assert statistics.chunk_count == len(chunks) > 3
-    assert (statistics.message_start_time, statistics.message_end_time) == (1_000_000_000, 5_000_000_000)
+    assert (statistics.message_start_time, statistics.message_end_time) == (
+        1_000_000_000,
+        5_000_000_000,
+    )
 
 
 def test_every_message_is_valid_against_its_schema_and_found_through_the_index(tmp_path):
@@ -78,15 +87,29 @@ def test_every_message_is_valid_against_its_schema_and_found_through_the_index(t
             jsonschema.validate(json.loads(message.data), json.loads(schema.data))
             count += 1
         assert count == reader.get_summary().statistics.message_count
-        theta = [json.loads(message.data)["theta"] for _, _, message in reader.iter_messages("/pendu/rk4")]
-        events = [decode_event(message.data) for _, _, message in reader.iter_messages("/pendu/events")]
-        window = list(reader.iter_messages("/pendu/rk4", starting_at=2_500_000_000, ending_before=3_500_000_000))
-    assert theta == [entry.value.readings[3].theta for entry in entries if not isinstance(entry.value, Event)]
+        theta = [
+            json.loads(message.data)["theta"]
+            for _, _, message in reader.iter_messages("/pendu/rk4")
+        ]
+        events = [
+            decode_event(message.data) for _, _, message in reader.iter_messages("/pendu/events")
+        ]
+        window = list(
+            reader.iter_messages(
+                "/pendu/rk4", starting_at=2_500_000_000, ending_before=3_500_000_000
+            )
+        )
+    assert theta == [
+        entry.value.readings[3].theta for entry in entries if not isinstance(entry.value, Event)
+    ]
     assert [event._replace(arithmetic=None) for event in events[:-1]] == [
         entry.value for entry in entries if isinstance(entry.value, Event)
     ]
     assert events[-1].kind == "stop"
-    assert [json.loads(message.data)["step"] for _, _, message in window] == [9, 12]  # at 1.5 and 2.0 s
+    assert [json.loads(message.data)["step"] for _, _, message in window] == [
+        9,
+        12,
+    ]  # at 1.5 and 2.0 s
 
 
 def test_a_repeated_sample_is_not_written(recorder):

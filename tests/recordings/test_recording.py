@@ -52,7 +52,9 @@ def test_everything_recorded_is_read_in_order(recording):
         if isinstance(was, Event):
             assert value._replace(arithmetic=None) == was
         else:
-            assert [reading.theta for reading in value.readings] == [reading.theta for reading in was.readings]
+            assert [reading.theta for reading in value.readings] == [
+                reading.theta for reading in was.readings
+            ]
             assert (value.run, value.step, value.t) == (was.run, was.step, was.t)
 
 
@@ -69,7 +71,13 @@ def test_the_facts_of_a_recording_are_known_at_opening(recording):
 
 def test_runs_have_their_scene_times_and_steps(recording):
     first, second = recording.runs
-    assert (first.number, first.scene, first.begin, first.end, first.steps) == (1, SCENE, 0.0, 2.5, 16)
+    assert (first.number, first.scene, first.begin, first.end, first.steps) == (
+        1,
+        SCENE,
+        0.0,
+        2.5,
+        16,
+    )
     assert first.inputs == 5  # set_h, speed, pause, mark, resume
     assert (second.number, second.begin, second.end, second.steps) == (2, 2.75, 4.0, 16)
 
@@ -90,7 +98,9 @@ def test_stepping_reaches_every_sample_in_both_directions(recording):
     assert back[::-1] == forth
 
 
-@given(clock=st.floats(-1, 6).map(nanoseconds) | st.sampled_from([clock for clock, _ in two_runs()]))
+@given(
+    clock=st.floats(-1, 6).map(nanoseconds) | st.sampled_from([clock for clock, _ in two_runs()])
+)
 def test_a_time_gives_the_last_sample_before_it_or_else_the_first(path, clock):
     with Recording.open(path) as recording:
         samples = [entry for entry in recording.entries() if isinstance(entry.value, Sample)]
@@ -125,7 +135,9 @@ def test_a_recording_in_progress_opens_with_what_is_on_disk(tmp_path):
             assert not recording.damaged
             assert recording.reason == "the recording was not finished"
             assert 1.0 <= recording.length <= 2.0
-            assert recording.sample(recording.at(1.0)).value.t == pytest.approx(1.0)  # ten steps of 0.1
+            assert recording.sample(recording.at(1.0)).value.t == pytest.approx(
+                1.0
+            )  # ten steps of 0.1
 
 
 def test_a_recording_without_samples_opens_and_has_no_place(tmp_path):
@@ -137,7 +149,9 @@ def test_a_recording_without_samples_opens_and_has_no_place(tmp_path):
 
 
 def test_a_run_without_samples_has_no_length(tmp_path):
-    path = record(tmp_path / "a.mcap", [*two_runs()[:4], Entry(1.0, start(2)), Entry(1.0, start(3))])
+    path = record(
+        tmp_path / "a.mcap", [*two_runs()[:4], Entry(1.0, start(2)), Entry(1.0, start(3))]
+    )
     with Recording.open(path) as recording:
         assert [(run.steps, run.begin, run.end) for run in recording.runs] == [
             (6, 0.0, 1.0),

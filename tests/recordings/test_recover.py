@@ -33,7 +33,9 @@ def ten_seconds(path):
 def spoil(path, *numbers):
     """Change a byte in each of these chunks."""
     with path.open("rb") as stream:
-        offsets = [place.offset for place in read_contents(stream, check=True, progress=None).places]
+        offsets = [
+            place.offset for place in read_contents(stream, check=True, progress=None).places
+        ]
     data = bytearray(path.read_bytes())
     for number in numbers:
         data[offsets[number] + 80] ^= 0xFF
@@ -120,7 +122,9 @@ def test_a_damaged_leftover_is_kept_beside_its_recording(tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["lab.mcap", "lab.mcap.part.damaged"]
 
 
-@pytest.mark.parametrize(("content", "left"), [(b"", []), (b"nonsense", ["lab.mcap.part.unreadable"])])
+@pytest.mark.parametrize(
+    ("content", "left"), [(b"", []), (b"nonsense", ["lab.mcap.part.unreadable"])]
+)
 def test_a_leftover_without_a_recording_is_removed_or_put_aside(tmp_path, content, left):
     part = tmp_path / "lab.mcap.part"
     part.write_bytes(content)

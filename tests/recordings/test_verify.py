@@ -25,7 +25,11 @@ def altered(entries, at, method, **numbers):
     clock, sample = entries[at]
     readings = list(sample.readings)
     readings[method] = readings[method]._replace(**numbers)
-    return [*entries[:at], Entry(clock, sample._replace(readings=tuple(readings))), *entries[at + 1 :]]
+    return [
+        *entries[:at],
+        Entry(clock, sample._replace(readings=tuple(readings))),
+        *entries[at + 1 :],
+    ]
 
 
 def reading_of(entries, at, method):
@@ -50,25 +54,34 @@ def test_a_recording_of_several_runs_and_changes_of_h_verifies(tmp_path):
     sample_every=st.integers(1, 20),
     change=st.tuples(st.integers(0, 100), st.sampled_from([0.1, -0.05, 1e-3])),
 )
-def test_every_scene_verifies_however_it_is_sampled(tmp_path_factory, scene, time, sample_every, change):
+def test_every_scene_verifies_however_it_is_sampled(
+    tmp_path_factory, scene, time, sample_every, change
+):
     path = tmp_path_factory.mktemp("verify") / "a.mcap"
     with Recorder(path, wall=None) as recorder:
         list(with_changes(SCENES[scene], time, recorder, [change], sample_every))
     assert verify(path).identical
 
 
-@pytest.mark.parametrize("field", ["theta", "omega", "energy", "energy_error", "max_energy_error", "energy_error_low"])
+@pytest.mark.parametrize(
+    "field", ["theta", "omega", "energy", "energy_error", "max_energy_error", "energy_error_low"]
+)
 @pytest.mark.parametrize("method", [0, 3])
 def test_one_unit_in_the_last_place_is_found_and_reported_in_detail(tmp_path, field, method):
     entries, at = two_runs(), 3
     right = getattr(reading_of(entries, at, method), field)
     wrong = math.nextafter(right, math.inf)
-    verification = verify(record(tmp_path / "a.mcap", altered(entries, at, method, **{field: wrong})))
+    verification = verify(
+        record(tmp_path / "a.mcap", altered(entries, at, method, **{field: wrong}))
+    )
     assert verification.complete
     assert not verification.identical
     difference = verification.first_difference
     assert (difference.run, difference.step, difference.t) == (1, 6, entries[at].value.t)
-    assert difference.method == ["explicit_euler", "symplectic_euler", "velocity_verlet", "rk4"][method]
+    assert (
+        difference.method
+        == ["explicit_euler", "symplectic_euler", "velocity_verlet", "rk4"][method]
+    )
     assert (difference.field, difference.recorded, difference.computed) == (field, wrong, right)
     assert difference.ulps == 1
 
@@ -86,13 +99,21 @@ def test_minus_zero_differs_from_zero(tmp_path):
     lockstep = Lockstep(replace(SCENE, theta=0.0))
     entries.append(Entry(0.0, lockstep.sample()))
     assert verify(record(tmp_path / "a.mcap", entries)).identical
-    difference = verify(record(tmp_path / "b.mcap", altered(entries, 1, 0, omega=-0.0))).first_difference
+    difference = verify(
+        record(tmp_path / "b.mcap", altered(entries, 1, 0, omega=-0.0))
+    ).first_difference
     assert (difference.field, difference.ulps) == ("omega", 1)
 
 
 def test_a_wrong_time_of_divergence_is_found(tmp_path):
-    difference = verify(record(tmp_path / "a.mcap", altered(two_runs(), 3, 1, diverged_at=0.5))).first_difference
-    assert (difference.field, difference.recorded, difference.computed) == ("diverged_at", 0.5, None)
+    difference = verify(
+        record(tmp_path / "a.mcap", altered(two_runs(), 3, 1, diverged_at=0.5))
+    ).first_difference
+    assert (difference.field, difference.recorded, difference.computed) == (
+        "diverged_at",
+        0.5,
+        None,
+    )
     assert difference.ulps is None
 
 
@@ -106,7 +127,9 @@ def test_ulps_count_doubles_across_zero_too(value, n):
     other = value
     for _ in range(n):
         other = math.nextafter(other, -math.inf)
-    passed_minus_zero = math.copysign(1, value) > 0 > other  # nextafter goes from 0.0 to the double below -0.0
+    passed_minus_zero = (
+        math.copysign(1, value) > 0 > other
+    )  # nextafter goes from 0.0 to the double below -0.0
     assert Difference(1, 0, 0.0, "rk4", "theta", value, other).ulps == n + passed_minus_zero
 
 
@@ -114,8 +137,14 @@ def test_ulps_count_doubles_across_zero_too(value, n):
     ("entries", "why"),
     [
         (two_runs()[:1], "it has no samples"),
-        ([*two_runs()[:4], Entry(1.0, two_runs()[3].value._replace(run=7, step=9))], "a run has no start"),
-        ([*two_runs()[:4], Entry(1.0, Event("set_h", 1, 2, 0.2, h=0.2)), *two_runs()[4:5]], "not in order"),
+        (
+            [*two_runs()[:4], Entry(1.0, two_runs()[3].value._replace(run=7, step=9))],
+            "a run has no start",
+        ),
+        (
+            [*two_runs()[:4], Entry(1.0, Event("set_h", 1, 2, 0.2, h=0.2)), *two_runs()[4:5]],
+            "not in order",
+        ),
         (
             [*two_runs()[:4], Entry(1.0, two_runs()[3].value._replace(step=10**15))],
             r"use --max-steps \d+\.$",
@@ -150,7 +179,9 @@ def foreign_loops(monkeypatch, every):
 
     def loops_of(method, model):
         def advance(phase, h, n, limit):
-            return loops.advance(method.on(model, sin)(phase, h), model.energy(sin), phase, n, limit)
+            return loops.advance(
+                method.on(model, sin)(phase, h), model.energy(sin), phase, n, limit
+            )
 
         return CompiledLoops(loops.PlainLoops(method, model).travel, advance)
 
@@ -159,7 +190,9 @@ def foreign_loops(monkeypatch, every):
 
 
 @pytest.mark.parametrize("scene", sorted(SCENES))
-def test_a_recording_from_a_machine_with_another_sin_verifies_within_the_tolerance(tmp_path, monkeypatch, scene):
+def test_a_recording_from_a_machine_with_another_sin_verifies_within_the_tolerance(
+    tmp_path, monkeypatch, scene
+):
     path = tmp_path / "a.mcap"
     with monkeypatch.context() as elsewhere, Recorder(path, wall=None) as recorder:
         foreign = foreign_loops(elsewhere, every=2)  # much worse than any libm
@@ -187,7 +220,11 @@ def test_a_difference_beyond_the_tolerance_is_found_even_if_sin_differs(tmp_path
     verification = verify(tmp_path / "a.mcap")
     assert verification.identical
     difference = verify(tmp_path / "b.mcap").first_difference
-    assert (difference.method, difference.field, difference.computed) == ("velocity_verlet", "theta", right)
+    assert (difference.method, difference.field, difference.computed) == (
+        "velocity_verlet",
+        "theta",
+        right,
+    )
 
 
 def test_no_more_steps_are_simulated_than_samples_need(tmp_path):

@@ -57,7 +57,9 @@ class Page:
         return await self.browser.call(method, self._session, **parameters)
 
     async def evaluate(self, expression: str) -> Any:
-        told = await self.call("Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True)
+        told = await self.call(
+            "Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True
+        )
         assert "exceptionDetails" not in told, told
         return told["result"].get("value")
 
@@ -70,12 +72,18 @@ class Page:
         """Press a key that is a character."""
         for kind, text in (("keyDown", {"text": key}), ("keyUp", {})):
             await self.call(
-                "Input.dispatchKeyEvent", type=kind, key=key, windowsVirtualKeyCode=ord(key.upper()), **text
+                "Input.dispatchKeyEvent",
+                type=kind,
+                key=key,
+                windowsVirtualKeyCode=ord(key.upper()),
+                **text,
             )
 
     async def click(self, x: float, y: float) -> None:
         for kind in ("mouseMoved", "mousePressed", "mouseReleased"):
-            await self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
+            await self.call(
+                "Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1
+            )
 
     async def resize(self, width: int, height: int) -> None:
         size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
@@ -107,7 +115,11 @@ class Chromium:
             elif (page := self._pages.get(told.get("sessionId", ""))) is not None:
                 if told["method"] == "Network.webSocketFrameReceived":
                     response = told["params"]["response"]
-                    page.received.append(base64.b64decode(response["payloadData"]) if response["opcode"] == 2 else b"")
+                    page.received.append(
+                        base64.b64decode(response["payloadData"])
+                        if response["opcode"] == 2
+                        else b""
+                    )
                 elif told["method"] == "Network.webSocketFrameSent":
                     page.sent.append(told["params"]["response"]["payloadData"])
                 elif told["method"] == "Runtime.exceptionThrown":
@@ -117,14 +129,18 @@ class Chromium:
         number = next(self._numbers)
         answer = self._answers[number] = asyncio.get_running_loop().create_future()
         whose = {} if session is None else {"sessionId": session}
-        await self._socket.send_json({"id": number, "method": method, "params": parameters, **whose})
+        await self._socket.send_json(
+            {"id": number, "method": method, "params": parameters, **whose}
+        )
         told = await asyncio.wait_for(answer, PATIENCE)
         assert "error" not in told, told
         return told["result"]
 
     async def open(self, url: str, width: int = 1000, height: int = 700) -> Page:
         target = (await self.call("Target.createTarget", url="about:blank"))["targetId"]
-        session = (await self.call("Target.attachToTarget", targetId=target, flatten=True))["sessionId"]
+        session = (await self.call("Target.attachToTarget", targetId=target, flatten=True))[
+            "sessionId"
+        ]
         page = self._pages[session] = Page(self, target, session)
         for domain in ("Page", "Network", "Runtime"):
             await page.call(f"{domain}.enable")
@@ -137,11 +153,16 @@ class Chromium:
 async def chromium(folder: Any):
     """A browser whose profile is in the folder."""
     command = [PROGRAM, *OPTIONS, f"--user-data-dir={folder}"]
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+    )
     try:
         lines = iter(process.stderr.readline, "")
         address = next(found[0] for line in lines if (found := re.search(r"ws://\S+", line)))
-        async with aiohttp.ClientSession() as client, client.ws_connect(address, max_msg_size=0) as socket:
+        async with (
+            aiohttp.ClientSession() as client,
+            client.ws_connect(address, max_msg_size=0) as socket,
+        ):
             browser = Chromium(socket)
             listener = asyncio.create_task(browser.listen())
             yield browser

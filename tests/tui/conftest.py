@@ -11,7 +11,9 @@ from rich.cells import cell_len
 
 SNAPSHOTS = Path(__file__).parent / "snapshots"
 CELL = 12.2  # units of a picture, across
-TEXT = re.compile(r'<text [^>]*x="([\d.]+)"[^>]*clip-path="url\(#terminal-(?:\d+-)?line-(\d+)\)">([^<]*)</text>')
+TEXT = re.compile(
+    r'<text [^>]*x="([\d.]+)"[^>]*clip-path="url\(#terminal-(?:\d+-)?line-(\d+)\)">([^<]*)</text>'
+)
 
 Hold = Callable[[str, str], None]
 
@@ -19,7 +21,9 @@ Hold = Callable[[str, str], None]
 _computed: dict[bytes, list[object]] = {}
 
 
-async def computed_here(function: Callable[..., Iterator[object]], *arguments: object) -> AsyncIterator[object]:
+async def computed_here(
+    function: Callable[..., Iterator[object]], *arguments: object
+) -> AsyncIterator[object]:
     """As tui.views.background.computed, but in a thread, and each thing once.
 
     Another process takes seconds to import everything again, and many tests look at the same map.
@@ -47,7 +51,13 @@ def snapshot(request: pytest.FixtureRequest) -> Hold:
     """Compare an SVG picture with the stored one of that name; --snapshot-update stores it."""
 
     def hold(name: str, svg: str) -> None:
-        compare(SNAPSHOTS / f"{name}.svg", svg, cells_of, lines_of, request.config.getoption("--snapshot-update"))
+        compare(
+            SNAPSHOTS / f"{name}.svg",
+            svg,
+            cells_of,
+            lines_of,
+            request.config.getoption("--snapshot-update"),
+        )
 
     return hold
 
@@ -60,13 +70,23 @@ def text_snapshot(request: pytest.FixtureRequest) -> Hold:
         looks = {look for _, look in cells_of(svg).values()}
         colours = sorted(set(re.findall(r"#[0-9a-fA-F]{6}", " ".join(looks))))
         text = f"{text_of(svg)}\ncolours: {' '.join(colours)}\n"
-        compare(SNAPSHOTS / f"{name}.txt", text, str, str.splitlines, request.config.getoption("--snapshot-update"))
+        compare(
+            SNAPSHOTS / f"{name}.txt",
+            text,
+            str,
+            str.splitlines,
+            request.config.getoption("--snapshot-update"),
+        )
 
     return hold
 
 
 def compare(
-    path: Path, picture: str, essence: Callable[[str], object], lines: Callable[[str], list[str]], update: bool
+    path: Path,
+    picture: str,
+    essence: Callable[[str], object],
+    lines: Callable[[str], list[str]],
+    update: bool,
 ) -> None:
     if update:
         path.parent.mkdir(exist_ok=True)
@@ -76,7 +96,9 @@ def compare(
     stored = path.read_text(encoding="utf-8")
     if essence(stored) != essence(picture):
         (seen := path.with_suffix(f".seen{path.suffix}")).write_text(picture, encoding="utf-8")
-        diff = difflib.unified_diff(lines(stored), lines(picture), "stored", "seen", lineterm="", n=0)
+        diff = difflib.unified_diff(
+            lines(stored), lines(picture), "stored", "seen", lineterm="", n=0
+        )
         pytest.fail("\n".join([f"{path.name} looks different, see {seen}:", *diff]), pytrace=False)
 
 
@@ -84,7 +106,9 @@ def cells_of(svg: str) -> dict[tuple[str, int], tuple[str, str]]:
     """Each cell's character and look, and each background, however they were strung together."""
     looks = dict(re.findall(r"\.terminal-(r\d+) { (.*) }", svg))
     cells: dict[tuple[str, int], tuple[str, str]] = {}
-    for fill, x, y, width in re.findall(r'<rect fill="([^"]+)" x="([\d.]+)" y="([\d.]+)" width="([\d.]+)"', svg):
+    for fill, x, y, width in re.findall(
+        r'<rect fill="([^"]+)" x="([\d.]+)" y="([\d.]+)" width="([\d.]+)"', svg
+    ):
         first, count = round(float(x) / CELL), round(float(width) / CELL)
         cells |= {(f"behind {y}", column): ("", fill) for column in range(first, first + count)}
     for look, x, y, text in re.findall(
@@ -108,5 +132,7 @@ def text_of(svg: str) -> str:
     lines: dict[int, str] = {}
     for x, line, text in TEXT.findall(svg):
         before = lines.get(int(line), "")
-        lines[int(line)] = before.ljust(round(float(x) / CELL)) + html.unescape(text).replace("\xa0", " ")
+        lines[int(line)] = before.ljust(round(float(x) / CELL)) + html.unescape(text).replace(
+            "\xa0", " "
+        )
     return "\n".join(lines.get(line, "").rstrip() for line in range(max(lines, default=-1) + 1))

@@ -56,7 +56,9 @@ class Lab(Clocked):
         self.live = Live(scene, speed, clock=work_clock)
         if record is not None:
             wall = 1_700_000_000_000_000_000
-            self.live.record(LiveRecorder(record, wall=lambda: wall) if isinstance(record, Path) else record)
+            self.live.record(
+                LiveRecorder(record, wall=lambda: wall) if isinstance(record, Path) else record
+            )
         super().__init__(self.live)
 
 
@@ -67,7 +69,9 @@ def after(scene: Scene, seconds: float) -> Live:
     return lab.live
 
 
-def recorded(path: Path, *acts: float | Callable[[Live], object], scene: Scene = DEFAULT_SCENE) -> Path:
+def recorded(
+    path: Path, *acts: float | Callable[[Live], object], scene: Scene = DEFAULT_SCENE
+) -> Path:
     """Record a lab: numbers are seconds to run, functions are applied to it."""
     lab = Lab(scene, record=path)
     for act in acts:
@@ -179,7 +183,11 @@ async def uncomputed(*_: object) -> AsyncIterator[object]:
 
 @asynccontextmanager
 async def view_of(
-    stage: SourceScreen, key: str, kind: type[Any], complete: Callable[[Any], bool], size: tuple[int, int]
+    stage: SourceScreen,
+    key: str,
+    kind: type[Any],
+    complete: Callable[[Any], bool],
+    size: tuple[int, int],
 ) -> AsyncIterator[tuple[Pilot[Any], Any]]:
     """The view of a screen that a key shows, and its pane of this kind once that is complete."""
     app = PenduApp(stage)

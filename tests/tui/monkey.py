@@ -31,7 +31,14 @@ SIZE = 120, 40
 LARGEST = 300, 90
 ARROWS = [f"\x1b[{letter}" for letter in "ABCD"]
 VIEWS = ["\x1bOQ", "\x1bOR", "\x1bOS", "\x1b[15~"]  # F2 to F5
-KEYS = [*"<>,.[]m1234567tewyzvEdsu?+-piMrnbTPLgx* \r\t", *ARROWS, "\x1b[H", "\x1b[F", "\x1b[5~", "\x1b[6~"]
+KEYS = [
+    *"<>,.[]m1234567tewyzvEdsu?+-piMrnbTPLgx* \r\t",
+    *ARROWS,
+    "\x1b[H",
+    "\x1b[F",
+    "\x1b[5~",
+    "\x1b[6~",
+]
 CALMING = "<<00++rp   "  # else the lab would soon stand still, or run fast with tiny steps and take long to verify
 TYPED = "0123456789.-edg\x7f"
 BATCH, EPISODE = 10, 60  # presses at once; and until what lies over the lab is closed
@@ -49,10 +56,14 @@ def press(chance: random.Random, size: tuple[int, int] = SIZE) -> str:
     """A key or something with the mouse, as a terminal of this size sends it."""
     columns, rows = size
 
-    def mouse(button: int, end: str) -> str:  # the key line is last, where a click on Quit would end it all
+    def mouse(
+        button: int, end: str
+    ) -> str:  # the key line is last, where a click on Quit would end it all
         return f"\x1b[<{button};{chance.randint(1, columns)};{chance.randint(1, max(rows - 1, 1))}{end}"
 
-    match chance.choices(("key", "calm", "view", "text", "click", "drag", "wheel"), (60, 8, 5, 5, 15, 5, 2))[0]:
+    match chance.choices(
+        ("key", "calm", "view", "text", "click", "drag", "wheel"), (60, 8, 5, 5, 15, 5, 2)
+    )[0]:
         case "key":
             return chance.choice(KEYS)
         case "calm":
@@ -78,7 +89,9 @@ def presses(number: int, seed: int) -> Iterator[str]:
         if done % EPISODE == 0:
             if done % (10 * EPISODE) == 0:
                 yield PALETTE
-                yield "".join(chance.choices("aemnstv ", k=3))  # the palette finds, but does nothing
+                yield "".join(
+                    chance.choices("aemnstv ", k=3)
+                )  # the palette finds, but does nothing
             yield ESC
             yield ESC
         if done == number // 2:
@@ -92,7 +105,9 @@ def wild_presses(number: int, seed: int) -> Iterator[str | tuple[int, int]]:
     for done in range(number):
         if done % EPISODE == 0:
             yield from (ESC, ESC)
-        match chance.choices(("press", "over", "type", "enter", "paste", "size"), (70, 6, 8, 4, 3, 9))[0]:
+        match chance.choices(
+            ("press", "over", "type", "enter", "paste", "size"), (70, 6, 8, 4, 3, 9)
+        )[0]:
             case "press":
                 yield press(chance, size)
             case "over":
@@ -106,7 +121,11 @@ def wild_presses(number: int, seed: int) -> Iterator[str | tuple[int, int]]:
             case _:
                 narrow = chance.random() < 0.3
                 largest = (12, 12) if narrow else LARGEST
-                size = SIZE if chance.random() < 0.3 else (chance.randint(1, largest[0]), chance.randint(1, largest[1]))
+                size = (
+                    SIZE
+                    if chance.random() < 0.3
+                    else (chance.randint(1, largest[0]), chance.randint(1, largest[1]))
+                )
                 yield size
 
 
@@ -127,7 +146,9 @@ def play(pendu: PtyLab, number: int, seed: int) -> int:
     raise TimeoutError("it does not quit")
 
 
-async def play_on_stage(theatre: Theatre, what: Iterable[str | tuple[int, int]], seed: int, batch: int = 1) -> None:
+async def play_on_stage(
+    theatre: Theatre, what: Iterable[str | tuple[int, int]], seed: int, batch: int = 1
+) -> None:
     """Let the monkey play where nothing depends on how fast the machine is, if the lab may rest after each press."""
     app, parser, chance = theatre.app, XTermParser(), random.Random(-seed)
     driver = app._driver
@@ -150,7 +171,9 @@ async def play_on_stage(theatre: Theatre, what: Iterable[str | tuple[int, int]],
             return
 
 
-async def computed_here(function: Callable[..., Iterator[object]], *arguments: object) -> AsyncIterator[object]:
+async def computed_here(
+    function: Callable[..., Iterator[object]], *arguments: object
+) -> AsyncIterator[object]:
     """What `computed` yields, without another process: when it comes does not depend on the machine."""
     for item in function(*arguments):
         yield item
@@ -180,7 +203,9 @@ async def still(theatre: Theatre) -> None:
         await theatre.pilot.pause(0.001)
 
 
-def wild_stage(library: Path, scene: Scene = DEFAULT_SCENE) -> Callable[[Callable[[], float]], LiveScreen]:
+def wild_stage(
+    library: Path, scene: Scene = DEFAULT_SCENE
+) -> Callable[[Callable[[], float]], LiveScreen]:
     """Makes a lab that is recorded in a library."""
 
     def make(clock: Callable[[], float]) -> LiveScreen:

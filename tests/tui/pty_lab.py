@@ -41,7 +41,11 @@ class PtyLab:
             fcntl.ioctl(0, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
             os.chdir(folder)
             terminal = {"TERM": "xterm-256color", "COLORTERM": "truecolor", "PYTHONUTF8": "1"}
-            ours = {name: value for name, value in os.environ.items() if name not in ("COLUMNS", "LINES")}
+            ours = {
+                name: value
+                for name, value in os.environ.items()
+                if name not in ("COLUMNS", "LINES")
+            }
             os.execvpe(program[0], [*program, *arguments], {**ours, **terminal, **environment})
         self._arrival = 0.0  # of the last packet, s since the start
         self.output = bytearray()
@@ -53,7 +57,10 @@ class PtyLab:
         return self
 
     def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
     ) -> None:
         if self.code is None:
             os.kill(self.pid, signal.SIGKILL)
@@ -69,7 +76,9 @@ class PtyLab:
         """What comes within `seconds`, at most one piece; empty if nothing does or the program is gone."""
         ready, _, _ = select.select([self.terminal], [], [], max(seconds, 0))
         try:
-            piece = os.read(self.terminal, 1 << 16 if self.rate is None else PACKET) if ready else b""
+            piece = (
+                os.read(self.terminal, 1 << 16 if self.rate is None else PACKET) if ready else b""
+            )
         except OSError:  # Linux: nobody has the other end open any more
             time.sleep(0.01)
             return b""
@@ -93,7 +102,9 @@ class PtyLab:
         start, end = len(self.output), self.now + seconds
         while text.encode() not in self.output[max(0, start - len(text)) :]:
             if self.now > end:
-                raise TimeoutError(f"{text!r} did not come within {seconds} s: {bytes(self.output[-2000:])!r}")
+                raise TimeoutError(
+                    f"{text!r} did not come within {seconds} s: {bytes(self.output[-2000:])!r}"
+                )
             self.read(end - self.now)
         return self.now
 
@@ -102,7 +113,9 @@ class PtyLab:
         end = self.now + seconds
         while not pattern.search(self.output):
             if self.now > end:
-                raise TimeoutError(f"{pattern!r} did not come within {seconds} s: {bytes(self.output[-2000:])!r}")
+                raise TimeoutError(
+                    f"{pattern!r} did not come within {seconds} s: {bytes(self.output[-2000:])!r}"
+                )
             self.read(end - self.now)
         return self.now
 

@@ -54,7 +54,9 @@ def cast_of(options: argparse.Namespace, default: Cast, most: int | None = MOST_
     cast = default if options.methods is None else _named(options.methods, (*METHODS, *own))
     cast = (*cast, *(method for method in own if method not in cast))
     if most is not None and len(cast) > most:
-        raise UserError(f"{len(cast)} methods are too many; name those to show, at most {most}, with --methods.")
+        raise UserError(
+            f"{len(cast)} methods are too many; name those to show, at most {most}, with --methods."
+        )
     return cast
 
 
@@ -96,7 +98,9 @@ def find(name: str, methods: Sequence[Method], option: str = "--methods") -> Met
             if len(found) == 1:
                 return by_key[found[0]]
             if found:
-                raise UserError(f"{option}: {name!r} may be {' or '.join(found)}; write more of it.")
+                raise UserError(
+                    f"{option}: {name!r} may be {' or '.join(found)}; write more of it."
+                )
     advice = did_you_mean(name, by_key) or f": choose from {', '.join(by_key)}."
     raise UserError(f"{option}: there is no method {name!r}{advice}")
 
@@ -113,9 +117,15 @@ def _own(text: str, others: Sequence[Method]) -> "OwnMethod":
         )
     taken = {method.letter: method for method in (*METHODS, *others)}
     if key in {method.key for method in taken.values()}:
-        raise UserError(f"--method: there is a method {key} already; give your function another name.")
+        raise UserError(
+            f"--method: there is a method {key} already; give your function another name."
+        )
     if letter is None:
-        letter = next(each for each in (*key.lower(), *string.ascii_letters) if each.isalpha() and each not in taken)
+        letter = next(
+            each
+            for each in (*key.lower(), *string.ascii_letters)
+            if each.isalpha() and each not in taken
+        )
     if not re.fullmatch(r"[A-Za-z0-9]", letter):
         raise UserError(f"--method: {letter!r} is not a letter; use for example letter=m.")
     if letter in taken:
@@ -131,12 +141,16 @@ def _loaded(path: Path, key: str, letter: str) -> "OwnMethod":
         raise UserError(f"--method: {path} cannot be read: {why}.", Exit.INPUT_UNREADABLE) from None
     from engine.methods.examine import load
 
-    with _limited(f"{path}: {key} takes more than {MAX_SECONDS:g} s for a few steps; does it ever yield?"):
+    with _limited(
+        f"{path}: {key} takes more than {MAX_SECONDS:g} s for a few steps; does it ever yield?"
+    ):
         output = io.StringIO()
         with redirect_stdout(output):
             method = load(source, key, letter, str(path))
     if output.getvalue():
-        raise UserError(f"{path}: {key} writes to stdout, which is for results; write to stderr instead.")
+        raise UserError(
+            f"{path}: {key} writes to stdout, which is for results; write to stderr instead."
+        )
     return method
 
 
@@ -147,7 +161,10 @@ class _TooLongError(BaseException):
 @contextmanager
 def _limited(sentence: str) -> Iterator[None]:
     """Raise UserError after MAX_SECONDS, where the platform can interrupt the block."""
-    if not hasattr(signal, "setitimer") or threading.current_thread() is not threading.main_thread():
+    if (
+        not hasattr(signal, "setitimer")
+        or threading.current_thread() is not threading.main_thread()
+    ):
         yield
         return
 

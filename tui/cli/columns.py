@@ -86,7 +86,9 @@ class Table:
         self.columns = [column[good] for column in columns]
 
 
-def read_table(stream: BinaryIO, wanted: Sequence[str], number: int | None = None, start: float = -LATEST) -> Table:
+def read_table(
+    stream: BinaryIO, wanted: Sequence[str], number: int | None = None, start: float = -LATEST
+) -> Table:
     """Return a table of the wanted columns, times first: the last one, or that of this number.
 
     A column is a name, a number from 1, or several of them joined by +.  Rows before `start` are
@@ -210,14 +212,18 @@ class _Text:
             else:
                 yield from self._other(line)
             if number > MAX_LINES_BEFORE and not self._has_rows:
-                raise unreadable(f"{number:,} lines without a row of these columns; is this a table?")
+                raise unreadable(
+                    f"{number:,} lines without a row of these columns; is this a table?"
+                )
         if self._head is None:
             raise missing(self._wanted, list(self._legend.values()) or self._names)
 
     def _plain_row(self, line: str) -> Row | None:
         """Return a row like the one before it."""
         assert self._head is not None
-        fields = line.split(self._delimiter) if '"' not in line else fields_of(line, self._delimiter)
+        fields = (
+            line.split(self._delimiter) if '"' not in line else fields_of(line, self._delimiter)
+        )
         if len(fields) != self._width:
             return None
         try:

@@ -79,7 +79,9 @@ def _gate(node: ast.expr, source: str, fields: Sequence[str], methods: Sequence[
         case ast.BoolOp(op, parts):
             gates = [_gate(part, source, fields, methods) for part in parts]
             return partial(_all if isinstance(op, ast.And) else _any, gates)
-        case ast.Compare(ast.Attribute(ast.Name(key), field), [sign], [value]) if type(sign) in _SIGNS and not fields:
+        case ast.Compare(ast.Attribute(ast.Name(key), field), [sign], [value]) if (
+            type(sign) in _SIGNS and not fields
+        ):
             method = _named("method", key, methods)
             names = FIELDS
         case ast.Compare(ast.Attribute(ast.Name(), field) as named) if fields:

@@ -9,7 +9,9 @@ from threading import Timer, main_thread
 from types import FrameType
 from typing import TextIO
 
-_SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+_SIGNALS = [
+    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
+]
 
 
 @contextmanager
@@ -31,7 +33,10 @@ def text_file(path: Path | None, force: bool = False) -> Iterator[TextIO]:
     if path is None:
         yield sys.stdout
     else:
-        with whole_file(path, force) as part, part.open("w", encoding="utf-8", newline="") as stream:
+        with (
+            whole_file(path, force) as part,
+            part.open("w", encoding="utf-8", newline="") as stream,
+        ):
             yield stream
 
 

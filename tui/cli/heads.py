@@ -48,7 +48,9 @@ def fields_of(line: str, delimiter: str | None) -> list[str]:
         return [text.strip() for text in line.split(delimiter)]
     if delimiter is None:
         return [quoted or bare for quoted, bare in re.findall(r'"([^"]*)"|(\S+)', line)]
-    parts = re.findall(r'((?:"[^"]*"|[^"' + delimiter + r"])*)(?:" + delimiter + r"|$)", line.strip())
+    parts = re.findall(
+        r'((?:"[^"]*"|[^"' + delimiter + r"])*)(?:" + delimiter + r"|$)", line.strip()
+    )
     return [text.strip().strip('#" ') for text in parts]
 
 
@@ -58,7 +60,9 @@ def delimiter_of(line: str) -> str | None:
     return next((sign for sign in "\t;," if sign in bare), None)
 
 
-def places_of(fields: Sequence[str], wanted: Sequence[str], named: bool = False) -> tuple[tuple[int, ...], ...] | None:
+def places_of(
+    fields: Sequence[str], wanted: Sequence[str], named: bool = False
+) -> tuple[tuple[int, ...], ...] | None:
     """Return the fields that make up each wanted column, if all are there.
 
     `named`: only if one of them is asked for by name.
@@ -83,7 +87,11 @@ def _place(fields: Sequence[str], name: str) -> int | None:
     if name.strip().isdecimal():
         place = int(name[:9]) - 1
         return place if 0 <= place < len(fields) else None
-    ways: tuple[Callable[[str], str], ...] = (str.strip, lambda text: text.strip().casefold(), _plain)
+    ways: tuple[Callable[[str], str], ...] = (
+        str.strip,
+        lambda text: text.strip().casefold(),
+        _plain,
+    )
     for like in ways:
         asked = like(name)
         for place, text in enumerate(fields):
@@ -115,11 +123,15 @@ def _split(name: str) -> tuple[str, str]:
 
 def missing(wanted: Sequence[str], names: Sequence[str]) -> UserError:
     """Return the error that names do not have a wanted column."""
-    lost = next((name for name in wanted if not name.isdecimal() and not places_of(names, [name])), None)
+    lost = next(
+        (name for name in wanted if not name.isdecimal() and not places_of(names, [name])), None
+    )
     if lost is None:
         return unreadable("no row has a number in each column; columns count from 1.")
     present = [printable(name, 40) for name in names[:20] if name]
-    others = f"; choose from {', '.join(present)}." if present else "; give columns by number, from 1."
+    others = (
+        f"; choose from {', '.join(present)}." if present else "; give columns by number, from 1."
+    )
     hint = did_you_mean(lost, present) if len(lost) <= MAX_NAME else None
     return UserError(f"there is no column {printable(lost, 40)!r}{hint or others}")
 

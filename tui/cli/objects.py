@@ -89,11 +89,14 @@ def of_arrays(stream: BinaryIO, wanted: Sequence[str]) -> Records:
             places = places_of(names[:MAX_NAMES], wanted)
             if places is None:
                 raise missing(wanted, names)
-            sizes = {item.filename.removesuffix(".npy"): item.file_size for item in arrays.zip.infolist()}
+            sizes = {
+                item.filename.removesuffix(".npy"): item.file_size for item in arrays.zip.infolist()
+            }
             if any(sizes[names[place]] > MAX_ARRAY for place in chain(*places)):
                 raise unreadable("an array is larger than 1 GB.")
             columns = [
-                np.sum([np.ravel(arrays[names[place]]).astype(float) for place in group], axis=0) for group in places
+                np.sum([np.ravel(arrays[names[place]]).astype(float) for place in group], axis=0)
+                for group in places
             ]
     except (OSError, ValueError, TypeError, KeyError, EOFError, zipfile.BadZipFile) as error:
         raise unreadable(f"this .npz cannot be read: {printable(str(error), 100)}.") from None

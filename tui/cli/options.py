@@ -20,13 +20,17 @@ class Parser(argparse.ArgumentParser):
         self._negative_number_matcher = re.compile(r"-\.?\d")
 
     def error(self, message: str) -> NoReturn:
-        raise UserError(f"{message.removeprefix('argument ')}; {self.prog} --help shows the options.")
+        raise UserError(
+            f"{message.removeprefix('argument ')}; {self.prog} --help shows the options."
+        )
 
     def parse_args(self, arguments: Sequence[str], namespace: Any = None) -> Any:  # type: ignore[override]
         """Parse the arguments; optional words, such as a SCENE, may also follow options."""
         for argument in arguments:
             if re.fullmatch(r"(--?[\w-]+=|-\w)--", argument):  # Python 3.11 makes a list of it
-                self.error(f"{argument.removesuffix('--').removesuffix('=')}: expected one argument")
+                self.error(
+                    f"{argument.removesuffix('--').removesuffix('=')}: expected one argument"
+                )
         has_optional = any(each.nargs == "?" and not each.option_strings for each in self._actions)
         if has_optional and not {"-h", "--help"} & {*arguments}:  # whose text intermixing changes
             return self.parse_intermixed_args(arguments, namespace)
@@ -39,7 +43,10 @@ class Parser(argparse.ArgumentParser):
             if argument == "--" or " " in name or name in self._option_string_actions:
                 continue
             if re.match(r"--?[a-z]", name, re.IGNORECASE):
-                hint = did_you_mean(name, self._option_string_actions) or f"; {self.prog} --help shows the options."
+                hint = (
+                    did_you_mean(name, self._option_string_actions)
+                    or f"; {self.prog} --help shows the options."
+                )
                 return UserError(f"{self.prog.rpartition(' ')[2]} has no option {name}{hint}")
         return None
 
@@ -72,7 +79,9 @@ def angle(text: str) -> float:
     try:
         value = float(re.sub(r"(deg|°|rad)$", "", text))
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is not an angle; use for example 2 (radians) or 115deg") from None
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not an angle; use for example 2 (radians) or 115deg"
+        ) from None
     return math.radians(value) if text.endswith(("deg", "°")) else value
 
 
@@ -80,7 +89,9 @@ def start_angle(text: str) -> float:
     """Return an angle [rad]; warn if degrees seem to be meant."""
     value = angle(text)
     if math.tau < abs(value) <= LIMITS["theta"][1] and not text.endswith(("deg", "°", "rad")):
-        warn(f"--theta {text} is {text} rad, {abs(value) / math.tau:.3g} turns; for degrees write {text}deg.")
+        warn(
+            f"--theta {text} is {text} rad, {abs(value) / math.tau:.3g} turns; for degrees write {text}deg."
+        )
     return value
 
 
@@ -89,7 +100,9 @@ def number(text: str) -> float:
     try:
         return float(text)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number; use for example 0.05 or 1e-3") from None
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not a number; use for example 0.05 or 1e-3"
+        ) from None
 
 
 def positive(text: str) -> float:

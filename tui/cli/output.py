@@ -25,7 +25,8 @@ def _wrapped(text: str) -> str:
     """Wrap a text to the terminal, which would break words; a path, for example, stays whole."""
     columns = shutil.get_terminal_size().columns
     return "\n".join(
-        textwrap.fill(line, columns, break_long_words=False, break_on_hyphens=False) for line in text.split("\n")
+        textwrap.fill(line, columns, break_long_words=False, break_on_hyphens=False)
+        for line in text.split("\n")
     )
 
 
@@ -60,7 +61,12 @@ def console(piped_width: int | None = None) -> "Console":
     """Return where tables and pictures are drawn: as wide as the terminal, or as given where the output is none."""
     from rich.console import Console
 
-    return Console(width=None if sys.stdout.isatty() else piped_width, markup=False, emoji=False, highlight=False)
+    return Console(
+        width=None if sys.stdout.isatty() else piped_width,
+        markup=False,
+        emoji=False,
+        highlight=False,
+    )
 
 
 def draw(on: "Console", renderables: "Iterable[RenderableType]", **how: Any) -> None:
@@ -88,7 +94,12 @@ def progress(what: str) -> Iterator[Callable[[float, float], None]]:
             from rich.console import Console
             from rich.progress import Progress
 
-            bar = Progress(*Progress.get_default_columns(), "left", console=Console(file=sys.stderr), transient=True)
+            bar = Progress(
+                *Progress.get_default_columns(),
+                "left",
+                console=Console(file=sys.stderr),
+                transient=True,
+            )
             bar.add_task(what)
             bar.start()
         bar.update(0, completed=done, total=total)

@@ -116,7 +116,9 @@ def write_records(records: Iterable[Mapping[str, Any]], out: TextIO) -> None:
         writer.writerows(chain([first], rest))
 
 
-def add_report_options(parser: argparse._ActionsContainer, *, csv: bool = False, files: Sequence[str] = ()) -> None:
+def add_report_options(
+    parser: argparse._ActionsContainer, *, csv: bool = False, files: Sequence[str] = ()
+) -> None:
     """Add --json, --csv where the rows are a table of numbers, and -o for files with these suffixes."""
     forms = parser.add_mutually_exclusive_group()
     forms.add_argument("--json", action="store_true", help="one JSON object, SI units")

@@ -13,16 +13,35 @@ from tui.cli.options import Suggestions, angle, did_you_mean, number, start_angl
 def add_scene_options(parser: argparse.ArgumentParser) -> None:
     """Add the options that determine a scene; `scene_of` reads them."""
     group = parser.add_argument_group("scene", "options override the values of the scene")
-    meaning = f"see pendu-tui scenes ({DEFAULT_SCENE.name}), or a file with the fields of scenes --json"
+    meaning = (
+        f"see pendu-tui scenes ({DEFAULT_SCENE.name}), or a file with the fields of scenes --json"
+    )
     names = Suggestions(SCENES)
-    group.add_argument("scene", metavar="SCENE", nargs="?", choices=names, help="the scene, as --scene")
-    group.add_argument("--scene", dest="scene_option", metavar="NAME|FILE.toml", choices=names, help=meaning)
+    group.add_argument(
+        "scene", metavar="SCENE", nargs="?", choices=names, help="the scene, as --scene"
+    )
+    group.add_argument(
+        "--scene", dest="scene_option", metavar="NAME|FILE.toml", choices=names, help=meaning
+    )
     for name, metavar, read, meaning in (
-        ("theta", "RAD|DEGdeg", start_angle, "start angle from straight down, in rad, or in degrees (115deg)"),
-        ("omega", "RAD_S", angle, "start angular velocity in rad/s, or in degrees per second (30deg)"),
+        (
+            "theta",
+            "RAD|DEGdeg",
+            start_angle,
+            "start angle from straight down, in rad, or in degrees (115deg)",
+        ),
+        (
+            "omega",
+            "RAD_S",
+            angle,
+            "start angular velocity in rad/s, or in degrees per second (30deg)",
+        ),
         ("length", "M", number, "length in m"),
         ("gravity", "M_S2", number, "gravity in m/s²"),
-        *((each.name, "NUMBER", number, f"{each.about} in {each.unit}") for each in PARAMETERS.values()),
+        *(
+            (each.name, "NUMBER", number, f"{each.about} in {each.unit}")
+            for each in PARAMETERS.values()
+        ),
         ("h", "S", number, "step size in s"),
     ):
         group.add_argument(f"--{name.replace('_', '-')}", metavar=metavar, type=read, help=meaning)
@@ -37,7 +56,9 @@ def scene_of(options: argparse.Namespace, default: Scene | None = None) -> Scene
     given = {name: getattr(options, name) for name in (*LIMITS, *PARAMETERS, "h")}
     changes = {name: value for name, value in given.items() if value is not None}
     if options.scene and options.scene_option:
-        raise UserError(f"there are two scenes, {options.scene} and {options.scene_option}; leave one out.")
+        raise UserError(
+            f"there are two scenes, {options.scene} and {options.scene_option}; leave one out."
+        )
     name = options.scene or options.scene_option
     scene = (scene_named(name) if name else default or DEFAULT_SCENE).altered(**changes)
     return scene.with_cast(cast_of(options, scene.cast))

@@ -17,7 +17,11 @@ from tui.cli.options import angle, did_you_mean
 
 TEXTS = ("name", "watch", "model")
 NO_FIELDS = ("cast", "parameters", "often_said")
-FIELDS = (*(field.name for field in fields(Scene) if field.name not in NO_FIELDS), *PARAMETERS, "methods")
+FIELDS = (
+    *(field.name for field in fields(Scene) if field.name not in NO_FIELDS),
+    *PARAMETERS,
+    "methods",
+)
 MAX_BYTES = 100_000
 
 
@@ -27,19 +31,28 @@ def read_scene(path: Path) -> Scene:
         with path.open("rb") as file:
             raw = file.read(MAX_BYTES + 1)
         if len(raw) > MAX_BYTES:
-            raise UserError(f"{path} is longer than {MAX_BYTES} bytes; is it a scene?", Exit.INPUT_UNREADABLE)
+            raise UserError(
+                f"{path} is longer than {MAX_BYTES} bytes; is it a scene?", Exit.INPUT_UNREADABLE
+            )
         text = raw.decode("utf-8-sig")
         given = tomllib.loads(text)
     except OSError as error:
         raise UserError(f"cannot read {path}: {error.strerror}.", Exit.INPUT_UNREADABLE) from None
-    except (ValueError, RecursionError) as error:  # ValueError: no text, no TOML, or an integer of 5,000 digits
-        raise UserError(f"{path} is not TOML: {printable(str(error), 200)}.", Exit.INPUT_UNREADABLE) from None
+    except (
+        ValueError,
+        RecursionError,
+    ) as error:  # ValueError: no text, no TOML, or an integer of 5,000 digits
+        raise UserError(
+            f"{path} is not TOML: {printable(str(error), 200)}.", Exit.INPUT_UNREADABLE
+        ) from None
     values: dict[str, Any] = {"name": path.stem}
     for name, value in given.items():
         try:
             values["cast" if name == "methods" else name] = _value(name, value)
         except UserError as error:
-            raise UserError(f"{path}, line {_line(text, name)}: {error}", Exit.INPUT_UNREADABLE) from None
+            raise UserError(
+                f"{path}, line {_line(text, name)}: {error}", Exit.INPUT_UNREADABLE
+            ) from None
     model = values.get("model", DEFAULT_MODEL)
     casts = (scene.cast for scene in SCENES.values() if scene.model == model)
     suited = tuple(method for method in METHODS if model in method.models)
@@ -48,7 +61,9 @@ def read_scene(path: Path) -> Scene:
     try:
         return Scene(parameters=parameters, **values)
     except SceneError as error:
-        named = next((name for name in given if re.search(rf"\b{re.escape(name)}\b", str(error))), None)
+        named = next(
+            (name for name in given if re.search(rf"\b{re.escape(name)}\b", str(error))), None
+        )
         where = "" if named is None else f", line {_line(text, named)}"
         raise UserError(f"{path}{where}: {error}", Exit.INPUT_UNREADABLE) from None
 
@@ -81,7 +96,9 @@ def _value(name: str, value: Any) -> Any:
 
 def _methods(value: Any) -> Cast:
     if not isinstance(value, list) or not value or not all(isinstance(key, str) for key in value):
-        raise UserError('methods is not a list of names; use for example ["velocity_verlet", "rk4"].')
+        raise UserError(
+            'methods is not a list of names; use for example ["velocity_verlet", "rk4"].'
+        )
     if len(set(value)) < len(value):
         raise UserError("methods has a name twice; name each method once.")
     return tuple(find(key, METHODS, "methods") for key in value)
@@ -90,4 +107,11 @@ def _methods(value: Any) -> Cast:
 def _line(text: str, name: str) -> int:
     """Return the line that a field is on, from 1."""
     lines = text.splitlines()
-    return next((n for n, line in enumerate(lines, 1) if re.match(rf"\s*[\"'\[]*{re.escape(name)}\b", line)), 1)
+    return next(
+        (
+            n
+            for n, line in enumerate(lines, 1)
+            if re.match(rf"\s*[\"'\[]*{re.escape(name)}\b", line)
+        ),
+        1,
+    )

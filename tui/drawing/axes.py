@@ -20,7 +20,9 @@ class Axis:
 
     def share(self, values: ArrayLike) -> Floats:
         """Positions of values along the axis, from 0 to 1, clipped."""
-        return np.clip((np.asarray(values, np.float64) - self.low) / (self.high - self.low), 0.0, 1.0)
+        return np.clip(
+            (np.asarray(values, np.float64) - self.low) / (self.high - self.low), 0.0, 1.0
+        )
 
     @property
     def label_width(self) -> int:
@@ -43,7 +45,19 @@ def nice(value: float) -> float:
 
 _LADDER = (
     *((1 / size, 1) for size in (16, 12, 8, 6, 4, 3, 2)),
-    *((2 / 3, 2), (1, 2), (3 / 2, 3), (2, 4), (3, 6), (4, 8), (6, 12), (12, 24), (50, 100), (200, 400), (500, 1000)),
+    *(
+        (2 / 3, 2),
+        (1, 2),
+        (3 / 2, 3),
+        (2, 4),
+        (3, 6),
+        (4, 8),
+        (6, 12),
+        (12, 24),
+        (50, 100),
+        (200, 400),
+        (500, 1000),
+    ),
 )
 """Decades a row of characters, and decades from label to label."""
 
@@ -51,9 +65,13 @@ _LADDER = (
 def log_axis(low: float, high: float, rows: int) -> Axis:
     """A vertical axis of log10 from low to high, at least two decades long, and hardly longer."""
     low = min(low, high - 2)
-    size, step = next((size, step) for size, step in _LADDER if round(high / size) - round(low / size) < rows)
+    size, step = next(
+        (size, step) for size, step in _LADDER if round(high / size) - round(low / size) < rows
+    )
     bottom, top = (round(high / size) + 0.5 - rows) * size, (round(high / size) + 0.5) * size
-    inside: list[float] = [number * step for number in range(math.ceil(bottom / step), math.floor(top / step) + 1)]
+    inside: list[float] = [
+        number * step for number in range(math.ceil(bottom / step), math.floor(top / step) + 1)
+    ]
     if len(inside) < 2 and size >= 1:  # a few rows: each has its label
         inside = [round(high / size) * size - size * row for row in range(rows)][::-1]
     return Axis(bottom, top, {value: _power(value) for value in inside})
@@ -63,7 +81,9 @@ def log_x_axis(low: float, high: float, columns: int) -> Axis:
     """A horizontal axis of log10, with at most one label in 8 columns."""
     first, last = math.floor(low), max(math.ceil(high), math.floor(low) + 1)
     step = math.ceil((last - first) * 8 / columns)
-    return Axis(first, last, {power: _power(power) for power in range(first, last + 1) if power % step == 0})
+    return Axis(
+        first, last, {power: _power(power) for power in range(first, last + 1) if power % step == 0}
+    )
 
 
 def _power(exponent: float) -> str:
@@ -90,7 +110,11 @@ def linear_axis(low: float, high: float, rows: int) -> Axis:
     top, row = math.ceil(high / step - 1e-9), step / rows_apart(step)
     bottom = top * step - (rows - 0.5) * row
     numbers = range(math.ceil(bottom / step), top + 1)
-    return Axis(bottom, top * step + row / 2, {number * step: _label(number * step, step) for number in numbers})
+    return Axis(
+        bottom,
+        top * step + row / 2,
+        {number * step: _label(number * step, step) for number in numbers},
+    )
 
 
 def _label(value: float, step: float) -> str:
@@ -102,9 +126,13 @@ def _label(value: float, step: float) -> str:
 
 def time_axis(start: float, end: float, columns: int, note: str = "") -> Axis:
     """An axis of seconds labelled in s, min or h about every 10 columns; the last label adds unit and note."""
-    size, unit = next((unit for unit in ((3600, "h"), (60, "min")) if end - start >= 5 * unit[0]), (1, "s"))
+    size, unit = next(
+        (unit for unit in ((3600, "h"), (60, "min")) if end - start >= 5 * unit[0]), (1, "s")
+    )
     step = nice((end - start) / size / max(columns / 10, 1))
-    labels = {k * step * size: f"{k * step:.6g}" for k in _multiples(start / size, end / size, step, 1e-9)}
+    labels = {
+        k * step * size: f"{k * step:.6g}" for k in _multiples(start / size, end / size, step, 1e-9)
+    }
     if labels:
         labels[max(labels)] += f" {unit}{note}"
     return Axis(start, end, labels)
@@ -124,11 +152,15 @@ def log_time_axis(start: float, end: float, columns: int, note: str = "") -> Axi
     labels: dict[float, str] = {}
     for seconds, text in _TIMES:
         place = math.log10(seconds)
-        if low <= place <= high and (not labels or (place - max(labels)) / (high - low) * columns >= 8):
+        if low <= place <= high and (
+            not labels or (place - max(labels)) / (high - low) * columns >= 8
+        ):
             labels[place] = text
     if len(labels) < 2:  # so short that it is almost linear
         linear = time_axis(start, end, columns, note).labels
-        return Axis(low, high, {math.log10(value): text for value, text in linear.items() if value > 0})
+        return Axis(
+            low, high, {math.log10(value): text for value, text in linear.items() if value > 0}
+        )
     labels[max(labels)] += note
     return Axis(low, high, labels)
 
@@ -145,8 +177,13 @@ def theta_ticks(low: float, high: float, most: int, wrap: bool) -> Ticks:
     """Positions and labels of about `most` angles in pi; at high zoom one in full, others as offsets [rad]."""
     share = (high - low) / math.pi / most
     if high - low > 0.02 * math.pi:
-        step = next((quarters / 4 for quarters in (1, 2, 4) if quarters / 4 >= share > 0.1), nice(share))
-        return [(k * step * math.pi, in_pi(k * step, wrap)) for k in _multiples(low / math.pi, high / math.pi, step)]
+        step = next(
+            (quarters / 4 for quarters in (1, 2, 4) if quarters / 4 >= share > 0.1), nice(share)
+        )
+        return [
+            (k * step * math.pi, in_pi(k * step, wrap))
+            for k in _multiples(low / math.pi, high / math.pi, step)
+        ]
     step, middle = nice((high - low) / most), (low + high) / 2
     turns = round(middle / math.pi)
     anchor = turns * math.pi if low <= turns * math.pi <= high else round(middle / step) * step
@@ -216,14 +253,18 @@ def envelope(x: Floats, values: Floats, hold: float) -> Floats:
     return np.repeat(largest, np.diff(starts, append=len(x)), axis=0)
 
 
-def per_column(x: Floats, low: Floats, high: Floats, start: float, end: float, columns: int) -> tuple[Floats, Floats]:
+def per_column(
+    x: Floats, low: Floats, high: Floats, start: float, end: float, columns: int
+) -> tuple[Floats, Floats]:
     """Lowest `low` and highest `high` (n, series) of the rows in each of `columns` parts of [start, end].
 
     x ascends.  Returns (columns, series); nan where no row falls into a column.
     """
     lows, highs = np.full((columns, low.shape[1]), np.nan), np.full((columns, low.shape[1]), np.nan)
     # A row on an edge belongs to the right-hand column, even if rounding puts the edge a little late.
-    edges = np.searchsorted(x, np.linspace(start, end, columns + 1) - 1e-9 * (end - start) / columns)
+    edges = np.searchsorted(
+        x, np.linspace(start, end, columns + 1) - 1e-9 * (end - start) / columns
+    )
     edges[-1] = np.searchsorted(x, end, "right")
     filled = np.flatnonzero(edges[1:] > edges[:-1])
     if len(filled):
@@ -238,7 +279,9 @@ def held(x: Floats, values: Floats, start: float, end: float, columns: int, hold
     column = (end - start) / columns
     back = min(math.ceil(hold / column), columns)
     _, highs = per_column(x, values, values, start - back * column, end, back + columns)
-    largest: Floats = np.fmax.reduce([highs[offset : offset + columns] for offset in range(back + 1)])
+    largest: Floats = np.fmax.reduce(
+        [highs[offset : offset + columns] for offset in range(back + 1)]
+    )
     begun = math.ceil((x[-1] - start) / column) if len(x) else 0
     largest[max(begun, 1) :] = np.nan
     return largest

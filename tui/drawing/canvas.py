@@ -80,7 +80,9 @@ class Canvas:
         bits |= np.packbits(dots, bitorder="little")
         np.frombuffer(self._inks, np.uint8)[cells] = ink - NOBODY
 
-    def line(self, x0: float, y0: float, x1: float, y1: float, ink: int, dotted: bool = False) -> None:
+    def line(
+        self, x0: float, y0: float, x1: float, y1: float, ink: int, dotted: bool = False
+    ) -> None:
         """Draw a straight line: a dot in each column of dots, or row where it is steep; dotted: every third of them."""
         dx = x1 - x0
         dy = y1 - y0
@@ -91,16 +93,24 @@ class Canvas:
         sign = -1 if step < 0 else 1
         first = min(max(floor(start), -1), size)  # one beyond an edge is enough to draw nothing
         last = min(max(floor(start + step), -1), size)
-        begin, end = (max(first, 0), min(last, size - 1)) if sign > 0 else (min(first, size - 1), max(last, 0))
+        begin, end = (
+            (max(first, 0), min(last, size - 1))
+            if sign > 0
+            else (min(first, size - 1), max(last, 0))
+        )
         dots = range(begin, end + sign, 3 * sign if dotted else sign)
         shares = [(at + 0.5 - start) / step for at in dots] if step else [0.0] * len(dots)
         if shares:  # the line may begin and end before or beyond the middle of a dot
             shares[0] = max(shares[0], 0.0)
             shares[-1] = min(shares[-1], 1.0)
         if steep:
-            self.points([(x0 + share * dx, at) for at, share in zip(dots, shares, strict=True)], ink)
+            self.points(
+                [(x0 + share * dx, at) for at, share in zip(dots, shares, strict=True)], ink
+            )
         else:
-            self.points([(at, y0 + share * dy) for at, share in zip(dots, shares, strict=True)], ink)
+            self.points(
+                [(at, y0 + share * dy) for at, share in zip(dots, shares, strict=True)], ink
+            )
 
     def path(self, points: Iterable[tuple[float, float]], ink: int) -> None:
         """Join points with lines; there is none to or from a point that is not finite."""
@@ -157,7 +167,10 @@ class Canvas:
         rows: list[Row] = [
             tuple(
                 [
-                    (text[span.start() : span.end()], NOBODY if span[1] is None else span[1][0] + NOBODY)
+                    (
+                        text[span.start() : span.end()],
+                        NOBODY if span[1] is None else span[1][0] + NOBODY,
+                    )
                     for span in _SPANS.finditer(inks, begin, begin + self.columns)
                 ]
             )

@@ -57,7 +57,9 @@ class CellWidget(Widget):
         """What is shown, without colours."""
         return self._picture.text
 
-    def refresh(self, *regions: Region, repaint: bool = True, layout: bool = False, recompose: bool = False) -> Self:
+    def refresh(
+        self, *regions: Region, repaint: bool = True, layout: bool = False, recompose: bool = False
+    ) -> Self:
         """Paint these regions anew, or everything."""
         if not regions:
             self._crop = None
@@ -70,8 +72,14 @@ class CellWidget(Widget):
             self._crop = crop if crop == Region(0, 0, *self.outer_size) else None
             top, right, _, left = self.gutter
             self._top = top
-            self._inside = len(self._lines) - self.gutter.height  # `room` may be of another size yet
-            line = self._lines[top] if top < len(self._lines) else Strip.blank(crop.width, self.rich_style)
+            self._inside = (
+                len(self._lines) - self.gutter.height
+            )  # `room` may be of another size yet
+            line = (
+                self._lines[top]
+                if top < len(self._lines)
+                else Strip.blank(crop.width, self.rich_style)
+            )
             self._left = [*line.crop(0, left)]
             self._right = [*line.crop(crop.width - right)]
             self._filters = self.get_line_filters()
@@ -82,7 +90,9 @@ class CellWidget(Widget):
                     row = self.render_line(y)
                     for one in self._filters:
                         row = row.apply_filter(one, self._background)
-                    self._lines[self._top + y] = Strip([*self._left, *row, *self._right], crop.width)
+                    self._lines[self._top + y] = Strip(
+                        [*self._left, *row, *self._right], crop.width
+                    )
         self._changed.clear()
         return self._lines
 

@@ -66,15 +66,21 @@ class LogLog:
             x, y = across, np.interp(across, x, y, left=np.nan, right=np.nan)
             inside = (y >= self.y_axis.low) & (y <= self.y_axis.high)
             x, y = x[inside], y[inside]
-        return (self.columns * self.x_axis.share(x)).tolist(), (self.rows * self.y_axis.share(y)).tolist()
+        return (self.columns * self.x_axis.share(x)).tolist(), (
+            self.rows * self.y_axis.share(y)
+        ).tolist()
 
     def cell(self, x: float, y: float) -> tuple[int, int]:
         """Return column and row of the picture in which a point on the axes lies."""
         column = self.columns * float(self.x_axis.share(math.log10(x)))
-        return self.left + int(column), 1 + row_at(self.rows * float(self.y_axis.share(math.log10(y))), self.rows)
+        return self.left + int(column), 1 + row_at(
+            self.rows * float(self.y_axis.share(math.log10(y))), self.rows
+        )
 
 
-def loglog_chart(series: Sequence[Series], width: int, height: int, *, x_label: str, y_label: str) -> Picture:
+def loglog_chart(
+    series: Sequence[Series], width: int, height: int, *, x_label: str, y_label: str
+) -> Picture:
     """Draw points with marks on two logarithmic axes that fit them all, and dotted reference lines.
 
     Points that are not finite and positive are left out; reference lines are clipped.
@@ -89,17 +95,26 @@ def loglog_chart(series: Sequence[Series], width: int, height: int, *, x_label: 
     _plot(canvas, axes, curves)
     for one, x, y in sorted(curves, key=lambda curve: curve[0].dotted):
         most = width - len(one.mark)
-        points = [(min(axes.left + int(at), most), row_at(up, axes.rows)) for at, up in zip(x, y, strict=True)]
+        points = [
+            (min(axes.left + int(at), most), row_at(up, axes.rows))
+            for at, up in zip(x, y, strict=True)
+        ]
         for column, row in points[-1:] if one.dotted else points:
             place = column, 1 + row
             if one.dotted:
-                near = [(column + right, 1 + row + down) for down in (0, -1, 1) for right in range(1, -8, -1)]
+                near = [
+                    (column + right, 1 + row + down)
+                    for down in (0, -1, 1)
+                    for right in range(1, -8, -1)
+                ]
                 place = _first_free(canvas, near, len(one.mark), axes.rows) or place
             canvas.label(*place, one.mark, one.ink)
     return canvas.picture()
 
 
-def _plot(canvas: Canvas, axes: LogLog, curves: Iterable[tuple[Series, list[float], list[float]]]) -> None:
+def _plot(
+    canvas: Canvas, axes: LogLog, curves: Iterable[tuple[Series, list[float], list[float]]]
+) -> None:
     """Let plotext draw the curves and the axes on a canvas, between its first and its last row."""
     import plotext  # 0.1 s, so only with the first chart
 
@@ -137,7 +152,9 @@ def _plot(canvas: Canvas, axes: LogLog, curves: Iterable[tuple[Series, list[floa
                 canvas.label(column, 1 + row, character, red + NOBODY)
 
 
-def _first_free(canvas: Canvas, places: Iterable[tuple[int, int]], length: int, rows: int) -> tuple[int, int] | None:
+def _first_free(
+    canvas: Canvas, places: Iterable[tuple[int, int]], length: int, rows: int
+) -> tuple[int, int] | None:
     """Return the first of these places (column, row) where `length` cells of the chart's rows are blank."""
     for column, row in places:
         if 1 <= row <= rows and all(canvas.is_blank(column + at, row) for at in range(length)):

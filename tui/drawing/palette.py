@@ -37,7 +37,13 @@ class Palette(NamedTuple):
         if ink >= 0:
             lap, index = divmod(ink, len(self.methods))
             return mixed(self.methods[index], self.text, 1 - 0.6**lap)
-        others = {EXACT: self.exact, FRAME: self.frame, WARN: self.warn, QUIET: self.exact, GOOD: self.good}
+        others = {
+            EXACT: self.exact,
+            FRAME: self.frame,
+            WARN: self.warn,
+            QUIET: self.exact,
+            GOOD: self.good,
+        }
         return others.get(ink, self.text)
 
 
@@ -100,7 +106,10 @@ PALETTES = {
 
 def palette(theme: str) -> Palette:
     """The palette of this name; for other themes, the one that suits the name best."""
-    return PALETTES.get(theme) or PALETTES["ansi" if "ansi" in theme else "light" if "light" in theme else "dark"]
+    return (
+        PALETTES.get(theme)
+        or PALETTES["ansi" if "ansi" in theme else "light" if "light" in theme else "dark"]
+    )
 
 
 def inks(cast: Cast) -> tuple[int, ...]:
@@ -132,6 +141,7 @@ def mixed(colour: str, other: str, share: float) -> str:
     if not colour.startswith("#"):
         return colour if share < 0.2 else colour.removeprefix("bright_")
     parts = (
-        round((1 - share) * int(colour[at : at + 2], 16) + share * int(other[at : at + 2], 16)) for at in (1, 3, 5)
+        round((1 - share) * int(colour[at : at + 2], 16) + share * int(other[at : at + 2], 16))
+        for at in (1, 3, 5)
     )
     return "#" + "".join(f"{part:02X}" for part in parts)

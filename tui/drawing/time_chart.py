@@ -63,7 +63,9 @@ class TimePlot:
         if self.values is None or not 0 <= at < len(self.times):
             return None
         known = np.flatnonzero(~np.isnan(self.values[: at + 1]).all(axis=1))
-        return Reading(self.times[known[-1]], self.values[known[-1]].tolist()) if len(known) else None
+        return (
+            Reading(self.times[known[-1]], self.values[known[-1]].tolist()) if len(known) else None
+        )
 
     def zoomed(
         self, whole: Window, factor: float, column: int | None = None, shift: float = 0.0
@@ -73,10 +75,18 @@ class TimePlot:
         What is in the column, or in the middle, stays there.  None where it would be the whole run.
         """
         low, high = self.ends
-        at = 0.5 if column is None else min(max((column - self.left + 0.5) / max(len(self.times), 1), 0.0), 1.0)
+        at = (
+            0.5
+            if column is None
+            else min(max((column - self.left + 0.5) / max(len(self.times), 1), 0.0), 1.0)
+        )
         fixed = low + at * (high - low)
         length = factor * (high - low)
-        low, high = (float(np.log10(end)) for end in _log_span(whole)) if self.log_time else time_span(whole.x, None, 1)
+        low, high = (
+            (float(np.log10(end)) for end in _log_span(whole))
+            if self.log_time
+            else time_span(whole.x, None, 1)
+        )
         begin = min(max(fixed - at * length + shift * length, low), max(high - length, low))
         end = min(begin + length, high)
         if begin == low and end == high:
@@ -95,12 +105,21 @@ class _Curves:
     high: Floats
 
     @classmethod
-    def of(cls, window: Window, cast: Cast, places: Sequence[int], quantity: str, is_ghost: bool = False) -> "_Curves":
+    def of(
+        cls,
+        window: Window,
+        cast: Cast,
+        places: Sequence[int],
+        quantity: str,
+        is_ghost: bool = False,
+    ) -> "_Curves":
         low = np.clip(window.low[quantity][:, places], -LARGEST, LARGEST)
         high = np.clip(window.high[quantity][:, places], -LARGEST, LARGEST)
         every = inks(cast)
         if is_ghost:
-            return cls(window, [faint(every[place]) for place in places], [""] * len(places), low, high)
+            return cls(
+                window, [faint(every[place]) for place in places], [""] * len(places), low, high
+            )
         letters = [cast[place].letter for place in places]
         return cls(window, [every[place] for place in places], letters, low, high)
 
@@ -111,11 +130,18 @@ class _Curves:
         if not log_time:
             return held(window.x, high, axis.low, axis.high, columns, window.repeats)
         largest = envelope(window.x, high, window.repeats)
-        return per_column(np.log10(np.maximum(window.x, 1e-9)), largest, largest, axis.low, axis.high, columns)[1]
+        return per_column(
+            np.log10(np.maximum(window.x, 1e-9)), largest, largest, axis.low, axis.high, columns
+        )[1]
 
 
 def time_chart(
-    window: Window, cast: Cast, shown: Shown, width: int, height: int, ghost: tuple[Window, Cast] | None = None
+    window: Window,
+    cast: Cast,
+    shown: Shown,
+    width: int,
+    height: int,
+    ghost: tuple[Window, Cast] | None = None,
 ) -> TimePlot:
     """Chart the quantity that is shown over a stretch, the last seconds, or the whole run.
 
@@ -139,31 +165,43 @@ def time_chart(
     if shown.log:
         columns = width - 1 - ROOM - LABEL
         x_axis = _time_axis(window, shown, columns, log_time)
-        sides = [(largest, largest) for largest in (run.largest(x_axis, columns, log_time) for run in runs)]
+        sides = [
+            (largest, largest)
+            for largest in (run.largest(x_axis, columns, log_time) for run in runs)
+        ]
         y_axis = _log_y_axis(np.hstack([low for low, _ in sides]), rows)
     else:
         y_axis = _linear_y_axis(runs, rows)
         columns = width - 1 - ROOM - y_axis.label_width
         x_axis = _time_axis(window, shown, columns, log_time)
-        sides = [per_column(run.window.x, run.low, run.high, x_axis.low, x_axis.high, columns) for run in runs]
+        sides = [
+            per_column(run.window.x, run.low, run.high, x_axis.low, x_axis.high, columns)
+            for run in runs
+        ]
     canvas = Canvas(width, height)
     left = width - columns - ROOM
     _draw_axes(canvas, x_axis, y_axis, left, columns)
     for run, (low, high) in reversed([*zip(runs, sides, strict=True)]):
-        heights = zip(run.inks, rows * y_axis.share(low).T, rows * y_axis.share(high).T, strict=True)
+        heights = zip(
+            run.inks, rows * y_axis.share(low).T, rows * y_axis.share(high).T, strict=True
+        )
         for ink, lowest, highest in heights:
             x, y = _outline(lowest, highest)
             down = np.minimum(4 * (rows - y), 4 * rows - 1)
             canvas.path(np.stack([2 * (left + x) + 1.5, down], axis=1).tolist(), ink)
     if shown.log:
         for column, value in _crossings(sides[0][0]):
-            canvas.label(left + column, row_at(float(rows * y_axis.share(value)), rows), CROSSING, TEXT)
+            canvas.label(
+                left + column, row_at(float(rows * y_axis.share(value)), rows), CROSSING, TEXT
+            )
     low, high = sides[0]
     _write_letters(canvas, runs[0], rows * y_axis.share(high), left)
     middles = x_axis.low + (np.arange(columns) + 0.5) / columns * (x_axis.high - x_axis.low)
     times = 10.0**middles if log_time else middles
     values = 10.0**high if shown.log else np.where(abs(low) > abs(high), low, high)
-    return TimePlot(canvas.picture(), places, left, times.tolist(), values, (x_axis.low, x_axis.high), log_time)
+    return TimePlot(
+        canvas.picture(), places, left, times.tolist(), values, (x_axis.low, x_axis.high), log_time
+    )
 
 
 def too_small(width: int, height: int, columns: int, rows: int) -> Picture:
@@ -250,7 +288,11 @@ def _log_y_axis(largest: Floats, rows: int) -> Axis:
     known = ~np.isnan(above).all(axis=0)
     if not known.any():
         return log_axis(-4, 0, rows)
-    return log_axis(float(np.nanquantile(above[:, known], BELOW_AXIS, axis=0).min()), float(np.nanmax(above)), rows)
+    return log_axis(
+        float(np.nanquantile(above[:, known], BELOW_AXIS, axis=0).min()),
+        float(np.nanmax(above)),
+        rows,
+    )
 
 
 def _linear_y_axis(runs: Sequence[_Curves], rows: int) -> Axis:

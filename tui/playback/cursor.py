@@ -109,7 +109,9 @@ class ReplayCursor:
             stepping = Stepping(event.h or 0.0, event.equal_cost, run.scene.cast)
             self._changes.append(SteppingChange(event.step, event.t, stepping))
         self.so_far = RunSoFar(run.scene, self._changes)
-        for _ in self._read(self.so_far, max(run.begin, self.clock - TAIL), self.clock, sample.step):
+        for _ in self._read(
+            self.so_far, max(run.begin, self.clock - TAIL), self.clock, sample.step
+        ):
             pass
         self.so_far.add(sample)
         self._filling = self._fill()

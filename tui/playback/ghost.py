@@ -31,7 +31,10 @@ class Ghost:
         self.scene = run.scene
         self._name = recording.path.stem
         self._history = ErrorHistory(run.scene, ROWS)
-        self._times, self._rods = array("d"), array("d")  # s; theta and length of each method in turn
+        self._times, self._rods = (
+            array("d"),
+            array("d"),
+        )  # s; theta and length of each method in turn
         exact, latest = run.scene.exact(), -math.inf
         for _, value in recording.samples_between(run.begin, run.end):
             if value.run > run.number or len(self._times) == MAX_SAMPLES:
@@ -45,7 +48,9 @@ class Ghost:
             self._history.add(value, exact.at(latest))
             for reading in value.readings:
                 length = run.scene.equations.length(reading.extra)
-                self._rods.extend((reading.theta if reading.diverged_at is None else math.nan, length))
+                self._rods.extend(
+                    (reading.theta if reading.diverged_at is None else math.nan, length)
+                )
         thetas = [abs(theta) for theta in self._rods[::2] if not math.isnan(theta)]
         self.widest = max(thetas, default=0.0)
         """The largest angle that it comes to [rad]."""
@@ -63,10 +68,15 @@ class Ghost:
             return {}
         count, at = 2 * len(self.scene.cast), bisect_right(self._times, t + ROUNDING) - 1
         row = self._rods[count * at : count * (at + 1)]
-        rods = {method.key: Rod(*row[2 * place : 2 * place + 2]) for place, method in enumerate(self.scene.cast)}
+        rods = {
+            method.key: Rod(*row[2 * place : 2 * place + 2])
+            for place, method in enumerate(self.scene.cast)
+        }
         return {key: rod for key, rod in rods.items() if not math.isnan(rod.theta)}
 
     def window(self, until: float, seconds: float | None = None) -> "Window":
         """Its errors up to a simulated time [s]: the last `seconds`, or all."""
         self._window = self._window or self._history.window()
-        return self._window.cut(-math.inf if seconds is None else until - seconds - self._window.repeats, until)
+        return self._window.cut(
+            -math.inf if seconds is None else until - seconds - self._window.repeats, until
+        )

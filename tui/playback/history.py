@@ -40,13 +40,17 @@ class ErrorHistory:
         self._capacity = capacity
         self._run = 0
         self._latest: tuple[int, float, float] | None = None  # step, x and t of the last row
-        self._recent: deque[Sequence[Sequence[float]]] = deque(maxlen=RECENT)  # theta and omega of each method
+        self._recent: deque[Sequence[Sequence[float]]] = deque(
+            maxlen=RECENT
+        )  # theta and omega of each method
         self._waiting: list[_Row] = []
         self._levels: Levels | None = None
         self.added = self.rewound = 0  # samples so far, and how often some were taken back
         self.returned: Sample | None = None  # where simulated time last was back at 0
 
-    def add(self, sample: Sample, exact: State | None = None, modified: Sequence[float] | None = None) -> None:
+    def add(
+        self, sample: Sample, exact: State | None = None, modified: Sequence[float] | None = None
+    ) -> None:
         """Add the sample of a frame, the exact motion at its time, and the errors of the modified energies.
 
         The same sample again changes nothing.  An earlier one, and one of a run that goes on from
@@ -78,7 +82,11 @@ class ErrorHistory:
             from tui.playback.levels import Levels
 
             self._levels = Levels(
-                self._repeats, self._reference[:2], [*self._energy, *self._extra], self._methods, self._capacity
+                self._repeats,
+                self._reference[:2],
+                [*self._energy, *self._extra],
+                self._methods,
+                self._capacity,
             )
         for sample, x, exact, modified in self._waiting:
             states = [State(reading.theta, reading.omega) for reading in sample.readings]
@@ -88,7 +96,11 @@ class ErrorHistory:
             low, high = (
                 (errors, theta_errors, modified or [math.nan] * len(states), *others)
                 for errors in zip(
-                    *((reading.energy_error_low, reading.energy_error_high) for reading in sample.readings), strict=True
+                    *(
+                        (reading.energy_error_low, reading.energy_error_high)
+                        for reading in sample.readings
+                    ),
+                    strict=True,
                 )
             )
             self._levels.append(sample.step, (x, sample.t), [*states, exact], low, high)
@@ -116,7 +128,9 @@ class ErrorHistory:
     def states(self, length: int) -> Sequence[Sequence[Sequence[float]]]:
         """theta [rad] and omega [rad/s] of each method at the last `length` samples, oldest first."""
         if length > RECENT:
-            return cast(Sequence[Sequence[Sequence[float]]], self.levels.trails(length)[:, :-1].tolist())
+            return cast(
+                Sequence[Sequence[Sequence[float]]], self.levels.trails(length)[:, :-1].tolist()
+            )
         return list(islice(self._recent, max(len(self._recent) - length, 0), None))
 
     def thetas(self, index: int, length: int) -> list[float]:

@@ -35,7 +35,9 @@ class Window:
     def cut(self, begin: float, end: float) -> "Window":
         """What lies between two x [s]."""
         rows = (self.x >= begin) & (self.x <= end)
-        low, high = ({name: each[rows] for name, each in side.items()} for side in (self.low, self.high))
+        low, high = (
+            {name: each[rows] for name, each in side.items()} for side in (self.low, self.high)
+        )
         return replace(self, x=self.x[rows], t=self.t[rows], low=low, high=high)
 
 
@@ -54,7 +56,9 @@ class Level:
         """Where in the ring the rows [first, end) are, as far as it holds them."""
         return np.arange(max(first, self.first), max(end, self.first)) % self.capacity
 
-    def append(self, step: int, times: tuple[float, float], low: ArrayLike, high: ArrayLike) -> None:
+    def append(
+        self, step: int, times: tuple[float, float], low: ArrayLike, high: ArrayLike
+    ) -> None:
         at = self.count % self.capacity
         self.steps[at], self.times[at], self.low[at], self.high[at] = step, times, low, high
         self._grow(1)
@@ -88,15 +92,27 @@ class Levels:
     """
 
     def __init__(
-        self, repeats: float, reference: tuple[float, float], others: Sequence[Quantity], methods: int, capacity: int
+        self,
+        repeats: float,
+        reference: tuple[float, float],
+        others: Sequence[Quantity],
+        methods: int,
+        capacity: int,
     ) -> None:
         self._repeats, self._reference = repeats, reference
         self._stored, self._methods = (*STORED, *others), methods
         self.levels = [Level(len(self._stored), methods, capacity)]
-        self._states = np.zeros((capacity, methods + 1, 2))  # next to level 0; the exact motion comes last
+        self._states = np.zeros(
+            (capacity, methods + 1, 2)
+        )  # next to level 0; the exact motion comes last
 
     def append(
-        self, step: int, times: tuple[float, float], states: Sequence[State], low: ArrayLike, high: ArrayLike
+        self,
+        step: int,
+        times: tuple[float, float],
+        states: Sequence[State],
+        low: ArrayLike,
+        high: ArrayLike,
     ) -> None:
         """Add a sample's row: where it is, and the extremes of what is stored of each method since the row before."""
         finest = self.levels[0]
@@ -141,14 +157,19 @@ class Levels:
         every sample is in exactly one row.
         """
         latest = self.latest()
-        start = -math.inf if seconds is None or latest is None else latest[1] - seconds - self._repeats
-        depth = next(depth for depth, level in enumerate(self.levels) if self._reaches(level, start))
+        start = (
+            -math.inf if seconds is None or latest is None else latest[1] - seconds - self._repeats
+        )
+        depth = next(
+            depth for depth, level in enumerate(self.levels) if self._reaches(level, start)
+        )
         parts, first = [], 0
         for level in reversed(self.levels[: depth + 1]):
             parts.append((level, level.slots(first, level.count)))
             first = 2 * level.count
         times, low, high = (
-            np.concatenate([getattr(level, name)[slots] for level, slots in parts]) for name in ("times", "low", "high")
+            np.concatenate([getattr(level, name)[slots] for level, slots in parts])
+            for name in ("times", "low", "high")
         )
         inside = times[:, 0] >= start
         times, low, high = times[inside], low[inside], high[inside]
@@ -162,14 +183,18 @@ class Levels:
         )
 
     def _quantities(self, rows: Floats) -> dict[Quantity, Floats]:
-        stored: dict[Quantity, Floats] = {quantity: rows[:, i] for i, quantity in enumerate(self._stored)}
+        stored: dict[Quantity, Floats] = {
+            quantity: rows[:, i] for i, quantity in enumerate(self._stored)
+        }
         start, scale = self._reference
         return {"energy": start + scale * stored["energy_error"], **stored}
 
     @staticmethod
     def _reaches(level: Level, start: float) -> bool:
         """Whether the level's rows reach back to x = start, or to the run's start."""
-        return level.first == 0 or (level.count > level.first and level.times[level.first % level.capacity, 0] <= start)
+        return level.first == 0 or (
+            level.count > level.first and level.times[level.first % level.capacity, 0] <= start
+        )
 
     def trails(self, length: int) -> Floats:
         """theta [rad] and omega [rad/s] of every method and the exact motion at the last `length` samples.

@@ -46,7 +46,9 @@ class Live(Source):
         self.recorder: LiveRecorder | None = None
         self.laid_under: Ghost | None = None
         self._events: list[Event] = []
-        self._recorded = Playhead()  # the recording clock: it stands while the lab is paused, whatever the speed
+        self._recorded = (
+            Playhead()
+        )  # the recording clock: it stands while the lab is paused, whatever the speed
         self._clock = clock
         self._noticed_step = 0  # up to which the milestones of the run are events
         self._runs = 1
@@ -78,7 +80,9 @@ class Live(Source):
 
     @property
     def next_step(self) -> float | None:
-        return (self._run.x + abs(self.stepping.h) - self.playhead.position) / abs(self.playhead.speed)
+        return (self._run.x + abs(self.stepping.h) - self.playhead.position) / abs(
+            self.playhead.speed
+        )
 
     @property
     def events(self) -> Sequence[Event]:
@@ -92,7 +96,9 @@ class Live(Source):
         recorder = self.recorder
         if recorder is None:
             return None
-        return RecordingStatus(recorder.path.name, recorder.seconds, recorder.bytes, recorder.failed)
+        return RecordingStatus(
+            recorder.path.name, recorder.seconds, recorder.bytes, recorder.failed
+        )
 
     def record(self, recorder: "LiveRecorder") -> None:
         """Record from here on."""
@@ -109,7 +115,9 @@ class Live(Source):
             return self.sample
         began = self._clock()
         target = self._run.step_at(self.playhead.position)
-        target = int(min(target, self._run.home))  # so that a sample shows what each method misses its start by
+        target = int(
+            min(target, self._run.home)
+        )  # so that a sample shows what each method misses its start by
         while (left := target - self._run.step) > 0:
             if self._clock() - began >= FRAME_BUDGET:
                 break
@@ -117,7 +125,9 @@ class Live(Source):
         due = self.playhead.position - before.position
         if left > 0:
             self.playhead = self.playhead.moved_to(self._run.x)
-        self.pace = self.pace.after(max(0.0, now - before.seen), due, self.playhead.position - before.position)
+        self.pace = self.pace.after(
+            max(0.0, now - before.seen), due, self.playhead.position - before.position
+        )
         return self._take_sample()
 
     def step(self, n: int) -> Sample:
@@ -139,7 +149,10 @@ class Live(Source):
         run, here, end = self._run.run, self._run.step, self._run.furthest
         kept = ("start", "set_h", "mark", "noticed")
         steps = {event.step for event in self._events if event.run == run and event.kind in kept}
-        before, after = (step for step in steps if step < here), (step for step in steps if step > here)
+        before, after = (
+            (step for step in steps if step < here),
+            (step for step in steps if step > here),
+        )
         self.step((min(after, default=end) if direction > 0 else max(before, default=0)) - here)
 
     def start(self, scene: Scene) -> None:
@@ -218,7 +231,9 @@ class Live(Source):
         """The start of the run; where it goes on from another's past, its changes of the step size and milestones."""
         self._note(Event("start", self._run.run, 0, 0.0, scene=self.scene))
         for step, t, stepping in self._run.changes[1:]:
-            self._note(Event("set_h", self._run.run, step, t, h=stepping.h, equal_cost=stepping.equal_cost))
+            self._note(
+                Event("set_h", self._run.run, step, t, h=stepping.h, equal_cost=stepping.equal_cost)
+            )
         self._noticed_step = -1
         self._note_milestones()
 

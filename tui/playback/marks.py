@@ -49,7 +49,9 @@ class Marks:
         """Add a mark and save them all.  Raises OSError where that is impossible; the mark is there nevertheless."""
         others = {*_read(self.path), *self._marks}  # another replay may have added some
         self._marks = sorted({*others, mark}, key=lambda each: each.clock)
-        text = json.dumps({"schema": SCHEMA, "marks": [asdict(each) for each in self._marks]}, indent=1)
+        text = json.dumps(
+            {"schema": SCHEMA, "marks": [asdict(each) for each in self._marks]}, indent=1
+        )
         self.path.parent.mkdir(parents=True, exist_ok=True)
         with whole_file(self.path, force=True) as part:
             part.write_text(text, encoding="utf-8")
@@ -72,7 +74,9 @@ def _read(path: Path) -> list[Mark]:
         if path.stat().st_size > MAX_SIZE:
             return []
         content = json.loads(path.read_text(encoding="utf-8"))
-        marks = [_mark(fields) for fields in content["marks"]] if content["schema"] == SCHEMA else []
+        marks = (
+            [_mark(fields) for fields in content["marks"]] if content["schema"] == SCHEMA else []
+        )
     except (OSError, ValueError, LookupError, TypeError, RecursionError):
         return []
     return sorted(marks, key=lambda mark: mark.clock)

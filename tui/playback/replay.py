@@ -30,7 +30,9 @@ class Replay(Source):
 
     kind = "REPLAY"
 
-    def __init__(self, recording: "Recording", marks: Marks, clock: Callable[[], float] = time.perf_counter) -> None:
+    def __init__(
+        self, recording: "Recording", marks: Marks, clock: Callable[[], float] = time.perf_counter
+    ) -> None:
         self.recording = recording
         self.length = recording.length  # s
         self.marks = marks
@@ -74,7 +76,11 @@ class Replay(Source):
     def judgements(self) -> Sequence[Judgement]:
         """The verdicts that the lab gave since the stepping last changed; trends are not recorded as they change."""
         since = change_before(self.changes, self.sample.step).step
-        swings = (self.sample.step - since) * abs(self.stepping.h) / (self.exact.period or math.tau / self.scene.w0)
+        swings = (
+            (self.sample.step - since)
+            * abs(self.stepping.h)
+            / (self.exact.period or math.tau / self.scene.w0)
+        )
         given = {
             each.method: Judgement(
                 verdict=each.verdict,
@@ -86,7 +92,9 @@ class Replay(Source):
         }
         judged = zip(self.scene.cast, self.sample.readings, strict=True)
         return [
-            Judgement("failed") if reading.diverged_at is not None else given.get(method, Judgement())
+            Judgement("failed")
+            if reading.diverged_at is not None
+            else given.get(method, Judgement())
             for method, reading in judged
         ]
 
@@ -157,7 +165,9 @@ class Replay(Source):
     def seek_event(self, direction: int) -> None:
         position = self.playhead.position
         if direction > 0:
-            self.seek(min((tick for tick in self.ticks if tick > position + 1e-6), default=self.length))
+            self.seek(
+                min((tick for tick in self.ticks if tick > position + 1e-6), default=self.length)
+            )
         else:
             self.seek(max((tick for tick in self.ticks if tick < position - 0.3), default=0.0))
 
@@ -182,7 +192,9 @@ class Replay(Source):
         Raises RecordingError if the run has a user's own method that was not given.
         """
         check_present(self.scene)
-        return Live(self.scene, changes=self._cursor.changes(self.playhead.position)[1:], so_far=self.so_far)
+        return Live(
+            self.scene, changes=self._cursor.changes(self.playhead.position)[1:], so_far=self.so_far
+        )
 
     def close(self) -> None:
         """Close the file; a frame that was due already shows what was there."""

@@ -22,7 +22,9 @@ class RunSoFar:
         self.history = ErrorHistory(scene)
         self.step = -1  # of the last sample
         self._scale = scene.equations.reference(scene.theta, scene.omega).scale
-        self._modified_starts: dict[int, list[float]] = {}  # by the step of the change that they begin at
+        self._modified_starts: dict[
+            int, list[float]
+        ] = {}  # by the step of the change that they begin at
 
     def add(self, sample: Sample) -> None:
         """Add a sample; an earlier one takes back what came after it."""
@@ -43,7 +45,9 @@ class RunSoFar:
             if not change.step <= self.step < sample.step:
                 return [math.nan] * len(self.scene.cast)
             starts = self._modified_energies(self.sample, change.stepping)
-            self._modified_starts = {at: each for at, each in self._modified_starts.items() if at < change.step}
+            self._modified_starts = {
+                at: each for at, each in self._modified_starts.items() if at < change.step
+            }
             self._modified_starts[change.step] = starts
         energies = self._modified_energies(sample, change.stepping)
         return [(now - start) / self._scale for now, start in zip(energies, starts, strict=True)]
@@ -55,5 +59,7 @@ class RunSoFar:
             energy = math.nan
             if method.modified_energy and model.has_force:
                 energy = method.modified_energy(model, (reading.theta, reading.omega), h)
-            energies.append(energy if math.isfinite(energy) else math.nan)  # it overflows where H does not
+            energies.append(
+                energy if math.isfinite(energy) else math.nan
+            )  # it overflows where H does not
         return energies

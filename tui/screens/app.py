@@ -60,7 +60,9 @@ class PenduApp(App[Exit | BaseException]):
         """`open_replay` makes the screen for a recording; it may raise an exception with a sentence."""
         if not os.environ.get("NO_COLOR", "?"):
             del os.environ["NO_COLOR"]  # no-color.org: empty means nothing
-        super().__init__(ansi_color=True if "NO_COLOR" in os.environ else None)  # else Textual greys
+        super().__init__(
+            ansi_color=True if "NO_COLOR" in os.environ else None
+        )  # else Textual greys
         self.open_replay = open_replay
         for name, colours in PALETTES.items():
             self.register_theme(_theme(name, colours))
@@ -145,13 +147,18 @@ class PenduApp(App[Exit | BaseException]):
         from tui.screens.palette import LabCommands
 
         if self.screen is self.source_screen:
-            self.push_screen(Commands([LabCommands], placeholder="scene, theme, key, recording, method …"))
+            self.push_screen(
+                Commands([LabCommands], placeholder="scene, theme, key, recording, method …")
+            )
 
     def action_use_theme(self, name: str) -> None:
         self.theme = name
 
     def get_line_filters(self) -> Sequence[LineFilter]:
-        return [*super().get_line_filters(), *(one for one in (_FILTERS[self.character_set],) if one.enabled)]
+        return [
+            *super().get_line_filters(),
+            *(one for one in (_FILTERS[self.character_set],) if one.enabled),
+        ]
 
 
 def is_of_palette(error: BaseException) -> bool:
@@ -164,7 +171,9 @@ def is_of_palette(error: BaseException) -> bool:
 _FILTERS = {character_set: CharacterSetFilter(character_set) for character_set in CHARACTER_SETS}
 
 
-_ANSI = BUILTIN_THEMES["ansi-dark"].variables  # of cursors and selections, in the terminal's own colours
+_ANSI = BUILTIN_THEMES[
+    "ansi-dark"
+].variables  # of cursors and selections, in the terminal's own colours
 
 
 def _theme(name: str, colours: Palette) -> Theme:

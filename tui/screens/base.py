@@ -104,12 +104,16 @@ class SourceScreen(Screen[None]):
         Binding("s", "screenshot", "save a screenshot", show=False),
         Binding("u", "undo", "Undo", tooltip="undo the last change"),
         Binding("question_mark", "help", "Help", True, "?", tooltip="this help"),
-        Binding("ctrl+p", "app.command_palette", "Find", True, "ctrl+p", True, "find scenes, themes, …"),
+        Binding(
+            "ctrl+p", "app.command_palette", "Find", True, "ctrl+p", True, "find scenes, themes, …"
+        ),
         Binding("ctrl+z", "app.suspend_process", "suspend to the shell", show=False),
         Binding("q", "quit", "Quit", tooltip="finish the recording, quit"),
     ]
 
-    source: var[Source] = var(Initialize(lambda screen: cast(Source, cast(Any, screen).first_source)))
+    source: var[Source] = var(
+        Initialize(lambda screen: cast(Source, cast(Any, screen).first_source))
+    )
     shown: var[Shown] = var(Shown())
     view: var[str] = var("lab")
 
@@ -261,7 +265,9 @@ class SourceScreen(Screen[None]):
         if self.source.go_to(run, step):
             self.show_now()
         else:
-            self.notify(f"That event belongs to run {run}; replay the recording to see it.", markup=False)
+            self.notify(
+                f"That event belongs to run {run}; replay the recording to see it.", markup=False
+            )
 
     def action_mark(self) -> None:
         """Leave a mark at the sample, unless it has one; that of a replay is next to its file."""
@@ -316,7 +322,9 @@ class SourceScreen(Screen[None]):
         self._view_in_front.zoom(factor)
 
     def on_zoomed(self, message: Zoomed) -> None:
-        self.shown = self.shown.zoomed(message.stretch)  # w leads back: no undo of every turn of the wheel
+        self.shown = self.shown.zoomed(
+            message.stretch
+        )  # w leads back: no undo of every turn of the wheel
 
     # Undo
 
@@ -428,7 +436,11 @@ class SourceScreen(Screen[None]):
         """Copy the command for this moment, and show it: not every terminal has a clipboard."""
         text = command(self.source)
         self.app.copy_to_clipboard(text)
-        rest = "" if reproduces(self.source) else " (start values only; later changes of h are in the recording)"
+        rest = (
+            ""
+            if reproduces(self.source)
+            else " (start values only; later changes of h are in the recording)"
+        )
         self.notify(f"Copied: {text}{rest}", markup=False, timeout=15)
 
     def action_replay(self, path: str) -> None:

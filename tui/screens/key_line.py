@@ -32,7 +32,9 @@ def footer(active: Iterable[ActiveBinding], order: Sequence[str]) -> list[Active
     return sorted(by_action.values(), key=place)
 
 
-def key_row(bindings: Sequence[ActiveBinding], width: int) -> tuple[Row, list[tuple[int, int, str]]]:
+def key_row(
+    bindings: Sequence[ActiveBinding], width: int
+) -> tuple[Row, list[tuple[int, int, str]]]:
     """Return the line, and (first column, end, key) of each key that fits.
 
     Grouped keys share a hint.

@@ -16,7 +16,9 @@ from typing import TYPE_CHECKING, Any
 from tui.cli.errors import Exit, UserError, explained
 from tui.cli.output import progress, warn
 
-if TYPE_CHECKING:  # Textual is imported only where there is a screen, NumPy and mcap only when they are needed
+if (
+    TYPE_CHECKING
+):  # Textual is imported only where there is a screen, NumPy and mcap only when they are needed
     from recordings.recording import Recording
     from tui.playback.ghost import Ghost
     from tui.playback.live import Live
@@ -62,7 +64,9 @@ def start_recording(live: "Live", path: Path | None, or_next: bool) -> None:
         live.record(LiveRecorder(path, or_next=or_next))
 
 
-def live_screen(live: "Live", path: Path | None, notices: Sequence[str] = (), or_next: bool = True) -> "LiveScreen":
+def live_screen(
+    live: "Live", path: Path | None, notices: Sequence[str] = (), or_next: bool = True
+) -> "LiveScreen":
     """The lab's screen; recording starts after its first paint."""
     from tui.screens.live import LiveScreen
 
@@ -105,7 +109,9 @@ def replay_screen(replay: "Replay", no_record: bool) -> "ReplayScreen":
         return live_screen(live, None if no_record else recording_path(None))
 
     reason = replay.recording.reason
-    notices = [f"This recording is incomplete ({reason}); showing what is intact."] if reason else []
+    notices = (
+        [f"This recording is incomplete ({reason}); showing what is intact."] if reason else []
+    )
     return ReplayScreen(replay, go_live, notices=notices)
 
 
@@ -116,7 +122,9 @@ def show(screen: "SourceScreen", options: argparse.Namespace) -> int:
 
     assert sys.__stderr__ is not None  # where Textual draws
     terminal = terminal_options_of(options, os.environ, sys.__stderr__.encoding)
-    app = PenduApp(screen, lambda path: replay_screen(open_replay(path), options.no_record), terminal)
+    app = PenduApp(
+        screen, lambda path: replay_screen(open_replay(path), options.no_record), terminal
+    )
     result: Exit | BaseException | None = None
     try:
         with suppress(CancelledError):  # of a dialog that closes while Textual 8.2 does

@@ -61,7 +61,9 @@ class ReplayScreen(SourceScreen):
 
     def action_change(self) -> None:
         """Answer a key of the lab."""
-        self.notify("A recording cannot be changed: f continues it live, and then it can.", timeout=4)
+        self.notify(
+            "A recording cannot be changed: f continues it live, and then it can.", timeout=4
+        )
 
     def seek(self, position: float) -> None:
         self.replay.seek(position)
@@ -100,7 +102,9 @@ class ReplayScreen(SourceScreen):
         try:
             lab = self._go_live(live)
         except (OSError, UserError) as error:
-            self.notify(f"Cannot start recording: {explained(error)}", severity="warning", markup=False)
+            self.notify(
+                f"Cannot start recording: {explained(error)}", severity="warning", markup=False
+            )
             return
         self.end()
         self.app.push_screen(lab)

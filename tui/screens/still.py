@@ -16,7 +16,11 @@ PATIENCE = 30.0  # s for the charts to be built
 
 
 async def still(
-    scene: Scene, seconds: float, size: tuple[int, int], terminal: TerminalOptions = USUAL, keys: Sequence[str] = ()
+    scene: Scene,
+    seconds: float,
+    size: tuple[int, int],
+    terminal: TerminalOptions = USUAL,
+    keys: Sequence[str] = (),
 ) -> str:
     """The lab as an SVG picture, `seconds` after the start and `keys` pressed since."""
     now = 0.0
@@ -37,12 +41,16 @@ async def still(
 async def settled(app: PenduApp) -> None:
     """Wait until every pane shows the newest data."""
     async with asyncio.timeout(PATIENCE):
-        while not all(_is_settled(pane) for pane in app.source_screen.query("#views *").results(Widget)):
+        while not all(
+            _is_settled(pane) for pane in app.source_screen.query("#views *").results(Widget)
+        ):
             await asyncio.sleep(0.01)
 
 
 def _is_settled(pane: Widget) -> bool:
-    shown = getattr(pane, "drawable", True) or not pane.is_on_screen  # else it is still to hear that it is shown
+    shown = (
+        getattr(pane, "drawable", True) or not pane.is_on_screen
+    )  # else it is still to hear that it is shown
     return shown and getattr(pane, "settled", True)
 
 

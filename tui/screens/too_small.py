@@ -12,5 +12,7 @@ class TooSmall(CellWidget):
     def draw(self) -> None:
         columns, rows = self.room
         needed = "x".join(map(str, SMALLEST))
-        text = f"Terminal too small: {columns}x{rows}, need {needed}. Enlarge it, or press q to quit."
+        text = (
+            f"Terminal too small: {columns}x{rows}, need {needed}. Enlarge it, or press q to quit."
+        )
         self.show(Picture.of_text(text, columns, rows, TEXT))

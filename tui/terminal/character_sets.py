@@ -9,11 +9,17 @@ from textual.filter import LineFilter
 
 from tui.terminal.options import CharacterSet
 
-_UPPER, _LOWER = 0x01 | 0x08 | 0x02 | 0x10, 0x04 | 0x20 | 0x40 | 0x80  # the dots of a cell, in Unicode's order
+_UPPER, _LOWER = (
+    0x01 | 0x08 | 0x02 | 0x10,
+    0x04 | 0x20 | 0x40 | 0x80,
+)  # the dots of a cell, in Unicode's order
 
 
 def _braille(blank_upper_lower_both: str) -> dict[int, str]:
-    return {0x2800 + bits: blank_upper_lower_both[bool(bits & _UPPER) + 2 * bool(bits & _LOWER)] for bits in range(256)}
+    return {
+        0x2800 + bits: blank_upper_lower_both[bool(bits & _UPPER) + 2 * bool(bits & _LOWER)]
+        for bits in range(256)
+    }
 
 
 _LIKE = {
@@ -38,7 +44,9 @@ class _Ascii(dict[int, str]):
     def __missing__(self, code: int) -> str:
         character = chr(code)
         plain = unicodedata.normalize("NFKD", character)[0]
-        self[code] = plain if plain.isascii() and cell_len(character) == 1 else "?" * cell_len(character)
+        self[code] = (
+            plain if plain.isascii() and cell_len(character) == 1 else "?" * cell_len(character)
+        )
         return self[code]
 
 
@@ -50,7 +58,9 @@ class CharacterSetFilter(LineFilter):
         self._table: dict[int, str] = _braille(" ▀▄█")
         if character_set == "ascii":
             self._table = _Ascii(_braille(" '.:"))
-            self._table.update((ord(character), like) for like, those in _LIKE.items() for character in those)
+            self._table.update(
+                (ord(character), like) for like, those in _LIKE.items() for character in those
+            )
 
     def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
         table = self._table

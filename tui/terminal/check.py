@@ -8,9 +8,13 @@ from tui.cli.errors import Exit, UserError
 
 def check_terminal() -> None:
     """Raise UserError unless the lab can be shown: Textual itself would print garbage."""
-    if not all(stream is not None and stream.isatty() for stream in (sys.__stdin__, sys.__stdout__, sys.__stderr__)):
+    if not all(
+        stream is not None and stream.isatty()
+        for stream in (sys.__stdin__, sys.__stdout__, sys.__stderr__)
+    ):
         raise UserError(
-            "not a terminal: the lab is interactive. Use pendu-tui run, or --plain.", Exit.TERMINAL_UNSUITABLE
+            "not a terminal: the lab is interactive. Use pendu-tui run, or --plain.",
+            Exit.TERMINAL_UNSUITABLE,
         )
     term = os.environ.get("TERM", "")
     if term in ("", "dumb", "unknown"):

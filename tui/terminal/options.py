@@ -32,8 +32,14 @@ USUAL = TerminalOptions()
 def add_terminal_options(parser: argparse.ArgumentParser) -> None:
     """Add the options for showing the lab; `terminal_options_of` reads them."""
     group = add_picture_options(parser, "auto", "auto")
-    group.add_argument("--plain", action="store_true", help="no TUI: print a sentence per second; Ctrl+C to stop")
-    group.add_argument("--no-mouse", action="store_true", help="disable the mouse; every mouse action also has a key")
+    group.add_argument(
+        "--plain", action="store_true", help="no TUI: print a sentence per second; Ctrl+C to stop"
+    )
+    group.add_argument(
+        "--no-mouse",
+        action="store_true",
+        help="disable the mouse; every mouse action also has a key",
+    )
     group.add_argument(
         "--fps",
         metavar="N",
@@ -42,13 +48,22 @@ def add_terminal_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_picture_options(parser: argparse.ArgumentParser, theme: str, character_set: str) -> argparse._ArgumentGroup:
+def add_picture_options(
+    parser: argparse.ArgumentParser, theme: str, character_set: str
+) -> argparse._ArgumentGroup:
     """Add only those that also apply to a picture of the lab, with these defaults."""
     parser.set_defaults(no_mouse=False, fps=None)
-    group = parser.add_argument_group("display", "auto: detected from the terminal (see pendu-tui doctor)")
-    group.add_argument("--theme", choices=("auto", *PALETTES), default=theme, help="colours (%(default)s)")
+    group = parser.add_argument_group(
+        "display", "auto: detected from the terminal (see pendu-tui doctor)"
+    )
     group.add_argument(
-        "--pixels", choices=("auto", *CHARACTER_SETS), default=character_set, help="what to draw with (%(default)s)"
+        "--theme", choices=("auto", *PALETTES), default=theme, help="colours (%(default)s)"
+    )
+    group.add_argument(
+        "--pixels",
+        choices=("auto", *CHARACTER_SETS),
+        default=character_set,
+        help="what to draw with (%(default)s)",
     )
     return group
 
@@ -59,23 +74,31 @@ def cells(text: str) -> tuple[int, int]:
     columns, rows = (int(match[1]), int(match[2])) if match else (0, 0)
     if not (SMALLEST[0] <= columns <= LARGEST[0] and SMALLEST[1] <= rows <= LARGEST[1]):
         limits = " to ".join(f"{columns}x{rows}" for columns, rows in (SMALLEST, LARGEST))
-        raise argparse.ArgumentTypeError(f"{text!r} is not a size; use for example 120x40, from {limits}")
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not a size; use for example 120x40, from {limits}"
+        )
     return columns, rows
 
 
 def frames_per_second(text: str) -> int:
     """A frame rate that the lab can be shown at."""
     if count(text) > MOST_FPS:
-        raise argparse.ArgumentTypeError(f"{text!r} is out of range; use 1 to {MOST_FPS} frames per second")
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is out of range; use 1 to {MOST_FPS} frames per second"
+        )
     return count(text)
 
 
-def terminal_options_of(options: argparse.Namespace, environment: Mapping[str, str], encoding: str) -> TerminalOptions:
+def terminal_options_of(
+    options: argparse.Namespace, environment: Mapping[str, str], encoding: str
+) -> TerminalOptions:
     """What the options ask for; `auto` is decided by the terminal's environment and encoding."""
     calm = environment.get("TEXTUAL_ANIMATIONS", "").lower() == "none"
     return TerminalOptions(
         fitting_theme(environment) if options.theme == "auto" else options.theme,
-        ("braille" if is_utf8(encoding) else "ascii") if options.pixels == "auto" else options.pixels,
+        ("braille" if is_utf8(encoding) else "ascii")
+        if options.pixels == "auto"
+        else options.pixels,
         not options.no_mouse,
         options.fps or (CALM_FPS if calm else FPS),
     )
@@ -93,7 +116,11 @@ def fitting_theme(environment: Mapping[str, str]) -> str:
     """
     if environment.get("NO_COLOR") or colours(environment) <= 16:
         return "ansi"
-    return "light" if environment.get("COLORFGBG", "").rpartition(";")[2] in map(str, (7, *range(9, 16))) else "dark"
+    return (
+        "light"
+        if environment.get("COLORFGBG", "").rpartition(";")[2] in map(str, (7, *range(9, 16)))
+        else "dark"
+    )
 
 
 def colours(environment: Mapping[str, str]) -> int:

@@ -19,13 +19,17 @@ Item = TypeVar("Item")
 DONE = "done"
 
 
-async def computed(function: Callable[..., Iterator[Item]], *arguments: object) -> AsyncIterator[Item]:
+async def computed(
+    function: Callable[..., Iterator[Item]], *arguments: object
+) -> AsyncIterator[Item]:
     """Yield what function(*arguments) yields, as another process computes it.
 
     The function must be importable, and all values picklable.  The process is killed when this task
     is cancelled, and ends when this process does, even if that is killed.
     """
-    os.environ["PYTHONSAFEPATH"] = "1"  # or the process would import modules from the current folder
+    os.environ["PYTHONSAFEPATH"] = (
+        "1"  # or the process would import modules from the current folder
+    )
     context = multiprocessing.get_context("spawn")
     results, sending = context.Pipe(duplex=False)
     process = context.Process(target=_send_all, args=(sending, function, arguments), daemon=True)
@@ -44,7 +48,9 @@ async def computed(function: Callable[..., Iterator[Item]], *arguments: object) 
         process.join()
 
 
-def _send_all(results: Connection, function: Callable[..., Iterator[Item]], arguments: tuple[object, ...]) -> None:
+def _send_all(
+    results: Connection, function: Callable[..., Iterator[Item]], arguments: tuple[object, ...]
+) -> None:
     """Compute and send; the main function of the other process."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # nothing is to be written across the screen

@@ -85,7 +85,9 @@ class View(Box):
     def zoom(self, factor: float, shift: float = 0.0) -> None:
         """Show `factor` times the stretch of time, or later by a `shift` of it, where the view has a chart of that."""
 
-    def compute(self, work: Callable[[], Coroutine[None, None, None]], group: str = "default") -> Worker[None]:
+    def compute(
+        self, work: Callable[[], Coroutine[None, None, None]], group: str = "default"
+    ) -> Worker[None]:
         """Run this instead of the group's earlier work.  A function, since work that is replaced may not have begun."""
         return self.run_worker(work, group=group, exclusive=True, exit_on_error=False)
 
@@ -152,7 +154,9 @@ class Pane(CellWidget):
             return
         if self.app.size.width < SMALLEST[0] or self.app.size.height < SMALLEST[1]:
             return  # too small: there is a message instead
-        if sample.run == source.sample.run:  # else another run has just begun, maybe with other methods
+        if (
+            sample.run == source.sample.run
+        ):  # else another run has just begun, maybe with other methods
             self.show(self.picture(source, sample))
 
     def picture(self, source: Source, sample: Sample) -> Picture:
@@ -175,7 +179,10 @@ class Chooser(Pane, Generic[Place], can_focus=True):
     def index(self) -> int:
         """The place in the cast of the method that is described, one of those that are shown if there are any."""
         shown = self.places or range(len(self.cast))
-        return next((place for place in shown if self.cast[place].key == self._described), shown[0] if shown else 0)
+        return next(
+            (place for place in shown if self.cast[place].key == self._described),
+            shown[0] if shown else 0,
+        )
 
     def describe(self, place: int) -> None:
         self._described = self.cast[place].key

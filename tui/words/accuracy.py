@@ -43,11 +43,17 @@ def factor_words(found: Sequence[Cheapest]) -> str:
 def growth_words(found: Sequence[Growth]) -> str:
     """The measured powers of t with which theta errors grow; empty where none follows one."""
     named = [growth.name for growth in found if growth.power is not None]
-    return f"over up to {PERIODS} periods, the theta error grows as: {', '.join(named)}" if named else ""
+    return (
+        f"over up to {PERIODS} periods, the theta error grows as: {', '.join(named)}"
+        if named
+        else ""
+    )
 
 
 def _spans(found: Sequence[Cheapest]) -> str:
-    return ", ".join(f"{method.label} {_span(some[0].target, some[-1].target)}" for method, some in ranges(found))
+    return ", ".join(
+        f"{method.label} {_span(some[0].target, some[-1].target)}" for method, some in ranges(found)
+    )
 
 
 def _span(first: float, last: float) -> str:

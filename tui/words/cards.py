@@ -45,7 +45,12 @@ HEADS = {
     "verdict": "what the energy error does in the long run; ? explains each word",
     **dict.fromkeys(("th.err", "theta error"), "the distance from the exact angle [rad]"),
     **dict.fromkeys(("f", "evals/step"), "force evaluations a step: what the method costs"),
-    **{head: each.about for model in MODELS.values() for each in model.extra_columns for head in each[:2]},
+    **{
+        head: each.about
+        for model in MODELS.values()
+        for each in model.extra_columns
+        for head in each[:2]
+    },
     **{model.energy_error.symbol: model.energy_error.about for model in MODELS.values()},
 }
 """What those heads of the table's columns mean that are not in the glossary."""
@@ -75,7 +80,9 @@ def method_card(method: Method) -> str:
         "formula": method.formula,
         "order": f"{method.order}: as a rule, over one swing half of h divides the error by {2**method.order}",
         "costs": f"{counted(method.force_evaluations, 'force evaluation')} per step",
-        "symplectic": "yes: conserves phase-space area" if method.symplectic else "no: phase-space area changes",
+        "symplectic": "yes: conserves phase-space area"
+        if method.symplectic
+        else "no: phase-space area changes",
         "reversible": "yes: run backwards, it returns to its start" if method.reversible else "no",
         "stable": stable,
         "note": method.note,
@@ -100,7 +107,9 @@ def scene_card(scene: Scene, now: str = "") -> str:
             "step": f"h = {scene.h:.5g} s, {z_text(scene)}",
             "now": now,
             "motion": motion_text(scene, exact),
-            "compared with": reference if exact.accuracy and scene == SCENES.get(scene.name) else None,
+            "compared with": reference
+            if exact.accuracy and scene == SCENES.get(scene.name)
+            else None,
         },
     )
 
@@ -108,7 +117,13 @@ def scene_card(scene: Scene, now: str = "") -> str:
 def _card(title: str, lines: Mapping[str, str | None]) -> str:
     after = " " * (HEAD + 2)
     paragraphs = [
-        textwrap.fill(text, WIDTH, initial_indent=f"  {head:<{HEAD}}", subsequent_indent=after, break_on_hyphens=False)
+        textwrap.fill(
+            text,
+            WIDTH,
+            initial_indent=f"  {head:<{HEAD}}",
+            subsequent_indent=after,
+            break_on_hyphens=False,
+        )
         for head, text in lines.items()
         if text
     ]

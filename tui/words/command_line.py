@@ -18,20 +18,33 @@ def command(source: Source) -> str:
         return _moment(str(source.recording.path), source.playhead.position)
     scene = source.scene
     start = _start_h(source)
-    if start is None and isinstance(source, Live) and source.recorder is not None and not source.recorder.failed:
+    if (
+        start is None
+        and isinstance(source, Live)
+        and source.recorder is not None
+        and not source.recorder.failed
+    ):
         return _moment(str(source.recorder.path), source.recorder.seconds)
     if start is not None and start != scene.h:
         scene = scene.altered(h=start)
     first = [change.stepping for change in source.changes if change.step == 0][-1]
     equal_cost = ["--equal-cost"] if first.equal_cost else []
-    speed = [] if source.playhead.speed == _listed(scene).speed else ["--speed", f"{source.playhead.speed:g}"]
+    speed = (
+        []
+        if source.playhead.speed == _listed(scene).speed
+        else ["--speed", f"{source.playhead.speed:g}"]
+    )
     return shlex.join(["pendu-tui", "live", *scene_arguments(scene), *equal_cost, *speed])
 
 
 def reproduces(source: Source) -> bool:
     """Return whether the command brings back all: not a change of h that no file holds."""
     status = source.recording_status
-    return isinstance(source, Replay) or _start_h(source) is not None or (status is not None and not status.failed)
+    return (
+        isinstance(source, Replay)
+        or _start_h(source) is not None
+        or (status is not None and not status.failed)
+    )
 
 
 def _start_h(source: Source) -> float | None:
@@ -43,7 +56,9 @@ def _start_h(source: Source) -> float | None:
         source.scene.h,
         stepping.smallest,
     )  # a scene's h is positive: time does not run back from its start
-    return next((h for h in candidates if stepping._replace(h=1.0).with_smallest(h) == stepping), None)
+    return next(
+        (h for h in candidates if stepping._replace(h=1.0).with_smallest(h) == stepping), None
+    )
 
 
 def _moment(file: str, position: float) -> str:

@@ -10,7 +10,9 @@ from tui.words.numbers import about, seconds
 
 def description(source: Source, only: Cast | None = None) -> list[str]:
     """Return sentences on the run, each method, or `only` these, and the recording."""
-    shown = [index for index, method in enumerate(source.scene.cast) if only is None or method in only]
+    shown = [
+        index for index, method in enumerate(source.scene.cast) if only is None or method in only
+    ]
     return [*_run(source), *(method_sentence(source, index) for index in shown), _recording(source)]
 
 
@@ -55,7 +57,9 @@ def method_sentence(source: Source, index: int) -> str:
     if source.judgements[index].verdict == "bounded":
         return f"{method.label} stays bounded: its largest energy error is {reading.max_energy_error:.2g}."
     judgement = source.judgements[index]
-    verdict = str(judgement) if judgement.verdict == "too early" else f"verdict: {judgement.verdict}"
+    verdict = (
+        str(judgement) if judgement.verdict == "too early" else f"verdict: {judgement.verdict}"
+    )
     if found := drift(source, index):
         return sentence(found)
     return f"{method.label} has an energy error of {reading.energy_error:+.2g}; {verdict}."

@@ -45,9 +45,12 @@ def event_lines(source: Source) -> list[EventLine]:
     run = source.sample.run
     conserved = source.scene.equations.energy_error.conserved
     milestones = [
-        EventLine(run, m.step, m.t, milestone_text(m, conserved), "milestone", m.method) for m in source.milestones
+        EventLine(run, m.step, m.t, milestone_text(m, conserved), "milestone", m.method)
+        for m in source.milestones
     ]
-    return sorted([*_inputs(source), *milestones], key=lambda line: line[:2])  # stable: inputs first
+    return sorted(
+        [*_inputs(source), *milestones], key=lambda line: line[:2]
+    )  # stable: inputs first
 
 
 def numbered(lines: Sequence[EventLine]) -> list[str]:
@@ -62,7 +65,9 @@ def _inputs(source: Source) -> Iterator[EventLine]:
         where = event.run, event.step, event.t
         if event.kind == "mark":
             marks += 1
-            yield EventLine(*where, f"mark {marks}" + (f": {event.text}" if event.text else ""), "mark")
+            yield EventLine(
+                *where, f"mark {marks}" + (f": {event.text}" if event.text else ""), "mark"
+            )
         elif event.kind in ("start", "set_h"):
             yield EventLine(*where, change_text(event, backwards), "change")
             backwards = event.h is not None and event.h < 0
@@ -84,8 +89,14 @@ def milestone_text(milestone: Milestone, conserved: bool = True) -> str:
     name = short_name(milestone.method)
     if milestone.kind == "over the top":
         unit = "E0" if conserved else "E(t)"
-        error = milestone.energy_error if conserved else math.expm1(min(milestone.energy_error, 700.0))
-        energy = f"{two_digits(1 + error)} {unit}" if not 1e-4 < abs(error) < 0.1 else f"{100 * error:+.2g} %"
+        error = (
+            milestone.energy_error if conserved else math.expm1(min(milestone.energy_error, 700.0))
+        )
+        energy = (
+            f"{two_digits(1 + error)} {unit}"
+            if not 1e-4 < abs(error) < 0.1
+            else f"{100 * error:+.2g} %"
+        )
         return f"{name} over the top, {energy}"
     if milestone.other:
         other = short_name(milestone.other)

@@ -31,8 +31,12 @@ SENTENCES = {
     "watch": "{text}",
     "failed": "{0} failed at {t:.4g} s: its energy error is no longer finite.",
     "over the top": "{0} went over the top at {t:.3g} s.",
-    "over the top with": ("{0} went over the top at {t:.3g} s with {ratio:two} times its initial energy."),
-    "over the top with true": ("{0} went over the top at {t:.3g} s with {ratio:two} times the true energy."),
+    "over the top with": (
+        "{0} went over the top at {t:.3g} s with {ratio:two} times its initial energy."
+    ),
+    "over the top with true": (
+        "{0} went over the top at {t:.3g} s with {ratio:two} times the true energy."
+    ),
     "errors cross": "{0}'s error passed {1}'s at {t:.4g} s: smaller at first, it kept growing.",
     "bounded": "{names} bounded; no trend over {seconds:about}.",
     "chaotic": "{0} is chaotic: nearby starts separate exponentially.",
@@ -121,8 +125,12 @@ def _news(source: Source, seconds: float, hidden: Collection[str]) -> Insight | 
     """Return the latest milestone: failures first, then over the top, crossings, verdicts."""
     kinds = ("verdict", "errors cross", "over the top", "failed")
     since = source.sample.step - seconds / abs(source.stepping.h)
-    recent = [each for each in source.milestones if each.step > since and each.method.key not in hidden]
-    for milestone in sorted(recent, key=lambda each: (kinds.index(each.kind), each.step), reverse=True):
+    recent = [
+        each for each in source.milestones if each.step > since and each.method.key not in hidden
+    ]
+    for milestone in sorted(
+        recent, key=lambda each: (kinds.index(each.kind), each.step), reverse=True
+    ):
         if milestone.kind != "verdict":
             return milestone_insight(milestone, source.scene.equations.energy_error.conserved)
         index = source.scene.cast.index(milestone.method)
@@ -143,7 +151,9 @@ def _watch(source: Source, hidden: Collection[str]) -> Insight | None:
 
 def lasting(source: Source, hidden: Collection[str] = ()) -> list[Insight]:
     """Return all insights on the methods that are shown, the most important first; at least one."""
-    ended = {index: each for index, each in endings(source).items() if each.method.key not in hidden}
+    ended = {
+        index: each for index, each in endings(source).items() if each.method.key not in hidden
+    }
     found = list(_on_methods(source, ended, hidden))
     watch = _watch(source, hidden)
     outdated = any(short_name(each.method) in source.scene.watch for each in ended.values())
@@ -152,7 +162,9 @@ def lasting(source: Source, hidden: Collection[str] = ()) -> list[Insight]:
     return [_so_far(source, hidden)]
 
 
-def _on_methods(source: Source, ended: Mapping[int, Milestone], hidden: Collection[str]) -> Iterator[Insight]:
+def _on_methods(
+    source: Source, ended: Mapping[int, Milestone], hidden: Collection[str]
+) -> Iterator[Insight]:
     conserved = source.scene.equations.energy_error.conserved
     for milestone in sorted(ended.values(), key=lambda each: (each.kind != "failed", each.step)):
         yield milestone_insight(milestone, conserved)
@@ -170,7 +182,9 @@ def endings(source: Source) -> dict[int, Milestone]:
     """Return by index the methods that failed or went over the top."""
     ended = [each for each in source.milestones if each.kind in ("over the top", "failed")]
     index = source.scene.cast.index
-    return {index(each.method): each for each in sorted(ended, key=lambda each: each.kind == "failed")}
+    return {
+        index(each.method): each for each in sorted(ended, key=lambda each: each.kind == "failed")
+    }
 
 
 def milestone_insight(milestone: Milestone, conserved: bool = True) -> Insight:
@@ -208,7 +222,9 @@ def irregular(method: Method, judgement: Judgement, error: float) -> Insight | N
         return None
     if not judgement.lyapunov:
         return Insight(judgement.verdict, (method,))
-    return Insight(f"{judgement.verdict} at", (method,), {"seconds": math.log(10) / judgement.lyapunov})
+    return Insight(
+        f"{judgement.verdict} at", (method,), {"seconds": math.log(10) / judgement.lyapunov}
+    )
 
 
 def drift(source: Source, index: int) -> Insight | None:
@@ -250,7 +266,12 @@ def forecast(source: Source, index: int) -> tuple[float, Method] | None:
     error = source.sample.readings[index].energy_error
     slope = judgement.slope
     uncertainty = judgement.uncertainty
-    if judgement.verdict != "loses" or not slope or uncertainty is None or 10 * uncertainty > abs(slope):
+    if (
+        judgement.verdict != "loses"
+        or not slope
+        or uncertainty is None
+        or 10 * uncertainty > abs(slope)
+    ):
         return None
     if any(event.kind == "set_h" and event.run == source.sample.run for event in source.events):
         return None
@@ -265,7 +286,11 @@ def forecast(source: Source, index: int) -> tuple[float, Method] | None:
 def _bands(source: Source) -> list[tuple[float, int]]:
     """Return the largest energy error of each bounded method, with its index, smallest first."""
     pairs = enumerate(zip(source.sample.readings, source.judgements, strict=True))
-    return sorted((reading.max_energy_error, i) for i, (reading, judged) in pairs if judged.verdict == "bounded")
+    return sorted(
+        (reading.max_energy_error, i)
+        for i, (reading, judged) in pairs
+        if judged.verdict == "bounded"
+    )
 
 
 def _so_far(source: Source, hidden: Collection[str] = ()) -> Insight:

@@ -77,7 +77,9 @@ def about(seconds: float) -> str:
 
 def two_digits(value: float) -> str:
     """A positive number with about two digits: "0.00029", "0.66", "4.3", "440", "1.3e+06"."""
-    return f"{value:#.2g}" if value < 9.95 else f"{value:.0f}" if value < 99_999.5 else f"{value:.1e}"
+    return (
+        f"{value:#.2g}" if value < 9.95 else f"{value:.0f}" if value < 99_999.5 else f"{value:.1e}"
+    )
 
 
 def file_size(count: int) -> str:

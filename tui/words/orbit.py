@@ -36,7 +36,9 @@ def name(method: Method, kind: OrbitKind) -> str:
 
 def fraction(kind: OrbitKind) -> str:
     """Return the small fraction nearest to the rotation number: "1:6" is one turn in six steps."""
-    return "-" if kind.fraction is None else f"{kind.fraction.numerator}:{kind.fraction.denominator}"
+    return (
+        "-" if kind.fraction is None else f"{kind.fraction.numerator}:{kind.fraction.denominator}"
+    )
 
 
 def cells(method: Method, kind: OrbitKind) -> tuple[str, ...]:
@@ -97,6 +99,13 @@ def kind_rows(cast: Cast, kinds: Sequence[tuple[int, OrbitKind]], width: int) ->
     rows: list[Row] = [[(" " * LABEL + heads, FRAME)]]
     for place, kind in kinds:
         method = cast[place]
-        line = "".join(cell.rjust(size) for cell, size in zip(cells(method, kind), widths, strict=False))
-        rows.append([(f" {mark(place, method)} {method.label}".ljust(LABEL), inks(cast)[place]), (line, TEXT)])
+        line = "".join(
+            cell.rjust(size) for cell, size in zip(cells(method, kind), widths, strict=False)
+        )
+        rows.append(
+            [
+                (f" {mark(place, method)} {method.label}".ljust(LABEL), inks(cast)[place]),
+                (line, TEXT),
+            ]
+        )
     return rows

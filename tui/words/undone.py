@@ -22,10 +22,16 @@ def undone(before: State, after: State) -> str:
         what = f"h {after.stepping.h:.4g} s"
         if after.stepping.equal_cost != before.stepping.equal_cost:
             what = "equal cost" if after.stepping.equal_cost else "equal steps"
-        return f"Undone: {what} again" if same_run else f"Undone: back to {after.scene.name}, {what}"
+        return (
+            f"Undone: {what} again" if same_run else f"Undone: back to {after.scene.name}, {what}"
+        )
     if not same_run:
         return f"Undone: back to {after.scene.name} at {seconds(after.t)}"
     if after.speed != before.speed:
         return f"Undone: {factor(after.speed)}× again"
-    changed = [text for name, text in _NAMES.items() if getattr(before.shown, name) != getattr(after.shown, name)]
+    changed = [
+        text
+        for name, text in _NAMES.items()
+        if getattr(before.shown, name) != getattr(after.shown, name)
+    ]
     return f"Undone: {', '.join(changed) or 'nothing has changed'}"

@@ -42,7 +42,9 @@ def test_a_useless_point_reaches_nothing():
 
 def test_the_order_decides_which_method_is_cheapest_and_by_which_factor():
     found = front(LINES, "theta", "evaluations")
-    assert [round(cut.target, 15) for cut in found] == [pytest.approx(10.0**-n) for n in range(1, 13)]
+    assert [round(cut.target, 15) for cut in found] == [
+        pytest.approx(10.0**-n) for n in range(1, 13)
+    ]
     for one in found:
         rk4, bm6 = 40 * one.target ** -(1 / 4), 11 * 10 * one.target ** -(1 / 6)
         assert one.method is (RK4 if rk4 < bm6 else BM6)
@@ -55,10 +57,16 @@ def test_a_series_counts_seconds_and_no_evaluations():
     taylor = [series(10, 1.0, 5e-3), series(40, 1e-13, 6e-3)]
     assert {one.method for one in front([*LINES, *taylor], "theta", "seconds")} == {RK4, TAYLOR_20}
     assert TAYLOR_20 not in {one.method for one in front([*LINES, *taylor], "theta", "evaluations")}
-    assert all(one.saves is None for one in front([*LINES, *taylor], "theta", "seconds") if one.method is TAYLOR_20)
+    assert all(
+        one.saves is None
+        for one in front([*LINES, *taylor], "theta", "seconds")
+        if one.method is TAYLOR_20
+    )
 
 
 def test_an_error_that_the_coarsest_run_reaches_is_left_out():
     fine = [at(RK4, 10, 1e-4), at(RK4, 100, 1e-8)]
-    assert [one.target for one in front(fine, "theta", "evaluations")] == pytest.approx([1e-5, 1e-6, 1e-7, 1e-8])
+    assert [one.target for one in front(fine, "theta", "evaluations")] == pytest.approx(
+        [1e-5, 1e-6, 1e-7, 1e-8]
+    )
     assert ranges([]) == []

@@ -25,7 +25,9 @@ EXPLICIT, SYMPLECTIC, VERLET, RK4 = USUAL_CAST
     ],
     ids=lambda value: str(getattr(value, "key", "")),
 )
-def test_the_error_of_a_symplectic_method_grows_as_t_and_that_of_rk4_as_t_squared(scene, method, power):
+def test_the_error_of_a_symplectic_method_grows_as_t_and_that_of_rk4_as_t_squared(
+    scene, method, power
+):
     found = growth(scene, method)
     assert found.power == pytest.approx(power, abs=0.15)
     assert found.name == f"{method.label} t^{found.power:.2f}"
@@ -49,7 +51,9 @@ def test_errors_without_a_power_of_t_give_none(scene, method):
 
 def test_the_errors_of_each_period_are_those_of_the_run():
     scene = Scene(theta=2.0, h=0.02)
-    (found,) = growths(scene.altered(h=1.0, cast=(VERLET,)), (-0.02,))  # backwards in time errors are the same
+    (found,) = growths(
+        scene.altered(h=1.0, cast=(VERLET,)), (-0.02,)
+    )  # backwards in time errors are the same
     exact, (theta, _) = scene.exact(), orbit(VERLET, scene.equations, 0.02, (2.0, 0.0), 6000)
     off = [abs(float(theta[k]) - exact.at(0.02 * k).theta) for k in range(6001)]
     for at in (0, 5, 20):

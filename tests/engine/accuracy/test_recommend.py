@@ -29,14 +29,18 @@ def largest_error(scene, point, kind):
     for _ in range(point.steps):
         lockstep.advance(1)
         (reading,) = lockstep.sample().readings
-        error = reading.energy_error if kind == "energy" else reading.theta - exact.at(lockstep.t).theta
+        error = (
+            reading.energy_error if kind == "energy" else reading.theta - exact.at(lockstep.t).theta
+        )
         largest = abs(error) if kind == "final" else max(largest, abs(error))
     return largest
 
 
 @pytest.mark.parametrize("target", [1e-2, 1e-5])
 @pytest.mark.parametrize("kind", ["theta", "energy", "final"])
-@pytest.mark.parametrize(("name", "time"), [("drift", 10.0), ("large-swing", 20.0), ("spin", 3.0), ("gentle", 0.5)])
+@pytest.mark.parametrize(
+    ("name", "time"), [("drift", 10.0), ("large-swing", 20.0), ("spin", 3.0), ("gentle", 0.5)]
+)
 def test_the_recommended_run_reaches_its_target(name, time, kind, target):
     point = recommended(SCENES[name], time, kind, target)
     assert point.error(kind) <= target
@@ -63,7 +67,9 @@ def test_a_target_near_the_rounding_floor_is_reached_where_refining_still_helps(
 def test_an_error_that_still_falls_with_the_order_is_not_rounding():
     study = Study(SCENES["gentle"], 20.0, LOOPS)
     falls, stays = study.run(R, 2**17), study.run(R, 2**19)
-    assert falls.theta_error < study.run(R, 2**16).theta_error / 8  # it is below what rounding may be, and order 4
+    assert (
+        falls.theta_error < study.run(R, 2**16).theta_error / 8
+    )  # it is below what rounding may be, and order 4
     assert study.may_be_rounding(falls)
     assert falls.flaws.theta is None
     assert stays.flaws.theta == "rounding"
@@ -78,7 +84,9 @@ def test_if_no_method_reaches_the_target_each_has_its_reason():
 
 
 def test_rk4_is_cheapest_for_a_short_time_and_verlet_for_a_long_one_in_energy():
-    winners = [recommended(DRIFT, time, "energy", 1e-3).method for time in (2.0, 20.0, 100.0, 1000.0)]
+    winners = [
+        recommended(DRIFT, time, "energy", 1e-3).method for time in (2.0, 20.0, 100.0, 1000.0)
+    ]
     assert winners == [R, R, V, V]
 
 
@@ -99,7 +107,9 @@ def test_a_budget_is_spent_and_not_exceeded(budget, kind):
         # a step more would exceed it; these steps are too few for rounding to make fewer of them the better ones
         assert attempt.point.force_evaluations + attempt.method.force_evaluations > budget
     best = most_accurate(attempts, kind)
-    assert all(best.error(kind) <= attempt.point.error(kind) for attempt in attempts if attempt.succeeded)
+    assert all(
+        best.error(kind) <= attempt.point.error(kind) for attempt in attempts if attempt.succeeded
+    )
 
 
 def test_a_budget_is_not_spent_beyond_the_rounding_floor():
@@ -135,9 +145,12 @@ def test_no_method_on_a_dense_ladder_is_three_percent_cheaper(kind, target):
     study = Study(replace(DRIFT, cast=tuple(m for m in METHODS if m.general)), 20.0, LOOPS)
     cost = cheapest(list(reach(study, kind, target))).force_evaluations
 
-    def robust(method, steps):  # it and what is up to 10 % finer: near a resonance, an error may cross zero
+    def robust(
+        method, steps
+    ):  # it and what is up to 10 % finer: near a resonance, an error may cross zero
         return all(
-            study.run(method, math.ceil(steps * finer), 10_000).error(kind) <= target for finer in (1, 1.02, 1.05, 1.1)
+            study.run(method, math.ceil(steps * finer), 10_000).error(kind) <= target
+            for finer in (1, 1.02, 1.05, 1.1)
         )
 
     for method in study.scene.cast:

@@ -35,7 +35,9 @@ def test_the_errors_of_a_point_are_the_largest_of_those_compared(points):
     states, steps = solve(9.81, 2.0, 0.0, times, point.tolerance)
     exact = SWING.exact()
     start = energy(9.81, 2.0, 0.0)
-    off = [abs(theta - exact.at(float(t)).theta) for t, (theta, _) in zip(times, states, strict=True)]
+    off = [
+        abs(theta - exact.at(float(t)).theta) for t, (theta, _) in zip(times, states, strict=True)
+    ]
     assert (point.steps, point.theta_error, point.final_error) == (steps, max(off), off[-1])
     off = [abs(energy(9.81, *map(float, state)) - start) / start for state in states]
     # NumPy's sine is a bit off Python's here and there
@@ -46,7 +48,9 @@ def test_the_errors_of_a_point_are_the_largest_of_those_compared(points):
 def test_a_tighter_tolerance_costs_steps_and_buys_accuracy_down_to_rounding(points):
     assert len(points) == len(TOLERANCES)
     assert points[0].flaws.theta == "lost"
-    assert all("rounding" in {point.flaw(kind) for point in points[-3:]} for kind in ("theta", "energy"))
+    assert all(
+        "rounding" in {point.flaw(kind) for point in points[-3:]} for kind in ("theta", "energy")
+    )
     good = [point for point in points if point.flaws.theta is None]
     assert len(good) >= 8
     for loose, tight in itertools.pairwise(good):
@@ -54,11 +58,17 @@ def test_a_tighter_tolerance_costs_steps_and_buys_accuracy_down_to_rounding(poin
     assert good[-1].theta_error < 1e-9
 
 
-@pytest.mark.parametrize("name", [name for name, scene in SCENES.items() if scene.model == "pendulum"])
+@pytest.mark.parametrize(
+    "name", [name for name, scene in SCENES.items() if scene.model == "pendulum"]
+)
 def test_every_scene_has_a_line_down_to_rounding(name):
     scene = SCENES[name]
     points = list(taylor_points(scene, 20 / scene.w0, itertools.count().__next__))
-    assert all(math.isfinite(point.error(kind)) for point in points for kind in ("theta", "energy", "final"))
+    assert all(
+        math.isfinite(point.error(kind))
+        for point in points
+        for kind in ("theta", "energy", "final")
+    )
     assert "rounding" in {point.flaws.energy for point in points}
 
 
@@ -72,12 +82,18 @@ def test_the_compiled_closed_form_is_that_of_plain_python_but_for_the_last_digit
     assert fast.regime == plain.regime == regime
     times = [20 * n / 400 for n in range(401)]
     expected = np.array([plain.at(t) for t in times])
-    assert np.max(np.abs([fast.at(t) for t in times] - expected)) <= 1e-15 * np.max(np.abs(expected))
+    assert np.max(np.abs([fast.at(t) for t in times] - expected)) <= 1e-15 * np.max(
+        np.abs(expected)
+    )
 
 
 def test_seconds_are_the_shortest_by_the_clock():
-    ticks = itertools.chain.from_iterable((0.0, length) for length in (50.0, 30.0, 40.0, 60.0, 35.0))
-    assert references(Scene(model="linear"), 100.0, lambda: next(ticks), fast=True).floor == 30.0 / 20
+    ticks = itertools.chain.from_iterable(
+        (0.0, length) for length in (50.0, 30.0, 40.0, 60.0, 35.0)
+    )
+    assert (
+        references(Scene(model="linear"), 100.0, lambda: next(ticks), fast=True).floor == 30.0 / 20
+    )
     assert next(ticks, None) is None
 
 

@@ -36,7 +36,9 @@ def test_the_measured_orders_are_the_claimed_ones(name):
 
 
 def test_next_to_the_separatrix_rk4_reads_order_5_within_one_period():
-    assert orders(SCENES["near-separatrix"], 20.0)[USUAL_CAST.index(R)].measured == pytest.approx(5, abs=0.1)
+    assert orders(SCENES["near-separatrix"], 20.0)[USUAL_CAST.index(R)].measured == pytest.approx(
+        5, abs=0.1
+    )
 
 
 def test_from_the_bottom_symplectic_euler_has_the_angles_and_the_order_of_verlet():
@@ -51,7 +53,10 @@ def test_from_the_bottom_symplectic_euler_has_the_angles_and_the_order_of_verlet
 def test_what_rounding_leaves_does_not_hang_on_where_in_a_swing_it_starts(theta, omega):
     scene = DRIFT.altered(theta=theta, omega=omega)
     still = scene.exact().at(scene.exact().period / 5)
-    floors = [rounding_floor(each, 20.0)[1] for each in (scene, scene.altered(theta=still.theta, omega=still.omega))]
+    floors = [
+        rounding_floor(each, 20.0)[1]
+        for each in (scene, scene.altered(theta=still.theta, omega=still.omega))
+    ]
     assert floors[0] == pytest.approx(floors[1], rel=0.3)
 
 
@@ -68,7 +73,9 @@ def test_over_a_hundred_seconds_rk4_reads_more_than_its_order():
     finest=st.floats(1e-3, 1),
     count=st.integers(2, 30),
 )
-def test_a_ladder_goes_from_the_first_h_to_the_last_in_whole_fractions_of_the_time(time, coarsest, finest, count):
+def test_a_ladder_goes_from_the_first_h_to_the_last_in_whole_fractions_of_the_time(
+    time, coarsest, finest, count
+):
     h_max, h_min = coarsest * time, coarsest * finest * time
     rungs = ladder(time, h_max, h_min, count)
     assert rungs == sorted(set(rungs))
@@ -82,7 +89,9 @@ def test_a_study_has_a_point_for_every_rung_and_method_and_costs_are_counted(poi
     assert [(p.steps, p.method) for p in points] == list(itertools.product(STEPS, USUAL_CAST))
     for point in points:
         assert point.h * point.steps == pytest.approx(20.0)
-        assert point.force_evaluations == {E: 1, S: 1, V: 1, R: 4}[point.method] * point.steps + (point.method is V)
+        assert point.force_evaluations == {E: 1, S: 1, V: 1, R: 4}[point.method] * point.steps + (
+            point.method is V
+        )
 
 
 @pytest.mark.parametrize("method", USUAL_CAST, ids=lambda method: method.key)
@@ -140,7 +149,9 @@ def test_a_method_that_overflows_has_the_flaw_diverged():
 def test_the_rounding_floor_lies_above_the_rounding_errors_but_not_far_above(name, time):
     study, steps = Study(SCENES[name], time, LOOPS), 2**17
     point = study.run(R, steps)
-    energy_floor, theta_floor = (floor * math.sqrt(steps) for floor in rounding_floor(SCENES[name], time))
+    energy_floor, theta_floor = (
+        floor * math.sqrt(steps) for floor in rounding_floor(SCENES[name], time)
+    )
     # measured 0.005 to 0.6 in theta and 0.001 to 0.5 in energy, for steps from 2^14 to 2^22
     assert 0.003 * theta_floor < point.theta_error < theta_floor
     assert 0.0005 * energy_floor < point.energy_error < energy_floor

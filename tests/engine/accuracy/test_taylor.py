@@ -23,7 +23,9 @@ def errors(scene, time, tolerance, comparisons=400):
     states, steps = solve(scene.w0_squared, scene.theta, scene.omega, times, tolerance)
     exact = scene.exact()
     start, end = (energy(scene.w0_squared, *map(float, states[n])) for n in (0, -1))
-    off = max(abs(theta - exact.at(float(t)).theta) for t, (theta, _) in zip(times, states, strict=True))
+    off = max(
+        abs(theta - exact.at(float(t)).theta) for t, (theta, _) in zip(times, states, strict=True)
+    )
     return off, (end - start) / start, steps
 
 
@@ -37,7 +39,12 @@ def errors(scene, time, tolerance, comparisons=400):
         (Scene(theta=0.0, omega=8.0), 1e-12, 1e-9, 898),
         (Scene(theta=0.1), 1e-12, 1e-12, 305),
         (Scene(theta=math.radians(179.9)), 1e-12, 1e-5, 400),
-        (Scene(theta=math.radians(179.9)), 1e-16, 1e-7, 650),  # as close as the start's last digit allows
+        (
+            Scene(theta=math.radians(179.9)),
+            1e-16,
+            1e-7,
+            650,
+        ),  # as close as the start's last digit allows
     ],
 )
 def test_over_100_s_a_tolerance_buys_its_error_for_few_steps(scene, tolerance, most, steps):

@@ -38,14 +38,20 @@ def test_with_small_steps_it_has_the_claimed_order(method: Method) -> None:
 
 
 @both
-def test_a_step_costs_about_the_claimed_evaluations_and_six_if_it_is_not_divided(method: Method) -> None:
-    counted = count_evaluations(method, PENDULUM, (SCENE.theta, SCENE.omega), SCENE.h, 300)  # a minute
+def test_a_step_costs_about_the_claimed_evaluations_and_six_if_it_is_not_divided(
+    method: Method,
+) -> None:
+    counted = count_evaluations(
+        method, PENDULUM, (SCENE.theta, SCENE.omega), SCENE.h, 300
+    )  # a minute
     assert counted / 300 == pytest.approx(method.force_evaluations, abs=0.5)
     assert method.varies
     assert count_evaluations(method, PENDULUM, (0.1, 0.0), 0.05, 10) == 60
 
 
-def test_a_step_that_looks_accurate_is_two_halves_and_any_other_two_steps_of_half_the_length() -> None:
+def test_a_step_that_looks_accurate_is_two_halves_and_any_other_two_steps_of_half_the_length() -> (
+    None
+):
     phases = halving(velocity_verlet, 0.1)
     small = next(phases(FORCE, (2.0, 0.0), 0.05))
     assert small == PlainLoops(VELOCITY_VERLET, PENDULUM).travel((2.0, 0.0), 0.025, 2)
@@ -56,7 +62,9 @@ def test_a_step_that_looks_accurate_is_two_halves_and_any_other_two_steps_of_hal
 
 @both
 @given(theta=st.floats(-1e9, 1e9), omega=st.floats(-1e9, 1e9), h=st.floats(-100, 100))
-def test_where_nothing_looks_accurate_a_step_still_ends(method: Method, theta: float, omega: float, h: float) -> None:
+def test_where_nothing_looks_accurate_a_step_still_ends(
+    method: Method, theta: float, omega: float, h: float
+) -> None:
     count = 0
 
     def counted(theta: float) -> float:

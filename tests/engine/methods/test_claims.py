@@ -40,16 +40,24 @@ def test_the_measured_properties_are_the_claimed_ones(method: Method) -> None:
     )
 
 
-@given(share=st.floats(0, 1 - 1e-8), beyond=st.floats(1e-8, 4))  # nearer to the edge it is a matter of rounding
-def test_up_to_its_limit_a_method_is_stable_and_those_of_the_usual_cast_nowhere_beyond(share, beyond) -> None:
+@given(
+    share=st.floats(0, 1 - 1e-8), beyond=st.floats(1e-8, 4)
+)  # nearer to the edge it is a matter of rounding
+def test_up_to_its_limit_a_method_is_stable_and_those_of_the_usual_cast_nowhere_beyond(
+    share, beyond
+) -> None:
     for method in GENERAL:
         assert measure.is_stable(method.phases, share * method.linear_limit)
     for method in USUAL_CAST[1:]:
         assert not measure.is_stable(method.phases, method.linear_limit + beyond)
 
 
-@pytest.mark.parametrize(("method", "island"), [(BLANES_MOAN_4, (3.1686, 5.02)), (BLANES_MOAN_6, (3.1424, 6.34))])
-def test_above_the_first_edge_lies_a_gap_and_then_an_island(method: Method, island: tuple[float, float]) -> None:
+@pytest.mark.parametrize(
+    ("method", "island"), [(BLANES_MOAN_4, (3.1686, 5.02)), (BLANES_MOAN_6, (3.1424, 6.34))]
+)
+def test_above_the_first_edge_lies_a_gap_and_then_an_island(
+    method: Method, island: tuple[float, float]
+) -> None:
     gap = np.linspace(method.linear_limit + 1e-6, island[0] - 3e-4, 100)
     assert all(measure.is_stable(method.phases, z) for z in np.linspace(*island, 100))
     assert not any(measure.is_stable(method.phases, z) for z in gap)
@@ -57,19 +65,27 @@ def test_above_the_first_edge_lies_a_gap_and_then_an_island(method: Method, isla
 
 @each_method
 @pytest.mark.parametrize("start", [(2.5, 0.5), (0.5, 8.0)])
-def test_the_error_falls_with_the_claimed_power_of_h(method: Method, start: tuple[float, float]) -> None:
-    assert measure.order(method.phases, start) == pytest.approx(method.order, abs=0.1)  # the next power of h is felt
+def test_the_error_falls_with_the_claimed_power_of_h(
+    method: Method, start: tuple[float, float]
+) -> None:
+    assert measure.order(method.phases, start) == pytest.approx(
+        method.order, abs=0.1
+    )  # the next power of h is felt
 
 
 @pytest.mark.parametrize("method", [m for m in GENERAL if m.symplectic], ids=lambda m: m.key)
 @given(theta=st.floats(-4, 4), omega=st.floats(-8, 8), h=st.floats(-0.5, 0.5))
 def test_area_is_kept_where_claimed(method: Method, theta: float, omega: float, h: float) -> None:
     # Jacobian entries up to 3 and a few products of them, each rounded.
-    assert jacobian(method, Pendulum(W0_SQUARED), theta, omega, h).determinant == pytest.approx(1, abs=1e-14)
+    assert jacobian(method, Pendulum(W0_SQUARED), theta, omega, h).determinant == pytest.approx(
+        1, abs=1e-14
+    )
 
 
 @given(theta=st.floats(-4, 4), omega=st.floats(-8, 8), h=st.floats(-0.5, 0.5))
-def test_explicit_euler_blows_area_up_by_h2_w02_cos_theta(theta: float, omega: float, h: float) -> None:
+def test_explicit_euler_blows_area_up_by_h2_w02_cos_theta(
+    theta: float, omega: float, h: float
+) -> None:
     determinant = jacobian(EXPLICIT_EULER, Pendulum(W0_SQUARED), theta, omega, h).determinant
     assert determinant == pytest.approx(1 + h**2 * W0_SQUARED * math.cos(theta), abs=1e-14)
 
@@ -80,7 +96,9 @@ def test_rk4_loses_area_with_the_sixth_power_of_h() -> None:
     lost = []
     for h in (0.02, 0.04):
         states = [exact.at(k * 0.1) for k in range(22)]  # a period
-        logs = [math.log(jacobian(RK4, Pendulum(W0_SQUARED), *state, h).determinant) for state in states]
+        logs = [
+            math.log(jacobian(RK4, Pendulum(W0_SQUARED), *state, h).determinant) for state in states
+        ]
         lost.append(sum(logs))
     assert all(loss < 0 for loss in lost)
     assert math.log2(lost[1] / lost[0]) == pytest.approx(6, abs=0.1)  # z⁸ is 0.4 % of z⁶
@@ -88,7 +106,9 @@ def test_rk4_loses_area_with_the_sixth_power_of_h() -> None:
 
 @each_method
 @given(theta=st.floats(-3, 3), omega=st.floats(-6, 6))
-def test_a_negative_step_undoes_a_step_only_where_reversible(method: Method, theta: float, omega: float) -> None:
+def test_a_negative_step_undoes_a_step_only_where_reversible(
+    method: Method, theta: float, omega: float
+) -> None:
     """Time reversed by h -> -h, as the lab does it; all methods keep the symmetry omega, h -> -omega, -h."""
     force = acceleration(W0_SQUARED)
     back = method.step(force, method.step(force, (theta, omega), 0.05), -0.05)
@@ -102,11 +122,27 @@ def test_a_negative_step_undoes_a_step_only_where_reversible(method: Method, the
 def test_one_definition_serves_floats_arrays_complex_and_mpmath(method: Method) -> None:
     start, h = (0.8, -1.1), 0.05
     expected = travel(method, acceleration(W0_SQUARED), start, h, 20)
-    arrays = travel(method, acceleration(W0_SQUARED, np.sin), (np.full(3, start[0]), np.full(3, start[1])), h, 20)
-    complexes = travel(method, acceleration(W0_SQUARED, cmath.sin), (complex(start[0]), complex(start[1])), h, 20)
-    exact = travel(method, acceleration(mp.mpf(W0_SQUARED), mp.sin), tuple(map(mp.mpf, start)), mp.mpf(h), 20)
-    for other in ([float(values[0]) for values in arrays], complexes, [float(value) for value in exact]):
-        assert other == pytest.approx(expected, abs=1e-13)  # 20 steps' rounding; their sines may differ in the last bit
+    arrays = travel(
+        method,
+        acceleration(W0_SQUARED, np.sin),
+        (np.full(3, start[0]), np.full(3, start[1])),
+        h,
+        20,
+    )
+    complexes = travel(
+        method, acceleration(W0_SQUARED, cmath.sin), (complex(start[0]), complex(start[1])), h, 20
+    )
+    exact = travel(
+        method, acceleration(mp.mpf(W0_SQUARED), mp.sin), tuple(map(mp.mpf, start)), mp.mpf(h), 20
+    )
+    for other in (
+        [float(values[0]) for values in arrays],
+        complexes,
+        [float(value) for value in exact],
+    ):
+        assert other == pytest.approx(
+            expected, abs=1e-13
+        )  # 20 steps' rounding; their sines may differ in the last bit
 
 
 def test_names_are_unique_and_every_method_has_a_reference() -> None:

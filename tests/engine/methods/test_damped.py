@@ -21,7 +21,10 @@ def log_energy_error(method: Method, friction: float, h: float, time: float = 60
     model = DampedPendulum(9.81, friction)
     reference, energy = model.reference(2.0, 0.0), model.energy()
     phases = method.on(model)((2.0, 0.0), h)
-    return max(abs(reference.error(energy(phase), n * h)) for n, phase in enumerate(islice(phases, round(time / h)), 1))
+    return max(
+        abs(reference.error(energy(phase), n * h))
+        for n, phase in enumerate(islice(phases, round(time / h)), 1)
+    )
 
 
 @each_method
@@ -31,13 +34,20 @@ def test_the_error_falls_with_the_claimed_power_of_h(method: Method) -> None:
         {1: (4000, 5600, 8000), 2: (200, 280, 400), 4: (100, 140, 200)}[method.order],
     )
     exact = model.exact(2.0, 0.0).at(2.0)
-    errors = [abs(PlainLoops(method, model).travel((2.0, 0.0), 2.0 / n, n)[0] - exact.theta) for n in steps]
+    errors = [
+        abs(PlainLoops(method, model).travel((2.0, 0.0), 2.0 / n, n)[0] - exact.theta)
+        for n in steps
+    ]
     slope = -np.polyfit(np.log(steps), np.log(errors), 1)[0]
     assert slope == pytest.approx(method.order, abs=0.05 if method.order == 2 else 0.2)
 
 
 def test_taking_friction_from_the_omega_before_costs_verlet_an_order() -> None:
-    errors = [log_energy_error(method, 0.2, h) for method in (LAGGED_VERLET, CONFORMAL_VERLET) for h in (0.05, 0.025)]
+    errors = [
+        log_energy_error(method, 0.2, h)
+        for method in (LAGGED_VERLET, CONFORMAL_VERLET)
+        for h in (0.05, 0.025)
+    ]
     assert errors[0] / errors[1] < 2.5  # .058 and .025
     assert errors[2] / errors[3] == pytest.approx(4, abs=0.2)  # .0146 and .0036
     assert errors[3] < errors[1] / 5
@@ -62,7 +72,9 @@ def test_explicit_euler_gains_energy_from_gamma_over_w0_squared_on(friction: flo
     ],
     ids=lambda value: getattr(value, "key", ""),
 )
-def test_area_shrinks_by_exp_of_minus_gamma_h_exactly_where_claimed(method: Method, off: float) -> None:
+def test_area_shrinks_by_exp_of_minus_gamma_h_exactly_where_claimed(
+    method: Method, off: float
+) -> None:
     h, friction = 0.05, 0.2
     determinant = jacobian(method, DampedPendulum(9.81, friction), 1.0, 1.0, h).determinant
     assert determinant / math.exp(-friction * h) - 1 == pytest.approx(off, rel=0.1, abs=1e-14)
@@ -71,9 +83,9 @@ def test_area_shrinks_by_exp_of_minus_gamma_h_exactly_where_claimed(method: Meth
 @each_method
 def test_a_step_evaluates_the_force_as_often_as_claimed(method: Method) -> None:
     for steps in (1, 2, 10):
-        assert count_evaluations(method, DampedPendulum(9.81, 0.1), (1.0, 0.5), 0.05, steps) == method.evaluations(
-            steps
-        )
+        assert count_evaluations(
+            method, DampedPendulum(9.81, 0.1), (1.0, 0.5), 0.05, steps
+        ) == method.evaluations(steps)
 
 
 @each_method

@@ -25,14 +25,22 @@ from tests.bench import learn
 W0_SQUARED = 9.81
 PENDULUM = Pendulum(W0_SQUARED)
 STARTS = (0.5, 1.0, 1.5, 2.0)
-both = pytest.mark.parametrize("method", [RK4_LEARNED_FIELD, RK4_LEARNED_HAMILTONIAN], ids=lambda m: m.key)
+both = pytest.mark.parametrize(
+    "method", [RK4_LEARNED_FIELD, RK4_LEARNED_HAMILTONIAN], ids=lambda m: m.key
+)
 
 
 def learned_energy(theta: float, omega: float) -> float:
     """The learned Hamiltonian [s⁻²], up to a constant."""
-    rows = [tuple(map(float, row.split(","))) for numbers in (FEATURES, HAMILTONIAN) for row in numbers.split()]
+    rows = [
+        tuple(map(float, row.split(",")))
+        for numbers in (FEATURES, HAMILTONIAN)
+        for row in numbers.split()
+    ]
     sums = zip(rows[: len(rows) // 2], rows[len(rows) // 2 :], strict=True)
-    return W0_SQUARED * sum(k * math.tanh(a * theta + b / PENDULUM.w0 * omega + c) for (a, b, c), (k,) in sums)
+    return W0_SQUARED * sum(
+        k * math.tanh(a * theta + b / PENDULUM.w0 * omega + c) for (a, b, c), (k,) in sums
+    )
 
 
 def test_the_numbers_are_those_that_the_script_learns() -> None:
@@ -63,7 +71,9 @@ def largest_energy_errors(method: Method, start: float) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize("start", STARTS)
-def test_the_energy_error_of_the_hamiltonian_is_bounded_and_that_of_the_field_grows(start: float) -> None:
+def test_the_energy_error_of_the_hamiltonian_is_bounded_and_that_of_the_field_grows(
+    start: float,
+) -> None:
     early, late = largest_energy_errors(RK4_LEARNED_HAMILTONIAN, start)
     assert late == pytest.approx(early, rel=0.005)
     assert late < 0.044  # .012, .012, .006, .003
@@ -72,11 +82,16 @@ def test_the_energy_error_of_the_hamiltonian_is_bounded_and_that_of_the_field_gr
 
 
 @pytest.mark.parametrize(
-    ("start", "field", "hamiltonian"), [(0.2, 8.4, 0.12), (1.0, 0.36, 0.012), (1.5, 0.60, 0.006), (2.0, 0.15, 0.003)]
+    ("start", "field", "hamiltonian"),
+    [(0.2, 8.4, 0.12), (1.0, 0.36, 0.012), (1.5, 0.60, 0.006), (2.0, 0.15, 0.003)],
 )
-def test_the_cards_figures_belong_to_their_starts(start: float, field: float, hamiltonian: float) -> None:
+def test_the_cards_figures_belong_to_their_starts(
+    start: float, field: float, hamiltonian: float
+) -> None:
     assert largest_energy_errors(RK4_LEARNED_FIELD, start)[1] == pytest.approx(field, rel=0.1)
-    assert largest_energy_errors(RK4_LEARNED_HAMILTONIAN, start)[1] == pytest.approx(hamiltonian, rel=0.15)
+    assert largest_energy_errors(RK4_LEARNED_HAMILTONIAN, start)[1] == pytest.approx(
+        hamiltonian, rel=0.15
+    )
 
 
 @both

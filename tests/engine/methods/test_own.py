@@ -35,7 +35,9 @@ def mine(force, phase, h):
 EULER = "theta, omega = theta + h * omega, omega + h * force(theta)"
 
 
-def euler(step: str = "", before: str = "pass", yields: str = "theta, omega", above: str = "pass") -> str:
+def euler(
+    step: str = "", before: str = "pass", yields: str = "theta, omega", above: str = "pass"
+) -> str:
     """Explicit Euler's text with something more in it; the line `step` is the seventh."""
     return f"""{above}
 def mine(force, phase, h):
@@ -169,14 +171,21 @@ def test_whatever_a_wrong_method_shows_of_itself_the_sentence_is_short() -> None
     assert len(refusal(euler(f"raise ValueError('{'long ' * 99}\\n')"))) < 400
 
 
-def test_it_may_print_to_stderr_and_yield_a_list_and_whole_numbers(capsys: pytest.CaptureFixture[str]) -> None:
-    assert loaded(euler("print('here', file=__import__('sys').stderr)", yields="[theta, omega]")).order == 1
+def test_it_may_print_to_stderr_and_yield_a_list_and_whole_numbers(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert (
+        loaded(euler("print('here', file=__import__('sys').stderr)", yields="[theta, omega]")).order
+        == 1
+    )
     assert "here" in capsys.readouterr().err
 
 
 def test_an_exception_after_a_thousand_steps_is_a_sentence_with_the_line() -> None:
     late = loaded(euler("n = n + 1; (1,)[n // 20_000]", "n = 0"))
-    with pytest.raises(OwnMethodError, match=r"^mine.py, line 7: .* raises IndexError: tuple index out of range\.$"):
+    with pytest.raises(
+        OwnMethodError, match=r"^mine.py, line 7: .* raises IndexError: tuple index out of range\.$"
+    ):
         Lockstep(DEFAULT_SCENE.altered(h=0.001).with_cast((late,))).advance(30_000)
 
 

@@ -41,7 +41,10 @@ def test_a_sum_is_rounded_as_its_increments_are_not_as_itself(increments: list[f
     for increment in increments:
         total, exact = total + increment, exact + Fraction(increment)
     # What an addition rounds off is half a unit in the last place of 1, or of 1e6, kept: no more than 1e-10 itself.
-    assert abs(Fraction(float(total)) + Fraction(total.compensation) - exact) <= len(increments) * 2.0**-53
+    assert (
+        abs(Fraction(float(total)) + Fraction(total.compensation) - exact)
+        <= len(increments) * 2.0**-53
+    )
     assert abs(total.compensation) <= math.ulp(1e6) / 2
 
 
@@ -62,15 +65,22 @@ def test_every_phase_of_32_bits_is_a_double_that_32_bits_hold() -> None:
         assert all(type(x) is float and Float32(x) == x for x in phase)
 
 
-@pytest.mark.parametrize(("method", "rounding"), [(VERLET_FLOAT32, 1e-4), (VERLET_COMPENSATED, 1e-12)])
+@pytest.mark.parametrize(
+    ("method", "rounding"), [(VERLET_FLOAT32, 1e-4), (VERLET_COMPENSATED, 1e-12)]
+)
 def test_in_mid_swing_the_kind_of_numbers_does_not_matter(method: Method, rounding: float) -> None:
     """Verlet's own error, 2e-2 after 10 s, hides them."""
-    ends = [PlainLoops(each, PENDULUM).travel((2.0, 0.0), 0.02, 500) for each in (method, VELOCITY_VERLET)]
+    ends = [
+        PlainLoops(each, PENDULUM).travel((2.0, 0.0), 0.02, 500)
+        for each in (method, VELOCITY_VERLET)
+    ]
     assert ends[0] == pytest.approx(ends[1], abs=rounding)
     assert ends[0] != ends[1]
 
 
-@pytest.mark.parametrize(("method", "returns"), [(VERLET_FLOAT32, 1e-3), (VERLET_COMPENSATED, 1e-13)])
+@pytest.mark.parametrize(
+    ("method", "returns"), [(VERLET_FLOAT32, 1e-3), (VERLET_COMPENSATED, 1e-13)]
+)
 def test_there_and_back_it_meets_its_start_only_as_claimed(method: Method, returns: float) -> None:
     travel = PlainLoops(method, PENDULUM).travel
     theta, omega = travel((2.0, 0.3), 0.05, 200)

@@ -9,14 +9,23 @@ import pytest
 
 from engine.methods import METHODS, VELOCITY_VERLET, Method
 from engine.methods.method import Phases
-from engine.methods.splitting import BLANES_MOAN_4, BLANES_MOAN_6, FAMILY, FOREST_RUTH, composition, splitting
+from engine.methods.splitting import (
+    BLANES_MOAN_4,
+    BLANES_MOAN_6,
+    FAMILY,
+    FOREST_RUTH,
+    composition,
+    splitting,
+)
 from engine.models.model import Force, Phase
 from engine.models.pendulum import Pendulum
 from engine.run.loops import PlainLoops
 from engine.run.stepping import Stepping
 from engine.scenes import Scene
 
-each_splitting = pytest.mark.parametrize("method", [VELOCITY_VERLET, *FAMILY], ids=lambda method: method.key)
+each_splitting = pytest.mark.parametrize(
+    "method", [VELOCITY_VERLET, *FAMILY], ids=lambda method: method.key
+)
 Tree = tuple[int, tuple["Tree", ...]]  # powers of the node's time, and the trees that hang from it
 
 
@@ -44,7 +53,10 @@ def trees(degree: int) -> tuple[Tree, ...]:
                     if not others or repr(others[0]) <= repr(tree) or degree_of(others[0]) < size:
                         yield (tree, *others)
 
-    found = {(degree - sum(degree_of(t) + 2 for t in hanging), hanging) for hanging in hung(degree, degree)}
+    found = {
+        (degree - sum(degree_of(t) + 2 for t in hanging), hanging)
+        for hanging in hung(degree, degree)
+    }
     return tuple(sorted(found, key=repr))
 
 
@@ -54,7 +66,9 @@ def degree_of(tree: Tree) -> int:
 
 def exact_coefficient(tree: Tree) -> float:
     sizes = [(degree_of(hanging), hanging) for hanging in tree[1]]
-    return math.prod(exact_coefficient(hanging) / ((size + 1) * (size + 2)) for size, hanging in sizes)
+    return math.prod(
+        exact_coefficient(hanging) / ((size + 1) * (size + 2)) for size, hanging in sizes
+    )
 
 
 def residuals(method: Method, order: int) -> list[float]:
@@ -64,7 +78,8 @@ def residuals(method: Method, order: int) -> list[float]:
     def at(tree: Tree) -> list[float]:
         inner = [at(hanging) for hanging in tree[1]]
         return [
-            c[i] ** tree[0] * math.prod(math.fsum(b[j] * (c[i] - c[j]) * phi[j] for j in range(i)) for phi in inner)
+            c[i] ** tree[0]
+            * math.prod(math.fsum(b[j] * (c[i] - c[j]) * phi[j] for j in range(i)) for phi in inner)
             for i in range(len(c))
         ]
 
@@ -74,17 +89,26 @@ def residuals(method: Method, order: int) -> list[float]:
     d = order - 1
     velocity = [missed(tree, b, exact_coefficient(tree) / (d + 1)) for tree in trees(d)]
     arms = [weight * (1 - node) for weight, node in zip(b, c, strict=True)]
-    position = [missed(t, arms, exact_coefficient(t) / (d * (d + 1))) for t in trees(d - 1)] if d else [abs(c[-1] - 1)]
+    position = (
+        [missed(t, arms, exact_coefficient(t) / (d * (d + 1))) for t in trees(d - 1)]
+        if d
+        else [abs(c[-1] - 1)]
+    )
     return velocity + position
 
 
 def test_there_are_as_many_conditions_as_there_are_trees() -> None:
-    counts = [sum(len(residuals(VELOCITY_VERLET, order)) for order in range(1, last + 1)) for last in (4, 6, 8)]
+    counts = [
+        sum(len(residuals(VELOCITY_VERLET, order)) for order in range(1, last + 1))
+        for last in (4, 6, 8)
+    ]
     assert counts == [12, 37, 123]
 
 
 @each_splitting
-def test_the_conditions_of_the_claimed_order_hold_and_those_of_the_next_do_not(method: Method) -> None:
+def test_the_conditions_of_the_claimed_order_hold_and_those_of_the_next_do_not(
+    method: Method,
+) -> None:
     for order in range(1, method.order + 1):
         assert max(residuals(method, order)) < 1e-14  # doubles; measured up to 4e-16
     assert max(residuals(method, method.order + 1)) > 1e-6  # the smallest is BM6's, 5e-6
@@ -139,11 +163,15 @@ def test_energy_errors_are_the_measured_ones(
     """At h = 0.05 s, and at 20 and 80 force evaluations a second."""
     assert largest_energy_error(method, 0.05) == pytest.approx(at_one_step, rel=0.2)
     for seconds, expected in ((0.05, at_one_cost), (0.0125, at_a_quarter)):
-        assert largest_energy_error(method, seconds * method.force_evaluations) == pytest.approx(expected, rel=0.2)
+        assert largest_energy_error(method, seconds * method.force_evaluations) == pytest.approx(
+            expected, rel=0.2
+        )
 
 
 def test_forest_ruth_has_the_weaknesses_on_its_card() -> None:
-    assert FOREST_RUTH.linear_limit == min(method.linear_limit for method in METHODS if method.linear_limit)
+    assert FOREST_RUTH.linear_limit == min(
+        method.linear_limit for method in METHODS if method.linear_limit
+    )
     same_cost = Stepping(0.15, equal_cost=True, cast=(FOREST_RUTH, VELOCITY_VERLET)).own
     ours, verlets = map(largest_energy_error, (FOREST_RUTH, VELOCITY_VERLET), same_cost)
     assert 0.6 < ours / verlets < 1
@@ -165,7 +193,9 @@ def position_extended(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
     theta, omega = phase
     while True:
         theta = theta + xi * h * omega
-        for kick, drift in zip((0.5 - lam, lam, lam, 0.5 - lam), (chi, 1 - 2 * (chi + xi), chi, xi), strict=True):
+        for kick, drift in zip(
+            (0.5 - lam, lam, lam, 0.5 - lam), (chi, 1 - 2 * (chi + xi), chi, xi), strict=True
+        ):
             omega = omega + kick * h * force(theta)
             theta = theta + drift * h * omega
         yield theta, omega

@@ -17,7 +17,9 @@ START = SPRING.start(1.0, 0.0)
 
 
 @pytest.mark.parametrize("stiffness", [400.0, 2500.0, 1e4])
-@pytest.mark.parametrize(("method", "holds", "fails"), [(VELOCITY_VERLET, 1.95, 2.05), (RK4, 2.80, 2.85)])
+@pytest.mark.parametrize(
+    ("method", "holds", "fails"), [(VELOCITY_VERLET, 1.95, 2.05), (RK4, 2.80, 2.85)]
+)
 def test_verlet_and_rk4_fail_at_their_linear_limits(
     method: Method, holds: float, fails: float, stiffness: float
 ) -> None:
@@ -25,7 +27,9 @@ def test_verlet_and_rk4_fail_at_their_linear_limits(
     reference = model.reference(1.0, 0.0)
     for z, kept in ((holds, True), (fails, False)):
         h = z / math.sqrt(stiffness)
-        done, _, _, low, high = PlainLoops(method, model).advance(model.start(1.0, 0.0), h, round(30 / h), 1e300)
+        done, _, _, low, high = PlainLoops(method, model).advance(
+            model.start(1.0, 0.0), h, round(30 / h), 1e300
+        )
         error = max(abs(reference.error(low)), abs(reference.error(high)))
         assert (done == round(30 / h) and error < 1) == kept
 
@@ -33,7 +37,9 @@ def test_verlet_and_rk4_fail_at_their_linear_limits(
 def test_respa_at_a_golden_part_of_the_period_is_no_better_than_at_a_rational_one() -> None:
     def largest_error(h: float) -> float:
         done, _, _, low, high = PlainLoops(RESPA, SPRING).advance(START, h, round(30 / h), 1e300)
-        return max(map(abs, map(SPRING.reference(1.0, 0.0).error, (low, high)))) if done else math.inf
+        return (
+            max(map(abs, map(SPRING.reference(1.0, 0.0).error, (low, high)))) if done else math.inf
+        )
 
     errors = {share: largest_error(share * math.tau / 50) for share in (0.5, 0.618, 0.99)}
     assert errors[0.5] < errors[0.618] < 1 < 10 < errors[0.99]
@@ -51,12 +57,17 @@ def test_respa_with_one_inner_step_is_verlet_but_for_rounding() -> None:
 
 def test_imex_euler_is_stable_however_stiff_the_spring_and_stops_the_swing_as_well() -> None:
     stiff = Spring(9.81, 1e14)
-    done, (z, w), *_ = PlainLoops(IMEX_EULER, stiff).advance(stiff.start(1.0, 0.0), 0.02, 1500, 100.0)
+    done, (z, w), *_ = PlainLoops(IMEX_EULER, stiff).advance(
+        stiff.start(1.0, 0.0), 0.02, 1500, 100.0
+    )
     assert done == 1500
     assert z == pytest.approx(-1j, abs=0.02)
     assert abs(w) < 0.2
     left = [
-        1 + SPRING.reference(1.0, 0.0).error(SPRING.energy()(PlainLoops(IMEX_EULER, SPRING).travel(START, 0.02, n)))
+        1
+        + SPRING.reference(1.0, 0.0).error(
+            SPRING.energy()(PlainLoops(IMEX_EULER, SPRING).travel(START, 0.02, n))
+        )
         for n in (50, 500)
     ]
     assert left == pytest.approx([0.52, 0.065], abs=0.01)  # after 1 and 10 s
@@ -78,13 +89,17 @@ def determinant(method: Method) -> float:
     z, w = 0.8 - 0.6j, 1.0 + 0.5j
     columns = []
     for dz, dw in ((1, 0), (1j, 0), (0, 1), (0, 1j)):
-        ends = [next(method.on(SPRING)((z + s * 1e-6 * dz, w + s * 1e-6 * dw), 0.02)) for s in (1, -1)]
+        ends = [
+            next(method.on(SPRING)((z + s * 1e-6 * dz, w + s * 1e-6 * dw), 0.02)) for s in (1, -1)
+        ]
         (za, wa), (zb, wb) = ends
         columns.append([(za - zb).real, (za - zb).imag, (wa - wb).real, (wa - wb).imag])
     return float(np.linalg.det(np.array(columns) / 2e-6))
 
 
-@pytest.mark.parametrize("method", [RESPA, IMPLICIT_MIDPOINT, IMEX_EULER, VELOCITY_VERLET], ids=lambda m: m.key)
+@pytest.mark.parametrize(
+    "method", [RESPA, IMPLICIT_MIDPOINT, IMEX_EULER, VELOCITY_VERLET], ids=lambda m: m.key
+)
 def test_volume_is_kept_and_time_turned_back_where_claimed(method: Method) -> None:
     assert (abs(determinant(method) - 1) < 1e-6) == method.symplectic
     travel = PlainLoops(method, SPRING).travel

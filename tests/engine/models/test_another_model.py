@@ -65,7 +65,9 @@ def pendu(tmp_path_factory):
     """The command line of a copy of the program with one more model."""
     copy = tmp_path_factory.mktemp("copy")
     for package in ("engine", "recordings", "tui"):
-        shutil.copytree(ROOT / package, copy / package, ignore=shutil.ignore_patterns("__pycache__"))
+        shutil.copytree(
+            ROOT / package, copy / package, ignore=shutil.ignore_patterns("__pycache__")
+        )
     models = copy / "engine" / "models"
     (models / "decaying.py").write_text(MODEL, "utf-8")
     listed = (models / "__init__.py").read_text("utf-8")
@@ -74,13 +76,20 @@ def pendu(tmp_path_factory):
     changed = (listed[:at] + imported + listed[at:]).replace("MeanField)", "MeanField, Decaying)")
     assert changed.count("Decaying") == 2
     (models / "__init__.py").write_text(changed, "utf-8")
-    (copy / "scene.toml").write_text('model = "decaying"\ndecay = 2.0\nmethods = ["explicit_euler", "rk4"]\n', "utf-8")
+    (copy / "scene.toml").write_text(
+        'model = "decaying"\ndecay = 2.0\nmethods = ["explicit_euler", "rk4"]\n', "utf-8"
+    )
 
     def run(*arguments: str) -> str:
-        environment = os.environ | {"PYTHONPATH": str(copy), "PENDU_RECORDINGS": str(copy / "recordings-made")}
+        environment = os.environ | {
+            "PYTHONPATH": str(copy),
+            "PENDU_RECORDINGS": str(copy / "recordings-made"),
+        }
         code = "import sys; from tui.cli.dispatch import main; sys.exit(main(sys.argv[1:]))"
         command = [sys.executable, "-c", code, *arguments]
-        done = subprocess.run(command, cwd=copy, env=environment, capture_output=True, text=True, check=False)
+        done = subprocess.run(
+            command, cwd=copy, env=environment, capture_output=True, text=True, check=False
+        )
         assert not done.returncode, done.stderr
         return done.stdout
 
@@ -91,7 +100,9 @@ def test_another_model_runs_with_its_variables_and_its_parameter(pendu):
     rows = json.loads(pendu("run", "--scene", "scene.toml", "--time", "2", "--json"))["methods"]
     assert [row["method"] for row in rows] == ["explicit_euler", "rk4"]
     assert rows[1]["square"] == pytest.approx(2.718281828**-8, rel=1e-3)
-    slower = json.loads(pendu("run", "--scene", "scene.toml", "--decay", "1", "--time", "2", "--json"))["methods"]
+    slower = json.loads(
+        pendu("run", "--scene", "scene.toml", "--decay", "1", "--time", "2", "--json")
+    )["methods"]
     assert slower[1]["square"] == pytest.approx(2.718281828**-4, rel=1e-3)
 
 

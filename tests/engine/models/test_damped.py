@@ -20,7 +20,9 @@ def test_the_reference_is_as_accurate_as_it_says(friction: float) -> None:
     model = DampedPendulum(9.81, friction)
     exact = model.exact(2.0, 0.0)
     assert exact.accuracy == ACCURACY
-    finer = Reference(compose_verlet(model.force(), friction), (2.0, 0.0), STEP / 2 / max(model.w0, friction))
+    finer = Reference(
+        compose_verlet(model.force(), friction), (2.0, 0.0), STEP / 2 / max(model.w0, friction)
+    )
     # Of order 8, the reference's own error is 256 times that of the finer one.
     assert max(abs(exact.at(t).theta - finer.at(t)[0]) for t in TIMES) < ACCURACY / 2
 
@@ -47,14 +49,18 @@ def test_it_loses_energy_by_gamma_omega_squared(t: float) -> None:
     true, exact = model.reference(2.0, 0.0).true, model.exact(2.0, 0.0)
     assert true is not None
     slope = (true(t + 1e-4) - true(t - 1e-4)) / 2e-4
-    assert slope == pytest.approx(-0.2 * exact.at(t).omega ** 2, abs=1e-6)  # the third derivative, times 1e-9
+    assert slope == pytest.approx(
+        -0.2 * exact.at(t).omega ** 2, abs=1e-6
+    )  # the third derivative, times 1e-9
 
 
 def test_an_error_is_the_logarithm_of_the_energy_over_the_true_one() -> None:
     reference = DampedPendulum(9.81, 0.2).reference(2.0, 0.0)
     assert reference.true is not None
     assert reference.error(reference.true(30.0) * math.e, 30.0) == pytest.approx(1)
-    assert reference.error(0.0, 30.0) == pytest.approx(math.log(reference.least / reference.true(30.0)))
+    assert reference.error(0.0, 30.0) == pytest.approx(
+        math.log(reference.least / reference.true(30.0))
+    )
 
 
 def test_it_swings_when_it_cannot_go_over_the_top_turns_when_it_may_and_has_no_period() -> None:
@@ -72,7 +78,9 @@ def test_far_back_in_time_where_it_was_infinitely_fast_there_are_still_numbers()
 def test_friction_is_for_the_model_that_has_it_and_within_limits() -> None:
     with pytest.raises(SceneError, match=r"^the model pendulum has no friction; "):
         Scene(parameters={"friction": 0.1})
-    with pytest.raises(SceneError, match=r"^friction = -1 s⁻¹ is out of range; use 0 to 100 s⁻¹\.$"):
+    with pytest.raises(
+        SceneError, match=r"^friction = -1 s⁻¹ is out of range; use 0 to 100 s⁻¹\.$"
+    ):
         Scene(model="damped", parameters={"friction": -1.0}, cast=())
     scene = Scene(model="damped", parameters={"friction": 0.1}, cast=())
     assert scene.equations == DampedPendulum(9.81, 0.1)
@@ -83,4 +91,11 @@ def test_friction_is_for_the_model_that_has_it_and_within_limits() -> None:
 
 def test_friction_far_above_w0_is_refused_with_what_is_not() -> None:
     with pytest.raises(SceneError, match=r"^friction = 2 s⁻¹ is out of range; use 0 to 1 s⁻¹\.$"):
-        Scene(model="damped", parameters={"friction": 2.0}, length=1e4, gravity=1.0, h=1.0, cast=(RK4,))
+        Scene(
+            model="damped",
+            parameters={"friction": 2.0},
+            length=1e4,
+            gravity=1.0,
+            h=1.0,
+            cast=(RK4,),
+        )

@@ -81,7 +81,9 @@ def test_the_swing_is_exact_to_1e_12_forwards_and_backwards(start: tuple[float, 
     phase=st.floats(-100, 100),
     gravity=st.sampled_from([1.62, 9.81, 24.79]),
 )
-def test_the_swing_is_exact_from_any_start(theta: float, omega: float, phase: float, gravity: float) -> None:
+def test_the_swing_is_exact_from_any_start(
+    theta: float, omega: float, phase: float, gravity: float
+) -> None:
     scene = Scene(theta=theta, omega=omega, gravity=gravity)
     if scene.exact().regime in ("libration", "rotation"):
         assert_exact(scene, phase / scene.w0)
@@ -90,9 +92,16 @@ def test_the_swing_is_exact_from_any_start(theta: float, omega: float, phase: fl
 def test_the_closed_form_solves_the_equation_of_motion_itself() -> None:
     """Against a Taylor integration of theta'' = -w0² sin theta: no elliptic function on this side."""
     for theta, omega in ((2.0, 1.0), (0.0, 7.0)):
-        solution = mp.odefun(lambda _, y: [y[1], -mp.mpf(9.81) * mp.sin(y[0])], 0, [theta, omega], tol=mp.mpf("1e-15"))
+        solution = mp.odefun(
+            lambda _, y: [y[1], -mp.mpf(9.81) * mp.sin(y[0])],
+            0,
+            [theta, omega],
+            tol=mp.mpf("1e-15"),
+        )
         state = Scene(theta=theta, omega=omega).exact().at(2.0)
-        assert state == pytest.approx([float(value) for value in solution(2)], abs=1e-13)  # tol of the integration
+        assert state == pytest.approx(
+            [float(value) for value in solution(2)], abs=1e-13
+        )  # tol of the integration
 
 
 @pytest.mark.parametrize(
@@ -113,7 +122,9 @@ def test_the_separatrix_climbs_forever() -> None:
     assert (exact.regime, exact.period) == ("separatrix", None)
     for t in (-3.0, 0.5, 3.0):
         # Gudermann: theta = 2 atan sinh u, omega = 2/cosh u; a few roundings.
-        assert exact.at(t) == pytest.approx((-2 * math.atan(math.sinh(t)), -2 / math.cosh(t)), abs=1e-15)
+        assert exact.at(t) == pytest.approx(
+            (-2 * math.atan(math.sinh(t)), -2 / math.cosh(t)), abs=1e-15
+        )
     assert exact.at(1e5) == State(-math.pi, 0.0)
 
 
@@ -126,10 +137,14 @@ def test_at_rest_at_the_bottom_it_stays() -> None:
 def test_math_pi_is_not_upright_and_falls() -> None:
     exact = Scene(theta=math.pi).exact()
     assert exact.period == pytest.approx(49.4470164, abs=1e-6)  # s, 4 K(k)/w0 from mpmath
-    assert abs(exact.at(exact.period / 4).theta) < 1e-14  # a quarter of it later it is at the bottom
+    assert (
+        abs(exact.at(exact.period / 4).theta) < 1e-14
+    )  # a quarter of it later it is at the bottom
 
 
-@pytest.mark.parametrize("name", [name for name, scene in SCENES.items() if scene.model == "pendulum"])
+@pytest.mark.parametrize(
+    "name", [name for name, scene in SCENES.items() if scene.model == "pendulum"]
+)
 def test_after_its_period_it_is_back(name: str) -> None:
     scene = SCENES[name]
     exact = scene.exact()
@@ -148,7 +163,13 @@ anything = {name: st.floats(*LIMITS[name]) for name in ("theta", "omega", "lengt
 def test_no_legal_start_gives_anything_but_finite_numbers(
     theta: float, omega: float, length: float, gravity: float, t: float
 ) -> None:
-    scene = Scene(theta=theta, omega=omega, length=length, gravity=gravity, h=0.1 * math.sqrt(length / gravity))
+    scene = Scene(
+        theta=theta,
+        omega=omega,
+        length=length,
+        gravity=gravity,
+        h=0.1 * math.sqrt(length / gravity),
+    )
     state = scene.exact().at(t)
     assert math.isfinite(state.theta)
     assert math.isfinite(state.omega)

@@ -20,7 +20,9 @@ MODEL = MeanField(9.81, 2.0, 20.0)
 START = MODEL.start(1.0, 0.0)
 SPLITTING = method_of("mean_field_splitting")
 
-phases = st.tuples(st.floats(-3, 3), st.floats(-5, 5), st.floats(-1, 1), st.floats(-1, 1), st.floats(-1, 1))
+phases = st.tuples(
+    st.floats(-3, 3), st.floats(-5, 5), st.floats(-1, 1), st.floats(-1, 1), st.floats(-1, 1)
+)
 
 
 def field(theta):
@@ -70,8 +72,14 @@ def test_a_kick_is_the_exact_flow_at_fixed_theta(phase: Phase, h: float) -> None
     generator = mp.matrix([[0, -b[2], b[1]], [b[2], 0, -b[0]], [-b[1], b[0], 0]])
     with mp.workdps(30):
         turned = mp.expm(20 * h * generator) * mp.matrix(bloch)
-        coupling = mp.quad(lambda t: (slope.T * mp.expm(20 * t * generator) * mp.matrix(bloch))[0], [0, h])
-    expected = [theta, omega - 9.81 * h * math.sin(theta) - 2.0 * float(coupling), *map(float, turned)]
+        coupling = mp.quad(
+            lambda t: (slope.T * mp.expm(20 * t * generator) * mp.matrix(bloch))[0], [0, h]
+        )
+    expected = [
+        theta,
+        omega - 9.81 * h * math.sin(theta) - 2.0 * float(coupling),
+        *map(float, turned),
+    ]
     assert MODEL.kick(phase, h) == pytest.approx(expected, abs=1e-12)
 
 

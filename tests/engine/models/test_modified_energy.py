@@ -34,16 +34,23 @@ def order(quantity_at, method: Method) -> float:
     return math.log2(coarse / fine)
 
 
-with_shadow = pytest.mark.parametrize("method", [m for m in METHODS if m.modified_energy], ids=lambda m: m.key)
+with_shadow = pytest.mark.parametrize(
+    "method", [m for m in METHODS if m.modified_energy], ids=lambda m: m.key
+)
 
 
 def test_only_symplectic_methods_have_one():
-    assert {method.key for method in METHODS if method.modified_energy} == {"symplectic_euler", "velocity_verlet"}
+    assert {method.key for method in METHODS if method.modified_energy} == {
+        "symplectic_euler",
+        "velocity_verlet",
+    }
     assert all(method.symplectic for method in METHODS if method.modified_energy)
 
 
 @with_shadow
-def test_the_energy_wobbles_with_the_order_of_the_method_and_the_modified_energy_with_h4(method: Method):
+def test_the_energy_wobbles_with_the_order_of_the_method_and_the_modified_energy_with_h4(
+    method: Method,
+):
     # the sampled extremes of a wobble are a few per cent off the true ones
     assert order(lambda h: plain_energy, method) == pytest.approx(method.order, abs=0.1)
     assert order(lambda h: shadow_of(method, h), method) == pytest.approx(4, abs=0.1)
@@ -51,4 +58,7 @@ def test_the_energy_wobbles_with_the_order_of_the_method_and_the_modified_energy
 
 @with_shadow
 def test_the_modified_energy_is_flat_where_the_energy_wobbles(method: Method):
-    assert energy_range(shadow_of(method, 0.05), method, 0.05) < energy_range(plain_energy, method, 0.05) / 100
+    assert (
+        energy_range(shadow_of(method, 0.05), method, 0.05)
+        < energy_range(plain_energy, method, 0.05) / 100
+    )

@@ -7,12 +7,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.models.model import EnergyReference
-from engine.models.pendulum import Pendulum, acceleration, energy, separatrix_energy, separatrix_margin
+from engine.models.pendulum import (
+    Pendulum,
+    acceleration,
+    energy,
+    separatrix_energy,
+    separatrix_margin,
+)
 from engine.scenes import Scene
 
 
 @given(theta=st.floats(-1e6, 1e6), omega=st.floats(-1e6, 1e6), w0_squared=st.floats(1e-3, 1e3))
-def test_the_energy_is_right_to_the_last_digits_everywhere(theta: float, omega: float, w0_squared: float) -> None:
+def test_the_energy_is_right_to_the_last_digits_everywhere(
+    theta: float, omega: float, w0_squared: float
+) -> None:
     with mp.workdps(700):  # 1 - cos theta cancels, down to the smallest square that a float holds
         expected = float(mp.mpf(omega) ** 2 / 2 + mp.mpf(w0_squared) * (1 - mp.cos(mp.mpf(theta))))
     # A handful of roundings; 1e-300 because the squares of tiny numbers underflow.
@@ -28,7 +36,9 @@ def test_near_the_bottom_it_does_not_cancel() -> None:
 def test_the_exact_swing_keeps_it(theta: float, omega: float, t: float) -> None:
     start = energy(9.81, theta, omega)
     # Relative to the energy where it is small: the state is right to 1e-13 of its own size.
-    assert energy(9.81, *Scene(theta=theta, omega=omega).exact().at(t)) == pytest.approx(start, rel=1e-12, abs=1e-300)
+    assert energy(9.81, *Scene(theta=theta, omega=omega).exact().at(t)) == pytest.approx(
+        start, rel=1e-12, abs=1e-300
+    )
 
 
 @given(theta=st.floats(-10, 10))
@@ -42,9 +52,13 @@ def test_upright_and_at_rest_it_has_the_energy_of_the_separatrix() -> None:
 
 
 @given(theta=st.floats(-3, 3), omega=st.floats(-10, 10))
-def test_the_margin_is_one_minus_the_energy_over_the_separatrixs(theta: float, omega: float) -> None:
+def test_the_margin_is_one_minus_the_energy_over_the_separatrixs(
+    theta: float, omega: float
+) -> None:
     share = energy(9.81, theta, omega) / separatrix_energy(9.81)
-    assert separatrix_margin(9.81**0.5, theta, omega) == pytest.approx(1 - share, abs=1e-14)  # roundings below 6
+    assert separatrix_margin(9.81**0.5, theta, omega) == pytest.approx(
+        1 - share, abs=1e-14
+    )  # roundings below 6
 
 
 def test_the_margin_keeps_its_digits_where_the_energy_has_lost_them() -> None:

@@ -71,7 +71,9 @@ def test_running_back_undoes_the_area_of_the_reversible_method():
     neighbourhood = Neighbourhood(DRIFT, radius=0.05)
     neighbourhood.advance(50, Stepping(0.05))
     neighbourhood.advance(50, Stepping(-0.05))
-    assert neighbourhood.area_ratios[INDEX["velocity_verlet"]] == pytest.approx(1.0, abs=1e-13)  # rounding
+    assert neighbourhood.area_ratios[INDEX["velocity_verlet"]] == pytest.approx(
+        1.0, abs=1e-13
+    )  # rounding
     assert math.log(neighbourhood.area_ratios[INDEX["explicit_euler"]]) > 0.1
 
 
@@ -130,7 +132,9 @@ def test_they_go_back_with_the_run_and_begin_again_with_another():
     assert np.array_equal(rings(neighbours, run), expected((15, 0.05), (2, 0.1)))
     gentle = RewindableRun(SCENES["gentle"], 3)
     gentle.forward(4)
-    assert np.array_equal(rings(neighbours, gentle), expected((4, gentle.scene.h), scene=gentle.scene))
+    assert np.array_equal(
+        rings(neighbours, gentle), expected((4, gentle.scene.h), scene=gentle.scene)
+    )
 
 
 def test_a_change_of_h_just_after_the_last_step_counts_for_the_next_one():

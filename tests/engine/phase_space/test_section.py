@@ -79,7 +79,9 @@ def test_small_swings_turn_by_twice_the_arcsine_of_half_z(key, z):
 def test_a_linear_oscillator_turns_so_at_every_amplitude(z):
     model = LinearOscillator(1.0)
     theta, omega = orbit(VERLET, model, z, (2.0, 1.0), 3000)
-    assert rotation_number(theta, omega, 1.0) == pytest.approx(2 * math.asin(z / 2) / math.tau, abs=1e-10)
+    assert rotation_number(theta, omega, 1.0) == pytest.approx(
+        2 * math.asin(z / 2) / math.tau, abs=1e-10
+    )
     assert not kind_of(VERLET, model, z, (theta, omega)).spins
 
 
@@ -99,7 +101,12 @@ def test_small_steps_turn_as_the_exact_pendulum_does():
         ("symplectic_euler", 0.5, 1.44, Fraction(1, 4)),
         ("velocity_verlet", 1.25, 1.09, Fraction(1, 6)),
         ("velocity_verlet", 1.47, 1.125, Fraction(1, 6)),
-        ("velocity_verlet", 0.3, 2.05, Fraction(1, 2)),  # beyond the linear limit: caught by a 2-cycle
+        (
+            "velocity_verlet",
+            0.3,
+            2.05,
+            Fraction(1, 2),
+        ),  # beyond the linear limit: caught by a 2-cycle
     ],
 )
 def test_islands_turn_by_exactly_their_fraction(key, theta, z, fraction):
@@ -121,7 +128,11 @@ def test_orbits_caught_by_a_step_of_half_a_turn_are_an_island_over_the_top():
 
 @pytest.mark.parametrize(
     ("key", "theta", "z"),
-    [("velocity_verlet", 2.3, 1.1), ("symplectic_euler", 2.3, 1.1), ("velocity_verlet", 0.3, 2.05 + 0.2)],
+    [
+        ("velocity_verlet", 2.3, 1.1),
+        ("symplectic_euler", 2.3, 1.1),
+        ("velocity_verlet", 0.3, 2.05 + 0.2),
+    ],
 )
 def test_chaotic_orbits_have_a_lyapunov_number_and_no_rotation_number(key, theta, z):
     found = kind(method_of(key), theta, z)
@@ -135,15 +146,22 @@ def test_strong_chaos_has_the_lyapunov_number_of_the_standard_map():
     assert kind(SYMPLECTIC, 2.0, z, 20_000).lyapunov == pytest.approx(math.log(10), abs=0.05)
 
 
-@pytest.mark.parametrize(("theta", "z"), [(2.0, 0.05), (3.0, 0.5), (math.pi - 1e-5, 0.1), (0.5, 1.41)])
+@pytest.mark.parametrize(
+    ("theta", "z"), [(2.0, 0.05), (3.0, 0.5), (math.pi - 1e-5, 0.1), (0.5, 1.41)]
+)
 def test_regular_orbits_are_not_called_chaotic(theta, z):
     assert not kind(VERLET, theta, z).chaotic
 
 
 @pytest.mark.parametrize("steps", [300, 4000])
 def test_a_regular_orbits_lyapunov_number_is_below_what_so_many_steps_can_tell(steps):
-    found = [kind(VERLET, theta, z, steps).lyapunov for theta, z in ((2.0, 0.05), (1.0, 0.5), (0.5, 1.41))]
-    assert 0 < max(found) < least_lyapunov(steps) < kind(VERLET, 2.0, 1.4, steps).lyapunov  # which is chaotic
+    found = [
+        kind(VERLET, theta, z, steps).lyapunov
+        for theta, z in ((2.0, 0.05), (1.0, 0.5), (0.5, 1.41))
+    ]
+    assert (
+        0 < max(found) < least_lyapunov(steps) < kind(VERLET, 2.0, 1.4, steps).lyapunov
+    )  # which is chaotic
 
 
 def test_rk4_ends_at_its_sink_and_explicit_euler_is_not_called_chaotic():
@@ -177,7 +195,14 @@ def test_orbits_of_few_steps_have_no_rotation_number(steps):
 
 @pytest.mark.parametrize(
     ("rotation", "fraction"),
-    [(0.2499, (1, 4)), (0.1672, (1, 6)), (0.0159, (1, 63)), (0.38, (3, 8)), (1.0001, (1, 1)), (0.0, (0, 1))],
+    [
+        (0.2499, (1, 4)),
+        (0.1672, (1, 6)),
+        (0.0159, (1, 63)),
+        (0.38, (3, 8)),
+        (1.0001, (1, 1)),
+        (0.0, (0, 1)),
+    ],
 )
 def test_the_nearest_fraction_is_a_small_one(rotation, fraction):
     assert nearest_fraction(rotation) == Fraction(*fraction)
@@ -187,7 +212,9 @@ def test_the_nearest_fraction_is_a_small_one(rotation, fraction):
 @pytest.mark.parametrize("z", [0.1, 0.5, 1.5])
 def test_small_swings_take_the_period_of_theory(method, z):
     model, h = Pendulum(4.0), z / 2.0
-    assert numerical_period(method, model, h, (1e-4, 0.0)) == pytest.approx(h * math.pi / math.asin(z / 2), rel=1e-6)
+    assert numerical_period(method, model, h, (1e-4, 0.0)) == pytest.approx(
+        h * math.pi / math.asin(z / 2), rel=1e-6
+    )
 
 
 @pytest.mark.parametrize("start", [(1.0, 0.0), (2.5, 0.0), (0.0, 3.0)])

@@ -44,17 +44,23 @@ def test_runs_of_compiled_loops_leave_no_memory_behind(method):
     run(1000)
     before = getrusage(RUSAGE_SELF).ru_minflt
     run(20_000)
-    assert getrusage(RUSAGE_SELF).ru_minflt - before < 200  # pages; a list of BM4's in each run would fill 1000
+    assert (
+        getrusage(RUSAGE_SELF).ru_minflt - before < 200
+    )  # pages; a list of BM4's in each run would fill 1000
 
 
 @needs_numba
 @each_method
-@pytest.mark.parametrize("model", [kind(98.1) for kind in MODELS.values() if not kind.without_force], ids=str)
+@pytest.mark.parametrize(
+    "model", [kind(98.1) for kind in MODELS.values() if not kind.without_force], ids=str
+)
 def test_compiled_and_plain_agree_on_any_model_at_any_step(method, model):
     fast, slow = compiled.compiled(method, model), PlainLoops(method, model)
     for h in (0.001, -0.02, 0.7, 3.0):
         start = ((math.radians(179.9), -0.2), h, 2_000)
-        assert repr(fast.advance(*start, 1e9)) == repr(slow.advance(*start, 1e9))  # repr: nan where no step was taken
+        assert repr(fast.advance(*start, 1e9)) == repr(
+            slow.advance(*start, 1e9)
+        )  # repr: nan where no step was taken
         if fast.advance(*start, 1e9)[0] == 2_000:
             assert fast.travel(*start) == slow.travel(*start)
 
@@ -81,18 +87,24 @@ def test_a_lockstep_can_be_copied_and_given_either_loops():
 
 @each_method
 @pytest.mark.parametrize("ahead", [0, 10_000])
-def test_loops_that_are_compiled_when_it_pays_give_the_same_bits_before_and_after(method, ahead, monkeypatch):
+def test_loops_that_are_compiled_when_it_pays_give_the_same_bits_before_and_after(
+    method, ahead, monkeypatch
+):
     monkeypatch.setattr(compiled, "COMPILED_FROM", 3_000)
     loops = compiled.TieredLoops(method, PENDULUM, expected_steps=ahead)
     for n in (1_000, 1_000, 2_000, 500):
         start = ((2.0, 0.0), 0.05, n)
         assert loops.travel(*start) == PlainLoops(method, PENDULUM).travel(*start)
-        assert loops.advance(*start, math.inf) == PlainLoops(method, PENDULUM).advance(*start, math.inf)
+        assert loops.advance(*start, math.inf) == PlainLoops(method, PENDULUM).advance(
+            *start, math.inf
+        )
 
 
 @needs_numba
 @pytest.mark.parametrize(("ahead", "compiled_steps"), [(0, [2, 4]), (3, [1, 2, 4])])
-def test_it_pays_from_a_number_of_steps_done_or_known_to_lie_ahead(ahead, compiled_steps, monkeypatch):
+def test_it_pays_from_a_number_of_steps_done_or_known_to_lie_ahead(
+    ahead, compiled_steps, monkeypatch
+):
     monkeypatch.setattr(compiled, "COMPILED_FROM", 3)
     used = []
 
@@ -120,7 +132,9 @@ def test_where_the_compiled_sine_has_other_bits_the_plain_loops_are_used():
 
         @staticmethod
         def njit(function):
-            return lambda x: math.nextafter(function(x), 2.0) if round(1000 * x) % 2000 == 7 else function(x)
+            return lambda x: (
+                math.nextafter(function(x), 2.0) if round(1000 * x) % 2000 == 7 else function(x)
+            )
 
     assert not compiled._same_sine.__wrapped__(OtherSine)
     assert compiled._same_sine.__wrapped__(importlib.import_module("numba"))

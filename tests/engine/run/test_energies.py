@@ -52,7 +52,9 @@ def test_the_verdict_is_the_truth(name):
     assert judge_energies(T, 1000 + energies).judgement.verdict == truth
 
 
-@pytest.mark.parametrize("name", sorted(set(MAKES) - {"last digits", "five steps of the last digit"}))
+@pytest.mark.parametrize(
+    "name", sorted(set(MAKES) - {"last digits", "five steps of the last digit"})
+)
 def test_the_verdict_does_not_depend_on_units_or_on_the_origin_of_time(name):
     energies, truth = MAKES[name]
     assert judge_energies(1e-12 * T - 3e-9, -1e-20 * (1e4 - energies)).judgement.verdict == truth
@@ -68,7 +70,8 @@ def test_uneven_sampling_changes_no_trend():
 @pytest.mark.parametrize("ratio", [1 / 200, 1 / 50, 1 / 20])
 def test_a_true_slope_is_within_its_uncertainties_as_often_as_they_promise(ratio):
     found = [
-        judge_energies(T[::4], 1000 + correlated(ratio, seed, 500) + 0.01 * T[::4]).judgement for seed in range(40)
+        judge_energies(T[::4], 1000 + correlated(ratio, seed, 500) + 0.01 * T[::4]).judgement
+        for seed in range(40)
     ]
     sigmas = np.array([(each.slope - 0.01) / each.uncertainty for each in found])
     assert 0.5 < np.mean(np.abs(sigmas) < 1) < 0.95

@@ -14,7 +14,9 @@ from engine.run.ensemble import Watched, compiled, plain, sharing
 
 needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed")
 each_method = pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
-each_way = pytest.mark.parametrize("fast", [False, pytest.param(True, marks=needs_numba)], ids=["numpy", "numba"])
+each_way = pytest.mark.parametrize(
+    "fast", [False, pytest.param(True, marks=needs_numba)], ids=["numpy", "numba"]
+)
 THETA, OMEGA = np.linspace(-2.0, 2.5, 37), np.linspace(1.5, -1.0, 37)
 PENDULUM = Pendulum(1.0)
 
@@ -25,7 +27,9 @@ def watched(band: float = math.inf, which: slice = slice(None)) -> Watched:
     return Watched(start, band, top, off, worst, np.abs(THETA[which]))
 
 
-def path(method: Method, h: float, steps: int, fast: bool, which: slice = slice(None)) -> np.ndarray:
+def path(
+    method: Method, h: float, steps: int, fast: bool, which: slice = slice(None)
+) -> np.ndarray:
     """The phases after each step: (steps, 2, swings).  A band below 0 stops at each."""
     start = THETA[which], OMEGA[which]
     stops = (compiled if fast else plain)(method, PENDULUM)(
@@ -36,9 +40,13 @@ def path(method: Method, h: float, steps: int, fast: bool, which: slice = slice(
 
 @each_way
 @each_method
-def test_each_swing_of_an_ensemble_is_the_methods_but_for_rounding(method: Method, fast: bool) -> None:
+def test_each_swing_of_an_ensemble_is_the_methods_but_for_rounding(
+    method: Method, fast: bool
+) -> None:
     expected = islice(method.phases(PENDULUM.force(np.sin), (THETA, OMEGA), 0.1), 40)
-    assert path(method, 0.1, 40, fast) == pytest.approx(np.array([*expected]), rel=0, abs=1e-13)  # 40 steps' rounding
+    assert path(method, 0.1, 40, fast) == pytest.approx(
+        np.array([*expected]), rel=0, abs=1e-13
+    )  # 40 steps' rounding
 
 
 @each_way
@@ -52,7 +60,9 @@ def test_no_swing_depends_on_the_others(fast: bool) -> None:
 def test_compiled_steps_are_freed() -> None:
     """In a compiled loop Numba 0.68 keeps all that a generator yields, which makes 4 pages a step of these."""
     many, h = (np.full(1024, 0.5), np.zeros(1024)), np.full(1024, 0.1)
-    seen = Watched(many[0], *(np.full(1024, math.inf) for _ in range(2)), *(np.zeros(1024) for _ in range(3)))
+    seen = Watched(
+        many[0], *(np.full(1024, math.inf) for _ in range(2)), *(np.zeros(1024) for _ in range(3))
+    )
     watch = compiled(VELOCITY_VERLET, PENDULUM)
     next(watch(many, h, seen, 1000))
     before = getrusage(RUSAGE_SELF).ru_minflt
@@ -64,7 +74,9 @@ def test_compiled_steps_are_freed() -> None:
 def test_a_swing_without_limits_does_not_stop_the_others(fast: bool) -> None:
     seen, h = watched(), np.full(37, 0.2)
     stops = []
-    for done, phase in (compiled if fast else plain)(GENERAL[0], PENDULUM)((THETA, OMEGA), h, seen, 100):
+    for done, phase in (compiled if fast else plain)(GENERAL[0], PENDULUM)(
+        (THETA, OMEGA), h, seen, 100
+    ):
         stops.append(done)
         seen.top[np.abs(phase[0]) > seen.top] = math.inf
     points = path(GENERAL[0], 0.2, 100, fast)
@@ -73,11 +85,16 @@ def test_a_swing_without_limits_does_not_stop_the_others(fast: bool) -> None:
 
 
 def test_force_and_energy_that_share_a_sine_are_those_of_the_pendulum() -> None:
-    theta, omega = np.concatenate([np.linspace(-9.4, 9.4, 1001), [0.0, 1e-8, 3.14, -3.1415]]), np.linspace(-2, 2, 1005)
+    theta, omega = (
+        np.concatenate([np.linspace(-9.4, 9.4, 1001), [0.0, 1e-8, 3.14, -3.1415]]),
+        np.linspace(-2, 2, 1005),
+    )
     force, energy = sharing(9.81)
     room = 1e-14 + 1e-14 / np.abs(np.cos(theta / 2))
     assert (np.abs(force(theta) - Pendulum(9.81).force(np.sin)(theta)) < room).all()
-    assert energy((theta, omega)) == pytest.approx(Pendulum(9.81).energy(np.sin)((theta, omega)), rel=1e-14)
+    assert energy((theta, omega)) == pytest.approx(
+        Pendulum(9.81).energy(np.sin)((theta, omega)), rel=1e-14
+    )
 
 
 def test_the_shared_sine_follows_the_angles() -> None:

@@ -39,9 +39,13 @@ def tops(scene: Scene, seconds: float) -> dict[str, tuple[int, float, float]]:
     return found
 
 
-@pytest.mark.parametrize("name", ["drift", "crossover", "near-separatrix", "rk4-limit", "chaos-loose"])
+@pytest.mark.parametrize(
+    "name", ["drift", "crossover", "near-separatrix", "rk4-limit", "chaos-loose"]
+)
 @pytest.mark.parametrize("every", [1, 7, 400])
-def test_the_step_over_the_top_is_found_however_far_apart_the_samples_are(name: str, every: int) -> None:
+def test_the_step_over_the_top_is_found_however_far_apart_the_samples_are(
+    name: str, every: int
+) -> None:
     lockstep = watched(SCENES[name], 30.0, every)
     found = {
         each.method.key: (each.step, each.t, each.energy_error)
@@ -52,7 +56,9 @@ def test_the_step_over_the_top_is_found_however_far_apart_the_samples_are(name: 
 
 
 def test_a_pendulum_that_spins_goes_over_no_top() -> None:
-    assert not [each for each in watched(SCENES["spin"], 20).milestones if each.kind == "over the top"]
+    assert not [
+        each for each in watched(SCENES["spin"], 20).milestones if each.kind == "over the top"
+    ]
 
 
 def test_a_rotation_that_beats_with_its_steps_gets_no_early_verdict() -> None:
@@ -69,8 +75,14 @@ def test_verdicts_happen_when_they_are_given() -> None:
         before = [judgement.verdict for judgement in lockstep.judgements]
         lockstep.advance(1)
         after = [judgement.verdict for judgement in lockstep.judgements]
-        changes += [(lockstep.step, m, after[i]) for i, m in enumerate(USUAL_CAST) if after[i] != before[i]]
-    verdicts = [(each.step, each.method, each.verdict) for each in lockstep.milestones if each.kind == "verdict"]
+        changes += [
+            (lockstep.step, m, after[i]) for i, m in enumerate(USUAL_CAST) if after[i] != before[i]
+        ]
+    verdicts = [
+        (each.step, each.method, each.verdict)
+        for each in lockstep.milestones
+        if each.kind == "verdict"
+    ]
     assert verdicts == changes
     assert {(method.key, verdict) for _, method, verdict in changes} >= {
         ("explicit_euler", "grows"),
@@ -86,7 +98,11 @@ def test_rk4s_error_passes_verlets_once_for_good() -> None:
     assert passing.other is not None
     assert (passing.method.key, passing.other.key, passing.step) == ("rk4", "velocity_verlet", 167)
     assert passing.t == pytest.approx(33.4)
-    verdicts = {each.method.key for each in lockstep.milestones if each.kind == "verdict" and each.step <= 167}
+    verdicts = {
+        each.method.key
+        for each in lockstep.milestones
+        if each.kind == "verdict" and each.step <= 167
+    }
     assert {"rk4", "velocity_verlet"} <= verdicts
 
 
@@ -95,7 +111,11 @@ def test_a_method_fails_once_at_the_time_at_which_its_numbers_ended() -> None:
     lockstep.advance(2000)
     failed = {each.method.key: each for each in lockstep.milestones if each.kind == "failed"}
     readings = lockstep.sample().readings
-    ends = {m.key: r.diverged_at for m, r in zip(USUAL_CAST, readings, strict=True) if r.diverged_at is not None}
+    ends = {
+        m.key: r.diverged_at
+        for m, r in zip(USUAL_CAST, readings, strict=True)
+        if r.diverged_at is not None
+    }
     assert {key: milestone.t for key, milestone in failed.items()} == ends
     assert failed
     for method, judgement in zip(USUAL_CAST, lockstep.judgements, strict=True):
@@ -110,7 +130,9 @@ def moved(scene: Scene, gaps: list[int], loops=PlainLoops) -> Lockstep:
     return lockstep
 
 
-@pytest.mark.parametrize("name", ["drift", "large-swing", "spin", "verlet-limit-above", "chaos-loose", "damped"])
+@pytest.mark.parametrize(
+    "name", ["drift", "large-swing", "spin", "verlet-limit-above", "chaos-loose", "damped"]
+)
 def test_verdicts_and_milestones_do_not_depend_on_the_samples_or_the_loops(name: str) -> None:
     scene, uneven = SCENES[name], random.Random(1)
     steps = min(30_000, math.ceil(40 * (scene.exact().period or 1.0) / scene.h))

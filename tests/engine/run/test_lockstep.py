@@ -27,7 +27,9 @@ scenes = st.builds(
 )
 h_values = st.floats(1e-3, 2.0) | st.floats(-2.0, -1e-3)
 cuts = st.lists(st.integers(0, 60), min_size=1, max_size=8)
-changes = st.lists(st.tuples(st.integers(0, 60), h_values), max_size=5)  # advance so far, then use this h
+changes = st.lists(
+    st.tuples(st.integers(0, 60), h_values), max_size=5
+)  # advance so far, then use this h
 
 
 def one_by_one(scene: Scene, n: int) -> list[Sample]:
@@ -41,7 +43,9 @@ def one_by_one(scene: Scene, n: int) -> list[Sample]:
 
 def without_extremes(sample: Sample) -> Sample:
     """What does not depend on when the previous sample was taken."""
-    readings = (reading._replace(energy_error_low=0.0, energy_error_high=0.0) for reading in sample.readings)
+    readings = (
+        reading._replace(energy_error_low=0.0, energy_error_high=0.0) for reading in sample.readings
+    )
     return sample._replace(readings=tuple(readings))
 
 
@@ -55,7 +59,9 @@ def test_the_steps_may_be_cut_anyhow_the_bits_are_the_same(scene: Scene, cuts: l
 
 
 @given(scene=scenes, cuts=cuts)
-def test_looking_changes_nothing_but_since_when_extremes_are_taken(scene: Scene, cuts: list[int]) -> None:
+def test_looking_changes_nothing_but_since_when_extremes_are_taken(
+    scene: Scene, cuts: list[int]
+) -> None:
     watched, alone = Lockstep(scene), Lockstep(scene)
     for n in cuts:
         watched.advance(n)
@@ -120,7 +126,10 @@ def test_no_extreme_of_the_energy_is_lost_between_samples(scene: Scene, cuts: li
         for index, reading in enumerate(lockstep.sample().readings):
             between = [sample.readings[index].energy_error for sample in steps[done : done + n + 1]]
             so_far = [abs(sample.readings[index].energy_error) for sample in steps[: done + n + 1]]
-            assert (reading.energy_error_low, reading.energy_error_high) == (min(between), max(between))
+            assert (reading.energy_error_low, reading.energy_error_high) == (
+                min(between),
+                max(between),
+            )
             assert reading.max_energy_error == max(so_far)
         done += n
 
@@ -142,7 +151,9 @@ def test_time_reversed_verlet_comes_back_and_its_run_counts_on() -> None:
     lockstep.set_stepping(Stepping(-scene.h))
     lockstep.advance(200)
     sample = lockstep.sample()
-    explicit, symplectic, verlet, rk4 = (abs(reading.theta - scene.theta) for reading in sample.readings)
+    explicit, symplectic, verlet, rk4 = (
+        abs(reading.theta - scene.theta) for reading in sample.readings
+    )
     assert (sample.step, sample.t) == (400, 0)
     assert verlet < 1e-13  # rounding
     assert 1e-7 < rk4 < 1e-3 < 0.05 < symplectic < explicit
@@ -167,7 +178,10 @@ def exploding(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
 def falling_into_nan(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
     theta, omega = phase
     while True:
-        theta, omega = theta + h * omega, (omega + h * force(theta)) * (math.nan if abs(theta) < 0.5 else 1.0)
+        theta, omega = (
+            theta + h * omega,
+            (omega + h * force(theta)) * (math.nan if abs(theta) < 0.5 else 1.0),
+        )
         yield theta, omega
 
 
@@ -185,7 +199,11 @@ def test_a_method_that_diverges_stays_where_it_last_was_finite_and_the_others_go
     sample = lockstep.sample()
     assert sample.readings[1:] == others.sample().readings
 
-    frozen, phase, force = sample.readings[0], (scene.theta, scene.omega), acceleration(scene.w0_squared)
+    frozen, phase, force = (
+        sample.readings[0],
+        (scene.theta, scene.omega),
+        acceleration(scene.w0_squared),
+    )
     assert frozen.diverged_at is not None
     last = round(frozen.diverged_at / scene.h) - 1
     for _ in range(last):
@@ -193,7 +211,9 @@ def test_a_method_that_diverges_stays_where_it_last_was_finite_and_the_others_go
     assert (frozen.theta, frozen.omega) == phase
     assert frozen.diverged_at == (last + 1) * scene.h
     beyond = bad.step(force, phase, scene.h)
-    assert not all(map(math.isfinite, beyond)) or not abs(beyond[1]) < 1e149  # a square beyond 1e300 is out, too
+    assert (
+        not all(map(math.isfinite, beyond)) or not abs(beyond[1]) < 1e149
+    )  # a square beyond 1e300 is out, too
     assert all(map(math.isfinite, numbers(frozen)))
 
 
@@ -201,7 +221,11 @@ def numbers(reading: Reading) -> list[float]:
     return [value for value in (*reading[:-1], *reading.extra.values()) if value is not None]
 
 
-@given(**{name: st.floats(*limits) for name, limits in LIMITS.items()}, z=st.floats(1e-8, 999), n=st.integers(1, 60))
+@given(
+    **{name: st.floats(*limits) for name, limits in LIMITS.items()},
+    z=st.floats(1e-8, 999),
+    n=st.integers(1, 60),
+)
 def test_no_legal_start_gives_anything_but_finite_numbers(
     theta: float, omega: float, length: float, gravity: float, z: float, n: int
 ) -> None:
@@ -211,4 +235,8 @@ def test_no_legal_start_gives_anything_but_finite_numbers(
         lockstep.set_stepping(Stepping(step_size))
         lockstep.advance(n)
         sample = lockstep.sample()
-        assert all(math.isfinite(number) for reading in sample.readings for number in (sample.t, *numbers(reading)))
+        assert all(
+            math.isfinite(number)
+            for reading in sample.readings
+            for number in (sample.t, *numbers(reading))
+        )

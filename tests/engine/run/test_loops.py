@@ -15,7 +15,9 @@ from engine.run.loops import PlainLoops
 
 each_method = pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
 each_model = pytest.mark.parametrize(
-    "model", [kind(9.81) for kind in MODELS.values() if not kind.without_force], ids=lambda model: model.key
+    "model",
+    [kind(9.81) for kind in MODELS.values() if not kind.without_force],
+    ids=lambda model: model.key,
 )
 angles = st.floats(-10, 10)
 steps = st.floats(1e-3, 3) | st.floats(-3, -1e-3)
@@ -36,7 +38,9 @@ OVERFLOWING = replace(GENERAL[0], key="overflowing", phases=overflowing)
 @each_model
 @given(theta=angles, omega=angles, h=steps, n=st.integers(1, 40))
 def test_the_loops_give_the_bits_of_single_steps(method, model, theta, omega, h, n):
-    n = math.ceil(n / method.force_evaluations)  # the linear oscillator overflows after some 60 evaluations
+    n = math.ceil(
+        n / method.force_evaluations
+    )  # the linear oscillator overflows after some 60 evaluations
     phase, path = (theta, omega), []
     for _ in range(n):
         path.append(phase := method.step(model.force(), phase, h))
@@ -50,13 +54,18 @@ def test_the_loops_give_the_bits_of_single_steps(method, model, theta, omega, h,
 def test_a_method_that_overflows_is_carried_to_its_last_finite_step(theta, n):
     path = []
     for phase in islice(
-        overflowing(lambda x: -9.81 * math.sin(x) if math.isfinite(x) else math.nan, (theta, 0.0), 0.1), n
+        overflowing(
+            lambda x: -9.81 * math.sin(x) if math.isfinite(x) else math.nan, (theta, 0.0), 0.1
+        ),
+        n,
     ):
         if not all(map(math.isfinite, phase)) or not energy(9.81, *phase) < math.inf:
             break
         path.append(phase)
     energies = [energy(9.81, *point) for point in path]
-    done, last, value, low, high = PlainLoops(OVERFLOWING, PENDULUM).advance((theta, 0.0), 0.1, n, math.inf)
+    done, last, value, low, high = PlainLoops(OVERFLOWING, PENDULUM).advance(
+        (theta, 0.0), 0.1, n, math.inf
+    )
     assert (done, last) == (len(path), path[-1] if path else (theta, 0.0))
     assert (low, high) == (min(energies, default=math.inf), max(energies, default=-math.inf))
     assert value == energies[-1] if path else math.isnan(value)

@@ -20,7 +20,9 @@ PARAMETERS = {"friction": 0.1, "stiffness": 100.0, "coupling": 2.0, "level_frequ
 
 
 def without_extremes(sample: Sample) -> list[Reading]:
-    return [reading._replace(energy_error_low=0.0, energy_error_high=0.0) for reading in sample.readings]
+    return [
+        reading._replace(energy_error_low=0.0, energy_error_high=0.0) for reading in sample.readings
+    ]
 
 
 def verdicts(scene: Scene, steps: int, every: int) -> list[tuple[int, str, str]]:
@@ -67,13 +69,22 @@ def test_verdicts_do_not_depend_on_the_distance_of_samples(scene: Scene) -> None
     [
         ("damped", {"explicit_euler": "grows"}),
         ("stiff-slow", {"rk4": "loses", "imex_euler": "loses"}),
-        ("halving", {"halving_verlet": "grows", "halving_richardson": "loses", "velocity_verlet": "bounded"}),
+        (
+            "halving",
+            {
+                "halving_verlet": "grows",
+                "halving_richardson": "loses",
+                "velocity_verlet": "bounded",
+            },
+        ),
     ],
 )
 def test_the_scenes_have_their_verdicts(name: str, expected: dict[str, str]) -> None:
     last = {
         key: verdict
-        for _, key, verdict in verdicts(SCENES[name], round((60 if name == "damped" else 300) / SCENES[name].h), 50)
+        for _, key, verdict in verdicts(
+            SCENES[name], round((60 if name == "damped" else 300) / SCENES[name].h), 50
+        )
     }
     assert last.items() >= expected.items()
 
@@ -108,10 +119,16 @@ def test_any_scene_within_the_limits_gives_finite_numbers(
     model: str, theta: float, omega: float, friction: float, stiffness: float, h: float
 ) -> None:
     given_values = {"friction": friction, "stiffness": stiffness}
-    own = {each.name: given_values.get(each.name, each.default) for each in MODELS[model].parameters}
+    own = {
+        each.name: given_values.get(each.name, each.default) for each in MODELS[model].parameters
+    }
     cast = tuple(method for method in METHODS if model in method.models)
-    h = min(h, 1.0) if model == "damped" else h  # the reference takes steps of 0.5 ms where friction is 100
-    lockstep = Lockstep(Scene(theta=theta, omega=omega, h=h, model=model, cast=cast, parameters=own))
+    h = (
+        min(h, 1.0) if model == "damped" else h
+    )  # the reference takes steps of 0.5 ms where friction is 100
+    lockstep = Lockstep(
+        Scene(theta=theta, omega=omega, h=h, model=model, cast=cast, parameters=own)
+    )
     lockstep.advance(3)
     for reading in lockstep.sample().readings:
         assert math.isfinite(reading.theta + reading.omega + reading.energy + reading.energy_error)
@@ -130,5 +147,7 @@ def test_a_model_refuses_a_method_that_is_not_for_it(model: str) -> None:
 
 def test_a_bob_that_is_gone_gains_energy_within_half_a_second_and_not_too_early_to_say() -> None:
     found = verdicts(SCENES["stiff-limit"], 20, 1)
-    assert ("velocity_verlet", "grows") in [(key, verdict) for step, key, verdict in found if step <= 10]
+    assert ("velocity_verlet", "grows") in [
+        (key, verdict) for step, key, verdict in found if step <= 10
+    ]
     assert {key for _, key, verdict in found if verdict == "grows"} == {"velocity_verlet"}

@@ -121,7 +121,9 @@ def test_the_way_back_is_kept_in_few_copies_the_closer_the_more_recent():
     gaps = [after - before for before, after in itertools.pairwise(steps)]
     assert len(steps) < 60  # 400 without thinning; 8 an octave of age with it
     assert max(gaps[-8:]) <= COPY_EVERY
-    assert all(gap <= max(COPY_EVERY, (steps[-1] - at) / 4) for at, gap in zip(steps, gaps, strict=False))
+    assert all(
+        gap <= max(COPY_EVERY, (steps[-1] - at) / 4) for at, gap in zip(steps, gaps, strict=False)
+    )
 
 
 def test_time_run_through_goes_up_even_while_time_runs_backwards():

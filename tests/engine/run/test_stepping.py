@@ -33,9 +33,13 @@ def test_h_goes_along_1_2_5():
 
 
 @given(STEPPINGS)
-def test_every_stepping_has_a_larger_and_a_smaller_neighbour_of_its_sign_and_up_and_down_return(stepping):
+def test_every_stepping_has_a_larger_and_a_smaller_neighbour_of_its_sign_and_up_and_down_return(
+    stepping,
+):
     larger, smaller = stepping.next(up=True), stepping.next(up=False)
-    assert smaller.smallest < stepping.smallest < larger.smallest <= 2.6 * stepping.smallest  # 2 to 5, and rounding
+    assert (
+        smaller.smallest < stepping.smallest < larger.smallest <= 2.6 * stepping.smallest
+    )  # 2 to 5, and rounding
     assert math.copysign(1, larger.h) == math.copysign(1, smaller.h) == math.copysign(1, stepping.h)
     assert larger.next(up=True).next(up=False) == larger
 
@@ -71,15 +75,30 @@ def test_a_step_is_made_with_the_last_change_before_it():
         SteppingChange(5, 0.5, Stepping(0.2)),
         SteppingChange(5, 0.5, EQUAL),
     ]
-    assert [change_before(changes, step).stepping for step in (0, 5, 6)] == [Stepping(0.1), Stepping(0.1), EQUAL]
+    assert [change_before(changes, step).stepping for step in (0, 5, 6)] == [
+        Stepping(0.1),
+        Stepping(0.1),
+        EQUAL,
+    ]
 
 
 def bits(lockstep: Lockstep) -> list[tuple[float, float, float]]:
-    return [(reading.theta, reading.omega, reading.max_energy_error) for reading in lockstep.sample().readings]
+    return [
+        (reading.theta, reading.omega, reading.max_energy_error)
+        for reading in lockstep.sample().readings
+    ]
 
 
 def test_at_equal_cost_every_method_needs_the_same_number_of_evaluations():
-    assert len({method.force_evaluations * part for method, part in zip(USUAL_CAST, EQUAL.parts, strict=True)}) == 1
+    assert (
+        len(
+            {
+                method.force_evaluations * part
+                for method, part in zip(USUAL_CAST, EQUAL.parts, strict=True)
+            }
+        )
+        == 1
+    )
 
 
 @pytest.mark.parametrize("index", range(len(USUAL_CAST)), ids=[method.key for method in USUAL_CAST])
@@ -108,7 +127,9 @@ def test_the_time_of_divergence_is_exact_to_a_part_of_a_step():
     assert at is not None
     parts_taken = round(at / 0.05)
     assert at == parts_taken * 0.05
-    assert (2.0 ** (parts_taken - 1)) ** 2 / 2 < 1e300 < (2.0**parts_taken) ** 2  # where omega²/2 leaves the range
+    assert (
+        (2.0 ** (parts_taken - 1)) ** 2 / 2 < 1e300 < (2.0**parts_taken) ** 2
+    )  # where omega²/2 leaves the range
 
 
 def test_verlet_beats_rk4_in_energy_at_once_at_equal_cost():

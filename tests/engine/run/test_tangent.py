@@ -21,4 +21,6 @@ def test_the_jacobian_agrees_with_central_differences(method: Method):
     up, down = (method.step(force, (theta, omega + s * d), h) for s in (1, -1))
     differences = [(p - q) / (2 * d) for p, q in ((right[0], left[0]), (up[0], down[0]))]
     differences += [(p - q) / (2 * d) for p, q in ((right[1], left[1]), (up[1], down[1]))]
-    assert list(exact) == pytest.approx(differences, abs=1e-9)  # d² and rounding over d, both about 1e-10
+    assert list(exact) == pytest.approx(
+        differences, abs=1e-9
+    )  # d² and rounding over d, both about 1e-10

@@ -21,7 +21,9 @@ from tests.truths import is_true, scene_at, truths, verdicts, watch
 E, S, V, R = USUAL_CAST
 LOOPS = compiled.compiled if compiled.available() else PlainLoops  # the same bits
 CELLS = list(truths())
-SAMPLED = CELLS[::23]  # 23 and the 36 steps of a line have no divisor in common: every start and step has its turn
+SAMPLED = CELLS[
+    ::23
+]  # 23 and the 36 steps of a line have no divisor in common: every start and step has its turn
 BELOW_THE_LIMITS = ["grows", "bounded", "bounded", "loses"]
 
 
@@ -58,14 +60,25 @@ def test_verdicts_wait_for_nine_periods_as_a_rule() -> None:
 
 @pytest.mark.parametrize(
     ("theta", "h"),
-    [(1.25, 0.348011), (1.47, 0.359185), (1.69, 0.370360), (1.3, 0.3512), (0.48, 0.459757), (0.37, 0.459757)],
+    [
+        (1.25, 0.348011),
+        (1.47, 0.359185),
+        (1.69, 0.370360),
+        (1.3, 0.3512),
+        (0.48, 0.459757),
+        (0.37, 0.459757),
+    ],
 )
 @pytest.mark.parametrize("method", [S, V], ids=lambda method: method.key)
-def test_an_orbit_that_beats_at_a_resonance_never_grows_or_loses(method, theta: float, h: float) -> None:
+def test_an_orbit_that_beats_at_a_resonance_never_grows_or_loses(
+    method, theta: float, h: float
+) -> None:
     assert course(method, Scene(theta=theta, h=h), 6000) in ([], ["bounded"])
 
 
-@pytest.mark.parametrize(("index", "theta", "h"), [(1, 0.3, 0.654514), (1, 2.3, 0.351203), (2, 2.3, 0.351203)])
+@pytest.mark.parametrize(
+    ("index", "theta", "h"), [(1, 0.3, 0.654514), (1, 2.3, 0.351203), (2, 2.3, 0.351203)]
+)
 def test_an_orbit_in_a_chaotic_sea_is_called_chaotic_with_its_lyapunov_number(
     index: int, theta: float, h: float
 ) -> None:
@@ -85,7 +98,10 @@ def test_rk4_at_200_rad_per_s_is_not_called_bounded_while_its_slope_is_significa
 
 def test_caught_chaotic_and_wandering_orbits_get_their_verdicts() -> None:
     assert course(R, SCENES["rk4-limit-above"], 6000)[-1] == "caught"
-    assert course(E, SCENES["drift"].altered(h=0.16), 10_000) == ["grows", "caught"]  # at omega h = pi
+    assert course(E, SCENES["drift"].altered(h=0.16), 10_000) == [
+        "grows",
+        "caught",
+    ]  # at omega h = pi
     assert course(V, SCENES["chaos-fenced"], 6000) == ["chaotic"]
     assert course(E, Scene(h=2.1 / Scene().w0), 30_000)[-1:] == ["wanders"]
 
@@ -175,7 +191,9 @@ def test_a_verdict_is_taken_back_when_the_error_comes_back() -> None:
         ("wanders", True, False),
     ],
 )
-def test_a_judgement_has_a_trend_only_if_its_slope_is_significant(verdict, significant: bool, shown: bool) -> None:
+def test_a_judgement_has_a_trend_only_if_its_slope_is_significant(
+    verdict, significant: bool, shown: bool
+) -> None:
     assert (Judgement(verdict, -1e-3, 1e-4, significant).trend is not None) == shown
 
 

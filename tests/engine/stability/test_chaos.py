@@ -15,7 +15,10 @@ SYMPLECTIC = (SYMPLECTIC_EULER, VELOCITY_VERLET)  # those of the standard map
 
 def largest_omega(scene: Scene, method: Method, steps: int, enough: float = math.inf) -> float:
     """Largest |omega|·h on the way, up to the first that is `enough`."""
-    phases, largest = method.phases(scene.equations.force(), (scene.theta, scene.omega), scene.h), 0.0
+    phases, largest = (
+        method.phases(scene.equations.force(), (scene.theta, scene.omega), scene.h),
+        0.0,
+    )
     for phase in islice(phases, steps):
         if abs(phase[1]) > largest:
             largest = abs(phase[1])
@@ -30,7 +33,9 @@ def lyapunov(method: Method, theta: float, omega: float, z: float, steps: int) -
 
 
 @given(st.floats(-50, 50), st.floats(-50, 50), st.floats(0.01, 10))
-def test_symplectic_euler_is_the_standard_map_with_k_equal_to_z_squared(theta: float, p: float, z: float) -> None:
+def test_symplectic_euler_is_the_standard_map_with_k_equal_to_z_squared(
+    theta: float, p: float, z: float
+) -> None:
     new_p = p - z**2 * math.sin(theta)
     new_theta, new_omega = SYMPLECTIC_EULER.step(acceleration(1.0), (theta, p / z), z)
     # Both sides round a handful of sums of numbers up to 150; 1e-12 is some thirty ulp of them.
@@ -39,7 +44,9 @@ def test_symplectic_euler_is_the_standard_map_with_k_equal_to_z_squared(theta: f
 
 
 @given(st.floats(-3, 3), st.floats(-3, 3), st.floats(0.01, 3))
-def test_velocity_verlet_is_the_same_map_half_a_kick_earlier(theta: float, omega: float, z: float) -> None:
+def test_velocity_verlet_is_the_same_map_half_a_kick_earlier(
+    theta: float, omega: float, z: float
+) -> None:
     force = acceleration(1.0)
 
     def half_kick(phase: tuple[float, float], sign: int) -> tuple[float, float]:
@@ -74,15 +81,21 @@ def test_chaos_loose_passes_two_pi_over_h_within_a_million_steps(method: Method)
 
 @pytest.mark.parametrize("method", SYMPLECTIC, ids=lambda method: method.key)
 @pytest.mark.parametrize("k", [20, 50, 100])
-def test_far_above_the_threshold_the_lyapunov_exponent_is_ln_half_k(method: Method, k: float) -> None:
+def test_far_above_the_threshold_the_lyapunov_exponent_is_ln_half_k(
+    method: Method, k: float
+) -> None:
     # Over twenty starts of 20 000 steps the quotient was within 0.6 % of 1; at K = 10 orbits still stick (1.5 %).
-    assert lyapunov(method, 1.0, 0.3, math.sqrt(k), 20_000) == pytest.approx(math.log(k / 2), rel=0.012)
+    assert lyapunov(method, 1.0, 0.3, math.sqrt(k), 20_000) == pytest.approx(
+        math.log(k / 2), rel=0.012
+    )
 
 
 @pytest.mark.parametrize(("theta", "z"), [(0.5, 1.43), (1.0, 0.3), (3.0, 0.3), (0.1, 1.9)])
 def test_regular_swings_are_not_called_chaotic(theta: float, z: float) -> None:
     assert not is_chaotic(VELOCITY_VERLET, theta, z)
-    assert lyapunov(VELOCITY_VERLET, theta, 0.0, z, 10_000) < 2e-3  # measured up to 9e-4, which is ln(n)/n
+    assert (
+        lyapunov(VELOCITY_VERLET, theta, 0.0, z, 10_000) < 2e-3
+    )  # measured up to 9e-4, which is ln(n)/n
 
 
 @pytest.mark.parametrize(("theta", "z"), [(1.0, 1.535), (2.0, 1.38), (3.0, 0.67)])

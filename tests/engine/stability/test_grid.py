@@ -11,7 +11,9 @@ from engine.stability.grid import Grid, default_grid, pieces
 from engine.stability.outcomes import HOLDS, UNKNOWN, outcomes
 
 needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed")
-each_way = pytest.mark.parametrize("fast", [False, pytest.param(True, marks=needs_numba)], ids=["numpy", "numba"])
+each_way = pytest.mark.parametrize(
+    "fast", [False, pytest.param(True, marks=needs_numba)], ids=["numpy", "numba"]
+)
 GRID = Grid(theta=np.linspace(0.1, 3.1, 7), z=np.linspace(0.1, 3, 13), steps=200)
 
 
@@ -43,7 +45,9 @@ def test_a_large_map_is_compiled_wherever_its_strips_are_computed_and_a_small_on
 
 def test_a_map_computed_in_pieces_is_not_compiled() -> None:
     piece = next(pieces(default_grid(), [50]))
-    plain = replace(default_grid(), z=default_grid().z[piece.z], methods=USUAL_CAST[:1], steps=50, fast=False)
+    plain = replace(
+        default_grid(), z=default_grid().z[piece.z], methods=USUAL_CAST[:1], steps=50, fast=False
+    )
     assert piece.cells.tobytes() == plain.cells()[:, 0].tobytes()
 
 
@@ -57,7 +61,9 @@ def test_compiled_or_not_a_map_has_the_same_fates_and_errors_but_for_rounding() 
 
 @each_way
 @pytest.mark.parametrize("pool", [ThreadPoolExecutor, ProcessPoolExecutor])
-def test_any_executor_gives_the_same_picture(pool: type[Executor], fast: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_any_executor_gives_the_same_picture(
+    pool: type[Executor], fast: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(stability_map, "STRIP", 20)
     grid = replace(GRID, fast=fast, methods=USUAL_CAST[2:])
     with pool(2) as executor:  # type: ignore[call-arg]
@@ -73,7 +79,10 @@ def test_a_dask_cluster_gives_the_same_picture(monkeypatch: pytest.MonkeyPatch) 
         ) as cluster,
         distributed.Client(cluster) as client,
     ):
-        assert np.concatenate(list(GRID.compute(client.get_executor()))).tobytes() == GRID.cells().tobytes()
+        assert (
+            np.concatenate(list(GRID.compute(client.get_executor()))).tobytes()
+            == GRID.cells().tobytes()
+        )
 
 
 def test_cells_that_are_not_computed_are_unknown() -> None:

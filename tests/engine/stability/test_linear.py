@@ -35,7 +35,9 @@ def test_rk4_halves_the_energy_fastest_at_the_square_root_of_six() -> None:
 
 
 @given(z=st.floats(0.05, 1.9), steps=st.just(2000))
-def test_the_wobble_bounds_the_energy_of_a_linear_swing_and_is_reached(z: float, steps: int) -> None:
+def test_the_wobble_bounds_the_energy_of_a_linear_swing_and_is_reached(
+    z: float, steps: int
+) -> None:
     def spring(theta: Number) -> Number:
         return -theta
 
@@ -49,7 +51,9 @@ def test_the_wobble_bounds_the_energy_of_a_linear_swing_and_is_reached(z: float,
         assert lowest * (1 - 1e-9) <= min(energies)  # 2000 steps' rounding is 1e-12
         assert max(energies) <= highest * (1 + 1e-9)
         assert max(angles) <= widest * (1 + 1e-9)
-        if all(abs(z - 2 * math.sin(math.pi * p / q)) > 0.01 for q in range(2, 21) for p in range(1, q)):
+        if all(
+            abs(z - 2 * math.sin(math.pi * p / q)) > 0.01 for q in range(2, 21) for p in range(1, q)
+        ):
             # Where the orbit is no short cycle it comes close to every point of the ellipse.
             assert min(energies) == pytest.approx(lowest, rel=0.05)
             assert max(energies) == pytest.approx(highest, rel=0.05)

@@ -57,7 +57,10 @@ def failure_of(
 def test_each_swing_of_an_ensemble_agrees_with_a_plain_loop(
     method: Method, swings: list[tuple[float, float]], steps: int
 ) -> None:
-    force, value = acceleration(1.0, np.sin), energy_of(1.0, np.sin)  # not libm's: an ulp would be chaos later
+    force, value = (
+        acceleration(1.0, np.sin),
+        energy_of(1.0, np.sin),
+    )  # not libm's: an ulp would be chaos later
     if method.force_evaluations == 1:
         force, value = sharing(1.0)
     cells = outcomes(method, *np.array(swings).T, steps)
@@ -87,12 +90,16 @@ def test_each_swing_of_an_ensemble_agrees_with_a_plain_loop(
         assert (cell["steps"], cell["error"]) == (survived, worst)
 
 
-def test_swings_are_lost_by_hundreds_and_few_ensembles_are_made(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_swings_are_lost_by_hundreds_and_few_ensembles_are_made(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """Numba never frees what a generator holds that has not ended, so there should not be one for each lost swing."""
     begun: list[int] = []
 
     def counting(method: Method, model: Model) -> Watch:
-        def watch(phase: Arrays, h: Floats, watched: Watched, n: int) -> Iterator[tuple[int, Arrays]]:
+        def watch(
+            phase: Arrays, h: Floats, watched: Watched, n: int
+        ) -> Iterator[tuple[int, Arrays]]:
             begun.append(len(h))
             return plain(method, model)(phase, h, watched, n)
 
@@ -127,7 +134,9 @@ def test_explicit_eulers_time_to_the_top_goes_as_one_over_z() -> None:
             phase, steps = EXPLICIT_EULER.step(FORCE, phase, z), steps + 1
         times.append(steps * z)
     for slow, fast in pairwise(times):
-        assert fast / slow == pytest.approx(2, rel=0.06)  # it goes over on one swing or the next: 6 of 100 s
+        assert fast / slow == pytest.approx(
+            2, rel=0.06
+        )  # it goes over on one swing or the next: 6 of 100 s
 
 
 @pytest.mark.parametrize("theta", [0.5, 1.0, 2.5])
@@ -146,7 +155,9 @@ def test_small_swings_are_held_no_longer_at_the_linear_limit(theta: float) -> No
     for method in USUAL_CAST:
         if method.linear_limit:
             cells = outcomes(method, np.full(111, theta), ladder, steps.get(method.key, 500))
-            first = ladder[np.flatnonzero(cells["fate"] == (CAUGHT if method.symplectic else GROWS))[0]]
+            first = ladder[
+                np.flatnonzero(cells["fate"] == (CAUGHT if method.symplectic else GROWS))[0]
+            ]
             assert method.linear_limit <= first < method.linear_limit + 0.05
 
 
@@ -162,7 +173,9 @@ def test_beyond_two_velocity_verlet_is_caught_by_an_orbit_of_period_two(z: float
 
 
 @pytest.mark.parametrize(("z", "q"), [(2.01, 0.2444), (2.02, 0.3449), (2.05, 0.5417)])
-def test_a_tiny_swing_just_beyond_two_grows_to_the_catching_orbit_and_stays(z: float, q: float) -> None:
+def test_a_tiny_swing_just_beyond_two_grows_to_the_catching_orbit_and_stays(
+    z: float, q: float
+) -> None:
     assert z**2 * math.sin(q) == pytest.approx(4 * q, rel=1e-4)
     phase, largest = (1e-3, 0.0), 0.0
     for _ in range(5000):
@@ -201,7 +214,9 @@ def test_beyond_its_linear_limit_velocity_verlet_is_caught_as_in_the_scene() -> 
 
 def test_the_limit_moves_with_the_steps_that_it_rests_on() -> None:
     ladder = np.arange(1.0, 1.5, 0.01)
-    limits = [failure_of("velocity_verlet", 2.0, ladder, 10_000, within) for within in (100, 10_000)]
+    limits = [
+        failure_of("velocity_verlet", 2.0, ladder, 10_000, within) for within in (100, 10_000)
+    ]
     assert [limit and round(limit[0], 2) for limit in limits] == [1.38, 1.23]
 
 
@@ -218,7 +233,9 @@ def test_the_limit_moves_with_the_steps_that_it_rests_on() -> None:
         ("rk4", 3.0, 0.3, 0.6, "loses"),
     ],
 )
-def test_methods_fail_each_in_its_way(key: str, theta: float, start: float, end: float, reason: str) -> None:
+def test_methods_fail_each_in_its_way(
+    key: str, theta: float, start: float, end: float, reason: str
+) -> None:
     ladder = np.geomspace(start, end, 40)
     found = failure_of(key, theta, ladder, 10_000)
     assert found is not None

@@ -6,7 +6,16 @@ from pathlib import Path
 import pytest
 from hypothesis import strategies as st
 
-from engine.methods import EXPLICIT_EULER, GENERAL, METHODS, RK4, SYMPLECTIC_EULER, USUAL_CAST, VELOCITY_VERLET, Cast
+from engine.methods import (
+    EXPLICIT_EULER,
+    GENERAL,
+    METHODS,
+    RK4,
+    SYMPLECTIC_EULER,
+    USUAL_CAST,
+    VELOCITY_VERLET,
+    Cast,
+)
 from engine.methods.own import OwnMethod
 from engine.scenes import DEFAULT_SCENE, MOST_METHODS, Scene
 from tests.tui.command_line import pendu
@@ -91,7 +100,9 @@ def test_a_name_as_the_tables_print_it_will_do_in_any_case():
 
 def test_the_start_of_a_later_word_will_do_where_it_is_the_only_one():
     assert cast_options.find("verlet", USUAL_CAST) is VELOCITY_VERLET
-    with pytest.raises(UserError, match="'euler' may be explicit_euler or symplectic_euler; write more of it"):
+    with pytest.raises(
+        UserError, match="'euler' may be explicit_euler or symplectic_euler; write more of it"
+    ):
         cast_options.find("euler", USUAL_CAST)
 
 
@@ -118,7 +129,9 @@ def test_a_method_of_ones_own_comes_last_in_the_scenes_cast(mine):
 
 def test_a_method_of_ones_own_stands_where_methods_names_it_or_last(mine):
     for named, keys in (("kick,rk4", ["kick_drift", "rk4"]), ("rk4", ["rk4", "kick_drift"])):
-        assert [method.key for method in cast_from("--method", f"{mine}:kick_drift", "--methods", named)] == keys
+        assert [
+            method.key for method in cast_from("--method", f"{mine}:kick_drift", "--methods", named)
+        ] == keys
 
 
 @pytest.mark.parametrize(
@@ -143,7 +156,9 @@ def test_a_wrong_method_option_is_one_sentence(mine, text, code, words):
 
 def test_a_method_that_never_yields_is_interrupted(mine, monkeypatch):
     monkeypatch.setattr(cast_options, "MAX_SECONDS", 0.2)
-    assert pendu("run", "--time", "2", "--method", f"{mine}:endless").refused(2, "more than 0.2 s", "ever yield?")
+    assert pendu("run", "--time", "2", "--method", f"{mine}:endless").refused(
+        2, "more than 0.2 s", "ever yield?"
+    )
 
 
 def test_more_than_six_are_too_many_for_a_stage(mine):
@@ -151,7 +166,9 @@ def test_more_than_six_are_too_many_for_a_stage(mine):
     Path("six.py").write_text("".join(MINE.format(name=name) for name in names))
     each = [word for name in names for word in ("--method", f"six.py:{name}")]
     assert pendu("run", "--time", "2", *each).refused(2, "10 methods are too many", "at most 6")
-    rows = pendu("run", "--time", "2", *each, "--methods", "m5,m4,m3,m2,m1,m0", "--json").json["methods"]
+    rows = pendu("run", "--time", "2", *each, "--methods", "m5,m4,m3,m2,m1,m0", "--json").json[
+        "methods"
+    ]
     assert [row["method"] for row in rows] == names[::-1]
 
 
@@ -161,19 +178,38 @@ casts = st.lists(st.sampled_from(GENERAL), min_size=1, max_size=6, unique=True).
 def test_ones_own_method_has_null_claims_and_what_is_measured(mine):
     *_, told = pendu("methods", "--method", f"{mine}:kick_drift", "--json").json["methods"]
     assert (told["key"], told["label"]) == ("kick_drift", "Kick drift")
-    for claim in ("order", "force_evaluations", "symplectic", "reversible", "linear_limit", "reference", "used"):
+    for claim in (
+        "order",
+        "force_evaluations",
+        "symplectic",
+        "reversible",
+        "linear_limit",
+        "reference",
+        "used",
+    ):
         assert told[claim] is None
     assert told["measured_order"] == pytest.approx(1, abs=0.05)
     assert told["measured_linear_limit"] == pytest.approx(2, abs=1e-8)
     assert (told["measured_symplectic"], told["measured_reversible"]) == (True, False)
     assert told["measured_force_evaluations"] == 1
-    table = pendu("methods", "--methods", "kick_drift,rk4", "--method", f"{mine}:kick_drift").out.splitlines()
+    table = pendu(
+        "methods", "--methods", "kick_drift,rk4", "--method", f"{mine}:kick_drift"
+    ).out.splitlines()
     assert [line.split()[0] for line in table[1:3]] == ["kick_drift", "rk4"]
 
 
 @pytest.mark.skipif((os.cpu_count() or 1) < 2, reason="one processor")
 def test_workers_and_this_process_agree_about_ones_own_method(mine):
-    command = ("stability", "--steps", "30", "--z-values", "0.5,2.5", "--theta-values", "1,2", "--csv")
+    command = (
+        "stability",
+        "--steps",
+        "30",
+        "--z-values",
+        "0.5,2.5",
+        "--theta-values",
+        "1,2",
+        "--csv",
+    )
     own = ("--method", f"{mine}:kick_drift", "--methods", "kick_drift")
     assert pendu(*command, *own).out == pendu(*command, *own, "--workers", "2").out
 
@@ -181,7 +217,9 @@ def test_workers_and_this_process_agree_about_ones_own_method(mine):
 def test_a_replay_shows_only_the_methods_asked_for(monkeypatch):
     screens = []
     monkeypatch.setattr("tui.terminal.check.check_terminal", lambda: None)
-    monkeypatch.setattr("tui.screens.launch.show", lambda screen, options: screens.append(screen) or 0)
+    monkeypatch.setattr(
+        "tui.screens.launch.show", lambda screen, options: screens.append(screen) or 0
+    )
     for words, places in ((("--methods", "rk4,verlet"), [2, 3]), ((), [0, 1, 2, 3])):
         assert pendu("replay", "drift", *words).code == 0
         assert screens[-1].shown.places(USUAL_CAST) == places

@@ -27,7 +27,12 @@ ARGUMENTS: dict[str, list[tuple[str, ...]]] = {
     "judge": [("energies.csv", "--time", "1", "--energy", "2")],
     "diff": [("drift.mcap", "drift.mcap")],
     "export": [("drift.mcap", "-o", "out.csv")],
-    "recordings": [(), ("show", "drift.mcap"), ("show", "drift"), ("recover", "drift.mcap", "-o", "out.mcap")],
+    "recordings": [
+        (),
+        ("show", "drift.mcap"),
+        ("show", "drift"),
+        ("recover", "drift.mcap", "-o", "out.mcap"),
+    ],
     "scenes": [()],
     "methods": [()],
     "doctor": [()],
@@ -36,8 +41,29 @@ ARGUMENTS: dict[str, list[tuple[str, ...]]] = {
 
 ON_SCREEN: dict[str, tuple[str, ...]] = {"live": (), "tour": (), "replay": ("drift.mcap",)}
 NAMES = (
-    *("pickle", "numpy", "multiprocessing", "json", "random", "signal", "textual", "rich", "mcap", "zstandard"),
-    *("plotext", "platformdirs", "shtab", "numba", "sitecustomize", "usercustomize", "tui", "engine", "recordings"),
+    *(
+        "pickle",
+        "numpy",
+        "multiprocessing",
+        "json",
+        "random",
+        "signal",
+        "textual",
+        "rich",
+        "mcap",
+        "zstandard",
+    ),
+    *(
+        "plotext",
+        "platformdirs",
+        "shtab",
+        "numba",
+        "sitecustomize",
+        "usercustomize",
+        "tui",
+        "engine",
+        "recordings",
+    ),
 )
 
 
@@ -60,7 +86,9 @@ def hostile(tmp_path: Path) -> Path:
 def program(tmp_path: Path) -> list[str]:
     """As what pip installs: a script, somewhere else."""
     script = tmp_path / "pendu-tui"
-    script.write_text("import sys\nfrom tui.cli.dispatch import main\nif __name__ == '__main__': sys.exit(main())\n")
+    script.write_text(
+        "import sys\nfrom tui.cli.dispatch import main\nif __name__ == '__main__': sys.exit(main())\n"
+    )
     return [sys.executable, str(script)]
 
 
@@ -69,11 +97,15 @@ def environment(tmp_path: Path) -> dict[str, str]:
 
 
 def test_every_command_is_tried():
-    assert {*ARGUMENTS, *ON_SCREEN} == {*COMMANDS} - {"serve"}  # which starts its labs with -P, as it says
+    assert {*ARGUMENTS, *ON_SCREEN} == {*COMMANDS} - {
+        "serve"
+    }  # which starts its labs with -P, as it says
 
 
 @pytest.mark.parametrize(
-    "arguments", [(command, *each) for command, some in ARGUMENTS.items() for each in some], ids=" ".join
+    "arguments",
+    [(command, *each) for command, some in ARGUMENTS.items() for each in some],
+    ids=" ".join,
 )
 def test_a_command_runs_no_module_of_the_current_folder(tmp_path, hostile, program, arguments):
     done = subprocess.run(

@@ -9,7 +9,9 @@ from tests.tui.pty_lab import PENDU
 from tui.cli.dispatch import RENAMED
 
 
-@pytest.mark.parametrize("arguments", [("scnes",), ("scenes", "--jsn"), ("scenes", "extra"), ("--nonsense",)])
+@pytest.mark.parametrize(
+    "arguments", [("scnes",), ("scenes", "--jsn"), ("scenes", "extra"), ("--nonsense",)]
+)
 def test_a_mistake_on_the_command_line_is_one_sentence_and_exit_2(arguments):
     assert pendu(*arguments).refused(2)
 
@@ -67,7 +69,9 @@ def test_a_bug_is_not_hidden_behind_a_sentence(monkeypatch):
 
 
 @pytest.mark.parametrize("becomes", [KeyboardInterrupt, ImportError])
-def test_an_interrupt_is_one_sentence_and_exit_130_even_if_a_library_makes_another_error_of_it(monkeypatch, becomes):
+def test_an_interrupt_is_one_sentence_and_exit_130_even_if_a_library_makes_another_error_of_it(
+    monkeypatch, becomes
+):
     def interrupted(_: object) -> int:
         try:
             raise KeyboardInterrupt
@@ -82,23 +86,34 @@ def test_an_interrupt_is_one_sentence_and_exit_130_even_if_a_library_makes_anoth
 def test_a_closed_pipe_prints_nothing_and_exits_with_141():
     reading, writing = os.pipe()
     os.close(reading)
-    done = subprocess.run([*PENDU, "scenes"], stdout=writing, stderr=subprocess.PIPE, text=True, check=False)
+    done = subprocess.run(
+        [*PENDU, "scenes"], stdout=writing, stderr=subprocess.PIPE, text=True, check=False
+    )
     os.close(writing)
     assert (done.returncode, done.stderr) == (141, "")
 
 
-@pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device that is always full is Linux's")
+@pytest.mark.skipif(
+    not Path("/dev/full").exists(), reason="a device that is always full is Linux's"
+)
 @pytest.mark.parametrize("command", ["methods", "scenes"])  # less than a buffer, and more
 def test_a_full_disk_under_stdout_is_one_sentence_and_exit_5(command):
     with Path("/dev/full").open("w") as full:
-        done = subprocess.run([*PENDU, command], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+        done = subprocess.run(
+            [*PENDU, command], stdout=full, stderr=subprocess.PIPE, text=True, check=False
+        )
     assert done.returncode == 5
-    assert done.stderr == "pendu-tui: output: No space left on device; free some space or write elsewhere.\n"
+    assert (
+        done.stderr
+        == "pendu-tui: output: No space left on device; free some space or write elsewhere.\n"
+    )
 
 
 def test_an_ascii_terminal_gets_question_marks_not_a_traceback():
     ascii_only = {**os.environ, "PYTHONIOENCODING": "ascii"}
-    done = subprocess.run([*PENDU, "methods"], env=ascii_only, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [*PENDU, "methods"], env=ascii_only, capture_output=True, text=True, check=False
+    )
     assert done.returncode == 0
     assert "h?w0" in done.stdout
 

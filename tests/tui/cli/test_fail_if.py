@@ -28,7 +28,11 @@ NO_COMPARISON = (
 PLAIN = [field for field in FIELDS if field != "diverged_at"]
 
 numbers = st.floats(allow_nan=False, allow_infinity=False)
-methods, signs, plain_fields = st.sampled_from(KEYS), st.sampled_from(sorted(SIGNS)), st.sampled_from(PLAIN)
+methods, signs, plain_fields = (
+    st.sampled_from(KEYS),
+    st.sampled_from(sorted(SIGNS)),
+    st.sampled_from(PLAIN),
+)
 
 
 def reading(**values: float | str | None) -> dict[str, dict[str, float | str | None]]:
@@ -37,7 +41,9 @@ def reading(**values: float | str | None) -> dict[str, dict[str, float | str | N
 
 
 @given(methods, plain_fields, signs, numbers, numbers)
-def test_a_comparison_is_that_of_python(method: str, field: str, sign: str, value: float, number: float) -> None:
+def test_a_comparison_is_that_of_python(
+    method: str, field: str, sign: str, value: float, number: float
+) -> None:
     assert parse(f"{method}.{field}{sign}{number!r}")(reading(**{field: value})) == (
         f"{method}.{field} is {value:.3g}" if SIGNS[sign](value, number) else ""
     )
@@ -45,7 +51,9 @@ def test_a_comparison_is_that_of_python(method: str, field: str, sign: str, valu
 
 @given(st.lists(st.lists(st.booleans(), min_size=1, max_size=4), min_size=1, max_size=4))
 def test_and_binds_tighter_than_or(truths: list[list[bool]]) -> None:
-    text = " or ".join(" and ".join(f"rk4.energy > {-1 if truth else 1}" for truth in row) for row in truths)
+    text = " or ".join(
+        " and ".join(f"rk4.energy > {-1 if truth else 1}" for truth in row) for row in truths
+    )
     assert bool(parse(text)(reading(energy=0.0))) is any(all(row) for row in truths)
 
 
@@ -104,7 +112,9 @@ def test_the_time_of_divergence_can_be_asked_for() -> None:
 @pytest.mark.parametrize("quote", ["", " ", "'", '"'])
 @pytest.mark.parametrize("word", get_args(Verdict))
 def test_a_verdict_is_compared_with_one_of_its_words(word: str, quote: str) -> None:
-    written = f"{quote}{word}{quote}" if quote else word.replace(" ", "_")  # and with a blank, as it is
+    written = (
+        f"{quote}{word}{quote}" if quote else word.replace(" ", "_")
+    )  # and with a blank, as it is
     for verdict in get_args(Verdict):
         values = reading(verdict=verdict)
         assert bool(parse(f"rk4.verdict == {written}")(values)) is (verdict == word)
@@ -120,8 +130,14 @@ def test_a_verdict_is_compared_with_one_of_its_words(word: str, quote: str) -> N
         ("rk4.verdict > loses", "verdicts have no order: compare them with == or !=."),
         ("rk4.energy > loses", "'loses' is not a finite number; use for example 0.05 or 1e-2."),
         ("rk4.energy > '1'", "'1' is not a finite number; use for example 0.05 or 1e-2."),
-        ("velocity_verlt.energy > 1", "there is no method 'velocity_verlt': did you mean velocity_verlet?"),
-        ("rk4.max_enrgy_error > 1", "there is no field 'max_enrgy_error': did you mean max_energy_error?"),
+        (
+            "velocity_verlt.energy > 1",
+            "there is no method 'velocity_verlt': did you mean velocity_verlet?",
+        ),
+        (
+            "rk4.max_enrgy_error > 1",
+            "there is no field 'max_enrgy_error': did you mean max_energy_error?",
+        ),
         (
             "leapfrog.energy > 1",
             "there is no method 'leapfrog': choose from explicit_euler, symplectic_euler, velocity_verlet, rk4.",
@@ -140,7 +156,9 @@ def test_an_error_is_one_sentence_that_helps(text: str, sentence: str) -> None:
 
 @given(
     st.text()
-    | st.lists(st.sampled_from([*KEYS, *FIELDS, "verdict", *SIGNS, "'", ".", "and", "or", "1", "(", " "])).map("".join)
+    | st.lists(
+        st.sampled_from([*KEYS, *FIELDS, "verdict", *SIGNS, "'", ".", "and", "or", "1", "(", " "])
+    ).map("".join)
 )
 def test_any_text_is_a_gate_or_one_printable_sentence(text: str) -> None:
     sentence = ""
@@ -160,7 +178,9 @@ def test_the_values_that_trip_a_gate_are_given() -> None:
     assert parse("rk4.verdict != failed")(values) == "rk4 diverged at 3"
 
 
-@pytest.mark.parametrize("text", [" or ".join(["rk4.energy > 1"] * 3000), "rk4." + "x" * 9000 + " > 1"])
+@pytest.mark.parametrize(
+    "text", [" or ".join(["rk4.energy > 1"] * 3000), "rk4." + "x" * 9000 + " > 1"]
+)
 def test_long_gates_are_refused_at_once(text: str) -> None:
     began = time.process_time()
     with pytest.raises(UserError):

@@ -29,13 +29,17 @@ def test_a_file_that_is_not_there_cannot_be_read(word):
     assert pendu(word).refused(3, word)
 
 
-@pytest.mark.parametrize(("word", "meant"), [("crosover", "crossover"), ("rum", "run"), ("snapshto", "snapshot")])
+@pytest.mark.parametrize(
+    ("word", "meant"), [("crosover", "crossover"), ("rum", "run"), ("snapshto", "snapshot")]
+)
 def test_another_word_is_answered_with_the_nearest_command_or_scene(word, meant):
     assert pendu(word).refused(2, f"did you mean {meant}?")
 
 
 @pytest.mark.parametrize(
-    "arguments", [("spin", *ONE_SECOND), (*ONE_SECOND, "spin"), (*ONE_SECOND, "--scene", "spin")], ids=" ".join
+    "arguments",
+    [("spin", *ONE_SECOND), (*ONE_SECOND, "spin"), (*ONE_SECOND, "--scene", "spin")],
+    ids=" ".join,
 )
 def test_a_scene_may_stand_before_or_after_the_options(arguments):
     assert pendu("run", *arguments).json["scene"]["name"] == "spin"

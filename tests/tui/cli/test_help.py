@@ -10,7 +10,9 @@ from tui.cli.errors import Exit
 
 def test_help_shows_every_exit_code():
     (line,) = (line for line in pendu("--help").out.splitlines() if line.startswith("exit codes:"))
-    assert [int(code) for code in re.findall(r"\d+", line)] == [code for code in Exit if code != Exit.PIPE_CLOSED]
+    assert [int(code) for code in re.findall(r"\d+", line)] == [
+        code for code in Exit if code != Exit.PIPE_CLOSED
+    ]
 
 
 def test_help_with_a_command_is_its_help():
@@ -26,7 +28,11 @@ def test_version_is_that_of_the_package():
 @pytest.mark.parametrize("name", COMMANDS)
 def test_the_help_of_a_command_ends_with_examples_that_its_parser_takes(name):
     out = pendu(name, "--help").out
-    examples = [line.strip() for line in out[out.index("\nexamples:\n") :].splitlines() if "pendu-tui" in line]
+    examples = [
+        line.strip()
+        for line in out[out.index("\nexamples:\n") :].splitlines()
+        if "pendu-tui" in line
+    ]
     examples = [example for example in examples if example.startswith("pendu-tui")]
     assert examples
     for example in examples:

@@ -13,7 +13,9 @@ from tui.cli.install import install_advice
         ("pyvenv.cfg", "pip install 'pendu-tui[fast]'"),
     ],
 )
-def test_the_advice_is_for_the_tool_that_installed_the_program(marker, command, tmp_path, monkeypatch):
+def test_the_advice_is_for_the_tool_that_installed_the_program(
+    marker, command, tmp_path, monkeypatch
+):
     (tmp_path / marker).touch()
     monkeypatch.setattr(sys, "prefix", str(tmp_path))
     assert install_advice("numba", "fast") == command

@@ -74,7 +74,9 @@ def test_a_number_out_of_range_is_refused_with_its_name_and_range(arguments):
         scene_from(*arguments)
 
 
-@pytest.mark.parametrize("arguments", [("--theta", "abc"), ("--theta", "5grad"), ("--h", "small"), ("--omega", "")])
+@pytest.mark.parametrize(
+    "arguments", [("--theta", "abc"), ("--theta", "5grad"), ("--h", "small"), ("--omega", "")]
+)
 def test_text_that_is_not_a_number_is_refused_with_an_example(arguments):
     with pytest.raises(UserError, match=r"is not an? (angle|number); use for example"):
         scene_from(*arguments)

@@ -34,7 +34,9 @@ def test_in_a_pipe_there_is_no_bar(monkeypatch):
 
 
 def test_a_sentence_on_a_terminal_is_wrapped_between_words_and_whole_elsewhere(monkeypatch, capsys):
-    sentence = "the recording will be about 30 MB; --sample-every 4 would reduce it to a quarter of that."
+    sentence = (
+        "the recording will be about 30 MB; --sample-every 4 would reduce it to a quarter of that."
+    )
     monkeypatch.setenv("COLUMNS", "30")
     warn(sentence)
     assert capsys.readouterr().err == f"pendu-tui: {sentence}\n"

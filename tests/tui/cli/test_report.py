@@ -17,7 +17,9 @@ COLUMNS = (Column("method", "method"), Column("largest", "error", ".2e"), Column
 
 
 def report(**changes):
-    return Report(**{"name": "test", "columns": COLUMNS, "rows": ROWS, "fields": {"methods": ROWS}, **changes})
+    return Report(
+        **{"name": "test", "columns": COLUMNS, "rows": ROWS, "fields": {"methods": ROWS}, **changes}
+    )
 
 
 def printed(report, form, capsys):
@@ -28,7 +30,11 @@ def printed(report, form, capsys):
 def test_a_table_has_a_line_for_each_row_between_title_and_notes(capsys):
     lines = printed(report(title="a title", notes=["a note"]), "table", capsys).splitlines()
     assert (lines[0], lines[-1]) == ("a title", "a note")
-    assert [line.split()[:2] for line in lines[1:-1]] == [["method", "largest"], ["rk4", "3.00e-01"], ["verlet", "-"]]
+    assert [line.split()[:2] for line in lines[1:-1]] == [
+        ["method", "largest"],
+        ["rk4", "3.00e-01"],
+        ["verlet", "-"],
+    ]
 
 
 def test_no_cell_steers_the_terminal(capsys):
@@ -36,8 +42,14 @@ def test_no_cell_steers_the_terminal(capsys):
 
 
 def test_a_note_may_be_a_table_of_its_own(capsys):
-    more = Table([Column("h", "h", ".3g"), Column("twice", lambda row: str(2 * row["h"]), right=True)], [{"h": 0.25}])
-    assert printed(report(notes=[more]), "table", capsys).splitlines()[-1].split() == ["0.25", "0.5"]
+    more = Table(
+        [Column("h", "h", ".3g"), Column("twice", lambda row: str(2 * row["h"]), right=True)],
+        [{"h": 0.25}],
+    )
+    assert printed(report(notes=[more]), "table", capsys).splitlines()[-1].split() == [
+        "0.25",
+        "0.5",
+    ]
 
 
 @pytest.mark.parametrize("columns", [40, 60, 80])
@@ -50,7 +62,10 @@ def test_a_table_is_folded_to_the_terminal_and_keeps_every_word(columns):
 
 
 def test_json_is_one_object_with_a_schema(capsys):
-    assert json.loads(printed(report(version=2), "json", capsys)) == {"schema": "pendu.test/2", "methods": ROWS}
+    assert json.loads(printed(report(version=2), "json", capsys)) == {
+        "schema": "pendu.test/2",
+        "methods": ROWS,
+    }
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])

@@ -10,7 +10,9 @@ from tui.cli.scene_file import read_scene
 
 
 def written(path, fields):
-    path.write_text("\n".join(f"{name} = {value!r}" for name, value in fields.items()), encoding="utf-8")
+    path.write_text(
+        "\n".join(f"{name} = {value!r}" for name, value in fields.items()), encoding="utf-8"
+    )
     return str(path)
 
 

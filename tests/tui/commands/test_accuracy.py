@@ -31,7 +31,9 @@ def test_the_table_has_a_row_for_each_step_and_the_orders():
 
 
 def charted(points, width, height):
-    return accuracy_chart(accuracy_series(points, "theta", "evaluations"), "theta", "evaluations", width, height)
+    return accuracy_chart(
+        accuracy_series(points, "theta", "evaluations"), "theta", "evaluations", width, height
+    )
 
 
 def test_every_point_on_the_chart_is_where_its_cost_and_its_error_are():
@@ -45,7 +47,9 @@ def test_every_point_on_the_chart_is_where_its_cost_and_its_error_are():
 def test_as_json_it_holds_points_orders_and_recommendation():
     answer = pendu(*QUICK, "--target", "1e-4", "--json").json
     assert [point["method"] for point in answer["points"]] == KEYS * 4
-    assert [order["claimed"] for order in answer["orders"]] == [method.order for method in USUAL_CAST]
+    assert [order["claimed"] for order in answer["orders"]] == [
+        method.order for method in USUAL_CAST
+    ]
     advice = answer["recommendation"]
     assert advice == answer["durations"][-1]
     assert (advice["target"], advice["method"]) == (1e-4, "rk4")
@@ -76,7 +80,15 @@ def test_a_target_that_no_method_reaches_is_reported():
 
 def test_over_several_times_it_shows_where_the_winner_changes():
     told = pendu(
-        "accuracy", "--h-values", "0.2:0.05:3", "--target", "1e-3", "--error", "energy", "--time", "10,100,300"
+        "accuracy",
+        "--h-values",
+        "0.2:0.05:3",
+        "--target",
+        "1e-3",
+        "--error",
+        "energy",
+        "--time",
+        "10,100,300",
     )
     assert "Velocity Verlet instead of RK4 from 100 s on (not yet at 10 s)." in told.out
     same = pendu("accuracy", "--h-values", "0.2:0.05:3", "--target", "1e-3", "--time", "2,5")
@@ -119,7 +131,9 @@ def test_a_mistake_is_one_sentence_and_exit_2(arguments, words):
 )
 def test_extreme_starts_print_numbers_and_no_nan(extreme):
     quick = ("accuracy", "--time", "1", "--h-values", "0.1:0.01:3", *extreme)
-    assert len(pendu(*quick, "--target", "1e-3", "--json").json["points"]) == 12  # read by a parser that refuses nan
+    assert (
+        len(pendu(*quick, "--target", "1e-3", "--json").json["points"]) == 12
+    )  # read by a parser that refuses nan
     assert pendu(*quick).code == 0
 
 
@@ -144,8 +158,12 @@ def test_the_linear_oscillator_is_compared_with_its_cosine():
     for order in answer["orders"]:
         assert order["measured"] == pytest.approx(order["claimed"], abs=0.05)
     assert answer["recommendation"]["method"] == "rk4"
-    (verlet,) = (p for p in answer["points"] if p["method"] == "velocity_verlet" and p["steps"] == 60)
-    w = 2 / verlet["h"] * math.asin(verlet["h"] / 2)  # Verlet's own frequency: from rest it is cos w t
+    (verlet,) = (
+        p for p in answer["points"] if p["method"] == "velocity_verlet" and p["steps"] == 60
+    )
+    w = (
+        2 / verlet["h"] * math.asin(verlet["h"] / 2)
+    )  # Verlet's own frequency: from rest it is cos w t
     apart = max(abs(math.cos(w * n * verlet["h"]) - math.cos(n * verlet["h"])) for n in range(61))
     assert verlet["theta_error"] == pytest.approx(apart, rel=1e-10)
 
@@ -159,7 +177,9 @@ def test_of_all_methods_it_names_the_cheapest_and_by_which_factor():
     best = {place["error"]: place for place in answer["front"]}[1e-6]
     advice = answer["recommendation"]
     assert (best["method"], advice["method"]) == ("blanes_moan_6", "blanes_moan_6")
-    alone = pendu(*ALL[:1], *ALL[2:], "--methods", "rk4", "--target", "1e-6", "--json").json["recommendation"]
+    alone = pendu(*ALL[:1], *ALL[2:], "--methods", "rk4", "--target", "1e-6", "--json").json[
+        "recommendation"
+    ]
     assert advice["saves_over_rk4"] == alone["force_evaluations"] / advice["force_evaluations"] > 4
     # read off between points a factor of 1.9 in h apart
     assert best["saves_over_rk4"] == pytest.approx(advice["saves_over_rk4"], rel=0.2)
@@ -179,7 +199,9 @@ def test_over_seconds_all_there_is_includes_the_series_and_the_floor():
     advice = answer["recommendation"]
     tried = {attempt["method"]: attempt for attempt in answer["recommendation"]["attempts"]}
     assert advice["method"] == "blanes_moan_6"  # the series is no method that a user could choose
-    assert advice["seconds"] == min(attempt["seconds"] for attempt in tried.values() if not attempt["why_not"])
+    assert advice["seconds"] == min(
+        attempt["seconds"] for attempt in tried.values() if not attempt["why_not"]
+    )
     assert advice["reached"] <= 1e-9
 
 
@@ -191,10 +213,14 @@ def hurried(monkeypatch):
     """Leave out the compiling and the results that these tests do not look at: they take seconds."""
     monkeypatch.setattr("engine.run.compiled.compiled", PlainLoops)
     monkeypatch.setattr("engine.accuracy.study.orders", lambda *_: [])
-    monkeypatch.setattr("engine.accuracy.growth.growth", lambda _, method: Growth(method, [], [], None))
+    monkeypatch.setattr(
+        "engine.accuracy.growth.growth", lambda _, method: Growth(method, [], [], None)
+    )
 
 
-@pytest.mark.parametrize(("more", "words"), [(("--scene", "linear"), OTHER_MODEL), (("--no-compiled",), UNFAIR)])
+@pytest.mark.parametrize(
+    ("more", "words"), [(("--scene", "linear"), OTHER_MODEL), (("--no-compiled",), UNFAIR)]
+)
 def test_where_there_is_no_series_it_says_why(more, words, hurried):
     answer = pendu(*SMALL, *more, "--json").json
     assert answer["absent"] == (words if available() or words == OTHER_MODEL else ABSENT)
@@ -203,8 +229,14 @@ def test_where_there_is_no_series_it_says_why(more, words, hurried):
 
 
 def test_the_points_of_a_method_are_joined_once_they_are_all_there():
-    points = list(Study(SCENES["drift"].with_cast(USUAL_CAST[3:]), 5.0).points(ladder(5.0, 0.1, 0.01, 4)))
+    points = list(
+        Study(SCENES["drift"].with_cast(USUAL_CAST[3:]), 5.0).points(ladder(5.0, 0.1, 0.01, 4))
+    )
     series = accuracy_series(points[::2], "theta", "evaluations", whole=len(points))
     assert [len(one.x) for one in series if one.mark == "r"] == [1] * len(points[::2])
-    (joined,) = (one for one in accuracy_series(points, "theta", "evaluations", whole=len(points)) if one.mark == "r")
+    (joined,) = (
+        one
+        for one in accuracy_series(points, "theta", "evaluations", whole=len(points))
+        if one.mark == "r"
+    )
     assert len(joined.x) == len(points)

@@ -59,7 +59,9 @@ async def test_a_lab_is_painted_takes_keys_and_clicks_fits_its_tab_and_ends_with
             tab = Shown(page)
             await tab.shows("LIVE", "scene drift", "RK4", "ctrl+p")
             async with asyncio.timeout(60):
-                while min(await page.pixels(METHODS)) < 50:  # each method has its colour on the screen
+                while (
+                    min(await page.pixels(METHODS)) < 50
+                ):  # each method has its colour on the screen
                     await asyncio.sleep(0.1)
             await page.click(500, 350)
             await page.press(" ")

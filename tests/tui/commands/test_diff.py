@@ -25,7 +25,12 @@ def test_the_first_difference_has_its_time_step_method_and_field(whole, tmp_path
     answer = pendu("diff", whole, other, "--json")
     assert answer.code == 1
     first = answer.json["first"]
-    assert (first["run"], first["step_a"], first["step_b"], first["t"]) == (1, 6, 6, pytest.approx(0.6))
+    assert (first["run"], first["step_a"], first["step_b"], first["t"]) == (
+        1,
+        6,
+        6,
+        pytest.approx(0.6),
+    )
     assert (first["method"], first["field"], first["b"]) == ("velocity_verlet", "omega", -5.0)
     assert (answer.json["samples"], answer.json["different"]) == (10, 1)
     assert "velocity_verlet at run 1" in pendu("diff", whole, other).out
@@ -35,7 +40,11 @@ def test_what_was_done_differently_is_listed(whole, tmp_path):
     entries = two_runs()
     scene = replace(entries[0].value.scene, theta=2.5)
     entries[0] = entries[0]._replace(value=entries[0].value._replace(scene=scene))
-    entries = [entry for entry in entries if not (isinstance(entry.value, Event) and entry.value.kind == "mark")]
+    entries = [
+        entry
+        for entry in entries
+        if not (isinstance(entry.value, Event) and entry.value.kind == "mark")
+    ]
     done = pendu("diff", whole, record(tmp_path / "b.mcap", entries), "--json").json["done"]
     assert ["run 1, theta", "2.0", "2.5"] in done
     assert ["run 1, mark at step 15, t = 1.2 s", "what is this?", "-"] in done

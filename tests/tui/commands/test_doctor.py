@@ -20,7 +20,9 @@ def test_doctor_as_json_has_the_same_findings():
     assert {"what", "found", "advice"} == set(answer["findings"][0])
 
 
-@pytest.mark.parametrize(("columns", "rows", "word"), [(59, 16, "too small"), (80, 24, "120x40"), (120, 40, "")])
+@pytest.mark.parametrize(
+    ("columns", "rows", "word"), [(59, 16, "too small"), (80, 24, "120x40"), (120, 40, "")]
+)
 def test_the_advice_on_size_follows_the_layouts(columns, rows, word):
     advice = size(columns, rows).advice
     assert word in advice
@@ -54,7 +56,9 @@ def test_a_missing_folder_is_fine_unless_it_is_below_a_file(tmp_path):
 
 def test_low_disk_space_is_reported(tmp_path, monkeypatch):
     assert "GB free" in folder(tmp_path).found
-    monkeypatch.setattr("tui.commands.about.doctor.shutil.disk_usage", lambda _: SimpleNamespace(free=5_000_000))
+    monkeypatch.setattr(
+        "tui.commands.about.doctor.shutil.disk_usage", lambda _: SimpleNamespace(free=5_000_000)
+    )
     finding = folder(tmp_path)
     assert "5.0 MB free" in finding.found
     assert "prune" in finding.advice

@@ -39,10 +39,19 @@ def folder(tmp_path, monkeypatch):
 
 
 XVG = '# by gmx energy\n@ title "E"\n@    xaxis  label "Time (ps)"\n@TYPE xy\n@ s0 legend "Potential"\n'
-XVG += '@ s1 legend "Total Energy"\n' + "".join(f"  {t:.6f}  -3.0  {energy!r}\n" for t, energy in ROWS)
+XVG += '@ s1 legend "Total Energy"\n' + "".join(
+    f"  {t:.6f}  -3.0  {energy!r}\n" for t, energy in ROWS
+)
 LOG = "LAMMPS (2 Aug 2023)\nthermo_style custom step temp etotal\n   Step   Temp   TotEng\n"
-LOG += "".join(f"  {t:.1f} 300. {energy - 9!r}\n" for t, energy in ROWS[:200]) + "Loop time of 1 on 1 procs\n\n"
-LOG += "Step TotEng Temp\n" + "".join(f"  {t:.1f} {energy!r} 300.\n" for t, energy in ROWS) + "Loop time\n"
+LOG += (
+    "".join(f"  {t:.1f} 300. {energy - 9!r}\n" for t, energy in ROWS[:200])
+    + "Loop time of 1 on 1 procs\n\n"
+)
+LOG += (
+    "Step TotEng Temp\n"
+    + "".join(f"  {t:.1f} {energy!r} 300.\n" for t, energy in ROWS)
+    + "Loop time\n"
+)
 
 
 @pytest.mark.parametrize(
@@ -82,13 +91,17 @@ def test_fortran_writes_its_exponents_with_a_d():
     assert [list(column) for column in found.columns] == [[0.0, 0.1], [150.0, 150.0]]
 
 
-CP2K = "#   Step Nr.     Time[fs]     Kin.[a.u.]     Pot.[a.u.]     Cons Qty[a.u.]     UsedTime[s]\n"
+CP2K = (
+    "#   Step Nr.     Time[fs]     Kin.[a.u.]     Pot.[a.u.]     Cons Qty[a.u.]     UsedTime[s]\n"
+)
 CP2K += "".join(f"  {n}  {n / 2}  0.5  -17.5  {-17 + n / 8}  1.0\n" for n in range(9))
 LINES = '{"t": 0, "E": 1.5}\n{"t": 1, "E": 1.5, "x": null}\n\nrubbish\n{"t": 2, "E": "1.5"}\n'
 MDOUT = "  4.  RESULTS\n"
 for ps in range(3):
     MDOUT += f" NSTEP = {ps * 500:8} TIME(PS) =  {ps:.3f} TEMP(K) = 300.38 PRESS =     0.0\n"
-    MDOUT += " Etot   =  -5606.5 EKtot   =   1234.5 EPtot      =  -6841.0\n 1-4 NB =  1.0\n ------\n"
+    MDOUT += (
+        " Etot   =  -5606.5 EKtot   =   1234.5 EPtot      =  -6841.0\n 1-4 NB =  1.0\n ------\n"
+    )
 MDOUT += "   A V E R A G E S   O V E R 3 S T E P S\n NSTEP = 1 TIME(PS) = 9.0 TEMP(K) = 1\n Etot = 0 EKtot = 1\n"
 NPZ = io.BytesIO()
 np.savez(NPZ, time=np.arange(3.0), E=np.full(3, 1.5))
@@ -97,7 +110,13 @@ np.savez(NPZ, time=np.arange(3.0), E=np.full(3, 1.5))
 @pytest.mark.parametrize(
     ("data", "names", "units", "times", "energies"),
     [
-        (CP2K, ("Time", "Cons Qty[a.u.]"), ("fs", "a.u."), [n / 2 for n in range(9)], [-17 + n / 8 for n in range(9)]),
+        (
+            CP2K,
+            ("Time", "Cons Qty[a.u.]"),
+            ("fs", "a.u."),
+            [n / 2 for n in range(9)],
+            [-17 + n / 8 for n in range(9)],
+        ),
         (CP2K, ("step nr.", "Kin.+Pot."), ("", "a.u."), list(range(9)), [-17.0] * 9),
         (LINES, ("t", "E"), ("", ""), [0, 1, 2], [1.5] * 3),
         (MDOUT, ("TIME(PS)", "Etot"), ("PS", "kcal/mol"), [0, 1, 2], [-5606.5] * 3),
@@ -117,13 +136,22 @@ def test_one_table_is_judged_and_named():
     assert "300 samples from 0 to 29.9, table 2 of 2; skipped: 1 row without numbers" in outcome.out
     answer = judge(LOG, "--json", "--table", 1, time="Step", energy="TotEng").json
     assert (answer["table"], answer["tables"], answer["samples"]) == (1, 2, 200)
-    assert judge(LOG, "--table", 3, time="Step", energy="TotEng").refused(3, "no table 3; the input has 2")
+    assert judge(LOG, "--table", 3, time="Step", energy="TotEng").refused(
+        3, "no table 3; the input has 2"
+    )
 
 
 def test_a_time_that_starts_again_begins_a_table():
-    again = table() + "".join(f"{t!r},{energy + 7!r}\n" for t, energy in ROWS) + "29.95"  # cut while it was written
+    again = (
+        table() + "".join(f"{t!r},{energy + 7!r}\n" for t, energy in ROWS) + "29.95"
+    )  # cut while it was written
     answer = judge(again, "--json").json
-    assert (answer["table"], answer["tables"], answer["first_energy"], answer["samples"]) == (2, 2, 107, 300)
+    assert (answer["table"], answer["tables"], answer["first_energy"], answer["samples"]) == (
+        2,
+        2,
+        107,
+        300,
+    )
 
 
 FOOTER = "Loop time of 1 on 1 procs for 9 steps with 9 atoms\nNlocal: 9 ave 9 max 9 min\nHistogram: 1 0 0 0 0 0 0 0\n"
@@ -138,9 +166,18 @@ def test_a_second_header_begins_a_table_and_a_footer_none(names):
         + "".join(f"{n} {t} 300. {energy - 9}\n" for n, (t, energy) in enumerate(ROWS))
         + FOOTER
     )
-    second = head + "".join(f"{n} {t + 30} 300. {energy}\n" for n, (t, energy) in enumerate(ROWS)) + FOOTER
+    second = (
+        head
+        + "".join(f"{n} {t + 30} 300. {energy}\n" for n, (t, energy) in enumerate(ROWS))
+        + FOOTER
+    )
     found = read(first + second, *names)
-    assert (found.number, found.count, len(found.columns[0]), found.columns[1][0]) == (2, 2, 300, 100)
+    assert (found.number, found.count, len(found.columns[0]), found.columns[1][0]) == (
+        2,
+        2,
+        300,
+        100,
+    )
 
 
 def test_a_header_on_each_page_begins_no_table():
@@ -152,7 +189,11 @@ def test_a_header_on_each_page_begins_no_table():
 
 def test_rows_before_a_time_are_left_out():
     answer = judge(table(), "--from", 10, "--json").json
-    assert (answer["samples"], answer["first_time"], answer["skipped"]["before_start"]) == (200, 10.0, 100)
+    assert (answer["samples"], answer["first_time"], answer["skipped"]["before_start"]) == (
+        200,
+        10.0,
+        100,
+    )
 
 
 def test_rows_that_cannot_be_used_are_counted():
@@ -173,18 +214,28 @@ def test_energies_that_end_in_nan_or_inf_have_failed(end):
     text = table() + f"30.0,{end}\n31.0,{end}\n"
     outcome = judge(text, "--json")
     assert outcome.code == 1
-    assert (outcome.json["verdict"], outcome.json["diverged_at"], outcome.json["samples"]) == ("failed", 30.0, 300)
+    assert (outcome.json["verdict"], outcome.json["diverged_at"], outcome.json["samples"]) == (
+        "failed",
+        30.0,
+        300,
+    )
     assert "nan or inf from 30 on" in judge(text).out
     assert judge(text, "--fail-if", "max_energy_error > 1e9").code == 1
 
 
-RISING = "Time (ps),E (eV),K\n" + "".join(f"{n},{100 + n / 10 + (n * 7919) % 13 / 100},5\n" for n in range(200))
+RISING = "Time (ps),E (eV),K\n" + "".join(
+    f"{n},{100 + n / 10 + (n * 7919) % 13 / 100},5\n" for n in range(200)
+)
 
 
 def test_trends_have_the_units_of_the_heads():
     names = {"time": "Time", "energy": "E"}
     answer = judge(RISING, "--json", **names).json
-    assert (answer["schema"], answer["verdict"], answer["samples"]) == ("pendu.judge/1", "grows", 200)
+    assert (answer["schema"], answer["verdict"], answer["samples"]) == (
+        "pendu.judge/1",
+        "grows",
+        200,
+    )
     assert answer["trend"] == pytest.approx(0.001, rel=1e-3)
     assert answer["absolute_trend"] == pytest.approx(0.1, rel=1e-3)
     assert (answer["trend_unit"], answer["energy_unit"]) == ("1/ps", "eV")
@@ -198,11 +249,18 @@ def test_trends_have_the_units_of_the_heads():
 
 def test_with_a_scale_of_std_nothing_depends_on_the_zero_of_the_energies():
     found = [
-        judge("t,E\n" + "".join(f"{t},{energy + zero:.9f}\n" for t, energy in ROWS), "--scale", "std", "--json").json
+        judge(
+            "t,E\n" + "".join(f"{t},{energy + zero:.9f}\n" for t, energy in ROWS),
+            "--scale",
+            "std",
+            "--json",
+        ).json
         for zero in (-100, 0, 1e5)
     ]
     assert {each["verdict"] for each in found} == {"bounded"}
-    assert [each["max_energy_error"] for each in found] == pytest.approx([found[0]["max_energy_error"]] * 3)
+    assert [each["max_energy_error"] for each in found] == pytest.approx(
+        [found[0]["max_energy_error"]] * 3
+    )
 
 
 def test_scales():
@@ -221,7 +279,10 @@ def test_the_fluctuation_of_a_second_order_method_goes_with_the_square_of_the_st
         Path(files[-1]).write_text("t,E\n" + rows)
     command = ["judge", *files, "--steps", "1,2", "--time", "t", "--energy", "E"]
     answer = pendu(*command, "--json").json
-    assert (answer["fluctuation_order"], answer["drift_order"]) == (pytest.approx(2, abs=1e-6), None)
+    assert (answer["fluctuation_order"], answer["drift_order"]) == (
+        pytest.approx(2, abs=1e-6),
+        None,
+    )
     assert [each["verdict"] for each in answer["files"]] == ["bounded", "bounded"]
     assert "goes as h^2.00" in pendu(*command).out
     assert pendu(*command, "--fail-if", "fluctuation_order < 1.8").code == 0
@@ -245,7 +306,9 @@ def test_the_fluctuation_of_a_second_order_method_goes_with_the_square_of_the_st
 def test_fail_if_names_a_field_and_the_failure_gives_its_value(expression, found):
     outcome = judge(table(), "--fail-if", expression)
     assert outcome.code == bool(found)
-    assert outcome.err == (f"pendu-tui: the check failed: {expression} ({found})\n" if found else "")
+    assert outcome.err == (
+        f"pendu-tui: the check failed: {expression} ({found})\n" if found else ""
+    )
 
 
 def test_a_value_that_is_not_known_yet_fails_the_check():
@@ -254,12 +317,18 @@ def test_a_value_that_is_not_known_yet_fails_the_check():
     assert "too early: 2 of 64 samples" in judge("t,E\n0,1\n1,1\n").out
 
 
-@pytest.mark.parametrize(("expression", "failures"), [("verdict != bounded", "0"), ("verdict == bounded", "1")])
+@pytest.mark.parametrize(
+    ("expression", "failures"), [("verdict != bounded", "0"), ("verdict == bounded", "1")]
+)
 def test_junit_has_the_check_as_a_test_and_replaces_an_older_report(expression, failures):
     Path("judge.xml").write_text("old")
     judge(table(), "--fail-if", expression, "--junit", "judge.xml")
     suite = ElementTree.parse("judge.xml").getroot()
-    assert (suite.tag, suite.attrib["tests"], suite.attrib["failures"]) == ("testsuite", "1", failures)
+    assert (suite.tag, suite.attrib["tests"], suite.attrib["failures"]) == (
+        "testsuite",
+        "1",
+        failures,
+    )
     assert (suite.find("testcase/failure") is not None) == (failures == "1")
     assert "bounded" in suite.findtext("testcase/system-out")
     assert suite.find("testcase").attrib["name"].endswith(expression)
@@ -270,7 +339,12 @@ def test_junit_has_the_check_as_a_test_and_replaces_an_older_report(expression, 
     [
         ("", ("t", "E"), 3, ["the input is empty"]),
         (table(), ("t", "Energy"), 2, ["there is no column 'Energy'", "choose from t, E"]),
-        (table(header="time,energy"), ("time", "enrgy"), 2, ["there is no column 'enrgy': did you mean energy?"]),
+        (
+            table(header="time,energy"),
+            ("time", "enrgy"),
+            2,
+            ["there is no column 'enrgy': did you mean energy?"],
+        ),
         (XVG, ("1", "Total Enrgy"), 2, ["did you mean Total Energy?"]),
         (table(), ("1", "3"), 3, ["no row has a number in each column; columns count from 1"]),
         (table(), ("0", "2"), 3, ["no row has a number in each column"]),
@@ -278,7 +352,12 @@ def test_junit_has_the_check_as_a_test_and_replaces_an_older_report(expression, 
         ("t,E\na,b\n", ("t", "E"), 3, ["no row has a number in each column"]),
         ("t,E\n1,nan\n", ("t", "E"), 3, ["no row has a usable"]),
         (table(), ("", ""), 2, ["there is no column ''; choose from t, E"]),
-        ("words\na b c\nStep TotEng\n1 2\na | b | c | d\n", ("Step", "E"), 2, ["choose from Step, TotEng."]),
+        (
+            "words\na b c\nStep TotEng\n1 2\na | b | c | d\n",
+            ("Step", "E"),
+            2,
+            ["choose from Step, TotEng."],
+        ),
         ("\x1b[31m,\x07\n", ("t", "E"), 2, ["there is no column 't'"]),
     ],
 )
@@ -286,7 +365,9 @@ def test_what_cannot_be_judged_is_one_sentence(text, names, code, words):
     assert judge(text, time=names[0], energy=names[1]).refused(code, *words)
 
 
-@pytest.mark.parametrize(("end", "code", "word"), [("< energies.csv", 0, "bounded"), ("<&-", 3, "Bad file descr")])
+@pytest.mark.parametrize(
+    ("end", "code", "word"), [("< energies.csv", 0, "bounded"), ("<&-", 3, "Bad file descr")]
+)
 def test_stdin_is_read_where_it_is_open(end, code, word):
     Path("energies.csv").write_text(table())
     program = Path(sys.executable).with_name("pendu-tui")
@@ -298,17 +379,29 @@ def test_stdin_is_read_where_it_is_open(end, code, word):
 
 
 def test_a_file_that_cannot_be_read_is_one_sentence():
-    assert pendu("judge", "absent.csv", "--time", "1", "--energy", "2").refused(3, "absent.csv", "No such file")
+    assert pendu("judge", "absent.csv", "--time", "1", "--energy", "2").refused(
+        3, "absent.csv", "No such file"
+    )
     assert pendu("judge", ".", "--time", "1", "--energy", "2").refused(3, "directory")
-    assert judge(table(), "--fail-if", "rk4.verdict == grows").refused(2, "has none; write 'verdict == grows'.")
+    assert judge(table(), "--fail-if", "rk4.verdict == grows").refused(
+        2, "has none; write 'verdict == grows'."
+    )
     both = "verdict == grows or rk4.max_energy_error > 1"
-    assert judge(table(), "--fail-if", both).refused(2, "write 'verdict == grows or max_energy_error > 1'.")
-    assert judge(table(), "--fail-if", "theta_error > 1").refused(2, "there is no field 'theta_error'")
+    assert judge(table(), "--fail-if", both).refused(
+        2, "write 'verdict == grows or max_energy_error > 1'."
+    )
+    assert judge(table(), "--fail-if", "theta_error > 1").refused(
+        2, "there is no field 'theta_error'"
+    )
 
 
 def test_a_table_of_several_methods_is_refused():
-    Path("all.csv").write_text("t,E\n" + "".join(f"{t},{energy}\n" for t in range(5) for energy in (1, 2, 3)))
-    assert pendu("judge", "all.csv", "--time", "t", "--energy", "E").refused(3, "several methods", "grep")
+    Path("all.csv").write_text(
+        "t,E\n" + "".join(f"{t},{energy}\n" for t in range(5) for energy in (1, 2, 3))
+    )
+    assert pendu("judge", "all.csv", "--time", "t", "--energy", "E").refused(
+        3, "several methods", "grep"
+    )
 
 
 @pytest.mark.parametrize(
@@ -343,7 +436,9 @@ def test_an_npz_with_pickles_is_refused():
     assert judge(stream.getvalue()).refused(3, "this .npz cannot be read")
 
 
-@given(st.binary(max_size=300) | st.text(st.sampled_from('0123456789.,;\t \n"#@tEnai-+'), max_size=300))
+@given(
+    st.binary(max_size=300) | st.text(st.sampled_from('0123456789.,;\t \n"#@tEnai-+'), max_size=300)
+)
 def test_any_input_is_columns_or_one_sentence(data):
     text = data if isinstance(data, str) else data.decode("utf-8", "replace")
     for names in (("1", "2"), ("t", "E")):
@@ -360,7 +455,10 @@ def test_any_input_is_columns_or_one_sentence(data):
 
 
 def test_a_hundred_thousand_lines_with_gaps_take_a_fraction_of_a_second():
-    rows = (f"{n * 0.01:.2f},0.5,{'' if n % 10 == 0 else 1 + 1e-3 * math.sin(n)},1.0\n" for n in range(100_000))
+    rows = (
+        f"{n * 0.01:.2f},0.5,{'' if n % 10 == 0 else 1 + 1e-3 * math.sin(n)},1.0\n"
+        for n in range(100_000)
+    )
     Path("energies.csv").write_text("t,kinetic,E,x\n" + "".join(rows))
     began = time.process_time()
     outcome = pendu("judge", "energies.csv", "--time", "t", "--energy", "E", "--json")

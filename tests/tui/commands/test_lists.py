@@ -17,7 +17,9 @@ def test_scenes_lists_every_scene_with_what_to_watch():
 def test_scenes_as_json_hold_everything_that_determines_a_run():
     answer = pendu("scenes", "--json").json
     assert answer["schema"] == "pendu.scenes/1"
-    assert answer["scenes"] == [scene.fields() | {"speed": scene.speed} for scene in SCENES.values()]
+    assert answer["scenes"] == [
+        scene.fields() | {"speed": scene.speed} for scene in SCENES.values()
+    ]
 
 
 def test_methods_lists_every_method_its_claims_and_what_is_measured():
@@ -39,7 +41,9 @@ def test_methods_that_are_named_are_listed_alone():
 
 def test_a_scene_that_is_named_is_shown_with_its_numbers():
     scene = SCENES["crossover"]
-    assert pendu("scenes", "crossover", "--json").json["scenes"] == [scene.fields() | {"speed": scene.speed}]
+    assert pendu("scenes", "crossover", "--json").json["scenes"] == [
+        scene.fields() | {"speed": scene.speed}
+    ]
     assert scene.watch in pendu("scenes", "crossover").out
     assert pendu("scenes", "crosover").refused(2, "crossover")
 
@@ -49,16 +53,28 @@ def test_methods_as_json_repeat_the_engine_and_what_is_measured_agrees():
     assert answer["schema"] == "pendu.methods/1"
     assert answer["compiled"] == available()
     for told, method in zip(answer["methods"], METHODS, strict=True):
-        for claim in ("key", "label", "order", "force_evaluations", "symplectic", "reversible", "linear_limit"):
+        for claim in (
+            "key",
+            "label",
+            "order",
+            "force_evaluations",
+            "symplectic",
+            "reversible",
+            "linear_limit",
+        ):
             assert told[claim] == getattr(method, claim)
         if not method.general:
             assert {told[name] for name in MEASURED} == {None}
             continue
-        assert told["measured_order"] == pytest.approx(method.order, abs=0.1)  # as the engine's own tests
+        assert told["measured_order"] == pytest.approx(
+            method.order, abs=0.1
+        )  # as the engine's own tests
         assert told["measured_symplectic"] == method.symplectic
         assert told["measured_reversible"] == method.reversible
         assert told["measured_force_evaluations"] == method.force_evaluations
-        assert told["measured_linear_limit"] == pytest.approx(method.linear_limit, abs=1e-9)  # it is bisected so far
+        assert told["measured_linear_limit"] == pytest.approx(
+            method.linear_limit, abs=1e-9
+        )  # it is bisected so far
 
 
 def test_scenes_are_listed_in_groups():

@@ -15,7 +15,10 @@ from tui.screens.launch import live_screen, say_goodbye
 
 def test_labs_that_are_opened_in_the_same_second_record_each_for_itself(tmp_path):
     """As tmux does with synchronised panes."""
-    with PtyLab(PENDU_RECORDINGS=str(tmp_path)) as one, PtyLab(PENDU_RECORDINGS=str(tmp_path)) as other:
+    with (
+        PtyLab(PENDU_RECORDINGS=str(tmp_path)) as one,
+        PtyLab(PENDU_RECORDINGS=str(tmp_path)) as other,
+    ):
         while not all(b"REC " in session.output for session in (one, other)):
             one.read(0.1)
             other.read(0.1)
@@ -51,7 +54,9 @@ def test_a_library_that_cannot_be_made_is_one_sentence_and_exit_5(tmp_path, monk
 def test_a_file_that_is_there_is_not_recorded_over(tmp_path):
     path = tmp_path / "mine.mcap"
     path.write_bytes(b"precious")
-    assert pendu("live", "--plain", "--record", path).refused(5, "exists already", "choose another name")
+    assert pendu("live", "--plain", "--record", path).refused(
+        5, "exists already", "choose another name"
+    )
     assert path.read_bytes() == b"precious"
 
 

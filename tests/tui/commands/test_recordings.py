@@ -79,7 +79,9 @@ def test_recover_overwrites_nothing_unless_by_force(tmp_path):
 def test_recover_accepts_the_same_names_as_replay(tmp_path):
     told = pendu("recordings", "recover", "drift", "-o", tmp_path / "saved.mcap").out
     assert "samples saved" in told
-    assert pendu("recordings", "recover", "drfit", "-o", tmp_path / "other.mcap").refused(3, "did you mean drift?")
+    assert pendu("recordings", "recover", "drfit", "-o", tmp_path / "other.mcap").refused(
+        3, "did you mean drift?"
+    )
 
 
 def test_export_writes_numbers_that_read_back_to_the_last_bit(tmp_path):
@@ -89,7 +91,9 @@ def test_export_writes_numbers_that_read_back_to_the_last_bit(tmp_path):
     with Recording.open(GOLDEN / "drift.mcap") as recording:
         samples = [entry.value for entry in recording.entries() if hasattr(entry.value, "readings")]
     assert len(rows) == 4 * len(samples)
-    for row, reading in zip(rows, (reading for sample in samples for reading in sample.readings), strict=True):
+    for row, reading in zip(
+        rows, (reading for sample in samples for reading in sample.readings), strict=True
+    ):
         assert struct.pack("d", float(row["theta_rad"])) == struct.pack("d", reading.theta)
         assert float(row["max_energy_error"]) == reading.max_energy_error
 
@@ -102,8 +106,13 @@ def test_export_to_stdout_is_the_file(tmp_path):
 def test_the_library_is_listed_newest_first(library):
     answer = pendu("recordings", "--json").json
     assert answer["schema"] == "pendu.recordings/1"
-    assert [told["file"] for told in answer["recordings"]] == [str(library / f"{name}.mcap") for name in "cba"]
-    assert (answer["recordings"][0]["seconds"], answer["recordings"][0]["scenes"]) == (4.0, ["test"])
+    assert [told["file"] for told in answer["recordings"]] == [
+        str(library / f"{name}.mcap") for name in "cba"
+    ]
+    assert (answer["recordings"][0]["seconds"], answer["recordings"][0]["scenes"]) == (
+        4.0,
+        ["test"],
+    )
     out = pendu("recordings").out
     assert out.index("c.mcap") < out.index("b.mcap") < out.index("a.mcap")
 
@@ -159,19 +168,29 @@ def test_prune_touches_no_file_in_use(library):
 
 
 def test_prune_as_json_names_what_is_gone(library):
-    assert pendu("recordings", "prune", "--keep", 2, "--yes", "--json").json["deleted"] == [str(library / "a.mcap")]
+    assert pendu("recordings", "prune", "--keep", 2, "--yes", "--json").json["deleted"] == [
+        str(library / "a.mcap")
+    ]
 
 
 @pytest.mark.parametrize(
     "arguments",
-    [("prune",), ("--keep", "1"), ("prune", "--keep", "0"), ("prune", "--size", "lots"), ("prune", "--size", "-1")],
+    [
+        ("prune",),
+        ("--keep", "1"),
+        ("prune", "--keep", "0"),
+        ("prune", "--size", "lots"),
+        ("prune", "--size", "-1"),
+    ],
 )
 def test_prune_without_a_measure_deletes_nothing(library, arguments):
     assert pendu("recordings", *arguments, "--yes").refused(2)
     assert len(names(library)) == 3
 
 
-@pytest.mark.parametrize(("text", "bytes_"), [("2000", 2000), ("500MB", 5e8), ("1.5 GB", 1.5e9), ("3k", 3000)])
+@pytest.mark.parametrize(
+    ("text", "bytes_"), [("2000", 2000), ("500MB", 5e8), ("1.5 GB", 1.5e9), ("3k", 3000)]
+)
 def test_sizes_are_read_with_their_units(text, bytes_):
     from tui.commands.files.recordings import size
 
@@ -194,7 +213,9 @@ def test_a_recording_of_an_older_format_is_listed_and_not_read(library):
         writer.finish()
     assert data != path.read_bytes()
     assert pendu("verify", path).refused(3, "it was made by 0.1; this version reads format 3")
-    (row,) = [row for row in pendu("recordings", "--json").json["recordings"] if row["file"] == str(path)]
+    (row,) = [
+        row for row in pendu("recordings", "--json").json["recordings"] if row["file"] == str(path)
+    ]
     assert "format 3" in row["reason"]
 
 

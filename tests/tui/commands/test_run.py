@@ -30,10 +30,15 @@ def test_json_has_the_fields_of_the_design_and_the_numbers_of_the_engine():
     lockstep = Lockstep(DEFAULT_SCENE)
     lockstep.advance(200)
     plain = set(FIELDS) - {"log_energy_error", "max_invariant_error", *EXTRA_NAMES}
-    for told, method, reading in zip(answer["methods"], USUAL_CAST, lockstep.sample().readings, strict=True):
+    for told, method, reading in zip(
+        answer["methods"], USUAL_CAST, lockstep.sample().readings, strict=True
+    ):
         assert told.keys() == {"method", "verdict", "progress", "lyapunov_per_second", *plain}
         assert told["method"] == method.key
-        assert (told["theta"], told["max_energy_error"]) == (reading.theta, reading.max_energy_error)
+        assert (told["theta"], told["max_energy_error"]) == (
+            reading.theta,
+            reading.max_energy_error,
+        )
 
 
 def test_a_chaotic_method_has_its_lyapunov_number():
@@ -42,7 +47,10 @@ def test_a_chaotic_method_has_its_lyapunov_number():
     assert symplectic["verdict"] == "chaotic"
     assert 0.01 < symplectic["lyapunov_per_second"] * 0.654514 < 2
     seconds = about(math.log(10) / symplectic["lyapunov_per_second"])
-    assert f"Symplectic Euler is chaotic: nearby starts separate tenfold every {seconds}.\n" in pendu(*chaos).out
+    assert (
+        f"Symplectic Euler is chaotic: nearby starts separate tenfold every {seconds}.\n"
+        in pendu(*chaos).out
+    )
 
 
 def test_the_table_shows_which_method_gains_conserves_and_loses_energy():
@@ -63,7 +71,14 @@ def test_every_scene_runs_and_its_json_has_no_nan(name):
 
 
 @pytest.mark.parametrize(
-    "start", [("--omega", "1e8"), ("--theta", "1e6"), ("--h", "15.97"), ("--theta", "1e-300"), ("--theta", "0")]
+    "start",
+    [
+        ("--omega", "1e8"),
+        ("--theta", "1e6"),
+        ("--h", "15.97"),
+        ("--theta", "1e-300"),
+        ("--theta", "0"),
+    ],
 )
 def test_extreme_but_legal_starts_neither_crash_nor_print_nan(start):
     assert pendu("run", *start, "--time", "500", "--json").code == 0
@@ -73,7 +88,10 @@ def test_extreme_but_legal_starts_neither_crash_nor_print_nan(start):
 
 
 def test_evaluations_that_vary_are_counted():
-    rows = {row["method"]: row for row in pendu("run", "--scene", "halving", "--time", "20", "--json").json["methods"]}
+    rows = {
+        row["method"]: row
+        for row in pendu("run", "--scene", "halving", "--time", "20", "--json").json["methods"]
+    }
     scene = SCENES["halving"]
     start = scene.theta, scene.omega
     for method in scene.cast:
@@ -159,9 +177,13 @@ def test_bad_input_is_one_sentence_and_exit_2_and_nothing_is_written(tmp_path, a
 
 
 def test_a_gate_that_holds_is_exit_1_and_the_numbers_are_printed():
-    outcome = pendu("run", "--time", 10, "--fail-if", "explicit_euler.max_energy_error > 1", "--json")
+    outcome = pendu(
+        "run", "--time", 10, "--fail-if", "explicit_euler.max_energy_error > 1", "--json"
+    )
     assert outcome.code == 1
-    assert outcome.err.startswith("pendu-tui: the check failed: explicit_euler.max_energy_error > 1 (")
+    assert outcome.err.startswith(
+        "pendu-tui: the check failed: explicit_euler.max_energy_error > 1 ("
+    )
     assert outcome.err.endswith("is 5.54)\n")
     assert outcome.json["methods"][0]["max_energy_error"] > 1
 
@@ -184,7 +206,9 @@ def test_compiled_and_plain_runs_print_the_same_numbers(monkeypatch):
 def test_a_run_that_is_stopped_finishes_its_recording(tmp_path, number):
     path = tmp_path / "run.mcap"
     arguments = ["run", "--time", "1e7", "--no-compiled", "--record", str(path)]
-    process = subprocess.Popen([*PENDU, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        [*PENDU, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
     part = Path(f"{path}.part")
     deadline = time.monotonic() + 60  # s; a second is usual
     while not (part.exists() and part.stat().st_size > 100_000) and time.monotonic() < deadline:
@@ -209,7 +233,8 @@ def test_a_method_that_went_over_the_top_is_named_with_its_time():
 
 def test_a_bob_on_a_spring_has_the_energy_in_its_spring_and_nothing_else_has():
     rows = {
-        row["method"]: row for row in pendu("run", "--scene", "stiff-slow", "--time", "5", "--json").json["methods"]
+        row["method"]: row
+        for row in pendu("run", "--scene", "stiff-slow", "--time", "5", "--json").json["methods"]
     }
     assert rows["imex_euler"]["spring_energy"] < 1e-4 < rows["rk4"]["spring_energy"] < 0.1
     assert rows["implicit_midpoint"]["spring_energy"] == pytest.approx(1, abs=0.1)

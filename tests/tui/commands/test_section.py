@@ -34,9 +34,19 @@ def test_json_has_the_rotation_numbers_and_lyapunov_numbers_of_the_start():
     assert (verlet["fraction"], verlet["island"], verlet["chaotic"]) == ("1:6", True, False)
     assert 0 < verlet["lyapunov"] < 0.01
     small = section("--theta", "1e-4", "--h", "0.2", "--methods", "verlet", "--json").json
-    assert small["orbits"][0]["rotation"] == pytest.approx(2 * math.asin(small["z"] / 2) / math.tau, abs=1e-6)
+    assert small["orbits"][0]["rotation"] == pytest.approx(
+        2 * math.asin(small["z"] / 2) / math.tau, abs=1e-6
+    )
     (chaotic,) = pendu(
-        "stability", "--section", "--theta", "2.3", "--h", "0.351203", "--methods", "verlet", "--json"
+        "stability",
+        "--section",
+        "--theta",
+        "2.3",
+        "--h",
+        "0.351203",
+        "--methods",
+        "verlet",
+        "--json",
     ).json["orbits"]
     assert (chaotic["rotation"], chaotic["fraction"], chaotic["chaotic"]) == (None, None, True)
 
@@ -48,13 +58,18 @@ def test_the_file_is_the_same_every_time_and_has_the_size_asked_for(theme, tmp_p
     for file in (one, two, text):
         assert section(*command, file).out.startswith(f"{file}: Velocity Verlet")
     assert one.read_bytes() == two.read_bytes()
-    assert text_of(one.read_text(encoding="utf-8")).split() == text.read_text(encoding="utf-8").split()
+    assert (
+        text_of(one.read_text(encoding="utf-8")).split() == text.read_text(encoding="utf-8").split()
+    )
     assert len(text.read_text(encoding="utf-8").splitlines()) == 21
 
 
 def test_pixels_and_methods_can_be_chosen(tmp_path):
     file = tmp_path / "map.txt"
-    assert section(*ISLANDS, *FEW, "--pixels", "ascii", "--methods", "rk4,verlet", "-o", file).code == 0
+    assert (
+        section(*ISLANDS, *FEW, "--pixels", "ascii", "--methods", "rk4,verlet", "-o", file).code
+        == 0
+    )
     assert file.read_text(encoding="utf-8").isascii()
     assert file.read_text(encoding="utf-8").startswith("RK4, h")
 

@@ -75,7 +75,9 @@ class Server:
     @property
     def labs(self) -> list[int]:
         """The processes that it has started."""
-        children = Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children").read_text().split()
+        children = (
+            Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children").read_text().split()
+        )
         return [int(child) for child in children]
 
     async def until_labs(self, count: int) -> None:
@@ -141,7 +143,9 @@ async def test_a_tab_that_is_resized_gets_a_lab_that_fits(server):
         tab.screen.resize(45, 140)
         tab.screen.erase_in_display(2)
         await tab.socket.send_json(["resize", {"width": 140, "height": 45}])
-        await tab.until(lambda text: max(map(len, text.splitlines())) == 140 and "Phase space" in text)
+        await tab.until(
+            lambda text: max(map(len, text.splitlines())) == 140 and "Phase space" in text
+        )
 
 
 async def test_a_closed_tab_ends_its_process_and_only_its(server):
@@ -188,7 +192,9 @@ async def test_nothing_in_it_writes_or_reads_a_file_by_name(server, library):
 
 async def test_recording_is_off_unless_asked_for_and_then_in_its_folder(tmp_path):
     folder = tmp_path / "recorded"
-    with serving("--record", str(folder), "--scene", "spin", PENDU_RECORDINGS=str(tmp_path / "library")) as server:
+    with serving(
+        "--record", str(folder), "--scene", "spin", PENDU_RECORDINGS=str(tmp_path / "library")
+    ) as server:
         async with server.tab() as one, server.tab() as other:
             await asyncio.gather(one.shows("scene spin", "RK4"), other.shows("scene spin", "RK4"))
             await asyncio.sleep(1)
@@ -301,7 +307,10 @@ async def test_a_signal_ends_the_server_and_its_labs(number):
             assert await tab.closed()
             assert await asyncio.to_thread(server.process.wait, PATIENCE) == 0
     async with asyncio.timeout(PATIENCE):
-        while Path(f"/proc/{lab}").exists() and "State:\tZ" not in Path(f"/proc/{lab}/status").read_text():
+        while (
+            Path(f"/proc/{lab}").exists()
+            and "State:\tZ" not in Path(f"/proc/{lab}/status").read_text()
+        ):
             await asyncio.sleep(0.1)
 
 
@@ -314,7 +323,10 @@ async def test_a_lab_ends_when_its_server_was_killed():
             (lab,) = server.labs
             server.process.kill()
             async with asyncio.timeout(PATIENCE):
-                while Path(f"/proc/{lab}").exists() and "State:\tZ" not in Path(f"/proc/{lab}/status").read_text():
+                while (
+                    Path(f"/proc/{lab}").exists()
+                    and "State:\tZ" not in Path(f"/proc/{lab}/status").read_text()
+                ):
                     await asyncio.sleep(0.1)
 
 

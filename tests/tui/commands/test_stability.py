@@ -34,21 +34,33 @@ def test_the_tables_show_theory_next_to_measurement():
     lines = pendu("stability", *SMALL).out.splitlines()
     (linear,) = (line.split() for line in lines if line.startswith("RK4") and "°" not in line)
     assert linear[1:3] == ["2.828427125", "2.828427125"]
-    (row,) = (line.split()[2:] for line in lines if line.startswith("Velocity Verlet") and "28.65°" in line)
+    (row,) = (
+        line.split()[2:]
+        for line in lines
+        if line.startswith("Velocity Verlet") and "28.65°" in line
+    )
     # The scene's z = 0.1566 holds; the first rung beyond the limit is 2.209, 14.1 times that.
     assert row == ["28.65°", "2.473", "2.209", "0.705", "over", "the", "top", "14.1"]
 
 
 def test_the_limit_for_a_tenth_of_the_steps_shows_how_it_moves_with_them():
     asked = ("stability", "--methods", "velocity_verlet,rk4", "--theta-values", "2")
-    long, short = (pendu(*asked, "--steps", steps, "--json").json["pendulum"] for steps in (2000, 200))
-    assert [row["first_failure_z_early"] for row in long] == [row["first_failure_z"] for row in short]
-    assert long[1]["first_failure_z"] < long[1]["first_failure_z_early"]  # RK4 loses more in more steps
+    long, short = (
+        pendu(*asked, "--steps", steps, "--json").json["pendulum"] for steps in (2000, 200)
+    )
+    assert [row["first_failure_z_early"] for row in long] == [
+        row["first_failure_z"] for row in short
+    ]
+    assert (
+        long[1]["first_failure_z"] < long[1]["first_failure_z_early"]
+    )  # RK4 loses more in more steps
 
 
 def test_a_swing_that_is_never_lost_has_null_and_a_hyphen():
     few = ("--steps", 5, "--z-values", "0.01,0.02", "--theta-values", "1", "--h", "0.005")
-    assert {row["first_failure_z"] for row in pendu("stability", *few, "--json").json["pendulum"]} == {None}
+    assert {
+        row["first_failure_z"] for row in pendu("stability", *few, "--json").json["pendulum"]
+    } == {None}
     assert pendu("stability", *few).out.splitlines()[-1].split()[2:] == [*"-----"]
 
 
@@ -61,7 +73,9 @@ def test_the_map_as_json_repeats_the_engine():
     for index, told in enumerate(answer["methods"]):
         assert told["method"] == KEYS[index]
         assert told["steps_survived"] == expected["steps"][:, index].tolist()
-        assert [[FATES.index(fate) for fate in row] for row in told["fate"]] == expected["fate"][:, index].tolist()
+        assert [[FATES.index(fate) for fate in row] for row in told["fate"]] == expected["fate"][
+            :, index
+        ].tolist()
 
 
 @pytest.mark.parametrize("to_file", [False, True])
@@ -174,7 +188,9 @@ def test_of_the_linear_oscillator_there_are_the_lines_of_theory_and_a_sentence()
     assert "°" not in out
     answer = pendu("stability", "--scene", "linear", "--json").json
     assert (answer["pendulum"], answer["map"]) == ([], None)
-    assert [row["limit_z"] for row in answer["linear"]] == pytest.approx([m.linear_limit for m in USUAL_CAST], abs=1e-9)
+    assert [row["limit_z"] for row in answer["linear"]] == pytest.approx(
+        [m.linear_limit for m in USUAL_CAST], abs=1e-9
+    )
 
 
 def test_a_start_that_is_no_amplitude_is_given_one():

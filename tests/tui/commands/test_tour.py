@@ -22,7 +22,9 @@ def test_in_plain_it_asks_when_the_moment_has_come_and_records_as_the_lab_does(t
     assert (report.identical, report.complete) == (True, True)
 
 
-def test_on_a_terminal_it_is_walked_with_enter_and_left_with_esc_and_nothing_is_recorded_if_not_wanted(tmp_path):
+def test_on_a_terminal_it_is_walked_with_enter_and_left_with_esc_and_nothing_is_recorded_if_not_wanted(
+    tmp_path,
+):
     with PtyLab("tour", "--no-record", PENDU_RECORDINGS=str(tmp_path)) as session:
         session.wait_for("Tour 1 of 8")
         session.type("\r")

@@ -14,7 +14,9 @@ from tests.tui.command_line import pendu
 def altered() -> list[Entry]:
     """A sitting in which one number of one sample was changed by one unit in the last place."""
     entries = two_runs()
-    place = next(i for i, (_, value) in enumerate(entries) if isinstance(value, Sample) and value.step == 6)
+    place = next(
+        i for i, (_, value) in enumerate(entries) if isinstance(value, Sample) and value.step == 6
+    )
     sample = entries[place].value
     reading = sample.readings[2]
     changed = reading._replace(omega=reading.omega * (1 + 2**-52))
@@ -53,7 +55,12 @@ def test_json_has_the_fields_of_the_design(tmp_path):
     answer = pendu("verify", path, "--json").json
     assert answer["schema"] == "pendu.verify/1"
     (told,) = answer["files"]
-    assert (told["file"], told["complete"], told["runs"], told["identical"]) == (str(path), True, 2, True)
+    assert (told["file"], told["complete"], told["runs"], told["identical"]) == (
+        str(path),
+        True,
+        2,
+        True,
+    )
     assert (told["other_functions"], told["first_difference"]) == ([], None)
 
 
@@ -66,7 +73,11 @@ def test_a_difference_of_one_bit_is_exit_1_and_located(tmp_path):
         assert word in outcome.out
     (told,) = pendu("verify", path, "--json").json["files"]
     difference = told["first_difference"]
-    assert (difference["run"], difference["step"], difference["method"]) == (1, 6, "velocity_verlet")
+    assert (difference["run"], difference["step"], difference["method"]) == (
+        1,
+        6,
+        "velocity_verlet",
+    )
     assert difference["ulps"] == 1
 
 
@@ -134,7 +145,9 @@ def test_an_unreadable_file_does_not_keep_the_others_from_being_verified(tmp_pat
     outcome = pendu("verify", tmp_path)
     assert (outcome.code, outcome.err.count("\n")) == (3, 1)
     assert [line.split()[0] for line in outcome.out.splitlines()] == ["identical", "2"]
-    assert [told["identical"] for told in json.loads(pendu("verify", tmp_path, "--json").out)["files"]] == [False, True]
+    assert [
+        told["identical"] for told in json.loads(pendu("verify", tmp_path, "--json").out)["files"]
+    ] == [False, True]
 
 
 def test_an_unknown_name_is_answered_with_the_nearest_one():
@@ -147,7 +160,11 @@ def test_an_unknown_name_does_not_keep_the_others_from_being_verified(tmp_path):
     assert (outcome.code, outcome.err.count("\n")) == (3, 1)
     assert [line.split()[0] for line in outcome.out.splitlines()] == ["identical", "2"]
     missing, there = pendu("verify", "no/such.mcap", path, "--json").json["files"]
-    assert (missing["file"], missing["identical"], there["identical"]) == ("no/such.mcap", False, True)
+    assert (missing["file"], missing["identical"], there["identical"]) == (
+        "no/such.mcap",
+        False,
+        True,
+    )
     assert "there is no recording 'no/such.mcap'" in missing["error"]
 
 
@@ -157,9 +174,14 @@ def test_only_the_methods_asked_for_are_compared(tmp_path):
     assert pendu("verify", path, "--methods", "rk4,verlet").code == 1
     assert pendu("verify", path, "--methods", "rk4,s").code == 0
     assert pendu("verify", path, "--methods", "rk5").refused(2, "did you mean rk4?")
-    assert pendu("run", "--time", "2", "--methods", "rk4", "--record", tmp_path / "alone.mcap").code == 0
+    assert (
+        pendu("run", "--time", "2", "--methods", "rk4", "--record", tmp_path / "alone.mcap").code
+        == 0
+    )
     assert pendu("verify", tmp_path / "alone.mcap", "--methods", "rk4").code == 0
-    assert pendu("verify", tmp_path / "alone.mcap", "--methods", "s,v").refused(3, "run 1 has none of the methods sym")
+    assert pendu("verify", tmp_path / "alone.mcap", "--methods", "s,v").refused(
+        3, "run 1 has none of the methods sym"
+    )
 
 
 def test_a_recording_of_other_numerics_is_named_as_such(tmp_path, monkeypatch):

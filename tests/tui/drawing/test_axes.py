@@ -33,7 +33,9 @@ def test_a_linear_axis_covers_its_range_and_labels_evenly_spaced_rows(a, b, rows
     assert_even(rows_of_labels(axis, rows))
     step = np.diff(list(axis.labels))[:1].sum() or 1.0
     for place, label in axis.labels.items():
-        assert float(label) == pytest.approx(place, abs=1e-6 * step)  # the label is the number, and not a rounded one
+        assert float(label) == pytest.approx(
+            place, abs=1e-6 * step
+        )  # the label is the number, and not a rounded one
 
 
 def assert_even(rows):
@@ -49,20 +51,37 @@ def test_an_axis_has_enough_labels_and_its_data_fills_at_least_a_third_of_it(a, 
     assume(high - low > max(1e-3 * max(abs(a), abs(b)), 1e-15))
     axis = linear_axis(low, high, rows)
     assert 2 <= len(axis.labels) <= rows / 2 + 1
-    assert high - low >= 0.33 * (axis.high - axis.low)  # 8 rows: the next round step, and whole rows between labels
+    assert high - low >= 0.33 * (
+        axis.high - axis.low
+    )  # 8 rows: the next round step, and whole rows between labels
 
 
 @given(st.floats(-1e6, 1e6), st.floats(0, 1), ROWS)
 def test_labels_stay_narrow_enough_for_the_smallest_chart(middle, spread, rows):
-    for axis in (linear_axis(*sorted((middle, middle * (1 + spread))), rows), log_axis(-17, 6, rows)):
+    for axis in (
+        linear_axis(*sorted((middle, middle * (1 + spread))), rows),
+        log_axis(-17, 6, rows),
+    ):
         assert 5 <= axis.label_width <= 11  # a sign, the six digits that differ, and e-15
 
 
 def test_the_most_common_axes_of_the_lab():
-    assert log_axis(-7.3, 0.6, 14).labels == {0: "1", -2: "1e-2", -4: "1e-4", -6: "1e-6", -8: "1e-8"}
+    assert log_axis(-7.3, 0.6, 14).labels == {
+        0: "1",
+        -2: "1e-2",
+        -4: "1e-4",
+        -6: "1e-6",
+        -8: "1e-8",
+    }
     assert log_axis(-6.0, 0.8, 11).low == pytest.approx(-6.333, abs=1e-3)  # no empty decade
     assert list(linear_axis(-0.06, 4.3, 14).labels.values()) == ["-1", "0", "1", "2", "3", "4", "5"]
-    assert list(linear_axis(4.503, 4.509, 10).labels.values()) == ["4.502", "4.504", "4.506", "4.508", "4.510"]
+    assert list(linear_axis(4.503, 4.509, 10).labels.values()) == [
+        "4.502",
+        "4.504",
+        "4.506",
+        "4.508",
+        "4.510",
+    ]
     assert list(linear_axis(-3e-7, 2e-7, 10).labels.values())[:2] == ["-4e-7", "-2e-7"]
 
 
@@ -77,7 +96,9 @@ def test_times_are_labelled_with_round_numbers_and_one_unit(start, size, columns
 
 
 @given(st.floats(-300, 300), st.floats(0, 600), st.integers(9, 200))
-def test_a_horizontal_logarithmic_axis_covers_its_range_and_does_not_crowd_labels(low, size, columns):
+def test_a_horizontal_logarithmic_axis_covers_its_range_and_does_not_crowd_labels(
+    low, size, columns
+):
     axis = log_x_axis(low, low + size, columns)
     assert axis.low <= low
     assert low + size <= axis.high

@@ -7,7 +7,16 @@ from tui.drawing.canvas import Canvas
 from tui.drawing.palette import NOBODY, TEXT
 from tui.drawing.picture import Picture
 
-DOT_OF_BIT = {0: (0, 0), 1: (0, 1), 2: (0, 2), 3: (1, 0), 4: (1, 1), 5: (1, 2), 6: (0, 3), 7: (1, 3)}
+DOT_OF_BIT = {
+    0: (0, 0),
+    1: (0, 1),
+    2: (0, 2),
+    3: (1, 0),
+    4: (1, 1),
+    5: (1, 2),
+    6: (0, 3),
+    7: (1, 3),
+}
 COLUMNS, ROWS = 10, 6
 ANY = st.floats(allow_nan=True, allow_infinity=True)
 NEAR = st.integers(-240, 400).map(lambda eighths: eighths / 8)  # moving them by 40 rounds nothing
@@ -34,7 +43,9 @@ def drawn(draw, columns=COLUMNS, rows=ROWS):
 def test_a_dot_is_where_it_was_put():
     for x in range(4):
         for y in range(8):
-            assert dots(drawn(lambda canvas, x=x, y=y: canvas.points([(x + 0.5, y + 0.5)], 0), 2, 2)) == {(x, y)}
+            assert dots(
+                drawn(lambda canvas, x=x, y=y: canvas.points([(x + 0.5, y + 0.5)], 0), 2, 2)
+            ) == {(x, y)}
 
 
 @given(st.lists(st.tuples(ANY, ANY)))
@@ -80,22 +91,36 @@ def test_the_dots_of_a_line_touch_each_other_and_the_line(ends):
         assert distance_to_segment(i + 0.5, j + 0.5, x0, y0, x1, y1) <= 0.7072
     if len(found) > 1:
         for i, j in found:
-            assert any((i + right, j + down) in found for right in (-1, 0, 1) for down in (-1, 0, 1) if right or down)
+            assert any(
+                (i + right, j + down) in found
+                for right in (-1, 0, 1)
+                for down in (-1, 0, 1)
+                if right or down
+            )
 
 
 def distance_to_segment(px, py, x0, y0, x1, y1):
     length = (x1 - x0) ** 2 + (y1 - y0) ** 2
-    share = 0.0 if length == 0 else min(max(((px - x0) * (x1 - x0) + (py - y0) * (y1 - y0)) / length, 0), 1)
+    share = (
+        0.0
+        if length == 0
+        else min(max(((px - x0) * (x1 - x0) + (py - y0) * (y1 - y0)) / length, 0), 1)
+    )
     return np.hypot(px - x0 - share * (x1 - x0), py - y0 - share * (y1 - y0))
 
 
 @given(st.tuples(NEAR, NEAR, NEAR, NEAR))
 def test_a_line_that_leaves_the_canvas_is_the_same_inside_it(ends):
     x0, y0, x1, y1 = ends
-    y0, y1 = y0 + 0.0314159, y1 + 0.0314159  # so that no line runs exactly between two dots, where rounding decides
+    y0, y1 = (
+        y0 + 0.0314159,
+        y1 + 0.0314159,
+    )  # so that no line runs exactly between two dots, where rounding decides
     small = dots(drawn(lambda canvas: canvas.line(x0, y0, x1, y1, 0)))
     large = dots(drawn(lambda canvas: canvas.line(x0 + 40, y0 + 40, x1 + 40, y1 + 40, 0), 60, 30))
-    assert small == {(i - 40, j - 40) for i, j in large if 40 <= i < 40 + 2 * COLUMNS and 40 <= j < 40 + 4 * ROWS}
+    assert small == {
+        (i - 40, j - 40) for i, j in large if 40 <= i < 40 + 2 * COLUMNS and 40 <= j < 40 + 4 * ROWS
+    }
 
 
 @given(st.lists(st.tuples(ANY, ANY), max_size=5))
@@ -106,7 +131,9 @@ def test_any_numbers_make_a_path_with_no_more_dots_than_the_canvas_is_long(point
 
 @pytest.mark.parametrize("far", [1e20, 1e300])
 def test_a_line_from_far_away_is_drawn_where_it_is_visible(far):
-    assert dots(drawn(lambda canvas: canvas.line(-far, 5, far, 5, 0))) == {(x, 5) for x in range(2 * COLUMNS)}
+    assert dots(drawn(lambda canvas: canvas.line(-far, 5, far, 5, 0))) == {
+        (x, 5) for x in range(2 * COLUMNS)
+    }
 
 
 def test_a_path_is_broken_where_a_point_is_not_a_number():
@@ -116,7 +143,10 @@ def test_a_path_is_broken_where_a_point_is_not_a_number():
 
 def test_a_disc_is_round_because_dots_are_square():
     assert drawn(lambda canvas: canvas.disc(6, 6, 4, 0), 6, 3).text == " ⢀⣤⣤⡀\n ⣿⣿⣿⣿\n ⠈⠛⠛⠁"
-    assert drawn(lambda canvas: canvas.disc(6, 6, 4, 0, hollow=True), 6, 3).text == " ⢀⠤⠤⡀\n ⡇  ⢸\n ⠈⠒⠒⠁"
+    assert (
+        drawn(lambda canvas: canvas.disc(6, 6, 4, 0, hollow=True), 6, 3).text
+        == " ⢀⠤⠤⡀\n ⡇  ⢸\n ⠈⠒⠒⠁"
+    )
 
 
 @given(ANY, ANY)

@@ -49,9 +49,15 @@ def plotted(picture, log):
     if log:
         value, other_value = np.log10(value), np.log10(other_value)
     per_row = (value - other_value) / (other_row - row)
-    inside = [(x // 2 - left, y) for x, y in dots(picture) if x // 2 >= left and y < 4 * (len(lines) - 2)]
+    inside = [
+        (x // 2 - left, y) for x, y in dots(picture) if x // 2 >= left and y < 4 * (len(lines) - 2)
+    ]
     columns = size(picture)[0] - left - ROOM
-    return {(column, value + per_row * (row + 0.5 - (y + 0.5) / 4)) for column, y in inside}, per_row / 4, columns
+    return (
+        {(column, value + per_row * (row + 0.5 - (y + 0.5) / 4)) for column, y in inside},
+        per_row / 4,
+        columns,
+    )
 
 
 @st.composite
@@ -63,21 +69,34 @@ def runs(draw):
 
 @settings(max_examples=50)
 @given(runs(), st.integers(0, COUNT - 1), st.integers(30, 60), st.integers(8, 16))
-def test_on_a_linear_axis_every_column_shows_its_lowest_and_highest_value(run, index, width, height):
+def test_on_a_linear_axis_every_column_shows_its_lowest_and_highest_value(
+    run, index, width, height
+):
     x, values = run
-    found, dot, columns = plotted(chart(window(x, values), width, height, log=False, seconds=10, shown=[index]), False)
-    for extremes in per_column(x, values[:, None], values[:, None], *time_span(x, 10, columns), columns):
+    found, dot, columns = plotted(
+        chart(window(x, values), width, height, log=False, seconds=10, shown=[index]), False
+    )
+    for extremes in per_column(
+        x, values[:, None], values[:, None], *time_span(x, 10, columns), columns
+    ):
         for column, value in enumerate(extremes.ravel()):
             if not np.isnan(value):  # half a dot, and a little for plotext's own rounding
-                assert min(abs(shown - value) for at, shown in found if at == column) <= 0.52 * abs(dot) + 1e-12
+                assert (
+                    min(abs(shown - value) for at, shown in found if at == column)
+                    <= 0.52 * abs(dot) + 1e-12
+                )
 
 
 @settings(max_examples=50)
 @given(runs(), st.floats(0, 3), st.integers(30, 60), st.integers(8, 16))
-def test_on_a_logarithmic_axis_every_column_shows_its_largest_magnitude(run, repeats, width, height):
+def test_on_a_logarithmic_axis_every_column_shows_its_largest_magnitude(
+    run, repeats, width, height
+):
     x, values = run
     values = np.copysign(0.5 + abs(values), values)  # so that the smallest is on the axis, too
-    found, dot, columns = plotted(chart(window(x, values, repeats=repeats), width, height, seconds=10, shown=[0]), True)
+    found, dot, columns = plotted(
+        chart(window(x, values, repeats=repeats), width, height, seconds=10, shown=[0]), True
+    )
     largest = held(x, abs(values)[:, None], *time_span(x, 10, columns), columns, repeats).ravel()
     for column, value in enumerate(np.log10(largest)):
         if not np.isnan(value):
@@ -185,9 +204,12 @@ def test_speed_against_accuracy():
 @settings(max_examples=20)
 def test_only_shown_methods_have_letters(shown):
     letters = "".join(
-        line[6:] for line in chart(window([1, 2, 3], [1, 1, 1]), shown=sorted(shown)).text.splitlines()[:-2]
+        line[6:]
+        for line in chart(window([1, 2, 3], [1, 1, 1]), shown=sorted(shown)).text.splitlines()[:-2]
     )
-    assert {letter for letter in letters if letter.isalpha()} == {USUAL_CAST[index].letter for index in shown}
+    assert {letter for letter in letters if letter.isalpha()} == {
+        USUAL_CAST[index].letter for index in shown
+    }
 
 
 def test_a_failed_method_leaves_room_for_the_others():
@@ -195,7 +217,12 @@ def test_a_failed_method_leaves_room_for_the_others():
     labels = [float(line.partition("┤")[0]) for line in picture.text.splitlines() if "┤" in line]
     assert 1e6 <= max(labels) <= 1e8
     assert min(labels) <= 1e-3
-    lines = {letter: at for at, line in enumerate(picture.text.splitlines()) for letter in "er" if letter in line[6:]}
+    lines = {
+        letter: at
+        for at, line in enumerate(picture.text.splitlines())
+        for letter in "er"
+        if letter in line[6:]
+    }
     assert lines["e"] < lines["r"] < len(picture.text.splitlines()) - 2
 
 
@@ -210,14 +237,18 @@ def test_a_chart_that_is_too_small_is_replaced_by_a_sentence(size):
 
 def test_plotext_is_loaded_with_the_first_chart_and_not_before():
     script = "import sys, tui.drawing.chart; print('plotext' in sys.modules)"
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True
+    )
     assert done.stdout.strip() == "False"
 
 
 def test_over_a_long_run_growth_is_a_slope_and_a_bounded_error_is_flat():
     t = np.linspace(0, 600, 2000)
     errors = np.stack([1e-5 * t, 0.08 * np.sin(6 * t)], axis=1)
-    rows = chart(window(t, np.hstack([errors, errors]), repeats=1.0), 60, 14, shown=[0, 1]).text.splitlines()
+    rows = chart(
+        window(t, np.hstack([errors, errors]), repeats=1.0), 60, 14, shown=[0, 1]
+    ).text.splitlines()
     assert [label.strip() for label in rows[-1].split("  ") if label.strip()] == [
         "1 s",
         "5 s",
@@ -227,7 +258,11 @@ def test_over_a_long_run_growth_is_a_slope_and_a_bounded_error_is_flat():
     ]
     heights = {}
     for column in range(8, 50):
-        dots = [row for row, line in enumerate(rows[:-2]) if len(line) > column and "\u2800" < line[column] <= "\u28ff"]
+        dots = [
+            row
+            for row, line in enumerate(rows[:-2])
+            if len(line) > column and "\u2800" < line[column] <= "\u28ff"
+        ]
         heights[column] = (min(dots), max(dots))
     bounded = {top for top, _ in heights.values()}
     growing = [bottom for _, bottom in heights.values()]
@@ -240,7 +275,9 @@ def test_where_one_error_passes_another_for_good_there_is_a_cross_and_a_ghost_is
     t = np.linspace(0, 20, 400)
     errors = np.stack([1e-3 * t, np.full(400, 0.01)] * 2, axis=1)
     plot = time_chart(window(t, errors), USUAL_CAST, looking([0, 1], seconds=20), 60, 14)
-    ((_, column),) = (place for place, (character, _) in cells(plot.picture).items() if character == CROSSING)
+    ((_, column),) = (
+        place for place, (character, _) in cells(plot.picture).items() if character == CROSSING
+    )
     assert plot.at(column).t == pytest.approx(10, abs=0.6)
     assert plot.at(column).values == pytest.approx([0.01, 0.01], rel=0.1)
     assert plot.at(plot.left - 1) is None

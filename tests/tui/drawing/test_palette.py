@@ -28,13 +28,25 @@ from tui.drawing.palette import (
 SIGHT = {
     "normal": np.eye(3),
     "protanopia": np.array(
-        [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]]
+        [
+            [0.152286, 1.052583, -0.204868],
+            [0.114503, 0.786281, 0.099216],
+            [-0.003882, -0.048116, 1.051998],
+        ]
     ),
     "deuteranopia": np.array(
-        [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.011820, 0.042940, 0.968881]]
+        [
+            [0.367322, 0.860646, -0.227968],
+            [0.280085, 0.672501, 0.047413],
+            [-0.011820, 0.042940, 0.968881],
+        ]
     ),
     "tritanopia": np.array(
-        [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602], [0.004733, 0.691367, 0.303900]]
+        [
+            [1.255528, -0.076749, -0.178779],
+            [-0.078411, 0.930809, 0.147602],
+            [0.004733, 0.691367, 0.303900],
+        ]
     ),
 }
 # Ottosson, "A perceptual color space for image processing" (2020).
@@ -86,17 +98,24 @@ def seen_apart(theme, cast):
     """The distance of the most similar pair, and for those who see all colours."""
     colours = [PALETTES[theme].colour(ink) for ink in inks(cast)]
     pairs = itertools.combinations(colours, 2)
-    return worst_pair(colours), min(100 * np.linalg.norm(oklab(linear(a)) - oklab(linear(b))) for a, b in pairs)
+    return worst_pair(colours), min(
+        100 * np.linalg.norm(oklab(linear(a)) - oklab(linear(b))) for a, b in pairs
+    )
 
 
-@pytest.mark.parametrize(("theme", "apart"), [("dark", 19.5), ("light", 13.3), ("high-contrast", 21.6)])
+@pytest.mark.parametrize(
+    ("theme", "apart"), [("dark", 19.5), ("light", 13.3), ("high-contrast", 21.6)]
+)
 def test_the_colour_blind_can_distinguish_the_classics(theme, apart):
-    assert worst_pair(PALETTES[theme].methods[:4]) == pytest.approx(apart, abs=0.05)  # the figures are given to 0.1
+    assert worst_pair(PALETTES[theme].methods[:4]) == pytest.approx(
+        apart, abs=0.05
+    )  # the figures are given to 0.1
     assert worst_pair(("#FF0000", "#00FF00", "#FFFF00", "#0000FF")) < apart / 3
 
 
 @pytest.mark.parametrize(
-    ("theme", "apart", "plainly"), [("dark", 10.6, 21), ("light", 7.8, 16), ("high-contrast", 8.8, 17)]
+    ("theme", "apart", "plainly"),
+    [("dark", 10.6, 21), ("light", 7.8, 16), ("high-contrast", 8.8, 17)],
 )
 def test_in_no_scene_two_methods_look_alike(theme, apart, plainly):
     for scene in SCENES.values():
@@ -148,21 +167,37 @@ def test_in_high_contrast_text_meets_the_strictest_level_of_wcag():
 def test_the_methods_differ_in_256_colours(theme):
     colours = PALETTES[theme]
     names = [*colours.methods[:4], colours.text, colours.background]
-    fewer = [Color.parse(name).downgrade(ColorSystem.EIGHT_BIT).get_truecolor().hex for name in names]
+    fewer = [
+        Color.parse(name).downgrade(ColorSystem.EIGHT_BIT).get_truecolor().hex for name in names
+    ]
     assert worst_pair(fewer[:-2]) >= 0.7 * worst_pair(colours.methods[:4])
-    assert all(contrast(name, fewer[-1]) > 3.6 for name in fewer[:-1])  # of text 4.5 is asked, of graphics 3
+    assert all(
+        contrast(name, fewer[-1]) > 3.6 for name in fewer[:-1]
+    )  # of text 4.5 is asked, of graphics 3
 
 
 @pytest.mark.parametrize("terminal", TERMINALS)
 def test_the_methods_differ_in_the_terminals_own_16_colours(terminal):
-    assert PALETTES["ansi"].methods[:4] == ("bright_red", "bright_blue", "bright_cyan", "bright_yellow")
+    assert PALETTES["ansi"].methods[:4] == (
+        "bright_red",
+        "bright_blue",
+        "bright_cyan",
+        "bright_yellow",
+    )
     black, *methods = TERMINALS[terminal]
     assert worst_pair(methods) >= 14.4
-    assert min(contrast(method, black) for method in methods) >= 4.1  # of text 4.5 is asked, of graphics 3
+    assert (
+        min(contrast(method, black) for method in methods) >= 4.1
+    )  # of text 4.5 is asked, of graphics 3
 
 
 def test_with_the_terminals_own_colours_trails_have_the_darker_ones():
-    assert [PALETTES["ansi"].colour(index + FAINT) for index in range(4)] == ["red", "blue", "cyan", "yellow"]
+    assert [PALETTES["ansi"].colour(index + FAINT) for index in range(4)] == [
+        "red",
+        "blue",
+        "cyan",
+        "yellow",
+    ]
 
 
 @THEMES
@@ -170,7 +205,9 @@ def test_lines_are_visible_and_trails_are_fainter_than_their_methods(theme):
     colours = PALETTES[theme]
     assert contrast(colours.colour(FRAME), colours.background) >= 3  # WCAG's bound for graphics
     for owner in range(10):
-        full, faint = (contrast(colours.colour(one), colours.background) for one in (owner, owner + FAINT))
+        full, faint = (
+            contrast(colours.colour(one), colours.background) for one in (owner, owner + FAINT)
+        )
         assert 1.85 <= faint < 0.7 * full
 
 

@@ -66,8 +66,12 @@ def test_a_window_reaches_back_as_far_as_asked_and_half_a_swing_more(count, seco
     start = max(window.x[-1] - seconds - window.repeats, 0)
     rows = np.diff(window.x, prepend=start)
     assert window.x[0] >= start
-    assert window.x[0] <= start + 2 * max(rows[1:], default=0.1) + 0.1  # the first row began before the window did
-    assert rows.max() <= 2 * (window.x[-1] - start) / CAPACITY * 2 + 0.2  # and none is coarser than it has to be
+    assert (
+        window.x[0] <= start + 2 * max(rows[1:], default=0.1) + 0.1
+    )  # the first row began before the window did
+    assert (
+        rows.max() <= 2 * (window.x[-1] - start) / CAPACITY * 2 + 0.2
+    )  # and none is coarser than it has to be
 
 
 def test_recent_samples_are_kept_as_they_were_in_a_short_window():
@@ -83,12 +87,16 @@ def test_memory_grows_by_one_level_only_when_the_run_gets_twice_as_long():
     for step in range(20_000):
         history.add(sample(step))
         if step + 1 in (63, 64, 127, 128, 1023, 1024, 20_000):
-            assert len(history.levels.levels) == 1 + max(math.floor(math.log2((step + 1) / 64)) + 1, 0)
+            assert len(history.levels.levels) == 1 + max(
+                math.floor(math.log2((step + 1) / 64)) + 1, 0
+            )
     assert all(len(level.steps) == 64 for level in history.levels.levels)
 
 
 def test_half_a_swing_is_what_errors_repeat_after_and_a_turn_in_rotation():
-    assert filled([sample(0)]).window().repeats == pytest.approx(1.0696, abs=1e-4)  # T = 2.1391 s at 1 rad
+    assert filled([sample(0)]).window().repeats == pytest.approx(
+        1.0696, abs=1e-4
+    )  # T = 2.1391 s at 1 rad
     spin = ErrorHistory(SCENES["spin"])
     spin.add(sample(0))
     assert (
@@ -110,7 +118,9 @@ def test_an_earlier_sample_takes_back_what_came_after_it():
 
 
 def test_a_run_that_goes_on_from_the_past_keeps_that_past():
-    history = filled([*(sample(step, step) for step in range(6)), sample(3, 30, run=2), sample(4, 40, run=2)])
+    history = filled(
+        [*(sample(step, step) for step in range(6)), sample(3, 30, run=2), sample(4, 40, run=2)]
+    )
     assert history.window().high["energy_error"][:, 0].tolist() == [0, 1, 2, 30, 40]
 
 
@@ -124,7 +134,9 @@ def test_after_a_rewind_the_past_is_what_it_was_but_for_one_row(count, data):
     assert np.all(known <= step)
     assert np.all(np.diff(known) > 0)
     longest = 2 ** math.ceil(math.log2(max((count) / CAPACITY, 1)))
-    assert step - (known[-1] if len(known) else -1) < longest  # samples of the finest row that reaches back so far
+    assert (
+        step - (known[-1] if len(known) else -1) < longest
+    )  # samples of the finest row that reaches back so far
     history.add(sample(step + 1, step + 1))
     assert history.window().high["energy_error"][-1, 0] == step + 1
 
@@ -166,7 +178,9 @@ def test_theta_errors_are_taken_against_the_exact_swing_and_unknown_without_it()
 
 @settings(max_examples=30)
 @given(st.sampled_from(sorted(SCENES)), st.integers(1, 5))
-def test_energies_are_those_of_the_readings_also_where_friction_takes_them_and_in_a_spring(name, stride):
+def test_energies_are_those_of_the_readings_also_where_friction_takes_them_and_in_a_spring(
+    name, stride
+):
     scene = SCENES[name]
     lockstep, history = Lockstep(scene), ErrorHistory(scene)
     history.add(lockstep.sample())

@@ -85,7 +85,9 @@ def test_time_that_runs_back_to_its_start_is_sampled_there_and_goes_on(speed):
     returned = bench.live.history.returned
     assert returned is not None
     assert returned.t == pytest.approx(0.0, abs=1e-10)  # t_base + n·h, rounded
-    assert end.t == pytest.approx(turn - 4 * speed, abs=0.011 + 1e-9)  # nothing is dropped: less than a step behind
+    assert end.t == pytest.approx(
+        turn - 4 * speed, abs=0.011 + 1e-9
+    )  # nothing is dropped: less than a step behind
 
 
 def test_time_that_the_processor_cannot_simulate_is_dropped_and_lowers_the_pace():
@@ -117,7 +119,9 @@ def test_after_a_step_back_the_run_goes_on_with_the_same_bits_and_nothing_is_rec
     lockstep = Lockstep(DEFAULT_SCENE)
     lockstep.advance(sample.step)
     expected = lockstep.sample()
-    assert [reading.theta for reading in sample.readings] == [reading.theta for reading in expected.readings]
+    assert [reading.theta for reading in sample.readings] == [
+        reading.theta for reading in expected.readings
+    ]
     steps = [sample.step for sample in bench.keeper.samples]
     assert steps == sorted(set(steps))
     assert {sample.run for sample in bench.keeper.samples} == {1}
@@ -133,7 +137,11 @@ def test_a_change_in_the_past_is_a_new_run_that_repeats_what_it_inherits():
     bench.live.set_stepping(Stepping(0.02))
     bench.live.pause(False)
     bench.run(1)
-    second = [event for event in bench.keeper.events if event.run == 2 and event.kind in ("start", "set_h")]
+    second = [
+        event
+        for event in bench.keeper.events
+        if event.run == 2 and event.kind in ("start", "set_h")
+    ]
     assert [(event.kind, event.step, event.h) for event in second] == [
         ("start", 0, None),
         ("set_h", 20, 0.1),
@@ -191,7 +199,11 @@ def test_an_absurd_step_size_is_refused_and_changes_nothing():
     for h in (0.0, float("nan"), 1e9):
         with pytest.raises(SceneError):
             bench.live.set_stepping(Stepping(h))
-    assert (bench.live.stepping.h, len(bench.keeper.events), bench.live.sample.run) == (0.05, events, 1)
+    assert (bench.live.stepping.h, len(bench.keeper.events), bench.live.sample.run) == (
+        0.05,
+        events,
+        1,
+    )
 
 
 def test_the_events_are_those_up_to_the_sample_in_the_past_too():
@@ -209,7 +221,11 @@ def test_a_recorder_that_comes_later_learns_how_the_run_began():
     live = Live(SCENES["spin"])
     keeper = Keeper()
     live.record(keeper)
-    assert (keeper.events[0].kind, keeper.events[0].scene, keeper.samples[0].step) == ("start", SCENES["spin"], 0)
+    assert (keeper.events[0].kind, keeper.events[0].scene, keeper.samples[0].step) == (
+        "start",
+        SCENES["spin"],
+        0,
+    )
 
 
 def test_closing_finishes_the_recording():

@@ -37,10 +37,16 @@ def test_a_replay_shows_the_milestones_and_verdicts_of_the_lab(lab):
         replay = Replay(recording, Marks(path))
         replay.seek(recording.length)
         assert replay.run.number == 2
-        assert list(replay.milestones) == list(live.milestones)  # also those of before the first sample of this run
-        assert [each.verdict for each in replay.judgements] == [each.verdict for each in live.judgements]
+        assert list(replay.milestones) == list(
+            live.milestones
+        )  # also those of before the first sample of this run
+        assert [each.verdict for each in replay.judgements] == [
+            each.verdict for each in live.judgements
+        ]
         replay.seek(23.9)
-        assert [each for each in first if each.step <= replay.sample.step] == list(replay.milestones)
+        assert [each for each in first if each.step <= replay.sample.step] == list(
+            replay.milestones
+        )
         assert "bounded" in [each.verdict for each in replay.judgements]
         replay.seek(1.0)
         assert list(replay.milestones) == []
@@ -60,13 +66,18 @@ def test_a_replay_jumps_to_what_the_lab_noticed(lab):
 def test_a_replay_says_what_was_said_and_not_what_would_be_said_today(lab, tmp_path):
     _, first, path = lab
     said = next(each for each in first if each.verdict == "bounded")
-    with Recording.open(path) as recording, Recorder(tmp_path / "other.mcap", wall=None) as recorder:
+    with (
+        Recording.open(path) as recording,
+        Recorder(tmp_path / "other.mcap", wall=None) as recorder,
+    ):
         for clock, value in recording.entries():
             if value.run > 1:
                 break
             if isinstance(value, Event) and value.milestone == said:
                 value = value._replace(milestone=said._replace(verdict="wanders"))
-            recorder.event(value, clock) if isinstance(value, Event) else recorder.sample(value, clock)
+            recorder.event(value, clock) if isinstance(value, Event) else recorder.sample(
+                value, clock
+            )
     assert verify(tmp_path / "other.mcap").identical
     with Recording.open(tmp_path / "other.mcap") as recording:
         replay = Replay(recording, Marks(path))

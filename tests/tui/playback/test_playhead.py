@@ -10,7 +10,9 @@ FRAMES = st.lists(st.floats(0, 5), min_size=1, max_size=50)  # s between looks a
 
 
 @given(FRAMES, st.floats(0.01, 100))
-def test_the_position_depends_on_the_time_that_passed_and_not_on_how_often_one_looked(frames, speed):
+def test_the_position_depends_on_the_time_that_passed_and_not_on_how_often_one_looked(
+    frames, speed
+):
     playhead, now = Playhead(speed=speed).at(10.0), 10.0
     for elapsed in frames:
         now += elapsed
@@ -50,7 +52,9 @@ def test_a_pace_forgets_within_seconds():
     pace = Pace(due=1.0, done=0.0)
     for _ in range(5 * 30):
         pace = pace.after(1 / 30, due=1 / 30, done=1 / 30)
-    assert pace.share == pytest.approx(1.0, abs=math.exp(-5))  # the bad second, five time constants old
+    assert pace.share == pytest.approx(
+        1.0, abs=math.exp(-5)
+    )  # the bad second, five time constants old
 
 
 @given(st.integers(-40, 40))

@@ -122,7 +122,9 @@ def test_after_a_jump_chart_and_trails_show_what_they_show_after_playing(sitting
     jumped.run(0.1)
     assert jumped.replay.sample == played.replay.sample
     for one, other in zip(
-        played.replay.history.levels.trails(15)[:, 3].T, jumped.replay.history.levels.trails(15)[:, 3].T, strict=True
+        played.replay.history.levels.trails(15)[:, 3].T,
+        jumped.replay.history.levels.trails(15)[:, 3].T,
+        strict=True,
     ):
         np.testing.assert_array_equal(one, other)
     one, other = played.replay.history.window(), jumped.replay.history.window()
@@ -171,7 +173,9 @@ def test_the_next_event_may_be_a_milestone(tmp_path):
         table.replay.seek_event(1)
         table.replay.pause(True)
         table.run(1 / FPS)
-        listed.append([line.text for line in event_lines(table.replay)][sum(map(len, listed)) + 1 :])
+        listed.append(
+            [line.text for line in event_lines(table.replay)][sum(map(len, listed)) + 1 :]
+        )
     assert listed == [
         ["Explicit Euler over the top, 5.1 E0"],
         ["Explicit Euler gains energy", "RK4 loses energy"],
@@ -192,13 +196,21 @@ def test_a_lab_that_goes_on_from_here_has_the_same_bits(table, seconds):
     table.replay.seek(seconds)
     live = table.replay.live()
     here = table.replay.sample
-    assert (live.sample.step, live.sample.t, live.stepping.h) == (here.step, here.t, table.replay.stepping.h)
-    assert [(r.theta, r.omega) for r in live.sample.readings] == [(r.theta, r.omega) for r in here.readings]
+    assert (live.sample.step, live.sample.t, live.stepping.h) == (
+        here.step,
+        here.t,
+        table.replay.stepping.h,
+    )
+    assert [(r.theta, r.omega) for r in live.sample.readings] == [
+        (r.theta, r.omega) for r in here.readings
+    ]
     table.replay.step(1)
     ahead = table.replay.sample
     if ahead.run == here.run:
         live.step(ahead.step - here.step)
-        assert [(r.theta, r.omega) for r in live.sample.readings] == [(r.theta, r.omega) for r in ahead.readings]
+        assert [(r.theta, r.omega) for r in live.sample.readings] == [
+            (r.theta, r.omega) for r in ahead.readings
+        ]
 
 
 def test_a_lab_that_goes_on_from_here_knows_what_was_known(tmp_path):
@@ -209,7 +221,12 @@ def test_a_lab_that_goes_on_from_here_knows_what_was_known(tmp_path):
     milestones = list(table.replay.milestones)
     times = table.replay.history.window().t
     live = table.replay.live()
-    assert [judgement.verdict for judgement in live.judgements] == ["grows", "bounded", "bounded", "loses"]
+    assert [judgement.verdict for judgement in live.judgements] == [
+        "grows",
+        "bounded",
+        "bounded",
+        "loses",
+    ]
     assert list(live.milestones) == milestones
     np.testing.assert_array_equal(live.history.window().t, times)
     while table.replay.sample.step < table.samples[-1].value.step:
@@ -220,7 +237,9 @@ def test_a_lab_that_goes_on_from_here_knows_what_was_known(tmp_path):
 
 
 def test_a_moment_has_one_mark(tmp_path):
-    path = recorded(tmp_path / "marked.mcap", 2.0, lambda live: live.mark(), lambda live: live.mark(), 1.0)
+    path = recorded(
+        tmp_path / "marked.mcap", 2.0, lambda live: live.mark(), lambda live: live.mark(), 1.0
+    )
     table = Table(path)
     marks = [event for _, event in table.recording.events if event.kind == "mark"]
     assert len(marks) == 1
@@ -246,7 +265,8 @@ def test_marks_are_kept_beside_the_recording_which_is_not_touched(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "content", ["", "[]", "{}", '{"schema": "pendu.marks/1", "marks": [{"clock": "x"}]}', "[" * 9999]
+    "content",
+    ["", "[]", "{}", '{"schema": "pendu.marks/1", "marks": [{"clock": "x"}]}', "[" * 9999],
 )
 def test_a_file_of_marks_that_is_not_ours_is_no_marks(tmp_path, content):
     path = tmp_path / "a.mcap"
@@ -274,7 +294,9 @@ def test_a_closed_replay_stands_still(sitting):
     assert table.replay.fill()
 
 
-@pytest.mark.parametrize(("speed", "start", "behind"), [(1.0, LENGTH - 0.5, 0.5), (-1.0, 0.5, LENGTH - 0.5)])
+@pytest.mark.parametrize(
+    ("speed", "start", "behind"), [(1.0, LENGTH - 0.5, 0.5), (-1.0, 0.5, LENGTH - 0.5)]
+)
 def test_a_loop_goes_round_both_ways(table, speed, start, behind):
     table.replay.looping = True
     table.replay.set_speed(speed)

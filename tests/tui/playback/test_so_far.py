@@ -45,7 +45,10 @@ def test_the_shadow_energy_is_flat_where_the_energy_wobbles_and_explains_it_to_f
     energy_range, rest = {}, {}
     for h in (0.05, 0.025):
         history = run(DRIFT, (int(20 / h), h))
-        energy_range[h], rest[h] = largest(history, "energy_error"), largest(history, "shadow_error")
+        energy_range[h], rest[h] = (
+            largest(history, "energy_error"),
+            largest(history, "shadow_error"),
+        )
     for key in ("symplectic_euler", "velocity_verlet"):
         i = INDEX[key]
         assert rest[0.05][i] < energy_range[0.05][i] / 100
@@ -67,7 +70,9 @@ def test_another_step_size_has_another_shadow_energy_and_begins_anew():
     history = run(DRIFT, (100, 0.05), (100, 0.1))
     alone = largest(run(DRIFT, (200, 0.1)), "shadow_error")
     i = INDEX["velocity_verlet"]
-    assert largest(history, "shadow_error")[i] < 3 * alone[i]  # a wobble counted from an end is up to twice as large
+    assert (
+        largest(history, "shadow_error")[i] < 3 * alone[i]
+    )  # a wobble counted from an end is up to twice as large
 
 
 @pytest.mark.filterwarnings("ignore:All-NaN")

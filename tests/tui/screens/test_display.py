@@ -32,14 +32,18 @@ async def test_a_theme_changes_all_colours_and_no_character(theme, view):
         await theatre.run(1)
         await theatre.press("space", key_of(view))
         before = ""
-        while before != (before := await picture(theatre)):  # a resting lab draws late panes after 1/4 s
+        while before != (
+            before := await picture(theatre)
+        ):  # a resting lab draws late panes after 1/4 s
             await theatre.pilot.pause(0.4)
         theatre.app.action_use_theme(theme)
         after = await picture(theatre)
         assert lines_of(before) == lines_of(after)
         colours = {found.upper() for found in re.findall(r"fill: (#[0-9a-fA-F]{6})", after)}
         old, new = PALETTES["dark"], PALETTES[theme]
-        assert not colours & {old.colour(owner).upper() for owner in (0, 1, 2, 3, TEXT)} - set(new.methods)
+        assert not colours & {old.colour(owner).upper() for owner in (0, 1, 2, 3, TEXT)} - set(
+            new.methods
+        )
         assert colours >= {new.colour(owner).upper() for owner in (0, 1, 2, 3, TEXT)}
 
 
@@ -56,8 +60,15 @@ async def test_forms_help_and_the_palette_are_ascii_too():
 
 def colours(app) -> set[Color]:
     """All colours on the screen, in front and behind."""
-    styles = [segment.style for strip in app.screen._compositor.render_strips() for segment in strip if segment.style]
-    return {colour for style in styles for colour in (style.color, style.bgcolor) if colour is not None}
+    styles = [
+        segment.style
+        for strip in app.screen._compositor.render_strips()
+        for segment in strip
+        if segment.style
+    ]
+    return {
+        colour for style in styles for colour in (style.color, style.bgcolor) if colour is not None
+    }
 
 
 async def test_the_theme_ansi_uses_the_terminals_own_colours_and_no_others():
@@ -68,7 +79,9 @@ async def test_the_theme_ansi_uses_the_terminals_own_colours_and_no_others():
             await theatre.press(key)
             await theatre.pilot.pause(0.3)
             assert len(colours(theatre.app)) > 3
-            assert all(colour.is_system_defined or colour.is_default for colour in colours(theatre.app))
+            assert all(
+                colour.is_system_defined or colour.is_default for colour in colours(theatre.app)
+            )
 
 
 async def test_no_color_leaves_no_colour_whatever_the_theme(monkeypatch):

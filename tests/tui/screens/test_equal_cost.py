@@ -26,7 +26,11 @@ def toggle(live: Live) -> None:
 def test_the_key_toggles_equal_cost_which_a_restart_keeps():
     live = Live(Scene(h=0.05))
     toggle(live)
-    assert (live.stepping.h, live.stepping.own, live.stepping.smallest) == (0.2, (0.05, 0.05, 0.05, 0.2), 0.05)
+    assert (live.stepping.h, live.stepping.own, live.stepping.smallest) == (
+        0.2,
+        (0.05, 0.05, 0.05, 0.2),
+        0.05,
+    )
     live.step(5)
     live.restart()
     assert (live.scene.h, live.stepping.own) == (0.05, (0.05, 0.05, 0.05, 0.2))
@@ -35,7 +39,8 @@ def test_the_key_toggles_equal_cost_which_a_restart_keeps():
 
 
 @pytest.mark.parametrize(
-    "acts", [(1.0, toggle, 2.0, toggle, 1.0), (toggle, 1.0, lambda live: live.step(-2), toggle, 1.0)]
+    "acts",
+    [(1.0, toggle, 2.0, toggle, 1.0), (toggle, 1.0, lambda live: live.step(-2), toggle, 1.0)],
 )
 def test_a_sitting_at_equal_cost_verifies_to_the_bit(tmp_path: Path, acts):
     def resume(live: Live) -> None:
@@ -46,11 +51,15 @@ def test_a_sitting_at_equal_cost_verifies_to_the_bit(tmp_path: Path, acts):
     assert verification.complete
     assert verification.identical
     with Recording.open(path) as recording:
-        assert [event.equal_cost for _, event in recording.events if event.kind == "set_h"][:1] == [True]
+        assert [event.equal_cost for _, event in recording.events if event.kind == "set_h"][:1] == [
+            True
+        ]
 
 
 @pytest.mark.parametrize(("h", "acts"), [(0.05, "n"), (1e-9, "n--r"), (100.0, "n"), (60.0, "nr")])
-def test_a_step_that_is_absurd_for_one_of_the_methods_is_refused_before_anything_changes(h: float, acts: str):
+def test_a_step_that_is_absurd_for_one_of_the_methods_is_refused_before_anything_changes(
+    h: float, acts: str
+):
     lab = Driver(Live(Scene(h=h)))
     refusals: list[str] = []
     lab.notify = lambda message, **_: refusals.append(message)

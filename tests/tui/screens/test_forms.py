@@ -50,7 +50,9 @@ async def test_a_new_run_of_a_lab_whose_time_runs_backwards_runs_forwards():
 
 async def test_methods_are_taken_in_the_order_that_is_chosen():
     async with lab() as theatre:
-        await theatre.press("M", "space", "down", "down", "space", "end", "up", "space", "home", "space", "enter")
+        await theatre.press(
+            "M", "space", "down", "down", "space", "end", "up", "space", "home", "space", "enter"
+        )
         await theatre.pilot.pause()
         letters = [method.letter for method in theatre.source.scene.cast]
         assert letters[:2] == ["s", "r"]

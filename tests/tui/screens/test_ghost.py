@@ -42,14 +42,19 @@ def test_its_pendulums_are_where_a_lab_with_its_step_size_would_have_them(path):
     for t in (1.0, 2.5, 3.0, 7.0, 14.0):
         readings = after(OTHER_H, t).sample.readings
         for method, reading in zip(OTHER_H.cast, readings, strict=True):
-            assert found.rods(t)[method.key].theta == pytest.approx(reading.theta, abs=0.7)  # one step of 0.1 s
+            assert found.rods(t)[method.key].theta == pytest.approx(
+                reading.theta, abs=0.7
+            )  # one step of 0.1 s
     assert found.rods(16.0) == found.rods(-1.0) == {}
 
 
 def test_its_errors_end_where_the_lab_is(path):
     found = ghost(path)
     assert found.window(4.0).x.max() == pytest.approx(4.0, abs=0.2)
-    low, high = found.window(4.0).low["energy_error"][:, 0], found.window(10.0).high["energy_error"][:, 0]
+    low, high = (
+        found.window(4.0).low["energy_error"][:, 0],
+        found.window(10.0).high["energy_error"][:, 0],
+    )
     assert np.nanmax(high) > np.nanmax(low) > 0
 
 
@@ -69,7 +74,10 @@ async def test_it_is_faint_behind_the_same_methods_and_says_which_step_size_it_h
         first = theatre.stage.query_one(LabView).pendulums[1]
         colour = faint(ink_of(DEFAULT_SCENE.cast[1], DEFAULT_SCENE.cast))
         assert colour in inks(first.picture(theatre.source, theatre.source.sample))
-        assert first.border_subtitle == "dim: h 0.1 s" or "dim: swing, h 0.1 s" in first.border_subtitle
+        assert (
+            first.border_subtitle == "dim: h 0.1 s"
+            or "dim: swing, h 0.1 s" in first.border_subtitle
+        )
         chart = theatre.stage.query(TimeChart).first()
         assert chart.plot is not None
         assert colour in inks(chart.plot.picture)
@@ -82,8 +90,12 @@ def test_what_is_no_recording_is_refused_in_a_sentence(tmp_path):
     broken = tmp_path / "broken.mcap"
     broken.write_bytes(b"nothing")
     assert pendu("live", "--plain", "--no-record", "--ghost", broken).refused(3, "broken.mcap")
-    assert pendu("live", "--plain", "--no-record", "--ghost", tmp_path / "none.mcap").refused(3, "no recording")
+    assert pendu("live", "--plain", "--no-record", "--ghost", tmp_path / "none.mcap").refused(
+        3, "no recording"
+    )
 
 
 def test_a_scene_of_another_model_is_refused(path):
-    assert pendu("live", "--ghost", path, "--scene", "stiff-limit").refused(2, "--ghost", "model pendulum", "spring")
+    assert pendu("live", "--ghost", path, "--scene", "stiff-limit").refused(
+        2, "--ghost", "model pendulum", "spring"
+    )

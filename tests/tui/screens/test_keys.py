@@ -51,7 +51,11 @@ async def test_the_run_r_restarts_plus_and_minus_change_h_b_reverses_p_and_capit
         await theatre.run(1)
         assert theatre.source.sample.t == pytest.approx(1, abs=0.05)
         await theatre.press("r")
-        assert (theatre.source.stepping.h, theatre.source.sample.step, theatre.source.scene.theta) == (0.02, 0, 1.0)
+        assert (
+            theatre.source.stepping.h,
+            theatre.source.sample.step,
+            theatre.source.scene.theta,
+        ) == (0.02, 0, 1.0)
         names = list(SCENES)
         await theatre.press("p")
         assert theatre.source.scene == SCENES[names[0]]  # 0.02 made it a scene of its own
@@ -85,15 +89,27 @@ async def test_time_that_runs_backwards_pauses_at_0_and_keeps_what_each_method_m
 async def test_settings_are_undone_one_after_the_other():
     async with lab() as theatre:
         await theatre.run(1)
-        before = (theatre.source.stepping.h, theatre.source.playhead.speed, theatre.source.scene, theatre.stage.shown)
+        before = (
+            theatre.source.stepping.h,
+            theatre.source.playhead.speed,
+            theatre.source.scene,
+            theatre.stage.shown,
+        )
         await theatre.press("plus", "greater_than_sign", "p", "t", "y")
         await theatre.press("u", "u", "u", "u", "u")
-        after = (theatre.source.stepping.h, theatre.source.playhead.speed, theatre.source.scene, theatre.stage.shown)
+        after = (
+            theatre.source.stepping.h,
+            theatre.source.playhead.speed,
+            theatre.source.scene,
+            theatre.stage.shown,
+        )
         assert after == before
         await theatre.press("u")  # there is nothing left to undo
 
 
-async def test_a_run_that_another_start_replaced_is_brought_back_where_it_was_and_verifies(tmp_path):
+async def test_a_run_that_another_start_replaced_is_brought_back_where_it_was_and_verifies(
+    tmp_path,
+):
     path = tmp_path / "run.mcap"
 
     def make(clock):
@@ -160,7 +176,10 @@ async def test_what_is_shown_digits_t_y_e_and_w():
 async def test_a_click_on_a_row_or_a_pendulum_shows_that_method_alone_and_another_one_all():
     async with lab() as theatre:
         await theatre.run(1)
-        for widget, offset in ((ErrorTable, (5, 3)), (theatre.stage.query_one(LabView).pendulums[2], (9, 5))):
+        for widget, offset in (
+            (ErrorTable, (5, 3)),
+            (theatre.stage.query_one(LabView).pendulums[2], (9, 5)),
+        ):
             await theatre.pilot.click(widget, offset=offset)
             await theatre.run(0.1)
             assert theatre.stage.shown.places(USUAL_CAST) == [2]
@@ -277,7 +296,16 @@ def test_the_lab_and_the_replay_need_few_keys():
 async def test_the_last_line_has_what_one_needs_now_each_a_button(width):
     async with lab(size=(width, 40)) as theatre:
         row = theatre.text("KeyLine")
-        hints = ("+ - Step", "p Scene", "space Pause", "v View", "? Help", "ctrl+p Find", "b Back", "T Tour")
+        hints = (
+            "+ - Step",
+            "p Scene",
+            "space Pause",
+            "v View",
+            "? Help",
+            "ctrl+p Find",
+            "b Back",
+            "T Tour",
+        )
         assert all(hint in row for hint in hints)
         await theatre.pilot.click("KeyLine", offset=(row.index("Pause") + 1, 0))
         await theatre.pilot.click("KeyLine", offset=(row.index("-"), 0))

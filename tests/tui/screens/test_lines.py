@@ -49,7 +49,9 @@ def test_the_status_line_leaves_out_the_least_important_parts_and_never_runs_ove
     for width in range(60, 125):
         line = text(status_row(live, width))
         assert len(line) <= width
-        assert all(word in line for word in ("LIVE", "running", "1×", "t 0.00 s", "h 0.05 s", "z 0.157"))
+        assert all(
+            word in line for word in ("LIVE", "running", "1×", "t 0.00 s", "h 0.05 s", "z 0.157")
+        )
         assert "10-14-03.mcap" not in line or "96 kB" in line
 
 
@@ -82,7 +84,9 @@ def test_the_status_line_shows_a_low_pace_and_a_failed_recording():
     assert "NOT RECORDED" in text(status_row(broken, 80))
     begun = Playhead(seen=0.0)
     assert "not recorded" in text(status_row(taped(recording_status=None, playhead=begun), 80))
-    assert "record" not in text(status_row(taped(recording_status=None), 80))  # before the first frame
+    assert "record" not in text(
+        status_row(taped(recording_status=None), 80)
+    )  # before the first frame
 
 
 def test_speeds_are_read_as_people_say_them():

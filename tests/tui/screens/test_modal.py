@@ -66,7 +66,9 @@ async def test_a_palette_that_is_closed_while_it_searches_ends_quietly(monkeypat
     async def closed_meanwhile(self, query):
         async for hit in search(self, query):
             yield hit
-        await theatre.app.screen.query_one(CommandList).remove()  # closing takes its parts away one by one
+        await theatre.app.screen.query_one(
+            CommandList
+        ).remove()  # closing takes its parts away one by one
         searched.set()
 
     async with lab() as theatre:
@@ -80,7 +82,10 @@ async def test_a_palette_that_is_closed_while_it_searches_ends_quietly(monkeypat
         theatre.app.screen.query_one(Input).value = "zzz"  # finds nothing: the list is to be hidden
         async with asyncio.timeout(20):
             await searched.wait()
-            while any(worker.node is theatre.app.screen and not worker.is_finished for worker in theatre.app.workers):
+            while any(
+                worker.node is theatre.app.screen and not worker.is_finished
+                for worker in theatre.app.workers
+            ):
                 await theatre.pilot.pause(0.01)
         await theatre.press("escape")
         assert theatre.app.screen is theatre.stage
@@ -124,7 +129,9 @@ async def test_a_page_of_scenes_can_be_asked_for_where_there_is_room_for_none():
         await theatre.press("pagedown", "pageup")
 
 
-async def test_two_sizes_in_flight_do_not_call_each_other_up_for_ever(monkeypatch: pytest.MonkeyPatch):
+async def test_two_sizes_in_flight_do_not_call_each_other_up_for_ever(
+    monkeypatch: pytest.MonkeyPatch,
+):
     arranged, arrange = [], Screen._on_resize
 
     async def counted(self: Screen, event: Resize) -> None:
@@ -135,7 +142,9 @@ async def test_two_sizes_in_flight_do_not_call_each_other_up_for_ever(monkeypatc
     async with lab() as theatre:
         await theatre.press("i")
         monkeypatch.setattr(Screen, "_on_resize", counted)
-        with theatre.app.batch_update():  # Textual then paints with a message of its own, between the sizes
+        with (
+            theatre.app.batch_update()
+        ):  # Textual then paints with a message of its own, between the sizes
             theatre.app._size = Size(30, 12)
             for size in (Size(70, 11), Size(30, 12)):
                 theatre.app.screen.post_message(Resize(size, size))

@@ -59,7 +59,9 @@ def library(tmp_path: Path) -> Iterator[Path]:
 
 
 @pytest.mark.parametrize("command", ["live", "replay"])
-async def test_random_keys_and_clicks_do_no_harm_and_the_recordings_verify(tmp_path, library, command):
+async def test_random_keys_and_clicks_do_no_harm_and_the_recordings_verify(
+    tmp_path, library, command
+):
     def recorded(live: Live) -> Live:
         live.record(LiveRecorder(library / f"{live.sample.step}.mcap"))
         return live
@@ -79,18 +81,26 @@ async def test_random_keys_and_clicks_do_no_harm_and_the_recordings_verify(tmp_p
     assert all_verify(library) == 1
 
 
-async def test_dialogs_the_palette_pasted_garbage_and_all_sizes_do_no_harm_either(library, monkeypatch):
+async def test_dialogs_the_palette_pasted_garbage_and_all_sizes_do_no_harm_either(
+    library, monkeypatch
+):
     monkeypatch.setattr(PenduApp, "exit", lambda self: None)  # it finds `quit`, too
     async with on_stage(wild_stage(library), SIZE) as theatre:
         theatre.app.open_replay = wild_replay(library, lambda: theatre.now)
         await play_on_stage(theatre, wild_presses(WILD, SEED), SEED)
         assert theatre.app.is_running
         theatre.source.close()
-        recorded = [each.source.recorder for each in theatre.app.source_screens if each.source.kind == "LIVE"]
+        recorded = [
+            each.source.recorder
+            for each in theatre.app.source_screens
+            if each.source.kind == "LIVE"
+        ]
     assert all_verify(library) == len(recorded)
 
 
-@pytest.mark.skipif("PENDU_MONKEY" not in os.environ, reason="its keys meet the program at other moments each time")
+@pytest.mark.skipif(
+    "PENDU_MONKEY" not in os.environ, reason="its keys meet the program at other moments each time"
+)
 @pytest.mark.parametrize("command", ["live", "replay"])
 def test_random_keys_and_clicks_do_no_harm_to_the_real_program(tmp_path, command):
     library = tmp_path / "library"

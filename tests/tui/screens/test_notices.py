@@ -55,5 +55,8 @@ async def test_a_moment_is_marked_only_once_and_the_second_time_a_notice_says_so
     app = PenduApp(LiveScreen(live, lambda: 0.0))
     async with app.run_test(size=(80, 24), notifications=True) as pilot:
         await pilot.press("m", "m")
-        assert [notice.message for notice in app._notifications] == ["Mark at 0.00 s", "Already marked"]
+        assert [notice.message for notice in app._notifications] == [
+            "Mark at 0.00 s",
+            "Already marked",
+        ]
     assert [event.kind for event in live.events].count("mark") == 1

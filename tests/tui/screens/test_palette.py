@@ -41,7 +41,11 @@ async def test_it_has_themes_and_scenes_first_then_keys_with_their_letters_and_a
         assert all(text.startswith("scene ") for text in texts[len(PALETTES) : first])
         keys = {entry.text: entry.key for entry in listed[first:]}
         assert (keys["larger step h"], keys["smaller step h"]) == ("+", "-")
-        assert {"view: Phase space", "chart: zoom out", "copy the command for this moment"} <= keys.keys()
+        assert {
+            "view: Phase space",
+            "chart: zoom out",
+            "copy the command for this moment",
+        } <= keys.keys()
         assert {f"method {method.label}" for method in METHODS} <= keys.keys()
         assert len(texts) == len(set(texts))
 

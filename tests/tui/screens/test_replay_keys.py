@@ -116,9 +116,13 @@ async def test_the_lab_that_goes_on_knows_what_the_replay_knew_even_right_after_
     path = recorded(tmp_path / "drift.mcap", 20.0)
 
     def make(clock: Callable[[], float]) -> ReplayScreen:
-        slowly = itertools.count(0.0, 0.003).__next__  # so that a frame has time for some samples only
+        slowly = itertools.count(
+            0.0, 0.003
+        ).__next__  # so that a frame has time for some samples only
         return ReplayScreen(
-            Replay(Recording.open(path), Marks(path), slowly), lambda live: LiveScreen(live, clock), clock
+            Replay(Recording.open(path), Marks(path), slowly),
+            lambda live: LiveScreen(live, clock),
+            clock,
         )
 
     async with on_stage(make, (120, 40)) as theatre:
@@ -137,7 +141,9 @@ async def test_f_stays_in_the_replay_where_the_lab_could_not_record(path):
         raise UserError("/nowhere is not writable: choose another folder.")
 
     def make(clock: Callable[[], float]) -> ReplayScreen:
-        return ReplayScreen(Replay(Recording.open(path), Marks(path), clock=lambda: 0.0), go_live, clock)
+        return ReplayScreen(
+            Replay(Recording.open(path), Marks(path), clock=lambda: 0.0), go_live, clock
+        )
 
     async with on_stage(make, (120, 40)) as theatre:
         await theatre.press("right", "f")
@@ -152,9 +158,13 @@ async def test_keys_that_would_change_a_lab_say_once_that_a_recording_stays_as_i
     async with player(path) as theatre:
         await theatre.press("i", "M", "plus", "minus", "p", "P", "r", "n")
         (told,) = theatre.app._notifications
-        assert told.message == "A recording cannot be changed: f continues it live, and then it can."
+        assert (
+            told.message == "A recording cannot be changed: f continues it live, and then it can."
+        )
         await theatre.press("m", "t", "b", "comma")  # the replay has its own
-        assert len([each for each in theatre.app._notifications if each.message == told.message]) == 1
+        assert (
+            len([each for each in theatre.app._notifications if each.message == told.message]) == 1
+        )
 
 
 async def test_a_loop_is_set_and_left_and_a_mark_becomes_a_tick(path):

@@ -21,7 +21,14 @@ def on_screen(theatre, kind) -> list[tuple[int, int, int, int]]:
 
 @pytest.mark.parametrize(
     ("size", "pendulums", "charts"),
-    [((60, 16), 1, 0), ((80, 24), 1, 1), ((120, 30), 1, 1), ((81, 50), 1, 1), ((120, 40), 4, 1), ((200, 60), 4, 2)],
+    [
+        ((60, 16), 1, 0),
+        ((80, 24), 1, 1),
+        ((120, 30), 1, 1),
+        ((81, 50), 1, 1),
+        ((120, 40), 4, 1),
+        ((200, 60), 4, 2),
+    ],
 )
 async def test_what_fits_is_shown_and_nothing_is_cut_off(size, pendulums, charts):
     async with lab(size=size) as theatre:

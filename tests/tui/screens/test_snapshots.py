@@ -34,7 +34,9 @@ def _few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def sines() -> int:
-    return crc32(np.sin(ANGLES).tobytes() + np.array([math.sin(angle) for angle in ANGLES]).tobytes())
+    return crc32(
+        np.sin(ANGLES).tobytes() + np.array([math.sin(angle) for angle in ANGLES]).tobytes()
+    )
 
 
 @pytest.mark.parametrize("size", SIZES)
@@ -48,12 +50,17 @@ async def test_every_view_at_every_size(snapshot, text_snapshot, view, size):
 
 @pytest.mark.parametrize("size", SIZES)
 async def test_the_lab_in_light_at_every_size(text_snapshot, size):
-    text_snapshot(f"lab-{size}-light", await still(DEFAULT_SCENE, SECONDS, SIZES[size], TerminalOptions("light")))
+    text_snapshot(
+        f"lab-{size}-light",
+        await still(DEFAULT_SCENE, SECONDS, SIZES[size], TerminalOptions("light")),
+    )
 
 
 @pytest.mark.parametrize("display", DISPLAYS)
 async def test_the_lab_in_other_colours_and_characters(text_snapshot, display):
-    text_snapshot(f"lab-120x40-{display}", await still(DEFAULT_SCENE, SECONDS, (120, 40), DISPLAYS[display]))
+    text_snapshot(
+        f"lab-120x40-{display}", await still(DEFAULT_SCENE, SECONDS, (120, 40), DISPLAYS[display])
+    )
 
 
 async def test_a_replay(snapshot):
@@ -81,12 +88,16 @@ async def test_on_a_terminal_too_small_a_message_gives_the_size_needed(text_snap
 
 
 async def test_the_exact_swing_is_a_ghost_and_hidden_methods_leave_their_room(text_snapshot):
-    text_snapshot("lab-ghost", await still(SCENES["crossover"], SECONDS, (120, 40), keys=["5", "1", "2"]))
+    text_snapshot(
+        "lab-ghost", await still(SCENES["crossover"], SECONDS, (120, 40), keys=["5", "1", "2"])
+    )
 
 
 async def test_the_form_and_the_help_lie_over_the_lab(text_snapshot):
     text_snapshot("lab-form", await still(DEFAULT_SCENE, SECONDS, (80, 24), keys=["i", *"abc"]))
-    text_snapshot("lab-help", await still(DEFAULT_SCENE, SECONDS, (120, 40), keys=["question_mark"]))
+    text_snapshot(
+        "lab-help", await still(DEFAULT_SCENE, SECONDS, (120, 40), keys=["question_mark"])
+    )
 
 
 def test_the_command_writes_the_same_picture(tmp_path, snapshot):

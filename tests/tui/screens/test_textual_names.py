@@ -28,7 +28,10 @@ def below(kind: type) -> Iterator[type]:
         yield from below(each)
 
 
-OURS = sorted({each for each in below(MessagePump) if each.__module__.startswith("tui.")}, key=lambda each: str(each))
+OURS = sorted(
+    {each for each in below(MessagePump) if each.__module__.startswith("tui.")},
+    key=lambda each: str(each),
+)
 
 
 @cache
@@ -36,9 +39,19 @@ def written(kind: type) -> set[str]:
     """The private names that a class's text defines in its body or assigns on self."""
     (body,) = ast.parse(textwrap.dedent(inspect.getsource(kind))).body
     assert isinstance(body, ast.ClassDef)
-    targets = [target for node in body.body for target in getattr(node, "targets", [getattr(node, "target", None)])]
-    names = {node.name for node in body.body if hasattr(node, "name")} | {ast.unparse(each) for each in targets if each}
-    stored = [node for node in ast.walk(body) if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store)]
+    targets = [
+        target
+        for node in body.body
+        for target in getattr(node, "targets", [getattr(node, "target", None)])
+    ]
+    names = {node.name for node in body.body if hasattr(node, "name")} | {
+        ast.unparse(each) for each in targets if each
+    }
+    stored = [
+        node
+        for node in ast.walk(body)
+        if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store)
+    ]
     names |= {node.attr for node in stored if ast.unparse(node.value) == "self"}
     return {name for name in names if name.startswith("_") and not name.endswith("__")}
 
@@ -46,7 +59,9 @@ def written(kind: type) -> set[str]:
 def textuals(kind: type) -> set[str]:
     """The private names of all its bases that are not ours."""
     bases = [base for base in kind.__mro__ if base.__module__.startswith(("textual.", "rich."))]
-    return {name for base in bases for name in (*vars(base), *written(base)) if name.startswith("_")}
+    return {
+        name for base in bases for name in (*vars(base), *written(base)) if name.startswith("_")
+    }
 
 
 @pytest.mark.parametrize("kind", OURS, ids=lambda kind: kind.__name__)

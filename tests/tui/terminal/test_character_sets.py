@@ -14,7 +14,9 @@ BOLD = Style(bold=True)
 
 
 def written(text, character_set):
-    (segment,) = CharacterSetFilter(character_set).apply([Segment(text, BOLD)], Color.parse("black"))
+    (segment,) = CharacterSetFilter(character_set).apply(
+        [Segment(text, BOLD)], Color.parse("black")
+    )
     assert segment.style == BOLD
     return segment.text
 

@@ -204,7 +204,9 @@ def test_a_terminal_that_cannot_move_its_cursor_gets_a_sentence_and_exit_4(libra
 
 @pytest.mark.parametrize("command", [["live"], ["replay", "drift"]])
 def test_without_a_terminal_there_is_a_sentence_and_exit_4(command):
-    done = subprocess.run([*PENDU, *command], capture_output=True, text=True, stdin=subprocess.DEVNULL, check=False)
+    done = subprocess.run(
+        [*PENDU, *command], capture_output=True, text=True, stdin=subprocess.DEVNULL, check=False
+    )
     assert (done.returncode, done.stdout) == (4, "")
     assert "not a terminal" in done.stderr
     assert done.stderr.count("\n") == 1

@@ -33,7 +33,9 @@ def test_on_most_terminals_the_lab_is_dark_in_braille_with_the_mouse_at_30_frame
 @pytest.mark.parametrize("character_set", CHARACTER_SETS)
 def test_what_is_asked_for_is_taken_whatever_the_terminal_says(theme, character_set):
     asked = ("--theme", theme, "--pixels", character_set, "--no-mouse", "--fps", "12")
-    assert chosen(*asked, encoding="ascii", NO_COLOR="1") == TerminalOptions(theme, character_set, False, 12)
+    assert chosen(*asked, encoding="ascii", NO_COLOR="1") == TerminalOptions(
+        theme, character_set, False, 12
+    )
 
 
 @pytest.mark.parametrize(
@@ -72,7 +74,8 @@ def test_colours_are_counted_by_what_the_terminal_is_called(environment, number)
 
 
 @pytest.mark.parametrize(
-    ("encoding", "character_set"), [("UTF-8", "braille"), ("utf8", "braille"), ("iso8859-1", "ascii")]
+    ("encoding", "character_set"),
+    [("UTF-8", "braille"), ("utf8", "braille"), ("iso8859-1", "ascii")],
 )
 def test_without_utf_8_all_is_ascii(encoding, character_set):
     assert chosen(encoding=encoding).character_set == character_set

@@ -27,13 +27,17 @@ def numbers(low: float, high: float) -> st.SearchStrategy[float]:
     """Numbers of every size within limits; the limits themselves are likely."""
     if low <= 0:
         return st.floats(low, high)
-    return st.floats(math.log(low), math.log(high)).map(lambda log: min(max(math.exp(log), low), high))
+    return st.floats(math.log(low), math.log(high)).map(
+        lambda log: min(max(math.exp(log), low), high)
+    )
 
 
 def scenes(model: str) -> st.SearchStrategy[Scene]:
     base = next(scene for scene in SCENES.values() if scene.model == model)
     limits = LIMITS | {name: PARAMETERS[name][3:5] for name in base.parameters}
-    values = st.fixed_dictionaries({name: numbers(*each) for name, each in limits.items()} | {"z": numbers(1e-8, 2.5)})
+    values = st.fixed_dictionaries(
+        {name: numbers(*each) for name, each in limits.items()} | {"z": numbers(1e-8, 2.5)}
+    )
 
     def scene(given: dict[str, float]) -> Scene:
         w0 = math.sqrt(given["gravity"] / given["length"])
@@ -54,15 +58,22 @@ def on_screen(live) -> str:
         *fact_rows(live, Shown(), None, 120),
     ]
     charts = [
-        time_chart(history.window(), scene.cast, Shown(quantity=quantity, log=log), 60, 14).picture.text
+        time_chart(
+            history.window(), scene.cast, Shown(quantity=quantity, log=log), 60, 14
+        ).picture.text
         for quantity in quantities(scene)
         for log in (True, False)
     ]
     lengths = [scene.equations.length(reading.extra) for reading in sample.readings]
-    bobs = [Bob(reading.theta, 0, length=length) for reading, length in zip(sample.readings, lengths, strict=True)]
+    bobs = [
+        Bob(reading.theta, 0, length=length)
+        for reading, length in zip(sample.readings, lengths, strict=True)
+    ]
     picture = pendulum_picture(40, 12, bobs).text
     sentences = [*description(live), insight_text(live), *map(sentence, lasting(live))]
-    return "\n".join(["".join(text for text, _ in row) for row in rows] + charts + [picture] + sentences)
+    return "\n".join(
+        ["".join(text for text, _ in row) for row in rows] + charts + [picture] + sentences
+    )
 
 
 @pytest.mark.parametrize("model", MODELS)

@@ -87,7 +87,9 @@ async def test_a_task_that_is_cancelled_leaves_no_process_and_no_complaint(funct
 
 
 async def test_it_starts_where_stderr_has_no_file_number(monkeypatch):
-    monkeypatch.setattr("multiprocessing.resource_tracker._resource_tracker._fd", None)  # or it has been started
+    monkeypatch.setattr(
+        "multiprocessing.resource_tracker._resource_tracker._fd", None
+    )  # or it has been started
     monkeypatch.setattr("sys.stderr", StringIO())
     monkeypatch.setattr("sys.stderr.fileno", lambda: -1)
     async with aclosing(computed(forever)) as found:
@@ -122,17 +124,30 @@ if __name__ == "__main__":
 """
 
 
-def test_no_process_outlives_a_reader_that_is_killed_and_no_module_of_the_current_folder_is_run(tmp_path):
+def test_no_process_outlives_a_reader_that_is_killed_and_no_module_of_the_current_folder_is_run(
+    tmp_path,
+):
     here, scripts = tmp_path / "here", tmp_path / "scripts"
     for folder in (here, here / "tui", scripts):
         folder.mkdir()
-    for name in ("pickle.py", "numpy.py", "multiprocessing.py", "tui/__init__.py", "sitecustomize.py"):
+    for name in (
+        "pickle.py",
+        "numpy.py",
+        "multiprocessing.py",
+        "tui/__init__.py",
+        "sitecustomize.py",
+    ):
         (here / name).write_text(f"open({str(here / 'marker')!r}, 'w').write({name!r})\n")
     (scripts / "reader.py").write_text(READER)
     command = [sys.executable, str(scripts / "reader.py")]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     with subprocess.Popen(
-        command, cwd=here, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+        command,
+        cwd=here,
+        env=environment,
+        text=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
     ) as reader:
         worker = int(reader.stdout.readline())
         assert is_alive(worker)

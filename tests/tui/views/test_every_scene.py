@@ -22,7 +22,9 @@ def words(theatre):
 
 
 @pytest.mark.parametrize("view", VIEWS)
-async def test_every_scene_has_words_without_nan_in_every_view_before_anything_is_computed(view, monkeypatch):
+async def test_every_scene_has_words_without_nan_in_every_view_before_anything_is_computed(
+    view, monkeypatch
+):
     for each in ("accuracy", "phase", "stability"):
         monkeypatch.setattr(f"tui.views.{each}.view.computed", uncomputed)
     async with lab() as theatre:
@@ -34,7 +36,9 @@ async def test_every_scene_has_words_without_nan_in_every_view_before_anything_i
             assert said
 
 
-@pytest.mark.parametrize(("view", "pane"), [("accuracy", AccuracyPane), ("stability", StabilityPane)])
+@pytest.mark.parametrize(
+    ("view", "pane"), [("accuracy", AccuracyPane), ("stability", StabilityPane)]
+)
 async def test_a_view_that_a_scene_cannot_have_says_why(view, pane):
     async with lab(SCENES["stiff-slow"]) as theatre:
         await theatre.press(key_of(view))
@@ -49,7 +53,9 @@ async def test_its_own_map_is_left_out_with_a_word():
         await theatre.press(key_of("phase"), "x")
         await theatre.run(0.2)
         assert not theatre.stage.query_one("#phase SectionPane", SectionPane).shows_section
-        assert [note.message for note in theatre.app._notifications] == [SCENES["stiff-slow"].why_not_mapped]
+        assert [note.message for note in theatre.app._notifications] == [
+            SCENES["stiff-slow"].why_not_mapped
+        ]
 
 
 async def test_back_at_a_pendulum_chart_and_map_are_computed():

@@ -15,18 +15,32 @@ def words(card: str) -> str:
 @pytest.mark.parametrize("method", METHODS, ids=lambda method: method.key)
 def test_a_method_card_has_every_claim(method):
     card = words(method_card(method))
-    for claim in (method.label, *method.other_names, method.formula, method.reference, method.used or ""):
+    for claim in (
+        method.label,
+        *method.other_names,
+        method.formula,
+        method.reference,
+        method.used or "",
+    ):
         assert words(claim) in card
     assert ("used in" in card) == (method.used is not None)
-    assert f"order {method.order}: as a rule, over one swing half of h divides the error by {2**method.order}" in card
+    assert (
+        f"order {method.order}: as a rule, over one swing half of h divides the error by {2**method.order}"
+        in card
+    )
     assert f"costs {method.force_evaluations} force evaluation" in card
-    assert ("symplectic yes" in card, "reversible yes" in card) == (method.symplectic, method.reversible)
+    assert ("symplectic yes" in card, "reversible yes" in card) == (
+        method.symplectic,
+        method.reversible,
+    )
     if method.linear_limit is None:
         assert "stable up to" not in card
         assert "stable at no h" not in card
     else:
         assert (
-            f"stable up to z = h w0 = {method.linear_limit:.4g}" if method.linear_limit else "stable at no h"
+            f"stable up to z = h w0 = {method.linear_limit:.4g}"
+            if method.linear_limit
+            else "stable at no h"
         ) in card
 
 
@@ -48,7 +62,18 @@ def test_lines_fit_the_text_screen():
 
 
 def test_the_glossary_explains_every_sign_of_a_verdict_that_ends_well_or_badly():
-    for words in ("h ", "z ", "dE/E0", "E/Es", "= bounded", "+ grows", "- loses", "! chaotic", "too early", "colours"):
+    for words in (
+        "h ",
+        "z ",
+        "dE/E0",
+        "E/Es",
+        "= bounded",
+        "+ grows",
+        "- loses",
+        "! chaotic",
+        "too early",
+        "colours",
+    ):
         assert f"\n  {words}" in glossary()
 
 

@@ -58,10 +58,14 @@ numbers = st.fixed_dictionaries(
     parameter=st.floats(1, 30),
     methods=st.randoms(use_true_random=False),
 )
-def test_any_start_is_reproduced_to_the_last_bit(scene, changes, equal_cost, speed, parameter, methods):
+def test_any_start_is_reproduced_to_the_last_bit(
+    scene, changes, equal_cost, speed, parameter, methods
+):
     changes |= dict.fromkeys(scene.parameters, parameter)
     known = [method for method in METHODS if scene.model in method.models]
-    scene = scene.altered(**changes).with_cast(tuple(methods.sample(known, min(len(known), methods.randint(1, 6)))))
+    scene = scene.altered(**changes).with_cast(
+        tuple(methods.sample(known, min(len(known), methods.randint(1, 6))))
+    )
     before = Live(scene, float(f"{speed:g}"))
     if equal_cost:
         before.set_stepping(before.stepping.toggled())
@@ -87,7 +91,9 @@ def test_a_step_changed_before_the_first_one_is_part_of_the_start_but_time_that_
 
 
 def test_a_method_of_ones_own_is_loaded_again_from_its_file(tmp_path):
-    given = options_of(f"pendu-tui live --method '{own_method(tmp_path)},letter=q' --methods mine,rk4")
+    given = options_of(
+        f"pendu-tui live --method '{own_method(tmp_path)},letter=q' --methods mine,rk4"
+    )
     scene = scene_of(given)
     assert scene_of(options_of(command(Live(scene)))) == scene
 

@@ -44,7 +44,10 @@ def test_every_method_has_a_sentence_at_any_time_of_any_scene():
 def test_before_a_verdict_a_method_s_sentence_gives_its_error():
     live = after(SCENES["drift"], 3)
     error = live.sample.readings[RK4].energy_error
-    assert method_sentence(live, RK4) == f"RK4 has an energy error of {error:+.2g}; too early: 1 of 5 swings."
+    assert (
+        method_sentence(live, RK4)
+        == f"RK4 has an energy error of {error:+.2g}; too early: 1 of 5 swings."
+    )
 
 
 @pytest.mark.parametrize(

@@ -68,7 +68,10 @@ def test_where_there_are_several_runs_each_event_has_the_number_of_its_own():
     live = after(DRIFT, 1)
     assert numbered(event_lines(live)) == ["   0.00 start drift, h 0.05 s"]
     live.start(SCENES["spin"])
-    assert numbered(event_lines(live)) == [" 1    0.00 start drift, h 0.05 s", " 2    0.00 start spin, h 0.02 s"]
+    assert numbered(event_lines(live)) == [
+        " 1    0.00 start drift, h 0.05 s",
+        " 2    0.00 start spin, h 0.02 s",
+    ]
 
 
 def test_an_energy_close_to_that_of_the_start_is_given_as_the_difference():
@@ -101,7 +104,11 @@ def test_marks_next_to_a_recording_have_the_time_of_their_step(tmp_path):
             replay.mark(f"at {position}")
             times.append(replay.sample.t)
         marks = [line for line in event_lines(replay) if line.text.startswith("mark")]
-        assert [line.text for line in marks] == ["mark 1: at 1.0", "mark 2: at 3.0", "mark 3: at 4.5"]
+        assert [line.text for line in marks] == [
+            "mark 1: at 1.0",
+            "mark 2: at 3.0",
+            "mark 3: at 4.5",
+        ]
         assert [line.t for line in marks] == pytest.approx(times)
         replay.seek(3.5)
         assert "mark 3: at 4.5" not in [line.text for line in event_lines(replay)]
@@ -135,11 +142,15 @@ async def test_the_pane_shows_the_newest_last_and_only_where_there_is_room():
         await pilot.pause()
         pane = app.source_screen.query_one(EventList)
         app.source_screen.show_now()
-        assert pane.text.splitlines() == [str(line) for line in event_lines(live)][-pane.size.height :]
+        assert (
+            pane.text.splitlines() == [str(line) for line in event_lines(live)][-pane.size.height :]
+        )
         assert pane.size.height >= 4
         await pilot.pause()
         app.source_screen.show_now()
-        assert pane.text.splitlines() == [str(line) for line in event_lines(live)][-pane.size.height :]
+        assert (
+            pane.text.splitlines() == [str(line) for line in event_lines(live)][-pane.size.height :]
+        )
         await pilot.resize_terminal(80, 24)
         await pilot.pause()
         assert not pane.is_on_screen

@@ -42,9 +42,14 @@ def test_the_first_minute_of_the_default_scene():
         lab.run(1)
         chosen[second] = insight(lab.live)
     assert chosen[5].kind == "watch"
-    assert "watch" not in {chosen[second].kind for second in range(20, 46)}  # Explicit Euler, which it names, is gone
+    assert "watch" not in {
+        chosen[second].kind for second in range(20, 46)
+    }  # Explicit Euler, which it names, is gone
     assert (chosen[8].kind, chosen[8].methods[0].letter) == ("over the top with", "e")
-    assert (chosen[18].kind, [each.letter for each in chosen[18].methods]) == ("bounded", ["s", "v"])
+    assert (chosen[18].kind, [each.letter for each in chosen[18].methods]) == (
+        "bounded",
+        ["s", "v"],
+    )
     assert chosen[45].kind in ("bounded", "will pass", "over the top with")
 
 
@@ -65,7 +70,9 @@ def test_news_stays_equally_long_at_any_speed(speed):
         lab.run(1 / FPS)
         happened = any(each.kind == "over the top" for each in lab.live.milestones)
         seen += happened and insight(lab.live).kind == "over the top with"
-    assert seen / FPS == pytest.approx(FRESH, abs=2 / FPS + 0.05 / speed)  # a frame at each end, and a step
+    assert seen / FPS == pytest.approx(
+        FRESH, abs=2 / FPS + 0.05 / speed
+    )  # a frame at each end, and a step
 
 
 def test_lasting_insights_take_turns():
@@ -91,7 +98,13 @@ def test_the_energy_at_the_top_is_that_of_the_milestone():
 
 @pytest.mark.parametrize(
     ("name", "h", "seconds"),
-    [("drift", 0.05, 20), ("drift", 0.05, 60), ("drift", 0.1, 40), ("gentle", 0.1, 40), ("spin", 0.05, 20)],
+    [
+        ("drift", 0.05, 20),
+        ("drift", 0.05, 60),
+        ("drift", 0.1, 40),
+        ("gentle", 0.1, 40),
+        ("spin", 0.05, 20),
+    ],
 )
 def test_a_forecast_comes_true_in_a_long_run(name, h, seconds):
     live = after(SCENES[name].altered(h=h), seconds)
@@ -158,7 +171,11 @@ def test_an_error_past_anothers_maximum_is_compared_with_it():
     readings = live.sample.readings
     found = drift(live, RK4)
     assert (found.kind, [each.letter for each in found.methods]) == ("exceeds", ["r", "v"])
-    assert found.values["ratio"] == abs(readings[RK4].energy_error) / readings[VERLET].max_energy_error > 1
+    assert (
+        found.values["ratio"]
+        == abs(readings[RK4].energy_error) / readings[VERLET].max_energy_error
+        > 1
+    )
 
 
 def test_bounded_methods_have_the_time_behind_the_verdict():
@@ -173,7 +190,10 @@ def test_before_any_verdict_the_largest_errors_so_far_are_compared():
     live = after(SCENES["drift"].altered(theta=1.1), 5)
     errors = [reading.max_energy_error for reading in live.sample.readings]
     found = insight(live)
-    assert (found.kind, found.values) == ("so far", {"least": errors[RK4], "most": errors[EXPLICIT]})
+    assert (found.kind, found.values) == (
+        "so far",
+        {"least": errors[RK4], "most": errors[EXPLICIT]},
+    )
 
 
 def test_a_pendulum_in_equilibrium():
@@ -183,7 +203,9 @@ def test_a_pendulum_in_equilibrium():
 
 
 def test_a_failure_comes_first_and_is_the_only_insight_on_its_method():
-    live = Live(SCENES["drift"].altered(theta=1e-150), clock=lambda: 0.0)  # any growth overflows a relative error
+    live = Live(
+        SCENES["drift"].altered(theta=1e-150), clock=lambda: 0.0
+    )  # any growth overflows a relative error
     while live.sample.readings[EXPLICIT].diverged_at is None:
         live.step(1000)
     found = lasting(live)[0]
@@ -213,7 +235,9 @@ def test_names_are_short_where_they_stay_different():
 
 def test_an_insight_in_words():
     live = after(SCENES["drift"], 40)
-    assert sentence(bounded(live)).startswith("Symplectic Euler and Verlet stay bounded; no trend over ")
+    assert sentence(bounded(live)).startswith(
+        "Symplectic Euler and Verlet stay bounded; no trend over "
+    )
     assert sentence(bounded(live, {"symplectic_euler"})).startswith("Verlet stays bounded")
 
 

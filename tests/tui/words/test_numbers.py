@@ -28,7 +28,9 @@ def test_what_is_written_is_the_number_to_the_digits_that_are_written(value, wid
 
 
 def test_an_angle_keeps_its_decimals_until_the_width_is_used_up_and_then_turns_scientific():
-    assert [decimal(theta, 8) for theta in (1.0, -31.4159265, 12345.6789, -1234567.8, 1.5e9, -1e150)] == [
+    assert [
+        decimal(theta, 8) for theta in (1.0, -31.4159265, 12345.6789, -1234567.8, 1.5e9, -1e150)
+    ] == [
         "  +1.000",
         " -31.416",
         "+12345.7",

@@ -20,7 +20,11 @@ LOST = replace(REGULAR, rotation=None, fraction=None)
     ("method", "kind", "said"),
     [
         (VELOCITY_VERLET, REGULAR, "Regular: 6.3267 steps a turn, nearest 1:6."),
-        (VELOCITY_VERLET, replace(REGULAR, spins=True), "Regular: 6.3267 steps a turn over the top, nearest 1:6."),
+        (
+            VELOCITY_VERLET,
+            replace(REGULAR, spins=True),
+            "Regular: 6.3267 steps a turn over the top, nearest 1:6.",
+        ),
         (VELOCITY_VERLET, ISLAND, "A chain of islands: 3 turns in every 8 steps, 3:8."),
         (
             VELOCITY_VERLET,
@@ -32,11 +36,27 @@ LOST = replace(REGULAR, rotation=None, fraction=None)
             replace(LOST, chaotic=True, lyapunov=0.2108),
             "Chaotic: neighbouring starts separate by a factor of e^0.211 a step.",
         ),
-        (VELOCITY_VERLET, LOST, "Undecided in 4000 steps: regular so far, but without one rotation number."),
+        (
+            VELOCITY_VERLET,
+            LOST,
+            "Undecided in 4000 steps: regular so far, but without one rotation number.",
+        ),
         (VELOCITY_VERLET, replace(LOST, moves=False), "An equilibrium: it stays where it is."),
-        (RK4, replace(LOST, energy_error=-0.3), "It spirals inwards: no rotation number, for it changes on the way."),
-        (RK4, replace(REGULAR, energy_error=0.3), "It spirals outwards, 6.3267 steps a turn, nearest 1:6."),
-        (RK4, replace(REGULAR, energy_error=-4e-7), "A slow spiral: 6.3267 steps a turn, nearest 1:6."),
+        (
+            RK4,
+            replace(LOST, energy_error=-0.3),
+            "It spirals inwards: no rotation number, for it changes on the way.",
+        ),
+        (
+            RK4,
+            replace(REGULAR, energy_error=0.3),
+            "It spirals outwards, 6.3267 steps a turn, nearest 1:6.",
+        ),
+        (
+            RK4,
+            replace(REGULAR, energy_error=-4e-7),
+            "A slow spiral: 6.3267 steps a turn, nearest 1:6.",
+        ),
     ],
     ids=lambda value: value if isinstance(value, str) else "",
 )
@@ -46,7 +66,10 @@ def test_the_orbit_in_a_sentence(method, kind, said):
 
 def test_numbers_that_there_are_not_are_a_hyphen():
     assert cells(VELOCITY_VERLET, LOST) == ("undecided", "-", "-", "-", "+0.0018")
-    assert cells(VELOCITY_VERLET, replace(REGULAR, rotation=0.0, lyapunov=float("inf")))[1:3] == ("0.0000000", "-")
+    assert cells(VELOCITY_VERLET, replace(REGULAR, rotation=0.0, lyapunov=float("inf")))[1:3] == (
+        "0.0000000",
+        "-",
+    )
     assert cells(VELOCITY_VERLET, replace(REGULAR, lyapunov=float("inf")))[-1] == "-"
 
 

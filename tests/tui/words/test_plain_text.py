@@ -32,7 +32,9 @@ def said(source: Source, seconds: float, only: Cast | None = None) -> list[str]:
     """What is said in so many seconds of the clock."""
     clock, sentences = Hour(), []
     end = clock.now + seconds
-    print_run(source, sentences.append, lambda: clock.now >= end, clock.read, clock.sleep, only=only)
+    print_run(
+        source, sentences.append, lambda: clock.now >= end, clock.read, clock.sleep, only=only
+    )
     return sentences
 
 
@@ -68,7 +70,9 @@ def test_what_happened_is_explained_within_a_second():
 
 def test_the_numbers_are_those_of_the_sample():
     live = lab()
-    told = re.findall(r"([A-Z][A-Za-z4 ]+) ([-+][\d.e+-]+\d)", said(live, 5.01)[-1].partition("errors ")[2])
+    told = re.findall(
+        r"([A-Z][A-Za-z4 ]+) ([-+][\d.e+-]+\d)", said(live, 5.01)[-1].partition("errors ")[2]
+    )
     for (name, number), method, reading in zip(told, USUAL_CAST, live.sample.readings, strict=True):
         assert method.label.endswith(name)
         assert float(number) == float(f"{reading.energy_error:+.2g}")

@@ -68,17 +68,27 @@ def test_the_numbers_of_the_first_step():
     period = SCENES["drift"].exact().period
     losses = [after(SCENES["drift"], count * period)[RK].energy_error for count in range(1, 10)]
     assert losses == sorted(losses, reverse=True)
-    assert max(abs(after(SCENES["drift"], 7 * period)[place].energy_error) for place in (SYMPLECTIC, VERLET)) < 0.01
+    assert (
+        max(
+            abs(after(SCENES["drift"], 7 * period)[place].energy_error)
+            for place in (SYMPLECTIC, VERLET)
+        )
+        < 0.01
+    )
 
 
 def test_why_explicit_euler_gains_and_symplectic_euler_does_not():
     scene = WHY.scene
     energies = [1 + after(scene, steps * scene.h)[EXPLICIT].energy_error for steps in range(1, 12)]
     assert scene.z**2 == pytest.approx(0.25)
-    assert all(late / early - 1 == pytest.approx(0.25, abs=0.03) for early, late in pairwise(energies))
+    assert all(
+        late / early - 1 == pytest.approx(0.25, abs=0.03) for early, late in pairwise(energies)
+    )
     assert energies[-1] > 10
     euler = after(scene, 50_000)[SYMPLECTIC]
-    assert (euler.energy_error_low, euler.energy_error_high) == pytest.approx((-0.20, 0.33), abs=0.005)
+    assert (euler.energy_error_low, euler.energy_error_high) == pytest.approx(
+        (-0.20, 0.33), abs=0.005
+    )
     q, p, h = 0.0, 0.3, scene.h  # the ellipse of the linear spring: q² + p² - hqp stays
     for _ in range(100):
         p = p - h * q
@@ -91,7 +101,9 @@ def test_half_the_step_is_a_quarter_of_verlets_error_and_a_thirty_second_of_rk4s
     assert replace(SMALLER.scene, h=2 * SMALLER.scene.h) == SCENES["drift"]
     assert readings[VERLET].max_energy_error == pytest.approx(0.0014, abs=5e-5)
     assert whole[VERLET].max_energy_error == pytest.approx(0.0057, abs=5e-5)
-    assert whole[VERLET].max_energy_error / readings[VERLET].max_energy_error == pytest.approx(4, abs=0.1)
+    assert whole[VERLET].max_energy_error / readings[VERLET].max_energy_error == pytest.approx(
+        4, abs=0.1
+    )
     assert whole[RK].energy_error / readings[RK].energy_error == pytest.approx(32, abs=2)
     assert (VELOCITY_VERLET.order, RK4.order) == (2, 4)
     over = [each.t for each in Walked(SMALLER).source.milestones if each.kind == "over the top"]
@@ -105,9 +117,14 @@ def test_the_crossing_is_for_good_and_a_smaller_step_puts_it_off():
     assert early[RK].max_energy_error < early[VERLET].max_energy_error / 5
     assert Walked(CROSSING).source.sample.t == pytest.approx(33, abs=1)
     late = [after(scene, seconds) for seconds in (50, 100, 200)]
-    assert all(readings[RK].max_energy_error > 1.4 * readings[VERLET].max_energy_error for readings in late)
+    assert all(
+        readings[RK].max_energy_error > 1.4 * readings[VERLET].max_energy_error for readings in late
+    )
     smaller = {minutes: after(replace(scene, h=0.05), 60 * minutes) for minutes in (31, 34)}
-    behind = {minutes: each[RK].max_energy_error > each[VERLET].max_energy_error for minutes, each in smaller.items()}
+    behind = {
+        minutes: each[RK].max_energy_error > each[VERLET].max_energy_error
+        for minutes, each in smaller.items()
+    }
     assert behind == {31: False, 34: True}
 
 
@@ -223,7 +240,11 @@ def test_after_a_change_of_the_run_enter_begins_the_shot_again(change):
     assert not tour.follow()
     assert tour.text == (ASTRAY,)
     tour.forward()
-    assert (tour.stage, tour.live.scene, tour.live.stepping) == ("watching", GAINS.scene, GAINS.stepping)
+    assert (tour.stage, tour.live.scene, tour.live.stepping) == (
+        "watching",
+        GAINS.scene,
+        GAINS.stepping,
+    )
 
 
 def test_equal_cost_of_ones_own_does_not_stay_in_the_tour():
@@ -243,7 +264,9 @@ def printed(stop_at: float = math.inf) -> list[tuple[float, str]]:
         now += seconds
 
     live = Live(SCENES["drift"], clock=lambda: 0.0)
-    print_tour(live, lambda line: lines.append((now, line)), lambda: now > stop_at, lambda: now, sleep)
+    print_tour(
+        live, lambda line: lines.append((now, line)), lambda: now > stop_at, lambda: now, sleep
+    )
     return lines
 
 
@@ -253,7 +276,9 @@ def test_without_a_screen_it_asks_waits_and_answers():
     asked, answered, following = (at for at, _ in lines[2:5])
     assert answered - asked == pytest.approx(THINKING, abs=0.1)
     assert following - answered == pytest.approx(READING, abs=0.1)
-    assert [line for _, line in lines[3::4]] == [f"Answer: {shot.right + 1}. {shot.truth}" for shot in SHOTS]
+    assert [line for _, line in lines[3::4]] == [
+        f"Answer: {shot.right + 1}. {shot.truth}" for shot in SHOTS
+    ]
 
 
 @pytest.mark.parametrize("stop_at", [1.0, 9.0, 15.0])

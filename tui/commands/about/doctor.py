@@ -46,7 +46,9 @@ def run(options: argparse.Namespace) -> int:
         Column("found", "found"),
         Column("advice", lambda check: check["advice"] or "fine"),
     )
-    publish(Report(name="doctor", columns=columns, rows=checks, fields={"findings": checks}), options)
+    publish(
+        Report(name="doctor", columns=columns, rows=checks, fields={"findings": checks}), options
+    )
     return Exit.FINE
 
 
@@ -55,7 +57,11 @@ def _checks() -> Iterator[Check]:
 
     yield lab()
     columns, rows = shutil.get_terminal_size()
-    yield size(columns, rows) if sys.stdout.isatty() else Check("size", "unknown: the output is a file or a pipe")
+    yield (
+        size(columns, rows)
+        if sys.stdout.isatty()
+        else Check("size", "unknown: the output is a file or a pipe")
+    )
     yield encoding(sys.stdout.encoding)
     yield colour(os.environ)
     yield folder(library.folder())
@@ -85,7 +91,11 @@ def size(columns: int, rows: int) -> Check:
 
 
 def encoding(name: str) -> Check:
-    return Check("encoding", name, "" if is_utf8(name) else "braille needs UTF-8: set LANG=C.UTF-8, or PYTHONUTF8=1")
+    return Check(
+        "encoding",
+        name,
+        "" if is_utf8(name) else "braille needs UTF-8: set LANG=C.UTF-8, or PYTHONUTF8=1",
+    )
 
 
 def colour(environment: Mapping[str, str]) -> Check:
@@ -113,7 +123,9 @@ def folder(path: Path) -> Check:
     except OSError as error:
         advice = f"cannot be written ({error.strerror}): set PENDU_RECORDINGS to a writable folder"
         return Check("recordings", str(path), advice)
-    advice = "disk space is low: pendu-tui recordings prune --keep 20 frees some" if free < ROOMY else ""
+    advice = (
+        "disk space is low: pendu-tui recordings prune --keep 20 frees some" if free < ROOMY else ""
+    )
     return Check("recordings", f"{path}, {file_size(free)} free", advice)
 
 
@@ -124,7 +136,9 @@ def sine(golden: Path) -> Check:
 
     with Recording.open(golden) as recording:
         same = recording.runs[0].arithmetic.sin == fingerprint("sin")
-    advice = "" if same else "different libm: recordings made elsewhere verify within a tolerance only"
+    advice = (
+        "" if same else "different libm: recordings made elsewhere verify within a tolerance only"
+    )
     return Check("sin", fingerprint("sin"), advice)
 
 
@@ -132,4 +146,6 @@ def numba() -> Check:
     try:
         return Check("numba", version("numba"))
     except PackageNotFoundError:
-        return Check("numba", "not installed", f"speeds up long runs: {install_advice('numba', 'fast')}")
+        return Check(
+            "numba", "not installed", f"speeds up long runs: {install_advice('numba', 'fast')}"
+        )

@@ -21,7 +21,17 @@ examples:
 """
 
 CLAIMS = (
-    *("key", "label", "letter", "formula", "order", "force_evaluations", "symplectic", "reversible", "linear_limit"),
+    *(
+        "key",
+        "label",
+        "letter",
+        "formula",
+        "order",
+        "force_evaluations",
+        "symplectic",
+        "reversible",
+        "linear_limit",
+    ),
     *("other_names", "reference", "used"),
 )
 MEASURED = (
@@ -35,7 +45,13 @@ z limit: of the linear oscillator, z = h·w0; for the pendulum see pendu-tui sta
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("keys", metavar="KEY", nargs="*", choices=Suggestions(KEYS), help="the methods, as --methods")
+    parser.add_argument(
+        "keys",
+        metavar="KEY",
+        nargs="*",
+        choices=Suggestions(KEYS),
+        help="the methods, as --methods",
+    )
     add_cast_options(parser, "all")
     add_report_options(parser)
 
@@ -57,7 +73,9 @@ def run(options: argparse.Namespace) -> int:
     )
     notes = [NOTE, *(_about(method) for method in methods if options.keys)]
     fields = {"methods": methods, "compiled": available()}
-    publish(Report(name="methods", columns=columns, rows=methods, notes=notes, fields=fields), options)
+    publish(
+        Report(name="methods", columns=columns, rows=methods, notes=notes, fields=fields), options
+    )
     return Exit.FINE
 
 
@@ -76,7 +94,13 @@ def _limit(method: dict[str, Any]) -> str | None:
 
 def _about(method: dict[str, Any]) -> str:
     names = ", ".join((method["label"], *method["other_names"]))
-    return "\n".join(["", f"{names} ({method['letter']})", *filter(None, (method["formula"], method["reference"]))])
+    return "\n".join(
+        [
+            "",
+            f"{names} ({method['letter']})",
+            *filter(None, (method["formula"], method["reference"])),
+        ]
+    )
 
 
 def _measured(cast: Cast) -> list[dict[str, Any]]:

@@ -20,7 +20,9 @@ examples:
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("key", metavar="SCENE", nargs="?", choices=Suggestions(SCENES), help="the scene to show")
+    parser.add_argument(
+        "key", metavar="SCENE", nargs="?", choices=Suggestions(SCENES), help="the scene to show"
+    )
     add_report_options(parser)
 
 

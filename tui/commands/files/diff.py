@@ -55,7 +55,9 @@ def _report(result: "Comparison") -> Report:
     notes: list[Any] = [_first(result.first)] if result.first else []
     if result.done:
         columns = (Column("done differently", "at"), Column("A", "a"), Column("B", "b"))
-        notes.append(Table(columns, [dict(zip(("at", "a", "b"), each, strict=True)) for each in result.done]))
+        notes.append(
+            Table(columns, [dict(zip(("at", "a", "b"), each, strict=True)) for each in result.done])
+        )
     return Report(
         name="diff",
         title="identical" if result.identical else title,

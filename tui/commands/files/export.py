@@ -31,8 +31,12 @@ Rows = Iterator[tuple[object, ...]]
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_recording(parser)
-    parser.add_argument("--format", choices=("csv", "parquet"), default="csv", help="output format (%(default)s)")
-    add_file(parser, "-o", "--output", metavar="OUT", type=Path, help="write to OUT instead of stdout")
+    parser.add_argument(
+        "--format", choices=("csv", "parquet"), default="csv", help="output format (%(default)s)"
+    )
+    add_file(
+        parser, "-o", "--output", metavar="OUT", type=Path, help="write to OUT instead of stdout"
+    )
     parser.add_argument("--force", action="store_true", help="overwrite OUT")
 
 

@@ -51,7 +51,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--force", action="store_true", help="overwrite OUT")
     group = parser.add_argument_group("prune")
     group.add_argument("--keep", metavar="N", type=count, help="keep the N newest")
-    group.add_argument("--size", metavar="SIZE", type=size, help="keep the newest up to SIZE in total, e.g. 500MB")
+    group.add_argument(
+        "--size", metavar="SIZE", type=size, help="keep the newest up to SIZE in total, e.g. 500MB"
+    )
     group.add_argument("--yes", action="store_true", help="delete without asking")
 
 
@@ -92,14 +94,18 @@ def _list(options: argparse.Namespace) -> Report:
 
     rows = [_facts(item) for item in library.listing()]
     folder = printable(str(library.folder()))
-    being_made = [f"recording now: {printable(str(path.with_suffix('')))}" for path in library.being_made()]
+    being_made = [
+        f"recording now: {printable(str(path.with_suffix('')))}" for path in library.being_made()
+    ]
     unfinished = [
         f"unfinished: {printable(str(path))}; will be recovered the next time the lab starts"
         for path in library.leftovers()
     ]
     columns = (
         Column("recording, newest first", "file"),
-        Column("finished", lambda row: time.strftime("%Y-%m-%d %H:%M", time.localtime(row["modified"]))),
+        Column(
+            "finished", lambda row: time.strftime("%Y-%m-%d %H:%M", time.localtime(row["modified"]))
+        ),
         Column("scenes", lambda row: row["reason"] or ", ".join(row["scenes"])),
         Column("length", lambda row: row["seconds"] and seconds(row["seconds"]), right=True),
         Column("size", lambda row: file_size(row["bytes"]), right=True),
@@ -121,7 +127,11 @@ def _facts(item: "Item") -> dict[str, Any]:
     try:
         with Recording.open(item.path) as recording:
             scenes = list(dict.fromkeys(run.scene.name for run in recording.runs))
-            return facts | {"seconds": recording.length, "scenes": scenes, "reason": recording.reason}
+            return facts | {
+                "seconds": recording.length,
+                "scenes": scenes,
+                "reason": recording.reason,
+            }
     except RecordingError as error:
         return facts | {"seconds": None, "scenes": [], "reason": str(error)}
 
@@ -141,7 +151,11 @@ def _show(options: argparse.Namespace) -> Report:
 def _contents(recording: "Recording") -> Report:
     runs = [
         {"run": run.number, "scene": run.scene.fields(), "steps": run.steps, "time": run.t}
-        | {"seconds": run.end - run.begin, "inputs": run.inputs, "numerics": run.arithmetic.numerics}
+        | {
+            "seconds": run.end - run.begin,
+            "inputs": run.inputs,
+            "numerics": run.arithmetic.numerics,
+        }
         for run in recording.runs
     ]
     health = recording.reason or "complete"
@@ -216,7 +230,9 @@ def _prune(options: argparse.Namespace) -> Report:
     from recordings import library
 
     if options.keep is None and options.size is None:
-        raise UserError("specify what to keep: --keep 20 for the newest 20, or --size 500MB for what fits.")
+        raise UserError(
+            "specify what to keep: --keep 20 for the newest 20, or --size 500MB for what fits."
+        )
     doomed = library.to_prune(library.listing(), options.keep, options.size)
     if doomed and not options.yes and not _confirmed(doomed):
         doomed = []

@@ -28,14 +28,22 @@ examples:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_scene_options(parser)
-    parser.add_argument("--speed", metavar="X", type=positive, help="multiple of real time (default: the scene's)")
+    parser.add_argument(
+        "--speed", metavar="X", type=positive, help="multiple of real time (default: the scene's)"
+    )
     parser.add_argument(
         "--equal-cost",
         action="store_true",
         help="all methods need as many force evaluations: the cheaper take smaller steps",
     )
     recording = parser.add_mutually_exclusive_group()
-    add_file(recording, "--record", metavar="FILE", type=Path, help="record to FILE instead of the data folder")
+    add_file(
+        recording,
+        "--record",
+        metavar="FILE",
+        type=Path,
+        help="record to FILE instead of the data folder",
+    )
     recording.add_argument("--no-record", action="store_true", help="do not record")
     ghost = "lay a recording under the lab, dimmed; without --scene the lab starts as it did"
     add_recording(parser, "--ghost", help=ghost, metavar="FILE|latest|NAME")

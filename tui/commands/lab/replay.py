@@ -21,13 +21,21 @@ examples:
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_recording(parser, metavar="FILE|latest|NAME", help="a file, latest, or a bundled recording")
     parser.add_argument(
-        "--start-at", metavar="S", type=number, default=0.0, help="start S seconds into the recording (%(default)g)"
+        "--start-at",
+        metavar="S",
+        type=number,
+        default=0.0,
+        help="start S seconds into the recording (%(default)g)",
     )
     add_cast_options(parser, "all of the recording's")
-    parser.add_argument("--speed", metavar="X", type=positive, default=1.0, help="playback speed (%(default)g)")
+    parser.add_argument(
+        "--speed", metavar="X", type=positive, default=1.0, help="playback speed (%(default)g)"
+    )
     parser.add_argument("--loop", action="store_true", help="loop")
     parser.add_argument("--paused", action="store_true", help="start paused")
-    parser.add_argument("--no-record", action="store_true", help="do not record when continuing live")
+    parser.add_argument(
+        "--no-record", action="store_true", help="do not record when continuing live"
+    )
     add_terminal_options(parser)
 
 
@@ -42,7 +50,9 @@ def run(options: argparse.Namespace) -> int:
     launch.check(options)
     replay = launch.open_replay(path)
     if not 0 <= options.start_at <= replay.length:
-        raise UserError(f"--start-at {options.start_at:g} is outside the recording; use 0 to {replay.length:.2f} s.")
+        raise UserError(
+            f"--start-at {options.start_at:g} is outside the recording; use 0 to {replay.length:.2f} s."
+        )
     replay.set_speed(options.speed)
     replay.looping = options.loop
     replay.seek(options.start_at)

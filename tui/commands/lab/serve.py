@@ -23,9 +23,18 @@ From another computer: ssh -L 8000:127.0.0.1:8000 HOST, then open http://127.0.0
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--port", metavar="N", type=port, default=8000, help="where to listen (%(default)s; 0: any)")
-    parser.add_argument("--host", metavar="ADDRESS", default="127.0.0.1", help="this computer's address (%(default)s)")
-    parser.add_argument("--at-most", metavar="N", type=count, default=20, help="labs at once (%(default)s)")
+    parser.add_argument(
+        "--port", metavar="N", type=port, default=8000, help="where to listen (%(default)s; 0: any)"
+    )
+    parser.add_argument(
+        "--host",
+        metavar="ADDRESS",
+        default="127.0.0.1",
+        help="this computer's address (%(default)s)",
+    )
+    parser.add_argument(
+        "--at-most", metavar="N", type=count, default=20, help="labs at once (%(default)s)"
+    )
     add_file(parser, "--record", metavar="FOLDER", type=Path, help="record every lab into FOLDER")
     add_scene_options(parser)
     add_picture_options(parser, "dark", "braille")
@@ -37,7 +46,9 @@ def run(options: argparse.Namespace) -> int:
     try:
         from tui.commands.lab.web.server import serve
     except ImportError as error:
-        raise UserError(f"serve needs {error.name}: {install_advice('textual-serve', 'web')}.") from None
+        raise UserError(
+            f"serve needs {error.name}: {install_advice('textual-serve', 'web')}."
+        ) from None
     folder = None if options.record is None else recording_folder(options.record)
     settings = (scene, terminal_options_of(options, {}, "utf-8"), folder)
 
@@ -47,7 +58,10 @@ def run(options: argparse.Namespace) -> int:
                 f"everybody who can reach {options.host} can use this computer's processor in up to"
                 f" {options.at_most} labs, without a password or encryption."
             )
-        print(f"{address} shows the lab, {options.at_most} at once at most; Ctrl+C ends it.", flush=True)
+        print(
+            f"{address} shows the lab, {options.at_most} at once at most; Ctrl+C ends it.",
+            flush=True,
+        )
 
     try:
         serve(settings, options.host, options.port, options.at_most, listening)
@@ -55,14 +69,18 @@ def run(options: argparse.Namespace) -> int:
         number = getattr(error, "errno", 0) or 0
         why = os.strerror(number) if number > 0 else error
         where = f"{options.host} port {options.port}"
-        raise UserError(f"cannot listen on {where}: {why}; choose another --port or --host.") from None
+        raise UserError(
+            f"cannot listen on {where}: {why}; choose another --port or --host."
+        ) from None
     return Exit.FINE
 
 
 def port(text: str) -> int:
     """A port, 0 to 65535."""
     if not (text.isdecimal() and text.isascii() and len(text) <= 5 and int(text) <= 65535):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a port; use 1024 to 65535, or 0 for any that is free")
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not a port; use 1024 to 65535, or 0 for any that is free"
+        )
     return int(text)
 
 

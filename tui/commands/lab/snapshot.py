@@ -20,10 +20,22 @@ LONGEST = 3600.0  # s
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_scene_options(parser)
-    parser.add_argument("--time", metavar="S", type=moment, default=12.0, help="simulated seconds (%(default)g)")
-    parser.add_argument("--size", metavar="CxR", type=cells, default=(120, 40), help="columns x rows (120x40)")
+    parser.add_argument(
+        "--time", metavar="S", type=moment, default=12.0, help="simulated seconds (%(default)g)"
+    )
+    parser.add_argument(
+        "--size", metavar="CxR", type=cells, default=(120, 40), help="columns x rows (120x40)"
+    )
     add_picture_options(parser, "dark", "braille")
-    add_file(parser, "-o", "--output", metavar="FILE.svg", type=picture, required=True, help="the image to write")
+    add_file(
+        parser,
+        "-o",
+        "--output",
+        metavar="FILE.svg",
+        type=picture,
+        required=True,
+        help="the image to write",
+    )
     parser.add_argument("--force", action="store_true", help="overwrite FILE.svg")
 
 
@@ -35,7 +47,9 @@ def run(options: argparse.Namespace) -> int:
 
     display = terminal_options_of(options, os.environ, "utf-8")
     with whole_file(options.output, options.force) as file:
-        file.write_text(asyncio.run(still(scene, options.time, options.size, display)), encoding="utf-8")
+        file.write_text(
+            asyncio.run(still(scene, options.time, options.size, display)), encoding="utf-8"
+        )
     return Exit.FINE
 
 
@@ -43,7 +57,9 @@ def picture(text: str) -> Path:
     """An .svg file, or a device."""
     path = Path(text)
     if path.suffix.lower() != ".svg" and (path.is_file() or not path.exists()):
-        raise argparse.ArgumentTypeError(f"the image is an SVG; write it to {path.stem}.svg instead of {text!r}")
+        raise argparse.ArgumentTypeError(
+            f"the image is an SVG; write it to {path.stem}.svg instead of {text!r}"
+        )
     return path
 
 

@@ -46,7 +46,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add("--error", choices=("theta", "energy", "final"), default="theta", help=kinds)
     costs = "force evaluations, or measured seconds, without Numba where a method is your own (%(default)s)"
     add("--cost", choices=("evaluations", "seconds"), default="evaluations", help=costs)
-    add("--target", metavar="ERROR", type=positive, help="find the cheapest method and h for this error")
+    add(
+        "--target",
+        metavar="ERROR",
+        type=positive,
+        help="find the cheapest method and h for this error",
+    )
     limit = "limit of force evaluations; alone: find the least error within it"
     add("--budget", metavar="N", type=positive, help=limit)
     add("--no-compiled", action="store_true", help="do not use Numba (results are identical)")
@@ -67,7 +72,9 @@ def h_values(text: str) -> tuple[float, float, int]:
         case [first, last, many] if count(many) <= MAX_RUNGS:
             low, high = sorted((positive(first), positive(last)))
             return high, low, count(many)
-    raise argparse.ArgumentTypeError(f"{text!r} is not a list of step sizes; use A:B:N, for example 0.2:0.001:10")
+    raise argparse.ArgumentTypeError(
+        f"{text!r} is not a list of step sizes; use A:B:N, for example 0.2:0.001:10"
+    )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -82,9 +89,13 @@ def run(options: argparse.Namespace) -> int:
     if options.all:
         scene = with_all_methods(scene)
     if scene.theta == scene.omega == 0:
-        raise UserError("the pendulum hangs at rest, so there is no error to measure; use another --theta or --omega.")
+        raise UserError(
+            "the pendulum hangs at rest, so there is no error to measure; use another --theta or --omega."
+        )
     if options.budget is not None and not 1 <= options.budget <= MAX_BUDGET:
-        raise UserError(f"--budget {options.budget:g} is out of range; use 1 to {MAX_BUDGET:g} force evaluations.")
+        raise UserError(
+            f"--budget {options.budget:g} is out of range; use 1 to {MAX_BUDGET:g} force evaluations."
+        )
     durations = options.time or [usual(scene)[0]]
     rungs = _ladder(scene, durations[-1], options.h_values, options.all)
     if options.output:
@@ -101,7 +112,9 @@ def run(options: argparse.Namespace) -> int:
         all=options.all,
     )
     try:
-        fast = available() if options.cost == "evaluations" else compilable(scene.cast)  # all, or none is
+        fast = (
+            available() if options.cost == "evaluations" else compilable(scene.cast)
+        )  # all, or none is
         _fill(found, durations, rungs, fast and not options.no_compiled)
     except KeyboardInterrupt:
         found.interrupted = True
@@ -126,7 +139,9 @@ def _fill(found: "Findings", durations: list[float], rungs: list[int], fast: boo
     with progress("measuring") as show:
         for point in study.points(rungs):
             if found.cost == "seconds":
-                point = timed(point, scene, time.perf_counter, compiled.compiled if fast else loops.PlainLoops)
+                point = timed(
+                    point, scene, time.perf_counter, compiled.compiled if fast else loops.PlainLoops
+                )
             found.points.append(point)
             done += point.steps
             show(done, steps)
@@ -146,9 +161,16 @@ def _fill(found: "Findings", durations: list[float], rungs: list[int], fast: boo
             found.advice.append(_advice(found, longer, fast, show_share))
 
 
-def _advice(found: "Findings", study: "Study", fast: bool, show: Callable[[float], None]) -> "Advice":
+def _advice(
+    found: "Findings", study: "Study", fast: bool, show: Callable[[float], None]
+) -> "Advice":
     """Return what is recommended for the time of a study."""
-    from engine.accuracy.advice import least_error, least_evaluations, least_seconds, with_saving_over_rk4
+    from engine.accuracy.advice import (
+        least_error,
+        least_evaluations,
+        least_seconds,
+        with_saving_over_rk4,
+    )
     from engine.run import compiled, loops
 
     if found.target is None:
@@ -157,11 +179,15 @@ def _advice(found: "Findings", study: "Study", fast: bool, show: Callable[[float
     if found.cost == "evaluations":
         advice = least_evaluations(*wish)
     else:
-        advice = least_seconds(*wish, time.perf_counter, compiled.compiled if fast else loops.PlainLoops)
+        advice = least_seconds(
+            *wish, time.perf_counter, compiled.compiled if fast else loops.PlainLoops
+        )
     return with_saving_over_rk4(advice, study, found.kind, found.target) if found.all else advice
 
 
-def _ladder(scene: Scene, time: float, given: tuple[float, float, int] | None, all: bool) -> list[int]:
+def _ladder(
+    scene: Scene, time: float, given: tuple[float, float, int] | None, all: bool
+) -> list[int]:
     """Return the numbers of steps to measure; for all methods, from where the most accurate ones begin."""
     from engine.accuracy.study import ALL_LADDER, Z_LADDER, ladder
 
@@ -173,7 +199,11 @@ def _ladder(scene: Scene, time: float, given: tuple[float, float, int] | None, a
     for h in (largest, smallest):
         check_h(h, scene.w0)
     if given and largest > time:
-        raise UserError(f"h = {largest:g} s is longer than the time of {time:g} s; use a longer --time.")
+        raise UserError(
+            f"h = {largest:g} s is longer than the time of {time:g} s; use a longer --time."
+        )
     if time / smallest > MAX_STEPS:
-        raise UserError(f"{time:g} s in steps of {smallest:.2g} s take hours; use --h-values, for example 0.2:0.01:8.")
+        raise UserError(
+            f"{time:g} s in steps of {smallest:.2g} s take hours; use --h-values, for example 0.2:0.01:8."
+        )
     return ladder(time, largest, smallest, rungs)

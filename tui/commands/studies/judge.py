@@ -32,7 +32,9 @@ examples:
   ./game --headless | pendu-tui judge - --time 1 --energy 4 --fail-if 'max_energy_error > 1e-2'
 
 verdicts:
-""" + "\n".join(f"  {verdict}: {text}" for verdict, text in DEFINITIONS.items() if verdict != "chaotic")
+""" + "\n".join(
+    f"  {verdict}: {text}" for verdict, text in DEFINITIONS.items() if verdict != "chaotic"
+)
 
 FIELDS = (
     "max_energy_error",
@@ -49,16 +51,43 @@ FIELDS = (
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    add_file(parser, "files", metavar="FILE", nargs="+", help="a table of times and energies; - for stdin")
+    add_file(
+        parser,
+        "files",
+        metavar="FILE",
+        nargs="+",
+        help="a table of times and energies; - for stdin",
+    )
     add = parser.add_argument
-    for name, what in (("--time", "of times"), ("--energy", "of total energies, or several joined by +")):
-        add(name, metavar="COLUMN", required=True, help=f"the column {what}, by name or number from 1")
+    for name, what in (
+        ("--time", "of times"),
+        ("--energy", "of total energies, or several joined by +"),
+    ):
+        add(
+            name,
+            metavar="COLUMN",
+            required=True,
+            help=f"the column {what}, by name or number from 1",
+        )
     add("--table", metavar="N", type=count, help="judge table N (default: the last one)")
-    add("--from", metavar="T", dest="start", type=float, default=-LATEST, help="judge from time T on")
-    add("--scale", default="first", help="errors are relative to first, std, kinetic:COLUMN, or a number")
+    add(
+        "--from",
+        metavar="T",
+        dest="start",
+        type=float,
+        default=-LATEST,
+        help="judge from time T on",
+    )
+    add(
+        "--scale",
+        default="first",
+        help="errors are relative to first, std, kinetic:COLUMN, or a number",
+    )
     add("--atoms", metavar="N", type=count, help="give the trend per ns and atom")
     add("--temperature", metavar="K", type=positive, help="give it in kT, too")
-    add("--steps", metavar="H,H", help="the step sizes of the files: how do the errors follow them?")
+    add(
+        "--steps", metavar="H,H", help="the step sizes of the files: how do the errors follow them?"
+    )
     add(
         "--fail-if",
         metavar="EXPR",
@@ -94,7 +123,11 @@ def run(options: argparse.Namespace) -> int:
         failure = f"the check failed: {options.fail_if} ({'; '.join(dict.fromkeys(tripped))})"
         warn(failure)
     if options.junit:
-        check = Check(f"{options.energy}: {options.fail_if or 'no check'}", "; ".join(map(" ".join, lines)), failure)
+        check = Check(
+            f"{options.energy}: {options.fail_if or 'no check'}",
+            "; ".join(map(" ".join, lines)),
+            failure,
+        )
         write_junit(options.junit, f"pendu-tui judge {' '.join(options.files)}", [check])
     failed = any(fields["verdict"] == "failed" for fields in results)
     return Exit.CHECK_FAILED if failure or failed else Exit.FINE
@@ -104,14 +137,22 @@ def _steps(options: argparse.Namespace) -> list[float]:
     """Return the step sizes of the files, if they are given."""
     if options.steps is None:
         if len(options.files) > 1:
-            raise UserError("several files are judged together with --steps, for example --steps 1,2.")
+            raise UserError(
+                "several files are judged together with --steps, for example --steps 1,2."
+            )
         return []
     try:
         steps = [float(text) for text in options.steps.split(",")]
     except ValueError:
         steps = []
-    if len(steps) != len(options.files) or len(set(steps)) < 2 or not all(0 < h < math.inf for h in steps):
-        raise UserError("--steps takes a step size for each of two or more files, for example --steps 1,2.")
+    if (
+        len(steps) != len(options.files)
+        or len(set(steps)) < 2
+        or not all(0 < h < math.inf for h in steps)
+    ):
+        raise UserError(
+            "--steps takes a step size for each of two or more files, for example --steps 1,2."
+        )
     return steps
 
 
@@ -123,7 +164,9 @@ def _scale(text: str) -> float | str:
         return positive(text)
     except (argparse.ArgumentTypeError, ValueError):
         name = repr(printable(text, 40))
-        raise UserError(f"--scale {name} is none of first, std, kinetic:COLUMN and a positive number.") from None
+        raise UserError(
+            f"--scale {name} is none of first, std, kinetic:COLUMN and a positive number."
+        ) from None
 
 
 def _judge(name: str, options: argparse.Namespace, scale: float | str) -> dict[str, Any]:
@@ -147,8 +190,12 @@ def _check(table: Table) -> None:
             Exit.INPUT_UNREADABLE,
         )
     if rows == 0:
-        rows_skipped = ", ".join(f"{number} {REASONS[why]}" for why, number in table.skipped.items() if number)
-        raise UserError(f"no row has a usable time and energy; skipped: {rows_skipped}.", Exit.INPUT_UNREADABLE)
+        rows_skipped = ", ".join(
+            f"{number} {REASONS[why]}" for why, number in table.skipped.items() if number
+        )
+        raise UserError(
+            f"no row has a usable time and energy; skipped: {rows_skipped}.", Exit.INPUT_UNREADABLE
+        )
 
 
 @contextmanager
@@ -159,6 +206,10 @@ def _input(name: str) -> Iterator[BinaryIO]:
         with open(source, "rb", closefd=source != 0) as stream:
             yield stream
     except OSError as error:
-        raise UserError(f"{printable(name)}: {error.strerror or error}.", Exit.INPUT_UNREADABLE) from None
+        raise UserError(
+            f"{printable(name)}: {error.strerror or error}.", Exit.INPUT_UNREADABLE
+        ) from None
     except MemoryError:
-        raise UserError(f"{printable(name)} does not fit into memory.", Exit.INPUT_UNREADABLE) from None
+        raise UserError(
+            f"{printable(name)} does not fit into memory.", Exit.INPUT_UNREADABLE
+        ) from None

@@ -45,9 +45,20 @@ MAX_BATCH = 1_000_000  # steps, about a second; Ctrl+C is noticed between batche
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_scene_options(parser)
     parser.add_argument("--time", metavar="S", type=positive, help="simulated time in s; required")
-    add_file(parser, "--record", metavar="FILE", type=Path, help="record to FILE (the same bytes each time)")
+    add_file(
+        parser,
+        "--record",
+        metavar="FILE",
+        type=Path,
+        help="record to FILE (the same bytes each time)",
+    )
     parser.add_argument("--force", action="store_true", help="overwrite FILE")
-    parser.add_argument("--sample-every", metavar="N", type=count, help="record every N steps (default: every 1/30 s)")
+    parser.add_argument(
+        "--sample-every",
+        metavar="N",
+        type=count,
+        help="record every N steps (default: every 1/30 s)",
+    )
     names = (f"{method.key}.{field}" for method in METHODS for field in (*FIELDS, "verdict"))
     parser.add_argument(
         "--fail-if",
@@ -55,7 +66,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         choices=Suggestions(names),
         help="exit 1 if it is true, e.g. rk4.max_energy_error > 1e-3 (fields: see --json)",
     )
-    parser.add_argument("--no-compiled", action="store_true", help="do not use Numba (same results)")
+    parser.add_argument(
+        "--no-compiled", action="store_true", help="do not use Numba (same results)"
+    )
     add_report_options(parser, csv=True)
 
 
@@ -105,11 +118,15 @@ def _steps(scene: Scene, seconds: float | None) -> int:
         raise UserError(f"--time {seconds:g} is out of range; use at most {MAX_TIME:g} s.")
     steps = steps_for(scene, seconds)
     if steps == 0:
-        raise UserError(f"--time {seconds:g} s is shorter than one step of {scene.h:g} s; use a longer time.")
+        raise UserError(
+            f"--time {seconds:g} s is shorter than one step of {scene.h:g} s; use a longer time."
+        )
     return steps
 
 
-def _simulate(scene: Scene, options: argparse.Namespace, steps: int) -> "tuple[Sample, Lockstep, bool]":
+def _simulate(
+    scene: Scene, options: argparse.Namespace, steps: int
+) -> "tuple[Sample, Lockstep, bool]":
     """Return the last sample, its lockstep, and whether a signal stopped the run before its end."""
     from engine.run import compiled, loops
     from engine.run.lockstep import Lockstep
@@ -124,7 +141,9 @@ def _simulate(scene: Scene, options: argparse.Namespace, steps: int) -> "tuple[S
         _warn_of_size(steps, every)
         recorder = Recorder(options.record, wall=None, overwrite=options.force)
     tiered = partial(compiled.TieredLoops, expected_steps=steps)
-    lockstep = Lockstep(scene, loops=loops.PlainLoops if options.no_compiled else tiered, judged=True)
+    lockstep = Lockstep(
+        scene, loops=loops.PlainLoops if options.no_compiled else tiered, judged=True
+    )
     with stop_requests() as stopped, progress(f"{steps:,} steps") as show, recorder as recording:
         for sample in simulate(scene, options.time, recording, every, lockstep=lockstep):
             show(sample.step, steps)

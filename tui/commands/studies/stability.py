@@ -50,18 +50,33 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     what = parser.add_mutually_exclusive_group()
     what.add_argument("--map", action="store_true", help="draw the map: z on x, amplitude on y")
-    what.add_argument("--section", action="store_true", help="draw the phase portrait of the first of the methods")
+    what.add_argument(
+        "--section", action="store_true", help="draw the phase portrait of the first of the methods"
+    )
     thetas = f"amplitudes in rad or deg: 0.5,1,2 or {LIST} (0.1, 0.5, 1, 2, 3 and the scene's; of a map 100)"
     add("--theta-values", metavar="LIST", type=values(angle), help=thetas)
     zs = f"z = h·w0: 0.5,1 or {LIST} (one every 1 %% up to 3.2; of a map 200 up to 3)"
     add("--z-values", metavar="LIST", type=values(number), help=zs)
-    add("--steps", metavar="N", type=count, help=f"steps of each swing ({STEPS}), or orbit ({SECTION_STEPS})")
+    add(
+        "--steps",
+        metavar="N",
+        type=count,
+        help=f"steps of each swing ({STEPS}), or orbit ({SECTION_STEPS})",
+    )
     add("--starts", metavar="N", type=count, default=300, help="orbits of --section (%(default)s)")
     add("--size", metavar="CxR", type=cells, help="columns x rows of --section (the terminal's)")
     add_report_options(parser, csv=True, files=(".npz", ".csv", ".json", ".svg", ".txt"))
     where = parser.add_mutually_exclusive_group()
-    where.add_argument("--workers", metavar="N", type=count, default=1, help="processes on this machine (%(default)s)")
-    where.add_argument("--dask", metavar="ADDRESS", help="a Dask scheduler, such as tcp://10.0.0.1:8786")
+    where.add_argument(
+        "--workers",
+        metavar="N",
+        type=count,
+        default=1,
+        help="processes on this machine (%(default)s)",
+    )
+    where.add_argument(
+        "--dask", metavar="ADDRESS", help="a Dask scheduler, such as tcp://10.0.0.1:8786"
+    )
     add_picture_options(parser, "auto", "auto")
 
 
@@ -72,11 +87,17 @@ def values(element: Callable[[str], float]) -> Callable[[str], list[float]]:
         match text.split(":"):
             case [_]:
                 return sorted({element(part) for part in text.split(",")})
-            case [first, last, many] if 2 <= count(many) <= MAX_VALUES and element(first) < element(last):
+            case [first, last, many] if 2 <= count(many) <= MAX_VALUES and element(first) < element(
+                last
+            ):
                 low = element(first)
                 gaps = count(many) - 1
-                return [low + (element(last) - low) * i / gaps for i in range(gaps)] + [element(last)]
-        raise argparse.ArgumentTypeError(f"{text!r} is not a list of values; use 0.5,1,2 or 0.1:3:30 ({LIST})")
+                return [low + (element(last) - low) * i / gaps for i in range(gaps)] + [
+                    element(last)
+                ]
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not a list of values; use 0.5,1,2 or 0.1:3:30 ({LIST})"
+        )
 
     return read
 
@@ -112,7 +133,9 @@ def run(options: argparse.Namespace) -> int:
 
 def _section(scene: Scene, options: argparse.Namespace, suffix: str) -> int:
     if options.csv or suffix in (".npz", ".csv"):
-        raise UserError("--section is a picture; write it to a file that ends in .svg or .txt, or use --json.")
+        raise UserError(
+            "--section is a picture; write it to a file that ends in .svg or .txt, or use --json."
+        )
     from tui.commands.studies.reports import section
 
     return section.run(scene, options, options.steps or SECTION_STEPS)
@@ -129,7 +152,9 @@ def _grids(scene: Scene, options: argparse.Namespace, steps: int, suffix: str) -
         grids.append(map_of(scene, options.theta_values, options.z_values, steps))
     for grid in grids:
         if math.prod(grid.shape) > MAX_SWINGS:
-            raise UserError(f"{math.prod(grid.shape)} swings are too many; use at most {MAX_SWINGS}.")
+            raise UserError(
+                f"{math.prod(grid.shape)} swings are too many; use at most {MAX_SWINGS}."
+            )
     if options.output:
         check_free(options.output, options.force)
     return grids
@@ -174,7 +199,9 @@ def _check(scene: Scene, options: argparse.Namespace, steps: int) -> None:
     ):
         for value in numbers:
             if not low < value < high:  # also refuses nan
-                raise UserError(f"{what} {value:g} is out of range; it must lie between {low:g} and {high:g}.")
+                raise UserError(
+                    f"{what} {value:g} is out of range; it must lie between {low:g} and {high:g}."
+                )
 
 
 @contextmanager
@@ -205,4 +232,6 @@ def _dask(address: str) -> Any:
         advice = install_advice("distributed", "cluster")
         raise UserError(f"--dask needs the package distributed: {advice}.") from None
     except (OSError, ValueError) as error:
-        raise UserError(f"no Dask scheduler answers at {address!r}: {type(error).__name__}; is it running?") from None
+        raise UserError(
+            f"no Dask scheduler answers at {address!r}: {type(error).__name__}; is it running?"
+        ) from None

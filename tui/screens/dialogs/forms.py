@@ -129,7 +129,10 @@ FIELDS: dict[str, tuple[str, Callable[[str], float]]] = {
     "h": ("s, the step size", number),
     "length": ("m", number),
     "gravity": ("m/s²", number),
-    **{each.name: (f"{each.unit}, {each.min:g} to {each.max:g}", number) for each in PARAMETERS.values()},
+    **{
+        each.name: (f"{each.unit}, {each.min:g} to {each.max:g}", number)
+        for each in PARAMETERS.values()
+    },
 }
 """The unit and the parser of each number; of PARAMETERS only those of the scene's model."""
 

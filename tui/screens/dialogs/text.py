@@ -13,7 +13,9 @@ from tui.screens.dialogs.modal import Modal
 class TextScreen(Modal[None]):
     """A text.  Esc closes it, and so do the keys that open one."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape,question_mark,q,space,enter,d,E,shift+e", "dismiss(None)")]
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("escape,question_mark,q,space,enter,d,E,shift+e", "dismiss(None)")
+    ]
 
     def __init__(self, title: str, text: str) -> None:
         super().__init__()

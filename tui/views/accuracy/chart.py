@@ -33,13 +33,20 @@ def raised(base: str, power: int) -> str:
     return base + "".join("⁰¹²³⁴⁵⁶⁷⁸⁹"[int(digit)] for digit in str(power) if power != 1)
 
 
-def accuracy_chart(series: Sequence[Series], kind: ErrorKind, cost: Cost, width: int, height: int) -> Picture:
+def accuracy_chart(
+    series: Sequence[Series], kind: ErrorKind, cost: Cost, width: int, height: int
+) -> Picture:
     """The lines of `accuracy_series` on their axes."""
     return loglog_chart(series, width, height, x_label=COSTS[cost], y_label=ERROR_LABELS[kind])
 
 
 def charted(
-    series: Sequence[Series], points: Sequence[AnyPoint], kind: ErrorKind, cost: Cost, width: int, height: int
+    series: Sequence[Series],
+    points: Sequence[AnyPoint],
+    kind: ErrorKind,
+    cost: Cost,
+    width: int,
+    height: int,
 ) -> tuple[Picture, list[Placed]]:
     """The chart of these series, and where points are on it."""
     picture = accuracy_chart(series, kind, cost, width, height)
@@ -83,9 +90,15 @@ def accuracy_series(
     by_method = [[point for point in points if point.method == method] for method in methods]
     slopes = [_slope(ours, kind, cost, points) for ours in by_method]
     found = [slope for slope in slopes if slope]
-    joined = [each for ours in by_method for each in ([[p] for p in ours] if len(ours) < whole else [ours])]
+    joined = [
+        each
+        for ours in by_method
+        for each in ([[p] for p in ours] if len(ours) < whole else [ours])
+    ]
     found += (series(ink_of(ours[0].method, cast), ours, ours[0].method.letter) for ours in joined)
-    found += (series(ink_of(p.method, cast), [p], MARKS[flaw]) for p in points if (flaw := p.flaw(kind)))
+    found += (
+        series(ink_of(p.method, cast), [p], MARKS[flaw]) for p in points if (flaw := p.flaw(kind))
+    )
     if references:
         taylor = references.taylor
         found += [series(TEXT, taylor, TAYLOR_20.letter)] if taylor else []
@@ -103,20 +116,34 @@ def growth_chart(found: Sequence[Growth], cast: Cast, width: int, height: int) -
     slopes: dict[int, Series] = {}
     for growth in found:
         ink, times, errors = ink_of(growth.method, cast), growth.times, growth.errors
-        some = sorted({round(len(times) ** (n / MARKED)) - 1 for n in range(MARKED + 1)}) if times else []
-        lines.append(Series(ink, growth.method.letter, [times[n] for n in some], [errors[n] for n in some]))
+        some = (
+            sorted({round(len(times) ** (n / MARKED)) - 1 for n in range(MARKED + 1)})
+            if times
+            else []
+        )
+        lines.append(
+            Series(ink, growth.method.letter, [times[n] for n in some], [errors[n] for n in some])
+        )
         if growth.power is not None:
             power, ends = round(growth.power), [times[0], times[-1]]
             slope = [BESIDE * errors[-1] * (t / times[-1]) ** power for t in ends]
             slopes.setdefault(power, Series(FRAME, raised("t", power), ends, slope, dotted=True))
     label = "theta error [rad], the largest of each period"
-    return loglog_chart([*slopes.values(), *lines], width, height, x_label="time [s]", y_label=label)
+    return loglog_chart(
+        [*slopes.values(), *lines], width, height, x_label="time [s]", y_label=label
+    )
 
 
-def _slope(ours: Sequence[Point], kind: ErrorKind, cost: Cost, points: Sequence[Point]) -> Series | None:
+def _slope(
+    ours: Sequence[Point], kind: ErrorKind, cost: Cost, points: Sequence[Point]
+) -> Series | None:
     """A line with the slope of the method's order, below its errors; one for all methods of that order."""
     order = ours[0].method.order
-    valid = [point for point in ours if not point.flaw(kind) and point.error(kind) and cost_of(point, cost)]
+    valid = [
+        point
+        for point in ours
+        if not point.flaw(kind) and point.error(kind) and cost_of(point, cost)
+    ]
     if not valid or ours[0].method != next(p.method for p in points if p.method.order == order):
         return None
     anchor = valid[len(valid) // 2]

@@ -37,7 +37,9 @@ class AccuracyPoints:
     steps: Sequence[int] = ()  # of each method's points, ascending
     here: tuple[int, ...] = ()  # steps of each method at the present h
     references: References | None = None
-    points: dict[tuple[str, int], Point] = field(default_factory=dict)  # by a method's key and steps
+    points: dict[tuple[str, int], Point] = field(
+        default_factory=dict
+    )  # by a method's key and steps
 
     def add(self, point: Point) -> None:
         self.points[point.method.key, point.steps] = point
@@ -76,7 +78,9 @@ class AccuracyPane(Chooser[int]):
         super().__init__()
         self.study = AccuracyPoints()
         self.growths: list[Growth] = []  # at the present h
-        self.all = False  # the methods that are not in the cast, and the reference lines, over seconds
+        self.all = (
+            False  # the methods that are not in the cast, and the reference lines, over seconds
+        )
         self.over_time = False  # the chart of errors in theta over time
         self.pointer: AnyPoint | None = None
         self._kind: ErrorKind | None = None  # None: as the lab's chart
@@ -135,7 +139,11 @@ class AccuracyPane(Chooser[int]):
         if self.over_time and len(self.growths) < len(self.study.here):
             return False
         run = zip(self.cast, self.study.here, strict=False)
-        return all((method.key, steps) in self.study.points for method, steps in run if 1 < steps <= MAX_STEPS)
+        return all(
+            (method.key, steps) in self.study.points
+            for method, steps in run
+            if 1 < steps <= MAX_STEPS
+        )
 
     @property
     def aim(self) -> AnyPoint | None:
@@ -162,22 +170,30 @@ class AccuracyPane(Chooser[int]):
             return Picture([[(f" {line}", TEXT)] for line in wrap(why, max(width - 2, 1))])
         if self._charted != self._state:
             self._charted = self._state
-            height = max(self.room.height - (MAX_WORDS if self.room.height >= ROOMY else MIN_WORDS), 1)
+            height = max(
+                self.room.height - (MAX_WORDS if self.room.height >= ROOMY else MIN_WORDS), 1
+            )
             if self.over_time:
-                shown = [growth for growth in self.growths if growth.method.key not in self.shown.hidden]
+                shown = [
+                    growth for growth in self.growths if growth.method.key not in self.shown.hidden
+                ]
                 self._chart, self.placed = growth_chart(shown, self.cast, width, height), []
             else:
                 self._chart, self.placed = self._over_cost(width, height)
         self._write_titles()
         lines = [line for words in self._words() for line in wrap(words, max(width - 2, 1))]
-        return Picture([*self._chart.rows, *([(f" {line}", TEXT)] for line in lines)][: self.room.height])
+        return Picture(
+            [*self._chart.rows, *([(f" {line}", TEXT)] for line in lines)][: self.room.height]
+        )
 
     def _write_titles(self) -> None:
         """Write above what is charted, and below what its marks are."""
         if self.over_time:
             self.write_titles("Theta error over time, at each method's h", "dotted: slopes t, t²")
             return
-        powers = ", ".join(raised("h", order) for order in sorted({method.order for method in self.cast}))
+        powers = ", ".join(
+            raised("h", order) for order in sorted({method.order for method in self.cast})
+        )
         left = f", {self.missing} points left" if self.missing else ""
         title = f"Accuracy (F4) over {self.study.time:g} s: {self.kind} error{left}"
         self.write_titles(title, f"{LEGEND} {powers}")
@@ -193,7 +209,9 @@ class AccuracyPane(Chooser[int]):
         every: list[AnyPoint] = [*points, *(point for _, point in marks)]
         if study.references:
             every += study.references.taylor
-        series = accuracy_series(points, self.kind, self.cost, marks, study.references, len(study.steps), self.cast)
+        series = accuracy_series(
+            points, self.kind, self.cost, marks, study.references, len(study.steps), self.cast
+        )
         return charted(series, every, self.kind, self.cost, width, height)
 
     def _words(self) -> list[str]:
@@ -209,7 +227,10 @@ class AccuracyPane(Chooser[int]):
         if self.missing:
             return [""]
         if self.index >= len(study.here):
-            return [f"{self.cast[self.index].label} is not shown; the arrows choose one of its points", *ahead]
+            return [
+                f"{self.cast[self.index].label} is not shown; the arrows choose one of its points",
+                *ahead,
+            ]
         return ["the current h is not on this chart: it is too large or too small", *ahead]
 
     def _note(self, point: AnyPoint) -> str:

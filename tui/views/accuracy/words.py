@@ -11,7 +11,10 @@ from tui.words.accuracy import front_words, growth_words, length
 
 def point_words(point: AnyPoint, kind: ErrorKind, note: str) -> str:
     """A method, its h, its error and its cost, and a note."""
-    flaw, seconds = point.flaw(kind), "" if point.seconds is None else f" in {length(point.seconds)}"
+    flaw, seconds = (
+        point.flaw(kind),
+        "" if point.seconds is None else f" in {length(point.seconds)}",
+    )
     if isinstance(point, Point):
         at, cost = f"h {point.h:.4g} s", f"{point.force_evaluations} force evaluations"
     else:
@@ -21,7 +24,9 @@ def point_words(point: AnyPoint, kind: ErrorKind, note: str) -> str:
     return f"{said}; {note}" if note else said
 
 
-def front_lines(points: Sequence[Point], references: References | None, kind: ErrorKind, cost: Cost) -> list[str]:
+def front_lines(
+    points: Sequence[Point], references: References | None, kind: ErrorKind, cost: Cost
+) -> list[str]:
     """Which method is the cheapest in which range of errors, and why a reference line is absent."""
     found = front([*points, *(references.taylor if references else ())], kind, cost)
     said = [front_words(found, cost, front(points, kind, "evaluations"))]

@@ -57,15 +57,36 @@ COLUMNS = (
         ("omega [rad/s]", 13),
         lambda line, width: decimal(line.reading.omega, width, max(width - 8, 3)),
     ),
-    Column(7, ("dE/E0", 8), ("dE/E0", 9), lambda line, width: scientific(line.reading.energy_error, width)),
     Column(
-        6, ("largest", 7), ("largest", 8), lambda line, width: scientific(line.reading.max_energy_error, width, 1, "-")
+        7,
+        ("dE/E0", 8),
+        ("dE/E0", 9),
+        lambda line, width: scientific(line.reading.energy_error, width),
     ),
-    Column(5, ("per s", 8), ("trend per s", 11), lambda line, width: scientific(line.judgement.trend, width)),
     Column(
-        8, ("verdict", 9), ("verdict", 9), lambda line, width: verdict_of(line.reading, line.judgement).rjust(width)
+        6,
+        ("largest", 7),
+        ("largest", 8),
+        lambda line, width: scientific(line.reading.max_energy_error, width, 1, "-"),
     ),
-    Column(3, ("th.err", 7), ("theta error", 11), lambda line, width: scientific(theta_error(line), width, 1, "-")),
+    Column(
+        5,
+        ("per s", 8),
+        ("trend per s", 11),
+        lambda line, width: scientific(line.judgement.trend, width),
+    ),
+    Column(
+        8,
+        ("verdict", 9),
+        ("verdict", 9),
+        lambda line, width: verdict_of(line.reading, line.judgement).rjust(width),
+    ),
+    Column(
+        3,
+        ("th.err", 7),
+        ("theta error", 11),
+        lambda line, width: scientific(theta_error(line), width, 1, "-"),
+    ),
     Column(1, ("f", 1), ("evals/step", 10), lambda line, width: evaluations(line.method, width)),
 )
 
@@ -105,7 +126,15 @@ def theta_error(line: TableLine) -> float:
     return abs(error)
 
 
-SIGNS = {"bounded": "=", "grows": "+", "loses": "-", "caught": "=", "chaotic": "!", "wanders": "~", "failed": "!"}
+SIGNS = {
+    "bounded": "=",
+    "grows": "+",
+    "loses": "-",
+    "caught": "=",
+    "chaotic": "!",
+    "wanders": "~",
+    "failed": "!",
+}
 """Before a verdict, so that its colour is not alone."""
 
 
@@ -122,7 +151,9 @@ def verdict_ink(text: str) -> int:
     return WARN if text[:1] in "+-!~" else QUIET
 
 
-def chosen(columns: Sequence[Column], room: int) -> list[tuple[str, int, Callable[[TableLine, int], str]]]:
+def chosen(
+    columns: Sequence[Column], room: int
+) -> list[tuple[str, int, Callable[[TableLine, int], str]]]:
     """(head, width, cell) of the columns that fit, in their order: wide ones, or as many narrow ones as possible."""
     if sum(column.wide[1] + 1 for column in columns) <= room:
         return [(*column.wide, column.cell) for column in columns]
@@ -138,7 +169,9 @@ def table(source: Source, sample: Sample, shown: Shown, width: int) -> list[Row]
     model, exact = source.scene.equations, source.exact.at(sample.t)
     every = COLUMNS[len(set(h)) == 1 :]
     every = (*every[:-1], *extra_columns(model), every[-1])
-    room = max([NAME, *(len(f"{mark(place, method)} {method.label}") for place, method in enumerate(cast))])
+    room = max(
+        [NAME, *(len(f"{mark(place, method)} {method.label}") for place, method in enumerate(cast))]
+    )
     columns = chosen(every, width - room)
     spare = width - room - sum(size + 1 for _, size, _ in columns)
     gap = " " * (1 + min(spare // max(len(columns), 1), MOST_GAP))
@@ -217,7 +250,9 @@ class ErrorTable(Pane, can_focus=True):
         self.draw()
         for tooltip in self.screen.query(Tooltip):
             if at is not None and at < len(self._head):
-                tooltip.absolute_offset = self.region.offset + Offset(sum(map(len, self._head[: at + 1])), 0)
+                tooltip.absolute_offset = self.region.offset + Offset(
+                    sum(map(len, self._head[: at + 1])), 0
+                )
                 tooltip.update(head_text(self._head[at].strip()) or "")
             tooltip.display = at is not None
 

@@ -31,13 +31,21 @@ class EventList(Pane):
         self._words = Picture()
 
     def picture(self, source: Source, sample: Sample) -> Picture:
-        listed_for = [*source.events], [*source.later_marks], [*source.milestones], sample.run, self.room
+        listed_for = (
+            [*source.events],
+            [*source.later_marks],
+            [*source.milestones],
+            sample.run,
+            self.room,
+        )
         if listed_for != self._listed_for:  # to put them into words takes long
             self._listed_for = listed_for
             lines = event_lines(source)
             last = [*zip(lines, numbered(lines), strict=True)][-self.room.height :]
             self._listed = [line for line, _ in last]
-            self._words = Picture([[(self._fitted(text, line), line_ink(line, self.cast))] for line, text in last])
+            self._words = Picture(
+                [[(self._fitted(text, line), line_ink(line, self.cast))] for line, text in last]
+            )
         return self._words
 
     def _fitted(self, text: str, line: EventLine) -> str:

@@ -19,7 +19,9 @@ THREE_ROWS = 45  # rows from which on there are two charts
 class Places(NamedTuple):
     """The region of each pane, None where it is not shown."""
 
-    pendulums: tuple[Region, ...] = ()  # of the methods that are shown, in order; none if they share one
+    pendulums: tuple[
+        Region, ...
+    ] = ()  # of the methods that are shown, in order; none if they share one
     overlay: Region | None = None  # of all pendulums on one pivot
     events: Region | None = None
     chart: Region | None = None
@@ -39,7 +41,11 @@ def places(columns: int, rows: int, methods: int, overlay: bool = False) -> Plac
         pendulums, whole = _tiles(side, rows - events, methods, across), None
         bottom = rows - events
     else:
-        side = columns if columns < NARROW else min(max(28, columns * 2 // 5), columns - CHART, 2 * rows + 2)
+        side = (
+            columns
+            if columns < NARROW
+            else min(max(28, columns * 2 // 5), columns - CHART, 2 * rows + 2)
+        )
         bottom = min(rows - events, side // 2 + 2) if events else rows
         pendulums, whole = (), Region(0, 0, side, bottom)
     listed = Region(0, bottom, side, rows - bottom) if events else None
@@ -90,7 +96,9 @@ class CellLayout(Layout):
     def __init__(self, regions: Callable[[Size], dict[Widget, Region]]) -> None:
         self._regions = regions
 
-    def arrange(self, parent: Widget, children: list[Widget], size: Size, greedy: bool = True) -> ArrangeResult:
+    def arrange(
+        self, parent: Widget, children: list[Widget], size: Size, greedy: bool = True
+    ) -> ArrangeResult:
         return [
             WidgetPlacement(region, NULL_OFFSET, NULL_SPACING, widget)
             for widget, region in self._regions(size).items()

@@ -18,7 +18,10 @@ from tui.views.messages import MethodChosen
 from tui.views.view import Pane
 
 TOP = 4  # dots between the edge and a pivot at the top
-STRETCHED, LONGEST = 1.1, 4.0  # rods of a spring, over that at rest: what there is room for, and what is drawn
+STRETCHED, LONGEST = (
+    1.1,
+    4.0,
+)  # rods of a spring, over that at rest: what there is room for, and what is drawn
 TRAIL = 15  # samples, half a second at 30 frames a second
 
 
@@ -52,7 +55,10 @@ def pendulum_picture(columns: int, rows: int, bobs: Sequence[Bob], reach: float 
     if any(bob.length != 1 for bob in bobs):
         length /= STRETCHED
     for bob in bobs:
-        canvas.points([(x0 + length * sin(theta), y0 + length * cos(theta)) for theta in bob.trail], faint(bob.ink))
+        canvas.points(
+            [(x0 + length * sin(theta), y0 + length * cos(theta)) for theta in bob.trail],
+            faint(bob.ink),
+        )
     for bob in bobs:
         right, down = sin(bob.theta), cos(bob.theta)
         rod = length * min(bob.length, LONGEST)
@@ -66,7 +72,9 @@ def pendulum_picture(columns: int, rows: int, bobs: Sequence[Bob], reach: float 
             canvas.disc(x, y, bob_radius, bob.ink, hollow=bob.ghost)
         column, row = int(x + (bob_radius + 2) * right) // 2, int(y + (bob_radius + 3) * down) // 4
         beside = (*range(column, column + len(bobs)), *range(column - 1, column - len(bobs), -1))
-        canvas.label(next((at for at in beside if canvas.is_free(at, row)), column), row, bob.letter, bob.ink)
+        canvas.label(
+            next((at for at in beside if canvas.is_free(at, row)), column), row, bob.letter, bob.ink
+        )
     canvas.points([(x0 - 1, y0 - 1), (x0, y0 - 1), (x0 - 1, y0), (x0, y0)], FRAME)
     return canvas.picture()
 
@@ -92,7 +100,9 @@ class Pendulum(Pane):
             self.write_titles("Pendulums", self._below(source, "dotted: exact"))
         elif place < len(self.cast):
             places = [place]
-            self.write_titles(f"{mark(place, self.cast[place])} {self.cast[place].label}", self._below(source, ""))
+            self.write_titles(
+                f"{mark(place, self.cast[place])} {self.cast[place].label}", self._below(source, "")
+            )
         else:
             return Picture()
         bobs = _exact(source, sample.t) if self.shown.exact or place is None else []
@@ -130,7 +140,9 @@ def _ghosts(source: Source, t: float, places: Sequence[int]) -> list[Bob]:
     """Return the same methods of a ghost, fainter."""
     rods = {} if source.ghost is None else source.ghost.rods(t)
     cast = source.scene.cast
-    shown = [(inks(cast)[place], rods[cast[place].key]) for place in places if cast[place].key in rods]
+    shown = [
+        (inks(cast)[place], rods[cast[place].key]) for place in places if cast[place].key in rods
+    ]
     return [Bob(rod.theta, faint(ink), length=rod.length) for ink, rod in shown]
 
 

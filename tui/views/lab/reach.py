@@ -29,7 +29,9 @@ def reach(scene: Scene, stepping: Stepping, sample: Sample, shown: Sequence[int]
         return math.pi
     largest = max([0.0, *(now.max_energy_error for _, _, now in each)])
     margins = _margins(scene.equations, scene.theta, scene.omega)
-    return next((angle for angle, margin in zip(REACHES, margins, strict=True) if margin > largest), math.pi)
+    return next(
+        (angle for angle, margin in zip(REACHES, margins, strict=True) if margin > largest), math.pi
+    )
 
 
 class Reach:

@@ -35,7 +35,11 @@ MIN_ROWS = 8  # of the history in a stretch; an hour ago they are seconds apart
 def modified_energy_of(cast: Cast) -> str:
     """For which methods the chart of the modified energy has a line, unless it has one for all."""
     known = [method.letter for method in cast if method.modified_energy]
-    return "" if len(known) == len(cast) else f"shadow energy is known for {' and '.join(known) or 'none'} only"
+    return (
+        ""
+        if len(known) == len(cast)
+        else f"shadow energy is known for {' and '.join(known) or 'none'} only"
+    )
 
 
 def names(quantity: Quantity, model: Model) -> tuple[str, str]:
@@ -61,7 +65,10 @@ def title(shown: Shown, exact: ExactMotion, model: Model) -> str:
 
 def span_text(begin: float, end: float) -> str:
     """A stretch of time, with as many decimals as tell its ends apart: "31.2 to 33.0 s"."""
-    before, after = (max(1 - math.floor(math.log10(span)), 0) for span in (min(begin or end, end - begin), end - begin))
+    before, after = (
+        max(1 - math.floor(math.log10(span)), 0)
+        for span in (min(begin or end, end - begin), end - begin)
+    )
     return f"{begin:.{before}f} to {end:.{after}f} s"
 
 
@@ -105,7 +112,15 @@ class TimeChart(Pane):
 
     def picture(self, source: Source, sample: Sample) -> Picture:
         look = self._look(source)
-        plotted = sample, look, self.room, source.ghost, source.history, source.history.rewound, source.knows_past
+        plotted = (
+            sample,
+            look,
+            self.room,
+            source.ghost,
+            source.history,
+            source.history.rewound,
+            source.knows_past,
+        )
         if self.plot is None or plotted != self._plotted:  # the run may be paused
             self._plotted = plotted
             self.plot = self._charted(source, sample, look)
@@ -130,7 +145,11 @@ class TimeChart(Pane):
     def _below(self, source: Source, look: Shown, room: int) -> str:
         """Return what is under the pointer, or how to change the chart."""
         plot = self.plot
-        if plot is not None and self._pointer is not None and (reading := plot.at(self._pointer)) is not None:
+        if (
+            plot is not None
+            and self._pointer is not None
+            and (reading := plot.at(self._pointer)) is not None
+        ):
             return read_out(reading, [self.cast[place].letter for place in plot.places], room)
         if look.quantity == "shadow_error" and (known := modified_energy_of(self.cast)):
             return known

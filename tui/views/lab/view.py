@@ -63,7 +63,8 @@ class LabView(View):
         found = places(size.width, size.height, len(shown), self.shown.overlay)
         self.phase.can_focus = found.phase is not None  # Tab is not to lead where nobody sees it
         regions: dict[Widget, Region] = {
-            self.pendulums[place]: region for place, region in zip(shown, found.pendulums, strict=False)
+            self.pendulums[place]: region
+            for place, region in zip(shown, found.pendulums, strict=False)
         }
         others: dict[Widget, Region | None] = {
             self.overlay: found.overlay,
@@ -90,4 +91,6 @@ class LabView(View):
         shown = self.shown.places(self.source.scene.cast) if self.source is not None else []
         if (shown, self.shown.overlay) != self._arranged_for and self.is_mounted:
             self._arranged_for = shown, self.shown.overlay
-            self.overlay.refresh(layout=True)  # of one pane: Textual forgets what it knows of what is around it
+            self.overlay.refresh(
+                layout=True
+            )  # of one pane: Textual forgets what it knows of what is around it

@@ -49,19 +49,27 @@ def fact_rows(source: Source, shown: Shown, neighbours: Neighbours | None, width
     scene = source.scene
     exact = source.exact.at(source.sample.t)
     fit = max((width - NAME) // CELL, 0)
-    heads = ("ln area ratio", "area/area0", "theta error", scene.equations.energy_error.symbol)[:fit]
+    heads = ("ln area ratio", "area/area0", "theta error", scene.equations.energy_error.symbol)[
+        :fit
+    ]
     rows: list[Row] = [
         [(_ring_text(source, neighbours)[:width], TEXT)],
         [(" " * NAME + "".join(head.rjust(CELL) for head in heads), QUIET)],
     ]
-    ring = None if neighbours is None or scene.why_no_ring else neighbours.ring_of(scene, source.sample.run)
+    ring = (
+        None
+        if neighbours is None or scene.why_no_ring
+        else neighbours.ring_of(scene, source.sample.run)
+    )
     for place in shown.places(scene.cast):
         reading = source.sample.readings[place]
         off = scene.equations.theta_error(reading.theta, exact.theta)
         area = ("-", "-") if ring is None else area_text(ring.area_ratios[place])
         cells = (*area, scientific(off, CELL, 3), scientific(reading.energy_error, CELL, 3))[:fit]
         name = f" {mark(place, scene.cast[place])} {scene.cast[place].label}".ljust(NAME)
-        rows.append([(name, inks(scene.cast)[place]), ("".join(cell.rjust(CELL) for cell in cells), TEXT)])
+        rows.append(
+            [(name, inks(scene.cast)[place]), ("".join(cell.rjust(CELL) for cell in cells), TEXT)]
+        )
     return rows
 
 

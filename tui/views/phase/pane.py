@@ -21,7 +21,9 @@ if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
 
 TITLE = "Phase space (F3): theta [rad], omega [rad/s]"
 DOTS = 4  # that an arrow moves the crosshair
-RING_STEPS = 100  # a frame; 52 µs each, so a ring that has to catch up costs 5 ms of a frame at most
+RING_STEPS = (
+    100  # a frame; 52 µs each, so a ring that has to catch up costs 5 ms of a frame at most
+)
 
 
 class PhasePane(Chooser[State]):
@@ -88,7 +90,9 @@ class PhasePane(Chooser[State]):
     @property
     def aim(self) -> State | None:
         """The state at the crosshair or, if there is none, under the pointer."""
-        return self.cursor or (None if self.pointer is None else self.viewport.at_cell(*self.pointer))
+        return self.cursor or (
+            None if self.pointer is None else self.viewport.at_cell(*self.pointer)
+        )
 
     def picture(self, source: Source, sample: Sample) -> Picture:
         from tui.views.phase.facts import caption
@@ -110,7 +114,9 @@ class PhasePane(Chooser[State]):
         from engine.phase_space.area import Neighbours
 
         self.neighbours = self.neighbours or Neighbours(self.radius)
-        self.ring = self.neighbours.follow(source.scene, sample.run, sample.step, source.changes, RING_STEPS)
+        self.ring = self.neighbours.follow(
+            source.scene, sample.run, sample.step, source.changes, RING_STEPS
+        )
         if self.neighbours.step < sample.step and not self._catching_up:
             self._catching_up = True
             self.set_timer(1 / 30, self._catch_up)
@@ -160,7 +166,9 @@ class PhasePane(Chooser[State]):
         viewport = self.viewport
         x, y = viewport.middle
         if (at := self.cursor) is not None:
-            viewport = viewport.panned(x - float(viewport.x(at.theta)), y - float(viewport.y(at.omega)))
+            viewport = viewport.panned(
+                x - float(viewport.x(at.theta)), y - float(viewport.y(at.omega))
+            )
         elif self.pointer is not None:
             x, y = 2 * self.pointer[0] + 1, 4 * self.pointer[1] + 2
         self.zoomed = viewport.zoomed(factor, x, y)

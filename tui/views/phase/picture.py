@@ -19,7 +19,14 @@ from tui.views.phase.portrait import Portrait, write_words
 from tui.views.phase.viewport import Viewport
 
 TRAIL = 300  # samples, ten seconds at 30 frames a second
-BESIDE = ((2, 0), (-2, 0), (0, -1), (0, 1), (2, -1), (-2, 1))  # columns, rows from a point to its letter
+BESIDE = (
+    (2, 0),
+    (-2, 0),
+    (0, -1),
+    (0, 1),
+    (2, -1),
+    (-2, 1),
+)  # columns, rows from a point to its letter
 Floats = NDArray[np.float64]
 Track = tuple[Floats, Floats]  # theta [rad], omega [rad/s]
 
@@ -35,7 +42,9 @@ class PhasePoint(NamedTuple):
     ring: Track | None = None
 
 
-def method_points(source: Source, sample: Sample, shown: Shown, ring: Neighbourhood | None) -> list[PhasePoint]:
+def method_points(
+    source: Source, sample: Sample, shown: Shown, ring: Neighbourhood | None
+) -> list[PhasePoint]:
     """Return the points that are shown of a sample, the exact one first."""
     exact = source.exact.at(sample.t)
     points = [PhasePoint(*exact, EXACT, "x")] if shown.exact and math.isfinite(exact.theta) else []
@@ -45,13 +54,22 @@ def method_points(source: Source, sample: Sample, shown: Shown, ring: Neighbourh
         reading = sample.readings[place]
         trail = None if trails is None else (trails[:, place, 0], trails[:, place, 1])
         around = None if ring is None else ring.rings[place]
-        points.append(PhasePoint(reading.theta, reading.omega, inks(cast)[place], cast[place].letter, trail, around))
+        points.append(
+            PhasePoint(
+                reading.theta, reading.omega, inks(cast)[place], cast[place].letter, trail, around
+            )
+        )
     return points
 
 
-@np.errstate(over="ignore", invalid="ignore")  # a method may be farther out than dots can be counted
+@np.errstate(
+    over="ignore", invalid="ignore"
+)  # a method may be farther out than dots can be counted
 def phase_picture(
-    portrait: Portrait, points: Sequence[PhasePoint], crosshair: State | None = None, orbit: State | None = None
+    portrait: Portrait,
+    points: Sequence[PhasePoint],
+    crosshair: State | None = None,
+    orbit: State | None = None,
 ) -> Picture:
     """Draw trails, rings and points, later ones in front; perhaps a crosshair, perhaps a state's exact orbit."""
     viewport = portrait.viewport
@@ -67,7 +85,10 @@ def phase_picture(
     for point in points:
         if point.ring is not None:
             theta, omega = point.ring
-            canvas.path(on_screen(viewport, np.append(theta, theta[0]), np.append(omega, omega[0])), point.ink)
+            canvas.path(
+                on_screen(viewport, np.append(theta, theta[0]), np.append(omega, omega[0])),
+                point.ink,
+            )
     for point in points:
         draw_point(canvas, viewport, point)
     write_words(canvas, portrait.words)

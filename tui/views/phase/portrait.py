@@ -57,7 +57,9 @@ class Portrait:
             return _dots(np.zeros((0, 0), np.bool_))
         level = self.model.level(theta, omega)
         curve = _border(self.levels < level)
-        if self.model.has_separatrix and level < 0:  # two orbits have this energy, one for each sense of rotation
+        if (
+            self.model.has_separatrix and level < 0
+        ):  # two orbits have this energy, one for each sense of rotation
             rows = self.viewport.omega_at(np.arange(len(curve)) + 0.5)
             curve &= (rows * omega > 0)[:, None]
         return _dots(curve)
@@ -82,7 +84,10 @@ def axes(viewport: Viewport) -> list[Word]:
         (0, math.floor(viewport.y(omega) / 4), label[:columns], TEXT)
         for omega, label in omega_ticks(low, high, max(bottom // 3, 1))
     ]
-    left, right = viewport.theta_at(0.0), viewport.theta_at(2.0 * columns + 1)  # pi may be at the very edge
+    left, right = (
+        viewport.theta_at(0.0),
+        viewport.theta_at(2.0 * columns + 1),
+    )  # pi may be at the very edge
     for theta, label in theta_ticks(left, right, min(columns // 9 + 1, 8), viewport.wrap):
         middle = math.floor((theta - left) / viewport.theta_per_dot / 2)
         begin = max(min(middle - len(label) // 2, columns - len(label)) - 1, 0)
@@ -93,7 +98,9 @@ def axes(viewport: Viewport) -> list[Word]:
 
 def _bands(levels: NDArray[np.float64]) -> NDArray[np.int64]:
     """Return the band of energy of each dot: evenly spaced in amplitude, for rotations in their smallest omega."""
-    spacing = np.where(levels > 0, np.arcsin(np.sqrt(np.clip(levels, 0, 1))), -np.sqrt(np.maximum(-levels, 0)))
+    spacing = np.where(
+        levels > 0, np.arcsin(np.sqrt(np.clip(levels, 0, 1))), -np.sqrt(np.maximum(-levels, 0))
+    )
     step = nice(float(np.ptp(spacing)) / CURVES or 1.0)
     return np.floor(spacing / step).astype(np.int64)
 
@@ -119,11 +126,19 @@ def _names(levels: Any, omega: Any) -> list[Word]:
     """Name the regimes in the middle of what is in view of them, and the separatrix beside it, where there is room."""
     spins = levels < 0
     words: list[Word] = []
-    for name, region in (("libration", ~spins), ("rotation", spins & (omega > 0)), ("rotation", spins & (omega < 0))):
+    for name, region in (
+        ("libration", ~spins),
+        ("rotation", spins & (omega > 0)),
+        ("rotation", spins & (omega < 0)),
+    ):
         inside = _whole_cells(region)
         text = f" {name} "
         column = round(float(np.nonzero(inside)[1].mean())) - len(text) // 2 if inside.any() else 0
-        rows = [row for row, cells in enumerate(inside[:-1]) if cells[column : column + len(text)].sum() == len(text)]
+        rows = [
+            row
+            for row, cells in enumerate(inside[:-1])
+            if cells[column : column + len(text)].sum() == len(text)
+        ]
         if rows and column > LABEL:
             words.append((column, rows[len(rows) // 2], text, QUIET))
     beside = ~(_whole_cells(spins) | _whole_cells(~spins))

@@ -34,13 +34,17 @@ class Section:
         self.ink = ink
         self._ground = Canvas(viewport.columns, viewport.rows)
         self._ground.scatter(*Portrait.of(viewport, model).separatrix, FRAME)
-        self._near = np.zeros((4 * viewport.rows + 2 * GAP, 2 * viewport.columns + 2 * GAP), np.bool_)
+        self._near = np.zeros(
+            (4 * viewport.rows + 2 * GAP, 2 * viewport.columns + 2 * GAP), np.bool_
+        )
         self._axes = axes(viewport)
 
     def add(self, points: Points) -> None:
         """Draw those orbits, a column each, that leave a gap to those before."""
         x, y = self._dots(points)
-        inside = (x >= 0) & (x < 2 * self.viewport.columns) & (y >= 0) & (y < 4 * self.viewport.rows)
+        inside = (
+            (x >= 0) & (x < 2 * self.viewport.columns) & (y >= 0) & (y < 4 * self.viewport.rows)
+        )
         for each in range(x.shape[1]):
             at = inside[:, each]
             i, j = np.unique(np.stack([x[at, each], y[at, each]]).astype(np.intp), axis=1)

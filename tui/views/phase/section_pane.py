@@ -57,7 +57,9 @@ class SectionPane(PhasePane):
         return self.share == 1 if self.drawable and self.shows_section else super().settled
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        return super().check_action(action, parameters) and (action != "next_map" or self.shows_section)
+        return super().check_action(action, parameters) and (
+            action != "next_map" or self.shows_section
+        )
 
     def watch_shows_section(self) -> None:
         if not self.shows_section:
@@ -79,7 +81,11 @@ class SectionPane(PhasePane):
         from tui.views.phase.section import Section
         from tui.words.orbit import sentence
 
-        method, model, h = self.cast[self.index], source.scene.equations, abs(source.stepping.own[self.index])
+        method, model, h = (
+            self.cast[self.index],
+            source.scene.equations,
+            abs(source.stepping.own[self.index]),
+        )
         wanted = Wanted(method, model, h, self.viewport)
         if wanted != self.wanted or self._section is None:
             self.wanted, self.share = wanted, 0.0

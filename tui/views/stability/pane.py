@@ -79,7 +79,9 @@ class StabilityPane(Chooser[tuple[int, int]]):
             return self.cursor or self.pointer
         if (here := self.here(index)) is None or here[0] > self.grid.z[-1]:
             return None
-        return int(abs(self.grid.z - here[0]).argmin()), int(abs(self.grid.theta - here[1]).argmin())
+        return int(abs(self.grid.z - here[0]).argmin()), int(
+            abs(self.grid.theta - here[1]).argmin()
+        )
 
     @property
     def _state(self) -> object:
@@ -124,10 +126,14 @@ class StabilityPane(Chooser[tuple[int, int]]):
     def panel_size(self) -> tuple[int, int]:
         """Columns of a panel, and rows of its map: two panels in a row, below them words and the legend."""
         lines = -(-len(self.places) // 2) or 1
-        return (self.room.width - 2) // 2, max(1, (self.room.height - WORDS - len(self._legend())) // lines - 2)
+        return (self.room.width - 2) // 2, max(
+            1, (self.room.height - WORDS - len(self._legend())) // lines - 2
+        )
 
     def _legend(self) -> list[Row]:
-        lines = legend(self.grid.steps, self._colours, self.room.width + 2)  # as if the frame were part of it
+        lines = legend(
+            self.grid.steps, self._colours, self.room.width + 2
+        )  # as if the frame were part of it
         return lines if self.room.height >= ROOMY else lines[:1]
 
     def _note(self, index: int) -> str:
@@ -145,14 +151,19 @@ class StabilityPane(Chooser[tuple[int, int]]):
 
     def action_move(self, right: int, up: int) -> None:
         z, theta = self.aim(self.index) or (0, 0)
-        self.cursor = min(max(z + right, 0), len(self.grid.z) - 1), min(max(theta + up, 0), len(self.grid.theta) - 1)
+        self.cursor = (
+            min(max(z + right, 0), len(self.grid.z) - 1),
+            min(max(theta + up, 0), len(self.grid.theta) - 1),
+        )
         self.draw()
 
     def choose(self, place: tuple[int, int]) -> None:
         assert self.source is not None
         (z, theta), scene = place, self.source.scene
         h = float(self.grid.z[z]) / scene.w0
-        self.post_message(SceneChosen(scene.altered(theta=float(self.grid.theta[theta]), omega=0.0, h=h)))
+        self.post_message(
+            SceneChosen(scene.altered(theta=float(self.grid.theta[theta]), omega=0.0, h=h))
+        )
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
         if (under := self._under(event)) != self.pointer:
@@ -177,7 +188,12 @@ class StabilityPane(Chooser[tuple[int, int]]):
         across, column = divmod(x, columns + 2)
         down, row = divmod(y, rows + 2)
         number, shown = 2 * down + across, self.places
-        if not (across in (0, 1) and MARGIN <= column < columns and 1 <= row <= rows and 0 <= number < len(shown)):
+        if not (
+            across in (0, 1)
+            and MARGIN <= column < columns
+            and 1 <= row <= rows
+            and 0 <= number < len(shown)
+        ):
             return None
         self.describe(shown[number])
         return place_at(self.grid, row - 1, column - MARGIN, rows, columns - MARGIN)

@@ -40,7 +40,9 @@ def scores(cells: Cells, steps: int) -> Scores:
     """
     survived = np.log1p(cells["steps"]) / math.log1p(steps)
     digits = np.log10(np.clip(cells["error"], EXACT_ENOUGH, 1)) / math.log10(EXACT_ENOUGH)
-    return np.select([cells["fate"] == UNKNOWN, np.isin(cells["fate"], HELD)], [-1.0, 1 + digits], survived)
+    return np.select(
+        [cells["fate"] == UNKNOWN, np.isin(cells["fate"], HELD)], [-1.0, 1 + digits], survived
+    )
 
 
 def picture(grid: Grid, cells: Cells, columns: int, palette: Palette | None) -> Picture:
@@ -77,7 +79,9 @@ def panel(
     `here` is a (z, theta) to mark.  With w0 [1/s] the axis shows h instead of z.
     """
     method, width = grid.methods[index], columns - MARGIN
-    signs = {_place(grid, z, theta, width, rows): sign for z, theta, sign in theory(method, grid, rows)}
+    signs = {
+        _place(grid, z, theta, width, rows): sign for z, theta, sign in theory(method, grid, rows)
+    }
     if here:
         signs[_place(grid, here[0], here[1], width, rows)] = HERE
     values = scores(cells[:, index], grid.steps)
@@ -112,7 +116,10 @@ def _in_colours(values: Scores, ink: int, palette: Palette) -> list[list[Cell]]:
     shades = [colour(level / SHADES, ink, palette) for level in range(-SHADES, 2 * SHADES + 1)]
     levels = np.rint((values + 1) * SHADES).astype(int).tolist()
     pairs = zip(levels[::2], levels[1::2], strict=True)
-    return [[("▀", _style(shades[up], shades[low])) for up, low in zip(*pair, strict=True)] for pair in pairs]
+    return [
+        [("▀", _style(shades[up], shades[low])) for up, low in zip(*pair, strict=True)]
+        for pair in pairs
+    ]
 
 
 @lru_cache(maxsize=10_000)
@@ -128,7 +135,9 @@ def _joined(line: Sequence[Cell]) -> Iterator[Cell]:
 
 def _axis(grid: Grid, width: int, w0: float | None) -> str:
     symbol, scale = ("z", 1.0) if w0 is None else ("h", w0)
-    first, middle, last = (f"{value / scale:.3g}" for value in (grid.z[0], np.median(grid.z), grid.z[-1]))
+    first, middle, last = (
+        f"{value / scale:.3g}" for value in (grid.z[0], np.median(grid.z), grid.z[-1])
+    )
     return first + f"{symbol} {middle}".center(width)[len(first) : width - len(last)] + last
 
 
@@ -188,7 +197,9 @@ def character(score: float, steps: int) -> str:
 
 def legend(steps: int, palette: Palette | None, columns: int = 80) -> list[Row]:
     """Explain colours, characters and lines."""
-    limit, threshold, catching = (sign if palette else _WITHOUT_COLOUR[sign] for sign in (LIMIT, THRESHOLD, CATCHING))
+    limit, threshold, catching = (
+        sign if palette else _WITHOUT_COLOUR[sign] for sign in (LIMIT, THRESHOLD, CATCHING)
+    )
     lines = [(f"{limit} linear limit   {threshold} global chaos above   ", NOBODY)]
     orbit = [(f"{catching} stable 2-cycle   y: amplitude [°]", NOBODY)]
     held: list[Cell] = [("held: error <1e-4 #  <0.1 +  above -   ", NOBODY)]
@@ -201,7 +212,9 @@ def legend(steps: int, palette: Palette | None, columns: int = 80) -> list[Row]:
 
 def _scale(low: float, palette: Palette) -> list[Cell]:
     """Return the colours of scores from `low` to 1 more."""
-    return [("█", Style(color=colour(low + 0.999 * part / 7, EXAMPLE, palette))) for part in range(8)]
+    return [
+        ("█", Style(color=colour(low + 0.999 * part / 7, EXAMPLE, palette))) for part in range(8)
+    ]
 
 
 def _theta_of_row(grid: Grid, row: int, rows: int) -> float:
@@ -211,7 +224,10 @@ def _theta_of_row(grid: Grid, row: int, rows: int) -> float:
 
 def place_at(grid: Grid, row: int, column: int, rows: int, columns: int) -> tuple[int, int]:
     """The indices (z, theta) of the map's cell under the middle of a panel's character, or the nearest."""
-    z, theta = int((column + 0.5) / columns * len(grid.z)), int((rows - row - 0.5) / rows * len(grid.theta))
+    z, theta = (
+        int((column + 0.5) / columns * len(grid.z)),
+        int((rows - row - 0.5) / rows * len(grid.theta)),
+    )
     return min(max(z, 0), len(grid.z) - 1), min(max(theta, 0), len(grid.theta) - 1)
 
 

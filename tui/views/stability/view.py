@@ -19,7 +19,9 @@ PASSES = (300, 10_000)
 
 
 def _grid(cast: Cast) -> Grid:
-    return Grid((np.arange(48) + 0.5) * math.pi / 48, (np.arange(80) + 0.5) * 3 / 80, PASSES[-1], cast)
+    return Grid(
+        (np.arange(48) + 0.5) * math.pi / 48, (np.arange(80) + 0.5) * 3 / 80, PASSES[-1], cast
+    )
 
 
 class StabilityView(View):
@@ -59,4 +61,7 @@ class StabilityView(View):
             state = "" if pane.complete else f", {int(10 * piece.done) / 10:.0%}"
             title = f"Stability (F5), {piece.steps} steps: h [s], amplitude [°]{state}"
             if title != shown:
-                shown, pane.border_title = title, Content(title)  # as markup, units in brackets would be gone
+                shown, pane.border_title = (
+                    title,
+                    Content(title),
+                )  # as markup, units in brackets would be gone

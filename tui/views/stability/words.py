@@ -22,7 +22,11 @@ def note(cell: Any) -> str:
         return "…"
     if cell["fate"] == CHAOTIC:
         return said(cell)
-    return f"{said(cell)}, step {cell['steps'] + 1}" if is_lost(cell) else f"{said(cell)}, {cell['error']:.0e}"
+    return (
+        f"{said(cell)}, step {cell['steps'] + 1}"
+        if is_lost(cell)
+        else f"{said(cell)}, {cell['error']:.0e}"
+    )
 
 
 def verdict(method: Method, theta: float, zs: Floats, cells: Cells, at: int, w0: float) -> str:

@@ -66,7 +66,10 @@ async def test_the_points_fill_in_and_are_the_engines():
     async with accuracy_view() as (_, pane, _live):
         for point in Study(SCENES["drift"], 5.0).points(RUNGS):
             found = pane.study.points[point.method.key, point.steps]
-            assert (found.theta_error, found.energy_error) == (point.theta_error, point.energy_error)
+            assert (found.theta_error, found.energy_error) == (
+                point.theta_error,
+                point.energy_error,
+            )
         assert "energy error, the largest of all steps" in pane.text
         assert all(pane.text.count(letter) for letter in "esvr")
         assert pane.border_title == "Accuracy (F4) over 5 s: energy error"
@@ -77,7 +80,10 @@ async def test_the_points_fill_in_and_are_the_engines():
 async def test_the_current_h_is_marked_and_described():
     async with accuracy_view() as (pilot, pane, _live):
         assert pane.text.count("@") == 4
-        assert said(pane) == "Velocity Verlet at h 0.05 s: energy error 5.7e-03 for 101 force evaluations; current h"
+        assert (
+            said(pane)
+            == "Velocity Verlet at h 0.05 s: energy error 5.7e-03 for 101 force evaluations; current h"
+        )
         await pilot.press("tab")
         await complete(pilot, pane)
         assert said(pane).startswith("RK4 at h 0.05 s: ")
@@ -171,7 +177,8 @@ async def test_over_time_the_slopes_are_measured_and_said():
         await pilot.press("e")
         await until(pilot, lambda: pane.over_time and pane.settled)
         powers = re.search(
-            r"grows as: Velocity Verlet t\^(\S+), RK4 t\^(\S+) No single power", " ".join(pane.text.split())
+            r"grows as: Velocity Verlet t\^(\S+), RK4 t\^(\S+) No single power",
+            " ".join(pane.text.split()),
         )
         assert powers
         assert [float(power) for power in powers.groups()] == pytest.approx([1, 2], abs=0.1)
@@ -188,10 +195,16 @@ async def test_all_methods_and_the_reference_lines_are_charted_over_seconds(monk
             yield found
 
     def run(tolerance: float, seconds: float) -> TaylorPoint:
-        return TaylorPoint(tolerance, 50, *[100 * tolerance] * 3, Flaws(None, None, None), seconds, 0.0)
+        return TaylorPoint(
+            tolerance, 50, *[100 * tolerance] * 3, Flaws(None, None, None), seconds, 0.0
+        )
 
-    def points(scene: Scene, time: float, rungs: list[int], *_clock: Callable[[], float]) -> Iterator[Point]:
-        return (replace(p, seconds=1e-7 * p.force_evaluations) for p in Study(scene, time).points(rungs))
+    def points(
+        scene: Scene, time: float, rungs: list[int], *_clock: Callable[[], float]
+    ) -> Iterator[Point]:
+        return (
+            replace(p, seconds=1e-7 * p.force_evaluations) for p in Study(scene, time).points(rungs)
+        )
 
     def lines(*arguments: Any) -> Iterator[Point | References]:
         yield from points(*arguments)
@@ -203,16 +216,25 @@ async def test_all_methods_and_the_reference_lines_are_charted_over_seconds(monk
         monkeypatch.setattr("tui.views.accuracy.view.measured_front", lines)
         await pilot.press("asterisk")
         await until(pilot, lambda: pane.all and is_complete(pane))
-        assert [method.key for method in pane.cast] == [method.key for method in METHODS if method.general]
+        assert [method.key for method in pane.cast] == [
+            method.key for method in METHODS if method.general
+        ]
         assert pane.border_title == "Accuracy (F4) over 5 s: energy error"
         assert all(f"{letter}" in pane.text for letter in "fbmtc")
-        assert "Cheapest in seconds: Taylor, order 20 from 1e-9 to 1e-10, BM6 from 1e-11" in words(pane)
+        assert "Cheapest in seconds: Taylor, order 20 from 1e-9 to 1e-10, BM6 from 1e-11" in words(
+            pane
+        )
         assert "without Numba, in force evaluations: " in words(pane)
         ((column, row),) = (
-            cell for cell, placed in pane.placed if isinstance(placed, TaylorPoint) and placed.seconds == 6e-6
+            cell
+            for cell, placed in pane.placed
+            if isinstance(placed, TaylorPoint) and placed.seconds == 6e-6
         )
         await pilot.hover(pane, (column + 1, row + 1))
-        assert said(pane) == "Taylor, order 20 at a tolerance of 1e-12 rad/s: energy error 1.0e-10 for 50 steps in 6 µs"
+        assert (
+            said(pane)
+            == "Taylor, order 20 at a tolerance of 1e-12 rad/s: energy error 1.0e-10 for 50 steps in 6 µs"
+        )
         await pilot.press(*["tab"] * 3, "left")
         assert pane.cast[pane.index].key == "blanes_moan_4"
         await pilot.press("enter", "asterisk")

@@ -50,7 +50,12 @@ def test_a_verdict_has_a_colour_and_a_sign():
     live = lab(20.0)
     shown = table(live, live.sample, Shown(), 80)
     verdicts = ("+ grows", "= bounded", "- loses")
-    found = {words.strip(): owner for row in shown[1:] for words, owner in row if words.strip() in verdicts}
+    found = {
+        words.strip(): owner
+        for row in shown[1:]
+        for words, owner in row
+        if words.strip() in verdicts
+    }
     assert found == {"+ grows": WARN, "= bounded": GOOD, "- loses": WARN}
 
 
@@ -79,7 +84,11 @@ def test_every_table_is_rectangular_and_fits():
 def test_hidden_methods_are_not_in_the_table_and_failed_ones_are_called_so():
     live = lab(1.0)
     readings = live.sample.readings
-    live.so_far.sample = live.sample._replace(readings=(*readings[:3], readings[3]._replace(diverged_at=0.8)))
-    lines = rows(live, 80, Shown(hidden=frozenset({"explicit_euler", "velocity_verlet"}))).splitlines()
+    live.so_far.sample = live.sample._replace(
+        readings=(*readings[:3], readings[3]._replace(diverged_at=0.8))
+    )
+    lines = rows(
+        live, 80, Shown(hidden=frozenset({"explicit_euler", "velocity_verlet"}))
+    ).splitlines()
     assert [line[0] for line in lines] == ["m", "2", "4"]
     assert "failed" in lines[2]

@@ -41,7 +41,9 @@ def test_from_81x50_or_120x30_on_there_are_phase_space_and_events(name):
 
 
 def test_at_80x24_there_are_one_overlay_and_one_chart():
-    assert places(*BODIES["80x24"], methods=4) == Places(overlay=Region(0, 0, 28, 15), chart=Region(28, 0, CHART, 15))
+    assert places(*BODIES["80x24"], methods=4) == Places(
+        overlay=Region(0, 0, 28, 15), chart=Region(28, 0, CHART, 15)
+    )
 
 
 @pytest.mark.parametrize(

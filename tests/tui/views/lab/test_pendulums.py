@@ -10,7 +10,9 @@ from tests.tui.drawn import cells, inks, size
 from tui.drawing.palette import EXACT, FAINT, FRAME
 from tui.views.lab.pendulums import Bob, pendulum_picture
 
-ANGLE = st.integers(1, 10_000).map(lambda number: number * 0.6180339887)  # never a tie between two dots
+ANGLE = st.integers(1, 10_000).map(
+    lambda number: number * 0.6180339887
+)  # never a tie between two dots
 
 
 def picture(columns, rows, *bobs):
@@ -33,7 +35,10 @@ def test_four_that_coincide_show_their_letters_side_by_side():
 def test_left_is_the_mirror_image_of_right_and_up_of_down(theta):
     """So the pivot is exactly in the middle, for odd and even panes."""
     for columns, rows in ((16, 8), (17, 9)):
-        right, left, up = (dots(picture(columns, rows, Bob(angle, 0))) for angle in (theta, -theta, math.pi - theta))
+        right, left, up = (
+            dots(picture(columns, rows, Bob(angle, 0)))
+            for angle in (theta, -theta, math.pi - theta)
+        )
         assert left == {(2 * columns - 1 - x, y) for x, y in right}
         assert up == {(x, 4 * rows - 1 - y) for x, y in right}
 
@@ -41,7 +46,9 @@ def test_left_is_the_mirror_image_of_right_and_up_of_down(theta):
 def test_a_full_turn_is_a_circle_because_both_directions_have_one_scale():
     found = dots(picture(30, 10, Bob(0.0, 0, trail=np.linspace(0, 2 * math.pi, 1000))))
     x, y = ([dot[axis] for dot in found] for axis in (0, 1))
-    assert max(x) - min(x) == pytest.approx(max(y) - min(y), abs=2)  # the bob stands out at the bottom
+    assert max(x) - min(x) == pytest.approx(
+        max(y) - min(y), abs=2
+    )  # the bob stands out at the bottom
     assert max(x) + min(x) == 2 * 30 - 1
     assert min(y) == pytest.approx(0, abs=2)  # the pane is used
 
@@ -54,7 +61,12 @@ def test_trails_are_faint_and_bobs_lie_in_front_of_them():
 
 @given(st.floats(allow_nan=False, allow_infinity=False), st.integers(1, 40), st.integers(1, 20))
 def test_any_angle_fits_any_pane(theta, columns, rows):
-    drawn = picture(columns, rows, Bob(theta, 0, trail=[theta, math.nan], letter="e"), Bob(theta, 1, diverged=True))
+    drawn = picture(
+        columns,
+        rows,
+        Bob(theta, 0, trail=[theta, math.nan], letter="e"),
+        Bob(theta, 1, diverged=True),
+    )
     assert size(drawn) == (columns, rows)
 
 

@@ -25,7 +25,9 @@ def test_explicit_euler_needs_the_pivot_in_the_middle_from_the_start():
     assert set(reaches(SCENES["drift"], 3)) == {math.pi}
 
 
-@pytest.mark.parametrize(("name", "angle"), [("drift", MIDDLE), ("gentle", SMALL), ("large-swing", math.pi)])
+@pytest.mark.parametrize(
+    ("name", "angle"), [("drift", MIDDLE), ("gentle", SMALL), ("large-swing", math.pi)]
+)
 def test_without_it_the_swing_decides(name, angle):
     assert set(reaches(SCENES[name], 20, (1, 2, 3))) == {angle}
 
@@ -53,7 +55,9 @@ def test_a_method_beyond_its_limit_gets_all_the_room_at_once():
 
 @pytest.mark.parametrize("angle", REACHES)
 @pytest.mark.parametrize("size", [(24, 11), (42, 14), (26, 13), (10, 30)])
-def test_hung_from_the_top_a_pendulum_within_its_reach_stays_in_its_pane_and_is_no_shorter(size, angle):
+def test_hung_from_the_top_a_pendulum_within_its_reach_stays_in_its_pane_and_is_no_shorter(
+    size, angle
+):
     columns, rows = size
     for theta in (-angle, 0.0, angle):
         shown = cells(pendulum_picture(columns, rows, [Bob(theta, 0)], angle))

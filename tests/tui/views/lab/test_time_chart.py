@@ -21,12 +21,20 @@ def test_a_title_says_what_the_chart_shows_with_its_unit_and_fits_above_the_narr
     exact, model = scene.exact(), scene.equations
     for quantity, log, seconds in product(quantities(scene), (True, False), WINDOWS):
         text = title(Shown(quantity=quantity, log=log, seconds=seconds), exact, model)
-        assert len(text) + 6 <= 52  # of 80 columns the pendulums have 28; two corners, two lines, two spaces
-        cycle = {"libration": "per half swing", "rotation": "per turn"}[exact.regime] if log and exact.period else "per"
+        assert (
+            len(text) + 6 <= 52
+        )  # of 80 columns the pendulums have 28; two corners, two lines, two spaces
+        cycle = (
+            {"libration": "per half swing", "rotation": "per turn"}[exact.regime]
+            if log and exact.period
+            else "per"
+        )
         assert cycle in text or cycle == "per"
         unit = {"theta_error": "[rad]", "energy": "[1/s²]"}.get(quantity, "")
         assert unit in text
-        assert unit or any(ratio in text for ratio in ("dE/E0", "ln(E/E_true)", "shadow", "1 at", "probability"))
+        assert unit or any(
+            ratio in text for ratio in ("dE/E0", "ln(E/E_true)", "shadow", "1 at", "probability")
+        )
 
 
 def test_a_chart_goes_through_what_a_scene_has_and_no_more():
@@ -37,7 +45,9 @@ def test_a_chart_goes_through_what_a_scene_has_and_no_more():
     shown = shown._replace(quantity=shown.quantity_ahead(1, spring))
     assert shown.quantity == "spring_energy"
     assert shown.quantity_ahead(3, spring) == Shown().quantity
-    assert shown.quantity_ahead(0, drift) == "energy_error"  # what the next scene lacks is not shown
+    assert (
+        shown.quantity_ahead(0, drift) == "energy_error"
+    )  # what the next scene lacks is not shown
 
 
 def test_the_chart_names_the_methods_that_have_a_modified_energy_unless_all_have_one():
@@ -65,10 +75,15 @@ def test_what_is_under_the_pointer_stays_there_in_a_zoom_and_the_whole_run_is_th
     nearer, _ = chart(shown=Stretch(1, begin, end, plot.log_time), log=log)
     assert (plot.log_time, nearer.log_time) == (log, log)
     assert nearer.times[35] == pytest.approx(plot.times[35], rel=1e-6)
-    assert nearer.values[35][[0, 3]] == pytest.approx(plot.values[35][[0, 3]], rel=0.2)  # the steady ones
+    assert nearer.values[35][[0, 3]] == pytest.approx(
+        plot.values[35][[0, 3]], rel=0.2
+    )  # the steady ones
     assert nearer.times[0] > plot.times[0]
     assert nearer.times[-1] < plot.times[-1]
-    assert len([label for label in nearer.picture.text.splitlines()[-1].split() if label[0].isdigit()]) >= 2
+    assert (
+        len([label for label in nearer.picture.text.splitlines()[-1].split() if label[0].isdigit()])
+        >= 2
+    )
     back = nearer.zoomed(history.window(), 10.0, column)
     assert back is None or back == pytest.approx((plot.times[0], plot.times[-1]), rel=0.2, abs=2)
     assert nearer.zoomed(history.window(), 1e3) is None
@@ -84,7 +99,10 @@ def test_a_title_says_the_ends_of_a_stretch_as_exactly_as_they_differ():
         ((500.0, 501.5), "500.0 to 501.5 s"),
         ((0.0, 20.0), "0 to 20 s"),
     ):
-        assert title(Shown(stretch=Stretch(1, *ends, True)), exact, WHOLE.equations) == f"max |dE/E0|, {span}"
+        assert (
+            title(Shown(stretch=Stretch(1, *ends, True)), exact, WHOLE.equations)
+            == f"max |dE/E0|, {span}"
+        )
 
 
 async def test_the_pointer_reads_the_chart_out_the_wheel_zooms_there_and_keys_lead_on_and_back():
@@ -97,9 +115,18 @@ async def test_the_pointer_reads_the_chart_out_the_wheel_zooms_there_and_keys_le
         assert [word for word in told.split() if word in "esvr"] == ["e", "s", "v", "r"]
         t = chart.plot.at(29).t
         assert told.startswith(f"{t:.2f} s:")
-        scroll = {"delta_x": 0, "delta_y": -1, "button": 0, "shift": False, "meta": False, "ctrl": False}
+        scroll = {
+            "delta_x": 0,
+            "delta_y": -1,
+            "button": 0,
+            "shift": False,
+            "meta": False,
+            "ctrl": False,
+        }
         x, y = chart.content_region.offset
-        chart.on_mouse_scroll_up(MouseScrollUp(chart, 30, 4, **scroll, screen_x=x + 29, screen_y=y + 3))
+        chart.on_mouse_scroll_up(
+            MouseScrollUp(chart, 30, 4, **scroll, screen_x=x + 29, screen_y=y + 3)
+        )
         await theatre.pilot.pause()
         await theatre.settled()
         stretch = theatre.stage.shown.stretch

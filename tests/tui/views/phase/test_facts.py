@@ -26,7 +26,10 @@ def test_a_place_is_said_in_the_words_there_is_room_for(width):
 
 
 def test_multiples_of_pi_are_called_so():
-    assert place_text(MODEL, State(math.pi, 0.0), 46) == "theta pi  omega 0  E/Es 1 - 3.7e-33  libration"
+    assert (
+        place_text(MODEL, State(math.pi, 0.0), 46)
+        == "theta pi  omega 0  E/Es 1 - 3.7e-33  libration"
+    )
     assert place_text(MODEL, State(-math.pi, 0.5), 46).startswith("theta -pi")
 
 
@@ -52,7 +55,9 @@ def test_the_table_shows_area_ratios_that_differ_from_one_only_by_rounding():
     neighbours.follow(live.scene, live.sample.run, live.sample.step, live.changes, 200)
     lines = ["".join(text for text, _ in row) for row in fact_rows(live, Shown(), neighbours, 80)]
     assert [line.split()[0] for line in lines[2:]] == ["1", "2", "3", "4"]
-    assert "1 + " in lines[3] or "1 - " in lines[3] or " 1 " in lines[3]  # symplectic Euler, but for rounding
+    assert (
+        "1 + " in lines[3] or "1 - " in lines[3] or " 1 " in lines[3]
+    )  # symplectic Euler, but for rounding
     assert " 0.99997" in lines[5]  # RK4: a loss that four digits would not show
     assert all(len(line) == len(lines[1]) for line in lines[2:])
 

@@ -51,7 +51,9 @@ class PhaseApp(App[None]):
 
 
 @asynccontextmanager
-async def shown(live: Live | None = None, columns: int = 46, rows: int = 16) -> AsyncIterator[tuple[Pilot, PhasePane]]:
+async def shown(
+    live: Live | None = None, columns: int = 46, rows: int = 16
+) -> AsyncIterator[tuple[Pilot, PhasePane]]:
     """The pane with so many cells of plot, and a row of text below; its border comes on top."""
     app = PhaseApp(live or Live(DRIFT), columns, rows)
     async with app.run_test(size=(max(columns + 2, 60), max(rows + 3, 16))) as pilot:
@@ -64,7 +66,9 @@ def at(column: int, row: int) -> tuple[int, int]:
     return column + 1, row + 1
 
 
-async def mouse(pilot: Pilot, pane: PhasePane, kind: type[events.MouseEvent], cell: tuple[int, int], **how) -> None:
+async def mouse(
+    pilot: Pilot, pane: PhasePane, kind: type[events.MouseEvent], cell: tuple[int, int], **how
+) -> None:
     """What a terminal sends, for which Pilot has no method."""
     x, y = at(*cell)
     what = {"button": 1, "shift": False, "meta": False, "ctrl": False} | how

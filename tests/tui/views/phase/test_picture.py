@@ -44,7 +44,9 @@ PICTURE = """\
 -pi       -pi/2 ⠤⠤⡄    0    ⡠⠤⠤ pi/2        pi"""
 
 
-@pytest.mark.parametrize(("theta", "omega"), [(0.0, 0.0), (1.0, 2.0), (-3.0, -5.0), (1.0 + math.tau, 2.0)])
+@pytest.mark.parametrize(
+    ("theta", "omega"), [(0.0, 0.0), (1.0, 2.0), (-3.0, -5.0), (1.0 + math.tau, 2.0)]
+)
 def test_a_point_is_drawn_where_its_state_is_with_its_letter_beside_it(theta, omega):
     picture = phase_picture(PORTRAIT, [PhasePoint(theta, omega, 2, "v")])
     column, row = int(SMALL.x(theta)) // 2, int(SMALL.y(omega)) // 4
@@ -62,7 +64,9 @@ def test_every_method_has_its_letter_where_several_coincide():
 
 
 def test_dots_of_different_methods_in_one_cell_all_stay():
-    blank = Portrait.of(SMALL.zoomed(0.01, 46, 30), DRIFT.equations)  # so close that no curve passes the corner
+    blank = Portrait.of(
+        SMALL.zoomed(0.01, 46, 30), DRIFT.equations
+    )  # so close that no curve passes the corner
     viewport = blank.viewport
     a = (viewport.theta_at(20.5), viewport.omega_at(8.5))  # two dots of cell (10, 2)
     b = (viewport.theta_at(21.5), viewport.omega_at(11.5))
@@ -80,7 +84,8 @@ def test_a_trail_is_faint_and_where_the_method_was():
     theta, omega = np.linspace(0.5, 1.0, 5), np.linspace(1.0, 2.0, 5)
     picture = phase_picture(PORTRAIT, [PhasePoint(1.5, 3.0, 1, "s", (theta, omega))])
     expected = {
-        (int(SMALL.x(a)) // 2, int(SMALL.y(b)) // 4) for a, b in zip(theta.tolist(), omega.tolist(), strict=True)
+        (int(SMALL.x(a)) // 2, int(SMALL.y(b)) // 4)
+        for a, b in zip(theta.tolist(), omega.tolist(), strict=True)
     }
     assert dots(picture, 1 + FAINT) == expected
 
@@ -106,7 +111,9 @@ def test_a_ring_is_closed():
 
 
 def test_a_ring_over_the_top_does_not_cross_the_picture():
-    picture = phase_picture(PORTRAIT, [PhasePoint(math.nan, math.nan, 3, "r", ring=ring_around(math.pi, 0.5))])
+    picture = phase_picture(
+        PORTRAIT, [PhasePoint(math.nan, math.nan, 3, "r", ring=ring_around(math.pi, 0.5))]
+    )
     columns = [column for column, _ in dots(picture, 3)]
     assert any(column < 8 for column in columns)
     assert any(column > 37 for column in columns)

@@ -35,13 +35,17 @@ def test_the_separatrix_is_where_libration_and_rotation_meet_at_every_zoom(span)
 
 def test_the_separatrix_is_heavier_than_the_other_curves():
     portrait = Portrait.of(Viewport.portrait(47, 17, DRIFT), MODEL)
-    down_the_middle = [int(np.sum(dots[0] == 47)) for dots in (portrait.separatrix, portrait.curves)]
+    down_the_middle = [
+        int(np.sum(dots[0] == 47)) for dots in (portrait.separatrix, portrait.curves)
+    ]
     crossings = len({y // 3 for x, y in zip(*portrait.curves, strict=True) if x == 47})
     assert down_the_middle[0] == 2 * 2  # crossed twice, two dots each time
     assert down_the_middle[1] <= 1.5 * crossings
 
 
-@pytest.mark.parametrize("scene", [DRIFT, SCENES["spin"], SCENES["gentle"], SCENES["near-separatrix"]])
+@pytest.mark.parametrize(
+    "scene", [DRIFT, SCENES["spin"], SCENES["gentle"], SCENES["near-separatrix"]]
+)
 @pytest.mark.parametrize("size", [(46, 15), (78, 17), (150, 55)])
 def test_the_three_regimes_are_named_where_they_are(scene, size):
     viewport = Viewport.portrait(*size, scene)
@@ -53,19 +57,27 @@ def test_the_three_regimes_are_named_where_they_are(scene, size):
     for column, row, text, _ in portrait.words:
         if text.strip() in ("libration", "rotation"):
             for at in range(column, column + len(text)):
-                value = scene.equations.level(viewport.theta_at(2.0 * at + 1), viewport.omega_at(4.0 * row + 2))
+                value = scene.equations.level(
+                    viewport.theta_at(2.0 * at + 1), viewport.omega_at(4.0 * row + 2)
+                )
                 assert (value > 0) == (text.strip() == "libration")
 
 
 @pytest.mark.parametrize("size", [(4, 2), (10, 3), (20, 6), (46, 15), (78, 17)])
 def test_words_do_not_overlap_nor_leave_the_picture(size):
     portrait = Portrait.of(Viewport.portrait(*size, DRIFT), MODEL)
-    cells = [(row, at) for column, row, text, _ in portrait.words for at in range(column, column + len(text))]
+    cells = [
+        (row, at)
+        for column, row, text, _ in portrait.words
+        for at in range(column, column + len(text))
+    ]
     assert len(cells) == len(set(cells))
     assert all(0 <= row < size[1] and 0 <= column < size[0] for row, column in cells)
 
 
-@pytest.mark.parametrize(("theta", "omega"), [(1.0, 0.0), (0.3, -2.0), (3.1, 0.0), (0.0, 8.0), (2.0, -9.0), (3.1, 0.5)])
+@pytest.mark.parametrize(
+    ("theta", "omega"), [(1.0, 0.0), (0.3, -2.0), (3.1, 0.0), (0.0, 8.0), (2.0, -9.0), (3.1, 0.5)]
+)
 def test_the_orbit_through_a_state_is_where_the_exact_swing_goes(theta, omega):
     scene = Scene(theta=theta, omega=omega)
     viewport = Viewport.portrait(80, 30, scene)
@@ -85,7 +97,13 @@ def test_the_orbit_through_a_state_is_where_the_exact_swing_goes(theta, omega):
 
 
 def test_angles_are_in_pi_and_wrapped_ones_stay_in_one_turn():
-    assert [label for _, label in theta_ticks(-math.pi, math.pi, 4, True)] == ["-pi", "-pi/2", "0", "pi/2", "pi"]
+    assert [label for _, label in theta_ticks(-math.pi, math.pi, 4, True)] == [
+        "-pi",
+        "-pi/2",
+        "0",
+        "pi/2",
+        "pi",
+    ]
     assert [label for _, label in theta_ticks(0.8 * math.pi, 1.2 * math.pi, 4, True)] == [
         "0.8pi",
         "0.9pi",

@@ -24,7 +24,11 @@ MINE, OTHERS = 2, faint(2)
 
 
 def cells(picture, ink: int) -> set[tuple[int, int]]:
-    return {(column, row) for (row, column), (_, colour) in drawn.cells(picture).items() if colour == ink}
+    return {
+        (column, row)
+        for (row, column), (_, colour) in drawn.cells(picture).items()
+        if colour == ink
+    }
 
 
 def test_the_starts_are_all_over_the_viewport():
@@ -40,12 +44,20 @@ def test_an_orbit_is_drawn_where_its_points_are_with_the_angle_within_a_turn():
     points = iterate(VELOCITY_VERLET, MODEL, H, (np.array([0.0]), np.array([7.0])), 500)
     assert np.ptp(points[0]) > 2 * math.pi
     section.add(points)
-    found = cells(section.picture(orbit(VELOCITY_VERLET, MODEL, H, (0.0, 0.0), 1), (0.0, 0.0)), OTHERS)
+    found = cells(
+        section.picture(orbit(VELOCITY_VERLET, MODEL, H, (0.0, 0.0), 1), (0.0, 0.0)), OTHERS
+    )
     theta = np.remainder(points[0] + math.pi, math.tau) - math.pi
     x, y = VIEWPORT.x(theta[:, 0]), VIEWPORT.y(points[1][:, 0])
     inside = (y >= 0) & (y < 96)
-    expected = {(int(i) // 2, int(j) // 4) for i, j in zip(x[inside], y[inside], strict=True) if 0 <= i < 140}
-    assert expected - found <= {(c, r) for c, r in expected if r >= 23 or c < 3 or abs(c - 35) < 4}  # words, the start
+    expected = {
+        (int(i) // 2, int(j) // 4)
+        for i, j in zip(x[inside], y[inside], strict=True)
+        if 0 <= i < 140
+    }
+    assert expected - found <= {
+        (c, r) for c, r in expected if r >= 23 or c < 3 or abs(c - 35) < 4
+    }  # words, the start
     assert len(found) > 40
     assert found <= expected
 
@@ -66,7 +78,10 @@ def test_the_starts_orbit_stands_out_and_the_separatrix_lies_underneath():
     picture = section.picture(orbit(VELOCITY_VERLET, MODEL, H, START, 1000), START)
     mine = cells(picture, MINE)
     assert {column > 35 for column, _ in mine} == {True, False}
-    assert (int(VIEWPORT.x(0.0)) // 2, int(VIEWPORT.y(0.0)) // 4) not in mine  # islands go around the middle
+    assert (
+        int(VIEWPORT.x(0.0)) // 2,
+        int(VIEWPORT.y(0.0)) // 4,
+    ) not in mine  # islands go around the middle
     assert len(cells(picture, FRAME)) > 20
     flat = Section(VIEWPORT, SCENES["linear"].equations, VELOCITY_VERLET, MINE)
     assert not cells(flat.picture(orbit(VELOCITY_VERLET, MODEL, H, START, 10), START), FRAME)
@@ -101,7 +116,9 @@ async def test_x_shows_the_own_map_of_velocity_verlet_and_the_portrait_again(siz
         portrait = theatre.stage.query_one(SectionPane).border_title
         pane = await section_of(theatre, "x")
         assert pane.border_title == "Own map of Velocity Verlet: h 0.348011 s, z 1.09"
-        assert pane.text.splitlines()[-1] == "start: A chain of islands: 1 turn in every 6 steps, 1:6."
+        assert (
+            pane.text.splitlines()[-1] == "start: A chain of islands: 1 turn in every 6 steps, 1:6."
+        )
         await theatre.pilot.press("x")
         assert pane.border_title == portrait
         assert "E/Es" in pane.text
@@ -114,7 +131,9 @@ async def test_the_section_is_the_engines():
         section = Section(pane.viewport, MODEL, VELOCITY_VERLET, MINE)
         for piece in pieces(VELOCITY_VERLET, MODEL, H, starts(pane.viewport, 300), 2000):
             section.add(piece)
-        expected = section.picture(orbit(VELOCITY_VERLET, MODEL, H, START, 2000), START).text.splitlines()
+        expected = section.picture(
+            orbit(VELOCITY_VERLET, MODEL, H, START, 2000), START
+        ).text.splitlines()
         assert [line.rstrip() for line in pane.text.splitlines()[:-1]] == expected
 
 
@@ -148,13 +167,17 @@ async def test_words_follow_the_crosshair_and_the_pointer():
     async with lab(Scene(theta=0.5, h=0.1), size=(100, 30)) as theatre:
         pane = await section_of(theatre, "x", "up")
         assert pane.cursor is not None
-        assert pane.text.splitlines()[-1].startswith(f"{pane.cursor.theta:g}, {pane.cursor.omega:g}: Regular: ")
+        assert pane.text.splitlines()[-1].startswith(
+            f"{pane.cursor.theta:g}, {pane.cursor.omega:g}: Regular: "
+        )
         await theatre.pilot.press("escape")
         await theatre.pilot.hover(pane, offset=(50, 2))
         assert "over the top" in pane.text.splitlines()[-1]
         expected = pane.viewport.at_cell(49, 1)
         await theatre.pilot.press("right", "left", "enter")
-        assert theatre.source.scene.theta == pytest.approx(expected.theta, abs=pane.viewport.theta_per_dot)
+        assert theatre.source.scene.theta == pytest.approx(
+            expected.theta, abs=pane.viewport.theta_per_dot
+        )
 
 
 async def test_a_closer_look_is_another_section():

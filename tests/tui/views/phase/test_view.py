@@ -34,7 +34,10 @@ async def test_a_click_in_the_lab_starts_all_four_there_with_the_step_in_force_a
         pane = shown(theatre)
         expected = pane.viewport.at_cell(40, 3)
         await theatre.pilot.click(pane, offset=(41, 4))
-        assert (theatre.source.scene.theta, theatre.source.scene.omega, theatre.source.scene.h) == (*expected, 0.1)
+        assert (theatre.source.scene.theta, theatre.source.scene.omega, theatre.source.scene.h) == (
+            *expected,
+            0.1,
+        )
         assert all((r.theta, r.omega) == tuple(expected) for r in theatre.source.sample.readings)
         assert theatre.source.sample.step == 0
         await theatre.pilot.press("u")
@@ -60,7 +63,9 @@ async def test_the_view_shows_the_area_ratios_of_the_ring_around_the_start():
     async with lab() as theatre:
         await theatre.press("f3")
         await theatre.run(20)
-        await until(theatre.pilot, lambda: shown(theatre).neighbours.step == theatre.source.sample.step)
+        await until(
+            theatre.pilot, lambda: shown(theatre).neighbours.step == theatre.source.sample.step
+        )
         ring = Neighbourhood(DRIFT, RADIUS)
         ring.advance(theatre.source.sample.step, Stepping(DRIFT.h))
         assert shown(theatre).ring.area_ratios == ring.area_ratios

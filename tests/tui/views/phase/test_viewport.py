@@ -31,14 +31,20 @@ def test_every_cell_leads_to_the_state_that_is_drawn_in_its_middle(size, scene):
 
 
 @given(sizes, st.floats(-3, 3), st.floats(-20, 20), st.floats(1e-7, 1), st.data())
-def test_zoomed_and_panned_anywhere_cells_still_lead_to_what_is_drawn_there(size, theta, omega, factor, data):
+def test_zoomed_and_panned_anywhere_cells_still_lead_to_what_is_drawn_there(
+    size, theta, omega, factor, data
+):
     viewport = Viewport.portrait(*size, DRIFT)._replace(wrap=False)
     viewport = viewport.panned(-theta / viewport.theta_per_dot, omega / viewport.omega_per_dot)
     viewport = viewport.zoomed(factor, size[0], 2 * size[1])
     column, row = data.draw(st.integers(0, size[0] - 1)), data.draw(st.integers(0, size[1] - 1))
     # at the deepest zoom a dot of a wide pane is 1e-9 of the angle: still ten thousand doubles
-    assert viewport.x(viewport.at_cell(column, row).theta) == pytest.approx(2 * column + 1, abs=0.5 + 1e-4)
-    assert viewport.y(viewport.at_cell(column, row).omega) == pytest.approx(4 * row + 2, abs=0.5 + 1e-4)
+    assert viewport.x(viewport.at_cell(column, row).theta) == pytest.approx(
+        2 * column + 1, abs=0.5 + 1e-4
+    )
+    assert viewport.y(viewport.at_cell(column, row).omega) == pytest.approx(
+        4 * row + 2, abs=0.5 + 1e-4
+    )
 
 
 @given(sizes)
@@ -58,7 +64,9 @@ def test_every_angle_of_a_turn_is_on_the_portrait_and_every_turn_shows_the_same(
 
 def test_unwrapped_a_turn_leads_away():
     viewport = Viewport.portrait(40, 10, SCENES["linear"])
-    assert viewport.x(math.tau) - viewport.x(0.0) == pytest.approx(math.tau / viewport.theta_per_dot)
+    assert viewport.x(math.tau) - viewport.x(0.0) == pytest.approx(
+        math.tau / viewport.theta_per_dot
+    )
 
 
 def test_all_three_regimes_fit_whatever_the_start():
@@ -83,9 +91,13 @@ def test_zoom_goes_to_a_millionth_of_a_radian_and_no_further():
     for _ in range(100):
         viewport = viewport.zoomed(0.5, 47, 34)
     assert viewport.theta_span == pytest.approx(MIN_SPAN)
-    around_the_top = [viewport.at_cell(column, 8).theta % math.tau - math.pi for column in range(47)]
+    around_the_top = [
+        viewport.at_cell(column, 8).theta % math.tau - math.pi for column in range(47)
+    ]
     steps = [b - a for a, b in itertools.pairwise(around_the_top)]
-    assert all(0.4 * MIN_SPAN / 47 < step < 1.6 * MIN_SPAN / 47 for step in steps)  # half a dot of rounding each
+    assert all(
+        0.4 * MIN_SPAN / 47 < step < 1.6 * MIN_SPAN / 47 for step in steps
+    )  # half a dot of rounding each
 
 
 def test_panning_moves_the_picture_by_so_many_dots():

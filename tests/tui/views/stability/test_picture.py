@@ -78,7 +78,9 @@ def test_theory_is_drawn_for_the_methods_that_it_is_about():
     assert signs["velocity_verlet"] == {LIMIT, THRESHOLD, CATCHING}
     assert signs["symplectic_euler"] == {LIMIT, THRESHOLD}
     assert signs["explicit_euler"] == set()
-    assert all(signs[key] == {LIMIT} for key in ("rk4", "forest_ruth", "blanes_moan_4", "blanes_moan_6"))
+    assert all(
+        signs[key] == {LIMIT} for key in ("rk4", "forest_ruth", "blanes_moan_4", "blanes_moan_6")
+    )
 
 
 def test_the_whole_picture_fits_eighty_columns_and_names_every_method():
@@ -104,7 +106,9 @@ def test_what_is_not_computed_yet_is_blank():
 
 
 @given(
-    st.tuples(st.integers(1, 30), st.integers(1, 20)), st.tuples(st.integers(1, 40), st.integers(1, 30)), st.randoms()
+    st.tuples(st.integers(1, 30), st.integers(1, 20)),
+    st.tuples(st.integers(1, 40), st.integers(1, 30)),
+    st.randoms(),
 )
 def test_no_failure_vanishes_however_small_the_picture(shape, character_set, random):
     values = np.array([[random.random() for _ in range(shape[1])] for _ in range(shape[0])])
@@ -136,9 +140,14 @@ def test_a_lost_swings_character_is_the_power_of_ten_it_survived(survived: int):
     assert character(score, 10**6) == ("." if survived < 10 else str(int(math.log10(survived))))
 
 
-@pytest.mark.parametrize(("error", "sign"), [(1e-9, "#"), (0.9e-4, "#"), (1.1e-4, "+"), (0.09, "+"), (0.11, "-")])
+@pytest.mark.parametrize(
+    ("error", "sign"), [(1e-9, "#"), (0.9e-4, "#"), (1.1e-4, "+"), (0.09, "+"), (0.11, "-")]
+)
 def test_a_held_swings_character_is_its_energy_error(error: float, sign: str):
-    assert character(float(scores(np.array([cell(STEPS, error, HOLDS)], CELL), STEPS)[0]), STEPS) == sign
+    assert (
+        character(float(scores(np.array([cell(STEPS, error, HOLDS)], CELL), STEPS)[0]), STEPS)
+        == sign
+    )
 
 
 @pytest.mark.parametrize("theme", PALETTES)
@@ -147,6 +156,8 @@ def test_colours_of_held_lost_and_unknown_swings_differ_for_every_method(theme: 
     palette = PALETTES[theme]
     held = {colour(score, ink, palette) for score in (1.0, 1.5, 1.9)}
     lost = {colour(score, ink, palette) for score in (0.0, 0.5, 0.9)}
-    assert len(lost) == (3 if palette.warn.startswith("#") else 1)  # sixteen colours have no shades of how soon
+    assert len(lost) == (
+        3 if palette.warn.startswith("#") else 1
+    )  # sixteen colours have no shades of how soon
     assert not held & lost
     assert colour(-1, ink, palette) not in held | lost

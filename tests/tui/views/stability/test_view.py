@@ -23,7 +23,9 @@ def is_complete(pane: StabilityPane) -> bool:
 
 @asynccontextmanager
 async def stability_view(
-    monkeypatch: pytest.MonkeyPatch, scene: Scene = SCENES["drift"], size: tuple[int, int] = (80, 24)
+    monkeypatch: pytest.MonkeyPatch,
+    scene: Scene = SCENES["drift"],
+    size: tuple[int, int] = (80, 24),
 ) -> AsyncIterator[tuple[Pilot[object], StabilityPane, Live]]:
     """The view with a map of 60 steps, once that is complete."""
     monkeypatch.setattr("tui.views.stability.view.PASSES", (20, 60))
@@ -39,7 +41,12 @@ async def test_the_map_fills_in_and_is_the_engines(monkeypatch: pytest.MonkeyPat
         assert (pane.cells["fate"] != UNKNOWN).all()
         sixty = type(pane.grid)(pane.grid.theta[:5], pane.grid.z[30:35], 60)
         assert np.array_equal(pane.cells[30:35, :, :5], sixty.cells())
-        for line in ("1 e Explicit Euler  grows", "2 s Symplectic Euler  held", "4 r RK4  held", "h 0.479"):
+        for line in (
+            "1 e Explicit Euler  grows",
+            "2 s Symplectic Euler  held",
+            "4 r RK4  held",
+            "h 0.479",
+        ):
             assert line in pane.text
 
 

@@ -4,7 +4,16 @@ import numpy as np
 import pytest
 
 from engine.methods import USUAL_CAST
-from engine.stability.outcomes import CAUGHT, CELL, GROWS, HOLDS, LOSES, OVER_THE_TOP, UNKNOWN, outcomes
+from engine.stability.outcomes import (
+    CAUGHT,
+    CELL,
+    GROWS,
+    HOLDS,
+    LOSES,
+    OVER_THE_TOP,
+    UNKNOWN,
+    outcomes,
+)
 from tui.screens.status_line import limit_warning
 from tui.views.stability.words import note, verdict
 
@@ -16,7 +25,13 @@ def cells(*rows: tuple[int, float, int]) -> np.ndarray:
     return np.array(list(rows), CELL)
 
 
-LADDER = cells((300, 1e-3, HOLDS), (300, 2e-2, HOLDS), (300, 0.2, HOLDS), (40, 0.9, OVER_THE_TOP), (3, 5.0, GROWS))
+LADDER = cells(
+    (300, 1e-3, HOLDS),
+    (300, 2e-2, HOLDS),
+    (300, 0.2, HOLDS),
+    (40, 0.9, OVER_THE_TOP),
+    (3, 5.0, GROWS),
+)
 
 
 @pytest.mark.parametrize(
@@ -35,7 +50,9 @@ def test_a_verdict_says_when_there_is_no_cliff_or_no_verdict_yet():
     held, lost = cells(*[(300, 1e-3, HOLDS)] * 5), cells(*[(0, 2.0, GROWS)] * 5)
     assert verdict(RK4, 1.0, ZS, held, 0, 1.0).endswith("; held at every h on this map")
     assert verdict(RK4, 1.0, ZS, lost, 0, 1.0).endswith("; lost at every h on this map")
-    assert verdict(RK4, 1.0, ZS, cells(*[(0, 0.0, UNKNOWN)] * 5), 0, 1.0).endswith("not computed yet")
+    assert verdict(RK4, 1.0, ZS, cells(*[(0, 0.0, UNKNOWN)] * 5), 0, 1.0).endswith(
+        "not computed yet"
+    )
 
 
 @pytest.mark.parametrize(
@@ -52,7 +69,9 @@ def test_a_note_fits_behind_a_methods_name(cell, text):
     assert note(np.array(cell, CELL)) == text
 
 
-@pytest.mark.parametrize(("theta", "z", "what"), [(0.5, 1.43, "held, larger wobble, 6e-01"), (1.0, 1.52, "chaotic")])
+@pytest.mark.parametrize(
+    ("theta", "z", "what"), [(0.5, 1.43, "held, larger wobble, 6e-01"), (1.0, 1.52, "chaotic")]
+)
 def test_a_symplectic_swing_wobbles_at_a_resonance_or_is_chaotic(theta: float, z: float, what: str):
     (cell,) = outcomes(VERLET, np.array([theta]), np.array([z]), 2000)
     assert note(cell) == what

@@ -86,7 +86,9 @@ class LabServer(Server):  # type: ignore[misc]
             self._labs -= 1
 
 
-def serve(settings: object, host: str, port: int, max_labs: int, listening: Callable[[str], None]) -> None:
+def serve(
+    settings: object, host: str, port: int, max_labs: int, listening: Callable[[str], None]
+) -> None:
     """Serve labs with these settings, which may hold code: they are in a file of mode 0600."""
     with tempfile.NamedTemporaryFile(prefix="pendu-") as file:
         Path(file.name).write_bytes(pickle.dumps(settings))

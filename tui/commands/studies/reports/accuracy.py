@@ -23,7 +23,16 @@ from tui.views.accuracy.chart import ERROR_LABELS, MARKS, accuracy_chart, accura
 from tui.words.accuracy import WORTH_SAYING, factor_words, front_words, growth_words, length
 
 CHART_SIZE = (100, 24)  # columns at most, rows
-NUMBERS = ("h", "steps", "force_evaluations", "seconds", "spread", "theta_error", "energy_error", "final_error")
+NUMBERS = (
+    "h",
+    "steps",
+    "force_evaluations",
+    "seconds",
+    "spread",
+    "theta_error",
+    "energy_error",
+    "final_error",
+)
 TRUTH = "the exact motion, against which errors are taken"
 
 
@@ -73,12 +82,21 @@ def report(found: Findings) -> Report:
             "error": found.kind,
             "points": points,
             "front": [
-                {"error": each.target, "method": each.method.key, "cost": each.cost, "saves_over_rk4": each.saves}
+                {
+                    "error": each.target,
+                    "method": each.method.key,
+                    "cost": each.cost,
+                    "saves_over_rk4": each.saves,
+                }
                 for each in found.front
             ],
             "absent": found.references.absent if found.references else None,
             "orders": [
-                {"method": each.method.key, "claimed": claimed(each.method), "measured": each.measured}
+                {
+                    "method": each.method.key,
+                    "claimed": claimed(each.method),
+                    "measured": each.measured,
+                }
                 for each in found.orders
             ],
             "recommendation": durations[-1] if durations else None,
@@ -95,10 +113,22 @@ def _records(found: Findings) -> Iterator[dict[str, Any]]:
         numbers = {name: getattr(point, name, None) for name in NUMBERS}
         tolerance = getattr(point, "tolerance", None)
         reason = REASONS[flaw] if flaw else None
-        yield {"method": point.method.key, **numbers, "valid": flaw is None, "reason": reason, "tolerance": tolerance}
+        yield {
+            "method": point.method.key,
+            **numbers,
+            "valid": flaw is None,
+            "reason": reason,
+            "tolerance": tolerance,
+        }
     if found.references:
         numbers = dict.fromkeys(NUMBERS) | {"seconds": found.references.floor}
-        yield {"method": CLOSED_FORM.key, **numbers, "valid": False, "reason": TRUTH, "tolerance": None}
+        yield {
+            "method": CLOSED_FORM.key,
+            **numbers,
+            "valid": False,
+            "reason": TRUTH,
+            "tolerance": None,
+        }
 
 
 def _rungs(found: Findings) -> list[dict[str, str]]:
@@ -106,7 +136,9 @@ def _rungs(found: Findings) -> list[dict[str, str]]:
     rows: dict[int, dict[str, str]] = {}
     for point in found.points:
         z = point.h * found.scene.w0
-        row = rows.setdefault(point.steps, {"h": f"{point.h:.4g}", "z": f"{z:.3g}", "steps": str(point.steps)})
+        row = rows.setdefault(
+            point.steps, {"h": f"{point.h:.4g}", "z": f"{z:.3g}", "steps": str(point.steps)}
+        )
         row[point.method.key] = _cell(point, found.kind)
     measured = {"h": "order", "steps": "measured"}
     claims = {"steps": "claimed"}
@@ -118,8 +150,14 @@ def _rungs(found: Findings) -> list[dict[str, str]]:
 
 def _columns(found: Findings) -> list[Column]:
     heads = {"h": "h [s]", "z": "z = h·w0", "steps": "steps"}
-    heads |= {method.key: f"{method.label} ({method.force_evaluations}/step)" for method in found.scene.cast}
-    return [Column(head, lambda row, key=key: row.get(key, ""), right=True) for key, head in heads.items()]  # type: ignore[misc]
+    heads |= {
+        method.key: f"{method.label} ({method.force_evaluations}/step)"
+        for method in found.scene.cast
+    }
+    return [
+        Column(head, lambda row, key=key: row.get(key, ""), right=True)
+        for key, head in heads.items()
+    ]  # type: ignore[misc]
 
 
 def _cell(point: AnyPoint, kind: ErrorKind) -> str:
@@ -158,11 +196,17 @@ def claimed(method: Method) -> int | None:
 def _chart(found: Findings) -> list[Text]:
     palette = PALETTES["dark"]
     columns, rows = CHART_SIZE
-    series = accuracy_series(found.points, found.kind, found.cost, references=found.references, cast=found.scene.cast)
-    chart = accuracy_chart(series, found.kind, found.cost, min(console(columns).width, columns), rows)
+    series = accuracy_series(
+        found.points, found.kind, found.cost, references=found.references, cast=found.scene.cast
+    )
+    chart = accuracy_chart(
+        series, found.kind, found.cost, min(console(columns).width, columns), rows
+    )
     lines = []
     for row in chart.rows:
-        line = Text.assemble(*((text, palette.colour(ink)) for text, ink in row if isinstance(ink, int)))
+        line = Text.assemble(
+            *((text, palette.colour(ink)) for text, ink in row if isinstance(ink, int))
+        )
         line.rstrip()
         lines.append(line)
     return lines
@@ -170,7 +214,11 @@ def _chart(found: Findings) -> list[Text]:
 
 def _advice_notes(found: Findings, advice: Advice) -> Iterator[Any]:
     """Yield the recommendation for one time, and what was tried for it."""
-    wish = f"smallest {found.kind} error" if found.target is None else f"{found.kind} error up to {found.target:g}"
+    wish = (
+        f"smallest {found.kind} error"
+        if found.target is None
+        else f"{found.kind} error up to {found.target:g}"
+    )
     if found.budget is not None:
         wish += f" within {found.budget} force evaluations"
     point = advice.point
@@ -198,10 +246,16 @@ def _attempt_columns(found: Findings, advice: Advice) -> list[Column]:
         of_point("force evaluations", lambda point: str(point.force_evaluations)),
     ]
     if any(attempt.point and attempt.point.seconds is not None for attempt in advice.attempts):
-        columns.append(of_point("seconds", lambda point: None if point.seconds is None else length(point.seconds)))
+        columns.append(
+            of_point(
+                "seconds", lambda point: None if point.seconds is None else length(point.seconds)
+            )
+        )
     columns.append(of_point(f"{found.kind} error", lambda point: f"{point.error(found.kind):.2e}"))
     recommended = {id(advice.point): "recommended"}
-    columns.append(Column("", lambda attempt: attempt.why_not or recommended.get(id(attempt.point), "")))
+    columns.append(
+        Column("", lambda attempt: attempt.why_not or recommended.get(id(attempt.point), ""))
+    )
     return columns
 
 
@@ -211,11 +265,15 @@ def winners(advice: Sequence[Advice]) -> str:
     names = [each.point.method.label if each.point else "no method" for each in advice]
     for (before, after), (earlier, later) in zip(pairwise(names), pairwise(advice), strict=True):
         if before != after:
-            changes.append(f"{after} instead of {before} from {later.time:g} s on (not yet at {earlier.time:g} s)")
+            changes.append(
+                f"{after} instead of {before} from {later.time:g} s on (not yet at {earlier.time:g} s)"
+            )
     return "; ".join(changes) + "." if changes else f"{names[0]} for all these times."
 
 
-def _run_fields(method: Method | None, point: Point | None, error: str, kind: ErrorKind) -> dict[str, Any]:
+def _run_fields(
+    method: Method | None, point: Point | None, error: str, kind: ErrorKind
+) -> dict[str, Any]:
     """Return a method and its run, whose error is called `error`; None for what there is not."""
     return {
         "method": method.key if method else None,

@@ -27,7 +27,9 @@ BOLTZMANN = {  # in the unit a kelvin; the 2019 SI
 }
 
 
-def judged(table: Table, scale: float | str, atoms: int | None, temperature: float | None) -> dict[str, Any]:
+def judged(
+    table: Table, scale: float | str, atoms: int | None, temperature: float | None
+) -> dict[str, Any]:
     """Return the fields of the result for a table of times, energies and kinetic energies."""
     import numpy as np
 
@@ -75,11 +77,15 @@ def _size(table: Table, energies: Any, scale: float | str) -> float:
         size = abs(sum(table.columns[2]) / len(table.columns[2]))
     if not 0 < size < math.inf:
         what = {"first": "first energy", "std": "deviation"}.get(scale, "mean kinetic energy")
-        raise UserError(f"the {what} is 0, and errors are relative to it; give a typical one with --scale.")
+        raise UserError(
+            f"the {what} is 0, and errors are relative to it; give a typical one with --scale."
+        )
     return size
 
 
-def _trend_fields(table: Table, slope: float | None, uncertainty: float | None, size: float) -> dict[str, Any]:
+def _trend_fields(
+    table: Table, slope: float | None, uncertainty: float | None, size: float
+) -> dict[str, Any]:
     """Return the trend, absolute and relative to a size, with units."""
     time_unit = printable(table.units[0], 20)
     if time_unit.casefold() in NANOSECONDS:
@@ -97,7 +103,9 @@ def _trend_fields(table: Table, slope: float | None, uncertainty: float | None, 
     }
 
 
-def _per_atom(fields: dict[str, Any], atoms: int | None, temperature: float | None) -> dict[str, Any]:
+def _per_atom(
+    fields: dict[str, Any], atoms: int | None, temperature: float | None
+) -> dict[str, Any]:
     """Return the trend per ns and atom, in the energy's unit and in kT."""
     if atoms is None:
         if temperature is not None:
@@ -121,7 +129,10 @@ def _per_atom(fields: dict[str, Any], atoms: int | None, temperature: float | No
             f" such as E (eV); units: {', '.join(BOLTZMANN)}."
         )
     kt = BOLTZMANN[energy_unit.casefold()] * temperature
-    return found | {"temperature": temperature, "kt_per_ns_per_atom": None if each is None else each / kt}
+    return found | {
+        "temperature": temperature,
+        "kt_per_ns_per_atom": None if each is None else each / kt,
+    }
 
 
 def orders(steps: Sequence[float], results: Sequence[dict[str, Any]]) -> dict[str, float | None]:
@@ -130,7 +141,8 @@ def orders(steps: Sequence[float], results: Sequence[dict[str, Any]]) -> dict[st
     A drift that is not significant at each step size has no order.
     """
     drifts = [
-        abs(fields["absolute_trend"] or 0.0) if fields["verdict"] in ("grows", "loses") else 0.0 for fields in results
+        abs(fields["absolute_trend"] or 0.0) if fields["verdict"] in ("grows", "loses") else 0.0
+        for fields in results
     ]
     fluctuations = [fields["fluctuation"] or 0.0 for fields in results]
     return {
@@ -158,7 +170,11 @@ def title_of(fields: dict[str, Any]) -> str:
     text = f"{name}: {counted(fields['samples'], 'sample')} {span}"
     if fields["tables"] > 1:
         text += f", table {fields['table']} of {fields['tables']}"
-    rows = [f"{counted(number, 'row')} {REASONS[why]}" for why, number in fields["skipped"].items() if number]
+    rows = [
+        f"{counted(number, 'row')} {REASONS[why]}"
+        for why, number in fields["skipped"].items()
+        if number
+    ]
     return f"{text}; skipped: {', '.join(rows)}" if rows else text
 
 
@@ -192,8 +208,15 @@ def _trend(fields: dict[str, Any], energy_unit: str) -> list[tuple[str, str]]:
         return []
     uncertainty = fields["uncertainty"]
     time = fields["time_unit"] or "unit of time"
-    absolute = f"{fields['absolute_trend']:+.2e} ± {fields['absolute_uncertainty']:.0e}{energy_unit}"
-    lines = [("trend", f"relative {slope:+.2e} ± {uncertainty:.0e} per {time}, absolute {absolute} per {time}")]
+    absolute = (
+        f"{fields['absolute_trend']:+.2e} ± {fields['absolute_uncertainty']:.0e}{energy_unit}"
+    )
+    lines = [
+        (
+            "trend",
+            f"relative {slope:+.2e} ± {uncertainty:.0e} per {time}, absolute {absolute} per {time}",
+        )
+    ]
     if (each := fields.get("energy_per_ns_per_atom")) is not None:
         kt = fields.get("kt_per_ns_per_atom")
         text = f"{each:+.2e}{energy_unit} per ns"

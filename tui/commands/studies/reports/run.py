@@ -12,7 +12,9 @@ if TYPE_CHECKING:
     from engine.run.lockstep import Lockstep, Sample
 
 
-def rows_of(scene: Scene, sample: "Sample", lockstep: "Lockstep", stopped: bool) -> list[dict[str, Any]]:
+def rows_of(
+    scene: Scene, sample: "Sample", lockstep: "Lockstep", stopped: bool
+) -> list[dict[str, Any]]:
     """Return the results by method, as in --json.  A method that diverged has no theta to compare.
 
     Where evaluations vary they are counted, by running again, unless somebody waits for the end.
@@ -23,7 +25,9 @@ def rows_of(scene: Scene, sample: "Sample", lockstep: "Lockstep", stopped: bool)
     model = scene.equations
     exact = scene.exact().at(sample.t).theta
     rows = []
-    for method, reading, judgement in zip(scene.cast, sample.readings, lockstep.judgements, strict=True):
+    for method, reading, judgement in zip(
+        scene.cast, sample.readings, lockstep.judgements, strict=True
+    ):
         end = reading.diverged_at
         error = model.theta_error(reading.theta, exact)
         steps = sample.step if end is None else round(end / scene.h)
@@ -74,7 +78,11 @@ def columns_of(scene: Scene, lockstep: "Lockstep") -> list[Column]:
             return f"diverged at {end:g} s"
         progress = row["progress"]
         text = str(row["verdict"])
-        return f"{text}: {progress['have']} of {progress['need']} {progress['unit']}" if progress else text
+        return (
+            f"{text}: {progress['have']} of {progress['need']} {progress['unit']}"
+            if progress
+            else text
+        )
 
     def trend(row: dict[str, Any]) -> str | None:
         value = judgements[row["method"]].trend

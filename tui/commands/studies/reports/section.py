@@ -79,26 +79,42 @@ def portrait(
             section.add(piece)
             done += piece[0].shape[1]
             show(done, options.starts)
-    display = terminal_options_of(options, os.environ, "utf-8" if options.output else console().encoding)
+    display = terminal_options_of(
+        options, os.environ, "utf-8" if options.output else console().encoding
+    )
     palette = PALETTES["dark" if options.output and options.theme == "auto" else display.theme]
     characters = CharacterSetFilter(display.character_set)
     lines = []
     for row in section.picture(orbit(method, model, scene.h, start, steps), start).rows:
-        segments = [Segment(text, Style(color=palette.colour(ink))) for text, ink in row if isinstance(ink, int)]
+        segments = [
+            Segment(text, Style(color=palette.colour(ink)))
+            for text, ink in row
+            if isinstance(ink, int)
+        ]
         if display.character_set != "braille":
             segments = characters.apply(segments, Color(0, 0, 0))
         lines.append(Text.assemble(*((segment.text, segment.style or "") for segment in segments)))
     return lines
 
 
-def write(file: Path, suffix: str, size: tuple[int, int], lines: list[Text], is_light: bool) -> None:
+def write(
+    file: Path, suffix: str, size: tuple[int, int], lines: list[Text], is_light: bool
+) -> None:
     """Write the picture as SVG or as text; the same bytes every time."""
     text = "\n".join(line.plain.rstrip() for line in lines) + "\n"
     if suffix == ".svg":
-        on = Console(file=io.StringIO(), record=True, width=size[0], height=size[1] + 1, color_system="truecolor")
+        on = Console(
+            file=io.StringIO(),
+            record=True,
+            width=size[0],
+            height=size[1] + 1,
+            color_system="truecolor",
+        )
         on.print(*lines, sep="\n", no_wrap=True, overflow="crop")
         theme = DEFAULT_TERMINAL_THEME if is_light else SVG_EXPORT_THEME
-        text = on.export_svg(title="pendu-tui stability --section", theme=theme, unique_id="terminal")
+        text = on.export_svg(
+            title="pendu-tui stability --section", theme=theme, unique_id="terminal"
+        )
     file.write_text(text, encoding="utf-8")
 
 
@@ -107,9 +123,13 @@ def report(scene: Scene, method: Method, steps: int, picture: list[Text]) -> Rep
     model = scene.equations
     h = scene.h
     start = State(scene.theta, scene.omega)
-    kinds = [(each, kind_of(each, model, h, orbit(each, model, h, start, steps))) for each in scene.cast]
+    kinds = [
+        (each, kind_of(each, model, h, orbit(each, model, h, start, steps))) for each in scene.cast
+    ]
     (words,) = (sentence(each, kind) for each, kind in kinds if each == method)
-    columns = [Column(head, itemgetter(at), right=at > 1) for at, head in enumerate(("method", *HEADS))]
+    columns = [
+        Column(head, itemgetter(at), right=at > 1) for at, head in enumerate(("method", *HEADS))
+    ]
     return Report(
         name="section",
         title=title_of(scene, method),

@@ -35,10 +35,14 @@ Computed = tuple[Grid, Cells]
 def report(scene: Scene, steps: int, computed: Sequence[Computed], *, is_whole: bool) -> Report:
     """Return the report of a table's grid and a map's: neither for the linear oscillator."""
     rows = (
-        [row for row in table(scene, *computed[0]) if row.failure or is_whole or len(computed) > 1] if computed else []
+        [row for row in table(scene, *computed[0]) if row.failure or is_whole or len(computed) > 1]
+        if computed
+        else []
     )
     pendulum = [_row_fields(row) for row in rows]
-    notes: list[Any] = [*_words(scene), Table(_columns(scene, steps), rows)] if computed else [LINEAR]
+    notes: list[Any] = (
+        [*_words(scene), Table(_columns(scene, steps), rows)] if computed else [LINEAR]
+    )
     maps = computed[1:]
     for grid, cells in maps:
         notes += ["", *_picture(grid, cells)]
@@ -62,7 +66,8 @@ def report(scene: Scene, steps: int, computed: Sequence[Computed], *, is_whole: 
             "band": BAND,
             "linear": linear,
             "pendulum": [
-                fields | {"at_scene": None if row.here["fate"] == UNKNOWN else _cell_fields(row.here)}
+                fields
+                | {"at_scene": None if row.here["fate"] == UNKNOWN else _cell_fields(row.here)}
                 for fields, row in zip(pendulum, rows, strict=True)
             ],
             "map": _map_fields(*maps[0]) if maps else None,
@@ -105,11 +110,16 @@ def _cell_fields(cells: Any) -> dict[str, Any]:
     fates = np.array(FATES, object)[np.where(known, cells["fate"], 0)]
     columns = (fates, cells["steps"], cells["error"])
     nothing = np.array(None)
-    return {name: np.where(known, column, nothing).tolist() for name, column in zip(CELL_FIELDS, columns, strict=True)}
+    return {
+        name: np.where(known, column, nothing).tolist()
+        for name, column in zip(CELL_FIELDS, columns, strict=True)
+    }
 
 
 def _map_fields(grid: Grid, cells: Cells) -> dict[str, Any]:
-    methods = [{"method": method.key, **_cell_fields(cells[:, m])} for m, method in enumerate(grid.methods)]
+    methods = [
+        {"method": method.key, **_cell_fields(cells[:, m])} for m, method in enumerate(grid.methods)
+    ]
     return {"z": grid.z.tolist(), "theta": grid.theta.tolist(), "methods": methods}
 
 
@@ -118,7 +128,11 @@ def _swings(grid: Grid, cells: Cells) -> Iterator[dict[str, Any]]:
     for m, z, t in np.ndindex(len(grid.methods), len(grid.z), len(grid.theta)):
         cell = cells[z, m, t]
         if cell["fate"] != UNKNOWN:
-            place = {"method": grid.methods[m].key, "z": float(grid.z[z]), "theta": float(grid.theta[t])}
+            place = {
+                "method": grid.methods[m].key,
+                "z": float(grid.z[z]),
+                "theta": float(grid.theta[t]),
+            }
             steps, error, fate = cell.item()
             yield place | dict(zip(CELL_FIELDS, (FATES[fate], steps, error), strict=True))
 
@@ -145,7 +159,9 @@ def _columns(scene: Scene, steps: int) -> list[Column]:
     return [
         Column("method", lambda row: row.method.label),
         Column("from", lambda row: f"{math.degrees(row.theta):.4g}°", right=True),
-        Column(f"in {early_steps(steps):,}", lambda row: row.early and f"{row.early.z:.4g}", right=True),
+        Column(
+            f"in {early_steps(steps):,}", lambda row: row.early and f"{row.early.z:.4g}", right=True
+        ),
         of_failure(f"in {steps:,}", lambda failure: f"{failure.z:.4g}"),
         of_failure("h [s]", lambda failure: f"{failure.z / scene.w0:.3g}"),
         of_failure("failure", lambda failure: failure.reason),
@@ -158,7 +174,10 @@ def _picture(grid: Grid, cells: Cells) -> list[Text]:
     on = console()
     plain = on.color_system is None or on.no_color or "utf" not in on.encoding
     drawn = picture(grid, cells, max(40, on.width), None if plain else PALETTES["dark"])
-    return [Text.assemble(*((text, ink if isinstance(ink, Style) else "") for text, ink in row)) for row in drawn.rows]
+    return [
+        Text.assemble(*((text, ink if isinstance(ink, Style) else "") for text, ink in row))
+        for row in drawn.rows
+    ]
 
 
 def write_map(path: Path, force: bool, grid: Grid, cells: Cells) -> None:
@@ -169,5 +188,13 @@ def write_map(path: Path, force: bool, grid: Grid, cells: Cells) -> None:
     """
     keys = [method.key for method in grid.methods]
     with whole_file(path, force) as part, part.open("wb") as file:
-        np.savez_compressed(file, z=grid.z, theta=grid.theta, methods=keys, steps=grid.steps, fates=FATES, cells=cells)
+        np.savez_compressed(
+            file,
+            z=grid.z,
+            theta=grid.theta,
+            methods=keys,
+            steps=grid.steps,
+            fates=FATES,
+            cells=cells,
+        )
     print(f"{path}: {len(grid.z)} z, {len(grid.methods)} methods, {len(grid.theta)} amplitudes.")
