@@ -5,6 +5,6 @@ rounding leaves however small the step.  `front` finds the cheapest method at ea
 the cheapest step size that reaches a target, and for the most accurate one within a budget; `advice` makes one
 recommendation of that.  `growth` fits the power of time with which the error in theta grows.
 
-`references` measures two solutions that have no step size, and can be compared in seconds only (`timing`): the
-`taylor` series of the motion, at a ladder of tolerances, and the closed form.
+`references` measures two solutions that have no step size, and can be compared in seconds only:
+the `taylor` series of the motion, at a ladder of tolerances, and the closed form.
 """

@@ -22,9 +22,9 @@ from engine.accuracy.study import (
     Point,
     compilable,
     measured,
+    shortest,
 )
 from engine.accuracy.taylor import MAX_STEPS, solve
-from engine.accuracy.timing import shortest
 from engine.methods import METHODS
 from engine.models.exact_pendulum import exact_pendulum
 from engine.run.compiled import available

@@ -6,15 +6,13 @@ every machine, or in seconds by a clock that is passed in.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from statistics import linear_regression
 from typing import Literal, NamedTuple
 
 from engine.accuracy.rounding import rounding_floor
-from engine.accuracy.timing import Clock as Clock
-from engine.accuracy.timing import shortest
 from engine.methods import Cast, Method
 from engine.methods.own import OwnMethod
 from engine.run.compiled import TieredLoops, available, compiled
@@ -23,6 +21,8 @@ from engine.run.loops import LoopsOf, PlainLoops
 from engine.scenes import Z_LIMITS, Scene
 
 ErrorKind = Literal["theta", "energy", "final"]
+Clock = Callable[[], float]  # s
+REPEATS = 5  # of a measurement of seconds
 COMPARISONS = 400  # with the exact swing in a run: at least so many, or at every step; below 800
 TIMED_STEPS = 20_000  # at least, in each measurement of seconds
 SWINGS = 10
@@ -168,6 +168,18 @@ def timed(point: Point, scene: Scene, clock: Clock, loops: LoopsOf = PlainLoops)
     runs = max(1, TIMED_STEPS // point.steps)
     seconds, spread = shortest(lambda: travel(start, point.h, point.steps), runs, clock)
     return replace(point, seconds=seconds, spread=spread)
+
+
+def shortest(work: Callable[[], object], runs: int, clock: Clock) -> tuple[float, float]:
+    """Seconds of one piece of work, the shortest of REPEATS; and by how much the longest took longer, relative."""
+    work()  # may have to be compiled
+    lengths = []
+    for _ in range(REPEATS):
+        began = clock()
+        for _ in range(runs):
+            work()
+        lengths.append((clock() - began) / runs)
+    return min(lengths), max(lengths) / min(lengths) - 1
 
 
 def ladder(time: float, h_max: float, h_min: float, count: int) -> list[int]:

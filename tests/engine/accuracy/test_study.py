@@ -9,8 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.accuracy.rounding import rounding_floor
-from engine.accuracy.study import Study, ladder, orders, timed
-from engine.accuracy.timing import REPEATS
+from engine.accuracy.study import REPEATS, Study, ladder, orders, timed
 from engine.methods import USUAL_CAST
 from engine.models.pendulum import energy
 from engine.run import compiled
