@@ -13,6 +13,7 @@ text of a file; `examine` says whether it is one, and loads it.
 """
 
 import copyreg
+from collections.abc import Sequence
 
 from engine.methods import (
     adaptive,
@@ -51,6 +52,23 @@ USUAL_CAST: Cast = (EXPLICIT_EULER, SYMPLECTIC_EULER, VELOCITY_VERLET, RK4)
 def method_of(key: str) -> Method:
     """The method of a key.  Raises KeyError."""
     return _BY_KEY[key]
+
+
+def matching(name: str, methods: Sequence[Method] = METHODS) -> list[Method]:
+    """Return the one method of this name, or those in whose keys a word starts with it.
+
+    Methods that take any force come before the others.
+    """
+    name = name.strip().lower()
+    for method in methods:
+        if name in (each.lower() for each in (method.key, method.label, *method.other_names)):
+            return [method]
+    for some in ([method for method in methods if method.general], methods):
+        first = [each for each in some if name and each.key.startswith(name)]
+        found = first or [each for each in some if name and f"_{name}" in each.key]
+        if found:
+            return found
+    return []
 
 
 _BY_KEY = {method.key: method for method in METHODS}

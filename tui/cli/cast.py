@@ -12,7 +12,7 @@ from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING
 
-from engine.methods import METHODS, Cast, Method
+from engine.methods import METHODS, Cast, Method, matching
 from engine.scenes import MOST_METHODS
 from tui.cli.errors import Exit, UserError
 from tui.cli.options import Suggestions, add_file, did_you_mean
@@ -86,22 +86,14 @@ def find(name: str, methods: Sequence[Method], option: str = "--methods") -> Met
 
     General methods come before the others.  Raises UserError for the option.
     """
-    by_key = {method.key: method for method in methods}
-    name = name.lower()
-    for method in methods:
-        names = (method.key, method.label, *method.other_names)
-        if name in (each.lower() for each in names):
-            return method
-    for keys in ([key for key, method in by_key.items() if method.general], list(by_key)):
-        for begins in (str.startswith, lambda key, start: f"_{start}" in key):
-            found = [key for key in keys if name and begins(key, name)]
-            if len(found) == 1:
-                return by_key[found[0]]
-            if found:
-                raise UserError(
-                    f"{option}: {name!r} may be {' or '.join(found)}; write more of it."
-                )
-    advice = did_you_mean(name, by_key) or f": choose from {', '.join(by_key)}."
+    found = matching(name, methods)
+    if len(found) == 1:
+        return found[0]
+    if found:
+        keys = " or ".join(method.key for method in found)
+        raise UserError(f"{option}: {name!r} may be {keys}; write more of it.")
+    every = [method.key for method in methods]
+    advice = did_you_mean(name, every) or f": choose from {', '.join(every)}."
     raise UserError(f"{option}: there is no method {name!r}{advice}")
 
 

@@ -1,0 +1,304 @@
+"""The library for people with code of their own: what `from engine import ...` gives.
+
+Arguments that cannot be used raise ValueError with a sentence.  NumPy is loaded by the first call.
+"""
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from engine import methods as listed
+from engine import scenes
+from engine.methods import Cast, Method, matching
+from engine.scenes import Scene
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+    Floats = NDArray[np.float64]
+
+MAX_READINGS = 10_000_000  # of all methods of a run: 320 MB
+
+
+def _public(method: Method) -> Method:
+    """Return a method whose `phases` take any force, or refuse with a sentence."""
+
+    def refuse(*_: Any) -> NoReturn:
+        raise ValueError(
+            f"{method.label} is made for the scenes of the lab, not for any force and arrays;"
+            " use a method of METHODS with general=True."
+        )
+
+    return method if method.general else replace(method, phases=refuse)
+
+
+METHODS: Mapping[str, Method] = MappingProxyType(
+    {method.key: _public(method) for method in listed.METHODS}
+)
+"""The methods by key.  `phases(force, (q, p), h)` of those with `general` yields the phases after
+one step of h, after two, and so on without end; q, p and force(q) are numbers or arrays, and
+q'' = force(q)."""
+
+SCENES: Mapping[str, Scene] = MappingProxyType(scenes.SCENES)
+"""The scenes by name, in the order of `pendu-tui scenes`."""
+
+Methods = str | Iterable[str | Method]
+"""Keys or the starts of keys, such as "rk4,verlet", or methods."""
+
+
+@dataclass(frozen=True, slots=True)
+class Track:
+    """One method's run; the arrays have one value for each time of the run.
+
+    A method whose numbers overflow stays where it last was finite.
+    """
+
+    theta: "Floats"  # rad, not reduced to a turn
+    omega: "Floats"  # rad/s
+    energy: "Floats"  # s⁻², per unit m·L²
+    energy_error: "Floats"  # relative
+    verdict: str
+    failed_at: float | None  # s
+
+
+@dataclass(frozen=True, slots=True)
+class Run(Mapping[str, Track]):
+    """The methods' tracks, by key or by the start of a key."""
+
+    scene: Scene
+    t: "Floats"  # s
+    tracks: Mapping[str, Track]
+
+    def __getitem__(self, name: str) -> Track:
+        found = matching(name, self.scene.cast)
+        if len(found) != 1:
+            raise KeyError(name)
+        return self.tracks[found[0].key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.tracks)
+
+    def __len__(self) -> int:
+        return len(self.tracks)
+
+
+def simulate(
+    scene: str | Scene = "drift",
+    *,
+    time: float,
+    methods: Methods | None = None,
+    every: int = 1,
+    **numbers: float,
+) -> Run:
+    """Run methods side by side for `time` [s], by default those of the scene.
+
+    `numbers` replace the scene's: theta [rad], omega [rad/s], length [m], gravity [m/s²], h [s], and
+    the parameters of its model.  The arrays have the start, every `every`-th step, and the last one.
+    """
+    import numpy as np
+
+    from engine.run.compiled import TieredLoops
+    from engine.run.lockstep import Lockstep
+
+    chosen = _scene(scene, methods, numbers)
+    stops = _stops(chosen, _number("time", time), every)
+    lockstep = Lockstep(chosen, loops=partial(TieredLoops, expected_steps=stops[-1]), judged=True)
+    t = np.empty(len(stops))
+    values = np.empty((4, len(chosen.cast), len(stops)))
+    for index, stop in enumerate(stops):
+        lockstep.advance(stop - lockstep.step)
+        sample = lockstep.sample()
+        t[index] = sample.t
+        values[:, :, index] = np.transpose([reading[:4] for reading in sample.readings])
+    tracks = {}
+    for place, method in enumerate(chosen.cast):
+        theta, omega, energy, error = values[:, place]
+        tracks[method.key] = Track(
+            theta=theta,
+            omega=omega,
+            energy=energy,
+            energy_error=error,
+            verdict=lockstep.judgements[place].verdict,
+            failed_at=sample.readings[place].diverged_at,
+        )
+    return Run(chosen, t, tracks)
+
+
+def _stops(scene: Scene, time: float, every: int) -> list[int]:
+    """Return the steps whose numbers a run keeps.  Raises ValueError if there are none, or too many."""
+    steps = round(min(time, 1e15) / scene.h)
+    if steps < 1:
+        raise ValueError(f"time = {time:g} s is shorter than one step of {scene.h:g} s.")
+    if not isinstance(every, int) or every < 1:
+        raise ValueError(f"every = {every!r} is not a whole number of steps above zero.")
+    if steps / every * len(scene.cast) > MAX_READINGS:
+        raise ValueError(f"{steps} steps are too many to keep; use every={steps // 10_000}.")
+    return [*range(0, steps, every), steps]
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """The verdict on a series of energies; a word of `pendu-tui judge --help`."""
+
+    verdict: str
+    trend: float | None  # of the energies over the scale, per unit of time; None: too early
+    uncertainty: float | None  # standard deviation of the trend
+    max_error: float  # the largest distance from the first energy, over the scale
+    scale: float  # in the energies' unit
+
+
+def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "std") -> Judged:
+    """Judge the energies of any program at increasing times.
+
+    Errors and trend are relative to `scale`: "std", the standard deviation of the energies, "first",
+    the first energy, or a number.
+    """
+    import numpy as np
+
+    from engine.run.energies import judge_energies
+
+    t = _array("times", times)
+    e = _array("energies", energies)
+    if len(t) != len(e):
+        raise ValueError(f"{len(t)} times and {len(e)} energies do not belong together.")
+    later = np.diff(t) > 0
+    if not later.all():
+        place = int(np.argmin(later)) + 1
+        raise ValueError(
+            f"times must increase, and times[{place}] is not later than the one before."
+        )
+    found = judge_energies(t, e)
+    e = e[found.first :]
+    size = _size(e, scale)
+    slope = found.judgement.slope
+    uncertainty = found.judgement.uncertainty
+    return Judged(
+        verdict=found.judgement.verdict,
+        trend=None if slope is None else slope / size,
+        uncertainty=None if uncertainty is None else uncertainty / size,
+        max_error=float(np.abs(e - e[0]).max()) / size,
+        scale=size,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """Where a method loses a swing; z = h·sqrt(g/L), the step in the system's own unit of time."""
+
+    linear: float | None  # z: the limit of small swings; 0: none is stable, None: no one number
+    z: float | None  # the smallest at which the swing is lost; None: held up to z = 3.2
+    h: float | None  # s, the same for this scene
+    reason: str  # over the top, grows, loses or chaotic; "" where it is held
+
+
+def limits(
+    scene: str | Scene = "drift",
+    *,
+    methods: Methods | None = None,
+    steps: int = 1000,
+    **numbers: float,
+) -> dict[str, Limit]:
+    """Return where each method loses the swing of a scene within `steps`, by default all that can.
+
+    Steps h are tried on a ladder with a rung every 1 %.  `numbers` are those of `simulate`.
+    """
+    from engine.stability.study import amplitude, ladder_of, table
+
+    chosen = _general(scene, methods, numbers)
+    theta = amplitude(chosen)
+    if theta is None or not chosen.equations.turns:
+        raise ValueError("limits are those of a pendulum that swings; use another start or scene.")
+    if not isinstance(steps, int) or steps < 1:
+        raise ValueError(f"steps = {steps!r} is not a whole number above zero.")
+    grid = ladder_of(chosen, [theta], None, steps)
+    found = {}
+    for row in table(chosen, grid, grid.cells()):
+        z = row.failure.z if row.failure else None
+        found[row.method.key] = Limit(
+            linear=row.method.linear_limit,
+            z=z,
+            h=None if z is None else z / chosen.w0,
+            reason=row.failure.reason if row.failure else "",
+        )
+    return found
+
+
+def _scene(scene: str | Scene, methods: Methods | None, numbers: Mapping[str, float]) -> Scene:
+    """Return a scene with these methods and numbers."""
+    if isinstance(scene, str):
+        if scene not in SCENES:
+            raise ValueError(f"there is no scene {scene!r}; choose from {', '.join(SCENES)}.")
+        scene = SCENES[scene]
+    changes = {name: _number(name, value) for name, value in numbers.items()}
+    return scene.altered(**changes).with_cast(scene.cast if methods is None else _cast(methods))
+
+
+def _general(scene: str | Scene, methods: Methods | None, numbers: Mapping[str, float]) -> Scene:
+    """Return a scene for a study, with all general methods where none are given."""
+    chosen = _scene(scene, listed.GENERAL if methods is None else methods, numbers)
+    if chosen.why_not_mapped:
+        raise ValueError(chosen.why_not_mapped)
+    return chosen
+
+
+def _cast(given: Methods) -> Cast:
+    names = given.split(",") if isinstance(given, str) else given
+    cast = tuple(dict.fromkeys(map(_method, names)))
+    if not cast:
+        raise ValueError("methods is empty; name one at least, for example rk4.")
+    return cast
+
+
+def _method(name: str | Method) -> Method:
+    """Return the method of a key or the start of one; a method of the list, or one's own."""
+    if isinstance(name, Method) and name.key not in METHODS:
+        return name
+    found = matching(name.key if isinstance(name, Method) else str(name))
+    if len(found) == 1:
+        return found[0]
+    if found:
+        keys = " or ".join(method.key for method in found)
+        raise ValueError(f"{name!r} may be {keys}; write more of it.")
+    raise ValueError(f"there is no method {name!r}; choose from {', '.join(METHODS)}.")
+
+
+def _number(name: str, value: Any) -> float:
+    """Return a finite number.  Raises ValueError."""
+    try:
+        number = math.nan if isinstance(value, str) else float(value)
+    except (TypeError, ValueError):
+        number = math.nan
+    if not math.isfinite(number):
+        raise ValueError(f"{name} = {value!r} is not a finite number.")
+    return number
+
+
+def _array(name: str, values: Any) -> "Floats":
+    """Return finite numbers as a one-dimensional array.  Raises ValueError."""
+    import numpy as np
+
+    try:
+        array = np.asarray(values, dtype=float)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} must be a list of numbers, or an array.") from None
+    if array.ndim != 1 or not array.size:
+        raise ValueError(f"{name} must be one-dimensional; their shape is {array.shape}.")
+    if not np.isfinite(array).all():
+        place = int(np.argmin(np.isfinite(array)))
+        raise ValueError(f"{name}[{place}] is {array[place]}; judge the finite ones before it.")
+    return array
+
+
+def _size(energies: Any, scale: float | str) -> float:
+    """Return the energy that errors are relative to."""
+    if scale == "std":
+        largest = float(abs(energies).max()) or 1.0
+        return float((energies / largest).std()) * largest or largest
+    size = abs(float(energies[0])) if scale == "first" else _number("scale", scale)
+    if size <= 0:
+        raise ValueError(f"scale = {scale!r} is {size:g}; errors need a number above zero.")
+    return size

@@ -1,0 +1,205 @@
+"""The six names of `from engine import ...`, as people with code of their own use them."""
+
+import math
+import pkgutil
+import subprocess
+import sys
+from importlib import import_module
+from itertools import islice
+
+import numpy as np
+import pytest
+
+import engine
+import recordings
+from engine import METHODS, SCENES, judge, limits, simulate
+from engine.methods import METHODS as LISTED
+from engine.run.lockstep import Lockstep
+
+GENERAL = [key for key, method in METHODS.items() if method.general]
+TIMES = np.arange(2000.0)
+WAVE = 10 + np.cos(TIMES)
+
+
+def test_importing_the_engine_loads_no_numpy_and_nothing_else_of_it():
+    work = (
+        "import sys, engine; print([m for m in sys.modules if m.startswith(('engine.', 'numpy'))])"
+    )
+    told = subprocess.run([sys.executable, "-c", work], check=True, capture_output=True, text=True)
+    assert told.stdout == "[]\n"
+
+
+def test_no_module_hides_a_name_of_the_library():
+    for package in (engine, recordings):
+        for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
+            if module.name != "recordings.pytest":
+                import_module(module.name)
+        names = set(package.__all__)
+        assert not names & {module.name for module in pkgutil.iter_modules(package.__path__)}
+        assert names <= set(dir(package))
+    assert engine.simulate(time=1).t[-1] == 1
+    assert engine.judge(TIMES, WAVE).verdict == "bounded"
+    assert engine.limits(methods="rk4", steps=10)["rk4"].linear == pytest.approx(math.sqrt(8))
+    assert "rk4" in engine.METHODS
+    assert "drift" in engine.SCENES
+
+
+def test_the_lists_are_in_their_order_and_read_only():
+    assert list(METHODS) == [method.key for method in LISTED]
+    assert next(iter(SCENES)) == "drift"
+    for mapping in (METHODS, SCENES):
+        with pytest.raises(TypeError):
+            mapping["mine"] = None
+
+
+def test_a_run_has_every_step_of_the_lockstep_as_arrays():
+    run = simulate("drift", theta=2.0, h=0.05, time=60, methods="rk4,verlet")
+    lockstep = Lockstep(run.scene)
+    assert list(run) == ["rk4", "velocity_verlet"]
+    for step in range(0, 1201, 100):
+        rk4, verlet = lockstep.sample().readings
+        assert run.t[step] == lockstep.t
+        assert run["rk4"].theta[step] == rk4.theta
+        assert run["verlet"].energy_error[step] == verlet.energy_error
+        lockstep.advance(100)
+    assert (run["rk4"].verdict, run["verlet"].verdict) == ("loses", "bounded")
+    coarse = simulate("drift", theta=2.0, h=0.05, time=60, methods="verlet", every=500)
+    assert coarse.t.tolist() == run.t[[0, 500, 1000, 1200]].tolist()
+    assert coarse["verlet"].omega[-1] == run["verlet"].omega[-1]
+
+
+def test_a_run_that_overflows_says_when():
+    track = simulate("linear", h=3.0, time=4000, methods=[METHODS["rk4"]], every=100)["rk4"]
+    assert track.verdict == "failed"
+    assert 0 < track.failed_at < 4000
+    assert np.isfinite(track.theta).all()
+
+
+@pytest.mark.parametrize("scale", ["std", "first", 2.0])
+def test_the_judge_gives_a_trend_with_its_uncertainty_over_the_scale(scale):
+    found = judge(TIMES.tolist(), (WAVE + 1e-3 * TIMES).tolist(), scale=scale)
+    assert found.verdict == "grows"
+    assert abs(found.trend * found.scale - 1e-3) < 4 * found.uncertainty * found.scale < 1e-4
+    assert found.max_error == pytest.approx(3 / found.scale, rel=0.5)
+
+
+def test_an_energy_that_never_changes_is_bounded_on_every_scale():
+    for scale in ("std", "first"):
+        found = judge(range(100), [3.0] * 100, scale=scale)
+        assert (found.verdict, found.trend, found.max_error) == ("bounded", 0, 0)
+
+
+@pytest.mark.parametrize(
+    ("call", "word"),
+    [
+        (lambda: judge([0, 1, 2], [1, 1]), "3 times and 2 energies"),
+        (lambda: judge(TIMES[::-1], WAVE), r"times\[1\] is not later"),
+        (lambda: judge(TIMES, [*WAVE[:-1], math.nan]), r"energies\[1999\] is nan"),
+        (lambda: judge([TIMES], [WAVE]), r"one-dimensional.*\(1, 2000\)"),
+        (lambda: judge([], []), r"one-dimensional.*\(0,\)"),
+        (lambda: judge("t", "E"), "a list of numbers"),
+        (lambda: judge(TIMES, 0 * WAVE, scale="first"), "above zero"),
+        (lambda: judge(TIMES, WAVE, scale="last"), "'last' is not a finite number"),
+        (lambda: simulate("swing", time=1), "no scene 'swing'; choose from drift"),
+        (lambda: simulate(time=1, methods="eul"), "explicit_euler or symplectic_euler"),
+        (lambda: simulate(time=1, methods=[]), "name one"),
+        (lambda: simulate(time=1, methods=["rk5"]), "no method 'rk5'; choose from"),
+        (lambda: simulate(time=1, methods="respa"), "not for the model pendulum"),
+        (lambda: simulate(time=math.nan), "time = nan"),
+        (lambda: simulate(time=0.01), "shorter than one step"),
+        (lambda: simulate(time=1e8), "use every="),
+        (lambda: simulate(time=1, every=0.5), "every = 0.5"),
+        (lambda: simulate(time=1, theta="90"), "theta = '90'"),
+        (lambda: simulate(time=1, friction=0.1), "no friction"),
+        (lambda: limits(omega=20), "a pendulum that swings"),
+        (lambda: limits("stiff-limit"), "not for the model spring"),
+        (lambda: limits(steps=0), "steps = 0"),
+    ],
+)
+def test_what_cannot_be_used_is_refused_with_a_sentence(call, word):
+    with pytest.raises(ValueError, match=word):
+        call()
+
+
+def test_limits_are_where_the_swing_is_lost():
+    found = limits(theta=2.0, methods="verlet,rk4,blanes_moan_6", steps=1000)
+    verlet = found["velocity_verlet"]
+    assert (verlet.linear, verlet.reason) == (2, "over the top")
+    assert found["rk4"].reason == "loses"
+    assert found["blanes_moan_6"].z is None
+    for share, held in [(0.98, True), (1.0, False)]:
+        run = simulate(theta=2.0, h=share * verlet.h, time=1000 * verlet.h, methods="verlet")
+        assert (np.abs(run["verlet"].theta).max() < math.pi) == held
+
+
+def test_only_methods_for_any_force_take_one():
+    for key, method in METHODS.items():
+        if key not in GENERAL:
+            with pytest.raises(ValueError, match=f"{method.label} is made for the scenes"):
+                method.phases(np.negative, (1.0, 0.0), 0.1)
+
+
+def gravity(q):
+    return -q / np.hypot(*q) ** 3
+
+
+def henon_heiles(q):
+    return np.array([-q[0] - 2 * q[0] * q[1], -q[1] - q[0] ** 2 + q[1] ** 2])
+
+
+def chain(q):
+    return np.diff(q, 2, prepend=0.0, append=0.0)
+
+
+MODE = np.sin(np.pi * 700 * np.arange(1, 1001) / 1001)
+MODE_FREQUENCY = 2 * math.sin(math.pi * 700 / 2002)
+SYSTEMS = {  # force, start, time, and the state there
+    "Kepler, eccentricity 0.2, one turn": (
+        gravity, ([0.8, 0.0], [0.0, 1.5**0.5]), math.tau, ([0.8, 0.0], [0.0, 1.5**0.5]),
+    ),
+    "Hénon–Heiles": (  # from mpmath.odefun with 25 digits
+        henon_heiles, ([0.0, 0.1], [0.49, 0.0]), 20.0,
+        ([0.37685059384007973, 0.10665693736112055], [-0.015082946145681837, -0.2575433333887205]),
+    ),
+    "a chain of 1 000 oscillators": (
+        chain, (MODE, 0 * MODE), 10.0,
+        (math.cos(10 * MODE_FREQUENCY) * MODE, -MODE_FREQUENCY * math.sin(10 * MODE_FREQUENCY) * MODE),
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("key", GENERAL)
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_any_force_on_arrays_is_integrated_with_the_order_of_the_method(name, key):
+    force, start, time, expected = SYSTEMS[name]
+    method = METHODS[key]
+    errors = []
+    for steps in (1000, 2000):
+        q, p = map(np.array, start)
+        first = q.copy()
+        q, p = next(islice(method.phases(force, (q, p), time / steps), steps - 1, None))
+        errors.append(max(np.abs(q - expected[0]).max(), np.abs(p - expected[1]).max()))
+        assert np.array_equal(start[0], first)
+    assert errors[1] < 2e-9 or math.log2(errors[0] / errors[1]) > method.order - 0.3
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_bm6_is_as_near_as_scipy(name):
+    solve = pytest.importorskip("scipy.integrate").solve_ivp
+    force, start, time, expected = SYSTEMS[name]
+    n = len(start[0])
+    answer = solve(
+        lambda t, y: np.concatenate([y[n:], force(y[:n])]),
+        (0, time), np.concatenate(start), "DOP853", rtol=1e-12, atol=1e-12,
+    )  # fmt: skip
+    q, _ = next(
+        islice(
+            METHODS["blanes_moan_6"].phases(
+                force, (np.array(start[0]), np.array(start[1])), time / 2000
+            ),
+            1999,
+            None,
+        )
+    )
+    assert np.abs(q - expected[0]).max() < 1e-9
+    assert np.abs(answer.y[:n, -1] - expected[0]).max() < 1e-9
