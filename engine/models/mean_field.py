@@ -51,7 +51,15 @@ class MeanField(Model):
     equation: ClassVar[str] = "theta'' = -w0² sin theta - kappa b'·s, s' = nu b × s"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter("coupling", "s⁻²", "of the bob to its two levels", -1e6, 1e6, default=2.0),
-        Parameter("level_frequency", "s⁻¹", "of the two levels", 1e-3, 1e6, default=20.0),
+        Parameter(
+            "level_frequency",
+            "s⁻¹",
+            "of the two levels",
+            min=1e-3,
+            max=1e4,
+            default=20.0,
+            max_over_w0=1_000,  # beyond, its reference takes too many steps
+        ),
     )
     turns: ClassVar[bool] = True
     second_order: ClassVar[bool] = False

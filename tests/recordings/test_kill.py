@@ -8,6 +8,8 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+import pytest
+
 from recordings.events import remember
 from recordings.library import leftovers
 from recordings.recording import Recording
@@ -15,6 +17,8 @@ from recordings.recovery import rescue
 from recordings.verification import verify
 from tests.recordings.killed import OWN
 from tests.tui.pty_lab import PtyLab
+
+pytestmark = pytest.mark.slow
 
 KILLS = 4  # tests/bench/kill.py kills more
 

@@ -12,6 +12,8 @@ from recordings.library import GOLDEN
 from tests.tui.pty_lab import ROOT, PtyLab
 from tui.cli.dispatch import COMMANDS
 
+pytestmark = pytest.mark.slow
+
 SMALL_MAP = ("--map", "--theta-values", "1", "--z-values", "0.1:2:4", "--steps", "20")
 SECTION = ("--section", "--starts", "9", "--steps", "50", "-o", "map.svg")
 ARGUMENTS: dict[str, list[tuple[str, ...]]] = {

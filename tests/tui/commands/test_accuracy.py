@@ -131,9 +131,8 @@ def test_a_mistake_is_one_sentence_and_exit_2(arguments, words):
 )
 def test_extreme_starts_print_numbers_and_no_nan(extreme):
     quick = ("accuracy", "--time", "1", "--h-values", "0.1:0.01:3", *extreme)
-    assert (
-        len(pendu(*quick, "--target", "1e-3", "--json").json["points"]) == 12
-    )  # read by a parser that refuses nan
+    points = pendu(*quick, "--json").json["points"]  # read by a parser that refuses nan
+    assert len(points) == 12
     assert pendu(*quick).code == 0
 
 
@@ -186,6 +185,7 @@ def test_of_all_methods_it_names_the_cheapest_and_by_which_factor():
 
 
 @needs_numba
+@pytest.mark.slow
 def test_over_seconds_all_there_is_includes_the_series_and_the_floor():
     answer = pendu(*ALL, "--cost", "seconds", "--target", "1e-9", "--json").json
     series = [point for point in answer["points"] if point["method"] == "taylor_20"]

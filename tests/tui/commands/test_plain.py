@@ -11,6 +11,8 @@ from recordings.library import listing
 from recordings.verification import verify
 from tests.tui.pty_lab import PENDU, ROOT
 
+pytestmark = pytest.mark.slow
+
 
 def started(folder: Path, *arguments: str) -> "subprocess.Popen[str]":
     environment = {**os.environ, "PENDU_RECORDINGS": str(folder), "TERM": "dumb"}

@@ -202,6 +202,7 @@ def test_compiled_and_plain_runs_print_the_same_numbers(monkeypatch):
     assert compiled["methods"] == plain["methods"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_run_that_is_stopped_finishes_its_recording(tmp_path, number):
     path = tmp_path / "run.mcap"

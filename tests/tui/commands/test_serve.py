@@ -16,6 +16,8 @@ from recordings.verification import verify
 from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PENDU
 
+pytestmark = pytest.mark.slow
+
 aiohttp = pytest.importorskip("aiohttp", reason="the extra web is not installed")
 pytest.importorskip("textual_serve", reason="the extra web is not installed")
 

@@ -3,6 +3,8 @@
 import sys
 from collections.abc import Callable
 
+import pytest
+
 from engine.scenes import DEFAULT_SCENE
 from tui.playback.live import Live
 
@@ -26,6 +28,7 @@ def calls(work: Callable[[], object]) -> int:
     return count
 
 
+@pytest.mark.slow
 def test_a_frame_takes_as_much_after_eight_hours_as_after_one():
     now, live, taken = 0.0, Live(DEFAULT_SCENE.altered(h=0.05), clock=lambda: 0.0), []
 

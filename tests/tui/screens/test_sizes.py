@@ -56,6 +56,7 @@ async def test_below_60x16_a_message_gives_the_size_needed_and_the_keys_still_wo
         assert not on_screen(theatre, TooSmall)
 
 
+@pytest.mark.slow
 async def test_a_storm_of_sizes_in_every_view_leaves_the_lab_whole():
     storm = random.Random(7)
     async with lab() as theatre:

@@ -16,6 +16,8 @@ from recordings.verification import verify
 from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PENDU, PtyLab
 
+pytestmark = pytest.mark.slow
+
 ON_SCREEN = "Quit"  # of the key line, which is painted last
 RECORDING = "REC 0 s"
 

@@ -4,6 +4,8 @@ import pytest
 
 from tests.tui.pty_lab import PtyLab
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize("arguments", [("live", "--no-record"), ("replay", "drift")])
 def test_a_paused_program_sends_no_byte(arguments):

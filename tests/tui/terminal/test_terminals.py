@@ -7,11 +7,15 @@ import signal
 import time
 from pathlib import Path
 
+import pytest
+
 from engine.run.lockstep import Sample
 from recordings.recording import Recording
 from recordings.verification import verify
 from tests.tui.emulator import Emulator
 from tests.tui.pty_lab import PtyLab
+
+pytestmark = pytest.mark.slow
 
 RECORDING = "REC 0 s"
 NEVER_CHANGES = "Phase space"  # once painted

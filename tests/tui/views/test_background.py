@@ -18,6 +18,8 @@ import pytest
 from engine.stability.grid import Grid, pieces
 from tui.views.background import computed
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[3]
 GRID = Grid(np.array([0.5, 1.5, 2.5]), np.linspace(0.2, 3, 14), 100)
 
