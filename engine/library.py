@@ -149,6 +149,13 @@ class Judged:
     uncertainty: float | None  # standard deviation of the trend
     max_error: float  # the largest distance from the first energy, over the scale
     scale: float  # in the energies' unit
+    progress: str  # how far it is to a verdict where it is too early: "10 of 64 samples"
+
+    def __str__(self) -> str:
+        text = f"{self.verdict}{self.progress and f', {self.progress}'}"
+        if self.trend is not None:
+            text += f", trend {self.trend:+.2e} ± {self.uncertainty:.0e} per unit of time"
+        return f"{text}, errors up to {self.max_error:.2e}, relative to {self.scale:g}"
 
 
 def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "std") -> Judged:
@@ -182,6 +189,7 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "std")
         uncertainty=None if uncertainty is None else uncertainty / size,
         max_error=float(np.abs(e - e[0]).max()) / size,
         scale=size,
+        progress=str(found.judgement.progress or ""),
     )
 
 
@@ -289,7 +297,7 @@ def _array(name: str, values: Any) -> "Floats":
         raise ValueError(f"{name} must be one-dimensional; their shape is {array.shape}.")
     if not np.isfinite(array).all():
         place = int(np.argmin(np.isfinite(array)))
-        raise ValueError(f"{name}[{place}] is {array[place]}; judge the finite ones before it.")
+        raise ValueError(f"{name}[{place}] is {array[place]}, which is not a finite number.")
     return array
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from tui.cli.errors import Exit, UserError, explained
 from tui.cli.files import repeat_swallowed_interrupts
+from tui.cli.install import hidden_package
 
 if TYPE_CHECKING:
     from tui.cli.options import Parser
@@ -81,6 +82,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
             stream.reconfigure(errors="replace")  # a terminal without θ shows a ?, not a traceback
     if arguments is None:
         repeat_swallowed_interrupts()
+    if why := hidden_package():
+        print(f"pendu-tui: {why}", file=sys.stderr)
+        return Exit.USAGE
     try:
         code = _dispatch(list(sys.argv[1:] if arguments is None else arguments))
         sys.stdout.flush()

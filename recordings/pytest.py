@@ -1,0 +1,101 @@
+"""A pytest plugin for tests of one's own: a gate on energies, and recordings as tests.
+
+Name it, with `-p recordings.pytest` in addopts or with `pytest_plugins = ["recordings.pytest"]` in
+the root conftest.py: installed, but not named, it changes nobody's tests.
+"""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+import engine
+
+if Path(str(engine.__file__)).resolve().parents[1] != Path(__file__).resolve().parents[1]:
+    raise pytest.UsageError(
+        f"{engine.__file__} hides the package engine of pendu-tui, which recordings.pytest needs;"
+        " let a test run `pendu-tui verify FOLDER` instead."
+    )
+
+from engine import judge
+from recordings.errors import RecordingError
+from recordings.verification import verify
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from engine.library import Judged
+
+
+class EnergyDrift:
+    """Fails a test whose energies drift."""
+
+    def __init__(self, properties: list[tuple[str, object]]) -> None:
+        self._properties = properties
+
+    def check(
+        self,
+        times: "ArrayLike",
+        energies: "ArrayLike",
+        verdict: str = "bounded",
+        max_drift: float | None = None,
+        scale: float | str = "std",
+    ) -> "Judged":
+        """Fail unless `engine.judge` finds this verdict, and a trend of at most `max_drift`.
+
+        The trend is that of the energies over the scale, per unit of time.  It and the verdict
+        become user properties of the test, which a JUnit report shows.
+        """
+        __tracebackhide__ = True
+        refusal = ""
+        try:
+            found = judge(times, energies, scale)
+        except ValueError as error:
+            refusal = str(error)
+        if refusal:  # outside, so that the report shows no other traceback
+            pytest.fail(refusal)
+        self._properties += [("verdict", found.verdict), ("trend", found.trend)]
+        if found.verdict != verdict:
+            pytest.fail(f"the verdict is not {verdict}: {found}")
+        if max_drift is not None and (found.trend is None or abs(found.trend) > max_drift):
+            pytest.fail(f"the energies drift by more than {max_drift:g}: {found}")
+        return found
+
+
+@pytest.fixture
+def energy_drift(request: pytest.FixtureRequest) -> EnergyDrift:
+    """Give a test `energy_drift.check(times, energies)`."""
+    return EnergyDrift(request.node.user_properties)
+
+
+def verify_recordings(folder: str | Path) -> Callable[[Any], None]:
+    """Return a test of each recording below a folder: `test_recordings = verify_recordings(FOLDER)`.
+
+    It fails where a recording is damaged, where simulating it again gives another bit, and where
+    there is none.
+    """
+    names = sorted(path.relative_to(folder).as_posix() for path in Path(folder).rglob("*.mcap"))
+
+    @pytest.mark.parametrize("name", names or [""], ids=names or ["none"])
+    def test(name: str) -> None:
+        if not name:
+            pytest.fail(f"there is no recording (*.mcap) in {folder}", pytrace=False)
+        if flaw := _flaw(Path(folder, name)):
+            pytest.fail(flaw, pytrace=False)
+
+    return test
+
+
+def _flaw(path: Path) -> str:
+    """Return what is wrong with a recording; "" if nothing is."""
+    try:
+        found = verify(path)
+    except RecordingError as error:
+        return str(error)
+    if first := found.first_difference:
+        where = (
+            f"run {first.run}, step {first.step}, t = {first.t:g} s, {first.method} {first.field}"
+        )
+        return f"{path}: {where} is {first.computed!r}, recorded {first.recorded!r}"
+    return "" if found.complete and found.identical else f"{path}: {found.reason}"
