@@ -1,7 +1,6 @@
 """The map of stability: every method at every step z and every amplitude, in strips that any executor can run."""
 
 from collections.abc import Iterator, Sequence
-from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -56,21 +55,17 @@ class Grid:
         return np.full(self.shape, np.array((0, 0.0, UNKNOWN), CELL))
 
     def strips(self) -> list["Grid"]:
-        """The grid cut along z.  However it is cut, the cells are the same to the last bit."""
+        """Return the grid cut along z.  However it is cut, the cells are the same to the last bit.
+
+        They depend on `sin`, so on processor and libm, and on whether Numba is installed: only
+        workers of one kind give the cells that are computed here.
+        """
         fast = self.compiled
         width = max(1, STRIP // len(self.theta))
         return [
             replace(self, z=self.z[start : start + width], fast=fast)
             for start in range(0, len(self.z), width)
         ]
-
-    def compute(self, executor: Executor | None = None) -> Iterator[Cells]:
-        """The cells of strip after strip, z ascending, from the executor's workers or from here.
-
-        The cells depend on `sin`, so on processor and libm, and on whether Numba is installed: only workers of one kind
-        give the picture that is computed here.
-        """
-        return (executor.map if executor else map)(Grid.cells, self.strips())
 
 
 @dataclass(frozen=True, slots=True)

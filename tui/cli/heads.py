@@ -132,7 +132,7 @@ def missing(wanted: Sequence[str], names: Sequence[str]) -> UserError:
     others = (
         f"; choose from {', '.join(present)}." if present else "; give columns by number, from 1."
     )
-    hint = did_you_mean(lost, present) if len(lost) <= MAX_NAME else None
+    hint = did_you_mean(lost, present)
     return UserError(f"there is no column {printable(lost, 40)!r}{hint or others}")
 
 

@@ -4,12 +4,14 @@ import argparse
 import difflib
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NoReturn
 
-from engine.scenes import LIMITS
 from tui.cli.errors import UserError
-from tui.cli.output import warn
+
+LIST = "FIRST:LAST:HOW_MANY"
+MAX_VALUES = 1_000_000  # of a list
+MAX_WORD = 200  # characters of a word that is looked up; difflib takes seconds for long ones
 
 
 class Parser(argparse.ArgumentParser):
@@ -20,9 +22,10 @@ class Parser(argparse.ArgumentParser):
         self._negative_number_matcher = re.compile(r"-\.?\d")
 
     def error(self, message: str) -> NoReturn:
-        raise UserError(
-            f"{message.removeprefix('argument ')}; {self.prog} --help shows the options."
-        )
+        sentence = message.removeprefix("argument ")
+        if not sentence.endswith("?"):
+            sentence += f"; {self.prog} --help shows the options."
+        raise UserError(sentence)
 
     def parse_args(self, arguments: Sequence[str], namespace: Any = None) -> Any:  # type: ignore[override]
         """Parse the arguments; optional words, such as a SCENE, may also follow options."""
@@ -75,24 +78,45 @@ def add_recording(
 
 
 def angle(text: str) -> float:
-    """Return an angle [rad] from `2`, `2rad`, `115deg` or `115°`."""
+    """Return an angle [rad] from `2`, `2rad`, `115deg`, `115°`, `pi/2` or `-2pi/3`.
+
+    An angular velocity may end in `/s`.
+    """
+    bare = re.sub(r"\s*(deg|°|rad)(/s)?$", "", text)
+    multiple = re.fullmatch(r"([-+]?)([\d.]*)\*?(?:pi|π)(?:/([\d.]+))?", bare)
     try:
-        value = float(re.sub(r"(deg|°|rad)$", "", text))
-    except ValueError:
+        if multiple:
+            sign, factor, divisor = multiple.groups()
+            value = float(f"{sign}{factor or 1}") * math.pi / float(divisor or 1)
+        else:
+            value = float(bare)
+    except (ValueError, ZeroDivisionError):
         raise argparse.ArgumentTypeError(
-            f"{text!r} is not an angle; use for example 2 (radians) or 115deg"
+            f"{text!r} is not an angle; use for example 2 (radians), pi/2 or 115deg"
         ) from None
-    return math.radians(value) if text.endswith(("deg", "°")) else value
+    return math.radians(value) if "deg" in text or "°" in text else value
 
 
 def start_angle(text: str) -> float:
-    """Return an angle [rad]; warn if degrees seem to be meant."""
+    """Return an angle [rad]; of more than a turn only with its unit, as degrees may be meant."""
     value = angle(text)
-    if math.tau < abs(value) <= LIMITS["theta"][1] and not text.endswith(("deg", "°", "rad")):
-        warn(
-            f"--theta {text} is {text} rad, {abs(value) / math.tau:.3g} turns; for degrees write {text}deg."
-        )
+    if math.tau < abs(value) < math.inf and not re.search(r"deg|°|rad|pi|π", text):
+        turns = abs(value) / math.tau
+        raise argparse.ArgumentTypeError(f"{text} is {turns:.3g} turns: {text}deg or {text}rad?")
     return value
+
+
+def seconds(text: str) -> float:
+    """Return a time [s] from `2`, `2s`, `50ms`, `1min` or `1h`."""
+    bare = re.sub(r"\s*(ms|s|min|h)$", "", text)
+    unit = text[len(bare) :].strip()
+    try:
+        value = float(bare)
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not a time; use for example 0.05 (seconds), 50ms or 1min"
+        ) from None
+    return value / 1000 if unit == "ms" else value * {"min": 60, "h": 3600}.get(unit, 1)
 
 
 def number(text: str) -> float:
@@ -105,12 +129,37 @@ def number(text: str) -> float:
         ) from None
 
 
-def positive(text: str) -> float:
+def values(element: Callable[[str], float]) -> Callable[[str], list[float]]:
+    """Return a reader of ascending values, each read by `element`: `0.5,1,2` or `0.1:3:30`."""
+
+    def read(text: str) -> list[float]:
+        match text.split(":"):
+            case [_]:
+                return sorted({element(part) for part in text.split(",")})
+            case [first, last, many] if 2 <= (size := count(many)) <= MAX_VALUES:
+                low = element(first)
+                high = element(last)
+                if low < high:
+                    steps = range(size - 1)
+                    return [*(low + (high - low) * i / (size - 1) for i in steps), high]
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not a list of values; use 0.5,1,2 or 0.1:3:30 ({LIST})"
+        )
+
+    return read
+
+
+def positive(text: str, read: Callable[[str], float] = number) -> float:
     """Return a number above zero, and finite."""
-    value = number(text)
+    value = read(text)
     if not 0 < value < math.inf:
         raise argparse.ArgumentTypeError(f"{text!r} is out of range; use a number above zero")
     return value
+
+
+def duration(text: str) -> float:
+    """Return a time above zero [s]."""
+    return positive(text, seconds)
 
 
 def count(text: str) -> int:
@@ -122,5 +171,5 @@ def count(text: str) -> int:
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """Return the end of a sentence about an unknown word."""
-    near = difflib.get_close_matches(word, known, n=1)
+    near = difflib.get_close_matches(word[:MAX_WORD], known, n=1)
     return f": did you mean {near[0]}?" if near else ""

@@ -5,6 +5,7 @@ import sys
 import textwrap
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from datetime import timedelta
 from time import monotonic
 from typing import TYPE_CHECKING, Any, TextIO
 
@@ -13,6 +14,7 @@ from engine.scenes import LIMITS, Scene
 
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
+    from rich.progress import Progress
 
 
 def warn(sentence: str) -> None:
@@ -81,31 +83,43 @@ def draw(on: "Console", renderables: "Iterable[RenderableType]", **how: Any) -> 
 def progress(what: str) -> Iterator[Callable[[float, float], None]]:
     """Yield a function to call with how much is done and how much there is in all.
 
-    A terminal shows a bar and an estimate of the time left once the work takes over a second.
+    A terminal shows a bar and an estimate of the time left once the work takes over a second; where
+    stderr is none, there is a line after ten seconds, and whenever the time has doubled.
     """
     began = monotonic()
+    next_line = 10.0  # s since then
     bar: Any = None
 
     def show(done: float, total: float) -> None:
-        nonlocal bar
-        if bar is None:
-            if not done or monotonic() - began < 1 or not sys.stderr.isatty():
-                return
-            from rich.console import Console
-            from rich.progress import Progress
-
-            bar = Progress(
-                *Progress.get_default_columns(),
-                "left",
-                console=Console(file=sys.stderr),
-                transient=True,
-            )
-            bar.add_task(what)
-            bar.start()
-        bar.update(0, completed=done, total=total)
+        nonlocal bar, next_line
+        elapsed = monotonic() - began
+        if bar is not None:
+            bar.update(0, completed=done, total=total)
+        elif not done or done == total:
+            return
+        elif not sys.stderr.isatty():
+            if elapsed > next_line:
+                next_line = 2 * elapsed
+                left = timedelta(seconds=round(elapsed * (total - done) / done))
+                warn(f"{what}: {done / total:.0%} done, about {left} left.")
+        elif elapsed > 1:
+            bar = _bar(what)
+            bar.update(0, completed=done, total=total)
 
     try:
         yield show
     finally:
         if bar is not None:
             bar.stop()
+
+
+def _bar(what: str) -> "Progress":
+    """Return a bar on stderr with the time left; it begins to be drawn."""
+    from rich.console import Console
+    from rich.progress import Progress
+
+    columns = Progress.get_default_columns()
+    bar = Progress(*columns, "left", console=Console(file=sys.stderr), transient=True)
+    bar.add_task(what)
+    bar.start()
+    return bar

@@ -1,18 +1,67 @@
-"""The options that describe a scene: its name, its numbers and its cast."""
+"""The options that describe a scene: its name, its numbers and its cast.
+
+A scene of the user's own is a TOML file with the fields that `scenes --json` prints.
+"""
 
 import argparse
+import math
+import re
+import tomllib
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields
+from itertools import product
 from pathlib import Path
+from typing import Any
 
-from engine.models import PARAMETERS
-from engine.scenes import DEFAULT_SCENE, LIMITS, SCENES, Scene
-from tui.cli.cast import add_cast_options, cast_of
-from tui.cli.errors import UserError
-from tui.cli.options import Suggestions, angle, did_you_mean, number, start_angle
+from engine.methods import METHODS, Cast
+from engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
+from engine.scenes import DEFAULT_SCENE, MOST_METHODS, SCENES, Scene, SceneError
+from recordings.errors import printable
+from tui.cli.cast import add_cast_options, cast_of, find
+from tui.cli.errors import Exit, UserError
+from tui.cli.options import (
+    LIST,
+    Suggestions,
+    angle,
+    did_you_mean,
+    number,
+    seconds,
+    start_angle,
+    values,
+)
+
+READERS: dict[str, Callable[[str], float]] = {
+    "theta": start_angle,
+    "omega": angle,
+    "length": number,
+    "gravity": number,
+    **dict.fromkeys(PARAMETERS, number),
+    "h": seconds,
+}
+"""The numbers of a scene, and how each is read, on the command line and in a file."""
+
+_HELP = {
+    "theta": ("RAD|DEGdeg", "start angle from straight down: 2 (in rad), pi/2 or 115deg"),
+    "omega": ("RAD_S", "start angular velocity: 2 (in rad/s) or 30deg (a second)"),
+    "length": ("M", "length in m"),
+    "gravity": ("M_S2", "gravity in m/s²"),
+    "h": ("S", "step size: 0.05 (in s) or 50ms"),
+}
+
+TEXTS = ("name", "watch", "model")
+NO_FIELDS = ("cast", "parameters", "often_said")
+FIELDS = (
+    *(field.name for field in fields(Scene) if field.name not in NO_FIELDS),
+    *PARAMETERS,
+    "methods",
+)
+MAX_BYTES = 100_000
 
 
-def add_scene_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options that determine a scene; `scene_of` reads them."""
-    group = parser.add_argument_group("scene", "options override the values of the scene")
+def add_scene_options(parser: argparse.ArgumentParser, lists: bool = False) -> None:
+    """Add the options that determine a scene, for `scene_of`; with `lists`, for `scenes_of`."""
+    more = f"; a number may be a list, 0.1,0.2 or {LIST}" if lists else ""
+    group = parser.add_argument_group("scene", f"options override the values of the scene{more}")
     meaning = (
         f"see pendu-tui scenes ({DEFAULT_SCENE.name}), or a file with the fields of scenes --json"
     )
@@ -23,52 +72,73 @@ def add_scene_options(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--scene", dest="scene_option", metavar="NAME|FILE.toml", choices=names, help=meaning
     )
-    for name, metavar, read, meaning in (
-        (
-            "theta",
-            "RAD|DEGdeg",
-            start_angle,
-            "start angle from straight down, in rad, or in degrees (115deg)",
-        ),
-        (
-            "omega",
-            "RAD_S",
-            angle,
-            "start angular velocity in rad/s, or in degrees per second (30deg)",
-        ),
-        ("length", "M", number, "length in m"),
-        ("gravity", "M_S2", number, "gravity in m/s²"),
-        *(
-            (each.name, "NUMBER", number, f"{each.about} in {each.unit}")
-            for each in PARAMETERS.values()
-        ),
-        ("h", "S", number, "step size in s"),
-    ):
-        group.add_argument(f"--{name.replace('_', '-')}", metavar=metavar, type=read, help=meaning)
+    parameters = {
+        each.name: ("NUMBER", f"{each.about} in {each.unit}") for each in PARAMETERS.values()
+    }
+    for name, read in READERS.items():
+        metavar, meaning = (_HELP | parameters)[name]
+        option = f"--{name.replace('_', '-')}"
+        group.add_argument(
+            option, metavar=metavar, type=values(read) if lists else read, help=meaning
+        )
     add_cast_options(group)
 
 
-def scene_of(options: argparse.Namespace, default: Scene | None = None) -> Scene:
-    """Return the scene that the options describe, with its cast; without a name they change the `default`.
+@dataclass(frozen=True, slots=True)
+class SceneList:
+    """Every combination of the values given, the last axis changing fastest."""
 
-    Raises UserError for an unknown name, SceneError for bad numbers, OwnMethodError for a bad function.
+    base: Scene
+    axes: Mapping[str, Sequence[float]]  # the numbers that are given, each with its values
+
+    def __len__(self) -> int:
+        return math.prod(map(len, self.axes.values()))
+
+    def __iter__(self) -> Iterator[Scene]:
+        return self._combined(self.axes)
+
+    def corners(self) -> list[Scene]:
+        """Return the combinations of the extremes: what limits them, they do not exceed."""
+        ends = {name: sorted({axis[0], axis[-1]}) for name, axis in self.axes.items()}
+        return list(self._combined(ends))
+
+    def _combined(self, axes: Mapping[str, Sequence[float]]) -> Iterator[Scene]:
+        for numbers in product(*axes.values()):
+            yield self.base.altered(**dict(zip(axes, numbers, strict=True)))
+
+
+def scenes_of(options: argparse.Namespace, default: Scene | None = None) -> SceneList:
+    """Return the scenes that the options describe, with their cast.
+
+    Without a name they change the `default`.  Raises UserError for an unknown name, SceneError for
+    bad numbers, if only in some of the combinations, and OwnMethodError for a bad function.
     """
-    given = {name: getattr(options, name) for name in (*LIMITS, *PARAMETERS, "h")}
-    changes = {name: value for name, value in given.items() if value is not None}
+    given = {name: getattr(options, name) for name in READERS}
+    axes = {
+        name: value if isinstance(value, list) else [value]
+        for name, value in given.items()
+        if value is not None
+    }
     if options.scene and options.scene_option:
         raise UserError(
             f"there are two scenes, {options.scene} and {options.scene_option}; leave one out."
         )
     name = options.scene or options.scene_option
-    scene = (scene_named(name) if name else default or DEFAULT_SCENE).altered(**changes)
-    return scene.with_cast(cast_of(options, scene.cast))
+    scene = scene_named(name) if name else default or DEFAULT_SCENE
+    scenes = SceneList(scene.with_cast(cast_of(options, scene.cast)), axes)
+    scenes.corners()
+    return scenes
+
+
+def scene_of(options: argparse.Namespace, default: Scene | None = None) -> Scene:
+    """Return the one scene of options without lists, as `scenes_of` does."""
+    (scene,) = scenes_of(options, default)
+    return scene
 
 
 def scene_named(name: str) -> Scene:
     """Return a listed scene, or that of a file.  Raises UserError."""
     if name.endswith(".toml"):
-        from tui.cli.scene_file import read_scene
-
         return read_scene(Path(name))
     if name not in SCENES:
         hint = did_you_mean(name, SCENES) or "; pendu-tui scenes lists them."
@@ -82,3 +152,90 @@ def general_scene_of(options: argparse.Namespace) -> Scene:
     if why := scene.why_not_mapped:
         raise UserError(why)
     return scene
+
+
+def read_scene(path: Path) -> Scene:
+    """Return the scene in a file.  Raises UserError with line and field."""
+    try:
+        with path.open("rb") as file:
+            raw = file.read(MAX_BYTES + 1)
+        if len(raw) > MAX_BYTES:
+            raise UserError(
+                f"{path} is longer than {MAX_BYTES} bytes; is it a scene?", Exit.INPUT_UNREADABLE
+            )
+        text = raw.decode("utf-8-sig")
+        given = tomllib.loads(text)
+    except OSError as error:
+        raise UserError(f"cannot read {path}: {error.strerror}.", Exit.INPUT_UNREADABLE) from None
+    except (
+        ValueError,
+        RecursionError,
+    ) as error:  # ValueError: no text, no TOML, or an integer of 5,000 digits
+        raise UserError(
+            f"{path} is not TOML: {printable(str(error), 200)}.", Exit.INPUT_UNREADABLE
+        ) from None
+    values: dict[str, Any] = {"name": path.stem}
+    for name, value in given.items():
+        try:
+            values["cast" if name == "methods" else name] = _value(name, value)
+        except UserError as error:
+            raise UserError(
+                f"{path}, line {_line(text, name)}: {error}", Exit.INPUT_UNREADABLE
+            ) from None
+    model = values.get("model", DEFAULT_MODEL)
+    casts = (scene.cast for scene in SCENES.values() if scene.model == model)
+    suited = tuple(method for method in METHODS if model in method.models)
+    values.setdefault("cast", next(casts, suited[:MOST_METHODS]))
+    parameters = {name: values.pop(name) for name in PARAMETERS if name in values}
+    try:
+        return Scene(parameters=parameters, **values)
+    except SceneError as error:
+        named = next(
+            (name for name in given if re.search(rf"\b{re.escape(name)}\b", str(error))), None
+        )
+        where = "" if named is None else f", line {_line(text, named)}"
+        raise UserError(f"{path}{where}: {error}", Exit.INPUT_UNREADABLE) from None
+
+
+def _value(name: str, value: Any) -> Any:
+    """Return a field's value, as a Scene takes it."""
+    if name not in FIELDS:
+        advice = did_you_mean(name, FIELDS) or f"; choose from {', '.join(FIELDS)}."
+        raise UserError(f"a scene has no field {printable(name, 40)}{advice}")
+    if name == "methods":
+        return _methods(value)
+    if name in TEXTS:
+        if not isinstance(value, str) or (name == "model" and value not in MODELS):
+            allowed = f"one of {', '.join(MODELS)}" if name == "model" else "a text"
+            raise UserError(f"{name} is not {allowed}.")
+        return printable(value, 200)
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        example = getattr(DEFAULT_SCENE, name, None) or 1.0
+        raise UserError(f"{name} is not a number; use for example {name} = {example}.")
+    try:
+        return READERS.get(name, number)(str(value))
+    except argparse.ArgumentTypeError as error:
+        raise UserError(f"{name}: {error}.") from None
+
+
+def _methods(value: Any) -> Cast:
+    if not isinstance(value, list) or not value or not all(isinstance(key, str) for key in value):
+        raise UserError(
+            'methods is not a list of names; use for example ["velocity_verlet", "rk4"].'
+        )
+    if len(set(value)) < len(value):
+        raise UserError("methods has a name twice; name each method once.")
+    return tuple(find(key, METHODS, "methods") for key in value)
+
+
+def _line(text: str, name: str) -> int:
+    """Return the line that a field is on, from 1."""
+    lines = text.splitlines()
+    return next(
+        (
+            n
+            for n, line in enumerate(lines, 1)
+            if re.match(rf"\s*[\"'\[]*{re.escape(name)}\b", line)
+        ),
+        1,
+    )

@@ -1,4 +1,6 @@
+import argparse
 import math
+import re
 
 import pytest
 from hypothesis import given
@@ -6,7 +8,7 @@ from hypothesis import strategies as st
 
 from engine.scenes import DEFAULT_SCENE, SCENES, Scene, SceneError
 from tui.cli.errors import UserError
-from tui.cli.options import Parser, angle
+from tui.cli.options import Parser, angle, number, seconds, values
 from tui.cli.scene import add_scene_options, scene_of
 
 
@@ -29,27 +31,62 @@ def test_an_option_equal_to_the_scenes_value_keeps_the_scenes_name():
     assert scene_from("--scene", "crossover", "--h", "0.2") == SCENES["crossover"]
 
 
-def test_degrees_become_radians():
-    assert angle("115deg") == angle("115°") == math.radians(115)
-    assert angle("-90deg") == -math.pi / 2
-    assert angle("2") == angle("2rad") == 2.0
+@pytest.mark.parametrize(
+    ("text", "radians"),
+    [
+        ("115deg", math.radians(115)),
+        ("-90°", -math.pi / 2),
+        ("90 deg", math.pi / 2),
+        ("2", 2.0),
+        ("2rad", 2.0),
+        ("pi/2", math.pi / 2),
+        ("-2pi/3", -2 * math.pi / 3),
+        ("0.5*π", math.pi / 2),
+        ("30deg/s", math.radians(30)),
+    ],
+)
+def test_an_angle_has_a_unit_or_is_a_multiple_of_pi(text, radians):
+    assert angle(text) == pytest.approx(radians, rel=1e-15)
 
 
-@pytest.mark.parametrize("theta", ["170", "-170"])
-def test_a_large_angle_without_unit_gets_a_hint_about_degrees(theta, capsys):
-    assert scene_from("--theta", theta).theta == float(theta)
-    assert f"for degrees write {theta}deg." in capsys.readouterr().err
+@pytest.mark.parametrize(
+    ("text", "value"), [("0.05", 0.05), ("50ms", 0.05), ("2 s", 2.0), ("1min", 60.0), ("1h", 3600)]
+)
+def test_a_time_has_a_unit_or_is_in_seconds(text, value):
+    assert seconds(text) == value
 
 
-@pytest.mark.parametrize("theta", ["170deg", "1000deg", "170rad", "6.28", "-6.28"])
-def test_an_angle_with_a_unit_or_below_one_turn_gets_no_hint(theta, capsys):
-    scene_from("--theta", theta)
-    assert capsys.readouterr().err == ""
+@pytest.mark.parametrize("theta", ["170", "-170", "1e9"])
+def test_more_than_a_turn_without_a_unit_is_refused(theta, tmp_path):
+    with pytest.raises(UserError, match=re.escape(f"{theta}deg or {theta}rad?")):
+        scene_from("--theta", theta)
+    (tmp_path / "mine.toml").write_text(f"theta = {theta}", encoding="utf-8")
+    with pytest.raises(UserError, match="deg or"):
+        scene_from("--scene", str(tmp_path / "mine.toml"))
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("1", [1.0]),
+        ("2,1,2", [1.0, 2.0]),
+        ("1:2:3", [1.0, 1.5, 2.0]),
+        ("1:2", None),
+        ("2:1:3", None),
+        ("1:2:1", None),
+    ],
+)
+def test_a_list_is_ascending(text, expected):
+    if expected is None:
+        with pytest.raises(argparse.ArgumentTypeError, match="is not a list"):
+            values(number)(text)
+    else:
+        assert values(number)(text) == expected
 
 
 @given(st.floats(-1e9, 1e9))
 def test_every_finite_theta_and_omega_can_be_given(value):
-    scene = scene_from("--theta", repr(value), "--omega", repr(value))
+    scene = scene_from("--theta", f"{value!r}rad", "--omega", repr(value))
     assert (scene.theta, scene.omega) == (value, value)
 
 
@@ -78,7 +115,7 @@ def test_a_number_out_of_range_is_refused_with_its_name_and_range(arguments):
     "arguments", [("--theta", "abc"), ("--theta", "5grad"), ("--h", "small"), ("--omega", "")]
 )
 def test_text_that_is_not_a_number_is_refused_with_an_example(arguments):
-    with pytest.raises(UserError, match=r"is not an? (angle|number); use for example"):
+    with pytest.raises(UserError, match=r"is not an? (angle|number|time); use for example"):
         scene_from(*arguments)
 
 

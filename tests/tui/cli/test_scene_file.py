@@ -6,7 +6,7 @@ import pytest
 
 from engine.scenes import SCENES
 from tests.tui.command_line import pendu
-from tui.cli.scene_file import read_scene
+from tui.cli.scene import read_scene
 
 
 def written(path, fields):
@@ -37,13 +37,13 @@ def test_without_methods_it_has_those_that_are_for_its_model(tmp_path, name):
     ("text", "said"),
     [
         ("h = 0.1\nthetta = 1", "line 2: a scene has no field thetta: did you mean theta?"),
-        ("h = 0.1\n\nlength = 'long'", "line 3: length is not a number"),
+        ("h = 0.1\n\nlength = 'long'", "line 3: length: 'long' is not a number"),
         ("h = -1", "line 1: h = -1 s is not a usable step"),
         ("h = 0.1\nspeed = 0", "line 2: speed = 0 is not usable"),
         ("model = 'cubic'", "line 1: model is not one of pendulum"),
         ("theta = 1\nmethods = ['rk5']", "line 2: "),
         ("theta = 1\nfriction = 0.1", "line 2: the model pendulum has no friction"),
-        ("friction = 'x'", "line 1: friction is not a number"),
+        ("friction = 'x'", "line 1: friction: 'x' is not a number"),
         ("theta = '1 turn'", "line 1: theta: '1 turn' is not an angle"),
         (f"theta = {'9' * 5000}", "is not TOML"),
         ("x" * 100_001, "longer than"),

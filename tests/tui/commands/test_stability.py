@@ -1,9 +1,6 @@
 import csv
 import io
 import math
-import sys
-from concurrent.futures import CancelledError
-from concurrent.futures.process import BrokenProcessPool
 
 import numpy as np
 import pytest
@@ -14,20 +11,21 @@ from engine.stability.grid import Grid
 from engine.stability.outcomes import FATES, UNKNOWN
 from engine.stability.study import amplitude
 from tests.tui.command_line import pendu
+from tui.cli.errors import Exit, UserError
+from tui.cli.workers import Workers
 
 SMALL = ("--steps", 300, "--z-values", "0.1:3:12", "--theta-values", "0.5,2")
 KEYS = [method.key for method in USUAL_CAST]
 
 
-@pytest.fixture
-def interrupted(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Ctrl+C is pressed when 5 of the map's z are done."""
+def stops_after_5_z(monkeypatch: pytest.MonkeyPatch, error: BaseException) -> None:
+    """Let a grid end with an error when 5 of its z are done."""
 
-    def compute(grid: Grid, executor: object = None):
-        yield Grid(grid.theta, grid.z[:5], grid.steps).cells()
-        raise KeyboardInterrupt
+    def map_(self: Workers, function: object, tasks: list[Grid]):
+        yield Grid(tasks[0].theta, tasks[0].z[:5], tasks[0].steps).cells()
+        raise error
 
-    monkeypatch.setattr(Grid, "compute", compute)
+    monkeypatch.setattr(Workers, "map", map_)
 
 
 def test_the_tables_show_theory_next_to_measurement():
@@ -97,20 +95,6 @@ def test_the_map_is_drawn_in_characters_where_there_is_no_colour():
     assert "| linear limit" in out
 
 
-def test_worker_processes_print_the_same_to_the_last_bit():
-    arguments = ("stability", *SMALL, "--json", "--map")
-    assert pendu(*arguments, "--workers", 2).out == pendu(*arguments).out
-
-
-def test_a_dask_cluster_prints_the_same_to_the_last_bit():
-    distributed = pytest.importorskip("distributed")
-    arguments = ("stability", *SMALL, "--json", "--map")
-    with distributed.LocalCluster(
-        n_workers=1, threads_per_worker=1, host="127.0.0.1", dashboard_address=None
-    ) as cluster:
-        assert pendu(*arguments, "--dask", cluster.scheduler_address).out == pendu(*arguments).out
-
-
 def test_a_map_in_a_file_is_the_map(tmp_path):
     file = tmp_path / "map.npz"
     assert pendu("stability", *SMALL, "-o", file).code == 0
@@ -122,7 +106,8 @@ def test_a_map_in_a_file_is_the_map(tmp_path):
     assert list(tmp_path.iterdir()) == [file]
 
 
-def test_ctrl_c_keeps_the_part_of_a_map_that_is_done(interrupted, tmp_path):
+def test_ctrl_c_keeps_the_part_of_a_map_that_is_done(monkeypatch, tmp_path):
+    stops_after_5_z(monkeypatch, KeyboardInterrupt())
     file = tmp_path / "map.npz"
     outcome = pendu("stability", *SMALL, "-o", file)
     assert outcome.code == 130
@@ -132,16 +117,11 @@ def test_ctrl_c_keeps_the_part_of_a_map_that_is_done(interrupted, tmp_path):
         assert (map_["cells"]["fate"][5:] == UNKNOWN).all()
 
 
-@pytest.mark.parametrize("error", [BrokenProcessPool, CancelledError, ConnectionError])
-def test_lost_workers_end_with_exit_3_and_what_is_done_is_kept(error, monkeypatch):
-    def compute(grid: Grid, executor: object = None):
-        yield Grid(grid.theta, grid.z[:5], grid.steps).cells()
-        raise error
-
-    monkeypatch.setattr(Grid, "compute", compute)
+def test_lost_workers_end_with_exit_3_and_what_is_done_is_kept(monkeypatch):
+    stops_after_5_z(monkeypatch, UserError("the workers are lost.", Exit.INPUT_UNREADABLE))
     outcome = pendu("stability", *SMALL, "--json")
     assert (outcome.code, outcome.json["interrupted"]) == (3, True)
-    assert "5 of 13 z" in outcome.err
+    assert outcome.err == "pendu-tui: the workers are lost; 5 of 13 z are computed and kept.\n"
 
 
 @pytest.mark.parametrize(
@@ -163,11 +143,6 @@ def test_lost_workers_end_with_exit_3_and_what_is_done_is_kept(error, monkeypatc
 )
 def test_impossible_values_are_refused_in_one_sentence(arguments, words):
     assert pendu("stability", *arguments).refused(2, *words)
-
-
-def test_dask_without_its_package_says_what_to_install(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setitem(sys.modules, "distributed", None)
-    assert pendu("stability", "--dask", "tcp://127.0.0.1:1").refused(2, "pendu-tui[cluster]")
 
 
 def test_the_amplitude_of_a_scene_is_how_far_it_swings():

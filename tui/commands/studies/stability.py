@@ -5,26 +5,19 @@
 
 import argparse
 import math
-import os
-import signal
-from collections.abc import Callable, Iterator
-from concurrent.futures import CancelledError
-from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from engine.scenes import Z_LIMITS, Scene
 from tui.cli.errors import Exit, UserError
 from tui.cli.files import check_free
-from tui.cli.install import install_advice
-from tui.cli.options import angle, count, number
+from tui.cli.options import LIST, angle, count, number, values
 from tui.cli.output import progress, warn
 from tui.cli.report import add_report_options, publish
 from tui.cli.scene import add_scene_options, general_scene_of
+from tui.cli.workers import Workers, add_worker_options, workers_of
 from tui.terminal.options import add_picture_options, cells
 
 if TYPE_CHECKING:
-    from concurrent.futures import Executor
-
     from engine.stability.grid import Grid
     from engine.stability.outcomes import Cells
 
@@ -38,11 +31,9 @@ examples:
   pendu-tui stability --section --theta 1.25 --h 0.348 --methods rk4 -o section.svg
 """
 
-MAX_VALUES = 1_000_000  # of an axis
 MAX_SWINGS = 20_000_000  # of a grid: 320 MB in memory
 STEPS = 10_000
 SECTION_STEPS = 4000
-LIST = "FIRST:LAST:HOW_MANY"
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -66,40 +57,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add("--starts", metavar="N", type=count, default=300, help="orbits of --section (%(default)s)")
     add("--size", metavar="CxR", type=cells, help="columns x rows of --section (the terminal's)")
     add_report_options(parser, csv=True, files=(".npz", ".csv", ".json", ".svg", ".txt"))
-    where = parser.add_mutually_exclusive_group()
-    where.add_argument(
-        "--workers",
-        metavar="N",
-        type=count,
-        default=1,
-        help="processes on this machine (%(default)s)",
-    )
-    where.add_argument(
-        "--dask", metavar="ADDRESS", help="a Dask scheduler, such as tcp://10.0.0.1:8786"
-    )
+    add_worker_options(parser)
     add_picture_options(parser, "auto", "auto")
-
-
-def values(element: Callable[[str], float]) -> Callable[[str], list[float]]:
-    """Return a reader of values, `1,2,3` or FIRST:LAST:HOW_MANY, each read by `element`."""
-
-    def read(text: str) -> list[float]:
-        match text.split(":"):
-            case [_]:
-                return sorted({element(part) for part in text.split(",")})
-            case [first, last, many] if 2 <= count(many) <= MAX_VALUES and element(first) < element(
-                last
-            ):
-                low = element(first)
-                gaps = count(many) - 1
-                return [low + (element(last) - low) * i / gaps for i in range(gaps)] + [
-                    element(last)
-                ]
-        raise argparse.ArgumentTypeError(
-            f"{text!r} is not a list of values; use 0.5,1,2 or 0.1:3:30 ({LIST})"
-        )
-
-    return read
 
 
 def run(options: argparse.Namespace) -> int:
@@ -114,10 +73,10 @@ def run(options: argparse.Namespace) -> int:
     grids = _grids(scene, options, steps, suffix)
     computed = []
     ended = None
-    with _workers(options) as executor:
+    with workers_of(options) as workers:
         for grid in grids:
             if ended is None:
-                swings, ended = compute(grid, executor)
+                swings, ended = compute(grid, workers)
                 computed.append((grid, swings))
     from tui.commands.studies.reports.stability import report, write_map
 
@@ -160,27 +119,30 @@ def _grids(scene: Scene, options: argparse.Namespace, steps: int, suffix: str) -
     return grids
 
 
-def compute(grid: "Grid", executor: "Executor | None") -> "tuple[Cells, UserError | None]":
-    """Return the cells of a grid, and why some of them are unknown.  Raises UserError if all are."""
+def compute(grid: "Grid", workers: Workers) -> "tuple[Cells, UserError | None]":
+    """Return the cells of a grid, and why some of them are unknown.
+
+    Raises UserError if all are.
+    """
+    from engine.stability.grid import Grid
+
     computed = grid.unknown()
     done = 0
     try:
         with progress("stability") as show:
-            for strip in grid.compute(executor):
+            for strip in workers.map(Grid.cells, grid.strips()):
                 computed[done : done + len(strip)] = strip
                 done += len(strip)
                 show(done, len(grid.z))
         return computed, None
     except KeyboardInterrupt:
-        why = "interrupted"
-        code = Exit.INTERRUPTED
-    except (CancelledError, OSError, RuntimeError) as error:  # of a cluster, or of worker processes
-        why = f"workers are lost ({type(error).__name__})"
-        code = Exit.INPUT_UNREADABLE
-    ended = UserError(f"{why}; {done} of {len(grid.z)} z are computed and kept.", code)
+        ended = UserError("interrupted.", Exit.INTERRUPTED)
+    except UserError as error:
+        ended = error
     if not done:
         raise ended
-    return computed, ended
+    kept = f"{done} of {len(grid.z)} z are computed and kept"
+    return computed, UserError(f"{str(ended).rstrip('.')}; {kept}.", ended.code)
 
 
 def _check(scene: Scene, options: argparse.Namespace, steps: int) -> None:
@@ -202,36 +164,3 @@ def _check(scene: Scene, options: argparse.Namespace, steps: int) -> None:
                 raise UserError(
                     f"{what} {value:g} is out of range; it must lie between {low:g} and {high:g}."
                 )
-
-
-@contextmanager
-def _workers(options: argparse.Namespace) -> "Iterator[Executor | None]":
-    """Yield the executor of the strips; None is this process.  Only this process takes Ctrl+C."""
-    if options.dask:
-        with _dask(options.dask) as client:
-            yield client.get_executor()
-    elif options.workers > 1:
-        from concurrent.futures import ProcessPoolExecutor
-        from multiprocessing import get_context
-
-        os.environ["PYTHONSAFEPATH"] = "1"  # workers import no module from the current folder
-        most = min(options.workers, os.cpu_count() or 1)
-        ignore = (signal.SIGINT, signal.SIG_IGN)
-        with ProcessPoolExecutor(most, get_context("spawn"), signal.signal, ignore) as executor:
-            yield executor
-    else:
-        yield None
-
-
-def _dask(address: str) -> Any:
-    try:
-        import distributed
-
-        return distributed.Client(address, timeout="10s")
-    except ImportError:
-        advice = install_advice("distributed", "cluster")
-        raise UserError(f"--dask needs the package distributed: {advice}.") from None
-    except (OSError, ValueError) as error:
-        raise UserError(
-            f"no Dask scheduler answers at {address!r}: {type(error).__name__}; is it running?"
-        ) from None
