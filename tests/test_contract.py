@@ -28,6 +28,7 @@ COMMANDS = {
     "stability --section": ["stability", "--section", "--theta", "1.25", "--h", "0.348", "--steps", "3000", "--json"],
     "run": ["run", "--time", "2", "--json"],
     "run of a method that diverges": ["run", "--h", "2", "--length", "0.1", "--time", "4000", "--json"],
+    "run of a list": ["run", "--h", "0.05,0.1", "--time", "2", "--json"],
     "judge": ["judge", "energies.csv", "--time", "t", "--energy", "E", "--json"],
     "judge of a few energies": ["judge", "few.csv", "--time", "1", "--energy", "2", "--json"],
     "verify": ["verify", "whole.mcap", "cut.mcap", "--json"],
@@ -100,6 +101,7 @@ def test_every_json_field_is_there_with_its_kind(name, request):
 def test_the_schema_is_that_of_the_command(name):
     command, verb, *_ = COMMANDS[name]
     schema = f"recordings-{verb}" if command == "recordings" and verb != "--json" else command
+    schema = "runs" if name == "run of a list" else schema
     schema = "section" if "--section" in COMMANDS[name] else schema
     assert pendu(*COMMANDS[name]).json["schema"] == f"pendu.{schema}/1"
 

@@ -5,6 +5,8 @@ evaluated but the nodes named here.  It fails safe: a comparison holds, whatever
 method has diverged or its value is not known (None, missing, not finite).  Hence there is no `not`.
 Only `diverged_at` is compared as it is, None meaning that the method never diverged.  `verdict` is
 compared by == or != with a verdict; too_early (or 'too early') is one, so `!= bounded` is careful.
+
+A method is named as in --methods; `any` and `all` stand for the whole cast.  1% is 0.01.
 """
 
 import ast
@@ -13,12 +15,14 @@ import operator
 import re
 import warnings
 from collections.abc import Callable, Mapping, Sequence
+from decimal import Decimal
 from functools import partial
 from typing import Any
 
 from engine.methods import USUAL_CAST, Cast
 from engine.run.judgement import VERDICTS
 from recordings.fields import EXTRA_NAMES, NUMBERS, OPTIONAL
+from tui.cli.cast import find
 from tui.cli.errors import UserError
 from tui.cli.options import did_you_mean
 
@@ -37,7 +41,6 @@ Values = Mapping[str, Mapping[str, Any]]  # method key -> field -> value
 Gate = Callable[[Values], str]  # the values that trip it; empty if it passes
 
 MAX_LENGTH = 10_000  # characters of a gate
-MAX_NAME = 200  # characters; difflib takes seconds for long ones
 _SIGNS: dict[type[ast.cmpop], Callable[[Any, Any], bool]] = {
     ast.Lt: operator.lt,
     ast.LtE: operator.le,
@@ -47,6 +50,7 @@ _SIGNS: dict[type[ast.cmpop], Callable[[Any, Any], bool]] = {
     ast.NotEq: operator.ne,
 }
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", re.IGNORECASE | re.ASCII)
+_PERCENT = re.compile(r"([\d.]+)\s*%(?=\s*(?:and\b|or\b|\)|$))", re.IGNORECASE | re.ASCII)
 _EXAMPLE = "velocity_verlet.max_energy_error > 1e-2"
 
 
@@ -61,6 +65,7 @@ def parse(text: str, fields: Sequence[str] = (), cast: Cast = USUAL_CAST) -> Gat
         raise _refusal(f"it is longer than {MAX_LENGTH:,} characters.")
     for verdict in VERDICTS:
         source = source.replace(verdict, verdict.replace(" ", "_"))
+    source = _PERCENT.sub(_fraction, source)
     try:
         with warnings.catch_warnings(action="ignore"):  # of what is odd but legal, such as `1or`
             node = ast.parse(source, mode="eval").body
@@ -69,20 +74,27 @@ def parse(text: str, fields: Sequence[str] = (), cast: Cast = USUAL_CAST) -> Gat
     if "#" in source:  # a comment would hide what follows
         raise _no_comparison(source, fields)
     try:
-        return _gate(node, source, fields, [method.key for method in cast])
+        return _gate(node, source, fields, cast)
     except RecursionError:
         raise _no_comparison(source, fields) from None
 
 
-def _gate(node: ast.expr, source: str, fields: Sequence[str], methods: Sequence[str]) -> Gate:
+def _fraction(percent: re.Match[str]) -> str:
+    """Return a percentage as a fraction, in decimal digits; what is no number stays."""
+    try:
+        return str(Decimal(percent[1]).scaleb(-2))
+    except ArithmeticError:
+        return percent[0]
+
+
+def _gate(node: ast.expr, source: str, fields: Sequence[str], cast: Cast) -> Gate:
     match node:
         case ast.BoolOp(op, parts):
-            gates = [_gate(part, source, fields, methods) for part in parts]
+            gates = [_gate(part, source, fields, cast) for part in parts]
             return partial(_all if isinstance(op, ast.And) else _any, gates)
         case ast.Compare(ast.Attribute(ast.Name(key), field), [sign], [value]) if (
             type(sign) in _SIGNS and not fields
         ):
-            method = _named("method", key, methods)
             names = FIELDS
         case ast.Compare(ast.Attribute(ast.Name(), field) as named) if fields:
             ours = source.replace(_segment(source, named), field)
@@ -90,13 +102,18 @@ def _gate(node: ast.expr, source: str, fields: Sequence[str], methods: Sequence[
                 f"{_quoted(source)} names a method, and one table of energies has none; write {_quoted(ours)}."
             )
         case ast.Compare(ast.Name(field), [sign], [value]) if type(sign) in _SIGNS and fields:
-            method = ""
+            key = ""
             names = tuple(fields)
         case _:
             raise _no_comparison(_segment(source, node), fields)
     field = _named("field", field, (*names, "verdict"))
     limit = _value(field, sign, value, source)
-    return partial(_found, method, field, _SIGNS[type(sign)], limit)
+    compare = _SIGNS[type(sign)]
+    if key in ("any", "all"):
+        gates = [partial(_found, method.key, field, compare, limit) for method in cast]
+        return partial(_all if key == "all" else _any, gates)
+    method = find(key, cast, "--fail-if").key if key else ""
+    return partial(_found, method, field, compare, limit)
 
 
 def _all(gates: Sequence[Gate], values: Values) -> str:
@@ -169,8 +186,7 @@ def _named(what: str, name: str, names: Sequence[str]) -> str:
     if name in names:
         return name
     longer = next((f": did you mean {each}?" for each in names if f"_{name}" in each), "")
-    similar = did_you_mean(name, names) if len(name) <= MAX_NAME else None
-    advice = similar or longer or f": choose from {', '.join(names)}."
+    advice = did_you_mean(name, names) or longer or f": choose from {', '.join(names)}."
     raise _refusal(f"there is no {what} {_quoted(name)}{advice}")
 
 

@@ -1,12 +1,16 @@
-"""Checks as JUnit XML, which CI systems show as tests."""
+"""Checks: --fail-if and its exit code, and as JUnit XML, which CI systems show as tests."""
 
-from collections.abc import Sequence
+import argparse
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 from xml.sax.saxutils import escape, quoteattr
 
 from recordings.errors import printable
+from tui.cli.errors import Exit
 from tui.cli.files import text_file
+from tui.cli.options import Suggestions, add_file
+from tui.cli.output import warn
 
 
 class Check(NamedTuple):
@@ -15,6 +19,27 @@ class Check(NamedTuple):
     name: str
     said: str  # what was found
     failure: str | None
+
+
+def add_check_options(parser: argparse.ArgumentParser, names: Iterable[str], meaning: str) -> None:
+    """Add --fail-if, whose comparisons have these names, and --junit, for `conclude`."""
+    parser.add_argument("--fail-if", metavar="EXPR", choices=Suggestions(names), help=meaning)
+    add_file(parser, "--junit", metavar="FILE", type=Path, help="also write the check as JUnit XML")
+
+
+def conclude(options: argparse.Namespace, suite: str, checks: Sequence[Check]) -> Exit:
+    """Report checks that failed, write the XML where it is asked for, and return the exit code."""
+    failed = [check for check in checks if check.failure is not None]
+    if failed:
+        first = failed[0]
+        where = f" in {len(failed)} of {len(checks)} runs, first at {first.name}"
+        warn(
+            f"the check failed{where if len(checks) > 1 else ''}:"
+            f" {options.fail_if} ({first.failure})"
+        )
+    if options.junit:
+        write_junit(options.junit, suite, checks)
+    return Exit.CHECK_FAILED if failed else Exit.FINE
 
 
 def write_junit(path: Path, suite: str, checks: Sequence[Check]) -> None:

@@ -170,6 +170,16 @@ def test_any_text_is_a_gate_or_one_printable_sentence(text: str) -> None:
     assert len(sentence) < 800  # at most 60 quoted characters, ten each when escaped
 
 
+def test_a_method_is_named_as_in_methods_and_any_and_all_are_the_cast() -> None:
+    values = reading(max_energy_error=0.02, verdict="bounded")
+    values["rk4"] |= {"max_energy_error": 0.004, "verdict": "loses"}
+    assert parse("verlet.max_energy_error > 1%")(values)
+    assert not parse("RK.max_energy_error > 0.5 %")(values)
+    assert parse("any.verdict == loses")(values) == "rk4.verdict is loses"
+    assert not parse("all.verdict == bounded")(values)
+    assert parse("all.max_energy_error > 0.1%")(values).count("max_energy_error is") == 4
+
+
 def test_the_values_that_trip_a_gate_are_given() -> None:
     values = reading(max_energy_error=0.057, verdict="too early")
     gate = parse("rk4.max_energy_error > 1e-2 or rk4.verdict != bounded or rk4.energy > 1")

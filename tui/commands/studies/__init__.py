@@ -1,4 +1,5 @@
-"""Without a screen: `run` judges methods, and `judge` another program's energies; `accuracy` and `stability` study.
+"""Commands without a screen.
 
-`reports` prints what the last two found.
+`run` judges methods, in `lists` of runs too, and `judge` another program's energies; `accuracy` and
+`stability` study methods.  `reports` prints what they found.
 """

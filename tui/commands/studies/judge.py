@@ -8,7 +8,6 @@ import argparse
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from typing import Any, BinaryIO
 
 from engine.run.judgement import DEFINITIONS
@@ -16,9 +15,8 @@ from recordings.errors import printable
 from tui.cli.columns import LATEST, REASONS, Table, read_table
 from tui.cli.errors import Exit, UserError
 from tui.cli.fail_if import parse
-from tui.cli.junit import Check, write_junit
-from tui.cli.options import Suggestions, add_file, count, positive
-from tui.cli.output import warn
+from tui.cli.junit import Check, add_check_options, conclude
+from tui.cli.options import add_file, count, positive
 from tui.cli.report import Report, add_report_options, form_of
 from tui.commands.studies.reports.energies import judged, lines_of, orders, title_of
 
@@ -88,13 +86,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add(
         "--steps", metavar="H,H", help="the step sizes of the files: how do the errors follow them?"
     )
-    add(
-        "--fail-if",
-        metavar="EXPR",
-        choices=Suggestions((*FIELDS, "verdict")),
-        help=f"exit 1 if the expression is true; fields: {', '.join(FIELDS)}, verdict",
-    )
-    add_file(parser, "--junit", metavar="FILE", type=Path, help="also write the check as JUnit XML")
+    names = (*FIELDS, "verdict")
+    meaning = f"exit 1 if the expression is true; fields: {', '.join(names)}"
+    add_check_options(parser, names, meaning)
     add_report_options(parser)
 
 
@@ -117,20 +111,15 @@ def run(options: argparse.Namespace) -> int:
         notes=[f"{name:<13} {text}" for name, text in lines],
         fields={"steps": steps, "files": results, **shared} if steps else results[0],
     ).show(form_of(options))
-    tripped = [text for fields in results if gate and (text := gate({"": fields | shared}))]
-    failure = None
-    if tripped:
-        failure = f"the check failed: {options.fail_if} ({'; '.join(dict.fromkeys(tripped))})"
-        warn(failure)
-    if options.junit:
-        check = Check(
-            f"{options.energy}: {options.fail_if or 'no check'}",
-            "; ".join(map(" ".join, lines)),
-            failure,
-        )
-        write_junit(options.junit, f"pendu-tui judge {' '.join(options.files)}", [check])
+    found = [text for fields in results if gate and (text := gate({"": fields | shared}))]
+    check = Check(
+        f"{options.energy}: {options.fail_if or 'no check'}",
+        "; ".join(map(" ".join, lines)),
+        "; ".join(dict.fromkeys(found)) or None,
+    )
+    code = conclude(options, f"pendu-tui judge {' '.join(options.files)}", [check])
     failed = any(fields["verdict"] == "failed" for fields in results)
-    return Exit.CHECK_FAILED if failure or failed else Exit.FINE
+    return Exit.CHECK_FAILED if failed else code
 
 
 def _steps(options: argparse.Namespace) -> list[float]:

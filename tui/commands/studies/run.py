@@ -4,7 +4,6 @@ import argparse
 import math
 import time
 from contextlib import nullcontext
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,13 +12,22 @@ from engine.run.judgement import DEFINITIONS
 from engine.scenes import Scene
 from recordings.errors import printable
 from tui.cli.errors import Exit, UserError
-from tui.cli.fail_if import FIELDS, parse
+from tui.cli.fail_if import FIELDS, Gate, parse
 from tui.cli.files import check_free, stop_requests
-from tui.cli.options import Suggestions, add_file, count, positive
+from tui.cli.junit import Check, add_check_options, conclude
+from tui.cli.options import add_file, count, duration
 from tui.cli.output import progress, warn
-from tui.cli.report import Report, add_report_options, form_of
-from tui.cli.scene import add_scene_options, scene_of
-from tui.commands.studies.reports.run import columns_of, notes_of, rows_of, title_of
+from tui.cli.report import Report, add_report_options, publish
+from tui.cli.scene import add_scene_options, scenes_of
+from tui.cli.workers import add_worker_options
+from tui.commands.studies.reports.run import (
+    columns_of,
+    known,
+    notes_of,
+    rows_of,
+    title_of,
+    verdict_of,
+)
 from tui.words.numbers import file_size
 
 if TYPE_CHECKING:
@@ -31,7 +39,8 @@ examples:
   pendu-tui run --scene crossover --time 100 --record crossover.mcap
   pendu-tui run --time 60 --methods rk4,verlet --method mine.py:my_step,letter=m
   pendu-tui run --theta 170deg --time 60 --json | jq '.methods[] | {method, verdict}'
-  pendu-tui run --time 60 --fail-if 'rk4.max_energy_error > 1e-2 or rk4.verdict == grows'
+  pendu-tui run --time 60 --fail-if 'rk4.max_energy_error > 1% or any.verdict == grows'
+  pendu-tui run --theta 10deg:170deg:17 --h 0.01:0.5:50 --time 10min --workers 4 -o runs.csv
 
 verdicts:
 """ + "\n".join(f"  {verdict}: {text}" for verdict, text in DEFINITIONS.items())
@@ -39,12 +48,12 @@ verdicts:
 MAX_TIME = 1e9  # s, 30 years; a recording's clock ends there, too
 LARGE = 200e6  # bytes of a recording that deserve a warning; half a minute to write
 SAMPLE_BYTES = 320  # of a recording, measured with h from 0.01 to 0.05 s
-MAX_BATCH = 1_000_000  # steps, about a second; Ctrl+C is noticed between batches
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    add_scene_options(parser)
-    parser.add_argument("--time", metavar="S", type=positive, help="simulated time in s; required")
+    add_scene_options(parser, lists=True)
+    add = parser.add_argument
+    add("--time", metavar="S", type=duration, help="simulated time: 60 (s) or 1min; required")
     add_file(
         parser,
         "--record",
@@ -52,32 +61,53 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         type=Path,
         help="record to FILE (the same bytes each time)",
     )
-    parser.add_argument("--force", action="store_true", help="overwrite FILE")
-    parser.add_argument(
+    add(
         "--sample-every",
         metavar="N",
         type=count,
         help="record every N steps (default: every 1/30 s)",
     )
     names = (f"{method.key}.{field}" for method in METHODS for field in (*FIELDS, "verdict"))
-    parser.add_argument(
-        "--fail-if",
-        metavar="EXPR",
-        choices=Suggestions(names),
-        help="exit 1 if it is true, e.g. rk4.max_energy_error > 1e-3 (fields: see --json)",
+    meaning = (
+        "exit 1 if it is true, e.g. rk4.max_energy_error > 1e-3 or any.verdict == grows"
+        " (fields: see --json)"
     )
-    parser.add_argument(
-        "--no-compiled", action="store_true", help="do not use Numba (same results)"
-    )
-    add_report_options(parser, csv=True)
+    add_check_options(parser, names, meaning)
+    add("--no-compiled", action="store_true", help="do not use Numba (same results)")
+    add_report_options(parser, csv=True, files=(".csv", ".json"))
+    add("--resume", action="store_true", help="go on with the list of runs in FILE.csv.partial")
+    add_worker_options(parser)
 
 
 def run(options: argparse.Namespace) -> int:
-    scene = scene_of(options)
-    gate = None if options.fail_if is None else parse(options.fail_if, cast=scene.cast)
-    steps = _steps(scene, options.time)
+    scenes = scenes_of(options)
+    gate = None if options.fail_if is None else parse(options.fail_if, cast=scenes.base.cast)
+    steps = [_steps(scene, options.time) for scene in scenes.corners()]
+    if len(scenes) > 1:
+        _check_list(options)
+        from tui.commands.studies.lists import run_list
+
+        return run_list(scenes, options, gate)
+    (scene,) = scenes
+    return _run(scene, options, gate, steps[0])
+
+
+def _check_list(options: argparse.Namespace) -> None:
+    """Refuse what a list of runs cannot do."""
     if options.record:
-        check_free(options.record, options.force)
+        raise UserError("--record is for one run; leave it out, or give each number one value.")
+    is_csv = options.output and options.output.suffix.lower() == ".csv"
+    if options.resume and not is_csv:
+        raise UserError("--resume is for -o FILE.csv, the rows of a list of runs.")
+    if options.resume and options.fail_if:
+        raise UserError("--fail-if cannot see the runs of before; leave out --resume or --fail-if.")
+
+
+def _run(scene: Scene, options: argparse.Namespace, gate: Gate | None, steps: int) -> int:
+    """Run one scene and report it."""
+    for path in (options.record, options.output):
+        if path:
+            check_free(path, options.force)
     began = time.perf_counter()
     sample, lockstep, stopped = _simulate(scene, options, steps)
     wall_seconds = time.perf_counter() - began
@@ -85,7 +115,7 @@ def run(options: argparse.Namespace) -> int:
     if options.record:
         size = file_size(options.record.stat().st_size)
         warn(f"recorded {sample.t:g} s, {size}: {printable(str(options.record))}")
-    Report(
+    report = Report(
         name="run",
         title=title_of(scene, sample, wall_seconds),
         columns=columns_of(scene, lockstep),
@@ -96,16 +126,18 @@ def run(options: argparse.Namespace) -> int:
             "time": sample.t,
             "steps": sample.step,
             "wall_seconds": wall_seconds,
-            "methods": rows,
+            "methods": [known(row) for row in rows],
         },
-    ).show(form_of(options))
+        records=[{name: row[name] for name in row if name != "progress"} for row in rows],
+    )
+    publish(report, options)
     if stopped:
         warn(f"interrupted at t = {sample.t:g} s, showing the results up to then.")
         return Exit.INTERRUPTED
-    if gate and (found := gate({row["method"]: row for row in rows})):
-        warn(f"the check failed: {options.fail_if} ({found})")
-        return Exit.CHECK_FAILED
-    return Exit.FINE
+    failure = gate({row["method"]: row for row in rows}) if gate else ""
+    found = ", ".join(f"{row['method']} {verdict_of(row)}" for row in rows)
+    check = Check(f"{scene.name}: {options.fail_if or 'no check'}", found, failure or None)
+    return conclude(options, f"pendu-tui run {scene.name}", [check])
 
 
 def _steps(scene: Scene, seconds: float | None) -> int:
@@ -128,9 +160,8 @@ def _simulate(
     scene: Scene, options: argparse.Namespace, steps: int
 ) -> "tuple[Sample, Lockstep, bool]":
     """Return the last sample, its lockstep, and whether a signal stopped the run before its end."""
-    from engine.run import compiled, loops
-    from engine.run.lockstep import Lockstep
     from recordings.headless import SAMPLE_EVERY, simulate
+    from tui.commands.studies.lists import MAX_BATCH, lockstep_of
 
     every = options.sample_every or MAX_BATCH
     recorder: Any = nullcontext()
@@ -140,10 +171,7 @@ def _simulate(
         every = options.sample_every or min(MAX_BATCH, max(1, round(SAMPLE_EVERY / scene.h)))
         _warn_of_size(steps, every)
         recorder = Recorder(options.record, wall=None, overwrite=options.force)
-    tiered = partial(compiled.TieredLoops, expected_steps=steps)
-    lockstep = Lockstep(
-        scene, loops=loops.PlainLoops if options.no_compiled else tiered, judged=True
-    )
+    lockstep = lockstep_of(scene, steps, not options.no_compiled)
     with stop_requests() as stopped, progress(f"{steps:,} steps") as show, recorder as recording:
         for sample in simulate(scene, options.time, recording, every, lockstep=lockstep):
             show(sample.step, steps)

@@ -67,37 +67,43 @@ def title_of(scene: Scene, sample: "Sample", wall_seconds: float) -> str:
     )
 
 
-def columns_of(scene: Scene, lockstep: "Lockstep") -> list[Column]:
-    """Return the columns of the table."""
+def known(row: dict[str, Any]) -> dict[str, Any]:
+    """Return a row for JSON, where only an irregular orbit has a Lyapunov number."""
+    return {
+        name: value
+        for name, value in row.items()
+        if name != "lyapunov_per_second" or value is not None
+    }
+
+
+def columns_of(scene: Scene, lockstep: "Lockstep | None" = None) -> list[Column]:
+    """Return the columns of the table; with the trend where the lockstep of the run is given."""
     labels = {method.key: method.label for method in scene.cast}
-    judgements = dict(zip(labels, lockstep.judgements, strict=True))
-
-    def verdict(row: dict[str, Any]) -> str:
-        end = row["diverged_at"]
-        if end is not None:
-            return f"diverged at {end:g} s"
-        progress = row["progress"]
-        text = str(row["verdict"])
-        return (
-            f"{text}: {progress['have']} of {progress['need']} {progress['unit']}"
-            if progress
-            else text
-        )
-
-    def trend(row: dict[str, Any]) -> str | None:
-        value = judgements[row["method"]].trend
-        return None if value is None else f"{value:+.1e}"
-
+    trends = []
+    if lockstep is not None:
+        judgements = dict(zip(labels, lockstep.judgements, strict=True))
+        trends.append(Column("per second", lambda row: judgements[row["method"]].trend, "+.1e"))
     return [
         Column("method", lambda row: labels[row["method"]]),
-        Column("verdict", verdict),
+        Column("verdict", verdict_of),
         *(Column(each.label, each.name, ".4g") for each in scene.equations.quantities()),
         Column(scene.equations.energy_error.name, "energy_error", "+.2e"),
         Column("largest", "max_energy_error", ".2e"),
-        Column("per second", trend, right=True),
+        *trends,
         Column("theta error [rad]", "theta_error", ".2e"),
         Column("force evaluations", "force_evaluations", "d"),
     ]
+
+
+def verdict_of(row: dict[str, Any]) -> str:
+    """Return the verdict, how much of the evidence there is, or when the method diverged."""
+    end = row["diverged_at"]
+    if end is not None:
+        return f"diverged at {end:g} s"
+    progress = row["progress"]
+    if progress is None:
+        return str(row["verdict"])
+    return f"{row['verdict']}: {progress['have']} of {progress['need']} {progress['unit']}"
 
 
 def notes_of(scene: Scene, lockstep: "Lockstep") -> list[str]:
