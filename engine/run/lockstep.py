@@ -289,19 +289,19 @@ class Lockstep:
             most //= 2  # twice the way under full gravity: methods overshoot
         return most
 
-    def sample(self) -> Sample:
-        """Return the readings now.  Lows and highs of the next sample are taken from here on."""
-        return Sample(
-            self.run, self.step, self.t, tuple(self._read(track) for track in self._tracks)
-        )
+    def sample(self, resets: bool = True) -> Sample:
+        """Return the readings now; unless it `resets` nothing, later lows and highs count from here."""
+        readings = tuple(self._read(track) for track in self._tracks)
+        if resets:
+            for track in self._tracks:
+                track.low = track.high = track.error
+        return Sample(self.run, self.step, self.t, readings)
 
     def _read(self, track: _Track) -> Reading:
         track.run_low, track.run_high = (
             min(track.run_low, track.low),
             max(track.run_high, track.high),
         )
-        low, high = track.low, track.high
-        track.low = track.high = track.error
         theta, omega, extra = self._model.observe(track.phase)
         if track.turns:
             theta += track.turns * math.tau
@@ -313,8 +313,8 @@ class Lockstep:
             energy=track.energy,
             energy_error=track.error,
             max_energy_error=max(track.run_high, -track.run_low),
-            energy_error_low=low,
-            energy_error_high=high,
+            energy_error_low=track.low,
+            energy_error_high=track.high,
             diverged_at=track.diverged_at,
             max_invariant_error=None if self._invariant is None else track.invariant_error,
             extra=extra,

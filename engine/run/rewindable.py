@@ -36,6 +36,7 @@ class RewindableRun:
         self.run = run
         self.changes = [SteppingChange(0, 0.0, Stepping(scene.h, cast=scene.cast))]
         self.furthest = 0  # the last step sampled
+        self._reset = 0  # the last step from which lows and highs count
         self._x = [
             0.0
         ]  # s, the simulated time run up to each change; it goes up even while t goes down
@@ -104,9 +105,13 @@ class RewindableRun:
             else math.inf
         )
 
-    def sample(self) -> Sample:
+    def sample(self, resets: bool = True) -> Sample:
+        """Return the readings now; a step that is repeated resets no lows and highs."""
+        resets = resets and self.step >= self.furthest
         self.furthest = max(self.furthest, self.step)
-        return self._lockstep.sample()
+        if resets:
+            self._reset = self.step
+        return self._lockstep.sample(resets)
 
     def forward(self, n: int) -> None:
         target = self.step + n
@@ -119,10 +124,10 @@ class RewindableRun:
             stops = [target]
             if self._applied < len(self.changes):
                 stops.append(self.changes[self._applied].step)
-            if self.step < self.furthest:
-                stops.append(self.furthest)
+            if self.step < self._reset:
+                stops.append(self._reset)
             self._lockstep.advance(min(stops) - self.step)
-            if self.step == self.furthest:
+            if self.step == self._reset:
                 self._lockstep.sample()  # the next sample's extremes are again those since this step
             if self.step >= self._copies[-1].lockstep.step + COPY_EVERY:
                 self._copies.append(self._copy())
@@ -151,6 +156,7 @@ class RewindableRun:
             self._copies.pop()
         self.run = self._lockstep.run = run
         self.furthest = self.step
+        self._reset = min(self._reset, self.step)
 
     def _copy(self) -> _Checkpoint:
         return _Checkpoint(self._lockstep.copy(), self._applied)

@@ -19,10 +19,10 @@ MAX_COLUMNS = 100
 MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
-    "characters": 1_058_500,
-    "characters_of_engine": 312_300,
+    "characters": 1_080_000,
+    "characters_of_engine": 314_500,
     "characters_of_recordings": 102_300,
-    "characters_of_tui": 644_000,
+    "characters_of_tui": 665_000,
     "characters_of_tests": 1_007_000,
     "files": 222,
     "long_lines": 632,

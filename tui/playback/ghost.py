@@ -9,7 +9,7 @@ from tui.playback.history import ErrorHistory
 
 if TYPE_CHECKING:
     from recordings.recording import Recording
-    from tui.playback.levels import Window
+    from tui.playback.rows import Window
 
 ROWS = 1 << 14  # of the chart at full resolution, 9 minutes of the usual samples
 MAX_SAMPLES = 50_000  # half an hour, read in three seconds

@@ -1,34 +1,37 @@
-"""The past of a run: what came last as plain numbers, and all of it in `levels` when a chart or a portrait asks."""
+"""The past of a run: rows for a chart, trails for a portrait.
+
+A row is a sample at a fixed step of the run, so that neither depends on the frame rate.  The sample
+of a frame is the last point of both, and leaves with the frame.
+"""
 
 import math
-from collections import deque
 from collections.abc import Sequence
-from itertools import islice
-from typing import TYPE_CHECKING, NamedTuple, cast
+from typing import TYPE_CHECKING, NamedTuple
 
 from engine.models.model import State
 from engine.run.lockstep import Sample
 from engine.scenes import Scene
 
 if TYPE_CHECKING:
-    from tui.playback.levels import Levels, Window  # NumPy can wait for the first paint
+    from numpy.typing import NDArray
 
-RECENT = 16  # samples whose states are at hand
-MOST_WAITING = 64  # rows
+    from tui.playback.rows import Row, Rows, Window  # NumPy can wait for the first paint
+
+MAX_WAITING = 64  # rows that are shown without NumPy
 _UNKNOWN = State(math.nan, math.nan)
 
 
-class _Row(NamedTuple):
+class _Taken(NamedTuple):
     sample: Sample
     x: float  # s, simulated time run through
     exact: State
-    modified: Sequence[float] | None
+    modified: Sequence[float]
 
 
 class ErrorHistory:
     """The past of one run, up to the last sample added."""
 
-    def __init__(self, scene: Scene, capacity: int = 2048) -> None:
+    def __init__(self, scene: Scene, capacity: int = 4096) -> None:
         exact = scene.exact()
         model = scene.equations
         self._reference = model.reference(scene.theta, scene.omega)
@@ -40,99 +43,139 @@ class ErrorHistory:
         self._capacity = capacity
         self._run = 0
         self._latest: tuple[int, float, float] | None = None  # step, x and t of the last row
-        self._recent: deque[Sequence[Sequence[float]]] = deque(
-            maxlen=RECENT
-        )  # theta and omega of each method
-        self._waiting: list[_Row] = []
-        self._levels: Levels | None = None
-        self.added = self.rewound = 0  # samples so far, and how often some were taken back
-        self.returned: Sample | None = None  # where simulated time last was back at 0
+        self._now: _Taken | None = None
+        self._is_behind = False  # the sample lies before the last row
+        self._waiting: list[_Taken] = []
+        self._rows: Rows | None = None
+        self._returned: Sample | None = None
 
     def add(
-        self, sample: Sample, exact: State | None = None, modified: Sequence[float] | None = None
+        self,
+        sample: Sample,
+        exact: State | None = None,
+        modified: Sequence[float] | None = None,
+        is_row: bool = True,
     ) -> None:
-        """Add the sample of a frame, the exact motion at its time, and the errors of the modified energies.
+        """Add a sample, the exact motion at its time, and the errors of the modified energies.
 
-        The same sample again changes nothing.  An earlier one, and one of a run that goes on from
-        this one's past, first takes back everything from its step on.
+        An earlier one leaves the rows after it for the way forward.  One of another run takes back
+        everything from its step on: that run goes on from this one's past.
         """
-        latest = self._latest
-        if latest and (sample.run, sample.step) == (self._run, latest[0]):
-            return
+        if sample.run != self._run and self._latest is not None:
+            self._truncate(sample.step - 1)
         self._run = sample.run
-        if latest and sample.step <= latest[0]:
-            self.rewind(sample.step - 1)
-            latest = self._latest
-        x = abs(sample.t)
-        if latest:
-            step, before, t = latest
-            x = before + abs(sample.t - t)
-            if abs(sample.t) < 1e-6 * abs((sample.t - t) / (sample.step - step)):  # t is rounded
-                self.returned = sample
-        self.added += 1
-        self._latest = sample.step, x, sample.t
-        self._recent.append([(reading.theta, reading.omega) for reading in sample.readings])
-        self._waiting.append(_Row(sample, x, exact or _UNKNOWN, modified))
-        if len(self._waiting) >= MOST_WAITING:
-            _ = self.levels
+        latest = self._latest
+        self._is_behind = latest is not None and sample.step < latest[0]
+        is_new = latest is None or sample.step > latest[0]
+        x = self._x(sample)
+        known = modified or [math.nan] * self._methods
+        self._now = _Taken(sample, x, exact or _UNKNOWN, known)
+        if latest and is_new:
+            length = (sample.t - latest[2]) / (sample.step - latest[0])
+            if abs(sample.t) < 1e-6 * abs(length):  # t is rounded
+                self._returned = sample
+        if is_row and is_new:
+            self._latest = sample.step, x, sample.t
+            self._waiting.append(self._now)
+            if len(self._waiting) >= MAX_WAITING:
+                _ = self.rows
 
     @property
-    def levels(self) -> "Levels":
-        if self._levels is None:
-            from tui.playback.levels import Levels
+    def returned(self) -> Sample | None:
+        """The sample at which simulated time was back at 0."""
+        now = self._now
+        is_ahead = self._returned is None or now is None or self._returned.step > now.sample.step
+        return None if is_ahead else self._returned
 
-            self._levels = Levels(
-                self._repeats,
-                self._reference[:2],
-                [*self._energy, *self._extra],
-                self._methods,
-                self._capacity,
+    def _x(self, sample: Sample) -> float:
+        before = self._latest
+        if self._is_behind:
+            number = self.rows.number_after(sample.step)
+            before = self.rows.times_before(number) if number else None
+        return abs(sample.t) if before is None else before[1] + abs(sample.t - before[2])
+
+    @property
+    def rows(self) -> "Rows":
+        if self._rows is None:
+            from tui.playback.rows import Rows
+
+            others = [*self._energy, *self._extra]
+            self._rows = Rows(
+                self._repeats, self._reference[:2], others, self._methods, self._capacity
             )
-        for sample, x, exact, modified in self._waiting:
-            states = [State(reading.theta, reading.omega) for reading in sample.readings]
-            theta_errors = [self._theta_error(theta, exact.theta) for theta, _ in states]
-            others = [[reading.energy for reading in sample.readings]] if self._energy else []
-            others += [[reading.extra[name] for reading in sample.readings] for name in self._extra]
-            low, high = (
-                (errors, theta_errors, modified or [math.nan] * len(states), *others)
-                for errors in zip(
-                    *(
-                        (reading.energy_error_low, reading.energy_error_high)
-                        for reading in sample.readings
-                    ),
-                    strict=True,
-                )
-            )
-            self._levels.append(sample.step, (x, sample.t), [*states, exact], low, high)
+        for taken in self._waiting:
+            self._rows.append(self._row(taken))
         self._waiting.clear()
-        return self._levels
+        return self._rows
 
-    def rewind(self, step: int) -> None:
-        """Forget what came after `step`, or a little more where it is long ago."""
-        self.rewound += 1
-        if self.returned is not None and self.returned.step > step:
-            self.returned = None
-        levels = self.levels
-        levels.rewind(step)
-        self._latest = levels.latest()
-        self._recent = deque(levels.trails(RECENT)[:, :-1].tolist(), RECENT)
+    def _row(self, taken: _Taken, at_once: bool = False) -> "Row":
+        """Return a row; `at_once`: with what is true at its end only."""
+        from tui.playback.rows import Row
+
+        readings = taken.sample.readings
+        states = [State(reading.theta, reading.omega) for reading in readings]
+        others = [[self._theta_error(theta, taken.exact.theta) for theta, _ in states]]
+        others.append([*taken.modified])
+        if self._energy:
+            others.append([reading.energy for reading in readings])
+        others += [[reading.extra[name] for reading in readings] for name in self._extra]
+        now = [reading.energy_error for reading in readings]
+        low = now if at_once else [reading.energy_error_low for reading in readings]
+        high = now if at_once else [reading.energy_error_high for reading in readings]
+        times = (taken.x, taken.sample.t)
+        return Row(
+            taken.sample.step, times, [*states, taken.exact], [low, *others], [high, *others]
+        )
+
+    def _truncate(self, step: int) -> None:
+        rows = self.rows
+        rows.truncate(step)
+        self._latest = rows.times_before(rows.count) if rows.count else None
+        if self._returned is not None and self._returned.step > step:
+            self._returned = None
+
+    @property
+    def _until(self) -> int:
+        """The number of the first row after the sample."""
+        rows = self.rows
+        if not self._is_behind or self._now is None:
+            return rows.count
+        return rows.number_after(self._now.sample.step)
+
+    def _current(self) -> "Row | None":
+        """Return the sample as a row, unless it is one."""
+        until = self._until
+        now = self._now
+        if now is None or (until and self.rows.times_before(until)[0] == now.sample.step):
+            return None
+        return self._row(now, at_once=True)
 
     def window(self, seconds: float | None = None) -> "Window":
-        return self.levels.window(seconds)
+        """Return the last `seconds` of simulated time and half a swing before, or the whole run."""
+        start = -math.inf
+        if seconds is not None and self._now is not None:
+            start = self._now.x - seconds - self._repeats
+        return self.rows.window(self._until, self._current(), start)
 
     def between(self, begin: float, end: float) -> "Window":
-        """What lies between two moments [s] of simulated time run through, and half a swing before."""
-        latest = self._latest[1] if self._latest else 0.0
-        return self.window(latest - begin).cut(begin - self._repeats, end)
+        """Return what lies between two x [s], and half a swing before."""
+        return self.window().cut(begin - self._repeats, end)
 
-    def states(self, length: int) -> Sequence[Sequence[Sequence[float]]]:
-        """theta [rad] and omega [rad/s] of each method at the last `length` samples, oldest first."""
-        if length > RECENT:
-            return cast(
-                Sequence[Sequence[Sequence[float]]], self.levels.trails(length)[:, :-1].tolist()
-            )
-        return list(islice(self._recent, max(len(self._recent) - length, 0), None))
+    def trails(self, length: int) -> "NDArray":  # type: ignore[type-arg]
+        """Return theta [rad] and omega [rad/s] of every method and the exact motion, oldest first.
+
+        At the last `length` samples, (samples, methods + 1, 2).
+        """
+        import numpy as np
+
+        rows = self.rows.trails(self._until, length)
+        current = self._current()
+        if current is None:
+            return rows
+        return np.concatenate([rows, np.array(current.states)[None]])[-length:]
 
     def thetas(self, index: int, length: int) -> list[float]:
-        """theta [rad] of a method at the last `length` samples, oldest first."""
-        return [states[index][0] for states in self.states(length)]
+        """Return theta [rad] of a method at the last `length` samples, oldest first."""
+        if self._rows is None:
+            return [each.sample.readings[index].theta for each in self._waiting[-length:]]
+        return self.trails(length)[:, index, 0].tolist()  # type: ignore[no-any-return]

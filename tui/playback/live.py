@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 FRAME_BUDGET = 0.020  # s of each frame for the simulation; the rest of 33 ms is for drawing
 CHUNK = 256  # steps between looks at the clock, about a millisecond
+ROW_RATE = 30  # rows of the history, and samples of the recording, a second at full pace
 
 
 class Live(Source):
@@ -50,6 +51,7 @@ class Live(Source):
             Playhead()
         )  # the recording clock: it stands while the lab is paused, whatever the speed
         self._clock = clock
+        self._clocked = 0.0  # s, of what was recorded last
         self._noticed_step = 0  # up to which the milestones of the run are events
         self._runs = 1
         run = RewindableRun(scene, 1, patient)
@@ -114,21 +116,28 @@ class Live(Source):
         if self.playhead.paused or before.seen is None:
             return self.sample
         began = self._clock()
-        target = self._run.step_at(self.playhead.position)
-        target = int(
-            min(target, self._run.home)
-        )  # so that a sample shows what each method misses its start by
+        # A sample at home shows what each method misses its start by.
+        target = int(min(self._run.step_at(self.playhead.position), self._run.home))
+        spacing = self._row_steps
         while (left := target - self._run.step) > 0:
             if self._clock() - began >= FRAME_BUDGET:
                 break
-            self._run.forward(min(left, CHUNK))
+            self._run.forward(min(left, CHUNK, spacing - self._run.step % spacing))
+            if self._run.step % spacing == 0:
+                self._take_sample()
         due = self.playhead.position - before.position
         if left > 0:
             self.playhead = self.playhead.moved_to(self._run.x)
         self.pace = self.pace.after(
             max(0.0, now - before.seen), due, self.playhead.position - before.position
         )
-        return self._take_sample()
+        return self._take_sample(is_row=False)
+
+    @property
+    def _row_steps(self) -> int:
+        """The steps from row to row: those of the run, not of the frames, decide when there is one."""
+        steps = abs(self.playhead.speed / self.stepping.h) / ROW_RATE
+        return max(1, round(min(steps, 10_000)))  # a processor may be too slow for the speed
 
     def step(self, n: int) -> Sample:
         self.pause(True)
@@ -197,7 +206,6 @@ class Live(Source):
             self._note_start()
         self._run.set_stepping(stepping)
         self._note_here("set_h", h=stepping.h, equal_cost=stepping.equal_cost)
-        self._take_sample()
 
     def pause(self, paused: bool) -> None:
         if paused != self.playhead.paused:
@@ -217,15 +225,25 @@ class Live(Source):
 
     def close(self) -> None:
         if self.recorder is not None:
+            if not self._run.in_past:
+                self.recorder.sample(self.sample, self._recorded.position)
             self.recorder.close()
 
-    def _take_sample(self) -> Sample:
-        sample = self._run.sample()
-        self._so_far.add(sample)
-        if self.recorder is not None and sample.step >= self._run.furthest:
-            self.recorder.sample(sample, self._recorded.position)
+    def _take_sample(self, is_row: bool = True) -> Sample:
+        sample = self._run.sample(resets=is_row)
+        self._so_far.add(sample, is_row)
+        if is_row and self.recorder is not None and sample.step >= self._run.furthest:
+            self.recorder.sample(sample, self._due)
         self._note_milestones()
         return sample
+
+    @property
+    def _due(self) -> float:
+        """The recording clock [s] at which the step was due, not before what was recorded last."""
+        late = (self.playhead.position - self._run.x) / abs(self.playhead.speed)
+        due = self._recorded.position - max(late, 0.0)
+        self._clocked = max(self._clocked, due)
+        return self._clocked
 
     def _note_start(self) -> None:
         """The start of the run; where it goes on from another's past, its changes of the step size and milestones."""
@@ -245,9 +263,12 @@ class Live(Source):
         self._noticed_step = max(self._noticed_step, self._run.step)
 
     def _note_here(self, kind: EventKind, **what: Any) -> None:
+        self._take_sample()
         self._note(Event(kind, self._run.run, self._run.step, self._run.t, **what))
 
     def _note(self, event: Event) -> None:
         self._events.append(event)
         if self.recorder is not None:
-            self.recorder.event(event, self._recorded.position)
+            is_of_step = event.kind == "noticed"
+            self._clocked = self._due if is_of_step else self._recorded.position
+            self.recorder.event(event, self._clocked)

@@ -13,7 +13,7 @@ WINDOWS: tuple[float | None, ...] = (None, 20.0, 60.0, 300.0, 1800.0, 5.0)
 """How much of the past the chart shows [s]; None: the whole run."""
 
 LARGEST = 1e6
-"""Larger errors are drawn here, so that a method that fails leaves room for the others."""
+"""Larger values leave the chart, so that a method that fails leaves room for the others."""
 
 
 def quantities(scene: Scene) -> tuple[Quantity, ...]:

@@ -26,11 +26,11 @@ class RunSoFar:
             int, list[float]
         ] = {}  # by the step of the change that they begin at
 
-    def add(self, sample: Sample) -> None:
-        """Add a sample; an earlier one takes back what came after it."""
+    def add(self, sample: Sample, is_row: bool = True) -> None:
+        """Show a sample, and remember it if it is a row of the history."""
         change = change_before(self.changes, sample.step)
         modified = self._modified_energy_errors(sample, change)
-        self.history.add(sample, self.exact.at(sample.t), modified)
+        self.history.add(sample, self.exact.at(sample.t), modified, is_row)
         self.sample = sample
         self.step = sample.step
 

@@ -13,8 +13,8 @@ from tests.tui.drawn import cells, inks, size
 from tui.drawing.axes import held, per_column, time_span
 from tui.drawing.chart import Series, loglog_chart
 from tui.drawing.palette import EXACT, FAINT, FRAME, TEXT
-from tui.drawing.time_chart import CROSSING, MIN_COLUMNS, MIN_ROWS, time_chart
-from tui.playback.levels import Window
+from tui.drawing.time_chart import CROSSING, MIN_COLUMNS, MIN_ROWS, Marks, time_chart
+from tui.playback.rows import Window
 from tui.playback.shown import Shown
 
 ANY = st.floats(allow_nan=True, allow_infinity=True)
@@ -282,6 +282,28 @@ def test_where_one_error_passes_another_for_good_there_is_a_cross_and_a_ghost_is
     assert plot.at(column).values == pytest.approx([0.01, 0.01], rel=0.1)
     assert plot.at(plot.left - 1) is None
     ghost = window(t, 10 * errors), USUAL_CAST
-    behind = time_chart(window(t, errors), USUAL_CAST, looking([0], seconds=20), 60, 14, ghost)
+    marks = Marks(ghost)
+    behind = time_chart(window(t, errors), USUAL_CAST, looking([0], seconds=20), 60, 14, marks)
     assert {0, FAINT} < inks(behind.picture)
     assert FAINT + 1 not in inks(behind.picture)
+
+
+def test_a_line_that_leaves_the_chart_ends_there_with_its_value():
+    t = np.arange(0.05, 20.0, 0.05)
+    errors = np.stack([np.exp(3 * t), 0.1 * t, t, t], axis=1)
+    text = chart(window(t, errors), 60, 14, [0, 1], seconds=20).text
+    assert "↑e 1e26" in text.splitlines()[0]
+    assert " 1e6┤" in text
+    last = max(line.rfind("⠁") for line in text.splitlines())
+    assert last < text.splitlines()[0].index("↑") + 3
+
+
+def test_a_change_of_the_step_and_a_reference_are_dotted_lines_with_words():
+    t = np.arange(0.05, 20.0, 0.05)
+    marks = Marks(changes=[(10.0, "h 0.1")], line=(1000.0, "limit"))
+    plot = time_chart(window(t, t), USUAL_CAST, looking([0], seconds=20), 60, 14, marks)
+    lines = plot.picture.text.splitlines()
+    column = plot.left + len(plot.times) // 2
+    assert lines[11][column + 1 :].startswith("h 0.1")
+    assert all(line[column] not in " ⠀" for line in lines[1:12])
+    assert "limit" in lines[0] + lines[1]

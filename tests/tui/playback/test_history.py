@@ -51,46 +51,15 @@ def test_every_sample_is_in_exactly_one_row_of_the_whole_run(count, capacity):
     first, last = window.low["energy_error"][:, 0], window.high["energy_error"][:, 0]
     assert first.tolist() == [0, *(last[:-1] + 1)]
     assert last[-1] == count - 1
+    assert len(window.x) <= 2 * capacity
+    assert np.diff(window.x, prepend=0).max() < 0.3 + 0.1 * 2 * count / capacity
 
 
-@given(st.integers(1, 1000))
-def test_a_window_has_hardly_more_rows_than_the_capacity(count):
-    window = filled(sample(step) for step in range(count)).window()
-    assert len(window.x) <= CAPACITY + math.log2(count + 1)  # and one row for each finer level
-
-
-@given(st.integers(1, 1000), st.floats(0.1, 300))
-def test_a_window_reaches_back_as_far_as_asked_and_half_a_swing_more(count, seconds):
-    history = filled(sample(step) for step in range(count))
-    window = history.window(seconds)
-    start = max(window.x[-1] - seconds - window.repeats, 0)
-    rows = np.diff(window.x, prepend=start)
-    assert window.x[0] >= start
-    assert (
-        window.x[0] <= start + 2 * max(rows[1:], default=0.1) + 0.1
-    )  # the first row began before the window did
-    assert (
-        rows.max() <= 2 * (window.x[-1] - start) / CAPACITY * 2 + 0.2
-    )  # and none is coarser than it has to be
-
-
-def test_recent_samples_are_kept_as_they_were_in_a_short_window():
-    history = filled((sample(step) for step in range(20_000)), capacity=64)
-    window = history.window(1.0)
+def test_recent_samples_are_kept_as_they_were_and_a_window_reaches_back_half_a_swing_more():
+    window = filled((sample(step) for step in range(20_000)), capacity=64).window(1.0)
     assert np.allclose(np.diff(window.x), 0.1)
     assert window.x[-1] == pytest.approx(1999.9)
-
-
-def test_memory_grows_by_one_level_only_when_the_run_gets_twice_as_long():
-    """An hour at 30 samples a second takes seven levels of 2048 rows, about 3 MB."""
-    history = ErrorHistory(DEFAULT_SCENE, capacity=64)
-    for step in range(20_000):
-        history.add(sample(step))
-        if step + 1 in (63, 64, 127, 128, 1023, 1024, 20_000):
-            assert len(history.levels.levels) == 1 + max(
-                math.floor(math.log2((step + 1) / 64)) + 1, 0
-            )
-    assert all(len(level.steps) == 64 for level in history.levels.levels)
+    assert window.x[0] == pytest.approx(1999.9 - 1.0 - window.repeats, abs=0.1)
 
 
 def test_half_a_swing_is_what_errors_repeat_after_and_a_turn_in_rotation():
@@ -111,52 +80,42 @@ def test_the_same_sample_again_changes_nothing():
     assert history.window().high["energy_error"][:, 0].tolist() == [0, 1]
 
 
-def test_an_earlier_sample_takes_back_what_came_after_it():
-    history = filled(sample(step, step) for step in (*range(6), 3))
-    assert history.window().high["energy_error"][:, 0].tolist() == [0, 1, 2, 3]
-    assert history.levels.trails(10)[:, 0].T[0].shape == (4,)
-
-
-def test_a_run_that_goes_on_from_the_past_keeps_that_past():
-    history = filled(
-        [*(sample(step, step) for step in range(6)), sample(3, 30, run=2), sample(4, 40, run=2)]
-    )
-    assert history.window().high["energy_error"][:, 0].tolist() == [0, 1, 2, 30, 40]
+@given(st.integers(1, 400), st.data())
+def test_an_earlier_sample_shows_the_past_and_the_way_forward_is_as_it_was(count, data):
+    step = data.draw(st.integers(0, count - 1))
+    capacity = data.draw(st.sampled_from([CAPACITY, 512]))
+    history = filled((sample(step, step) for step in range(count)), capacity)
+    whole = history.window().high["energy_error"]
+    history.add(sample(step, step))
+    known = history.window().high["energy_error"][:, 0]
+    assert known[-1] == step
+    assert np.all(np.diff(known) > 0)
+    if capacity > count:
+        assert known.tolist() == list(range(step + 1))
+        assert history.thetas(0, 3) == [0.0] * min(3, step + 1)
+    history.add(sample(count - 1, count - 1))
+    assert np.array_equal(history.window().high["energy_error"], whole)
 
 
 @given(st.integers(1, 400), st.data())
-def test_after_a_rewind_the_past_is_what_it_was_but_for_one_row(count, data):
-    step = data.draw(st.integers(0, count - 1))
+def test_a_run_that_goes_on_from_the_past_keeps_that_past(count, data):
+    step = data.draw(st.integers(1, count))
     history = filled(sample(step, step) for step in range(count))
-    history.rewind(step)
-    window = history.window()
-    known = window.high["energy_error"][:, 0]
-    assert np.all(known <= step)
+    history.add(sample(step, 1000, run=2))
+    known = history.window().high["energy_error"][:, 0]
+    longest = 2 ** math.ceil(math.log2(max((count + 1) / CAPACITY, 1)))
+    assert known[-1] == 1000
     assert np.all(np.diff(known) > 0)
-    longest = 2 ** math.ceil(math.log2(max((count) / CAPACITY, 1)))
-    assert (
-        step - (known[-1] if len(known) else -1) < longest
-    )  # samples of the finest row that reaches back so far
-    history.add(sample(step + 1, step + 1))
-    assert history.window().high["energy_error"][-1, 0] == step + 1
+    assert step - (known[-2] if len(known) > 1 else 0) <= longest  # samples of the row that is cut
 
 
-@given(st.lists(st.tuples(st.booleans(), st.integers(0, 60)), max_size=60))
-def test_however_one_goes_back_and_forth_rows_stay_in_order(moves):
-    history, step = ErrorHistory(DEFAULT_SCENE, CAPACITY), 0
-    for forward, by in moves:
-        if forward:
-            for _ in range(by):
-                step += 1
-                history.add(sample(step, step))
-        else:
-            step = max(step - by, 0)
-            history.add(sample(step, step))
-        window = history.window()
-        assert np.all(np.diff(window.x) >= 0)
-        assert np.all(np.diff(window.high["energy_error"][:, 0]) > 0)
-        if len(window.x):
-            assert window.high["energy_error"][-1, 0] == step
+def test_a_sample_between_rows_leaves_with_its_frame():
+    history = filled([sample(0, 0), sample(10, 10)])
+    history.add(sample(13, 13, low=-99), is_row=False)
+    assert history.window().low["energy_error"][:, 0].tolist() == [0, 10, 13]
+    assert history.trails(2).shape[0] == 2
+    history.add(sample(20, 20))
+    assert history.window().low["energy_error"][:, 0].tolist() == [0, 10, 20]
 
 
 def test_where_time_runs_backwards_rows_stay_in_the_order_in_which_they_were_run():
@@ -204,11 +163,11 @@ def test_trails_are_the_last_states_of_methods_and_of_the_exact_swing():
     history = ErrorHistory(DEFAULT_SCENE, CAPACITY)
     for step in range(20):
         history.add(sample(step, theta=step), State(-step, 0.5))
-    theta, omega = history.levels.trails(3)[:, 2].T
+    theta, omega = history.trails(3)[:, 2].T
     assert theta.tolist() == [17, 18, 19]
     assert omega.tolist() == [-17, -18, -19]
-    assert history.levels.trails(2)[:, EXACT].T[0].tolist() == [-18, -19]
-    assert len(history.levels.trails(100)[:, 0].T[0]) == CAPACITY
+    assert history.trails(2)[:, EXACT].T[0].tolist() == [-18, -19]
+    assert len(history.trails(100)[:, 0].T[0]) == CAPACITY
 
 
 def test_an_angle_in_the_plane_is_off_by_half_a_turn_at_most():
@@ -221,7 +180,7 @@ def test_an_angle_in_the_plane_is_off_by_half_a_turn_at_most():
 
 def test_an_empty_history_has_empty_windows_and_trails():
     history = ErrorHistory(DEFAULT_SCENE)
-    assert history.levels.trails(5)[:, 0].T[0].size == 0
+    assert history.trails(5)[:, 0].T[0].size == 0
     assert all(
         history.window(seconds).low[quantity].shape == (0, 4)
         for quantity in quantities(DEFAULT_SCENE)

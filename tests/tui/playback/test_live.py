@@ -180,7 +180,7 @@ def test_the_recording_clock_stands_while_paused_and_does_not_care_for_speed():
     bench.live.pause(False)
     bench.live.set_speed(100)
     bench.run(1)
-    assert bench.keeper.seconds == pytest.approx(3.0)
+    assert bench.keeper.seconds == pytest.approx(3.0, abs=1 / 30)  # from sample to sample
 
 
 def test_a_restart_keeps_the_step_size_but_not_its_sign():

@@ -37,7 +37,7 @@ def test_a_frame_takes_as_much_after_eight_hours_as_after_one():
         for _ in range(FRAMES):
             now += 1 / 30
             live.tick(now)
-            live.history.states(300)
+            live.history.trails(300)
         live.history.window(20.0)
         live.history.window()
         _ = live.judgements, live.milestones

@@ -122,8 +122,8 @@ def test_after_a_jump_chart_and_trails_show_what_they_show_after_playing(sitting
     jumped.run(0.1)
     assert jumped.replay.sample == played.replay.sample
     for one, other in zip(
-        played.replay.history.levels.trails(15)[:, 3].T,
-        jumped.replay.history.levels.trails(15)[:, 3].T,
+        played.replay.history.trails(15)[:, 3].T,
+        jumped.replay.history.trails(15)[:, 3].T,
         strict=True,
     ):
         np.testing.assert_array_equal(one, other)
@@ -135,7 +135,7 @@ def test_after_a_jump_chart_and_trails_show_what_they_show_after_playing(sitting
 
 def test_right_after_a_jump_the_trails_are_there_before_the_rest_of_the_past(table):
     table.replay.seek(4.0)
-    assert len(table.replay.history.levels.trails(15)[:, 0].T[0]) == 15
+    assert len(table.replay.history.trails(15)[:, 0].T[0]) == 15
 
 
 def test_stepping_back_takes_the_past_back(table):

@@ -117,7 +117,7 @@ def test_there_and_back_is_noticed_where_time_is_at_its_start_again():
     history = run(DRIFT, (200, 0.05), (230, -0.05))
     assert history.returned is not None
     assert history.returned.step == 400
-    history.rewind(399)
+    history.add(history.returned._replace(step=399))
     assert history.returned is None
 
 

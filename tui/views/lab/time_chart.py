@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from textual import events
@@ -9,8 +10,9 @@ from textual import events
 from engine.methods import Cast
 from engine.models.model import ExactMotion, Model
 from engine.run.lockstep import Sample
+from engine.run.stepping import SteppingChange
 from tui.drawing.picture import Picture
-from tui.playback.shown import LARGEST, Quantity, Shown, Stretch
+from tui.playback.shown import Quantity, Shown, Stretch
 from tui.playback.source import Source
 from tui.views.messages import Asked, Zoomed
 from tui.views.view import Pane
@@ -74,18 +76,23 @@ def span_text(begin: float, end: float) -> str:
 
 def read_out(reading: "Reading", letters: Sequence[str], room: int) -> str:
     """All methods at a moment, as far as there is room: "12.35 s: e 3.3, s 0.079, v 0.0057, r 3.8e-5"."""
-    numbers = [
-        f"{'<' if value < 0 else '>'} {value:.0e}".replace("e+0", "e")
-        if abs(value) >= LARGEST  # which is drawn at the edge
-        else f"{value:.2g}".replace("e-0", "e-")
-        for value in reading.values
-    ]
+    numbers = [f"{value:.1e}".replace("e-0", "e-").replace("e+0", "e") for value in reading.values]
     text = f"{seconds(reading.t)}:"
     for letter, number in zip(letters, numbers, strict=True):
         part = f" {letter} {number}"
         if not number.startswith("nan") and len(text) + len(part) <= room:
             text += part
     return text
+
+
+def step_changes(changes: Sequence[SteppingChange]) -> list[tuple[float, str]]:
+    """Return each change of the step after the start: x [s] and "h 0.1"."""
+    marks: list[tuple[float, str]] = []
+    x = 0.0
+    for before, change in pairwise(changes):
+        x += abs(change.t - before.t)
+        marks.append((x, f"h {change.stepping.h:.4g}"))
+    return marks
 
 
 class TimeChart(Pane):
@@ -118,7 +125,6 @@ class TimeChart(Pane):
             self.room,
             source.ghost,
             source.history,
-            source.history.rewound,
             source.knows_past,
         )
         if self.plot is None or plotted != self._plotted:  # the run may be paused
@@ -129,7 +135,7 @@ class TimeChart(Pane):
         return self.plot.picture
 
     def _charted(self, source: Source, sample: Sample, look: Shown) -> "TimePlot":
-        from tui.drawing.time_chart import time_chart
+        from tui.drawing.time_chart import Marks, time_chart
 
         until, back = sample.t, look.seconds
         if look.stretch is None:
@@ -140,7 +146,8 @@ class TimeChart(Pane):
             back = until - look.stretch.begin
         ghost = source.ghost
         behind = None if ghost is None else (ghost.window(until, back), ghost.scene.cast)
-        return time_chart(window, self.cast, look, *self.room, behind)
+        marks = Marks(behind, step_changes(source.changes))
+        return time_chart(window, self.cast, look, *self.room, marks)
 
     def _below(self, source: Source, look: Shown, room: int) -> str:
         """Return what is under the pointer, or how to change the chart."""

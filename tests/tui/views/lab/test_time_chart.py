@@ -6,12 +6,18 @@ import numpy as np
 import pytest
 from textual.events import MouseScrollUp
 
+from engine.run.stepping import Stepping
 from engine.scenes import SCENES
+from recordings.live_recorder import LiveRecorder
+from recordings.recording import Recording
 from tests.tui.harness import FPS, lab, player, recorded
 from tests.tui.playback.test_so_far import run
-from tui.drawing.time_chart import Reading, time_chart
-from tui.playback.shown import LARGEST, WINDOWS, Shown, Stretch, quantities
-from tui.views.lab.time_chart import TimeChart, modified_energy_of, read_out, title
+from tui.drawing.time_chart import time_chart
+from tui.playback.live import Live
+from tui.playback.marks import Marks
+from tui.playback.replay import Replay
+from tui.playback.shown import WINDOWS, Shown, Stretch, quantities
+from tui.views.lab.time_chart import TimeChart, modified_energy_of, title
 from tui.views.lab.view import LabView
 
 
@@ -166,7 +172,42 @@ async def test_after_a_jump_in_a_replay_the_chart_shows_the_past_as_soon_as_it_i
         assert known.mean() > 0.8
 
 
-def test_what_is_drawn_at_the_edge_is_read_out_as_larger():
-    assert read_out(Reading(1.0, [LARGEST, -LARGEST, 0.5, 1e-5]), "esvr", 60) == (
-        "1.00 s: e > 1e6 s < -1e6 v 0.5 r 1e-5"
-    )
+def charted(fps, scene, path=None, *, changes=False, returns=False):
+    """The chart of a run at so many frames a second, paused at 30 s."""
+    live = Live(scene, clock=lambda: 0.0)
+    if path is not None:
+        live.record(LiveRecorder(path))
+    for frame in range(30 * fps + 1):
+        live.tick(frame / fps)
+        if changes and frame == 10 * fps:
+            live.set_stepping(Stepping(2 * scene.h))
+    live.pause(True)
+    live.close()
+    end = live.sample.step
+    if returns:
+        live.go_to(1, 50)
+        live.history.window()
+        live.go_to(1, end)
+    return time_chart(live.history.window(), scene.cast, Shown(), 60, 16).picture
+
+
+@pytest.mark.parametrize("h", [0.05, 0.01])
+@pytest.mark.parametrize("case", [{}, {"changes": True}, {"returns": True}])
+def test_a_chart_depends_on_the_run_and_not_on_the_frames(h, case):
+    scene = WHOLE.altered(h=h)
+    assert charted(3, scene, **case) == charted(60, scene, **case)
+    assert charted(3, scene, returns=True) == charted(60, scene)
+
+
+def test_a_replay_has_the_chart_of_the_lab(tmp_path):
+    for fps in (3, 60):
+        path = tmp_path / f"{fps}.mcap"
+        lab_chart = charted(fps, WHOLE, path)
+        replay = Replay(Recording.open(path), Marks(path), clock=lambda: 0.0)
+        for seconds in (5.0, replay.length):
+            replay.seek(seconds)
+            while not replay.fill():
+                pass
+        window = replay.history.window()
+        assert time_chart(window, WHOLE.cast, Shown(), 60, 16).picture == lab_chart
+        replay.close()
