@@ -23,6 +23,20 @@ class OwnMethodError(Exception):
     """What is wrong with a user's method; its text is a sentence for the user."""
 
 
+class TooLongError(BaseException):
+    """A signal handler raises it in a user's code; no Exception, which that may catch.
+
+    Its text continues the sentence about a line: "takes more than 3 s for a step".
+    """
+
+
+class UserCode:
+    """Where a user's code is, for whoever watches the time."""
+
+    is_running = False
+    steps = 0  # begun; 0 while the file itself runs
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OwnMethod(Method):
     """A user's method.  The fields that other methods claim are measured."""
@@ -75,11 +89,17 @@ def own_phases(source: str, name: str, file: str) -> Phases:
     """The generator function of this name in a text, guarded.  Raises OwnMethodError."""
     namespace: dict[str, Any] = {"__name__": "own_method", "__file__": file, "print": _no_print}
     try:
+        UserCode.is_running = True
+        UserCode.steps = 0
         exec(compile(source, file, "exec", dont_inherit=True), namespace)
     except SyntaxError as error:
         raise OwnMethodError(f"{file}, line {error.lineno or 1}: {error.msg}.") from None
-    except (Exception, SystemExit) as error:
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
         raise OwnMethodError(_sentence(error, source, file, file)) from None
+    finally:
+        UserCode.is_running = False
     function = namespace.get(name)
     if not callable(function) or isinstance(function, type):
         functions = [
@@ -108,26 +128,38 @@ def _guarded(function: Callable[..., Any], name: str, source: str, file: str) ->
     where = f"{file}, line {code.co_firstlineno}" if code else file
 
     def phases(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
-        kinds = type(phase[0]), type(phase[1])
-        plain = kinds == (float, float)
-        try:
-            following = function(force, phase, h)
-            if not hasattr(following, "__next__"):
-                raise OwnMethodError(f"{where}: {name} returns {_short(following)}; {_FORM}.")
-            for found in following:
-                if (
-                    plain
-                    and type(found) is tuple
-                    and len(found) == 2
-                    and type(found[0]) is type(found[1]) is float
-                ):
-                    yield found
-                else:
-                    yield _phase(found, phase, f"{where}: {name}")
-        except (Exception, SystemExit) as error:
-            if isinstance(error, OwnMethodError | OverflowError) or _is_of_force(error, force):
+        plain = type(phase[0]) is type(phase[1]) is float
+        following: Any = None
+        while True:
+            try:
+                UserCode.is_running = True
+                UserCode.steps += 1
+                if following is None:
+                    following = function(force, phase, h)
+                    if not hasattr(following, "__next__"):
+                        raise OwnMethodError(
+                            f"{where}: {name} returns {_short(following)}; {_FORM}."
+                        )
+                found = next(following)
+            except StopIteration:
+                break
+            except (OwnMethodError, OverflowError, KeyboardInterrupt):
                 raise
-            raise OwnMethodError(_sentence(error, source, file, where)) from None
+            except BaseException as error:
+                if _is_of_force(error, force):
+                    raise
+                raise OwnMethodError(_sentence(error, source, file, where)) from None
+            finally:
+                UserCode.is_running = False
+            if (
+                plain
+                and type(found) is tuple
+                and len(found) == 2
+                and type(found[0]) is type(found[1]) is float
+            ):
+                yield found
+            else:
+                yield _phase(found, phase, f"{where}: {name}")
         raise OwnMethodError(f"{where}: {name} ends while the run goes on; {_FORM}.")
 
     phases.__doc__, phases.__name__ = function.__doc__, name
@@ -187,5 +219,7 @@ def _sentence(error: BaseException, source: str, file: str, where: str) -> str:
         where = f"{file}, line {lines[-1]}: `{source.splitlines()[lines[-1] - 1].strip()[:60]}`"
     if isinstance(error, _PrintedError):
         return f"{where} prints, but stdout is for results; use print(..., file=sys.stderr)."
+    if isinstance(error, TooLongError):
+        return f"{where} {error}."
     what = " ".join(str(error).split())[:200]
     return f"{where} raises {type(error).__name__}{': ' + what if what else ''}."

@@ -85,10 +85,10 @@ class PlainLoops:
         if phase is not self._end or h != self._h:
             self._generator = self._phases(phase, h)
             self._h = h
+        self._end = None  # a generator that fails cannot go on
         try:
             advanced = _advance_all(self._generator, self._energy, n, limit)
         except OVERFLOW:
-            self._end = None
             phases = _to_overflow(self._phases(phase, h), self._energy)
             return advance(phases, self._energy, phase, n, limit)
         self._end = advanced[1]

@@ -6,7 +6,8 @@ are, the further they lie apart, so their number grows with the logarithm of the
 
 import math
 from bisect import bisect_right
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import NamedTuple
 
 from engine.run.compiled import TieredLoops
@@ -140,6 +141,16 @@ class RewindableRun:
         self._lockstep = lockstep.copy()
         self._lockstep.run = self.run
         self.forward(step - self.step)
+
+    @contextmanager
+    def unchanged_by_errors(self) -> Iterator[None]:
+        """Stay here if the block raises an error, as a user's method may at any step."""
+        before = self._copy()
+        try:
+            yield
+        except Exception:
+            self._lockstep, self._applied = before
+            raise
 
     def set_stepping(self, stepping: Stepping) -> None:
         """Step like this from here on; in the past, branch first.  Raises SceneError for an absurd h."""

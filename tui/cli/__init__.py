@@ -7,7 +7,8 @@ expression of --fail-if; `junit` concludes checks and writes them as XML.  `colu
 tables, whose columns `heads` finds; `objects` reads tables that are not rows of text.  `report`
 prints the result of a command as a table, JSON or CSV, or writes it to a file; `output` prints
 sentences, pictures and progress.  `files` writes whole files and takes requests to stop,
-`install` advises on packages, and `errors` makes one sentence and an exit code of whatever goes wrong.
+`time_limit` bounds the time of a user's own methods, `install` advises on packages, and `errors`
+makes one sentence and an exit code of whatever goes wrong.
 """
 
 from tui.cli.dispatch import main

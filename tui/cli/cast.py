@@ -3,13 +3,10 @@
 import argparse
 import io
 import re
-import signal
 import string
-import threading
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, redirect_stdout
+from collections.abc import Sequence
+from contextlib import redirect_stdout
 from pathlib import Path
-from types import FrameType
 from typing import TYPE_CHECKING
 
 from engine.methods import METHODS, Cast, Method, matching
@@ -132,43 +129,13 @@ def _loaded(path: Path, key: str, letter: str) -> "OwnMethod":
         why = error.strerror if isinstance(error, OSError) else "it is not text in UTF-8"
         raise UserError(f"--method: {path} cannot be read: {why}.", Exit.INPUT_UNREADABLE) from None
     from engine.methods.examine import load
+    from tui.cli.time_limit import limited
 
-    with _limited(
-        f"{path}: {key} takes more than {MAX_SECONDS:g} s for a few steps; does it ever yield?"
-    ):
-        output = io.StringIO()
-        with redirect_stdout(output):
-            method = load(source, key, letter, str(path))
+    output = io.StringIO()
+    with limited("a few hundred steps", MAX_SECONDS), redirect_stdout(output):
+        method = load(source, key, letter, str(path))
     if output.getvalue():
         raise UserError(
             f"{path}: {key} writes to stdout, which is for results; write to stderr instead."
         )
     return method
-
-
-class _TooLongError(BaseException):
-    """The time is over; not an Exception, which the user's code may catch."""
-
-
-@contextmanager
-def _limited(sentence: str) -> Iterator[None]:
-    """Raise UserError after MAX_SECONDS, where the platform can interrupt the block."""
-    if (
-        not hasattr(signal, "setitimer")
-        or threading.current_thread() is not threading.main_thread()
-    ):
-        yield
-        return
-
-    def stop(number: int, frame: FrameType | None) -> None:
-        raise _TooLongError
-
-    before = signal.signal(signal.SIGALRM, stop)
-    signal.setitimer(signal.ITIMER_REAL, MAX_SECONDS, 0.1)  # again, should the first be swallowed
-    try:
-        yield
-    except _TooLongError:
-        raise UserError(sentence) from None
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, before)

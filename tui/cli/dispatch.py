@@ -161,8 +161,12 @@ def _parsed(parser: "Parser", arguments: list[str], command: ModuleType | None =
     late = getattr(options, "scene", None)
     if late in COMMANDS:  # after its options, which made it live
         raise UserError(f"put the command first: pendu-tui {late}.")
-    code: int = command.run(options)
-    return code
+    if not getattr(options, "method", None):
+        return int(command.run(options))
+    from tui.cli.time_limit import limited_steps
+
+    with limited_steps():
+        return int(command.run(options))
 
 
 def command_of(name: str) -> tuple["Parser", ModuleType]:

@@ -1,16 +1,19 @@
 """Live: a run that follows the clock, and is recorded."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, nullcontext
 from copy import copy
 from typing import TYPE_CHECKING, Any
 
+from engine.methods.own import OwnMethod, OwnMethodError
 from engine.run.judgement import Judgement, Milestone
 from engine.run.lockstep import Sample
 from engine.run.rewindable import RewindableRun
 from engine.run.stepping import Stepping, SteppingChange
 from engine.scenes import Scene
 from recordings.events import Event, EventKind, noticed
+from tui.cli.time_limit import limited
 from tui.playback.compiler import patient
 from tui.playback.playhead import Pace, Playhead
 from tui.playback.so_far import RunSoFar
@@ -56,7 +59,8 @@ class Live(Source):
         self._runs = 1
         run = RewindableRun(scene, 1, patient)
         if so_far is not None:
-            run.repeat(changes, so_far.sample.step)
+            with _limited(scene):
+                run.repeat(changes, so_far.sample.step)
         self._enter(run, so_far)
 
     @property
@@ -119,10 +123,14 @@ class Live(Source):
         # A sample at home shows what each method misses its start by.
         target = int(min(self._run.step_at(self.playhead.position), self._run.home))
         spacing = self._row_steps
+        chunk = 1 if has_own(self.scene) else CHUNK
         while (left := target - self._run.step) > 0:
             if self._clock() - began >= FRAME_BUDGET:
                 break
-            self._run.forward(min(left, CHUNK, spacing - self._run.step % spacing))
+            with self._standing_still():
+                self._run.forward(min(left, chunk, spacing - self._run.step % spacing))
+            if self.failure:
+                break
             if self._run.step % spacing == 0:
                 self._take_sample()
         due = self.playhead.position - before.position
@@ -141,10 +149,11 @@ class Live(Source):
 
     def step(self, n: int) -> Sample:
         self.pause(True)
-        if n >= 0:
-            self._run.forward(n)
-        else:
-            self._run.back_to(max(0, self._run.step + n))
+        with self._standing_still():
+            if n >= 0:
+                self._run.forward(n)
+            else:
+                self._run.back_to(max(0, self._run.step + n))
         self.playhead = self.playhead.moved_to(self._run.x)
         return self._take_sample()
 
@@ -165,11 +174,16 @@ class Live(Source):
         self.step((min(after, default=end) if direction > 0 else max(before, default=0)) - here)
 
     def start(self, scene: Scene) -> None:
-        """Begin a new run.  Raises SceneError, before anything has changed, for a step too large at equal cost."""
+        """Begin a new run.
+
+        Raises SceneError, before anything has changed, for a step too large at equal cost, and OwnMethodError.
+        """
         stepping = Stepping(scene.h, self.stepping.equal_cost, scene.cast).with_smallest(scene.h)
         stepping.check(scene.w0)
         self._runs += 1
-        self._enter(RewindableRun(scene, self._runs, patient))
+        with _limited(scene):
+            run = RewindableRun(scene, self._runs, patient)
+        self._enter(run)
         if stepping.equal_cost:
             self.set_stepping(stepping)
 
@@ -186,7 +200,18 @@ class Live(Source):
         self._note_start()
         self._take_sample()
 
+    @contextmanager
+    def _standing_still(self) -> Iterator[None]:
+        """Pause where a user's method fails, as if the block had not been."""
+        try:
+            with _limited(self.scene, self._run):
+                yield
+        except OwnMethodError as error:
+            self.pause(True)
+            self.failure = str(error)
+
     def _enter(self, run: RewindableRun, so_far: RunSoFar | None = None) -> None:
+        self.failure = None
         self._run, self._so_far = run, copy(so_far) if so_far else RunSoFar(run.scene, run.changes)
         self._so_far.changes = run.changes
         self.playhead = self.playhead.moved_to(run.x)
@@ -198,16 +223,21 @@ class Live(Source):
         self.start(self.scene.altered(h=self.stepping.smallest))
 
     def set_stepping(self, stepping: Stepping) -> None:
-        """Step like this from here on.  Raises SceneError, before anything has changed, for an absurd step size."""
+        """Step like this from here on.
+
+        Raises SceneError, before anything has changed, for an absurd step size, and OwnMethodError.
+        """
         stepping.check(self.scene.w0)
         if self._run.in_past:
             self._runs += 1
             self._run.branch(self._runs)
             self._note_start()
-        self._run.set_stepping(stepping)
+        with _limited(self.scene, self._run):
+            self._run.set_stepping(stepping)
         self._note_here("set_h", h=stepping.h, equal_cost=stepping.equal_cost)
 
     def pause(self, paused: bool) -> None:
+        self.failure = None
         if paused != self.playhead.paused:
             self.playhead = self.playhead._replace(paused=paused)
             self._recorded = self._recorded._replace(paused=paused)
@@ -272,3 +302,19 @@ class Live(Source):
             is_of_step = event.kind == "noticed"
             self._clocked = self._due if is_of_step else self._recorded.position
             self.recorder.event(event, self._clocked)
+
+
+def has_own(scene: Scene) -> bool:
+    """Return whether a scene has a method of the user's own."""
+    return any(isinstance(method, OwnMethod) for method in scene.cast)
+
+
+@contextmanager
+def _limited(scene: Scene, run: RewindableRun | None = None) -> Iterator[None]:
+    """Bound the time that a user's methods take, if there are any; an error leaves the run as it was."""
+    if not has_own(scene):
+        yield
+        return
+    unchanged = run.unchanged_by_errors() if run else nullcontext()
+    with limited("the way there"), unchanged:
+        yield

@@ -35,6 +35,8 @@ class Source(ABC):
     playhead: Playhead
     pace: Pace
     """Whether it can follow the clock."""
+    failure: str | None = None
+    """Why the run stands still: what is wrong with a user's method, in a sentence."""
 
     @property
     @abstractmethod

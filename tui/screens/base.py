@@ -19,10 +19,12 @@ from textual.timer import Timer
 from textual.widget import Widget
 
 from engine.methods import method_of
+from engine.methods.own import OwnMethodError
 from engine.run.lockstep import Sample
 from engine.scenes import MOST_METHODS
 from recordings import library
 from tui.cli.errors import explained
+from tui.cli.time_limit import limited
 from tui.playback.playhead import doubled
 from tui.playback.shown import Shown
 from tui.playback.source import Source
@@ -33,7 +35,7 @@ from tui.screens.insight_line import InsightLine
 from tui.screens.key_line import KeyLine
 from tui.screens.status_line import StatusLine
 from tui.screens.too_small import TooSmall
-from tui.terminal.writer import is_writing
+from tui.terminal.check import is_writing
 from tui.views import VIEWS, create, following
 from tui.views.messages import Asked, MethodChosen, Zoomed
 from tui.views.view import Box, Pane, View
@@ -136,6 +138,7 @@ class SourceScreen(Screen[None]):
         self._frames = 0
         self._missed = 0.0  # s of the clock while the program was stopped
         self._is_late = False  # the next frame shows everything
+        self._failure: str | None = None  # that a notice shows
         self._paused_by_dialog = False
         self._undo: deque[State] = deque(maxlen=MAX_UNDOS)
 
@@ -206,12 +209,20 @@ class SourceScreen(Screen[None]):
             self._missed += now - seen
             now = seen
         sample = self.source.tick(now)
+        self._notify_failure()
         if is_writing(self.app):
             return
         self._frames += 1
         turn = self._frames % max(self.host.fps // READ_RATE, 1) == 0
         self._follow(sample, read=turn or self._is_late)
         self._is_late = False
+
+    def _notify_failure(self) -> None:
+        failure = self.source.failure
+        if failure is not None and failure is not self._failure:
+            text = f"{failure} The run stands still; space tries again."
+            self.notify(text, severity="warning", markup=False, timeout=15)
+        self._failure = failure
 
     def show_now(self) -> None:
         """Show everything now, or with the next frame if the terminal is behind."""
@@ -416,7 +427,11 @@ class SourceScreen(Screen[None]):
         titles = [pane.border_title for pane in self.query(Pane) if pane.is_on_screen]
         panes = "; ".join(Content.from_markup(title).plain for title in titles if title)
         view = f"On screen: {VIEWS[self.view].title}; {panes}."
-        period = period_sentence(self.source)
+        try:
+            with limited("a period"):
+                period = period_sentence(self.source)
+        except OwnMethodError as error:
+            period = str(error)
         self.show_text("In words", *description(self.source), period, view)
 
     def action_card(self, key: str) -> None:

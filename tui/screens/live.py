@@ -6,6 +6,7 @@ from typing import ClassVar
 from textual import work
 from textual.binding import Binding, BindingType
 
+from engine.methods.own import OwnMethodError
 from engine.run.lockstep import Sample
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene, SceneError
@@ -87,7 +88,7 @@ class LiveScreen(SourceScreen):
         before = self.state
         try:
             change()
-        except SceneError as error:
+        except (SceneError, OwnMethodError) as error:
             self.notify(str(error), severity="warning", markup=False)
             return False
         self.keep(before)

@@ -8,9 +8,10 @@ from typing import ClassVar
 from textual.binding import Binding, BindingType
 from textual.widget import Widget
 
+from engine.methods.own import OwnMethodError
 from recordings.errors import RecordingError
 from tui.cli.errors import UserError, explained
-from tui.playback.live import Live
+from tui.playback.live import Live, has_own
 from tui.playback.replay import Replay
 from tui.screens.base import SourceScreen
 from tui.screens.seek_bar import SeekBar
@@ -95,8 +96,11 @@ class ReplayScreen(SourceScreen):
         if self.replay.sample.step > LONG:
             self.notify(f"Simulating {self.replay.sample.step} steps ...", timeout=2)
         try:
-            live = await asyncio.to_thread(self.replay.live)
-        except RecordingError as error:
+            if has_own(self.replay.scene):
+                live = self.replay.live()  # it can be interrupted here, but not in a thread
+            else:
+                live = await asyncio.to_thread(self.replay.live)
+        except (RecordingError, OwnMethodError) as error:
             self.notify(str(error), severity="warning", markup=False)
             return
         try:

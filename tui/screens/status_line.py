@@ -75,7 +75,10 @@ def segments(source: Source) -> Iterator[Segment]:
 def _time(source: Source) -> Iterator[Segment]:
     playhead = source.playhead
     state = "backwards" if source.stepping.h < 0 else "running"
-    yield Segment(12, "paused " if playhead.paused else state)
+    if source.failure:
+        yield Segment(12, "stands still", WARN)
+    else:
+        yield Segment(12, "paused " if playhead.paused else state)
     speed = speed_text(playhead.speed)
     yield Segment(7, speed)
     share = source.pace.share

@@ -1,7 +1,8 @@
-"""Whether the lab can be shown on this terminal, and whether the terminal is still there."""
+"""Whether the lab can be shown on this terminal, and whether the terminal is there and keeps up."""
 
 import os
 import sys
+from typing import Any
 
 from tui.cli.errors import Exit, UserError
 
@@ -31,3 +32,13 @@ def is_gone() -> bool:
     except OSError:
         return True
     return False
+
+
+def is_writing(app: Any) -> bool:
+    """Return whether frames still wait to be written: on a slow line, another adds only delay.
+
+    Textual queues 30 of them, some seconds at 64 KiB/s.  Where it has no such queue the answer is no.
+    """
+    writer = getattr(app._driver, "_writer_thread", None)
+    queue = getattr(writer, "_queue", None)
+    return queue is not None and not queue.empty()

@@ -14,6 +14,8 @@ from multiprocessing.connection import Connection
 from threading import Thread
 from typing import TypeVar
 
+from tui.cli.time_limit import limited_steps
+
 Item = TypeVar("Item")
 
 DONE = "done"
@@ -57,8 +59,9 @@ def _send_all(
     os.nice(10)  # the lab comes first
     Thread(target=_end_with_parent, daemon=True).start()
     try:
-        for item in function(*arguments):
-            results.send(item)
+        with limited_steps():
+            for item in function(*arguments):
+                results.send(item)
         results.send(DONE)
     except Exception as error:
         results.send(error)

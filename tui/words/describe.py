@@ -31,6 +31,8 @@ def _run(source: Source) -> list[str]:
         f"with {scene.omega:.4g} radians per second{motion}.",
         f"The step size is {step_text(source)}.",
     ]
+    if source.failure:
+        lines.append(f"It stands still: {source.failure}")
     return [*lines, f"Under it, {source.ghost.label(60)}."] if source.ghost else lines
 
 

@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable
 
 from engine.methods import Cast
+from tui.cli.errors import UserError
 from tui.playback.live import Live
 from tui.playback.source import Source
 from tui.words.describe import description
@@ -39,6 +40,8 @@ def print_run(
     while not stopped() and not (source.kind == "REPLAY" and source.playhead.paused):
         sleep(TICK)
         source.tick(clock())
+        if source.failure:
+            raise UserError(source.failure)
         for line in event_lines(source):
             if line not in emitted and (only is None or line.method is None or line.method in only):
                 emitted.add(line)

@@ -132,6 +132,9 @@ WRONG = {
     "something printed": (euler("print(theta)"), "line 7: `print(theta)` prints, but stdout is for results"),
     "something printed when loaded": (euler(above="print('hello')"), "line 1: `print('hello')` prints"),
     "an end of the program": (euler("raise SystemExit"), "line 7: `raise SystemExit` raises SystemExit."),
+    "an exception that most programs do not catch": (
+        euler("raise GeneratorExit"), "line 7: `raise GeneratorExit` raises GeneratorExit."
+    ),
     "not a number": (euler("omega = omega * float('nan')"), "mine does not stay finite for 6 steps"),
     "numbers that overflow": (euler("theta = (theta * 1e200) ** 2"), "mine overflows on an ordinary swing"),
     "a memory": (

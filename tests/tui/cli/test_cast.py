@@ -157,7 +157,7 @@ def test_a_wrong_method_option_is_one_sentence(mine, text, code, words):
 def test_a_method_that_never_yields_is_interrupted(mine, monkeypatch):
     monkeypatch.setattr(cast_options, "MAX_SECONDS", 0.2)
     assert pendu("run", "--time", "2", "--method", f"{mine}:endless").refused(
-        2, "more than 0.2 s", "ever yield?"
+        2, "more than 0.2 s", "while True"
     )
 
 

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from engine.methods.examine import load
 from engine.run.lockstep import Lockstep, Sample
 from engine.run.stepping import Stepping
 from engine.scenes import DEFAULT_SCENE, SCENES, SceneError
@@ -232,6 +233,52 @@ def test_closing_finishes_the_recording():
     bench = Bench()
     bench.live.close()
     assert bench.keeper.closed
+
+
+FAILING = """
+import os, sys, time
+def mine(force, phase, h):
+    theta, omega = phase
+    while True:
+        if "FAIL" in os.environ:
+            {}
+        omega = omega + h * force(theta)
+        theta = theta + h * omega
+        yield theta, omega
+"""
+
+
+@pytest.mark.parametrize(
+    ("failure", "words"),
+    [
+        ("while True: pass", "takes more than 0.3 s"),
+        ("time.sleep(60)", "takes more than 0.3 s"),
+        ("time.sleep(0.05)", "takes more than 0.3 s"),
+        ("1 / 0", "raises ZeroDivisionError"),
+        ("sys.exit()", "raises SystemExit"),
+        ("raise GeneratorExit", "raises GeneratorExit"),
+    ],
+)
+def test_where_a_users_method_fails_the_run_stands_still_and_can_go_on(failure, words, monkeypatch):
+    monkeypatch.setattr("tui.cli.time_limit.MAX_STEP_TIME", 0.3)
+    monkeypatch.setattr("tui.cli.time_limit.LOOK_INTERVAL", 0.05)
+    own = load(FAILING.format(failure), "mine", "m", "mine.py")
+    scene = DEFAULT_SCENE.with_cast((*DEFAULT_SCENE.cast, own))
+    bench = Bench(scene)
+    bench.run(2)
+    here = bench.live.sample
+    monkeypatch.setenv("FAIL", "")
+    bench.live.step(-20)
+    assert words in bench.live.failure
+    assert (bench.live.sample.step, bench.live.playhead.paused) == (here.step, True)
+    monkeypatch.delenv("FAIL")
+    bench.live.pause(False)
+    assert bench.live.failure is None
+    bench.run(2)
+    whole = Lockstep(scene)
+    whole.advance(bench.live.sample.step)
+    for mine, other in zip(bench.live.sample.readings, whole.sample().readings, strict=True):
+        assert (mine.theta, mine.omega) == (other.theta, other.omega)
 
 
 @pytest.mark.parametrize("change", [{"omega": 1e8}, {"theta": 1e6}, {"length": 9.81, "h": 50.0}])

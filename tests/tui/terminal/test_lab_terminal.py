@@ -14,7 +14,7 @@ from recordings.library import GOLDEN
 from recordings.recording import Recording
 from recordings.verification import verify
 from tests.tui.command_line import pendu
-from tests.tui.pty_lab import PENDU, PtyLab
+from tests.tui.pty_lab import PENDU, ROOT, PtyLab
 
 pytestmark = pytest.mark.slow
 
@@ -107,6 +107,36 @@ def test_a_lab_that_is_stuck_ends_within_10_s_and_finishes_its_recording(library
         if how != "closed":
             assert b"\x1b[?1049l" in session.output  # the terminal is as it was
     assert whole(library)
+
+
+ENDLESS = """
+import os
+def mine(force, phase, h):
+    while True:
+        while os.path.exists("endless"): pass
+        theta, omega = phase
+        phase = theta + h * omega, omega + h * force(theta)
+        yield phase
+"""
+
+
+@pytest.mark.slow
+def test_a_method_that_does_not_yield_is_told_within_4_s_and_the_keys_work(tmp_path):
+    (tmp_path / "mine.py").write_text(ENDLESS)
+    library = tmp_path / "library"
+    path = {"PENDU_RECORDINGS": str(library), "PYTHONPATH": str(ROOT)}
+    with PtyLab("live", "--method", "mine.py:mine", folder=tmp_path, **path) as session:
+        session.wait_for("REC 1 s")
+        (tmp_path / "endless").touch()
+        session.wait_for("takes more than 3 s for a step", 4.0)
+        session.wait_for("stands still")
+        session.type("p")
+        session.wait_for("gentle", 6.0)
+        session.type("q")
+        assert session.end() == 0
+    (recorded,) = library.iterdir()
+    (tmp_path / "endless").unlink()
+    assert pendu("verify", recorded, "--method", f"{tmp_path / 'mine.py'}:mine").code == 0
 
 
 BROKEN = """

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 from textual.drivers._writer_thread import WriterThread
 
-from tui.terminal.writer import is_writing
+from tui.terminal.check import is_writing
 
 
 def test_the_terminal_is_behind_while_textuals_queue_holds_a_frame():

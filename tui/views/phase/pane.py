@@ -1,5 +1,6 @@
 """PhasePane: phase space, the methods in it, and a start to choose with the mouse or the keyboard."""
 
+from time import perf_counter
 from typing import TYPE_CHECKING, ClassVar
 
 from textual import events
@@ -7,6 +8,7 @@ from textual.binding import Binding, BindingType
 from textual.content import Content
 from textual.reactive import var
 
+from engine.methods.own import OwnMethodError
 from engine.models.model import State
 from engine.run.lockstep import Sample
 from engine.scenes import SceneError
@@ -21,9 +23,7 @@ if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
 
 TITLE = "Phase space (F3): theta [rad], omega [rad/s]"
 DOTS = 4  # that an arrow moves the crosshair
-RING_STEPS = (
-    100  # a frame; 52 µs each, so a ring that has to catch up costs 5 ms of a frame at most
-)
+RING_TIME = 0.005  # s of a frame, for a ring that has to catch up
 
 
 class PhasePane(Chooser[State]):
@@ -114,9 +114,18 @@ class PhasePane(Chooser[State]):
         from engine.phase_space.area import Neighbours
 
         self.neighbours = self.neighbours or Neighbours(self.radius)
-        self.ring = self.neighbours.follow(
-            source.scene, sample.run, sample.step, source.changes, RING_STEPS
-        )
+        end = perf_counter() + RING_TIME
+        try:
+            while True:
+                self.ring = self.neighbours.follow(
+                    source.scene, sample.run, sample.step, source.changes, most=1
+                )
+                if self.neighbours.step >= sample.step or perf_counter() > end:
+                    break
+        except OwnMethodError as error:
+            self.radius = self.neighbours = self.ring = None
+            self.notify(str(error), severity="warning", markup=False)
+            return
         if self.neighbours.step < sample.step and not self._catching_up:
             self._catching_up = True
             self.set_timer(1 / 30, self._catch_up)

@@ -9,6 +9,7 @@ from typing import Any
 from textual.drivers.web_driver import WebDriver
 
 from recordings import library
+from tui.cli.time_limit import limited_steps
 from tui.playback.live import Live
 from tui.screens.app import PenduApp
 from tui.screens.launch import live_screen
@@ -40,7 +41,8 @@ def main() -> None:
     app = PenduApp(live_screen(live, path), terminal=terminal)
     app.driver_class = BoundedDriver
     try:
-        app.run()
+        with limited_steps():
+            app.run()
     finally:
         live.close()
 
