@@ -48,13 +48,16 @@ def iterate(method: Method, model: Model, h: float, starts: Points, steps: int) 
     return theta, omega
 
 
-def pieces(
-    method: Method, model: Model, h: float, starts: Points, steps: int, batch: int = 25
-) -> Iterator[Points]:
-    """`iterate` in batches of starts, with the same bits."""
-    for first in range(0, len(starts[0]), batch):
-        part = slice(first, first + batch)
-        yield iterate(method, model, h, (starts[0][part], starts[1][part]), steps)
+def batches(starts: Points, size: int = 25) -> list[Points]:
+    """Return the starts in batches; `iterate` gives the same bits however they are cut."""
+    parts = [slice(first, first + size) for first in range(0, len(starts[0]), size)]
+    return [(starts[0][part], starts[1][part]) for part in parts]
+
+
+def pieces(method: Method, model: Model, h: float, starts: Points, steps: int) -> Iterator[Points]:
+    """Yield the orbits of batch after batch of starts."""
+    for batch in batches(starts):
+        yield iterate(method, model, h, batch, steps)
 
 
 def orbit(method: Method, model: Model, h: float, start: Phase, steps: int) -> Points:

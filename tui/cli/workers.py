@@ -31,6 +31,7 @@ Task = TypeVar("Task")
 Result = TypeVar("Result")
 
 MAX_AHEAD = 4096  # tasks that are handed out before the first of them is done
+MAX_PROCESSES = 4  # for each processor
 MAX_RESTARTS = 3  # of an executor that breaks before one and the same task is done
 
 
@@ -42,7 +43,7 @@ def add_worker_options(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         type=count,
         default=1,
-        help="compute in N processes, at most as many as there are processors (%(default)s)",
+        help="compute in N processes on this machine (%(default)s)",
     )
     where.add_argument(
         "--dask", metavar="ADDRESS", help="on a Dask scheduler, such as tcp://10.0.0.1:8786"
@@ -126,7 +127,8 @@ def workers_of(options: argparse.Namespace) -> Iterator[Workers]:
         elif options.executor:
             start = _callable(options.executor)
         elif options.workers > 1:
-            start = partial(_processes, min(options.workers, os.cpu_count() or 1))
+            most = MAX_PROCESSES * (os.cpu_count() or 1)
+            start = partial(_processes, min(options.workers, most))
         workers = Workers(start)
         try:
             yield workers

@@ -14,6 +14,7 @@ from tui.cli.errors import Exit, UserError
 from tui.cli.workers import workers_of
 
 STABILITY = ("stability", "--steps", 300, "--z-values", "0.1:3:12", "--theta-values", "0.5,2")
+SECTION = ("stability", "--section", "--steps", 200, "--starts", 60, "--size", "60x20")
 RUNS = ("run", "--theta", "10deg:170deg:3", "--h", "0.05,0.1", "--time", 20)
 
 
@@ -22,7 +23,7 @@ def small_strips(monkeypatch):
     monkeypatch.setattr("engine.stability.grid.STRIP", 6)
 
 
-@pytest.mark.parametrize("command", [(*STABILITY, "--json", "--map"), (*RUNS, "--csv")])
+@pytest.mark.parametrize("command", [(*STABILITY, "--json", "--map"), (*RUNS, "--csv"), SECTION])
 @pytest.mark.parametrize(
     "where",
     [("--workers", 2), ("--executor", "concurrent.futures:ThreadPoolExecutor")],
@@ -32,6 +33,7 @@ def test_the_answer_is_the_same_to_the_bit_whatever_computes_it(where, command, 
     assert pendu(*command, *where).out == pendu(*command).out
 
 
+@pytest.mark.slow
 def test_so_it_is_on_a_dask_cluster(small_strips):
     distributed = pytest.importorskip("distributed")
     with distributed.LocalCluster(
@@ -60,6 +62,7 @@ def workers(**options):
     return workers_of(argparse.Namespace(**given))
 
 
+@pytest.mark.slow
 def test_a_worker_that_is_killed_costs_nothing_but_time(tmp_path):
     with workers(workers=2) as two:
         found = list(two.map(partial(square_or_die, folder=str(tmp_path)), range(20)))
@@ -71,6 +74,7 @@ def die(number: int) -> int:
     return number
 
 
+@pytest.mark.slow
 def test_workers_that_die_again_and_again_are_lost():
     with workers(workers=2) as two, pytest.raises(UserError, match="lost") as lost:
         list(two.map(die, [1]))

@@ -4,6 +4,7 @@ import argparse
 import io
 import math
 import os
+from functools import partial
 from operator import itemgetter
 from pathlib import Path
 from typing import Any
@@ -18,12 +19,20 @@ from textual.color import Color
 from engine.methods import Method
 from engine.methods.verlet import VELOCITY_VERLET
 from engine.models.model import State
-from engine.phase_space.section import OrbitKind, kind_of, least_lyapunov, orbit, pieces
+from engine.phase_space.section import (
+    OrbitKind,
+    batches,
+    iterate,
+    kind_of,
+    least_lyapunov,
+    orbit,
+)
 from engine.scenes import Scene
 from tui.cli.errors import Exit, UserError
 from tui.cli.files import whole_file
 from tui.cli.output import console, progress, scene_line
 from tui.cli.report import Column, Report, Table, publish
+from tui.cli.workers import workers_of
 from tui.drawing.palette import PALETTES, ink_of
 from tui.terminal.character_sets import CharacterSetFilter
 from tui.terminal.options import terminal_options_of
@@ -74,8 +83,9 @@ def portrait(
     viewport = Viewport.portrait(*size, scene)
     section = Section(viewport, model, method, ink_of(method, scene.cast))
     done = 0
-    with progress("section") as show:
-        for piece in pieces(method, model, scene.h, starts(viewport, options.starts), steps):
+    followed = partial(iterate, method, model, scene.h, steps=steps)
+    with workers_of(options) as workers, progress("section") as show:
+        for piece in workers.map(followed, batches(starts(viewport, options.starts))):
             section.add(piece)
             done += piece[0].shape[1]
             show(done, options.starts)
