@@ -10,7 +10,7 @@ from array import array
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import chain
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, cast
 
 from tui.cli.heads import (
     MAX_LINES_BEFORE,
@@ -61,6 +61,25 @@ class Table:
     count: int = 0  # tables in the input
     skipped: dict[str, int] = field(default_factory=lambda: dict.fromkeys(REASONS, 0))
     failed_at: float | None = None  # the time from which on numbers are nan or inf, to the end
+    first: float | None = None  # usable time
+
+    @classmethod
+    def of(cls, head: Head) -> "Table":
+        """Return an empty table."""
+        return cls(head.units, [array("d") for _ in head.places])
+
+    def is_over(self, time: float) -> bool:
+        """Return whether a row of this time begins another table.
+
+        A step back to a later time than the first is a restart from a checkpoint: the same table.
+        """
+        return self.first is not None and -LATEST < time <= self.first
+
+    def add(self, row: Sequence[float]) -> None:
+        if self.first is None and abs(row[0]) < LATEST:
+            self.first = row[0]
+        for column, value in zip(self.columns, row, strict=True):
+            column.append(value)
 
     def finish(self, start: float) -> None:
         """Leave out what cannot be used, and count it."""
@@ -94,70 +113,49 @@ def read_table(
     A column is a name, a number from 1, or several of them joined by +.  Rows before `start` are
     left out.  Raises UserError if there is no such table.
     """
-    tables = _Tables(len(wanted), number)
-    for record in _records(stream, wanted):
-        if isinstance(record, Head):
-            tables.add_head(record)
-        elif None in record:
-            tables.current.skipped["without_numbers"] += 1
-        else:
-            tables.add_row(record)  # type: ignore[arg-type]
-    if tables.found is None and tables.count:
-        raise unreadable(f"there is no table {number}; the input has {tables.count}.")
-    if tables.found is None:
+    found: Table | None = None
+    count = 0
+    rows = 0
+    for count, table in enumerate(_tables(_records(stream, wanted)), 1):
+        rows += len(table.columns[0])
+        if number in (None, count):
+            found = table
+            found.number = count
+    if found is None and count:
+        raise unreadable(f"there is no table {number}; the input has {count}.")
+    if found is None:
         raise unreadable("no row has a number in each column; columns count from 1.")
-    if tables.rows == tables.count > 1:
+    if rows == count > 1:
         raise unreadable("its time goes back in every row; name the column of times with --time.")
-    tables.found.count = tables.count
-    tables.found.finish(start)
-    return tables.found
+    found.count = count
+    found.finish(start)
+    return found
 
 
-class _Tables:
-    """Tables while they are read; the wanted one and the current one are kept."""
-
-    def __init__(self, width: int, number: int | None) -> None:
-        """`number` is that of the wanted table; None: the last one."""
-        self.count = 0
-        self.current = Table((), [])
-        self.found: Table | None = None
-        self._width = width
-        self._number = number
-        self._head: Head | None = None
-        self._rows = 0  # since the head
-        self._first: float | None = None  # time of the current table
-        self.rows = 0  # of all tables
-
-    def add_head(self, head: Head) -> None:
-        """Begin a table, unless it is the header of the next page."""
-        if head != self._head or not 0 < self._rows < MAX_PAGE:
-            self._begin(head.units)
-        self._head = head
-        self._rows = 0
-
-    def _begin(self, units: tuple[str, ...]) -> None:
-        self.current = Table(units, [array("d") for _ in range(self._width)])
-        self._first = None
-
-    def add_row(self, row: Sequence[float]) -> None:
-        """Add a row; where its time starts again, to another table.
-
-        A step back to a later time than the first is a restart from a checkpoint: the same table.
-        """
-        now = row[0]
-        self._rows += 1
-        self.rows += 1
-        if self._first is not None and -LATEST < now <= self._first:
-            self._begin(self.current.units)
-        if abs(now) < LATEST:
-            self._first = now if self._first is None else self._first
-            if not self.current.number:
-                self.count += 1
-                self.current.number = self.count
-                if self._number in (None, self.count):
-                    self.found = self.current
-        for column, value in zip(self.current.columns, row, strict=True):
-            column.append(value)
+def _tables(records: Records) -> Iterator[Table]:
+    """Yield each table once it is read, if it has a usable time."""
+    table = Table((), [])
+    head = Head((), ())
+    on_page = 0  # rows since the head
+    for record in records:
+        if isinstance(record, Head):
+            if record != head or not 0 < on_page < MAX_PAGE:
+                if table.first is not None:
+                    yield table
+                table = Table.of(record)
+            head = record
+            on_page = 0
+        elif None in record:
+            table.skipped["without_numbers"] += 1
+        else:
+            on_page += 1
+            row = cast(Sequence[float], record)
+            if table.is_over(row[0]):
+                yield table
+                table = Table.of(head)
+            table.add(row)
+    if table.first is not None:
+        yield table
 
 
 def _records(stream: BinaryIO, wanted: Sequence[str]) -> Records:

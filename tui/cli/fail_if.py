@@ -96,11 +96,6 @@ def _gate(node: ast.expr, source: str, fields: Sequence[str], cast: Cast) -> Gat
             type(sign) in _SIGNS and not fields
         ):
             names = FIELDS
-        case ast.Compare(ast.Attribute(ast.Name(), field) as named) if fields:
-            ours = source.replace(_segment(source, named), field)
-            raise _refusal(
-                f"{_quoted(source)} names a method, and one table of energies has none; write {_quoted(ours)}."
-            )
         case ast.Compare(ast.Name(field), [sign], [value]) if type(sign) in _SIGNS and fields:
             key = ""
             names = tuple(fields)

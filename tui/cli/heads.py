@@ -1,5 +1,6 @@
 """Heads of tables: which columns have the wanted names, and their units."""
 
+import csv
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import NamedTuple
@@ -43,15 +44,14 @@ def number_of(text: str) -> float | None:
 
 
 def fields_of(line: str, delimiter: str | None) -> list[str]:
-    """Return the fields of a line, without quotes."""
+    """Return the fields of a line, without quotes; no delimiter: blanks."""
     if '"' not in line:
         return [text.strip() for text in line.split(delimiter)]
-    if delimiter is None:
-        return [quoted or bare for quoted, bare in re.findall(r'"([^"]*)"|(\S+)', line)]
-    parts = re.findall(
-        r'((?:"[^"]*"|[^"' + delimiter + r"])*)(?:" + delimiter + r"|$)", line.strip()
-    )
-    return [text.strip().strip('#" ') for text in parts]
+    try:
+        (fields,) = csv.reader([line.strip()], delimiter=delimiter or " ", skipinitialspace=True)
+    except (csv.Error, ValueError):
+        return []
+    return [text.strip() for text in fields]
 
 
 def delimiter_of(line: str) -> str | None:

@@ -4,13 +4,15 @@ import argparse
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
-from xml.sax.saxutils import escape, quoteattr
+from xml.etree.ElementTree import Element, ElementTree, SubElement, indent
 
 from recordings.errors import printable
 from tui.cli.errors import Exit
 from tui.cli.files import text_file
 from tui.cli.options import Suggestions, add_file
 from tui.cli.output import warn
+
+MAX_TEXT = 1000  # characters
 
 
 class Check(NamedTuple):
@@ -44,20 +46,15 @@ def conclude(options: argparse.Namespace, suite: str, checks: Sequence[Check]) -
 
 def write_junit(path: Path, suite: str, checks: Sequence[Check]) -> None:
     """Write a file with one test a check; an earlier report is replaced."""
+    name = printable(suite, MAX_TEXT)
     failures = sum(check.failure is not None for check in checks)
-    lines = [
-        '<?xml version="1.0" encoding="utf-8"?>',
-        f'<testsuite name={_attribute(suite)} tests="{len(checks)}" failures="{failures}" errors="0" skipped="0">',
-    ]
+    counts = {"tests": str(len(checks)), "failures": str(failures), "errors": "0", "skipped": "0"}
+    root = Element("testsuite", {"name": name, **counts})
     for check in checks:
-        lines.append(f"  <testcase classname={_attribute(suite)} name={_attribute(check.name)}>")
+        case = SubElement(root, "testcase", classname=name, name=printable(check.name, MAX_TEXT))
         if check.failure is not None:
-            lines.append(f"    <failure message={_attribute(check.failure)}/>")
-        lines.append(f"    <system-out>{escape(printable(check.said, 1000))}</system-out>")
-        lines.append("  </testcase>")
+            SubElement(case, "failure", message=printable(check.failure, MAX_TEXT))
+        SubElement(case, "system-out").text = printable(check.said, MAX_TEXT)
+    indent(root)
     with text_file(path, force=True) as out:
-        out.write("\n".join([*lines, "</testsuite>", ""]))
-
-
-def _attribute(text: str) -> str:
-    return quoteattr(printable(text, 1000))
+        ElementTree(root).write(out, encoding="unicode", xml_declaration=True)

@@ -5,7 +5,6 @@ import json
 import re
 import zipfile
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import chain
 from typing import Any, BinaryIO
 
 from recordings.errors import printable
@@ -21,8 +20,6 @@ from tui.cli.heads import (
     unit_of,
     unreadable,
 )
-
-MAX_ARRAY = 1 << 30  # bytes of an array in an .npz
 
 _PAIR = re.compile(r"([A-Za-z][\w()/-]*(?: [\w()/-]+)?)\s*=\s*([-+.\w*]+)")
 
@@ -83,17 +80,12 @@ def of_arrays(stream: BinaryIO, wanted: Sequence[str]) -> Records:
     import numpy as np
 
     try:
-        source = stream if stream.seekable() else io.BytesIO(stream.read(MAX_ARRAY))
+        source = stream if stream.seekable() else io.BytesIO(stream.read())
         with np.load(source, allow_pickle=False) as arrays:
             names = list(arrays)
             places = places_of(names[:MAX_NAMES], wanted)
             if places is None:
                 raise missing(wanted, names)
-            sizes = {
-                item.filename.removesuffix(".npy"): item.file_size for item in arrays.zip.infolist()
-            }
-            if any(sizes[names[place]] > MAX_ARRAY for place in chain(*places)):
-                raise unreadable("an array is larger than 1 GB.")
             columns = [
                 np.sum([np.ravel(arrays[names[place]]).astype(float) for place in group], axis=0)
                 for group in places

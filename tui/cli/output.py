@@ -3,11 +3,11 @@
 import shutil
 import sys
 import textwrap
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from datetime import timedelta
 from time import monotonic
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import TYPE_CHECKING, Any
 
 from engine.models import DEFAULT_MODEL
 from engine.scenes import LIMITS, Scene
@@ -30,15 +30,6 @@ def _wrapped(text: str) -> str:
         textwrap.fill(line, columns, break_long_words=False, break_on_hyphens=False)
         for line in text.split("\n")
     )
-
-
-def write_csv(out: TextIO, header: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
-    """Write rows so that every number reads back the same; None is an empty field."""
-    import csv
-
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(header)
-    writer.writerows(rows)
 
 
 def fields_of(value: object, *names: str) -> dict[str, Any]:

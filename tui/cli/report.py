@@ -107,13 +107,18 @@ class Report:
 
 
 def write_records(records: Iterable[Mapping[str, Any]], out: TextIO) -> None:
-    """Write CSV headed by the fields of the first record; numbers read back the same, None is an empty field."""
+    """Write CSV headed by the fields of the first record."""
     rest = iter(records)
     first = next(rest, None)
     if first is not None:
-        writer = csv.DictWriter(out, list(first), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(chain([first], rest))
+        write_csv(out, list(first), (record.values() for record in chain([first], rest)))
+
+
+def write_csv(out: TextIO, header: Sequence[str], rows: Iterable[Iterable[object]]) -> None:
+    """Write rows so that every number reads back the same; None is an empty field."""
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(header)
+    writer.writerows(rows)
 
 
 def add_report_options(

@@ -9,6 +9,7 @@ the last bit whoever computes them, because a task depends on nothing but itself
 """
 
 import argparse
+import logging
 import os
 import signal
 from collections import deque
@@ -178,6 +179,9 @@ def _client(address: str) -> Any:
     try:
         import distributed
 
+        logging.getLogger("distributed.client").setLevel(
+            logging.CRITICAL
+        )  # or it prints tracebacks
         return distributed.Client(address, timeout="10s")
     except ImportError:
         advice = install_advice("distributed", "cluster")

@@ -11,7 +11,8 @@ from tui.cli.errors import Exit, UserError
 from tui.cli.files import text_file, whole_file
 from tui.cli.install import install_advice
 from tui.cli.options import add_file, add_recording
-from tui.cli.output import progress, warn, write_csv
+from tui.cli.output import progress, warn
+from tui.cli.report import write_csv
 from tui.words.numbers import file_size
 
 if TYPE_CHECKING:

@@ -209,6 +209,8 @@ def run_list(scenes: SceneList, options: argparse.Namespace, gate: Gate | None) 
     if rows.kept:
         publish(_report(scenes, options.time, rows.kept, is_whole=ended is None), options)
     if ended is not None:
+        if not rows.done:
+            raise ended
         kept = f"{rows.done} of {len(tasks)} runs are done"
         if path is not None and rows.done and not rows.kept:
             kept += f" and kept in {printable(str(partial_of(path)))}; --resume goes on"
@@ -236,7 +238,7 @@ def _fill(
                 steps += task.steps
                 show(steps, tasks.steps)
     except KeyboardInterrupt:
-        return UserError("interrupted", Exit.INTERRUPTED)
+        return UserError("interrupted.", Exit.INTERRUPTED)
     except UserError as error:
         return error
     return None
