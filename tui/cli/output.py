@@ -75,10 +75,10 @@ def progress(what: str) -> Iterator[Callable[[float, float], None]]:
     """Yield a function to call with how much is done and how much there is in all.
 
     A terminal shows a bar and an estimate of the time left once the work takes over a second; where
-    stderr is none, there is a line after ten seconds, and whenever the time has doubled.
+    stderr is none, there is a line after half a minute, and whenever the time has doubled.
     """
     began = monotonic()
-    next_line = 10.0  # s since then
+    next_line = 30.0  # s since then
     bar: Any = None
 
     def show(done: float, total: float) -> None:

@@ -30,7 +30,7 @@ def test_work_of_less_than_a_second_shows_no_bar(monkeypatch):
 
 
 def test_in_a_pipe_there_are_a_few_lines_with_the_time_left(monkeypatch):
-    assert shown(io.StringIO(), 2.0, monkeypatch) == ""
+    assert shown(io.StringIO(), 5.0, monkeypatch) == ""
     lines = shown(io.StringIO(), 3600.0, monkeypatch).splitlines()
     assert lines[0] == "pendu-tui: working: 20% done, about 8:00:00 left."
     assert len(lines) == 2
