@@ -23,7 +23,7 @@ CEILINGS = {
     "characters_of_engine": 314_500,
     "characters_of_recordings": 102_300,
     "characters_of_tui": 665_000,
-    "characters_of_tests": 1_011_000,
+    "characters_of_tests": 1_017_700,
     "files": 222,
     "long_lines": 632,
     "parallel_assignments": 199,

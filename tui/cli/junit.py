@@ -11,8 +11,7 @@ from tui.cli.errors import Exit
 from tui.cli.files import text_file
 from tui.cli.options import Suggestions, add_file
 from tui.cli.output import warn
-
-MAX_TEXT = 1000  # characters
+from tui.cli.report import MAX_CELL
 
 
 class Check(NamedTuple):
@@ -46,15 +45,15 @@ def conclude(options: argparse.Namespace, suite: str, checks: Sequence[Check]) -
 
 def write_junit(path: Path, suite: str, checks: Sequence[Check]) -> None:
     """Write a file with one test a check; an earlier report is replaced."""
-    name = printable(suite, MAX_TEXT)
+    name = printable(suite, MAX_CELL)
     failures = sum(check.failure is not None for check in checks)
     counts = {"tests": str(len(checks)), "failures": str(failures), "errors": "0", "skipped": "0"}
     root = Element("testsuite", {"name": name, **counts})
     for check in checks:
-        case = SubElement(root, "testcase", classname=name, name=printable(check.name, MAX_TEXT))
+        case = SubElement(root, "testcase", classname=name, name=printable(check.name, MAX_CELL))
         if check.failure is not None:
-            SubElement(case, "failure", message=printable(check.failure, MAX_TEXT))
-        SubElement(case, "system-out").text = printable(check.said, MAX_TEXT)
+            SubElement(case, "failure", message=printable(check.failure, MAX_CELL))
+        SubElement(case, "system-out").text = printable(check.said, MAX_CELL)
     indent(root)
     with text_file(path, force=True) as out:
         ElementTree(root).write(out, encoding="unicode", xml_declaration=True)
