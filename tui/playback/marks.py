@@ -1,6 +1,7 @@
 """Marks made during a replay.  They are kept next to the recording, which is not touched.
 
-Those of a bundled recording are kept in the library, because its own folder is the program's.
+Those of a bundled recording are kept in a folder of the library, because its own folder is the
+program's and the library may have a recording of the same name.
 """
 
 import json
@@ -38,7 +39,8 @@ class Marks:
     """The marks of one recording, in FILE.marks.json."""
 
     def __init__(self, recording: Path) -> None:
-        folder = library.folder() if recording.parent == library.GOLDEN else recording.parent
+        is_bundled = recording.parent == library.GOLDEN
+        folder = library.folder() / "bundled" if is_bundled else recording.parent
         self.path = folder / (recording.name + MARKS)
         self._marks = _read(self.path)
 
