@@ -4,13 +4,10 @@
 
 - What a file holds: `events`; `fields`, the one table of names and units; `format`, messages to bytes and back;
   `arithmetic`, what the bits of a run depend on besides its inputs.
-- Writing: `recorder` writes one file, `live_recorder` goes on when the disk fails, `headless` runs without a
-  screen, `files` gives a finished file its name.
+- Writing: `recorder`, in the lab as `live_recorder`, `headless` without a screen; `files`, whole or not at all.
 - Reading: `reader` finds the intact chunks, with mcap; `recording` gives any moment, with events and runs.
-- Using: `verification` re-simulates each run; `recovery` salvages what is intact; `diff` compares two.
-- Files: `library` (the folder, the names, and who is using a file), `errors`.
-
-Data: `golden/` has the bundled recordings, `viewers/` a layout for Foxglove.
+- Using: `verification`, `recovery`, `diff`; `pytest`, a plugin.
+- `library`: the folder, the names, and who is using a file; `errors`.
 
 The library is `verify`, which re-simulates a recording, and `Recording`, any moment of one.
 """

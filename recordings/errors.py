@@ -31,7 +31,7 @@ def named(path: Path) -> Iterator[None]:
     try:
         yield
     except RecordingError as error:
-        raise RecordingError(f"{printable(str(path))}: {error}.") from error
+        raise RecordingError(f"{printable(str(path))}: {str(error).removesuffix('.')}.") from error
     except DiskError:
         raise
     except OSError as error:

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from engine.run.judgement import Milestone
 
 EventKind = Literal["start", "set_h", "mark", "pause", "resume", "speed", "stop", "noticed"]
+MAX_EVENTS = 100_000  # of a recording: 30 MB; a lesson has a few hundred
 NOT_DONE = ("start", "stop", "noticed")
 """Events that nobody did in a run."""
 
@@ -49,7 +50,7 @@ class Entry(NamedTuple):
     """A sample or an event at its time in a recording."""
 
     clock: float  # s, running time since the recording began, pauses excluded
-    value: Sample | Event
+    value: Sample | Event | None  # None: a gap; what was here is lost
 
 
 def noticed(run: int, milestone: "Milestone") -> Event:

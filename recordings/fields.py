@@ -45,30 +45,25 @@ class Field(NamedTuple):
 
     def checked(self, value: Any) -> Any:
         """Return a value that is finite or printable, or raise RecordingError."""
-        if self.type == "number":
-            if type(value) is int and abs(value) < MAX_INTEGER:  # other writers drop the ".0"
+        match self.type, value:
+            case type, bool() if type != "boolean":
+                pass
+            case "number", float() if math.isfinite(value):
+                return value
+            case "number", int() if abs(value) < MAX_INTEGER:  # other writers drop the ".0"
                 return float(value)
-            if type(value) is float and math.isfinite(value):
+            case "integer", int() if 0 <= value < MAX_INTEGER:
+                return int(value)
+            case "boolean", bool():
                 return value
-        elif self.type == "integer":
-            if type(value) is int and 0 <= value < MAX_INTEGER:
-                return value
-        elif self.type == "string" and type(value) is str:
-            return printable(value)
-        elif self.type == "boolean" and type(value) is bool:
-            return value
-        elif (
-            self.type == "array"
-            and type(value) is list
-            and all(type(each) is str for each in value)
-        ):
-            return list(map(printable, value))
-        kind = {"number": "finite number", "integer": "whole number"}.get(self.type, self.type)
-        raise RecordingError(f"{self.name!r} of a message is no {kind}")
+            case "string", str():
+                return printable(value)
+            case "array", list() if all(isinstance(each, str) for each in value):
+                return list(map(printable, value))
+        raise RecordingError(f"{self.name!r} of a message is no {self.type}, or not finite")
 
 
 def _ascii(unit: str) -> str:
-    """Return a unit without superscripts: "s^-1" for "s⁻¹"."""
     return unit.replace("⁻", "^-").replace("¹", "1").replace("²", "2")
 
 
@@ -129,35 +124,12 @@ STATE = {
     "omega",
     *(each.name for model in MODELS.values() for each in model.variables if each.is_state),
 }
-COLUMNS = (
-    "clock_s",
-    *(field.column for field in MOMENT),
-    "method",
-    *(field.column for field in READING),
-)
-"""The columns of a table of samples: names with units; energies are per unit m·L²."""
-
 _scalars_of = attrgetter(*(field.name for field in READING))
 
 
 def values_of(reading: Reading) -> tuple[float | None, ...]:
     """Return the values of a reading in the order of VALUES; None for missing ones."""
     return *_scalars_of(reading), *map(reading.extra.get, EXTRA_NAMES)
-
-
-def columns(models: Sequence[str]) -> tuple[str, ...]:
-    """Return the columns of a table of samples of these models."""
-    return *COLUMNS, *dict.fromkeys(field.column for model in models for field in EXTRA[model])
-
-
-def rows(
-    clock: float, sample: Sample, methods: Sequence[str], models: Sequence[str]
-) -> Iterator[tuple[object, ...]]:
-    """Yield a sample as rows of that table, one for each method."""
-    names = dict.fromkeys(field.name for model in models for field in EXTRA[model])
-    for method, reading in zip(methods, sample.readings, strict=True):
-        place = (clock, sample.run, sample.step, sample.t, method)
-        yield *place, *_scalars_of(reading), *map(reading.extra.get, names)
 
 
 def schema_of(title: str, fields: Sequence[Field]) -> dict[str, Any]:
@@ -181,17 +153,14 @@ def sample_schema(model: str) -> dict[str, Any]:
     return schema_of(title, (*MOMENT, *READING, *EXTRA[model]))
 
 
-_pack = struct.Struct(f"<{len(NUMBERS)}d").pack
-_numbers_of = attrgetter(*NUMBERS)
-
-
-def same_bits(a: Reading, b: Reading) -> bool:
-    """Return whether two readings have the same bits.  (0.0 == -0.0, hence the second half.)"""
-    return (
-        a == b
-        and _pack(*_numbers_of(a)) == _pack(*_numbers_of(b))
-        and all(value.hex() == b.extra[name].hex() for name, value in a.extra.items())
-    )
+def differences(a: Reading, b: Reading) -> Iterator[tuple[str, float | None, float | None]]:
+    """Yield the name and both numbers of each value that does not have the same bits."""
+    ours, theirs = values_of(a), values_of(b)
+    if ours == theirs and 0.0 not in ours:  # 0.0 == -0.0
+        return
+    for name, x, y in zip(VALUES, ours, theirs, strict=True):
+        if repr(x) != repr(y):
+            yield name, x, y
 
 
 def distance(a: float | None, b: float | None) -> float:

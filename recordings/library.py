@@ -7,7 +7,7 @@ nothing is locked.
 
 import os
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from difflib import get_close_matches
 from itertools import chain, count
@@ -116,17 +116,6 @@ def leftovers(where: Path | None = None) -> list[Path]:
 def being_made(where: Path | None = None) -> list[Path]:
     """Return the recordings that a lab is writing now."""
     return [path for path in _files(where or folder(), SUFFIX + PART) if in_use(path)]
-
-
-def to_prune(items: Sequence[Item], keep: int | None = None, size: int | None = None) -> list[Item]:
-    """Return what to delete so that the `keep` newest and at most `size` bytes are left."""
-    newest_first = sorted(items, key=lambda item: item.modified, reverse=True)
-    total = 0
-    for place, item in enumerate(newest_first):
-        total += item.bytes
-        if (keep is not None and place >= keep) or (size is not None and total > size):
-            return newest_first[place:]
-    return []
 
 
 def prune(items: Iterable[Item]) -> list[Item]:

@@ -1,10 +1,9 @@
 """Reader: the chunks of an MCAP file, past any damage, and their entries.
 
-mcap takes records and chunks apart.  A chunk is the unit that is intact or lost: its checksum
-covers all that is in it.  A finished file ends with a summary of where its chunks are; without one,
-or to check every byte, a scan reads the file from its start and searches for intact chunks behind
-damage. Sizes are bounded before anything is decompressed: all work stays in proportion to the
-file's bytes.
+mcap takes chunks apart.  A chunk is the unit that is intact or lost: its checksum covers all that
+is in it.  A finished file ends with a summary of where its chunks are.  Without one, or if the
+file's checksum is wrong, a search finds the intact chunks.  Sizes are bounded before anything is
+decompressed: all work stays in proportion to the file's bytes.
 """
 
 import json
@@ -19,7 +18,6 @@ from typing import BinaryIO, NamedTuple
 
 import zstandard
 from mcap.data_stream import ReadDataStream
-from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.records import Channel, Chunk, Message
 from mcap.stream_reader import breakup_chunk
@@ -46,23 +44,12 @@ SMALL_CHUNK = 1 << 14  # bytes
 MAX_SUMMARY = 1 << 26  # bytes; four days
 MAX_CHECKED = 1 << 26  # bytes that are checked whenever a file is opened: 50 ms
 _RECORD = struct.Struct("<BQ")  # opcode, length of what follows
-_DATA_END = struct.Struct("<BQI")  # with the checksum of all before it
 _FOOTER = struct.Struct("<BQQQI8s")  # with the summary's start and checksum, and MAGIC
 _INDEX = struct.Struct("<QQQQI")  # start [ns], end [ns], offset, length, bytes of the map behind
 _INDEX_MAP = struct.Struct("<HQ")  # channel, offset of its index
 _ZSTD = b"\x04\x00\x00\x00zstd"
-_BEFORE_ZSTD = 28  # bytes of a chunk's content
-_BLOCK = 1 << 20
-_BROKEN = (
-    McapError,
-    zstandard.ZstdError,
-    struct.error,
-    ValueError,
-    LookupError,
-    OverflowError,
-    MemoryError,
-)
-"""What mcap and zstandard raise on bytes that nobody wrote."""
+_BEFORE_ZSTD = _RECORD.size + 28  # bytes of a chunk's record
+_BLOCK = 1 << 12
 
 ShowProgress = Callable[[int, int], None]
 """Called with how much is done and how much there is: bytes, or samples."""
@@ -82,8 +69,8 @@ class Place(NamedTuple):
 class Contents:
     """The intact chunks of a file.
 
-    `complete`: finished by the recorder, and nothing is wrong; `damaged`: something was changed or
-    lost, not only not finished; `reason`: the first thing wrong, a clause.
+    `damaged`: something was changed or lost, not only not finished; `reason`: the first thing
+    wrong, a clause.
     """
 
     channels: dict[int, Channel] = field(default_factory=dict)
@@ -91,8 +78,6 @@ class Contents:
     reason: str | None = None
     damaged: bool = False
     entries_lost: int = 0  # as far as the numbers of the others show
-    data_end: int = 0  # where the data before the summary end in the file
-    data_crc: int = 0  # their checksum
 
     def damage(self, reason: str) -> None:
         """Note that something is wrong."""
@@ -100,41 +85,53 @@ class Contents:
         self.reason = self.reason or reason
 
 
-def read_contents(stream: BinaryIO, check: bool, progress: ShowProgress | None) -> Contents:
-    """Find the chunks of a file by its summary, or with `check` or without a summary by a scan."""
-    summary = read_summary(stream)
-    if summary is not None:
-        check_format(summary.channels)
-        is_long = summary.data_end > MAX_CHECKED
-        if not check and (is_long or _checksum(stream, summary.data_end) == summary.data_crc):
-            return summary
-    return _scan(stream, summary, progress or (lambda done, size: None))
+def read_contents(
+    stream: BinaryIO, check: bool = False, progress: ShowProgress | None = None
+) -> Contents:
+    """Find the chunks of a file by its summary, or by a search if that is missing or wrong.
 
-
-def read_summary(stream: BinaryIO) -> Contents | None:
-    """Return what the summary of a finished file says; None without one, or if it is damaged."""
+    With `check`, the checksum of a file of any size is compared.
+    """
     size = stream.seek(0, SEEK_END)
+    if not size:
+        raise RecordingError("the file is empty")
+    summary = _read_summary(stream, size)
+    if summary is None:
+        return _search(stream, size, Contents(), progress)
+    contents, data_end, crc = summary
+    check_format(contents.channels)
+    if data_end > MAX_CHECKED and not check:
+        return contents
+    if _checksum(stream, data_end, progress) == crc:
+        return contents
+    found = _search(stream, size, Contents(contents.channels), progress)
+    found.damage("its checksum is wrong")
+    return found
+
+
+def _read_summary(stream: BinaryIO, size: int) -> tuple[Contents, int, int] | None:
+    """Return what the summary of a finished file lists, the size of the data before it, and their
+    checksum; None without a summary, or if it is damaged.
+    """
     stream.seek(max(0, size - _FOOTER.size))
     try:
-        *head, start, _, crc, magic = _FOOTER.unpack(stream.read())
-        data_end = start - _DATA_END.size
-        if head != [Opcode.FOOTER, 20] or magic != MAGIC or size - data_end > MAX_SUMMARY:
+        opcode, _, start, _, crc, magic = _FOOTER.unpack(stream.read())
+        if (opcode, magic) != (Opcode.FOOTER, MAGIC) or size - start > MAX_SUMMARY:
             return None
-        stream.seek(data_end)
-        data = stream.read()[: -len(MAGIC)]
-        *head, data_crc = _DATA_END.unpack_from(data)
-        is_right = zlib.crc32(data[_DATA_END.size : -4]) == crc and data_crc
-        if head != [Opcode.DATA_END, 4] or not is_right:
+        stream.seek(start - 4)
+        data = stream.read()
+        data_crc = int.from_bytes(data[:4], "little")
+        summary = data[4 : -_FOOTER.size]
+        if not data_crc or zlib.crc32(data[4 : -4 - len(MAGIC)]) != crc:
             return None
-        contents = Contents(data_end=data_end, data_crc=data_crc)
-        _read_index(data[_DATA_END.size :], contents)
-    except _BROKEN:
+        return _read_index(summary), start - 4 - _RECORD.size, data_crc
+    except Exception:  # mcap and struct raise eight kinds on bytes that nobody wrote
         return None
-    return contents
 
 
-def _read_index(data: bytes, contents: Contents) -> None:
+def _read_index(data: bytes) -> Contents:
     """Unpack a summary; chunk indexes here and not by mcap, because a day has 108 000 of them."""
+    contents = Contents()
     channels = contents.channels
     at = 0
     while at < len(data):
@@ -150,6 +147,7 @@ def _read_index(data: bytes, contents: Contents) -> None:
             indexed = _INDEX_MAP.iter_unpack(data[begin : begin + map_length])
             has_events = any(channels[number].topic == EVENTS for number, _ in indexed)
             contents.places.append(Place(offset, start, end, has_events))
+    return contents
 
 
 def check_format(channels: Mapping[int, Channel]) -> None:
@@ -163,135 +161,100 @@ def check_format(channels: Mapping[int, Channel]) -> None:
 
 
 def read_chunk(stream: BinaryIO, offset: int) -> tuple[dict[int, Channel], list[Message]]:
-    """Return the channels declared in a chunk, and its messages.
+    """Return the channels declared in a chunk, and its messages; read up to its end.
 
-    Raises RecordingError if it is damaged, EOFError if it is cut off.
+    Raises RecordingError if there is no intact chunk.
     """
-    opcode, content = _read_record(stream, offset)
-    if opcode != Opcode.CHUNK:
-        raise RecordingError("there is no chunk where one should be")
+    stream.seek(offset)
     try:
-        chunk = Chunk.read(ReadDataStream(BytesIO(content)))
+        opcode, length = _RECORD.unpack(stream.read(_RECORD.size))
+        if opcode != Opcode.CHUNK or length > MAX_RECORD:
+            raise ValueError
+        chunk = Chunk.read(ReadDataStream(BytesIO(stream.read(length))))
         size = chunk.uncompressed_size
         is_possible = (
             chunk.compression == "zstd"
             and chunk.uncompressed_crc  # 0 would not be checked
-            and len(content) == _BEFORE_ZSTD + len(_ZSTD) + 8 + len(chunk.data)
+            and _RECORD.size + length == _BEFORE_ZSTD + len(_ZSTD) + 8 + len(chunk.data)
             and size <= min(MAX_RECORD, SMALL_CHUNK + MAX_EXPANSION * len(chunk.data))
             and zstandard.frame_content_size(chunk.data) == size  # the one that is obeyed
         )
         if not is_possible:
             raise ValueError
         records = breakup_chunk(chunk, validate_crc=True)
-    except _BROKEN as error:
+        messages = [record for record in records if isinstance(record, Message)]
+        times = [message.log_time for message in messages]
+        limits = (times[0], times[-1])
+        if times != sorted(times) or limits != (chunk.message_start_time, chunk.message_end_time):
+            raise ValueError
+    except Exception as error:  # see _read_summary
         raise RecordingError("a chunk is damaged") from error
-    messages = [record for record in records if isinstance(record, Message)]
-    times = [message.log_time for message in messages]
-    header = [chunk.message_start_time, chunk.message_end_time]
-    if times != sorted(times) or [*times[:1], *times[-1:]] != header:
-        raise RecordingError("a chunk's times are wrong")
     return {record.id: record for record in records if isinstance(record, Channel)}, messages
 
 
-def _read_record(stream: BinaryIO, offset: int) -> tuple[int, bytes]:
-    stream.seek(offset)
-    head = stream.read(_RECORD.size)
-    if len(head) < _RECORD.size:
-        raise EOFError
-    opcode, length = _RECORD.unpack(head)
-    if length > MAX_RECORD:
-        raise RecordingError(f"unexpected record of {length} bytes")
-    content = stream.read(length)
-    if len(content) < length:
-        raise EOFError
-    return opcode, content
-
-
-def _scan(stream: BinaryIO, summary: Contents | None, progress: ShowProgress) -> Contents:
-    """Read a file from its first byte to its last, past any damage, and check everything."""
-    size = stream.seek(0, SEEK_END)
-    if not size:
-        raise RecordingError("the file is empty")
-    contents = Contents(dict(summary.channels) if summary else {})
+def _search(
+    stream: BinaryIO, size: int, contents: Contents, progress: ShowProgress | None
+) -> Contents:
+    """Find the intact chunks of a file, and by their numbers what is lost between them."""
+    sequence = 0  # the number of the next entry
+    for offset, declared, messages in _intact_chunks(stream):
+        if declared:
+            contents.channels |= declared
+            check_format(contents.channels)
+        first, last = messages[0], messages[-1]
+        missing = (first.sequence - sequence) % (1 << 32)
+        sequence = last.sequence + 1
+        if missing:
+            contents.entries_lost += missing
+            contents.damage(f"{missing} entries are lost")
+        channels = (contents.channels.get(message.channel_id) for message in messages)
+        has_events = any(channel and channel.topic == EVENTS for channel in channels)
+        place = Place(offset, first.log_time, last.log_time, has_events, bool(missing))
+        contents.places.append(place)
+        if progress:
+            progress(offset, size)
     stream.seek(0)
     start = stream.read(len(MAGIC))
     if start != MAGIC[: len(start)]:
-        contents.damage("its first bytes are damaged" if summary else "this is not an MCAP file")
-    offset = intact_end = len(MAGIC)
-    sequence = 0  # the number of the next entry
-    crc = zlib.crc32(MAGIC)
-    while True:
-        progress(offset, size)
-        try:
-            opcode, content = _read_record(stream, offset)
-            if opcode == Opcode.CHUNK:
-                sequence = _take_chunk(stream, offset, sequence, contents)
-                intact_end = offset + _RECORD.size + len(content)
-            elif opcode == Opcode.DATA_END:
-                if content != crc.to_bytes(4, "little"):
-                    contents.damage("its checksum is wrong")
-                if summary is None or summary.data_end != offset:
-                    contents.reason = contents.reason or "its summary is cut off or damaged"
-                return contents
-            elif opcode not in (Opcode.HEADER, Opcode.MESSAGE_INDEX):
-                raise RecordingError("there is no record where one should begin")
-        except (RecordingError, EOFError) as error:
-            following = _search(stream, intact_end)
-            if following is not None or not isinstance(error, EOFError):
-                contents.damage(str(error) or "a record's length is wrong")
-            if following is None:
-                contents.reason = contents.reason or "the recording was not finished"
-                return contents
-            offset = following
-            continue
-        crc = zlib.crc32(content, zlib.crc32(_RECORD.pack(opcode, len(content)), crc))
-        offset += _RECORD.size + len(content)
+        is_mcap = bool(contents.places)
+        contents.damage("its first bytes are damaged" if is_mcap else "this is not an MCAP file")
+    contents.reason = contents.reason or "its end is missing or damaged"
+    return contents
 
 
-def _take_chunk(stream: BinaryIO, offset: int, sequence: int, contents: Contents) -> int:
-    """Add a chunk to the contents; return the number of the next entry."""
-    channels, messages = read_chunk(stream, offset)
-    contents.channels |= channels
-    if channels:
-        check_format(contents.channels)
-    first, last = messages[0], messages[-1]
-    missing = (first.sequence - sequence) % (1 << 32)
-    if missing:
-        contents.entries_lost += missing
-        contents.damage(f"{missing} entries are lost")
-    known = contents.channels
-    numbers = {message.channel_id for message in messages} & known.keys()
-    has_events = any(known[number].topic == EVENTS for number in numbers)
-    contents.places.append(Place(offset, first.log_time, last.log_time, has_events, bool(missing)))
-    return (last.sequence + 1) % (1 << 32)
-
-
-def _search(stream: BinaryIO, offset: int) -> int | None:
-    """Return where the next intact chunk from `offset` on begins."""
-    before = _RECORD.size + _BEFORE_ZSTD
+def _intact_chunks(
+    stream: BinaryIO,
+) -> Iterator[tuple[int, dict[int, Channel], list[Message]]]:
+    """Yield offset, channels and messages of each intact chunk."""
+    offset = 0
     while True:
         stream.seek(offset)
         block = stream.read(_BLOCK)
-        at = block.find(_ZSTD, before)
-        while at >= 0:
-            try:
-                read_chunk(stream, offset + at - before)
-            except (RecordingError, EOFError):
-                at = block.find(_ZSTD, at + 1)
-            else:
-                return offset + at - before
-        if len(block) < _BLOCK:
-            return None
-        offset += len(block) - before - len(_ZSTD) + 1
+        at = block.find(_ZSTD, _BEFORE_ZSTD)
+        if at < 0:
+            if len(block) < _BLOCK:
+                return
+            offset += _BLOCK - _BEFORE_ZSTD - len(_ZSTD) + 1
+            continue
+        offset += at - _BEFORE_ZSTD
+        try:
+            channels, messages = read_chunk(stream, offset)
+        except RecordingError:
+            offset += 1
+            continue
+        end = stream.tell()
+        yield offset, channels, messages
+        offset = end
 
 
-def _checksum(stream: BinaryIO, size: int) -> int:
+def _checksum(stream: BinaryIO, size: int, progress: ShowProgress | None) -> int:
     """Return the checksum of a file's first bytes."""
     crc = 0
     stream.seek(0)
-    while size and (block := stream.read(min(size, _BLOCK))):
-        crc = zlib.crc32(block, crc)
-        size -= len(block)
+    for begin in range(0, size, MAX_RECORD):
+        crc = zlib.crc32(stream.read(min(size - begin, MAX_RECORD)), crc)
+        if progress:
+            progress(begin, size)
     return crc
 
 

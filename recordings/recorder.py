@@ -19,7 +19,7 @@ from engine.methods.own import OwnMethod
 from engine.run.lockstep import Sample
 from engine.scenes import Scene
 from recordings.errors import DiskError, NameTakenError, writing
-from recordings.events import Event
+from recordings.events import MAX_EVENTS, Event
 from recordings.fields import EVENT_SCHEMA, TEXT_SCHEMA, sample_schema, without_extremes
 from recordings.files import check_target, is_stream, publish
 from recordings.format import (
@@ -48,7 +48,8 @@ class Recorder:
 
     Clocks are in seconds since the recording began, pauses excluded.  Headless recordings have no
     `wall` clock: nothing in them depends on when or where they were made, so the same run gives the
-    same bytes. A failing disk raises DiskError; after that, only `abandon` is of use.
+    same bytes.  `about` describes the recording that is copied, if one is.  A failing disk raises
+    DiskError; after that, only `abandon` is of use.
     """
 
     def __init__(
@@ -58,7 +59,6 @@ class Recorder:
         overwrite: bool = False,
         about: dict[str, str] | None = None,
     ) -> None:
-        """`about` describes the recording that is copied, if one is."""
         self.path = path
         self.part = part_of(path)
         self.seconds = 0.0  # length so far
@@ -72,9 +72,9 @@ class Recorder:
         self._schemas: dict[str, int] = {}
         self._topics: list[str] = []  # of the run's methods
         self._entries = 0
+        self._events = 0
         self._log_time = CLOCK_OFFSET
         self._paused = False
-        self._stopped = False
         self._flushed_at = 0.0  # s, on the recording clock
         self._unflushed = 0  # bytes
         if is_stream(path):
@@ -93,13 +93,20 @@ class Recorder:
         self._writer.start(PROFILE, program())
 
     def event(self, event: Event, clock: float) -> None:
-        """Write an event; a pause, and whatever is done while paused, is on disk at once."""
+        """Write an event; a pause, and whatever is done while paused, is on disk at once.
+
+        A recording that holds all the events that one may is finished, and raises DiskError.
+        """
         data = encode_event(event)
-        if event.scene is not None:
+        if self._events == MAX_EVENTS - 1 and event.kind != "stop":
+            self.close()
+            raise DiskError(f"is finished: it holds {MAX_EVENTS} events", self.path)
+        if event.kind in ("start", "stop"):
             self._last = None
+        if event.scene is not None:
             self._begin(event.scene, clock)
         self._add([(EVENTS, data)], clock)
-        self._stopped = event.kind == "stop"
+        self._events += 1
         self._paused = event.kind == "pause" or (self._paused and event.kind != "resume")
         self._flush_if_due(urgent=self._paused)
 
@@ -116,6 +123,10 @@ class Recorder:
         self.samples += 1
         self._last = sample
         self._flush_if_due(urgent=self._paused or last is None)
+
+    def note_gap(self) -> None:
+        """Note that samples of the run are missing here."""
+        self._last = None
 
     def flush(self) -> None:
         """Hand everything so far to the system, where it survives the death of this process."""
@@ -147,8 +158,7 @@ class Recorder:
             raise NameTakenError(why, wanted)
 
     def _finish(self) -> None:
-        if self._last is not None and not self._stopped:
-            last = self._last
+        if (last := self._last) is not None:
             self.event(Event("stop", last.run, last.step, last.t), self.seconds)
         self.flush()
         with writing(self.part):
@@ -202,7 +212,6 @@ class Recorder:
             self._register(name, sample_schema(scene.model))
 
     def _register(self, name: str, schema: dict[str, Any]) -> None:
-        """Make a channel, and its schema, unless it is there already."""
         title = schema["title"]
         if title not in self._schemas:
             data = json.dumps(schema, separators=(",", ":")).encode()

@@ -3,12 +3,12 @@
 Chunks are kept or dropped as they are; no number is repaired, guessed or changed.
 """
 
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from recordings.errors import DiskError, NameTakenError, RecordingError, printable
 from recordings.events import Event
-from recordings.fields import without_extremes
 from recordings.files import publish
 from recordings.library import PART, alone_with, free_path
 from recordings.reader import ShowProgress
@@ -20,8 +20,8 @@ from recordings.recording import Recording
 class Recovery:
     """The result of a recovery."""
 
-    file: Path
-    out: Path
+    file: str
+    out: str  # the recording that was written
     damaged: bool  # more was wrong than that it was not finished
     reason: str | None  # what was wrong, a clause; None if nothing was
     samples_kept: int
@@ -39,31 +39,29 @@ def recover(
     if out.exists() and path.exists() and out.samefile(path):
         raise DiskError("is the recording to recover; choose another name", out)
     with Recording.open(path, check=True, progress=progress) as recording:
-        about = recording.about | {"recovered": "yes"}
-        recorder = Recorder(out, None, overwrite, about)
+        recorder = Recorder(out, None, overwrite, recording.about | {"recovered": "yes"})
         try:
-            for is_after_gap, entries in recording.chunks():
-                for clock, value in entries:
-                    if isinstance(value, Event):
-                        recorder.event(value, clock)
-                        continue
-                    recorder.sample(without_extremes(value) if is_after_gap else value, clock)
-                    is_after_gap = False
+            for clock, value in recording.entries():
+                if value is None:
+                    recorder.note_gap()
+                elif isinstance(value, Event):
+                    recorder.event(value, clock)
+                else:
+                    recorder.sample(value, clock)
             if not recorder.samples:
-                raise RecordingError(
-                    f"{printable(str(path))}: {recording.reason or 'it has no samples'}."
-                )
+                why = recording.reason or "it has no samples"
+                raise RecordingError(f"{printable(str(path))}: {why}.")
             recorder.close()
         finally:
             recorder.abandon(delete=True)
         return Recovery(
-            path,
-            recorder.path,
-            recording.damaged,
-            recording.reason,
-            recorder.samples,
-            recording.entries_lost,
-            recording.runs_lost,
+            file=str(path),
+            out=str(recorder.path),
+            damaged=recording.damaged,
+            reason=recording.reason,
+            samples_kept=recorder.samples,
+            entries_lost=recording.entries_lost,
+            runs_lost=recording.runs_lost,
         )
 
 
@@ -82,16 +80,16 @@ def rescue(leftover: Path, progress: ShowProgress | None = None) -> str:
             recovery = recover(leftover, free_path(name), progress)
         except RecordingError as error:
             return f"An unfinished recording cannot be recovered: {error}{_put_aside(leftover, '.unreadable')}"
-        kept = f" {recovery.entries_lost} samples and events are lost." if recovery.damaged else ""
+        kept = ""
         if recovery.damaged:
+            kept = f" {recovery.entries_lost} samples and events are lost."
             kept += _put_aside(leftover, ".damaged")
         else:
             leftover.unlink()
-        saved = name
-        try:
-            publish(recovery.out, name)
-        except NameTakenError:
-            saved = recovery.out
+        saved = Path(recovery.out)
+        with suppress(NameTakenError):
+            publish(saved, name)
+            saved = name
         return f"An unfinished recording was recovered: {printable(str(saved))}.{kept}"
 
 

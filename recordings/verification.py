@@ -7,6 +7,7 @@ lie within a tolerance: as far as the same run strays when its start is changed 
 off by a thousandth of a radian, as happens in chaos, that method is no longer compared.
 """
 
+import math
 from collections import defaultdict
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, replace
@@ -16,12 +17,11 @@ from engine.run import NUMERICS
 from engine.run.compiled import TieredLoops
 from engine.run.lockstep import Lockstep, Sample
 from engine.run.stepping import Stepping
-from engine.scenes import Scene
 from recordings.errors import RecordingError, named
 from recordings.events import Event, check_present
-from recordings.fields import EXTREMES, STATE, VALUES, distance, same_bits, ulps, values_of
+from recordings.fields import EXTREMES, STATE, VALUES, differences, distance, ulps, values_of
 from recordings.reader import ShowProgress
-from recordings.recording import Recording
+from recordings.recording import Recording, Run
 
 Only = Collection[str] | None
 """Keys of the methods to compare; None: all."""
@@ -29,7 +29,8 @@ Only = Collection[str] | None
 TOLERANCE = 1e-11
 LOST = 1e-3  # rad, or rad/s
 STEPS_AT_ONCE = 50_000  # a fifth of a second, after which an interrupt is heard
-MAX_STEPS = 10_000_000  # simulated again of a file, unless more are asked for: less than a minute
+MAX_STEPS = 1_000_000  # simulated again of a file, about three seconds, or
+MAX_STEPS_PER_SAMPLE = 100  # if that is more: the lab at h = 0.001 s has 33
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +67,10 @@ class Verification:
 
 
 def verify(
-    path: Path, progress: ShowProgress | None = None, max_steps: int = MAX_STEPS, only: Only = None
+    path: Path,
+    progress: ShowProgress | None = None,
+    max_steps: int | None = None,
+    only: Only = None,
 ) -> Verification:
     """Verify a recording up to where it is first damaged; `only`: compare the methods of these
     keys.
@@ -76,17 +80,20 @@ def verify(
     """
     result = Verification(path)
     with Recording.open(path, check=True, progress=progress) as recording, named(path):
+        _check_steps(recording, max_steps)
         rerun: Rerun | None = None
-        for is_after_gap, entries in recording.chunks():
-            if is_after_gap:
+        for _, value in recording.entries():
+            if value is None:
                 break
-            for _, value in entries:
-                if isinstance(value, Event) and value.scene is not None:
-                    max_steps -= rerun.steps if rerun else 0
-                    rerun = Rerun(value, value.scene, result, max_steps, only)
-                if rerun is None or value.run != rerun.run:
+            if rerun is None or value.run != rerun.run.number:
+                run = recording.run_of(value.run)
+                if run is None or not isinstance(value, Event) or value.scene is None:
                     raise RecordingError(f"data of run {value.run} lies outside that run")
-                rerun.take(value)
+                rerun = Rerun(run, result, only)
+            elif isinstance(value, Sample):
+                rerun.compare(value)
+            elif value.h is not None:
+                rerun.change(value)
         if recording.runs_lost and not recording.damaged:
             raise RecordingError("a run has no start")
         if result.samples == 0:
@@ -97,81 +104,69 @@ def verify(
     return result
 
 
+def _check_steps(recording: Recording, max_steps: int | None) -> None:
+    """Raise RecordingError if re-simulation would take too many steps."""
+    steps = sum(run.steps for run in recording.runs)
+    if steps > (max_steps or max(MAX_STEPS, MAX_STEPS_PER_SAMPLE * recording.samples)):
+        raise RecordingError(
+            f"it claims {steps} steps, more than may be simulated; if you trust the file, use"
+            f" --max-steps {steps}"
+        )
+
+
 class Rerun:
     """One run, simulated again, and compared with what was recorded."""
 
-    def __init__(
-        self, start: Event, scene: Scene, result: Verification, max_steps: int, only: Only
-    ) -> None:
+    def __init__(self, run: Run, result: Verification, only: Only) -> None:
+        scene = run.scene
         check_present(scene, only)
-        assert start.arithmetic is not None
         result.runs += 1
-        result.numerics = start.arithmetic.numerics
-        result.other_functions = start.arithmetic.other_functions()
-        self.run = start.run
+        result.numerics = run.arithmetic.numerics
+        result.other_functions = run.arithmetic.other_functions()
+        self.run = run
         self._result = result
         self._is_exact = not result.other_functions
-        scenes = [scene]
+        self._lockstep = Lockstep(scene, run.number, TieredLoops)
+        self._locksteps = [self._lockstep]
         if not self._is_exact:
             nearer = {name: getattr(scene, name) * (1 - TOLERANCE) for name in ("theta", "omega")}
-            scenes.append(replace(scene, **nearer))
-        self._locksteps = [Lockstep(each, self.run, TieredLoops) for each in scenes]
-        self._max_steps = max_steps
+            self._locksteps.append(Lockstep(replace(scene, **nearer), run.number, TieredLoops))
         self._only = only
         self._changes: list[Event] = []  # that no sample has come after yet
         self._allowed: dict[tuple[str, str], float] = defaultdict(float)
-        self._cast = scene.cast
         self._methods = [method.key for method in scene.cast]
         if only is not None and not set(only) & set(self._methods):
-            raise RecordingError(f"run {self.run} has none of the methods {', '.join(only)}")
-        self._sampled = -1
-        self._changed = 0  # the step of the last change
+            raise RecordingError(f"run {run.number} has none of the methods {', '.join(only)}")
+        self._reached = 0  # the step of the last change or sample
 
-    @property
-    def steps(self) -> int:
-        """How many steps have been simulated."""
-        return self._locksteps[0].step
+    def change(self, event: Event) -> None:
+        """Take a change of h.  It is applied at the next sample, which shows that it was reached."""
+        self._check_order(event.step, math.inf)
+        self._changes.append(event)
 
-    def take(self, value: Sample | Event) -> None:
-        """Take what was recorded.  A change is applied at the next sample, which shows that it was reached."""
-        if isinstance(value, Sample):
-            self._compare(value)
-        elif value.h is not None:
-            if value.step < max(self._changed, self._sampled):
-                raise RecordingError(f"the steps of run {self.run} are not in order")
-            self._changed = value.step
-            self._changes.append(value)
-
-    def _compare(self, recorded: Sample) -> None:
-        computed, *astray = self._reach(recorded.step)
-        for other in astray:
-            self._widen(computed, other)
-        self._result.samples += 1
-        are_same = computed.t == recorded.t and all(
-            map(same_bits, recorded.readings, computed.readings)
-        )
-        if not (self._is_exact and are_same):
-            for difference in self._differences(recorded, computed):
-                self._result.first_difference = self._result.first_difference or difference
-
-    def _reach(self, step: int) -> list[Sample]:
-        """Return the run's sample at this step; if not exact, also that of the changed start."""
-        if step <= self._sampled or step < self._changed:
-            raise RecordingError(f"the steps of run {self.run} are not in order")
-        if step > self._max_steps:
-            raise RecordingError(
-                f"run {self.run} claims to reach step {step}, more than may be simulated; if you trust the file,"
-                f" use --max-steps {MAX_STEPS + step}"
-            )
-        self._sampled = step
+    def compare(self, recorded: Sample) -> None:
+        """Simulate up to a sample, and compare."""
+        self._check_order(recorded.step, self.run.steps)
         for change in self._changes:
             assert change.h is not None
             self._go(change.step)
             for lockstep in self._locksteps:
-                lockstep.set_stepping(Stepping(change.h, change.equal_cost, self._cast))
+                stepping = Stepping(change.h, change.equal_cost, self.run.scene.cast)
+                lockstep.set_stepping(stepping)
         self._changes.clear()
-        self._go(step)
-        return [lockstep.sample() for lockstep in self._locksteps]
+        self._go(recorded.step)
+        computed, *astray = [lockstep.sample() for lockstep in self._locksteps]
+        for other in astray:
+            self._widen(computed, other)
+        self._result.samples += 1
+        for difference in self._differences(recorded, computed):
+            self._result.first_difference = self._result.first_difference or difference
+
+    def _check_order(self, step: int, last: float) -> None:
+        """Raise RecordingError unless steps ascend, up to the last."""
+        if not self._reached <= step <= last:
+            raise RecordingError(f"the steps of run {self.run.number} are not in order")
+        self._reached = step
 
     def _go(self, step: int) -> None:
         for lockstep in self._locksteps:
@@ -179,27 +174,25 @@ class Rerun:
                 lockstep.advance(min(step - lockstep.step, STEPS_AT_ONCE))
 
     def _differences(self, recorded: Sample, computed: Sample) -> Iterator[Difference]:
-        run, step, t, _ = recorded
-        if t != computed.t:
-            yield Difference(run, step, t, "", "t", t, computed.t)
+        place = (recorded.run, recorded.step, recorded.t)
+        if recorded.t != computed.t:
+            yield Difference(*place, "", "t", recorded.t, computed.t)
         for method, was, now in zip(
             self._methods, recorded.readings, computed.readings, strict=True
         ):
             if self._only is not None and method not in self._only:
                 continue
-            is_lost = max(self._allowed[method, name] for name in STATE) > LOST
-            for field, a, b in zip(VALUES, values_of(was), values_of(now), strict=True):
-                if field in EXTREMES and a == was.energy_error:
-                    continue  # such an extreme holds no information: see fields.without_extremes
-                if not is_lost and not self._is_equal(method, field, a, b):
-                    yield Difference(run, step, t, method, field, a, b)
+            for field, a, b in differences(was, now):
+                is_implied = field in EXTREMES and a == was.energy_error  # see without_extremes
+                if not is_implied and not self._is_tolerated(method, field, a, b):
+                    yield Difference(*place, method, field, a, b)
 
-    def _is_equal(self, method: str, field: str, a: float | None, b: float | None) -> bool:
+    def _is_tolerated(self, method: str, field: str, a: float | None, b: float | None) -> bool:
         if self._is_exact:
-            return a == b and not ulps(a, b)
-        return distance(a, b) <= max(
-            self._allowed[method, field], TOLERANCE * max(1.0, abs(b or 0.0))
-        )
+            return False
+        is_lost = max(self._allowed[method, name] for name in STATE) > LOST
+        rounding = TOLERANCE * max(1.0, abs(b or 0.0))
+        return is_lost or distance(a, b) <= max(self._allowed[method, field], rounding)
 
     def _widen(self, computed: Sample, astray: Sample) -> None:
         for method, a, b in zip(self._methods, computed.readings, astray.readings, strict=True):

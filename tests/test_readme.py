@@ -15,9 +15,9 @@ from engine.run.judgement import DEFINITIONS
 from engine.run.lockstep import Lockstep
 from engine.run.stepping import Stepping
 from engine.scenes import DEFAULT_SCENE
-from recordings.fields import COLUMNS
 from tests.tui.command_line import pendu
 from tui.cli.dispatch import COMMANDS, command_of, split
+from tui.commands.files.export import columns_of
 from tui.screens.help import bindings_of, key_lines
 from tui.screens.live import LiveScreen
 
@@ -150,7 +150,9 @@ def test_the_five_lines_for_pytest_are_a_test(tmp_path):
 
 def test_the_recipes_name_columns_that_the_csv_has():
     recipes = block_with("python", "read_csv")
-    assert set(re.findall(r"\w*(?:energy|method|theta|omega|_s\b)\w*", recipes)) <= set(COLUMNS)
+    assert set(re.findall(r"\w*(?:energy|method|theta|omega|_s\b)\w*", recipes)) <= set(
+        columns_of([])
+    )
 
 
 @pytest.mark.parametrize("package", ["pandas", "duckdb"])

@@ -4,12 +4,13 @@ import pytest
 
 from engine.methods import USUAL_CAST
 from engine.run.lockstep import Sample
-from recordings.fields import COLUMNS, values_of
+from recordings.fields import values_of
 from recordings.library import GOLDEN, golden_names
 from recordings.recording import Recording
 from recordings.verification import verify
 from tests.recordings.make_golden import RECORDINGS, make
 from tests.tui.command_line import pendu
+from tui.commands.files.export import columns_of
 
 ROOM = 64_000  # bytes; they are in every installation
 
@@ -105,7 +106,7 @@ def test_the_csv_has_a_row_for_each_sample_and_method_and_every_number(tmp_path)
     with Recording.open(GOLDEN / "drift.mcap") as recording:
         samples = [entry for entry in recording.entries() if isinstance(entry.value, Sample)]
     head, *rows = (line.split(",") for line in path.read_text().splitlines())
-    assert tuple(head) == COLUMNS
+    assert tuple(head) == columns_of(["pendulum"])
     assert len(rows) == 4 * len(samples)
     expected = (
         (*entry, method.key, reading)

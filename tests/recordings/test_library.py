@@ -10,14 +10,12 @@ from recordings import library
 from recordings.errors import RecordingError
 from recordings.library import (
     GOLDEN,
-    Item,
     free_path,
     leftovers,
     listing,
     new_path,
     prune,
     resolve,
-    to_prune,
 )
 from recordings.recorder import Recorder
 from recordings.recording import Recording
@@ -108,30 +106,11 @@ def test_a_recording_in_progress_is_not_a_leftover(folder):
         assert leftovers() == [folder / "killed.mcap.part"]
 
 
-def test_pruning_keeps_the_newest_by_number_and_by_size(folder):
-    items = [Item(folder / f"{age}.mcap", 100, -age) for age in range(5)]
-    assert to_prune(items, keep=2) == items[2:]
-    assert to_prune(items, size=250) == items[2:]
-    assert to_prune(items, keep=3, size=150) == items[1:]
-    assert to_prune(items, keep=9, size=10_000) == []
-    assert to_prune(items, keep=0) == items
-    assert to_prune(items) == []
-
-
-def test_a_large_recording_does_not_make_room_for_older_ones(folder):
-    items = [
-        Item(folder / "new", 100, 3.0),
-        Item(folder / "large", 10_000, 2.0),
-        Item(folder / "old", 100, 1.0),
-    ]
-    assert [item.path.name for item in to_prune(items, size=500)] == ["large", "old"]
-
-
 def test_a_recording_in_use_is_never_deleted(folder):
     replayed, idle = fill(folder, replayed=2, idle=1)
     with Recorder(folder / "running.mcap") as recorder, Recording.open(replayed):
         recorder.event(start(), 0.0)
-        assert [item.path for item in prune(to_prune(listing(), keep=0))] == [idle]
+        assert [item.path for item in prune(listing())] == [idle]
         assert recorder.part.exists()
     assert [path.name for path in sorted(folder.iterdir())] == ["replayed.mcap", "running.mcap"]
 

@@ -66,7 +66,7 @@ def test_an_unfinished_recording_is_finished_and_not_called_damaged(tmp_path, ou
         recorder.flush()
         recovery = recover(recorder.part, out)
     assert (recovery.samples_kept, recovery.damaged) == (10, False)
-    assert recovery.reason == "the recording was not finished"
+    assert recovery.reason == "its end is missing or damaged"
     assert verify(out).complete
     assert verify(out).identical
 
@@ -87,7 +87,7 @@ def test_lost_chunks_cost_their_samples_and_the_extremes_of_the_next_one(tmp_pat
 
 
 def test_without_its_start_a_run_is_lost(tmp_path, out):
-    with pytest.raises(RecordingError, match="damaged"):
+    with pytest.raises(RecordingError, match="are lost"):
         recover(spoil(ten_seconds(tmp_path / "a.mcap"), 0), out)
     assert not out.exists()
     assert [path.name for path in tmp_path.iterdir()] == ["a.mcap"]

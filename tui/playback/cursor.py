@@ -98,8 +98,8 @@ class ReplayCursor:
         """Show the sample at any place: the trails' past at once, the rest during the next frames."""
         self._place = place
         self.clock, sample = self.recording.sample(place)
-        run = self.recording.run_of(sample.run)
         assert isinstance(sample, Sample)
+        run = self.recording.run_of(sample.run)
         assert run is not None
         self.run = run
         set_h = [(clock, event) for clock, event in run.events if event.h is not None]

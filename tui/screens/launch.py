@@ -58,10 +58,19 @@ def recording_path(file: Path | None) -> Path:
 
 def start_recording(live: "Live", path: Path | None, or_next: bool) -> None:
     """Record the lab at a path, if there is one; `or_next`: or under the next free name."""
-    if path is not None:
-        from recordings.live_recorder import LiveRecorder  # brings mcap
+    if path is None:
+        return
+    from recordings.errors import NameTakenError
+    from recordings.library import free_path
+    from recordings.live_recorder import LiveRecorder  # brings mcap
 
-        live.record(LiveRecorder(path, or_next=or_next))
+    while live.recorder is None:
+        try:
+            live.record(LiveRecorder(path))
+        except NameTakenError:
+            if not or_next:
+                raise
+            path = free_path(path)
 
 
 def live_screen(
@@ -188,9 +197,11 @@ def say_goodbye(source: "Source") -> int:
 
     if not isinstance(source, Live) or source.recorder is None:
         return Exit.FINE
-    for file in source.recorder.files:
+    recorder = source.recorder
+    file = recorder.part if recorder.part.exists() else recorder.path
+    if file.exists():
         print(f"saved {file}\nreplay it with: pendu-tui replay {shlex.quote(str(file))}")
-    if source.recorder.failed:
-        warn(f"the recording stopped: {source.recorder.failed}")
+    if recorder.failed:
+        warn(f"the recording stopped: {recorder.failed}")
         return Exit.DISK
     return Exit.FINE

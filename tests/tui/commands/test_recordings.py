@@ -6,12 +6,13 @@ import struct
 import pytest
 from mcap.writer import Writer
 
-from recordings.library import GOLDEN
+from recordings.library import GOLDEN, Item
 from recordings.recorder import Recorder
 from recordings.recording import Recording
 from recordings.verification import verify
 from tests.recordings.examples import record, two_runs
 from tests.tui.command_line import pendu
+from tui.commands.files.recordings import size, to_prune
 
 
 @pytest.fixture
@@ -188,12 +189,15 @@ def test_prune_without_a_measure_deletes_nothing(library, arguments):
     assert len(names(library)) == 3
 
 
+def test_a_large_recording_does_not_make_room_for_older_ones(library):
+    items = [Item(library / name, size, 0.0) for name, size in (("a", 1), ("b", 99), ("c", 1))]
+    assert to_prune(items, None, 50) == items[1:]
+
+
 @pytest.mark.parametrize(
     ("text", "bytes_"), [("2000", 2000), ("500MB", 5e8), ("1.5 GB", 1.5e9), ("3k", 3000)]
 )
 def test_sizes_are_read_with_their_units(text, bytes_):
-    from tui.commands.files.recordings import size
-
     assert size(text) == bytes_
 
 

@@ -109,7 +109,7 @@ def test_an_incomplete_recording_fails_the_check_with_its_reason(tmp_path):
     outcome = pendu("verify", path)
     assert outcome.code == 1
     assert outcome.out.startswith("unfinished  ")
-    assert "its summary is cut off" in outcome.out
+    assert "its end is missing" in outcome.out
     (told,) = pendu("verify", path, "--json").json["files"]
     assert (told["complete"], told["identical"]) == (False, True)
     assert pendu("verify", path, record(tmp_path / "whole.mcap", two_runs())).out.endswith(
@@ -122,7 +122,7 @@ def test_the_leftover_of_a_killed_lab_verifies_as_far_as_it_goes(tmp_path):
     path.write_bytes(path.read_bytes()[:-40])
     outcome = pendu("verify", path)
     assert (outcome.code, outcome.out.split()[0]) == (0, "identical")
-    assert "its summary is cut off" in outcome.out
+    assert "its end is missing" in outcome.out
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ def left_unfinished(path: Path) -> Path:
     lab = Lab(record=path)
     lab.run(3.0)
     assert lab.live.recorder is not None
-    lab.live.recorder._recorder._file.close()
+    lab.live.recorder._file.close()
     return path.with_name(path.name + ".part")
 
 

@@ -1,8 +1,9 @@
 """Write a recording as CSV or Parquet, one row per sample and method."""
 
 import argparse
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from itertools import islice
+from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -43,19 +44,19 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     from recordings import library
-    from recordings.fields import columns
     from recordings.recording import Recording
 
     if options.format == "parquet" and options.output is None:
         raise UserError("Parquet is no text: name a file with -o.")
     path = library.resolve(options.file)
     with Recording.open(path) as recording, progress(printable(path.name)) as show:
+        columns = columns_of(recording.models)
         rows = _rows(recording, show)
         if options.format == "parquet":
-            _write_parquet(options.output, options.force, columns(recording.models), rows)
+            _write_parquet(options.output, options.force, columns, rows)
         else:
             with text_file(options.output, options.force) as out:
-                write_csv(out, columns(recording.models), rows)
+                write_csv(out, columns, rows)
         if recording.reason:
             warn(f"{printable(str(path))}: {recording.reason}; the rest is exported.")
     if options.output:
@@ -65,11 +66,26 @@ def run(options: argparse.Namespace) -> int:
     return Exit.FINE
 
 
-def _rows(recording: "Recording", show: Callable[[int, int], None]) -> Rows:
-    from recordings.fields import rows
+def columns_of(models: Sequence[str]) -> tuple[str, ...]:
+    """Return the columns, names with units; energies are per unit m·L²."""
+    from recordings.fields import EXTRA, MOMENT, READING
 
+    moment = [field.column for field in MOMENT]
+    extra = dict.fromkeys(field.column for model in models for field in EXTRA[model])
+    return "clock_s", *moment, "method", *(field.column for field in READING), *extra
+
+
+def _rows(recording: "Recording", show: Callable[[int, int], None]) -> Rows:
+    """Yield a row for each method of each sample."""
+    from recordings.fields import EXTRA, READING
+
+    extra = dict.fromkeys(field.name for model in recording.models for field in EXTRA[model])
+    scalars_of = attrgetter(*(field.name for field in READING))
     for count, (clock, sample) in enumerate(recording.samples_between(), 1):
-        yield from rows(clock, sample, recording.methods_of(sample.run), recording.models)
+        methods = recording.methods_of(sample.run)
+        for method, reading in zip(methods, sample.readings, strict=True):
+            place = (clock, sample.run, sample.step, sample.t, method)
+            yield *place, *scalars_of(reading), *map(reading.extra.get, extra)
         if count % 1000 == 0:
             show(count, recording.samples)
 

@@ -19,7 +19,6 @@ from tui.words.numbers import counted, file_size, seconds
 if TYPE_CHECKING:
     from recordings.library import Item
     from recordings.recording import Recording
-    from recordings.recovery import Recovery
 
 MAX_RUNS_SHOWN = 1000
 
@@ -210,20 +209,14 @@ def _recover(options: argparse.Namespace) -> Report:
     check_free(options.output, options.force)
     with progress(printable(path.name)) as show:
         recovery = recover(path, options.output, show, options.force)
-    fields = asdict(recovery) | {"file": str(recovery.file), "out": str(recovery.out)}
-    return Report(name="recordings-recover", fields=fields, notes=_sentences(recovery))
-
-
-def _sentences(recovery: "Recovery") -> list[str]:
-    saved = counted(recovery.samples_kept, "sample")
-    lines = [f"{printable(str(recovery.out))}: {saved} saved."]
+    notes = [f"{printable(recovery.out)}: {counted(recovery.samples_kept, 'sample')} saved."]
     if recovery.reason:
-        lines.append(f"Problem: {recovery.reason}.")
+        notes.append(f"Problem: {recovery.reason}.")
     if recovery.entries_lost:
-        lines.append(f"Lost: {recovery.entries_lost} samples and events.")
+        notes.append(f"Lost: {recovery.entries_lost} samples and events.")
     if recovery.runs_lost:
-        lines.append(f"Runs not saved because their start is missing: {recovery.runs_lost}.")
-    return lines
+        notes.append(f"Runs not saved because their start is missing: {recovery.runs_lost}.")
+    return Report(name="recordings-recover", fields=asdict(recovery), notes=notes)
 
 
 def _prune(options: argparse.Namespace) -> Report:
@@ -233,7 +226,7 @@ def _prune(options: argparse.Namespace) -> Report:
         raise UserError(
             "specify what to keep: --keep 20 for the newest 20, or --size 500MB for what fits."
         )
-    doomed = library.to_prune(library.listing(), options.keep, options.size)
+    doomed = to_prune(library.listing(), options.keep, options.size)
     if doomed and not options.yes and not _confirmed(doomed):
         doomed = []
     deleted = library.prune(doomed)
@@ -243,6 +236,16 @@ def _prune(options: argparse.Namespace) -> Report:
         notes.append(f"{len(doomed) - len(deleted)} more could not be deleted (in use?)")
     fields = {"deleted": [str(item.path) for item in deleted]}
     return Report(name="recordings-prune", fields=fields, notes=notes)
+
+
+def to_prune(newest_first: "list[Item]", keep: int | None, size: int | None) -> "list[Item]":
+    """Return what to delete so that the `keep` newest and at most `size` bytes are left."""
+    total = 0
+    for place, item in enumerate(newest_first):
+        total += item.bytes
+        if (keep is not None and place >= keep) or (size is not None and total > size):
+            return newest_first[place:]
+    return []
 
 
 def _confirmed(doomed: "list[Item]") -> bool:

@@ -38,8 +38,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--max-steps",
         metavar="N",
         type=count,
-        default=10_000_000,
-        help="simulate at most N steps of each recording (%(default)s)",
+        help="simulate at most N steps of each recording (a million, or 100 per sample)",
     )
     add_report_options(parser)
 
