@@ -70,37 +70,33 @@ class CellWidget(Widget):
         if crop != self._crop:
             self._lines = super().render_lines(crop)
             self._crop = crop if crop == Region(0, 0, *self.outer_size) else None
-            top, right, _, left = self.gutter
-            self._top = top
-            self._inside = (
-                len(self._lines) - self.gutter.height
-            )  # `room` may be of another size yet
-            line = (
-                self._lines[top]
-                if top < len(self._lines)
-                else Strip.blank(crop.width, self.rich_style)
-            )
-            self._left = [*line.crop(0, left)]
-            self._right = [*line.crop(crop.width - right)]
+            self._top, right, bottom, left = self.gutter
             self._filters = self.get_line_filters()
             self._background = self.background_colors[1]
+            self._end = len(self._lines) - bottom  # `room` may be of another size yet
+            if self._lines:
+                inside = self._lines[min(self._top, len(self._lines) - 1)]
+                self._left = [*inside.crop(0, left)]
+                self._right = [*inside.crop(crop.width - right)]
         else:
             for y in self._changed:
-                if y < self._inside:
-                    row = self.render_line(y)
-                    for one in self._filters:
-                        row = row.apply_filter(one, self._background)
-                    self._lines[self._top + y] = Strip(
-                        [*self._left, *row, *self._right], crop.width
-                    )
+                if self._top + y < self._end:
+                    segments = self._segments(y)
+                    for each in self._filters:
+                        segments = each.apply(segments, self._background)
+                    line = [*self._left, *segments, *self._right]
+                    self._lines[self._top + y] = Strip(line, crop.width)
         self._changed.clear()
         return self._lines
 
     def render_line(self, y: int) -> Strip:
+        return Strip(self._segments(y), self.room.width)
+
+    def _segments(self, y: int) -> list[Segment]:
         rows = self._picture.rows
         row = rows[y] if y < len(rows) else ()
-        strip = Strip([Segment(text, self._style(ink)) for text, ink in row])
-        return strip.adjust_cell_length(self.room.width, self._style(NOBODY))
+        segments = [Segment(text, self._style(ink)) for text, ink in row]
+        return Segment.adjust_line_length(segments, self.room.width, self._style(NOBODY))
 
     def style_of(self, ink: int, base: Style) -> Style:
         """Return how characters in an ink look; `base` is the widget's own style."""
@@ -113,9 +109,9 @@ class CellWidget(Widget):
         self._crop = None
 
     def _style(self, ink: Ink) -> Style:
-        style = self._styles.get(ink)
-        if style is None:  # walking the sheet's chain is slow
+        """Return how characters in an ink look; to walk the sheet's chain each time is slow."""
+        if ink not in self._styles:
             base = self.rich_style
             style = base + ink if isinstance(ink, Style) else self.style_of(ink, base)
             self._styles[ink] = style
-        return style
+        return self._styles[ink]
