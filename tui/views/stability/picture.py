@@ -23,7 +23,7 @@ from tui.drawing.palette import NOBODY, Palette, ink_of, inks, mark, mixed
 from tui.drawing.picture import Ink, Picture, Row
 
 EXACT_ENOUGH = 1e-12  # energy errors below it are drawn alike
-LIMIT, THRESHOLD, CATCHING, HERE = "│", "┊", "•", "@"
+LIMIT, THRESHOLD, CATCHING, HERE, LOST = "│", "┊", "•", "@", "╱"
 _WITHOUT_COLOUR = {LIMIT: "|", THRESHOLD: ":", CATCHING: "o", HERE: HERE}
 EXAMPLE = ink_of(VELOCITY_VERLET, ())  # whose shades the legend shows
 MARGIN = 4  # for the labels of the amplitudes
@@ -112,14 +112,17 @@ def _in_characters(values: Scores, steps: int) -> list[list[Cell]]:
 
 
 def _in_colours(values: Scores, ink: int, palette: Palette) -> list[list[Cell]]:
-    """Return half-blocks, two rows of pixels in each."""
+    """Return half-blocks, two rows of pixels in each, and LOST where both are lost, so that colour is not alone."""
     shades = [colour(level / SHADES, ink, palette) for level in range(-SHADES, 2 * SHADES + 1)]
     levels = np.rint((values + 1) * SHADES).astype(int).tolist()
+
+    def cell(up: int, low: int) -> Cell:
+        if min(up, low) >= SHADES and max(up, low) < 2 * SHADES:
+            return LOST, _style(palette.background, shades[min(up, low)])
+        return "▀", _style(shades[up], shades[low])
+
     pairs = zip(levels[::2], levels[1::2], strict=True)
-    return [
-        [("▀", _style(shades[up], shades[low])) for up, low in zip(*pair, strict=True)]
-        for pair in pairs
-    ]
+    return [[cell(up, low) for up, low in zip(*pair, strict=True)] for pair in pairs]
 
 
 @lru_cache(maxsize=10_000)
@@ -197,24 +200,21 @@ def character(score: float, steps: int) -> str:
 
 def legend(steps: int, palette: Palette | None, columns: int = 80) -> list[Row]:
     """Explain colours, characters and lines."""
-    limit, threshold, catching = (
-        sign if palette else _WITHOUT_COLOUR[sign] for sign in (LIMIT, THRESHOLD, CATCHING)
-    )
-    lines = [(f"{limit} linear limit   {threshold} global chaos above   ", NOBODY)]
-    orbit = [(f"{catching} stable 2-cycle   y: amplitude [°]", NOBODY)]
+    signs = (LIMIT, THRESHOLD, CATCHING)
+    limit, threshold, catching = signs if palette else map(_WITHOUT_COLOUR.__getitem__, signs)
     held: list[Cell] = [("held: error <1e-4 #  <0.1 +  above -   ", NOBODY)]
     lost: list[Cell] = [("lost: at step <10 .  <100 1  <1000 2", NOBODY)]
     if palette is not None:
-        held = [("held, energy error 1 ", NOBODY), *_scale(1.0, palette), (" 1e-12   ", NOBODY)]
-        lost = [("lost at step 1 ", NOBODY), *_scale(0.0, palette), (f" {steps}", NOBODY)]
+        scale = [0.999 * part / 7 for part in range(8)]
+        bright = [("█", Style(color=colour(1 + each, EXAMPLE, palette))) for each in scale]
+        dark = [
+            (LOST, _style(palette.background, colour(each, EXAMPLE, palette))) for each in scale
+        ]
+        held = [("held, energy error 1 ", NOBODY), *bright, (" 1e-12   ", NOBODY)]
+        lost = [("lost at step 1 ", NOBODY), *dark, (f" {steps}", NOBODY)]
+    lines: list[Cell] = [(f"{limit} linear limit   {threshold} global chaos above   ", NOBODY)]
+    orbit: list[Cell] = [(f"{catching} stable 2-cycle   y: amplitude [°]", NOBODY)]
     return [held + lost, lines + orbit] if columns >= 80 else [held, lost, lines, orbit]
-
-
-def _scale(low: float, palette: Palette) -> list[Cell]:
-    """Return the colours of scores from `low` to 1 more."""
-    return [
-        ("█", Style(color=colour(low + 0.999 * part / 7, EXAMPLE, palette))) for part in range(8)
-    ]
 
 
 def _theta_of_row(grid: Grid, row: int, rows: int) -> float:
