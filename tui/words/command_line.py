@@ -1,5 +1,6 @@
 """The shell command that brings back what is on the screen."""
 
+import math
 import shlex
 
 from engine.methods.own import OwnMethod
@@ -79,7 +80,8 @@ def scene_arguments(scene: Scene) -> list[str]:
     arguments = ["--scene", base.name]
     for name, value in scene.numbers.items():
         if value != base.numbers.get(name):
-            arguments += [f"--{name.replace('_', '-')}", repr(value)]
+            unit = "rad" if name == "theta" and abs(value) > math.tau else ""  # or it is refused
+            arguments += [f"--{name.replace('_', '-')}", f"{value!r}{unit}"]
     if scene.cast != base.cast:
         arguments += ["--methods", ",".join(method.key for method in scene.cast)]
     for method in scene.cast:

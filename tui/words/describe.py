@@ -1,11 +1,9 @@
 """The state of the lab or replay in a few sentences, for readers who cannot see the screen."""
 
-import math
-
 from engine.methods import Cast
 from tui.playback.source import Source
 from tui.words.insight import drift, endings, irregular, milestone_insight, sentence
-from tui.words.numbers import about, seconds
+from tui.words.numbers import about, seconds, start
 
 
 def description(source: Source, only: Cast | None = None) -> list[str]:
@@ -27,8 +25,7 @@ def _run(source: Source) -> list[str]:
         motion = f"; one {cycle} takes {about(source.exact.period)}"
     lines = [
         f'{kind} {state} at {seconds(sample.t)} of run {sample.run} of the scene "{scene.name}".',
-        f"The pendulum is {scene.length:.4g} m long and started at {math.degrees(scene.theta):.4g} degrees "
-        f"with {scene.omega:.4g} radians per second{motion}.",
+        f"The pendulum is {scene.length:.4g} m long and started at {start(scene.theta, scene.omega)}{motion}.",
         f"The step size is {step_text(source)}.",
     ]
     if source.failure:

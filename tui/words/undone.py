@@ -3,17 +3,6 @@
 from tui.playback.state import State
 from tui.words.numbers import factor, seconds
 
-_NAMES = {
-    "hidden": "the methods shown",
-    "exact": "the exact motion",
-    "overlay": "one pivot or one pane each",
-    "trails": "trails",
-    "quantity": "the quantity of the chart",
-    "log": "log or linear",
-    "seconds": "the window of the chart",
-    "stretch": "the zoom of the chart",
-}
-
 
 def undone(before: State, after: State) -> str:
     """Return what an undo has changed."""
@@ -22,16 +11,10 @@ def undone(before: State, after: State) -> str:
         what = f"h {after.stepping.h:.4g} s"
         if after.stepping.equal_cost != before.stepping.equal_cost:
             what = "equal cost" if after.stepping.equal_cost else "equal steps"
-        return (
-            f"Undone: {what} again" if same_run else f"Undone: back to {after.scene.name}, {what}"
-        )
+        return f"Undone: {what} again" if same_run else f"Undone: {after.scene.name}, {what}"
     if not same_run:
         return f"Undone: back to {after.scene.name} at {seconds(after.t)}"
     if after.speed != before.speed:
         return f"Undone: {factor(after.speed)}× again"
-    changed = [
-        text
-        for name, text in _NAMES.items()
-        if getattr(before.shown, name) != getattr(after.shown, name)
-    ]
-    return f"Undone: {', '.join(changed) or 'nothing has changed'}"
+    is_hidden = before.shown.hidden != after.shown.hidden
+    return f"Undone: {'the methods shown' if is_hidden else 'what the screen shows'}"

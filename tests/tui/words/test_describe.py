@@ -20,7 +20,7 @@ def test_the_default_scene_after_twenty_seconds():
     live = after(SCENES["drift"], 20)
     assert description(live) == [
         'The lab runs in real time and is at 20.00 s of run 1 of the scene "drift".',
-        "The pendulum is 1 m long and started at 57.3 degrees with 0 radians per second; one swing takes 2.1 s.",
+        "The pendulum is 1 m long and started at 57.3° 0 rad/s; one swing takes 2.1 s.",
         "The step size is 0.05 s, z = 0.157.",
         "Explicit Euler went over the top at 7.15 s with 5.1 times its initial energy.",
         "Symplectic Euler stays bounded: its largest energy error is 0.079.",
