@@ -165,48 +165,32 @@ def log_time_axis(start: float, end: float, columns: int, note: str = "") -> Axi
     return Axis(low, high, labels)
 
 
-def omega_ticks(low: float, high: float, most: int) -> Ticks:
-    """Positions and labels of about `most` values [rad/s]."""
+def number_ticks(low: float, high: float, most: int) -> Ticks:
+    """Positions and labels of about `most` numbers."""
     step = nice((high - low) / most)
-    if low <= 0 <= high or step > 1e-4 * max(abs(low), abs(high)):
-        return [(k * step, compact(k * step)) for k in _multiples(low, high, step)]
-    return _around(round((low + high) / 2 / step) * step, low, high, step)
+    return [(k * step, compact(k * step)) for k in _multiples(low, high, step)]
 
 
 def theta_ticks(low: float, high: float, most: int, wrap: bool) -> Ticks:
-    """Positions and labels of about `most` angles in pi; at high zoom one in full, others as offsets [rad]."""
+    """Positions and labels of about `most` angles in pi, at high zoom in rad."""
     share = (high - low) / math.pi / most
-    if high - low > 0.02 * math.pi:
-        step = next(
-            (quarters / 4 for quarters in (1, 2, 4) if quarters / 4 >= share > 0.1), nice(share)
-        )
-        return [
-            (k * step * math.pi, in_pi(k * step, wrap))
-            for k in _multiples(low / math.pi, high / math.pi, step)
-        ]
-    step, middle = nice((high - low) / most), (low + high) / 2
-    turns = round(middle / math.pi)
-    anchor = turns * math.pi if low <= turns * math.pi <= high else round(middle / step) * step
-    return _around(anchor, low, high, step)
+    if high - low <= 0.02 * math.pi:
+        return number_ticks(low, high, most)
+    quarters = (each / 4 for each in (1, 2, 4))
+    step = next((each for each in quarters if each >= share > 0.1), nice(share))
+    return [
+        (k * step * math.pi, in_pi(k * step, wrap))
+        for k in _multiples(low / math.pi, high / math.pi, step)
+    ]
 
 
 def _multiples(low: float, high: float, step: float, slack: float = 1e-6) -> range:
     return range(math.ceil(low / step - slack), math.floor(high / step + slack) + 1)
 
 
-def _around(anchor: float, low: float, high: float, step: float) -> Ticks:
-    """One value in full, the others as offsets from it."""
-    turns = anchor / math.pi
-    name = in_pi(turns) if turns == round(turns) else f"{anchor:.12g}"
-    return [
-        (anchor + k * step, compact(k * step, "+") if k else name)
-        for k in _multiples(low - anchor, high - anchor, step)
-    ]
-
-
-def compact(value: float, sign: str = "-") -> str:
+def compact(value: float) -> str:
     """A number in few characters: "0.5", "-2e-7"."""
-    mantissa, e, exponent = f"{value:{sign}.6g}".partition("e")
+    mantissa, e, exponent = f"{value:.6g}".partition("e")
     return mantissa + (f"e{int(exponent)}" if e else "")
 
 

@@ -1,9 +1,12 @@
 """What views are made of: a View fills the screen between status line and key line with Panes; some are Choosers."""
 
 from collections.abc import Callable, Coroutine, Iterable
-from typing import ClassVar, Generic, TypeVar
+from textwrap import wrap
+from typing import Any, ClassVar, Generic, TypeVar
 
-from textual.app import SystemCommand
+from textual import events
+from textual.app import ComposeResult, SystemCommand
+from textual.binding import Binding, BindingType
 from textual.containers import Container
 from textual.content import Content
 from textual.reactive import var
@@ -13,7 +16,8 @@ from engine.methods import Cast
 from engine.methods.own import OwnMethodError
 from engine.run.lockstep import Sample
 from tui.drawing.cells import CellWidget
-from tui.drawing.picture import Picture
+from tui.drawing.palette import TEXT
+from tui.drawing.picture import Picture, Row
 from tui.playback.shown import Shown
 from tui.playback.source import Source
 from tui.terminal.options import SMALLEST
@@ -170,9 +174,20 @@ class Chooser(Pane, Generic[Place], can_focus=True):
     In a replay there is nothing to choose: the arrows, enter and esc are the replay's.
     """
 
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("left", "move(-1, 0)", "cursor, to choose", False, "arrows"),
+        Binding("right", "move(1, 0)"),
+        Binding("up", "move(0, 1)"),
+        Binding("down", "move(0, -1)"),
+        Binding("enter", "choose", "Use", tooltip="use what is at the cursor"),
+        Binding("tab", "method(1)", "the next method in words", show=False),
+        Binding("escape", "cancel", "leave the cursor", False, "esc"),
+    ]
+
     def __init__(self) -> None:
         super().__init__()
         self.cursor: Place | None = None
+        self.pointer: Place | None = None  # what is under it
         self._described = DESCRIBED_FIRST  # key of a method
 
     @property
@@ -187,10 +202,19 @@ class Chooser(Pane, Generic[Place], can_focus=True):
     def describe(self, place: int) -> None:
         self._described = self.cast[place].key
 
+    def words(self, *texts: str) -> list[Row]:
+        """Return wrapped lines of text."""
+        width = max(self.room.width - 2, 1)
+        return [[(f" {line}", TEXT)] for text in texts for line in wrap(text, width)]
+
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         if action in ("choose", "cancel"):
             return self.is_live and self.cursor is not None
         return self.is_live or action != "move"
+
+    def place_under(self, event: events.MouseEvent) -> Place | None:
+        """Return what can be chosen at the pointer."""
+        raise NotImplementedError
 
     def choose(self, place: Place) -> None:
         """Ask for what is at this place."""
@@ -209,3 +233,43 @@ class Chooser(Pane, Generic[Place], can_focus=True):
         if shown := self.places:
             self.describe(shown[(shown.index(self.index) + down) % len(shown)])
             self.draw()
+
+    def on_mouse_move(self, event: events.MouseMove) -> None:
+        if (under := self.place_under(event)) != self.pointer:
+            self.pointer = under
+            self.draw()
+
+    def on_leave(self) -> None:
+        self.pointer = None
+        self.draw()
+
+    def on_click(self, event: events.Click) -> None:
+        if self.is_live and (under := self.place_under(event)) is not None:
+            self.cursor = None
+            self.choose(under)
+
+
+AnyChooser = TypeVar("AnyChooser", bound=Chooser[Any])
+
+
+class StudyView(View, Generic[AnyChooser]):
+    """A view around a chooser, whose content another process computes while it is shown."""
+
+    def __init__(self, pane: AnyChooser, id: str | None = None) -> None:
+        super().__init__(id=id)
+        self.pane = pane
+
+    def compose(self) -> ComposeResult:
+        yield self.at_5_hz(self.pane)
+
+    def on_show(self) -> None:
+        self.pane.focus()
+
+    def follow(self, sample: Sample, read: bool = True) -> None:
+        if read and self.display and self.source is not None:
+            self.compute_missing(self.source)
+        super().follow(sample, read)
+
+    def compute_missing(self, source: Source) -> None:
+        """Compute what is missing for the run on screen."""
+        raise NotImplementedError

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from engine.accuracy.front import Cheapest, Cost, ranges
 from engine.accuracy.growth import PERIODS, Growth
 from engine.accuracy.references import TAYLOR_20
+from engine.accuracy.study import REASONS, ErrorKind, Point
 from engine.methods.runge_kutta import RK4
 
 COSTS: dict[Cost, str] = {"evaluations": "force evaluations", "seconds": "seconds"}
@@ -20,8 +21,18 @@ def length(seconds: float) -> str:
     return f"{seconds:.3g} s"
 
 
-def front_words(found: Sequence[Cheapest], cost: Cost, without: Sequence[Cheapest]) -> str:
-    """The cheapest method in each range of errors; `without`: of the methods alone, by force evaluations."""
+def point_words(point: Point, kind: ErrorKind, note: str) -> str:
+    """Return a method, its h, its error and its force evaluations, and a note."""
+    flaw = point.flaw(kind)
+    reason = f" ({REASONS[flaw]})" if flaw else ""
+    error = f"{kind} error {point.error(kind):.1e}{reason}"
+    cost = f"{point.force_evaluations} force evaluations"
+    text = f"{point.method.label} at h {point.h:.4g} s: {error} for {cost}"
+    return f"{text}; {note}" if note else text
+
+
+def front_words(found: Sequence[Cheapest], cost: Cost, without: Sequence[Cheapest] = ()) -> str:
+    """Return the cheapest method in each range of errors; `without`: without Taylor's series."""
     if not found:
         return "No power of ten lies between the errors of the coarsest and the finest runs, so none can be compared."
     words = f"Cheapest in {COSTS[cost]}: {_spans(found)}"
@@ -48,6 +59,14 @@ def growth_words(found: Sequence[Growth]) -> str:
         if named
         else ""
     )
+
+
+def growth_lines(found: Sequence[Growth], done: bool) -> list[str]:
+    """Return the measured powers of t; and when all is `done`, which methods follow none."""
+    words = growth_words(found)
+    others = ", ".join(growth.method.label for growth in found if growth.power is None)
+    lines = [f"From the start, {words}"] if words else []
+    return [*lines, f"No single power of t: {others}"] if others and done else lines
 
 
 def _spans(found: Sequence[Cheapest]) -> str:

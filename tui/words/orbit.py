@@ -1,20 +1,14 @@
 """The orbit of a start under a method's own map, in words and numbers."""
 
 import math
-from collections.abc import Sequence
 
-from engine.methods import Cast, Method
+from engine.methods import Method
 from engine.phase_space.section import OrbitKind, numerical_period
-from tui.drawing.palette import FRAME, TEXT, inks, mark
-from tui.drawing.picture import Row
 from tui.playback.source import Source
 from tui.words.numbers import counted
 
-COLUMNS = {"orbit": 18, "turns a step": 14, "steps a turn": 14, "nearest": 9, "Lyapunov number": 17}
-"""Heads and widths, two columns of them blank."""
-HEADS = tuple(COLUMNS)
+HEADS = ("orbit", "turns a step", "steps a turn", "nearest", "Lyapunov number")
 MAX_DRIFT = 1e-3  # relative change of the energy, beyond which an orbit is a spiral
-LABEL = 22  # columns of a method's name
 
 
 def name(method: Method, kind: OrbitKind) -> str:
@@ -88,24 +82,3 @@ def period_sentence(source: Source) -> str:
     if not taken:
         return ""
     return f"From this start and with this step, a period takes {', '.join(taken)}; the exact one is {exact:.6g} s."
-
-
-def kind_rows(cast: Cast, kinds: Sequence[tuple[int, OrbitKind]], width: int) -> list[Row]:
-    """Return heads and a row for each place in the cast and the kind of its orbit; the first columns that fit."""
-    widths = list(COLUMNS.values())
-    while widths and sum(widths) > width - LABEL:
-        widths.pop()
-    heads = "".join(head.rjust(size) for head, size in zip(HEADS, widths, strict=False))
-    rows: list[Row] = [[(" " * LABEL + heads, FRAME)]]
-    for place, kind in kinds:
-        method = cast[place]
-        line = "".join(
-            cell.rjust(size) for cell, size in zip(cells(method, kind), widths, strict=False)
-        )
-        rows.append(
-            [
-                (f" {mark(place, method)} {method.label}".ljust(LABEL), inks(cast)[place]),
-                (line, TEXT),
-            ]
-        )
-    return rows

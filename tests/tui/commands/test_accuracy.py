@@ -32,7 +32,11 @@ def test_the_table_has_a_row_for_each_step_and_the_orders():
 
 def charted(points, width, height):
     return accuracy_chart(
-        accuracy_series(points, "theta", "evaluations"), "theta", "evaluations", width, height
+        accuracy_series(points, "theta", "evaluations", USUAL_CAST),
+        "theta",
+        "evaluations",
+        width,
+        height,
     )
 
 
@@ -232,11 +236,11 @@ def test_the_points_of_a_method_are_joined_once_they_are_all_there():
     points = list(
         Study(SCENES["drift"].with_cast(USUAL_CAST[3:]), 5.0).points(ladder(5.0, 0.1, 0.01, 4))
     )
-    series = accuracy_series(points[::2], "theta", "evaluations", whole=len(points))
+    series = accuracy_series(points[::2], "theta", "evaluations", USUAL_CAST, whole=len(points))
     assert [len(one.x) for one in series if one.mark == "r"] == [1] * len(points[::2])
     (joined,) = (
         one
-        for one in accuracy_series(points, "theta", "evaluations", whole=len(points))
+        for one in accuracy_series(points, "theta", "evaluations", USUAL_CAST, whole=len(points))
         if one.mark == "r"
     )
     assert len(joined.x) == len(points)

@@ -18,7 +18,7 @@ from tui.views.lab.error_table import ErrorTable
 from tui.views.lab.event_list import EventList
 from tui.views.lab.time_chart import TimeChart
 from tui.views.lab.view import LabView
-from tui.views.phase.section_pane import SectionPane
+from tui.views.phase.pane import SectionPane
 
 
 async def test_time_space_pauses_and_goes_on_full_stop_and_comma_step():

@@ -10,7 +10,7 @@ from recordings.library import resolve
 from tests.tui.harness import key_of, lab, player, uncomputed
 from tui.views import VIEWS
 from tui.views.accuracy.pane import AccuracyPane
-from tui.views.phase.section_pane import SectionPane
+from tui.views.phase.pane import SectionPane
 from tui.views.stability.pane import StabilityPane
 from tui.views.view import Chooser, Pane
 

@@ -5,11 +5,11 @@ from fractions import Fraction
 
 import pytest
 
-from engine.methods import RK4, USUAL_CAST, VELOCITY_VERLET
+from engine.methods import RK4, VELOCITY_VERLET
 from engine.phase_space.section import OrbitKind
 from engine.scenes import Scene
 from tui.playback.live import Live
-from tui.words.orbit import COLUMNS, HEADS, cells, kind_rows, period_sentence, sentence
+from tui.words.orbit import cells, period_sentence, sentence
 
 REGULAR = OrbitKind(4000, True, False, 0.1580611, Fraction(1, 6), False, 0.0018, False, 0.1)
 ISLAND = replace(REGULAR, rotation=0.375, fraction=Fraction(3, 8), island=True)
@@ -71,14 +71,6 @@ def test_numbers_that_there_are_not_are_a_hyphen():
         "-",
     )
     assert cells(VELOCITY_VERLET, replace(REGULAR, lyapunov=float("inf")))[-1] == "-"
-
-
-@pytest.mark.parametrize(("width", "heads"), [(200, 5), (94, 5), (93, 4), (60, 2), (39, 0)])
-def test_the_table_has_the_columns_that_fit(width, heads):
-    rows = ["".join(text for text, _ in row) for row in kind_rows(USUAL_CAST, [(2, ISLAND)], width)]
-    assert rows[0] == " " * 22 + "".join(map(str.rjust, HEADS[:heads], COLUMNS.values()))
-    assert rows[1].startswith(" 3 v Velocity Verlet")
-    assert len(rows[1]) == len(rows[0]) <= width
 
 
 def test_the_period_of_each_method_stands_beside_the_exact_one():

@@ -1,4 +1,4 @@
 """Error over cost and over time (F4): `view` has points computed, `pane` shows them as a `chart` to choose h from.
 
-`words` describe a point and say which methods are the cheapest.  The command `pendu-tui accuracy` draws the same chart.
+The command `pendu-tui accuracy` draws the same chart.
 """

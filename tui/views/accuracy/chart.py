@@ -13,6 +13,9 @@ from tui.drawing.palette import EXACT, FRAME, TEXT, ink_of
 from tui.drawing.picture import Picture
 from tui.words.accuracy import COSTS
 
+Placed = list[tuple[tuple[int, int], Point]]
+"""Points by column and row of the chart."""
+
 MARKS: dict[Flaw, str] = {"lost": "x", "diverged": "x", "rounding": "~"}
 """Of points that do not show how the error depends on h."""
 
@@ -21,62 +24,55 @@ ERROR_LABELS: dict[ErrorKind, str] = {
     "energy": "energy error, the largest of all steps, relative",
     "final": "theta error at the end [rad]",
 }
-Placed = tuple[tuple[int, int], AnyPoint]
-"""Column and row of a point on the chart."""
 REACH = 6  # columns, or half as many rows, within which the pointer finds a point
 BESIDE = 0.2  # of a method's errors: where the dotted line of its order runs
 MARKED = 12  # points of an error over time that get a letter
 
 
 def raised(base: str, power: int) -> str:
-    """A letter to a power."""
+    """Return a letter to a power."""
     return base + "".join("⁰¹²³⁴⁵⁶⁷⁸⁹"[int(digit)] for digit in str(power) if power != 1)
 
 
 def accuracy_chart(
     series: Sequence[Series], kind: ErrorKind, cost: Cost, width: int, height: int
 ) -> Picture:
-    """The lines of `accuracy_series` on their axes."""
+    """Draw the lines of `accuracy_series` on their axes."""
     return loglog_chart(series, width, height, x_label=COSTS[cost], y_label=ERROR_LABELS[kind])
 
 
-def charted(
-    series: Sequence[Series],
-    points: Sequence[AnyPoint],
-    kind: ErrorKind,
-    cost: Cost,
-    width: int,
-    height: int,
-) -> tuple[Picture, list[Placed]]:
-    """The chart of these series, and where points are on it."""
-    picture = accuracy_chart(series, kind, cost, width, height)
+def placed(
+    series: Sequence[Series], points: Sequence[Point], kind: ErrorKind, width: int, height: int
+) -> Placed:
+    """Return where points are on the chart of these series over force evaluations."""
     if width < MIN_COLUMNS or height < MIN_ROWS:
-        return picture, []
+        return []
     axes = LogLog.fitting(series, width, height)
-    drawn = [p for p in points if cost_of(p, cost) and 0 < p.error(kind) < math.inf]
-    return picture, [(axes.cell(cost_of(p, cost), p.error(kind)), p) for p in drawn]
+    drawn = [point for point in points if 0 < point.error(kind) < math.inf]
+    return [(axes.cell(point.force_evaluations, point.error(kind)), point) for point in drawn]
 
 
-def nearest(cells: Sequence[Placed], x: int, y: int) -> AnyPoint | None:
-    """The point nearest to a cell, if there is one within REACH."""
+def nearest(cells: Placed, x: int, y: int) -> Point | None:
+    """Return the point nearest to a cell, if there is one within REACH."""
 
     def distance(cell: tuple[int, int]) -> int:
         return (cell[0] - x) ** 2 + (2 * (cell[1] - y)) ** 2
 
-    cell, point = min(cells, key=lambda found: distance(found[0]), default=((0, 0), None))
-    return point if distance(cell) <= REACH**2 else None
+    near = [(distance(cell), point) for cell, point in cells if distance(cell) <= REACH**2]
+    return min(near, key=lambda each: each[0], default=(0, None))[1]
 
 
 def accuracy_series(
     points: Sequence[Point],
     kind: ErrorKind,
     cost: Cost,
+    cast: Cast,
+    *,
     marks: Sequence[tuple[str, Point]] = (),
     references: References | None = None,
     whole: int = 0,
-    cast: Cast = (),
 ) -> list[Series]:
-    """Letters for points, x for useless and ~ for rounding-limited ones, dotted lines for orders, and `marks`.
+    """Return letters for points, x for useless and ~ for rounding-limited ones, dotted lines for orders, and `marks`.
 
     Of methods with fewer points than a `whole` line has, no line joins those that are there.  The reference lines
     are Taylor's series and, upright, what the closed form takes.
@@ -85,69 +81,63 @@ def accuracy_series(
     def series(ink: int, some: Sequence[AnyPoint], mark: str) -> Series:
         return Series(ink, mark, [cost_of(p, cost) for p in some], [p.error(kind) for p in some])
 
-    methods = dict.fromkeys(point.method for point in points)
-    cast = tuple(dict.fromkeys((*cast, *methods)))
-    by_method = [[point for point in points if point.method == method] for method in methods]
-    slopes = [_slope(ours, kind, cost, points) for ours in by_method]
-    found = [slope for slope in slopes if slope]
-    joined = [
-        each
-        for ours in by_method
-        for each in ([[p] for p in ours] if len(ours) < whole else [ours])
-    ]
-    found += (series(ink_of(ours[0].method, cast), ours, ours[0].method.letter) for ours in joined)
-    found += (
-        series(ink_of(p.method, cast), [p], MARKS[flaw]) for p in points if (flaw := p.flaw(kind))
-    )
+    def flawed(some: Sequence[AnyPoint], ink: int) -> list[Series]:
+        return [series(ink, [p], MARKS[flaw]) for p in some if (flaw := p.flaw(kind))]
+
+    taylor = references.taylor if references else ()
+    lines: list[Series] = []
+    flaws: list[Series] = []
+    slopes: dict[int, Series] = {}  # one for all methods of an order
+    for method in dict.fromkeys(point.method for point in points):
+        ours = [point for point in points if point.method == method]
+        ink = ink_of(method, cast)
+        if method.order not in slopes:
+            slopes |= _slope(ours, kind, cost, points)
+        joined = [[point] for point in ours] if len(ours) < whole else [ours]
+        lines += [series(ink, some, method.letter) for some in joined]
+        flaws += flawed(ours, ink)
     if references:
-        taylor = references.taylor
-        found += [series(TEXT, taylor, TAYLOR_20.letter)] if taylor else []
-        found += (series(TEXT, [p], MARKS[flaw]) for p in taylor if (flaw := p.flaw(kind)))
+        lines += [series(TEXT, taylor, TAYLOR_20.letter)] if taylor else []
         every: list[AnyPoint] = [*points, *taylor]
         errors = [error for p in every if (error := p.error(kind)) and math.isfinite(error)]
         ends = [min(errors), max(errors)] if errors else []
-        found.append(Series(EXACT, CLOSED_FORM.letter, [references.floor] * len(ends), ends))
-    return [*found, *(series(ink_of(point.method, cast), [point], mark) for mark, point in marks)]
+        flaws += flawed(taylor, TEXT)
+        flaws.append(Series(EXACT, CLOSED_FORM.letter, [references.floor] * len(ends), ends))
+    marked = [series(ink_of(point.method, cast), [point], mark) for mark, point in marks]
+    return [*slopes.values(), *lines, *flaws, *marked]
+
+
+def _slope(
+    ours: Sequence[Point], kind: ErrorKind, cost: Cost, points: Sequence[Point]
+) -> dict[int, Series]:
+    """Return by order a line with the slope of a method's order, below its errors; none without valid points."""
+    order = ours[0].method.order
+    valid = [p for p in ours if not p.flaw(kind) and p.error(kind) and cost_of(p, cost)]
+    if not valid:
+        return {}
+    anchor = valid[len(valid) // 2]
+    costs = [cost_of(point, cost) for point in points]
+    ends = [min(costs), max(costs)]
+    errors = [BESIDE * anchor.error(kind) * (end / cost_of(anchor, cost)) ** -order for end in ends]
+    return {order: Series(FRAME, raised("h", order), ends, errors, dotted=True)}
 
 
 def growth_chart(found: Sequence[Growth], cast: Cast, width: int, height: int) -> Picture:
-    """Letters for errors in theta along a run, and dotted lines of the powers of t that they follow."""
+    """Draw letters for errors in theta along a run, and dotted lines of the powers of t that they follow."""
     lines: list[Series] = []
     slopes: dict[int, Series] = {}
     for growth in found:
-        ink, times, errors = ink_of(growth.method, cast), growth.times, growth.errors
-        some = (
-            sorted({round(len(times) ** (n / MARKED)) - 1 for n in range(MARKED + 1)})
-            if times
-            else []
-        )
-        lines.append(
-            Series(ink, growth.method.letter, [times[n] for n in some], [errors[n] for n in some])
-        )
+        times, errors = growth.times, growth.errors
+        at = {round(len(times) ** (n / MARKED)) - 1 for n in range(MARKED + 1)} if times else ()
+        letters = [(times[n], errors[n]) for n in sorted(at)]
+        x, y = zip(*letters, strict=True) if letters else ((), ())
+        lines.append(Series(ink_of(growth.method, cast), growth.method.letter, x, y))
         if growth.power is not None:
-            power, ends = round(growth.power), [times[0], times[-1]]
+            power = round(growth.power)
+            ends = [times[0], times[-1]]
             slope = [BESIDE * errors[-1] * (t / times[-1]) ** power for t in ends]
             slopes.setdefault(power, Series(FRAME, raised("t", power), ends, slope, dotted=True))
     label = "theta error [rad], the largest of each period"
     return loglog_chart(
         [*slopes.values(), *lines], width, height, x_label="time [s]", y_label=label
     )
-
-
-def _slope(
-    ours: Sequence[Point], kind: ErrorKind, cost: Cost, points: Sequence[Point]
-) -> Series | None:
-    """A line with the slope of the method's order, below its errors; one for all methods of that order."""
-    order = ours[0].method.order
-    valid = [
-        point
-        for point in ours
-        if not point.flaw(kind) and point.error(kind) and cost_of(point, cost)
-    ]
-    if not valid or ours[0].method != next(p.method for p in points if p.method.order == order):
-        return None
-    anchor = valid[len(valid) // 2]
-    costs = [cost_of(point, cost) for point in points]
-    ends = [min(costs), max(costs)]
-    errors = [BESIDE * anchor.error(kind) * (end / cost_of(anchor, cost)) ** -order for end in ends]
-    return Series(FRAME, raised("h", order), ends, errors, dotted=True)

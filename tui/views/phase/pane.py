@@ -1,17 +1,19 @@
-"""PhasePane: phase space, the methods in it, and a start to choose with the mouse or the keyboard."""
+"""Phase space with the methods in it, or the map of one method, and a start to choose with mouse or keyboard."""
 
+from functools import lru_cache
 from time import perf_counter
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 from textual import events
 from textual.binding import Binding, BindingType
-from textual.content import Content
 from textual.reactive import var
 
+from engine.methods import Method
 from engine.methods.own import OwnMethodError
-from engine.models.model import State
+from engine.models.model import Model, State
 from engine.run.lockstep import Sample
 from engine.scenes import SceneError
+from tui.drawing.palette import TEXT, inks
 from tui.drawing.picture import Picture
 from tui.playback.source import Source
 from tui.views.messages import Asked, SceneChosen
@@ -20,10 +22,13 @@ from tui.views.view import Chooser
 
 if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
     from engine.phase_space.area import Neighbourhood, Neighbours
+    from engine.phase_space.section import OrbitKind, Points
+    from tui.views.phase.section import Section
 
 TITLE = "Phase space (F3): theta [rad], omega [rad/s]"
 DOTS = 4  # that an arrow moves the crosshair
 RING_TIME = 0.005  # s of a frame, for a ring that has to catch up
+ORBIT_STEPS = 2000  # some ms
 
 
 class PhasePane(Chooser[State]):
@@ -32,12 +37,6 @@ class PhasePane(Chooser[State]):
     BINDING_GROUP_TITLE = "Phase space"
     HELP = "A click starts there, a drag shows the orbit first; the wheel zooms, arrows move."
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("left", "move(-1, 0)", "crosshair: choose a start", False, "arrows"),
-        Binding("right", "move(1, 0)"),
-        Binding("up", "move(0, 1)"),
-        Binding("down", "move(0, -1)"),
-        Binding("enter", "choose", "Start", tooltip="start at the crosshair"),
-        Binding("escape", "cancel", "leave it, then all in view", False, "esc"),
         Binding("z", "zoom(0.5)", "Zoom", tooltip="zoom in at the crosshair"),
         Binding("g", "radius", "Ring", tooltip="ring of neighbours, radii"),
     ]
@@ -52,7 +51,6 @@ class PhasePane(Chooser[State]):
         self.set_reactive(PhasePane.radius, radius)
         self.neighbours: Neighbours | None = None
         self.ring: Neighbourhood | None = None
-        self.pointer: tuple[int, int] | None = None  # the cell under it
         self.aiming = False  # the pointer is about to choose a start
         self.zoomed: Viewport | None = None  # None: the whole portrait
         self._catching_up = False
@@ -63,11 +61,6 @@ class PhasePane(Chooser[State]):
         if self.sample is None or not self.drawable or self.neighbours is None:
             return self.sample is not None
         return self.neighbours.step == self.sample.step
-
-    def watch_source(self) -> None:
-        self.border_title = Content(TITLE)
-        self.border_subtitle = f"{'click: start, ' if self.is_live else ''}wheel: zoom"
-        super().watch_source()
 
     def watch_radius(self) -> None:
         """Begin another ring at the run's start."""
@@ -90,18 +83,17 @@ class PhasePane(Chooser[State]):
     @property
     def aim(self) -> State | None:
         """The state at the crosshair or, if there is none, under the pointer."""
-        return self.cursor or (
-            None if self.pointer is None else self.viewport.at_cell(*self.pointer)
-        )
+        return self.cursor or self.pointer
 
     def picture(self, source: Source, sample: Sample) -> Picture:
         from tui.views.phase.facts import caption
         from tui.views.phase.picture import method_points, phase_picture
         from tui.views.phase.portrait import Portrait
 
+        self.write_titles(TITLE, f"{'click: start, ' if self.is_live else ''}wheel: zoom")
         self._carry_ring(source, sample)
         portrait = Portrait.of(self.viewport, source.scene.equations)
-        orbit = self.aim if self.aiming or self.cursor is not None else None
+        orbit = self.pointer if self.aiming else self.cursor
         points = method_points(source, sample, self.shown, self.ring)
         plot = phase_picture(portrait, points, self.cursor, orbit)
         return Picture((*plot.rows, caption(source, self.aim, self.room.width)))
@@ -134,29 +126,21 @@ class PhasePane(Chooser[State]):
         self._catching_up = False
         self.draw()
 
-    # The keyboard
-
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         cancels = self.aiming or self.zoomed is not None
         return (action == "cancel" and cancels) or super().check_action(action, parameters)
 
     def action_move(self, right: int, up: int) -> None:
-        """Move the crosshair; at the edge the picture moves."""
-        if self.source is None or not self.drawable:
-            return
-        viewport = self.viewport
-        here = self.aim or State(self.source.scene.theta, self.source.scene.omega)
-        self.cursor, moved = viewport.stepped(here, DOTS * right, DOTS * up)
-        goes_round = moved.wrap and self.zoomed is None and moved.omega == viewport.omega
-        if moved != viewport and not goes_round:
-            self.zoomed = moved
-        self.draw()
+        if self.source is not None and self.drawable:
+            here = self.aim or State(self.source.scene.theta, self.source.scene.omega)
+            self.cursor = self.viewport.stepped(here, DOTS * right, DOTS * up)
+            self.draw()
 
-    def choose(self, state: State) -> None:
+    def choose(self, place: State) -> None:
         """Ask for a run from here with the step size in force."""
         assert self.source is not None
         try:
-            scene = self.source.scene.altered(**state._asdict(), h=self.source.stepping.smallest)
+            scene = self.source.scene.altered(**place._asdict(), h=self.source.stepping.smallest)
         except SceneError as error:  # far out, omega may be beyond a scene's limits
             self.notify(str(error), severity="warning")
         else:
@@ -171,15 +155,12 @@ class PhasePane(Chooser[State]):
         super().action_cancel()
 
     def action_zoom(self, factor: float) -> None:
-        """Zoom at the crosshair, which comes to the middle, or at the pointer, or else at the middle."""
+        """Zoom at the crosshair or the pointer, which comes to the middle, or else at the middle."""
         viewport = self.viewport
         x, y = viewport.middle
-        if (at := self.cursor) is not None:
-            viewport = viewport.panned(
-                x - float(viewport.x(at.theta)), y - float(viewport.y(at.omega))
-            )
-        elif self.pointer is not None:
-            x, y = 2 * self.pointer[0] + 1, 4 * self.pointer[1] + 2
+        if at := self.aim:
+            right = x - float(viewport.x(at.theta))
+            viewport = viewport.panned(right, y - float(viewport.y(at.omega)))
         self.zoomed = viewport.zoomed(factor, x, y)
         self.draw()
 
@@ -190,35 +171,35 @@ class PhasePane(Chooser[State]):
         radii = (None, *RADII)
         self.radius = radii[(radii.index(self.radius) + 1) % len(radii)]
 
-    # The mouse
+    def place_under(self, event: events.MouseEvent) -> State | None:
+        cell = self._cell(event)
+        return cell and self.viewport.at_cell(*cell)
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Begin to choose a start."""
-        if (cell := self._cell(event)) is None:
+        """Show the orbit through the pointer until it is released."""
+        if self._cell(event) is None:
             if event.y == 0:
                 self.post_message(Asked("view('phase')"))
             return
         self.focus(scroll_visible=False)
-        if self.is_live and event.button == 1:
+        if self.is_live:
             self.capture_mouse()
-            self.cursor, self.pointer, self.aiming = None, cell, True
+            self.aiming = True
+            self.cursor = None
+            self.pointer = self.place_under(event)
             self.draw()
-
-    def on_mouse_move(self, event: events.MouseMove) -> None:
-        self.pointer = self._cell(event, clamp=self.aiming)
-        self.draw()
 
     def on_mouse_up(self, event: events.MouseUp) -> None:
-        """Choose the start under the pointer."""
+        """Choose the start under the pointer, if the drag has not been cancelled."""
         self.release_mouse()
-        if self.aiming and (cell := self._cell(event, clamp=True)) is not None:
-            self.aiming = False
-            self.choose(self.viewport.at_cell(*cell))
+        place = self.place_under(event)
+        if self.aiming and place is not None:
+            self.choose(place)
+        self.aiming = False
+        self.draw()
 
-    def on_leave(self) -> None:
-        if not self.aiming:
-            self.pointer = None
-            self.draw()
+    def on_click(self, event: events.Click) -> None:
+        event.prevent_default()  # the start was chosen on release
 
     def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
         self._wheel(event, 0.8)
@@ -232,9 +213,89 @@ class PhasePane(Chooser[State]):
             event.stop()
             self.draw()
 
-    def _cell(self, event: events.MouseEvent, clamp: bool = False) -> tuple[int, int] | None:
-        """Return the plot's cell under the pointer; clamp: or the nearest."""
+    def _cell(self, event: events.MouseEvent) -> tuple[int, int] | None:
+        """Return the plot's cell under the pointer."""
         x, y = event.get_content_offset_capture(self)
         columns, rows = self.cells
-        nearest = min(max(x, 0), columns - 1), min(max(y, 0), rows - 1)
-        return nearest if clamp or nearest == (x, y) else None
+        return (x, y) if x in range(columns) and y in range(rows) else None
+
+
+class Wanted(NamedTuple):
+    """What a section depends on."""
+
+    method: Method
+    model: Model
+    h: float  # s
+    viewport: Viewport
+
+
+class SectionPane(PhasePane):
+    """The portrait or, after x, the section of the method that is described."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("x", "section", "Map", tooltip="a method's own map"),
+    ]
+
+    shows_section: var[bool] = var(False)
+
+    def __init__(self, radius: float | None = None) -> None:
+        super().__init__(radius)
+        self.wanted: Wanted | None = None
+        self.share = 0.0  # of the section that is there
+        self._section: Section | None = None
+
+    @property
+    def settled(self) -> bool:
+        return self.share == 1 if self.drawable and self.shows_section else super().settled
+
+    def watch_shows_section(self) -> None:
+        self.wanted = self._section = None
+        self.draw()
+
+    def picture(self, source: Source, sample: Sample) -> Picture:
+        if self.shows_section and (why := source.scene.why_not_mapped):
+            self.notify(why, severity="warning")
+            self.shows_section = False
+        return self._map(source) if self.shows_section else super().picture(source, sample)
+
+    def _map(self, source: Source) -> Picture:
+        """Return the section, and a line about the orbit at the crosshair, under the pointer, or of the start."""
+        from tui.views.phase.section import Section
+        from tui.words.orbit import sentence
+
+        method = self.cast[self.index]
+        h = abs(source.stepping.own[self.index])
+        model = source.scene.equations
+        wanted = Wanted(method, model, h, self.viewport)
+        if wanted != self.wanted or self._section is None:
+            self.wanted = wanted
+            self.share = 0.0
+            self._section = Section(wanted.viewport, model, method, inks(self.cast)[self.index])
+        done = "" if self.share == 1 else f", computing {int(10 * self.share) / 10:.0%}"
+        title = f"Own map of {method.label}: h {h:g} s, z {h * model.w0:.4g}{done}"
+        self.write_titles(title, "wheel: zoom, tab: next method, x: back")
+        start = self.cursor or State(source.scene.theta, source.scene.omega)
+        points, _ = followed(method, model, h, start)
+        plot = self._section.picture(points, start, self.cursor)
+        _, kind = followed(method, model, h, self.aim or start)
+        where = f"{self.aim.theta:g}, {self.aim.omega:g}" if self.aim else "start"
+        return Picture.stacked(plot, Picture.of_line(f"{where}: {sentence(method, kind)}", TEXT))
+
+    def fill(self, wanted: Wanted, points: "Points", share: float) -> None:
+        """Add some orbits to a section, unless another one is wanted by now."""
+        if wanted == self.wanted and self._section is not None:
+            self._section.add(points)
+            self.share = share
+            self.draw()
+
+    def action_section(self) -> None:
+        self.shows_section = not self.shows_section
+
+
+@lru_cache(maxsize=64)
+def followed(method: Method, model: Model, h: float, start: State) -> "tuple[Points, OrbitKind]":
+    """Return the orbit of a start, and its kind."""
+    from engine.phase_space.section import kind_of, orbit
+
+    points = orbit(method, model, h, start, ORBIT_STEPS)
+    return points, kind_of(method, model, h, points)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engine.models.model import Model
-from tui.drawing.axes import nice, omega_ticks, theta_ticks
+from tui.drawing.axes import nice, number_ticks, theta_ticks
 from tui.drawing.canvas import Canvas
 from tui.drawing.palette import EXACT, FAINT, FRAME, QUIET, TEXT
 from tui.views.phase.viewport import Viewport
@@ -82,7 +82,7 @@ def axes(viewport: Viewport) -> list[Word]:
     low, high = viewport.omega_at(4.0 * bottom), viewport.omega_at(0.0)
     words: list[Word] = [
         (0, math.floor(viewport.y(omega) / 4), label[:columns], TEXT)
-        for omega, label in omega_ticks(low, high, max(bottom // 3, 1))
+        for omega, label in number_ticks(low, high, max(bottom // 3, 1))
     ]
     left, right = (
         viewport.theta_at(0.0),

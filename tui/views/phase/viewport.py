@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from engine.models.model import State
 from engine.scenes import Scene
 
-MIN_SPAN, MAX_SPAN = 1e-6, 200 * math.pi  # rad of theta from the left edge to the right one
+MIN_SPAN, MAX_SPAN = 1e-3, 200 * math.pi  # rad of theta from the left edge to the right one
 
 
 class Viewport(NamedTuple):
@@ -110,17 +110,13 @@ class Viewport(NamedTuple):
             theta = math.remainder(theta, math.tau)
         return self._replace(theta=theta, omega=self.omega + down * self.omega_per_dot)
 
-    def stepped(self, start: State, right: float, up: float) -> tuple[State, "Viewport"]:
-        """Return a state so many dots from another one, or from the middle if that is out of view, and a viewport."""
+    def stepped(self, start: State, right: float, up: float) -> State:
+        """Return a state so many dots from another one, or from the middle if that is out of view."""
         x, y = float(self.x(start.theta)), float(self.y(start.omega))
         width, height = 2 * self.columns, 4 * self.rows
         if not (0 <= x < width and 0 <= y < height):
             x, y = self.middle
-        x, y = x + right, y - up
-        beyond_x = min(x - 1, 0) + max(x - width + 1, 0)
-        beyond_y = min(y - 1, 0) + max(y - height + 1, 0)
-        moved = self.panned(-beyond_x, -beyond_y) if beyond_x or beyond_y else self
-        return self.at(x, y), moved
+        return self.at(min(max(x + right, 0), width - 1), min(max(y - up, 0), height - 1))
 
     def resized(self, columns: int, rows: int) -> "Viewport":
         """Return the same stretch of phase space on another rectangle."""

@@ -1,16 +1,12 @@
 """StabilityPane: the map of stability, a panel per method, to choose h and amplitude from with mouse or keyboard."""
 
-import textwrap
-from typing import ClassVar
-
 from textual import events
-from textual.binding import Binding, BindingType
 
 from engine.run.lockstep import Sample
 from engine.stability.grid import Grid
 from engine.stability.outcomes import Cells
 from engine.stability.study import amplitude
-from tui.drawing.palette import NOBODY, Palette, palette
+from tui.drawing.palette import TEXT, Palette, palette
 from tui.drawing.picture import Picture, Row
 from tui.playback.source import Source
 from tui.views.messages import SceneChosen
@@ -30,19 +26,9 @@ class StabilityPane(Chooser[tuple[int, int]]):
 
     BINDING_GROUP_TITLE = "Stability"
     HELP = "A click starts with that h and amplitude."
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("left", "move(-1, 0)", "choose h and amplitude", False, "arrows"),
-        Binding("right", "move(1, 0)"),
-        Binding("up", "move(0, 1)"),
-        Binding("down", "move(0, -1)"),
-        Binding("enter", "choose", "Start", tooltip="start at the cursor"),
-        Binding("tab", "method(1)", "the next method in words", show=False),
-        Binding("escape", "cancel", "leave the cursor", False, "esc"),
-    ]
 
     def __init__(self, grid: Grid) -> None:
         super().__init__()
-        self.pointer: tuple[int, int] | None = None
         self.begin(grid)
 
     def begin(self, grid: Grid) -> None:
@@ -51,7 +37,8 @@ class StabilityPane(Chooser[tuple[int, int]]):
         self.cells: Cells = grid.unknown()
         self.pieces = 0  # of the map that have been computed
         self.complete = False
-        self.cursor = None
+        self.title = ""
+        self.cursor = self.pointer = None
         self._panels: list[list[Row]] = []
         self._drawn: object = None
 
@@ -93,9 +80,9 @@ class StabilityPane(Chooser[tuple[int, int]]):
 
     def picture(self, source: Source, sample: Sample) -> Picture:
         if why := source.scene.why_not_mapped:
-            self.cursor = None
-            lines = textwrap.wrap(why, max(self.room.width - 2, 1))
-            return Picture([[(f" {line}", NOBODY)] for line in lines])
+            self.write_titles("Stability (F5)", "")
+            return Picture(self.words(why))
+        self.write_titles(self.title, "")
         columns, rows = self.panel_size()
         if columns <= 2 * MARGIN or self.grid.methods != self.cast:
             return Picture()
@@ -106,8 +93,8 @@ class StabilityPane(Chooser[tuple[int, int]]):
             [title(index, self.cast[index], columns, self._colours, self._note(index)), *lines[1:]]
             for index, lines in zip(self.places, self._panels, strict=True)
         ]
-        words = [*textwrap.wrap(self._verdict(), max(self.room.width - 1, 1)), "", ""][:WORDS]
-        below: list[Row] = [[(f" {line}", NOBODY)] for line in words]
+        blank: Row = [("", TEXT)]
+        below = [*self.words(self._verdict()), blank, blank][:WORDS]
         return Picture([*side_by_side(panels, 2), *below, *self._legend()])
 
     def _panel(self, index: int, columns: int, rows: int) -> list[Row]:
@@ -150,50 +137,31 @@ class StabilityPane(Chooser[tuple[int, int]]):
         return verdict(self.cast[self.index], self.grid.theta[theta], self.grid.z, cells, z, w0)
 
     def action_move(self, right: int, up: int) -> None:
+        if self.grid.methods != self.cast:
+            return
         z, theta = self.aim(self.index) or (0, 0)
-        self.cursor = (
-            min(max(z + right, 0), len(self.grid.z) - 1),
-            min(max(theta + up, 0), len(self.grid.theta) - 1),
-        )
+        last_z = len(self.grid.z) - 1
+        last_theta = len(self.grid.theta) - 1
+        self.cursor = min(max(z + right, 0), last_z), min(max(theta + up, 0), last_theta)
         self.draw()
 
     def choose(self, place: tuple[int, int]) -> None:
         assert self.source is not None
-        (z, theta), scene = place, self.source.scene
+        scene = self.source.scene
+        z, theta = place
         h = float(self.grid.z[z]) / scene.w0
-        self.post_message(
-            SceneChosen(scene.altered(theta=float(self.grid.theta[theta]), omega=0.0, h=h))
-        )
+        start = scene.altered(theta=float(self.grid.theta[theta]), omega=0.0, h=h)
+        self.post_message(SceneChosen(start))
 
-    def on_mouse_move(self, event: events.MouseMove) -> None:
-        if (under := self._under(event)) != self.pointer:
-            self.pointer = under
-            self.draw()
-
-    def on_leave(self) -> None:
-        self.pointer = None
-        self.draw()
-
-    def on_click(self, event: events.Click) -> None:
-        if (under := self._under(event)) is not None and self.is_live:
-            self.cursor = None
-            self.choose(under)
-
-    def _under(self, event: events.MouseEvent) -> tuple[int, int] | None:
-        """The place under the pointer; its method is the one described from now on."""
-        if self.grid.methods != self.cast:
-            return None
+    def place_under(self, event: events.MouseEvent) -> tuple[int, int] | None:
+        """Return the place under the pointer; its method is the one described from now on."""
         columns, rows = self.panel_size()
         x, y = event.get_content_offset_capture(self)
         across, column = divmod(x, columns + 2)
         down, row = divmod(y, rows + 2)
-        number, shown = 2 * down + across, self.places
-        if not (
-            across in (0, 1)
-            and MARGIN <= column < columns
-            and 1 <= row <= rows
-            and 0 <= number < len(shown)
-        ):
+        inside = across in (0, 1) and MARGIN <= column < columns and 1 <= row <= rows
+        number = 2 * down + across
+        if not inside or number not in range(len(self.places)) or self.grid.methods != self.cast:
             return None
-        self.describe(shown[number])
+        self.describe(self.places[number])
         return place_at(self.grid, row - 1, column - MARGIN, rows, columns - MARGIN)

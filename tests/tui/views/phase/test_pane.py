@@ -119,12 +119,13 @@ async def test_esc_cancels_a_drag():
         assert not pilot.app.chosen
 
 
-async def test_a_drag_that_leaves_the_pane_chooses_at_its_edge():
+async def test_a_drag_that_ends_outside_chooses_nothing():
     async with shown() as (pilot, pane):
         await pilot.mouse_down(pane, offset=at(30, 8))
         await pilot.hover(offset=(0, 0))
         await pilot.mouse_up(offset=(0, 0))
-        assert pilot.app.chosen == [tuple(pane.viewport.at_cell(0, 0))]
+        assert not pilot.app.chosen
+        assert not pane.aiming
 
 
 async def test_arrows_move_a_crosshair_from_the_start_and_enter_chooses_it():
@@ -163,16 +164,6 @@ async def test_every_press_of_an_arrow_moves_and_the_way_back_is_as_long():
         assert seen[-1] == pytest.approx(1.0, abs=pane.viewport.theta_per_dot)
 
 
-async def test_a_crosshair_pushed_over_the_edge_moves_the_picture():
-    async with shown() as (pilot, pane):
-        await pilot.press("z", "z")
-        before = pane.viewport
-        for _ in range(2 * 46 // DOTS + 2):
-            pane.action_move(0, 1)
-        assert pane.viewport.omega > before.omega
-        assert 0 <= pane.viewport.y(pane.cursor.omega) < 4 * pane.viewport.rows
-
-
 async def test_the_wheel_zooms_around_the_pointer():
     async with shown() as (pilot, pane):
         cell = (30, 5)
@@ -187,14 +178,14 @@ async def test_the_wheel_zooms_around_the_pointer():
         assert pane.viewport.theta_span == pytest.approx(span)
 
 
-async def test_z_zooms_in_to_a_millionth_of_a_radian_at_the_unstable_point():
+async def test_z_zooms_in_to_a_thousandth_of_a_radian_at_the_unstable_point():
     async with shown(Live(Scene(theta=3.141592653589793))) as (pilot, pane):
         await pilot.press("up", "down", "z")
         for _ in range(30):
             pane.action_zoom(0.5)
         assert pane.viewport.theta_span == pytest.approx(MIN_SPAN)
         assert abs(abs(pane.cursor.theta) - math.pi) < 1e-15  # no dot away from it, at any zoom
-        assert all(word in pane.text for word in ("separatrix", "rotation", "pi", "+2e-7"))
+        assert all(word in pane.text for word in ("separatrix", "rotation", "3.1414", "3.1418"))
         for _ in range(30):
             pane.action_zoom(2.0)
         assert pane.viewport.theta_span > 6

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.scenes import SCENES, Scene
-from tui.drawing.axes import in_pi, omega_ticks, theta_ticks
+from tui.drawing.axes import in_pi, number_ticks, theta_ticks
 from tui.views.phase.portrait import Portrait
 from tui.views.phase.viewport import Viewport
 
@@ -121,14 +121,9 @@ def test_angles_are_in_pi_and_wrapped_ones_stay_in_one_turn():
     assert in_pi(-0.75) == "-3pi/4"
 
 
-def test_close_to_the_top_angles_are_counted_from_it():
-    labels = [label for _, label in theta_ticks(math.pi - 5e-7, math.pi + 5e-7, 4, True)]
-    assert labels == ["-5e-7", "pi", "+5e-7"]
-
-
-@given(st.floats(-20, 20), st.floats(1e-9, 100), st.integers(1, 12))
+@given(st.floats(-20, 20), st.floats(1e-3, 100), st.integers(1, 12))
 def test_ticks_are_in_view_and_not_too_many(low, span, most):
-    for ticks in (omega_ticks(low, low + span, most), theta_ticks(low, low + span, most, False)):
+    for ticks in (number_ticks(low, low + span, most), theta_ticks(low, low + span, most, False)):
         assert len(ticks) <= 2 * most + 1
         assert all(low - 1e-3 * span <= value <= low + span * 1.001 for value, _ in ticks)
         assert len({label for _, label in ticks}) == len(ticks)

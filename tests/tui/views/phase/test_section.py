@@ -11,10 +11,9 @@ from engine.phase_space.section import iterate, orbit, pieces
 from engine.scenes import SCENES, Scene
 from tests.tui import drawn
 from tests.tui.harness import Theatre, lab, until
-from tui.drawing.cells import CellWidget
 from tui.drawing.palette import FRAME, faint
+from tui.views.phase.pane import SectionPane
 from tui.views.phase.section import Section, starts
-from tui.views.phase.section_pane import SectionPane
 from tui.views.phase.viewport import Viewport
 
 SCENE = Scene(theta=1.25, h=0.348011)  # at the 1:6 resonance of velocity Verlet
@@ -146,9 +145,7 @@ async def test_another_step_redraws_it_and_tab_takes_the_next_method():
         assert pane.text != before
         pane = await section_of(theatre, "tab")
         assert str(pane.border_title).startswith("Own map of RK4: h 0.5 s")
-        table = theatre.stage.query_one("#facts", CellWidget).text.splitlines()
-        assert " ".join(table[1].split()).startswith("orbit turns a step steps a turn")
-        assert "spirals" in table[5]
+        assert not theatre.stage.query_one("#facts").is_on_screen
 
 
 async def test_a_lab_that_is_paused_redraws_it_for_another_step_and_another_start():

@@ -85,7 +85,7 @@ def test_zoom_keeps_what_is_under_the_pointer(factor, x, y):
     assert after.omega_at(y) == pytest.approx(before.omega_at(y), abs=1e-11)
 
 
-def test_zoom_goes_to_a_millionth_of_a_radian_and_no_further():
+def test_zoom_goes_to_a_thousandth_of_a_radian_and_no_further():
     viewport = Viewport.portrait(47, 16, DRIFT)
     viewport = viewport.panned(-math.pi / viewport.theta_per_dot, 0)
     for _ in range(100):

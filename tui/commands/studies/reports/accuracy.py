@@ -197,7 +197,7 @@ def _chart(found: Findings) -> list[Text]:
     palette = PALETTES["dark"]
     columns, rows = CHART_SIZE
     series = accuracy_series(
-        found.points, found.kind, found.cost, references=found.references, cast=found.scene.cast
+        found.points, found.kind, found.cost, found.scene.cast, references=found.references
     )
     chart = accuracy_chart(
         series, found.kind, found.cost, min(console(columns).width, columns), rows
