@@ -17,7 +17,7 @@ from engine.methods import Cast, Method
 from engine.methods.own import OwnMethod
 from engine.run.compiled import TieredLoops, available, compiled
 from engine.run.lockstep import Lockstep
-from engine.run.loops import LoopsOf, PlainLoops
+from engine.run.loops import LoopsOf, PlainLoops, count_evaluations
 from engine.scenes import Z_LIMITS, Scene
 
 ErrorKind = Literal["theta", "energy", "final"]
@@ -25,6 +25,7 @@ Clock = Callable[[], float]  # s
 REPEATS = 5  # of a measurement of seconds
 COMPARISONS = 400  # with the exact swing in a run: at least so many, or at every step; below 800
 TIMED_STEPS = 20_000  # at least, in each measurement of seconds
+COUNTED_STEPS = 2000
 SWINGS = 10
 Z_LADDER = (0.6, 0.0015, 12)  # about ten steps a small swing, to four thousand
 ALL_LADDER = (2.4, 0.0015, 14)  # for BM4 and BM6, too, which are stable up to 3
@@ -63,6 +64,7 @@ class Point:
     flaws: Flaws
     seconds: float | None = None  # the shortest of REPEATS runs without errors taken
     spread: float | None = None  # by how much the longest took longer, relative
+    counted: int | None = None  # force evaluations, where they vary
 
     @property
     def h(self) -> float:
@@ -71,7 +73,7 @@ class Point:
 
     @property
     def force_evaluations(self) -> int:
-        return self.method.evaluations(self.steps)
+        return self.method.evaluations(self.steps) if self.counted is None else self.counted
 
     def error(self, kind: ErrorKind) -> float:
         return {"theta": self.theta_error, "energy": self.energy_error, "final": self.final_error}[
@@ -113,9 +115,8 @@ class Study:
         """
         errors, diverged = self._errors(method, steps, comparisons)
         if diverged:
-            return Point(
-                method, self.time, steps, *errors, Flaws("diverged", "diverged", "diverged")
-            )
+            flawed = Flaws("diverged", "diverged", "diverged")
+            return Point(method, self.time, steps, *errors, flawed)
         floors = [
             floor * math.sqrt(steps)
             for floor in (self._theta_floor, self._energy_floor, self._theta_floor)
@@ -132,7 +133,15 @@ class Study:
                 refined = error * least <= half[kind] and half[kind] * least <= quarter[kind]
                 if flaws[kind] is None and error <= floor and not refined:
                     flaws[kind] = "rounding"
-        return Point(method, self.time, steps, *errors, Flaws(*flaws))
+        counted = self._evaluations(method, steps) if method.varies else None
+        return Point(method, self.time, steps, *errors, Flaws(*flaws), counted=counted)
+
+    def _evaluations(self, method: Method, steps: int) -> int:
+        """Force evaluations of so many steps: counted, of many as an average of the first."""
+        start = self.scene.equations.start(self.scene.theta, self.scene.omega)
+        most = min(steps, COUNTED_STEPS)
+        found = count_evaluations(method, self.scene.equations, start, self.time / steps, most)
+        return round(found * steps / most)
 
     def _errors(
         self, method: Method, steps: int, comparisons: int

@@ -2,9 +2,9 @@
 
 `method` says what a method is: a generator function (force, phase, h) -> phases, written as in the book, with only
 + and * on the phase and never `+=`, which would change arrays in place.  It therefore runs unchanged on floats,
-NumPy arrays, complex numbers, mpmath numbers and under Numba.  The families: `euler`, `verlet`, `runge_kutta`, and
-`splitting`, which builds methods from coefficients.  Others are not as general, and there for one scene each:
-`precision` carries Verlet in other numbers, `adaptive` divides its steps, `damped` adds friction, `stiff` tells fast
+NumPy arrays, complex numbers, mpmath numbers and under Numba.  The families: `euler`, `verlet`, `runge_kutta`,
+`splitting`, which builds methods from coefficients, and `implicit`, which solves an equation in each step.
+Others are not as general, and there for one scene each: `precision` carries Verlet in other numbers, `adaptive` divides its steps, `damped` adds friction, `stiff` tells fast
 from slow, and `learned` knows the pendulum from the measurements behind `learned_numbers`.
 
 To add a method, write its function, its entry and its place in FAMILY in one of these files.  Every field of an
@@ -13,12 +13,15 @@ text of a file; `examine` says whether it is one, and loads it.
 """
 
 import copyreg
+import re
+import unicodedata
 from collections.abc import Sequence
 
 from engine.methods import (
     adaptive,
     damped,
     euler,
+    implicit,
     learned,
     precision,
     runge_kutta,
@@ -34,17 +37,23 @@ from engine.methods.verlet import VELOCITY_VERLET
 Cast = tuple[Method, ...]
 """The methods of a run, in order."""
 
-GENERAL: Cast = (*euler.FAMILY, *verlet.FAMILY, *runge_kutta.FAMILY, *splitting.FAMILY)
-"""The methods for any force and any numbers.  The others belong to a scene that needs them."""
+FAMILIES: dict[str, Cast] = {
+    "Euler": euler.FAMILY,
+    "Verlet": verlet.FAMILY,
+    "Runge-Kutta": runge_kutta.FAMILY,
+    "splitting": splitting.FAMILY,
+    "implicit": implicit.FAMILY,
+    "friction": damped.FAMILY,
+    "step doubling": adaptive.FAMILY,
+    "precision": precision.FAMILY,
+    "fast and slow parts": stiff.FAMILY,
+    "learned": learned.FAMILY,
+}
 
-METHODS: Cast = (
-    *GENERAL,
-    *damped.FAMILY,
-    *adaptive.FAMILY,
-    *precision.FAMILY,
-    *stiff.FAMILY,
-    *learned.FAMILY,
-)
+METHODS: Cast = tuple(method for family in FAMILIES.values() for method in family)
+
+GENERAL: Cast = tuple(method for method in METHODS if method.general)
+"""The methods for any force and any numbers.  The others belong to a scene that needs them."""
 
 USUAL_CAST: Cast = (EXPLICIT_EULER, SYMPLECTIC_EULER, VELOCITY_VERLET, RK4)
 
@@ -57,18 +66,24 @@ def method_of(key: str) -> Method:
 def matching(name: str, methods: Sequence[Method] = METHODS) -> list[Method]:
     """Return the one method of this name, or those in whose keys a word starts with it.
 
-    Methods that take any force come before the others.
+    Case, accents and hyphens do not count.  Methods that take any force come before the others.
     """
-    name = name.strip().lower()
+    wanted = simplified(name)
     for method in methods:
-        if name in (each.lower() for each in (method.key, method.label, *method.other_names)):
+        if wanted in map(simplified, method.names):
             return [method]
     for some in ([method for method in methods if method.general], methods):
-        first = [each for each in some if name and each.key.startswith(name)]
-        found = first or [each for each in some if name and f"_{name}" in each.key]
+        first = [each for each in some if wanted and simplified(each.key).startswith(wanted)]
+        found = first or [each for each in some if wanted and f" {wanted}" in simplified(each.key)]
         if found:
             return found
     return []
+
+
+def simplified(name: str) -> str:
+    """Return a name in small letters, without accents, its words separated by single spaces."""
+    letters = unicodedata.normalize("NFKD", name.casefold())
+    return " ".join(re.findall(r"[a-z0-9]+", letters.encode("ascii", "ignore").decode()))
 
 
 _BY_KEY = {method.key: method for method in METHODS}

@@ -48,7 +48,6 @@ def _halving(*, richardson: bool, ends: str, **fields: Any) -> Method:
         **fields,
         phases=halving(velocity_verlet, TOLERANCE, richardson),
         formula=f"a step of velocity Verlet, and two halves: if they differ by more than {TOLERANCE}, halve h; {ends}",
-        other_names=("adaptive Verlet",),
         reference="Press et al., Numerical Recipes, 2nd edition (1992), 16.2",
         used=None,
         note="Its force evaluations are those of a minute of scene halving, on average, and equal cost goes by them; "
@@ -63,6 +62,7 @@ HALVING_VERLET = _halving(
     key="halving_verlet",
     label="Step doubling",
     letter="h",
+    other_names=("adaptive Verlet",),
     richardson=False,
     ends="the halves count",
     order=2,
@@ -73,6 +73,7 @@ HALVING_RICHARDSON = _halving(
     key="halving_richardson",
     label="Richardson Verlet",
     letter="a",
+    other_names=("extrapolated Verlet",),
     richardson=True,
     ends="they are extrapolated to h = 0",
     order=4,

@@ -10,6 +10,8 @@ from itertools import islice
 from statistics import linear_regression
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from engine.methods.method import Phases
 from engine.models.model import Force, Phase
 from engine.models.pendulum import Pendulum
@@ -37,7 +39,7 @@ class Measured(NamedTuple):
     more_at_the_start: int  # force evaluations
     symplectic: bool
     reversible: bool
-    linear_limit: float  # z, at most WIDEST_Z; 0: none
+    linear_limit: float  # z; 0: none; inf: none found up to WIDEST_Z
 
 
 def measured(phases: Phases) -> Measured:
@@ -134,17 +136,19 @@ def out_and_back(phases: Phases, start: Phase, h: float, steps: int) -> float:
 
 
 def linear_limit(phases: Phases) -> float:
-    """The first z beyond which small swings grow, to 1e-9; 0 where no step is small enough, at most WIDEST_Z.
+    """The first z beyond which small swings grow, to 1e-9; 0 where no step is small enough, inf where
+    all up to WIDEST_Z are.
 
     Looked for upwards, as high-order methods are stable again beyond it, in islands.
     """
     if not is_stable(phases, NO_LIMIT_BELOW):
         return 0.0
-    rungs = range(int(NO_LIMIT_BELOW * RUNGS), WIDEST_Z * RUNGS)
-    first = next((rung for rung in rungs if not is_stable(phases, rung / RUNGS)), None)
-    if first is None:
-        return WIDEST_Z
-    stable, unstable = (first - 1) / RUNGS, first / RUNGS
+    rungs = np.arange(int(NO_LIMIT_BELOW * RUNGS), WIDEST_Z * RUNGS) / RUNGS
+    unstable_rungs = rungs[~_stable(phases, rungs)]
+    if not len(unstable_rungs):
+        return math.inf
+    unstable = float(unstable_rungs[0])
+    stable = unstable - 1 / RUNGS
     while unstable - stable > 1e-10:
         middle = (stable + unstable) / 2
         if is_stable(phases, middle):
@@ -159,10 +163,16 @@ def is_stable(phases: Phases, z: float) -> bool:
 
     They do if det <= 1 and |trace| <= 1 + det: Jury, Theory and Application of the z-Transform Method (1964).
     """
-    a, c = after(phases, _spring, (1.0, 0.0), z, 1)
-    b, d = after(phases, _spring, (0.0, 1.0), z, 1)
+    return bool(_stable(phases, z))
+
+
+def _stable(phases: Phases, z: Any) -> Any:
+    """`is_stable` for a z, or for an array of them."""
+    zero = 0.0 * z
+    a, c = after(phases, _spring, (zero + 1.0, zero), z, 1)
+    b, d = after(phases, _spring, (zero, zero + 1.0), z, 1)
     area = a * d - b * c
-    return bool(area <= 1 + LINEAR_ROUNDING and abs(a + d) <= 1 + area + LINEAR_ROUNDING)
+    return (area <= 1 + LINEAR_ROUNDING) & (abs(a + d) <= 1 + area + LINEAR_ROUNDING)
 
 
 def _spring(theta: Any) -> Any:

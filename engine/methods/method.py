@@ -22,6 +22,16 @@ BoundPhases = Callable[[Phase, float], Iterator[Phase]]
 """The same of a method on a model: (phase, h) -> phases."""
 
 
+COMPILABLE: dict[Phases, Callable[[], Phases]] = {}
+"""Of phases that Numba cannot compile, what returns others that it can, the same to the bit."""
+
+
+def compilable(phases: Phases) -> Phases:
+    """Return the phases as Numba can compile them."""
+    other = COMPILABLE.get(phases)
+    return phases if other is None else other()
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Method:
     """A method and what is claimed of it; tests/engine/methods measure every claim."""
@@ -38,7 +48,7 @@ class Method:
     symplectic: bool = False  # the step's Jacobian has determinant 1
     reversible: bool = False  # the step and omega -> -omega undo each other
     linear_limit: float | None = (
-        None  # largest stable z = h·w0 on the linear oscillator; 0: none; None: no one number
+        None  # largest stable z = h·w0 on the linear oscillator; 0: none; inf: all; None: no one number
     )
     other_names: tuple[str, ...] = ()
     reference: str
@@ -47,6 +57,7 @@ class Method:
     modified_energy: ModifiedEnergy | None = None  # conserved up to O(h⁴); None if none is known
     takes_parts: bool = False  # `phases` takes the parts of its model, not any force
     on_rates: RatePhases | None = None  # the same method for first-order systems
+    on_spring: Phases | None = None  # the same method with the parts of a spring
     models: tuple[str, ...] = ("pendulum", "linear")  # keys of the models that it integrates
     any_numbers: bool = True  # also arrays, complex and mpmath numbers
     longest_substep: float = 1.0  # of a symplectic splitting, in steps: chaos begins there first
@@ -62,11 +73,23 @@ class Method:
 
     def on(self, model: Model, sin: Sine = math.sin) -> BoundPhases:
         """Return the method's phases on a model, for the numbers of this sine."""
-        if self.takes_parts:
-            return partial(self.phases, model.parts(sin))
+        phases = self.phases_from_parts(model)
+        if phases is not None:
+            return partial(phases, model.parts(sin))
         if not model.second_order and self.on_rates is not None:
             return partial(self.on_rates, model.rates(sin))
         return partial(self.phases, model.force(sin))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All the names by which it can be asked for."""
+        return (self.key, self.label, *self.other_names)
+
+    def phases_from_parts(self, model: Model) -> Phases | None:
+        """Return its phases if it takes the parts of this model."""
+        if self.takes_parts:
+            return self.phases
+        return self.on_spring if model.key == "spring" else None
 
     def step(self, force: Any, phase: Phase, h: float) -> Phase:
         """The phase after one step of h [s]."""

@@ -90,7 +90,6 @@ def _verlet(*, numbers: str, keeps_area: bool, **fields: Any) -> Method:
         symplectic=keeps_area,
         reversible=keeps_area,
         linear_limit=2.0,
-        other_names=("velocity Verlet",),
         reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), VIII.5",
         models=("pendulum",),
         any_numbers=False,
@@ -100,6 +99,7 @@ def _verlet(*, numbers: str, keeps_area: bool, **fields: Any) -> Method:
 VERLET_FLOAT32 = _verlet(
     phases=verlet_float32,
     key="verlet_float32",
+    other_names=("single-precision Verlet",),
     label="Single Verlet",
     letter="n",
     numbers="all numbers rounded to 32 bits",
@@ -112,6 +112,7 @@ VERLET_FLOAT32 = _verlet(
 VERLET_COMPENSATED = _verlet(
     phases=verlet_compensated,
     key="verlet_compensated",
+    other_names=("Verlet with compensated sums",),
     label="Kahan Verlet",
     letter="k",
     numbers="each sum keeps what it rounds off for the next",

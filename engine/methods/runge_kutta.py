@@ -29,6 +29,36 @@ def rk4(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
         yield theta, omega
 
 
+def heun(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
+    """Heun's method: the mean of the slopes at the start and at the end of a step of explicit Euler.
+
+    Order 2; det - 1 ~ h⁴.  Hairer, Lubich & Wanner (2006), II.1.1.
+    """
+    theta, omega = phase
+    half = h / 2
+    while True:
+        a = force(theta)
+        omega_end = omega + h * a
+        a_end = force(theta + h * omega)
+        theta = theta + half * (omega + omega_end)
+        omega = omega + half * (a + a_end)
+        yield theta, omega
+
+
+def explicit_midpoint(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
+    """The explicit midpoint rule: the slope in the middle of a step of explicit Euler.
+
+    Order 2; det - 1 ~ h⁴.  Hairer, Lubich & Wanner (2006), II.1.1.
+    """
+    theta, omega = phase
+    half = h / 2
+    while True:
+        a_half = force(theta + half * omega)
+        theta = theta + h * (omega + half * force(theta))
+        omega = omega + h * a_half
+        yield theta, omega
+
+
 def rk4_on_rates(rates: Rates, phase: Phase, h: float) -> Iterator[Phase]:
     """The classical Runge-Kutta method on a first-order system.  Hairer, Lubich & Wanner (2006), II.1.1."""
     while True:
@@ -62,4 +92,34 @@ RK4 = Method(
     models=("pendulum", "linear", "spring", *FIRST_ORDER),
 )
 
-FAMILY = (RK4,)
+HEUN = Method(
+    key="heun",
+    label="Heun",
+    letter="w",
+    phases=heun,
+    formula="y' = y + h/2 (k1 + k2), the slopes k at the start and at the end of a step of explicit Euler",
+    order=2,
+    force_evaluations=2,
+    linear_limit=0.0,
+    other_names=("RK2", "improved Euler", "explicit trapezoidal rule"),
+    reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), II.1.1",
+    used="equations with multiplicative noise: Brian 2, heun [brian2.readthedocs.io, Numerical integration]",
+    note="It gains energy at every h: a step multiplies that of small swings by 1 + z⁴/4.",
+)
+
+EXPLICIT_MIDPOINT = Method(
+    key="explicit_midpoint",
+    label="Explicit midpoint",
+    letter="q",
+    phases=explicit_midpoint,
+    formula="y' = y + h k2, the slope k2 in the middle of a step of explicit Euler",
+    order=2,
+    force_evaluations=2,
+    linear_limit=0.0,
+    other_names=("modified Euler",),
+    reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), II.1.1",
+    used="neurons: Brian 2, rk2 [brian2.readthedocs.io, Numerical integration]",
+    note="It gains energy at every h: a step multiplies that of small swings by 1 + z⁴/4.",
+)
+
+FAMILY = (RK4, HEUN, EXPLICIT_MIDPOINT)

@@ -33,19 +33,6 @@ def respa(inner: Phases, n: int) -> Phases:
     return impulse
 
 
-def implicit_midpoint(parts: SpringParts, phase: Phase, h: float) -> Iterator[Phase]:
-    """The implicit midpoint rule: z' = z + h (w + w')/2, w' = w + h a((z + z')/2), solved for the middle.
-
-    Order 2, symplectic and reversible; small vibrations are stable at any h.
-    Hairer, Lubich & Wanner (2006), II.1.1 and VI.4.
-    """
-    z, w = phase
-    while True:
-        middle = parts.solve(z + h / 2 * w + h * h / 4 * parts.slow(z), h * h / 4)
-        z, w = 2 * middle - z, 4 * (middle - z) / h - w
-        yield z, w
-
-
 def imex_euler(parts: SpringParts, phase: Phase, h: float) -> Iterator[Phase]:
     """Implicit-explicit Euler: the fast force at the end of the step, the slow one at its start.
 
@@ -89,24 +76,6 @@ RESPA = Method(
     takes_parts=True,
 )
 
-IMPLICIT_MIDPOINT = Method(
-    key="implicit_midpoint",
-    label="Implicit midpoint",
-    letter="i",
-    phases=implicit_midpoint,
-    formula="z' = z + h (w + w')/2;  w' = w + h a((z + z')/2)",
-    order=2,
-    force_evaluations=1,
-    symplectic=True,
-    reversible=True,
-    other_names=("Gauss method of order 2",),
-    reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), II.1.1",
-    used="Markov chain Monte Carlo: BlackJAX, implicit_midpoint [blackjax-devs.github.io, blackjax.mcmc.integrators]",
-    note="Small vibrations are stable at any h, with a phase that is wrong where h is long. Counted are its solutions.",
-    models=("spring",),
-    takes_parts=True,
-)
-
 IMEX_EULER = Method(
     key="imex_euler",
     label="IMEX Euler",
@@ -142,4 +111,4 @@ MEAN_FIELD_SPLITTING = Method(
     any_numbers=False,
 )
 
-FAMILY = (RESPA, IMPLICIT_MIDPOINT, IMEX_EULER, MEAN_FIELD_SPLITTING)
+FAMILY = (RESPA, IMEX_EULER, MEAN_FIELD_SPLITTING)

@@ -1,10 +1,13 @@
-"""Velocity Verlet: half a kick, a drift, half a kick."""
+"""The Verlet methods: half a kick, a drift, half a kick; or half a drift, a kick, half a drift."""
 
 from collections.abc import Iterator
 
 from engine.methods.method import Method
 from engine.models.model import Force, Phase
-from engine.models.modified_energy import velocity_verlet_modified_energy
+from engine.models.modified_energy import (
+    position_verlet_modified_energy,
+    velocity_verlet_modified_energy,
+)
 
 
 def velocity_verlet(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
@@ -23,6 +26,20 @@ def velocity_verlet(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
         yield theta, omega
 
 
+def position_verlet(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
+    """Position Verlet: half a drift, a kick, half a drift.
+
+    Order 2, symplectic and reversible.  Hairer, Lubich & Wanner (2006), VI.3.1.
+    """
+    theta, omega = phase
+    half = h / 2
+    while True:
+        theta_half = theta + half * omega
+        omega = omega + h * force(theta_half)
+        theta = theta_half + half * omega
+        yield theta, omega
+
+
 VELOCITY_VERLET = Method(
     key="velocity_verlet",
     label="Velocity Verlet",
@@ -36,11 +53,29 @@ VELOCITY_VERLET = Method(
     symplectic=True,
     reversible=True,
     linear_limit=2.0,
-    other_names=("Störmer-Verlet", "leapfrog (kick-drift-kick)"),
+    other_names=("Verlet", "Störmer-Verlet", "leapfrog", "kick-drift-kick"),
     reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), I.1.4",
     used="molecular dynamics: the default of LAMMPS [docs.lammps.org, run_style]",
     modified_energy=velocity_verlet_modified_energy,
     models=("pendulum", "linear", "spring"),
 )
 
-FAMILY = (VELOCITY_VERLET,)
+POSITION_VERLET = Method(
+    key="position_verlet",
+    label="Position Verlet",
+    letter="o",
+    phases=position_verlet,
+    formula="theta½ = theta + h/2 omega;  omega' = omega + h a(theta½);  theta' = theta½ + h/2 omega'",
+    order=2,
+    force_evaluations=1,
+    symplectic=True,
+    reversible=True,
+    linear_limit=2.0,
+    other_names=("drift-kick-drift",),
+    reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), VI.3.1",
+    used="planets: REBOUND, integrator leapfrog [rebound.readthedocs.io, Integrators]",
+    modified_energy=position_verlet_modified_energy,
+    models=("pendulum", "linear", "spring"),
+)
+
+FAMILY = (VELOCITY_VERLET, POSITION_VERLET)

@@ -15,13 +15,29 @@ ModifiedEnergy = Callable[[Model, Phase, float], float]
 
 def velocity_verlet_modified_energy(model: Model, phase: Phase, h: float) -> float:
     """H - h² (2 omega² f'(theta) + f(theta)²)/24 [s⁻²], f being the force; what remains wobbles with h⁴."""
-    theta, omega = phase
-    force, energy = float(model.force()(theta)), float(model.energy()(phase))
-    value: float = energy - h * h / 24 * (2 * omega * omega * model.slope(theta) + force * force)
-    return value
+    omega, force, slope, energy = _parts(model, phase)
+    return energy - h * h / 24 * (2 * omega * omega * slope + force * force)
 
 
 def symplectic_euler_modified_energy(model: Model, phase: Phase, h: float) -> float:
     """Verlet's modified energy half a kick later: symplectic Euler is Verlet seen between its kicks."""
     theta, omega = phase
     return velocity_verlet_modified_energy(model, (theta, omega + h / 2 * model.force()(theta)), h)
+
+
+def position_verlet_modified_energy(model: Model, phase: Phase, h: float) -> float:
+    """H + h² (omega² f'(theta) + 2 f(theta)²)/24 [s⁻²], f being the force."""
+    omega, force, slope, energy = _parts(model, phase)
+    return energy + h * h / 24 * (omega * omega * slope + 2 * force * force)
+
+
+def implicit_midpoint_modified_energy(model: Model, phase: Phase, h: float) -> float:
+    """H + h² (omega² f'(theta) - f(theta)²)/24 [s⁻²], f being the force; of small swings a multiple of H."""
+    omega, force, slope, energy = _parts(model, phase)
+    return energy + h * h / 24 * (omega * omega * slope - force * force)
+
+
+def _parts(model: Model, phase: Phase) -> tuple[float, float, float, float]:
+    """Return omega, the force, its slope and the energy."""
+    theta, omega = phase
+    return omega, float(model.force()(theta)), model.slope(theta), float(model.energy()(phase))

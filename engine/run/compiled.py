@@ -13,7 +13,7 @@ from importlib.util import find_spec
 from typing import Any, NamedTuple
 
 from engine.methods import Method
-from engine.methods.splitting import COMPILABLE
+from engine.methods.method import compilable
 from engine.models.model import Model, Phase
 from engine.run import loops
 from engine.run.loops import Advanced, Loops, PlainLoops
@@ -60,7 +60,7 @@ def _compiled(method: Method, model: Model) -> CompiledLoops | None:
     inner = numba.njit(
         no_cpython_wrapper=True, no_cfunc_wrapper=True
     )  # never called by Python: compiles twice as fast
-    phases = inner(COMPILABLE.get(method.phases, method.phases))
+    phases = inner(compilable(method.phases))
     force, energy = inner(model.force()), inner(model.energy())
     travel, advance = inner(_travel), inner(loops.advance)
 

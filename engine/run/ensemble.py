@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from engine.methods import Method
-from engine.methods.splitting import COMPILABLE
+from engine.methods.method import compilable
 from engine.models import Pendulum
 from engine.models.model import Energy, Force, Phase
 
@@ -101,7 +101,7 @@ def compiled(method: Method, model: Pendulum) -> Watch:
     inner = numba.njit(
         no_cpython_wrapper=True, no_cfunc_wrapper=True
     )  # never called by Python: compiles twice as fast
-    phases = numba.njit(COMPILABLE.get(method.phases, method.phases))
+    phases = numba.njit(compilable(method.phases))
     force, energy = inner(model.force(np.sin)), model.energy
     look = numba.njit(_looking(inner(energy(np.sin))))
 

@@ -157,10 +157,11 @@ def count_evaluations(method: Method, model: Model, phase: Phase, h: float, n: i
 
     Of a method that takes the parts of its model, the parts in `Model.counted_parts` count.
     """
-    if method.takes_parts:
+    takes_parts = method.phases_from_parts(model)
+    if takes_parts is not None:
         parts = model.parts()
         counted = {name: _Counted(getattr(parts, name)) for name in model.counted_parts}
-        phases = method.phases(parts._replace(**counted), phase, h)
+        phases = takes_parts(parts._replace(**counted), phase, h)
     elif not model.second_order and method.on_rates is not None:
         counted = {"rates": _Counted(model.rates())}
         phases = method.on_rates(counted["rates"], phase, h)

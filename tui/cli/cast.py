@@ -1,6 +1,7 @@
 """The options --methods and --method, which choose the methods, the user's own among them."""
 
 import argparse
+import difflib
 import io
 import re
 import string
@@ -9,10 +10,10 @@ from contextlib import redirect_stdout
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from engine.methods import METHODS, Cast, Method, matching
+from engine.methods import FAMILIES, METHODS, Cast, Method, matching, simplified
 from engine.scenes import MOST_METHODS
 from tui.cli.errors import Exit, UserError
-from tui.cli.options import Suggestions, add_file, did_you_mean
+from tui.cli.options import Suggestions, add_file
 
 if TYPE_CHECKING:
     from engine.methods.own import OwnMethod
@@ -42,13 +43,19 @@ def add_cast_options(parser: argparse._ActionsContainer, default: str = "the sce
     )
 
 
-def cast_of(options: argparse.Namespace, default: Cast, most: int | None = MOST_METHODS) -> Cast:
+def cast_of(
+    options: argparse.Namespace,
+    default: Cast,
+    most: int | None = MOST_METHODS,
+    model: str | None = None,
+) -> Cast:
     """Return the methods that the options choose, `default` without --methods.
 
-    The user's own that --methods does not name come last.  Raises UserError and OwnMethodError.
+    The user's own that --methods does not name come last.  Only those for the model, if it is given, are advised.
+    Raises UserError and OwnMethodError.
     """
     own = own_methods(options)
-    cast = default if options.methods is None else _named(options.methods, (*METHODS, *own))
+    cast = default if options.methods is None else _named(options.methods, (*METHODS, *own), model)
     cast = (*cast, *(method for method in own if method not in cast))
     if most is not None and len(cast) > most:
         raise UserError(
@@ -68,20 +75,26 @@ def own_methods(options: argparse.Namespace) -> tuple["OwnMethod", ...]:
     return tuple(own)
 
 
-def _named(text: str, methods: Sequence[Method]) -> Cast:
+def _named(text: str, methods: Sequence[Method], model: str | None) -> Cast:
     cast: list[Method] = []
     for name in text.split(","):
-        method = find(name.strip(), methods)
+        method = find(name.strip(), methods, model=model)
         if method in cast:
             raise UserError(f"--methods: {method.key} is there twice; name each method once.")
         cast.append(method)
     return tuple(cast)
 
 
-def find(name: str, methods: Sequence[Method], option: str = "--methods") -> Method:
+def find(
+    name: str,
+    methods: Sequence[Method],
+    option: str = "--methods",
+    model: str | None = None,
+) -> Method:
     """Return the method of a name, of the start of a key, or of the start of a word in one.
 
-    General methods come before the others.  Raises UserError for the option.
+    Case, accents and hyphens do not count.  General methods come before the others.  Raises UserError for the
+    option, with those for the model, if it is given.
     """
     found = matching(name, methods)
     if len(found) == 1:
@@ -89,9 +102,21 @@ def find(name: str, methods: Sequence[Method], option: str = "--methods") -> Met
     if found:
         keys = " or ".join(method.key for method in found)
         raise UserError(f"{option}: {name!r} may be {keys}; write more of it.")
-    every = [method.key for method in methods]
-    advice = did_you_mean(name, every) or f": choose from {', '.join(every)}."
+    suited = [method for method in methods if model is None or model in method.models]
+    known = {simplified(each): method.key for method in suited for each in method.names}
+    near = difflib.get_close_matches(simplified(name), known, n=1)
+    advice = f": did you mean {known[near[0]]}?" if near else f": choose from {_listed(suited)}."
     raise UserError(f"{option}: there is no method {name!r}{advice}")
+
+
+def _listed(methods: Sequence[Method]) -> str:
+    """Return the keys of methods by family."""
+    families = {
+        family: [method.key for method in members if method in methods]
+        for family, members in FAMILIES.items()
+    }
+    families["your own"] = [method.key for method in methods if method not in METHODS]
+    return "; ".join(f"{family}: {', '.join(keys)}" for family, keys in families.items() if keys)
 
 
 def _own(text: str, others: Sequence[Method]) -> "OwnMethod":
@@ -112,7 +137,7 @@ def _own(text: str, others: Sequence[Method]) -> "OwnMethod":
     if letter is None:
         letter = next(
             each
-            for each in (*key.lower(), *string.ascii_letters)
+            for each in (*key.lower(), *key.upper(), *string.ascii_uppercase)
             if each.isalpha() and each not in taken
         )
     if not re.fullmatch(r"[A-Za-z0-9]", letter):

@@ -3,6 +3,7 @@
 import argparse
 import csv
 import json
+import math
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -42,7 +43,7 @@ class Column(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Rows in columns, folded to the width of the terminal."""
+    """Rows in columns, folded to the width of the terminal; a text is the head of the rows below."""
 
     columns: Sequence[Column]
     rows: Iterable[Any]
@@ -60,7 +61,8 @@ class Table:
             side: Literal["left", "right"] = "right" if column.right or column.form else "left"
             table.add_column(column.head, justify=side, overflow="fold", no_wrap=number == 0)
         for row in self.rows:
-            table.add_row(*(column.text(row) for column in self.columns))
+            is_head = isinstance(row, str)
+            table.add_row(*([row] if is_head else [column.text(row) for column in self.columns]))
         return table
 
 
@@ -104,6 +106,11 @@ class Report:
                 note.show()
             else:
                 draw(console(WIDTH_OF_FILES), [note], no_wrap=True, overflow="crop")
+
+
+def finite(row: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a row as JSON can hold it: null for a limit that is not there."""
+    return {name: None if value == math.inf else value for name, value in row.items()}
 
 
 def write_records(records: Iterable[Mapping[str, Any]], out: TextIO) -> None:

@@ -125,7 +125,7 @@ def scenes_of(options: argparse.Namespace, default: Scene | None = None) -> Scen
         )
     name = options.scene or options.scene_option
     scene = scene_named(name) if name else default or DEFAULT_SCENE
-    scenes = SceneList(scene.with_cast(cast_of(options, scene.cast)), axes)
+    scenes = SceneList(scene.with_cast(cast_of(options, scene.cast, model=scene.model)), axes)
     scenes.corners()
     return scenes
 

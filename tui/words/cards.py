@@ -71,15 +71,18 @@ def method_card(method: Method) -> str:
     """Return a method's properties; every line is a tested claim."""
     if method.linear_limit is None:
         stable = ""  # there is no one number
+    elif method.linear_limit == math.inf:
+        stable = "at any h (small swings)"
     elif method.linear_limit:
         stable = f"up to z = h w0 = {method.linear_limit:.4g} (small swings)"
     else:
         stable = "at no h"
+    about = "about " if method.varies else ""
     lines = {
         "also called": ", ".join(method.other_names),
         "formula": method.formula,
         "order": f"{method.order}: as a rule, over one swing half of h divides the error by {2**method.order}",
-        "costs": f"{counted(method.force_evaluations, 'force evaluation')} per step",
+        "costs": f"{about}{counted(method.force_evaluations, 'force evaluation')} per step",
         "symplectic": "yes: conserves phase-space area"
         if method.symplectic
         else "no: phase-space area changes",

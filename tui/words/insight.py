@@ -9,7 +9,7 @@ from collections.abc import Collection, Iterator, Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from engine.methods import GENERAL, Method
+from engine.methods import USUAL_CAST, Method
 from engine.run.judgement import Judgement, Milestone
 from engine.run.lockstep import Sample
 from engine.scenes import Scene
@@ -89,10 +89,10 @@ def sentence(found: Insight) -> str:
 
 
 def short_name(method: Method) -> str:
-    """Return the last word of a name if no other ends with it: "Verlet", but "Symplectic Euler"."""
+    """Return the last word of a usual method's name if no other ends with it: "Verlet", but "Symplectic Euler"."""
     last = method.label.split()[-1]
-    alone = sum(each.label.endswith(last) for each in GENERAL) == 1
-    return last if alone and method.general else method.label
+    alone = sum(each.label.endswith(last) for each in USUAL_CAST) == 1
+    return last if alone and method in USUAL_CAST else method.label
 
 
 def insight_text(source: Source, hidden: Collection[str] = ()) -> str:

@@ -43,6 +43,8 @@ def test_only_symplectic_methods_have_one():
     assert {method.key for method in METHODS if method.modified_energy} == {
         "symplectic_euler",
         "velocity_verlet",
+        "position_verlet",
+        "implicit_midpoint",
     }
     assert all(method.symplectic for method in METHODS if method.modified_energy)
 

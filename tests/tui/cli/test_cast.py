@@ -15,6 +15,7 @@ from engine.methods import (
     USUAL_CAST,
     VELOCITY_VERLET,
     Cast,
+    method_of,
 )
 from engine.methods.own import OwnMethod
 from engine.scenes import DEFAULT_SCENE, MOST_METHODS, Scene
@@ -83,8 +84,11 @@ def test_without_options_the_cast_is_the_scenes():
     [
         ("rk4", (RK4,)),
         ("rk4,explicit_euler", (RK4, EXPLICIT_EULER)),
-        ("s,vel,exp", (SYMPLECTIC_EULER, VELOCITY_VERLET, EXPLICIT_EULER)),
+        ("s,vel,explicit_e", (SYMPLECTIC_EULER, VELOCITY_VERLET, EXPLICIT_EULER)),
         ("velocity, rk4", (VELOCITY_VERLET, RK4)),
+        ("Leapfrog,symplectic-euler", (VELOCITY_VERLET, SYMPLECTIC_EULER)),
+        ("stormer verlet,RK2", (VELOCITY_VERLET, method_of("heun"))),
+        ("yoshida,implicit euler", (method_of("yoshida_6"), method_of("backward_euler"))),
     ],
 )
 def test_the_start_of_a_name_is_enough_and_the_order_is_the_one_given(text, cast):
@@ -110,10 +114,10 @@ def test_the_start_of_a_later_word_will_do_where_it_is_the_only_one():
     ("text", "words"),
     [
         ("rk5", "no method 'rk5': did you mean rk4?"),
-        ("nothing", "choose from explicit_euler, symplectic_euler, "),
+        ("nothing", "choose from Euler: explicit_euler, symplectic_euler; "),
         ("rk4,rk4", "rk4 is there twice"),
         ("rk4,", "no method ''"),
-        ("euler", "may be explicit_euler or symplectic_euler"),
+        ("euler", "may be explicit_euler or symplectic_euler or backward_euler"),
     ],
 )
 def test_a_wrong_list_is_one_sentence_and_exit_2(text, words):

@@ -2,15 +2,16 @@
 
 import argparse
 import math
+from collections.abc import Iterator
 from typing import Any
 
-from engine.methods import METHODS, Cast, Method
-from engine.scenes import DEFAULT_SCENE
+from engine.methods import FAMILIES, METHODS, Cast, Method
+from engine.scenes import DEFAULT_SCENE, MOST_METHODS
 from tui.cli.cast import KEYS, add_cast_options, cast_of
 from tui.cli.errors import Exit
 from tui.cli.options import Suggestions
 from tui.cli.output import fields_of
-from tui.cli.report import Column, Report, add_report_options, publish
+from tui.cli.report import Column, Report, add_report_options, finite, publish
 
 EXAMPLES = """\
 examples:
@@ -72,11 +73,24 @@ def run(options: argparse.Namespace) -> int:
         Column("z limit", _limit, right=True),
     )
     notes = [NOTE, *(_about(method) for method in methods if options.keys)]
-    fields = {"methods": methods, "compiled": available()}
-    publish(
-        Report(name="methods", columns=columns, rows=methods, notes=notes, fields=fields), options
+    fields = {"methods": [finite(method) for method in methods], "compiled": available()}
+    report = Report(
+        name="methods", columns=columns, rows=[*_by_family(methods)], notes=notes, fields=fields
     )
+    publish(report, options)
     return Exit.FINE
+
+
+def _by_family(methods: list[dict[str, Any]]) -> Iterator[Any]:
+    """Yield the methods, those of a family below its name; your own come last."""
+    if len(methods) <= MOST_METHODS:
+        yield from methods
+        return
+    left = {method["key"]: method for method in methods}
+    for family, members in FAMILIES.items():
+        found = [left.pop(each.key) for each in members if each.key in left]
+        yield from [family, *found]
+    yield from ["your own", *left.values()] if left else ()
 
 
 def _known(method: dict[str, Any], name: str) -> Any:
@@ -89,6 +103,8 @@ def _limit(method: dict[str, Any]) -> str | None:
     z = _known(method, "linear_limit")
     if z is None:
         return None
+    if z == math.inf:
+        return "any"
     return f"{z:.3f}" if z else "none"
 
 

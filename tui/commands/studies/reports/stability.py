@@ -19,7 +19,7 @@ from engine.stability.outcomes import BAND, FATES, UNKNOWN, Cells
 from engine.stability.study import Row, amplitude, early_steps, table
 from tui.cli.files import whole_file
 from tui.cli.output import console
-from tui.cli.report import Column, Report, Table
+from tui.cli.report import Column, Report, Table, finite
 from tui.drawing.palette import PALETTES
 from tui.views.stability.picture import picture
 
@@ -64,7 +64,7 @@ def report(scene: Scene, steps: int, computed: Sequence[Computed], *, is_whole: 
             "z": scene.z,
             "steps": steps,
             "band": BAND,
-            "linear": linear,
+            "linear": [finite(row) for row in linear],
             "pendulum": [
                 fields
                 | {"at_scene": None if row.here["fate"] == UNKNOWN else _cell_fields(row.here)}
@@ -89,6 +89,8 @@ def _linear_fields(scene: Scene, method: Method) -> dict[str, Any]:
 def _limit(z: float | None) -> str | None:
     if z is None:
         return None
+    if z == math.inf:
+        return "any"
     return f"{z:.9f}" if z else "none"
 
 
