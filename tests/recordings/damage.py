@@ -46,9 +46,8 @@ class Damaged:
         """Check that a file of this length reads as far as it goes."""
         self.path.write_bytes(self.data[:length])
         with suppress(RecordingError):
-            assert not verify(self.path).complete
-        with suppress(RecordingError):
-            assert verify(self.path).identical
+            result = verify(self.path)
+            assert (result.complete, result.identical) == (False, True)
         with suppress(RecordingError), Recording.open(self.path) as recording:
             entries = list(recording.entries())
             assert entries == self.entries[: len(entries)]
@@ -165,7 +164,7 @@ READERS = {
 
 
 def campaign(cuts: int = 1, flips: int = 100, others: int = 30, holes: int = 30) -> dict[str, int]:
-    """Damage recordings in every way; every `cuts`-th byte is cut at.  Return what was done."""
+    """Damage recordings in every way; every `cuts`-th byte is cut at, 0: none.  Return what was done."""
     done = {"cuts": 0, "flips": 0, "unnoticed": 0, "harmless": 0, "holes": 0, "chunks_lost": 0}
     chance = random.Random(1)
     memory = "/dev/shm" if Path("/dev/shm").is_dir() else None
@@ -175,7 +174,7 @@ def campaign(cuts: int = 1, flips: int = 100, others: int = 30, holes: int = 30)
         files = [tiny(folder / "tiny.mcap"), record(folder / "two.mcap", two_runs())]
         for file in files:
             damaged = Damaged(file, folder)
-            for length in range(chance.randrange(cuts), len(damaged.data), cuts):
+            for length in range(chance.randrange(cuts), len(damaged.data), cuts) if cuts else ():
                 damaged.cut(length)
                 done["cuts"] += 1
         whole = Damaged(files[1], folder)
