@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 EventKind = Literal["start", "set_h", "mark", "pause", "resume", "speed", "stop", "noticed"]
 MAX_EVENTS = 100_000  # of a recording: 30 MB; a lesson has a few hundred
+MAX_RUNS = 10_000
 NOT_DONE = ("start", "stop", "noticed")
 """Events that nobody did in a run."""
 

@@ -19,7 +19,7 @@ from engine.methods.own import OwnMethod
 from engine.run.lockstep import Sample
 from engine.scenes import Scene
 from recordings.errors import DiskError, NameTakenError, writing
-from recordings.events import MAX_EVENTS, Event
+from recordings.events import MAX_EVENTS, MAX_RUNS, Event
 from recordings.fields import EVENT_SCHEMA, TEXT_SCHEMA, sample_schema, without_extremes
 from recordings.files import check_target, is_stream, publish
 from recordings.format import (
@@ -98,9 +98,10 @@ class Recorder:
         A recording that holds all the events that one may is finished, and raises DiskError.
         """
         data = encode_event(event)
-        if self._events == MAX_EVENTS - 1 and event.kind != "stop":
+        is_full = self._events == MAX_EVENTS - 1 or event.run > MAX_RUNS
+        if is_full and event.kind != "stop":
             self.close()
-            raise DiskError(f"is finished: it holds {MAX_EVENTS} events", self.path)
+            raise DiskError("is full and was finished; start the lab again for another", self.path)
         if event.kind in ("start", "stop"):
             self._last = None
         if event.scene is not None:

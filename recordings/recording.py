@@ -20,7 +20,7 @@ from engine.run.lockstep import Sample
 from engine.scenes import Scene
 from recordings.arithmetic import Arithmetic
 from recordings.errors import RecordingError, named
-from recordings.events import MAX_EVENTS, NOT_DONE, Entry, Event
+from recordings.events import MAX_EVENTS, MAX_RUNS, NOT_DONE, Entry, Event
 from recordings.format import CLOCK_OFFSET
 from recordings.library import open_file
 from recordings.reader import Contents, Decoder, ShowProgress, read_chunk, read_contents
@@ -200,8 +200,8 @@ class Recording:
                     run = Run(event.run, event.scene, event.arithmetic, clock, clock)
                     self._runs[run.number] = run
                     starts.append(chunk)
-                if len(self.events) == MAX_EVENTS:
-                    raise RecordingError(f"it has more than {MAX_EVENTS} events")
+                if len(self.events) == MAX_EVENTS or event.run > MAX_RUNS:
+                    raise RecordingError(f"it has more than {MAX_EVENTS} events or {MAX_RUNS} runs")
                 self.events.append((clock, event))
                 self._runs[event.run].events.append((clock, event))
         if not self._runs:

@@ -69,7 +69,7 @@ def test_a_recording_ends_whole_before_it_has_more_events_than_may_be_read(lab, 
     for _ in range(20):
         lab.run(0.1)
         lab.recorder.event(Event("mark", 1, lab.lockstep.step, lab.lockstep.t), lab.clock)
-    assert "it holds 10 events" in lab.recorder.failed
+    assert "is full" in lab.recorder.failed
     with Recording.open(lab.recorder.path, check=True) as recording:
         assert recording.complete
         assert len(recording.events) == 10
