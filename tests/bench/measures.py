@@ -123,7 +123,7 @@ def measured() -> tuple[dict[str, int], list[str]]:
             1000 * product.conditional_expressions / product.lines
         ),
         "long_functions": len(product.long_functions),
-        "numeric_constants": 286product.numeric_constants,
+        "numeric_constants": product.numeric_constants,
     }
     return values, product.long_functions
 
