@@ -18,6 +18,7 @@ from typing import IO, Any, BinaryIO, NamedTuple
 import platformdirs
 
 from recordings.errors import DiskError, RecordingError, printable
+from recordings.files import is_stream
 
 SUFFIX = ".mcap"
 PART = ".part"  # appended to the name of a recording that is not finished
@@ -166,13 +167,12 @@ def alone_with(path: Path) -> Iterator[None]:
 
 def open_file(path: Path) -> BinaryIO:
     """Open a file to read, locked as in use until it is closed."""
+    if is_stream(path):
+        raise RecordingError("this is a device or a pipe; save it as a file")
     try:
         file = path.open("rb")
     except OSError as error:
         raise RecordingError(error.strerror or str(error)) from error
-    if not file.seekable():
-        file.close()
-        raise RecordingError("this is a pipe, which can be read only once; save it as a file")
     hold(file, shared=True)
     return file
 

@@ -9,7 +9,7 @@ from recordings.recorder import Recorder
 
 
 class LiveRecorder(Recorder):
-    """A recorder that raises nothing once it is there.
+    """A recorder that raises nothing once it is there, and takes nothing once it is closed.
 
     `failed` is a sentence on why the recording ended before the lab did, or None.
     """
@@ -26,7 +26,7 @@ class LiveRecorder(Recorder):
         self._try(super().close)
 
     def _try(self, write: Callable[[], None]) -> None:
-        if self.failed is None:
+        if self.failed is None and not self._file.closed:
             try:
                 write()
             except NameTakenError:

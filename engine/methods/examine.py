@@ -22,7 +22,7 @@ def load(source: str, key: str, letter: str, file: str) -> OwnMethod:
     """A user's method, examined and measured.  Raises OwnMethodError, whose text is a sentence for the user."""
     if len(source) > LONGEST_SOURCE:
         raise OwnMethodError(
-            f"{file} has {len(source):,} characters; use a file of at most {LONGEST_SOURCE:,}."
+            f"{file} is too long; use a file of at most {LONGEST_SOURCE:,} characters."
         )
     phases = own_phases(source, key, file)
     try:

@@ -148,14 +148,16 @@ def _own(text: str, others: Sequence[Method]) -> "OwnMethod":
 
 
 def _loaded(path: Path, key: str, letter: str) -> "OwnMethod":
+    from engine.methods.examine import load
+    from engine.methods.own import LONGEST_SOURCE
+    from tui.cli.time_limit import limited
+
     try:
-        source = path.read_text(encoding="utf-8-sig")
+        with path.open(encoding="utf-8-sig") as file:
+            source = file.read(LONGEST_SOURCE + 1)
     except (OSError, ValueError) as error:
         why = error.strerror if isinstance(error, OSError) else "it is not text in UTF-8"
         raise UserError(f"--method: {path} cannot be read: {why}.", Exit.INPUT_UNREADABLE) from None
-    from engine.methods.examine import load
-    from tui.cli.time_limit import limited
-
     output = io.StringIO()
     with limited("a few hundred steps", MAX_SECONDS), redirect_stdout(output):
         method = load(source, key, letter, str(path))

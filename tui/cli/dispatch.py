@@ -3,6 +3,7 @@
 import io
 import os
 import sys
+import threading
 from argparse import ArgumentParser, RawDescriptionHelpFormatter
 from collections.abc import Sequence
 from importlib import import_module
@@ -77,6 +78,14 @@ examples:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return the exit code.  Nothing but a bug leaves a traceback."""
+    code = _main(arguments)
+    others = set(threading.enumerate()) - {threading.main_thread()}
+    if arguments is None and not all(thread.daemon for thread in others):
+        os._exit(code)  # the interpreter would wait for a thread that a user's method started
+    return code
+
+
+def _main(arguments: Sequence[str] | None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without θ shows a ?, not a traceback

@@ -42,6 +42,10 @@ def explained(error: BaseException) -> UserError:
             return UserError(str(error), Exit.USAGE)
         case RecordingError():
             return UserError(str(error), Exit.INPUT_UNREADABLE)
+        case MemoryError():
+            return UserError(
+                "not enough memory; use less of it, or smaller input.", Exit.INPUT_UNREADABLE
+            )
         case OSError():  # recordings.errors.DiskError among them
             return UserError(f"{error.filename or 'output'}: {_why(error)}.", Exit.DISK)
     raise error

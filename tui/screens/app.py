@@ -11,6 +11,7 @@ from textual import command
 from textual.app import App, ScreenStackError
 from textual.binding import Binding, BindingType
 from textual.command import CommandPalette
+from textual.events import Event
 from textual.filter import LineFilter
 from textual.notifications import SeverityLevel
 from textual.reactive import var
@@ -91,6 +92,15 @@ class PenduApp(App[Exit | BaseException]):
         if not self.is_headless:
             job = None if self.is_web else self._job
             SignalThread(asyncio.get_running_loop(), self.interrupt, self.finish, job).start()
+
+    async def on_event(self, event: Event) -> None:
+        """Survive a key that Textual's command palette stumbles over: an error here would end the app."""
+        try:
+            await super().on_event(event)
+        except Exception as error:
+            if not is_of_palette(error):
+                raise
+            self._handle_exception(error)
 
     def _handle_exception(self, error: Exception) -> None:
         """End with this error, in place of Textual's traceback; a test raises it.

@@ -153,7 +153,7 @@ WRONG = {
     "an import of nothing": ("import nothing_of_this_name", "raises ModuleNotFoundError"),
     "another name": ("def other(force, phase, h): yield phase", "has no function 'mine'; it has other."),
     "a class": ("class mine: pass", "has no function 'mine'"),
-    "too much text": ("#" * (LONGEST_SOURCE + 1), "use a file of at most 30,000."),
+    "too much text": ("#" * (LONGEST_SOURCE + 1), "use a file of at most 30,000 characters."),
 }  # fmt: skip
 
 

@@ -1,6 +1,7 @@
 """The options --methods and --method."""
 
 import os
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -20,6 +21,7 @@ from engine.methods import (
 from engine.methods.own import OwnMethod
 from engine.scenes import DEFAULT_SCENE, MOST_METHODS, Scene
 from tests.tui.command_line import pendu
+from tests.tui.pty_lab import PENDU
 from tui.cli import cast as cast_options
 from tui.cli.errors import UserError
 from tui.cli.options import Parser
@@ -152,6 +154,7 @@ def test_a_method_of_ones_own_stands_where_methods_names_it_or_last(mine):
         ("mine.py:loud", 2, "writes to stdout"),
         ("absent.py:kick_drift", 3, "absent.py cannot be read: No such file"),
         (".:kick_drift", 3, "cannot be read: Is a directory"),
+        ("/dev/zero:kick_drift", 2, "too long; use a file of at most 30,000 characters"),
     ],
 )
 def test_a_wrong_method_option_is_one_sentence(mine, text, code, words):
@@ -163,6 +166,14 @@ def test_a_method_that_never_yields_is_interrupted(mine, monkeypatch):
     assert pendu("run", "--time", "2", "--method", f"{mine}:endless").refused(
         2, "more than 0.2 s", "while True"
     )
+
+
+@pytest.mark.slow
+def test_a_thread_of_a_method_does_not_outlive_the_command(tmp_path):
+    thread = "import threading, time\nthreading.Thread(target=time.sleep, args=(60,)).start()\n"
+    (tmp_path / "mine.py").write_text(thread + MINE.format(name="other"))
+    options = ["run", "--time", "1", "--method", f"{tmp_path / 'mine.py'}:other"]
+    assert subprocess.run([*PENDU, *options], capture_output=True, timeout=30).returncode == 0
 
 
 def test_more_than_six_are_too_many_for_a_stage(mine):

@@ -50,6 +50,18 @@ async def test_it_has_themes_and_scenes_first_then_keys_with_their_letters_and_a
         assert len(texts) == len(set(texts))
 
 
+async def test_a_key_that_textuals_palette_stumbles_over_closes_it_and_not_the_lab(monkeypatch):
+    def stumble(self):
+        raise KeyError(0)
+
+    monkeypatch.setattr(CommandList, "action_page_down", stumble)
+    async with lab() as theatre:
+        await theatre.press("ctrl+p", "pagedown")
+        await theatre.pilot.pause(0.1)
+        assert theatre.app.is_running
+        assert theatre.app.screen is theatre.stage
+
+
 @pytest.mark.parametrize("width", [40, 72, 100])
 def test_an_entry_is_one_line_with_its_key_in_the_last_column(width):
     for text in ("short", "long " * 40):
