@@ -1,4 +1,6 @@
-"""Learns a pendulum from noisy measurements, twice: as a field, and as a Hamiltonian.  Prints the numbers and how good.
+"""Learn a pendulum from noisy measurements: as a field, a Hamiltonian, a map, and a symplectic map.
+
+Prints how good they are.
 
 python -m tests.bench.learn writes one JSON object; with --write it also writes engine/methods/learned_numbers.py.
 
@@ -6,6 +8,11 @@ python -m tests.bench.learn writes one JSON object; with --write it also writes 
 derivatives, with noise of 2 % of each one's root mean square.  Both models are a sum of the same 60 random features
 tanh(a theta + b omega/w0 + c), fitted by one least-squares problem each: the field has two sums, one for theta' and
 one for omega', the Hamiltonian one, whose slopes are the field.  No network, no optimiser.
+
+The maps learn a step of w0 t = TAU.  A state and its derivative, measured, are taken as the middle of such a step.
+The plain map moves (theta, omega/w0) by TAU times two sums of the 60 features of its start.  The symplectic one is a
+SympNet of three gradient modules (Jin et al., Neural Networks 132 (2020) 166): half a kick by a function of theta, a
+drift by one of omega/w0, half a kick.  Its coefficients are found by Gauss-Newton steps.
 """
 
 import json
@@ -16,6 +23,9 @@ import numpy as np
 
 W0 = 9.81**0.5
 FEATURES, POINTS, NOISE, SEED = 60, 600, 0.02, 1
+TAU = 0.1  # w0 t of a learned map
+UNITS = 20  # of each function of the symplectic map
+GAUSS_NEWTON_STEPS = 4
 RIDGE = 1e-3  # relative: keeps the coefficients small, so that few digits are enough
 NUMBERS = Path(__file__).parents[2] / "engine/methods/learned_numbers.py"
 
@@ -53,6 +63,51 @@ def learned(seed):
         np.concatenate((rates[:, 0], rates[:, 1])),
     )
     return weights, biases, theta, omega, energy
+
+
+def learned_maps(seed):
+    """The plain map's two sums of the same features, and the symplectic one's (a, c, coefficient): kick and drift."""
+    random = np.random.default_rng(seed)
+    weights = np.round(random.normal(0, 1, (FEATURES, 2)), 3)
+    biases = np.round(random.uniform(-2, 2, FEATURES), 3)
+    states, rates = measurements(random, POINTS, NOISE)
+    starts = states - TAU / 2 * rates
+    features = np.tanh(starts @ weights.T + biases)
+    plain = np.stack([fitted(features, rate) for rate in rates.T], 1)
+    slopes = np.round(random.normal(0, 1, (2, UNITS)), 3)
+    offsets = np.round(random.uniform(-2, 2, (2, UNITS)), 3)
+    kick, drift = (
+        fitted(np.tanh(np.multiply.outer(states[:, k], slopes[k]) + offsets[k]), rates[:, 1 - k])
+        for k in (0, 1)
+    )
+    coefficients = np.concatenate((kick, drift))
+    target = np.concatenate((rates[:, 0], rates[:, 1]))
+
+    def moved(numbers):
+        modules = np.stack((slopes, offsets, numbers.reshape(2, UNITS)), 1)
+        return ((symplectic_step(modules, starts) - starts) / TAU).T.ravel()
+
+    for _ in range(GAUSS_NEWTON_STEPS):
+        jacobian = np.stack(
+            [moved(coefficients + 1e-30j * unit).imag / 1e-30 for unit in np.eye(2 * UNITS)], 1
+        )
+        left = target - moved(coefficients)
+        coefficients = fitted(jacobian, left + jacobian @ coefficients)
+    return plain, np.stack((slopes, offsets, coefficients.reshape(2, UNITS)), 1)
+
+
+def symplectic_step(modules, states):
+    """A step of the symplectic map; `modules` has the rows a, c and the coefficients of kick and drift."""
+
+    def module(which, x):
+        a, c, coefficients = modules[which]
+        return np.tanh(np.multiply.outer(x, a) + c) @ coefficients
+
+    theta, omega = states.T
+    omega = omega + TAU / 2 * module(0, theta)
+    theta = theta + TAU * module(1, omega)
+    omega = omega + TAU / 2 * module(0, theta)
+    return np.stack((theta, omega), 1)
 
 
 def rates_of(model, hamiltonian):
@@ -93,20 +148,27 @@ def field_error(model, hamiltonian):
     return float(np.sqrt(((found - rates) ** 2).mean() / (rates**2).mean()))
 
 
-def text(model):
+def text(model, maps):
     """The module that holds the numbers."""
     weights, biases, theta, omega, energy = model
+    plain, (kick, drift) = maps
     columns = {
         "FEATURES": " ".join(
             f"{a:g},{b:g},{c:g}" for (a, b), c in zip(weights, biases, strict=True)
         ),
         "FIELD": " ".join(f"{t:.6g},{o:.6g}" for t, o in zip(theta, omega, strict=True)),
         "HAMILTONIAN": " ".join(f"{e:.6g}" for e in energy),
+        "MAP": " ".join(f"{t:.6g},{o:.6g}" for t, o in plain),
+        "KICK": " ".join(f"{a:g},{c:g},{k:.6g}" for a, c, k in kick.T),
+        "DRIFT": " ".join(f"{b:g},{c:g},{k:.6g}" for b, c, k in drift.T),
     }
     about = {
         "FEATURES": "a, b and c of each feature tanh(a theta + b omega/w0 + c).",
         "FIELD": "Its coefficients in theta'/w0 and in omega'/w0².",
         "HAMILTONIAN": "Its coefficient in H/w0².",
+        "MAP": "Its coefficients in what a step of w0 t adds to theta and omega/w0, over w0 t.",
+        "KICK": "a, c and k of each k tanh(a theta + c), of which omega/w0 is kicked by the sum.",
+        "DRIFT": "b, c and k of each k tanh(b omega/w0 + c), of which theta drifts by the sum.",
     }
     lines = [
         '"""What tests/bench/learn.py learned from 600 noisy measurements of a pendulum with w0² = 9.81 s⁻²."""'
@@ -125,8 +187,9 @@ def text(model):
 
 def main():
     model = learned(SEED)
+    maps = learned_maps(SEED)
     if "--write" in sys.argv:
-        NUMBERS.write_text(text(model), encoding="utf-8")
+        NUMBERS.write_text(text(model, maps), encoding="utf-8")
     many = {
         h: np.array([energy_errors(learned(seed), h) for seed in range(12)]) for h in (False, True)
     }
@@ -140,7 +203,7 @@ def main():
             "worst_of_seeds": float(runs[:, 1].max()),
             "grows_in_the_second_half": float(np.median(runs[:, 1] / runs[:, 0])),
         }
-    report["bytes"] = len(text(model))
+    report["bytes"] = len(text(model, maps))
     report["largest_coefficient"] = float(max(np.abs(part).max() for part in model[2:]))
     print(json.dumps(report, indent=1))
 

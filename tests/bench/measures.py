@@ -20,7 +20,7 @@ MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
     "characters": 1_080_000,
-    "characters_of_engine": 326_500,
+    "characters_of_engine": 331_500,
     "characters_of_recordings": 102_300,
     "characters_of_tui": 665_000,
     "characters_of_tests": 1_017_700,

@@ -10,12 +10,15 @@ from hypothesis import strategies as st
 
 from engine.methods import RK4, Method
 from engine.methods.learned import (
+    FAMILY,
+    LEARNED_MAP,
+    LEARNED_SYMPLECTIC_MAP,
     RK4_LEARNED_FIELD,
     RK4_LEARNED_HAMILTONIAN,
     learned_field,
     learned_hamiltonian,
 )
-from engine.methods.learned_numbers import FEATURES, FIELD, HAMILTONIAN
+from engine.methods.learned_numbers import DRIFT, FEATURES, FIELD, HAMILTONIAN, KICK, MAP
 from engine.methods.runge_kutta import rk4_on_rates
 from engine.models.model import Phase
 from engine.models.pendulum import Pendulum
@@ -25,9 +28,7 @@ from tests.bench import learn
 W0_SQUARED = 9.81
 PENDULUM = Pendulum(W0_SQUARED)
 STARTS = (0.5, 1.0, 1.5, 2.0)
-both = pytest.mark.parametrize(
-    "method", [RK4_LEARNED_FIELD, RK4_LEARNED_HAMILTONIAN], ids=lambda m: m.key
-)
+each_way = pytest.mark.parametrize("method", FAMILY, ids=lambda m: m.key)
 
 
 def learned_energy(theta: float, omega: float) -> float:
@@ -47,7 +48,10 @@ def test_the_numbers_are_those_that_the_script_learns() -> None:
     """But for the last digits, which depend on the library behind NumPy."""
     weights, biases, theta, omega, energy = learn.learned(learn.SEED)
     found = (np.column_stack((weights, biases)), np.column_stack((theta, omega)), energy[:, None])
-    for numbers, expected in zip((FEATURES, FIELD, HAMILTONIAN), found, strict=True):
+    plain, (kick, drift) = learn.learned_maps(learn.SEED)
+    found = (*found, plain, kick.T, drift.T)
+    stored_texts = (FEATURES, FIELD, HAMILTONIAN, MAP, KICK, DRIFT)
+    for numbers, expected in zip(stored_texts, found, strict=True):
         stored = np.array([[float(number) for number in row.split(",")] for row in numbers.split()])
         assert stored == pytest.approx(expected, rel=1e-4, abs=1e-4 * np.abs(expected).max())
 
@@ -62,39 +66,62 @@ def test_both_fields_are_about_as_far_from_the_true_one() -> None:
 
 
 def largest_energy_errors(method: Method, start: float) -> tuple[float, float]:
-    """The largest relative errors of the true energy in 50 s and in 100 s."""
+    """The largest relative errors of the true energy in 50 s and in 100 s, w0 h being 0.1."""
     energy, advance = PENDULUM.energy()((start, 0.0)), PlainLoops(method, PENDULUM).advance
-    _, phase, _, low, high = advance((start, 0.0), 0.02, 2500, math.inf)
-    _, _, _, lowest, highest = advance(phase, 0.02, 2500, math.inf)
+    _, phase, _, low, high = advance((start, 0.0), 0.032, 1562, math.inf)
+    _, _, _, lowest, highest = advance(phase, 0.032, 1563, math.inf)
     early = max(high / energy - 1, 1 - low / energy)
     return early, max(early, highest / energy - 1, 1 - lowest / energy)
 
 
 @pytest.mark.parametrize("start", STARTS)
-def test_the_energy_error_of_the_hamiltonian_is_bounded_and_that_of_the_field_grows(
-    start: float,
+@pytest.mark.parametrize(
+    ("keeps", "plain"),
+    [(RK4_LEARNED_HAMILTONIAN, RK4_LEARNED_FIELD), (LEARNED_SYMPLECTIC_MAP, LEARNED_MAP)],
+)
+def test_the_energy_error_is_bounded_where_structure_is_kept_and_else_grows(
+    start: float, keeps: Method, plain: Method
 ) -> None:
-    early, late = largest_energy_errors(RK4_LEARNED_HAMILTONIAN, start)
+    early, late = largest_energy_errors(keeps, start)
     assert late == pytest.approx(early, rel=0.005)
-    assert late < 0.044  # .012, .012, .006, .003
-    field_early, field_late = largest_energy_errors(RK4_LEARNED_FIELD, start)
-    assert field_late > max(0.1, 1.1 * field_early, 10 * late)  # 1.19, .36, .60, .15
+    assert late < 0.044
+    plain_early, plain_late = largest_energy_errors(plain, start)
+    assert plain_late > max(0.1, 1.1 * plain_early, 10 * late)
+
+
+@pytest.mark.parametrize("start", [(0.0, 0.0), (1.0, 1.0), (-2.0, 1.0), (0.5, -3.0)])
+def test_the_symplectic_map_keeps_area_and_the_plain_one_does_not(
+    start: tuple[float, float],
+) -> None:
+    def determinant(method: Method) -> float:
+        columns = []
+        for along in ((1e-5, 0.0), (0.0, 1e-5)):
+            ends = [
+                next(method.on(PENDULUM)((start[0] + s * along[0], start[1] + s * along[1]), 0.032))
+                for s in (1, -1)
+            ]
+            columns.append(np.subtract(*ends) / 2e-5)
+        return float(np.linalg.det(columns))
+
+    assert determinant(LEARNED_SYMPLECTIC_MAP) == pytest.approx(1, abs=1e-9)
+    assert abs(determinant(LEARNED_MAP) - 1) > 5e-4
 
 
 @pytest.mark.parametrize(
-    ("start", "field", "hamiltonian"),
-    [(0.2, 8.4, 0.12), (1.0, 0.36, 0.012), (1.5, 0.60, 0.006), (2.0, 0.15, 0.003)],
+    ("start", "errors"),
+    [
+        (0.2, (8.4, 0.12, 8.7, 0.030)),
+        (1.0, (0.36, 0.012, 0.35, 0.0059)),
+        (1.5, (0.60, 0.0056, 0.61, 0.0039)),
+        (2.0, (0.15, 0.0033, 0.17, 0.0032)),
+    ],
 )
-def test_the_cards_figures_belong_to_their_starts(
-    start: float, field: float, hamiltonian: float
-) -> None:
-    assert largest_energy_errors(RK4_LEARNED_FIELD, start)[1] == pytest.approx(field, rel=0.1)
-    assert largest_energy_errors(RK4_LEARNED_HAMILTONIAN, start)[1] == pytest.approx(
-        hamiltonian, rel=0.15
-    )
+def test_the_cards_figures_belong_to_their_starts(start: float, errors: tuple[float, ...]) -> None:
+    for method, error in zip(FAMILY, errors, strict=True):
+        assert largest_energy_errors(method, start)[1] == pytest.approx(error, rel=0.1)
 
 
-@both
+@each_way
 def test_what_was_learned_holds_for_any_length_and_gravity(method: Method) -> None:
     """In units of w0 the motion is the same: here on the Moon."""
     moon = Pendulum(1.62)
@@ -124,7 +151,7 @@ def test_the_learned_hamiltonians_field_is_made_of_its_slopes(theta: float, omeg
     )
 
 
-@both
+@each_way
 def test_it_has_the_claimed_order_on_the_learned_field(method: Method) -> None:
     def end(n: int) -> float:
         theta, _ = next(islice(method.on(PENDULUM)((1.0, 0.0), 2.0 / n), n - 1, None))
