@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import NamedTuple
 
-from engine.models.model import NO_EXTRA
+from engine.models.model import NO_EXTRA, Phase
 from engine.run.judge import stride
 from engine.run.judgement import Judgement, LookPoint, Milestone
 from engine.run.judges import Judges
-from engine.run.loops import Advance, Errors, LoopsOf, PlainLoops, advance_with_errors
+from engine.run.loops import Advance, LoopsOf, PlainLoops, advance_with_errors
 from engine.run.stepping import Stepping
 from engine.scenes import Scene, check_h
 
@@ -189,7 +189,10 @@ class Lockstep:
             h = self.stepping.h / track.parts
             steps = n * track.parts
             begin = (self._t_base, (self.step - self._base_step) * track.parts)
-            went = self._advance_track(track, h, steps, begin)
+            watch = partial(self._watch, track) if self._invariant else None
+            went = advance_with_errors(
+                track.advance, self._reference, track.phase, h, steps, self._limit, begin, watch
+            )
             if went.done:
                 track.phase = went.phase
                 track.energy = went.energy
@@ -206,24 +209,11 @@ class Lockstep:
                     self._judges.note("failed", index, step, track.diverged_at, track.error)
         self.step += n
 
-    def _advance_track(
-        self, track: _Track, h: float, steps: int, begin: tuple[float, int]
-    ) -> Errors:
-        """Advance by the method's own steps: at once, or one by one where the model has an invariant to watch."""
-        advance = partial(advance_with_errors, track.advance, self._reference)
-        if self._invariant is None:
-            return advance(track.phase, h, steps, self._limit, begin)
-        went = Errors(0, track.phase, track.energy, track.error, math.inf, -math.inf)
-        for done in range(steps):
-            step = advance(went.phase, h, 1, self._limit, (begin[0], begin[1] + done))
-            if not step.done:
-                break
-            error = abs(self._invariant(step.phase) - self._invariant_start) / self._invariant_start
-            track.invariant_error = max(track.invariant_error, error)
-            low = min(went.low, step.low)
-            high = max(went.high, step.high)
-            went = step._replace(done=done + 1, low=low, high=high)
-        return went
+    def _watch(self, track: _Track, phase: Phase) -> None:
+        """Note the largest error of the model's invariant."""
+        assert self._invariant is not None
+        error = abs(self._invariant(phase) - self._invariant_start) / self._invariant_start
+        track.invariant_error = max(track.invariant_error, error)
 
     def _stop(self) -> None:
         """Look where it is time to, and choose the next stop."""

@@ -114,12 +114,13 @@ def advance_with_errors(
     n: int,
     limit: float,
     begin: tuple[float, int],
+    watch: Callable[[Phase], object] | None = None,
 ) -> Errors:
     """Advance by n >= 1 steps; the first is after `begin`: a time [s] and the number of steps since.
 
-    Where energy is not conserved, it is compared with the true one at each step.
+    Where energy is not conserved, it is compared with the true one at each step; `watch` sees each phase.
     """
-    if reference.true is None:
+    if reference.true is None and watch is None:
         done, phase, energy, low, high = advance(phase, h, n, limit)
         return Errors(
             done,
@@ -135,6 +136,8 @@ def advance_with_errors(
         if not done:
             return Errors(k, phase, energy, error, low, high)
         phase, energy = following, now
+        if watch is not None:
+            watch(phase)
         error = reference.error(energy, begin[0] + (begin[1] + k + 1) * h)
         low, high = min(low, error), max(high, error)
     return Errors(n, phase, energy, error, low, high)
