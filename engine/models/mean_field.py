@@ -109,9 +109,6 @@ class MeanField(Model):
         extra = {"sx": sx, "sy": sy, "sz": sz, "probability_error": _length(phase) - 1}
         return Observation(theta, omega, extra)
 
-    def phase_of(self, theta: float, omega: float, extra: Mapping[str, float]) -> Phase:
-        return theta, omega, extra["sx"], extra["sy"], extra["sz"]
-
     def invariant(self) -> Callable[[Phase], float]:
         """Return |s|, the probability, as a function of the phase."""
         return _length

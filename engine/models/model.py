@@ -192,10 +192,6 @@ class Model(ABC):
         theta, omega = phase
         return Observation(float(theta), float(omega))  # a method may carry other numbers
 
-    def phase_of(self, theta: float, omega: float, extra: Mapping[str, float]) -> Phase:
-        """Return the phase from which a method goes on after a reading with these values."""
-        return theta, omega
-
     def theta_error(self, theta: float, exact: float) -> float:
         """Return theta - exact theta [rad]."""
         return theta - exact

@@ -118,9 +118,6 @@ class Spring(Model):
         }
         return Observation(*self._swing(phase), extra)
 
-    def phase_of(self, theta: float, omega: float, extra: Mapping[str, float]) -> Phase:
-        return complex(extra["x"], extra["y"]), complex(extra["vx"], extra["vy"])
-
     def theta_error(self, theta: float, exact: float) -> float:
         """Return theta - exact theta [rad], the shorter way round: theta is known within ±pi only."""
         return math.remainder(theta - exact, math.tau)

@@ -42,9 +42,6 @@ class Decaying(Model):
         theta, omega, u = phase
         return Observation(theta, omega, {"u": u, "square": u * u})
 
-    def phase_of(self, theta, omega, extra):
-        return theta, omega, extra["u"]
-
     def rates(self, sin=math.sin):
         return lambda phase: (phase[1], -self.w0_squared * phase[0], -self.decay * phase[2])
 

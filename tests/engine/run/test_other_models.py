@@ -46,7 +46,7 @@ def test_the_same_bits_however_the_steps_are_cut(scene: Scene, cuts: list[int]) 
 
 
 @each_scene
-def test_readings_are_finite_floats_and_hold_the_whole_phase(scene: Scene) -> None:
+def test_readings_are_finite_floats_and_hold_every_variable(scene: Scene) -> None:
     lockstep, model = Lockstep(scene), scene.equations
     for n in (0, 1, 1000):
         lockstep.advance(n)
@@ -54,8 +54,6 @@ def test_readings_are_finite_floats_and_hold_the_whole_phase(scene: Scene) -> No
             assert {type(reading.theta), type(reading.omega), type(reading.energy)} == {float}
             assert math.isfinite(reading.theta + reading.omega + reading.energy_error)
             assert list(reading.extra) == [variable.name for variable in model.variables]
-            phase = model.phase_of(reading.theta, reading.omega, reading.extra)
-            assert model.observe(phase)[:2] == (reading.theta, reading.omega)
 
 
 @each_scene
