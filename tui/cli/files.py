@@ -9,9 +9,10 @@ from threading import Timer, main_thread
 from types import FrameType
 from typing import TextIO
 
-_SIGNALS = [
+ENDING = [
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 ]
+"""The signals that ask for an end."""
 
 
 @contextmanager
@@ -85,7 +86,7 @@ def stop_requests() -> Iterator[Callable[[], bool]]:
 @contextmanager
 def _signals_to(handler: Callable[[int, FrameType | None], None]) -> Iterator[None]:
     """Handle the signals that ask for an end so; one that is ignored, as under nohup, stays ignored."""
-    heard = [number for number in _SIGNALS if signal.getsignal(number) is not signal.SIG_IGN]
+    heard = [number for number in ENDING if signal.getsignal(number) is not signal.SIG_IGN]
     before = {number: signal.signal(number, handler) for number in heard}
     try:
         yield

@@ -11,17 +11,13 @@ from contextlib import AbstractContextManager, suppress
 from threading import Thread
 
 from tui.cli.errors import Exit
+from tui.cli.files import ENDING
 from tui.terminal.check import is_gone
 
 MARGIN = 0.1  # s; of two signals that come closer than that, the order is unknown
 LOOK_INTERVAL = 1.0  # s between looks at the terminal
 MAX_LEAVE_TIME = 5.0  # s that the event loop has to end the program
 MAX_CLOSE_TIME = 3.0  # s to finish the recording without the loop
-ENDING = [
-    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
-]
-"""The signals that ask for an end."""
-
 PLAIN_SCREEN = (
     b"\x1b[<u\x1b[?1049l\x1b[?25h\x1b[?7h\x1b[?1000l\x1b[?1003l\x1b[?1006l\x1b[?1004l\x1b[?2004l"
 )

@@ -15,7 +15,7 @@ from urllib.parse import urlsplit
 from aiohttp import web
 from textual_serve.server import Server
 
-from tui.terminal.signals import ENDING
+from tui.cli.files import ENDING
 
 CONNECTIONS_PER_LAB = 10  # a browser opens six at most
 MAX_IDLE_TIME = 10.0  # s that a connection may be without a whole request
