@@ -1,4 +1,4 @@
-"""The map of stability: every method at every step z and every amplitude, in strips that any executor can run."""
+"""The map of stability: every method at every step z and amplitude, in strips for any executor."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -10,11 +10,10 @@ from engine.run.compiled import available
 from engine.stability.outcomes import CELL, UNKNOWN, Cells, Floats, outcomes
 
 STRIP = 4096
-"""Swings a method in a strip: enough that NumPy's calls cost little, few enough that they stay in the cache."""
+"""Swings of a method in a strip: NumPy's calls cost little, and the arrays stay in the cache."""
 
-COMPILED_FROM = (
-    100_000_000  # steps of a method: in NumPy they take as long as importing and compiling
-)
+COMPILED_FROM = 100_000_000
+"""Steps of a method: in NumPy they take as long as importing and compiling."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -25,9 +24,7 @@ class Grid:
     z: Floats  # h·w0, above 0
     steps: int
     methods: Cast = USUAL_CAST
-    fast: bool | None = (
-        None  # compiled by Numba, the same sin in other bits; None: where it is installed and pays
-    )
+    fast: bool | None = None  # compiled by Numba; None: where it is installed and pays
 
     @property
     def shape(self) -> tuple[int, int, int]:
@@ -35,7 +32,7 @@ class Grid:
         return len(self.z), len(self.methods), len(self.theta)
 
     def cells(self) -> Cells:
-        """The outcome of every swing."""
+        """Return the outcome of every swing."""
         z, theta = (axis.ravel() for axis in np.meshgrid(self.z, self.theta, indexing="ij"))
         each = [
             outcomes(m, theta, z, self.steps, self.compiled).reshape(len(self.z), -1)
@@ -51,7 +48,7 @@ class Grid:
         return self.fast
 
     def unknown(self) -> Cells:
-        """Cells that are not computed yet."""
+        """Return cells that are not computed yet."""
         return np.full(self.shape, np.array((0, 0.0, UNKNOWN), CELL))
 
     def strips(self) -> list["Grid"]:
@@ -80,7 +77,7 @@ class Piece:
 
 
 def pieces(grid: Grid, passes: Sequence[int], width: int = 10) -> Iterator[Piece]:
-    """The map in pieces of `width` z and one method: all of it with few steps a swing, then with more.
+    """Yield the map in pieces of `width` z and one method: with few steps a swing, then with more.
 
     In NumPy, unless the grid says otherwise: compiling would delay the first piece.
     """
@@ -102,7 +99,7 @@ def pieces(grid: Grid, passes: Sequence[int], width: int = 10) -> Iterator[Piece
 
 
 def default_grid(cast: Cast = USUAL_CAST) -> Grid:
-    """The middles of 200 steps z, beyond every method's limit, and of 100 amplitudes up to pi.
+    """Return the middles of 200 steps z, beyond every method's limit, and of 100 amplitudes up to pi.
 
     z goes up to 3, or where a method of the cast is still stable there, as BM4 is, up to 3.5.
     """

@@ -10,7 +10,7 @@ import pytest
 from engine.methods import GENERAL, VELOCITY_VERLET, Method
 from engine.models import Pendulum
 from engine.run.compiled import available
-from engine.run.ensemble import Watched, compiled, plain, sharing
+from engine.run.ensemble import Watched, compiled, plain
 
 needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed")
 each_method = pytest.mark.parametrize("method", GENERAL, ids=lambda method: method.key)
@@ -82,26 +82,6 @@ def test_a_swing_without_limits_does_not_stop_the_others(fast: bool) -> None:
     points = path(GENERAL[0], 0.2, 100, fast)
     over = np.abs(points[:, 0]) > math.pi
     assert stops == sorted({*(over.argmax(axis=0)[over.any(axis=0)] + 1).tolist(), 100})
-
-
-def test_force_and_energy_that_share_a_sine_are_those_of_the_pendulum() -> None:
-    theta, omega = (
-        np.concatenate([np.linspace(-9.4, 9.4, 1001), [0.0, 1e-8, 3.14, -3.1415]]),
-        np.linspace(-2, 2, 1005),
-    )
-    force, energy = sharing(9.81)
-    room = 1e-14 + 1e-14 / np.abs(np.cos(theta / 2))
-    assert (np.abs(force(theta) - Pendulum(9.81).force(np.sin)(theta)) < room).all()
-    assert energy((theta, omega)) == pytest.approx(
-        Pendulum(9.81).energy(np.sin)((theta, omega)), rel=1e-14
-    )
-
-
-def test_the_shared_sine_follows_the_angles() -> None:
-    force, energy = sharing(1.0)
-    for theta in (np.array([0.5]), np.array([1.0]), np.array([0.5])):
-        assert force(theta) == pytest.approx(-np.sin(theta))
-        assert energy((theta, np.zeros(1))) == pytest.approx(1 - np.cos(theta))
 
 
 @each_way

@@ -1,4 +1,3 @@
-from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -32,7 +31,7 @@ def test_the_picture_is_the_same_bit_for_bit_however_it_is_split(
 ) -> None:
     monkeypatch.setattr(stability_map, "STRIP", strip)
     grid = replace(GRID, fast=fast)
-    strips = list(grid.compute())
+    strips = [strip.cells() for strip in grid.strips()]
     assert len(strips) == -(-13 // max(1, strip // 7))
     assert np.concatenate(strips).tobytes() == grid.cells().tobytes()
 
@@ -57,32 +56,6 @@ def test_compiled_or_not_a_map_has_the_same_fates_and_errors_but_for_rounding() 
     one, other = (replace(regular, fast=fast).cells() for fast in (False, True))
     assert np.array_equal(one[["fate", "steps"]], other[["fate", "steps"]])
     assert one["error"] == pytest.approx(other["error"], rel=1e-9)
-
-
-@each_way
-@pytest.mark.parametrize("pool", [ThreadPoolExecutor, ProcessPoolExecutor])
-def test_any_executor_gives_the_same_picture(
-    pool: type[Executor], fast: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(stability_map, "STRIP", 20)
-    grid = replace(GRID, fast=fast, methods=USUAL_CAST[2:])
-    with pool(2) as executor:  # type: ignore[call-arg]
-        assert np.concatenate(list(grid.compute(executor))).tobytes() == grid.cells().tobytes()
-
-
-def test_a_dask_cluster_gives_the_same_picture(monkeypatch: pytest.MonkeyPatch) -> None:
-    distributed = pytest.importorskip("distributed")
-    monkeypatch.setattr(stability_map, "STRIP", 20)
-    with (
-        distributed.LocalCluster(  # in threads, which start quickly; what goes to a process is tested above
-            n_workers=2, threads_per_worker=1, processes=False, dashboard_address=None
-        ) as cluster,
-        distributed.Client(cluster) as client,
-    ):
-        assert (
-            np.concatenate(list(GRID.compute(client.get_executor()))).tobytes()
-            == GRID.cells().tobytes()
-        )
 
 
 def test_cells_that_are_not_computed_are_unknown() -> None:

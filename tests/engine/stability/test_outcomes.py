@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from engine.methods import EXPLICIT_EULER, GENERAL, RK4, USUAL_CAST, VELOCITY_VERLET, Method
 from engine.models.model import Model, Phase
 from engine.models.pendulum import acceleration, energy, energy_of
-from engine.run.ensemble import Arrays, Floats, Watch, Watched, plain, sharing
+from engine.run.ensemble import Arrays, Floats, Watch, Watched, plain
 from engine.stability.linear import wobble
 from engine.stability.outcomes import (
     BAND,
@@ -61,8 +61,6 @@ def test_each_swing_of_an_ensemble_agrees_with_a_plain_loop(
         acceleration(1.0, np.sin),
         energy_of(1.0, np.sin),
     )  # not libm's: an ulp would be chaos later
-    if method.force_evaluations == 1:
-        force, value = sharing(1.0)
     cells = outcomes(method, *np.array(swings).T, steps)
     for cell, (theta, z) in zip(cells, swings, strict=True):
         phase, survived, expected = (np.array([theta]), np.zeros(1)), 0, "holds"
