@@ -1,4 +1,5 @@
 import os
+import signal
 
 import pytest
 from hypothesis import settings
@@ -7,6 +8,10 @@ from hypothesis import settings
 # In CI the same examples are tried each time, so that only a change can make it fail.
 settings.register_profile("pendu", deadline=None, derandomize=bool(os.environ.get("CI")))
 settings.load_profile("pendu")
+
+
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as in a job that a script put aside
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
