@@ -1,7 +1,6 @@
 """Phase space with the methods in it, or the map of one method, and a start to choose with mouse or keyboard."""
 
 from functools import lru_cache
-from time import perf_counter
 from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 from textual import events
@@ -15,6 +14,7 @@ from engine.run.lockstep import Sample
 from engine.scenes import SceneError
 from tui.drawing.palette import TEXT, inks
 from tui.drawing.picture import Picture
+from tui.playback.live import has_own
 from tui.playback.source import Source
 from tui.views.messages import Asked, SceneChosen
 from tui.views.phase.viewport import Viewport
@@ -27,7 +27,7 @@ if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
 
 TITLE = "Phase space (F3): theta [rad], omega [rad/s]"
 DOTS = 4  # that an arrow moves the crosshair
-RING_TIME = 0.005  # s of a frame, for a ring that has to catch up
+RING_STEPS = 100  # a frame, for a ring that has to catch up; they cost 5 ms
 ORBIT_STEPS = 2000  # some ms
 
 
@@ -106,14 +106,11 @@ class PhasePane(Chooser[State]):
         from engine.phase_space.area import Neighbours
 
         self.neighbours = self.neighbours or Neighbours(self.radius)
-        end = perf_counter() + RING_TIME
+        steps = 1 if has_own(source.scene) else RING_STEPS
         try:
-            while True:
-                self.ring = self.neighbours.follow(
-                    source.scene, sample.run, sample.step, source.changes, most=1
-                )
-                if self.neighbours.step >= sample.step or perf_counter() > end:
-                    break
+            self.ring = self.neighbours.follow(
+                source.scene, sample.run, sample.step, source.changes, steps
+            )
         except OwnMethodError as error:
             self.radius = self.neighbours = self.ring = None
             self.notify(str(error), severity="warning", markup=False)
