@@ -18,7 +18,6 @@ from recordings.library import (
     resolve,
 )
 from recordings.recorder import Recorder
-from recordings.recording import Recording
 from tests.recordings.examples import start, tiny
 from tui.playback.marks import Mark, Marks
 
@@ -104,15 +103,6 @@ def test_a_recording_in_progress_is_not_a_leftover(folder):
     with Recorder(folder / "running.mcap") as recorder:
         recorder.event(start(), 0.0)
         assert leftovers() == [folder / "killed.mcap.part"]
-
-
-def test_a_recording_in_use_is_never_deleted(folder):
-    replayed, idle = fill(folder, replayed=2, idle=1)
-    with Recorder(folder / "running.mcap") as recorder, Recording.open(replayed):
-        recorder.event(start(), 0.0)
-        assert [item.path for item in prune(listing())] == [idle]
-        assert recorder.part.exists()
-    assert [path.name for path in sorted(folder.iterdir())] == ["replayed.mcap", "running.mcap"]
 
 
 def test_pruning_skips_a_recording_that_is_already_gone(folder):

@@ -41,13 +41,6 @@ def lab(tmp_path):
     lab.recorder.close()
 
 
-def test_without_failures_a_recording_is_one_file(lab):
-    lab.run(3.0)
-    lab.recorder.close()
-    assert lab.recorder.failed is None
-    assert verify(lab.recorder.path).complete
-
-
 def test_a_full_disk_is_reported_and_what_was_written_stays_readable(lab, monkeypatch):
     lab.run(3.0)
 
@@ -73,24 +66,6 @@ def test_a_recording_ends_whole_before_it_has_more_events_than_may_be_read(lab, 
     with Recording.open(lab.recorder.path, check=True) as recording:
         assert recording.complete
         assert len(recording.events) == 10
-
-
-def test_a_removed_folder_is_reported(lab, tmp_path):
-    lab.run(1.0)
-    lab.recorder.part.unlink()
-    (tmp_path / "library").rmdir()
-    lab.run(1.0)
-    assert "No such file or directory" in lab.recorder.failed
-
-
-@pytest.mark.skipif(os.geteuid() == 0, reason="nothing is forbidden to root")
-def test_a_folder_that_became_read_only_is_reported(lab, tmp_path):
-    lab.run(1.0)
-    (tmp_path / "library").chmod(0)
-    lab.run(2.0)
-    failed = lab.recorder.failed
-    (tmp_path / "library").chmod(0o700)
-    assert "Permission denied" in failed
 
 
 def test_a_first_file_that_cannot_be_written_raises_at_once(tmp_path):
