@@ -1,11 +1,13 @@
 """Recordings: MCAP in and out.
 
-    samples, events --format--> messages --recorder--> file --reader--> chunks --recording--> any moment
+    samples, events --format--> messages --recorder--> file --reader--> chunks --recording--> any
+    moment
 
-- What a file holds: `events`; `fields`, the one table of names and units; `format`, messages to bytes and back;
-  `arithmetic`, what the bits of a run depend on besides its inputs.
-- Writing: `recorder`, in the lab as `live_recorder`, `headless` without a screen; `files`, whole or not at all.
-- Reading: `reader` finds the intact chunks, with mcap; `recording` gives any moment, with events and runs.
+- What a file holds: `events`; `fields`, the one table of names and units; `format`, messages to
+  bytes and back; `arithmetic`, what the bits of a run depend on besides its inputs.
+- Writing: `recorder`, in the lab as `live_recorder`, `headless` without a screen; `files`, whole or
+  not at all.
+- Reading: `reader` finds the intact chunks, with mcap; `recording` gives any moment.
 - Using: `verification`, `recovery`, `diff`; `pytest`, a plugin.
 - `library`: the folder, the names, and who is using a file; `errors`.
 

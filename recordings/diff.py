@@ -9,7 +9,7 @@ from recordings.events import NOT_DONE, name_of
 from recordings.fields import EXTREMES, differences
 from recordings.recording import Recording, Run
 
-SAME_TIME = 1e-9  # of the simulated time: a multiple of h is rounded to a few parts in 10^16
+SAME_TIME = 1e-9  # relative: multiples of h are rounded
 Timed = tuple[float, float, Sample | None]
 END: Timed = (inf, inf, None)
 

@@ -101,7 +101,8 @@ def check_present(scene: Scene, only: Iterable[str] | None = None) -> None:
         if isinstance(method, AbsentMethod) and (only is None or method.key in only):
             raise RecordingError(
                 f"it cannot be verified without the method {method.key}, a user's own; give it with"
-                f" --method FILE.py:{method.key}, its file as it was (SHA-256 {method.sha256[:12]}…)"
+                f" --method FILE.py:{method.key}, its file as it was"
+                f" (SHA-256 {method.sha256[:12]}…)"
             )
 
 

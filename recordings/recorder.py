@@ -155,8 +155,8 @@ class Recorder:
         finally:
             self.abandon()
         if self.path != wanted:
-            why = f"a file of this name appeared meanwhile; the recording is saved as {self.path.name}"
-            raise NameTakenError(why, wanted)
+            why = "a file of this name appeared meanwhile; the recording is saved as"
+            raise NameTakenError(f"{why} {self.path.name}", wanted)
 
     def _finish(self) -> None:
         if (last := self._last) is not None:

@@ -79,7 +79,8 @@ def rescue(leftover: Path, progress: ShowProgress | None = None) -> str:
         try:
             recovery = recover(leftover, free_path(name), progress)
         except RecordingError as error:
-            return f"An unfinished recording cannot be recovered: {error}{_put_aside(leftover, '.unreadable')}"
+            kept = _put_aside(leftover, ".unreadable")
+            return f"An unfinished recording cannot be recovered: {error}{kept}"
         kept = ""
         if recovery.damaged:
             kept = f" {recovery.entries_lost} samples and events are lost."

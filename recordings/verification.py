@@ -140,7 +140,7 @@ class Rerun:
         self._reached = 0  # the step of the last change or sample
 
     def change(self, event: Event) -> None:
-        """Take a change of h.  It is applied at the next sample, which shows that it was reached."""
+        """Take a change of h, which is applied once a sample shows that it was reached."""
         self._check_order(event.step, math.inf)
         self._changes.append(event)
 

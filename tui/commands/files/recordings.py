@@ -166,15 +166,6 @@ def _contents(recording: "Recording") -> Report:
         "methods": ", ".join(recording.methods),
         **recording.about,
     }
-    columns = (
-        Column("run", "run", right=True),
-        Column("scene", lambda run: run["scene"]["name"]),
-        *(_number_of_scene(head) for head in ("theta [rad]", "omega [rad/s]", "h [s]")),
-        Column("steps", "steps", right=True),
-        Column("simulated s", "time", "g"),
-        Column("recorded s", "seconds", ".2f"),
-        Column("inputs", "inputs", right=True),
-    )
     more = len(runs) - MAX_RUNS_SHOWN
     names = ("complete", "damaged", "reason", "methods", "samples", "bytes", "about")
     return Report(
@@ -188,7 +179,7 @@ def _contents(recording: "Recording") -> Report:
             **{name: getattr(recording, name) for name in names},
         },
         notes=[
-            Table(columns, runs[:MAX_RUNS_SHOWN]),
+            Table(RUN_COLUMNS, runs[:MAX_RUNS_SHOWN]),
             *([f"... and {more} more runs; --json lists all."] if more > 0 else []),
         ],
     )
@@ -197,6 +188,17 @@ def _contents(recording: "Recording") -> Report:
 def _number_of_scene(head: str) -> Column:
     name = head.partition(" ")[0]
     return Column(head, lambda run: f"{run['scene'][name]:g}", right=True)
+
+
+RUN_COLUMNS = (
+    Column("run", "run", right=True),
+    Column("scene", lambda run: run["scene"]["name"]),
+    *(_number_of_scene(head) for head in ("theta [rad]", "omega [rad/s]", "h [s]")),
+    Column("steps", "steps", right=True),
+    Column("simulated s", "time", "g"),
+    Column("recorded s", "seconds", ".2f"),
+    Column("inputs", "inputs", right=True),
+)
 
 
 def _recover(options: argparse.Namespace) -> Report:
