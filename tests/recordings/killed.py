@@ -19,7 +19,7 @@ from tui.playback.live import Live
 
 FRAME = 1 / 30  # s
 HEUN = """
-def heun(force, phase, h):
+def my_heun(force, phase, h):
     theta, omega = phase
     while True:
         a = force(theta)
@@ -27,7 +27,7 @@ def heun(force, phase, h):
         theta, omega = theta + h / 2 * (2 * omega + h * a), omega + h / 2 * (a + b)
         yield theta, omega
 """
-OWN = (load(HEUN, "heun", "h", "heun.py"),)
+OWN = (load(HEUN, "my_heun", "h", "mine.py"),)
 KEYS = (
     *4 * [lambda live: live.pause(not live.playhead.paused)],
     *8 * [lambda live: live.step(1)],

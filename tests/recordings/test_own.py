@@ -11,7 +11,7 @@ from recordings import events
 from tests.tui.command_line import pendu
 
 HEUN = '''
-def heun(force, phase, h):
+def my_heun(force, phase, h):
     """Heun: the mean of the slopes at the start and at an Euler step."""
     theta, omega = phase
     while True:
@@ -32,7 +32,7 @@ def path(tmp_path, monkeypatch):
         "--methods",
         "rk4",
         "--method",
-        "mine.py:heun",
+        "mine.py:my_heun",
         "--time",
         "20",
         "--record",
@@ -43,11 +43,11 @@ def path(tmp_path, monkeypatch):
 
 
 def test_it_verifies_only_with_the_same_text_given_again(path):
-    pendu("verify", path).refused(3, "heun", "--method FILE.py:heun", "SHA-256")
-    assert pendu("verify", path, "--method", "mine.py:heun").code == 0
+    pendu("verify", path).refused(3, "my_heun", "--method FILE.py:my_heun", "SHA-256")
+    assert pendu("verify", path, "--method", "mine.py:my_heun").code == 0
     Path("mine.py").write_text(HEUN + "# another text\n")
     events._own.clear()
-    pendu("verify", path, "--method", "mine.py:heun").refused(3, "heun", "its file as it was")
+    pendu("verify", path, "--method", "mine.py:my_heun").refused(3, "my_heun", "its file as it was")
 
 
 def test_the_other_methods_verify_without_it(path):
@@ -60,11 +60,11 @@ def test_the_recording_keeps_the_text_and_its_hash(path):
     own = json.loads(message.data)
     assert own["source"] == HEUN
     assert own["sha256"] == hashlib.sha256(HEUN.encode()).hexdigest()
-    assert own["method"] == "heun"
+    assert own["method"] == "my_heun"
 
 
 def test_show_and_export_work_without_the_text(path):
     Path("mine.py").unlink()
-    assert "heun" in pendu("recordings", "show", path).out
+    assert "my_heun" in pendu("recordings", "show", path).out
     assert pendu("export", path, "-o", "own.csv").code == 0
-    assert "heun" in Path("own.csv").read_text()
+    assert "my_heun" in Path("own.csv").read_text()
