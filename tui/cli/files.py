@@ -1,4 +1,4 @@
-"""Files that a command writes whole or not at all, and runs that end early, but properly, when a signal asks for it."""
+"""Files that are written whole or not at all, and runs that end properly at a signal."""
 
 import signal
 import sys
@@ -19,8 +19,8 @@ ENDING = [
 def whole_file(path: Path, force: bool = False) -> Iterator[Path]:
     """Yield the path to write to; what is there at the end gets the name `path`.
 
-    If the block raises, and also at Ctrl+C, SIGTERM and SIGHUP, nothing is left of it and an older file
-    stays as it was.  Raises DiskError before the block if the name is taken.
+    If the block raises, and also at Ctrl+C, SIGTERM and SIGHUP, nothing is left of it and an older
+    file stays as it was.  Raises DiskError before the block if the name is taken.
     """
     from recordings import files
 
@@ -55,7 +55,7 @@ def interruptible() -> AbstractContextManager[None]:
 
 
 def repeat_swallowed_interrupts() -> None:
-    """Send Ctrl+C again where a destructor or a callback of Numba's compiler swallowed it, as Python lets them."""
+    """Send Ctrl+C again where a destructor or a callback of Numba's compiler swallowed it."""
     report = sys.unraisablehook
 
     def hook(swallowed: "sys.UnraisableHookArgs") -> None:
@@ -70,7 +70,7 @@ def repeat_swallowed_interrupts() -> None:
 
 @contextmanager
 def stop_requests() -> Iterator[Callable[[], bool]]:
-    """Yield a function: whether Ctrl+C, SIGTERM or SIGHUP came.  A second one interrupts at once."""
+    """Yield a function: has Ctrl+C, SIGTERM or SIGHUP come?  A second one interrupts."""
     asked = False
 
     def ask(number: int, frame: FrameType | None) -> None:
@@ -85,7 +85,7 @@ def stop_requests() -> Iterator[Callable[[], bool]]:
 
 @contextmanager
 def _signals_to(handler: Callable[[int, FrameType | None], None]) -> Iterator[None]:
-    """Handle the signals that ask for an end so; one that is ignored, as under nohup, stays ignored."""
+    """Handle the signals that ask for an end; one that is ignored, as under nohup, stays ignored."""
     heard = [number for number in ENDING if signal.getsignal(number) is not signal.SIG_IGN]
     before = {number: signal.signal(number, handler) for number in heard}
     try:

@@ -15,7 +15,7 @@ MAX_WORD = 200  # characters of a word that is looked up; difflib takes seconds 
 
 
 class Parser(argparse.ArgumentParser):
-    """An argument parser whose errors are one sentence, and which takes -1e-3 for a number, not for an option."""
+    """An argument parser whose errors are one sentence; -1e-3 is a number, not an option."""
 
     def __init__(self, **settings: Any) -> None:
         super().__init__(**settings)
@@ -40,7 +40,7 @@ class Parser(argparse.ArgumentParser):
         return super().parse_args(arguments, namespace)
 
     def unknown_option(self, arguments: Sequence[str]) -> UserError | None:
-        """Return the error for the first option that does not exist; argparse would report a missing one first."""
+        """Return the error for the first unknown option; argparse reports a missing one first."""
         for argument in arguments:
             name = argument.partition("=")[0] if argument.startswith("--") else argument[:2]
             if argument == "--" or " " in name or name in self._option_string_actions:

@@ -1,4 +1,4 @@
-"""A report: the result of a command, printed as a table, as JSON or as CSV, all from the same rows."""
+"""A report: the result of a command as a table, JSON or CSV, all from the same rows."""
 
 import argparse
 import csv
@@ -70,8 +70,9 @@ class Table:
 class Report:
     """The result of a command.
 
-    The table shows `rows` in `columns`, below `title` and above `notes`: sentences, more tables, and pictures.
-    JSON is the one object of `fields`, CSV a line for each of `records`, which are the rows by default.
+    The table shows `rows` in `columns`, below `title` and above `notes`: sentences, more tables and
+    pictures.  JSON is the one object of `fields`; CSV has a line for each of `records`, which are
+    the rows by default.
     """
 
     name: str  # of the schema
@@ -131,7 +132,7 @@ def write_csv(out: TextIO, header: Sequence[str], rows: Iterable[Iterable[object
 def add_report_options(
     parser: argparse._ActionsContainer, *, csv: bool = False, files: Sequence[str] = ()
 ) -> None:
-    """Add --json, --csv where the rows are a table of numbers, and -o for files with these suffixes."""
+    """Add --json, --csv for rows of numbers, and -o for files with these suffixes."""
     forms = parser.add_mutually_exclusive_group()
     forms.add_argument("--json", action="store_true", help="one JSON object, SI units")
     if csv:
@@ -164,7 +165,7 @@ def form_of(options: argparse.Namespace) -> Form:
 
 
 def publish(report: Report, options: argparse.Namespace) -> None:
-    """Print the report in the form that the options ask for, or write it to their file of CSV or JSON."""
+    """Print the report as the options ask, or write it to their file in the form of its suffix."""
     path: Path | None = getattr(options, "output", None)
     if path is None:
         report.show(form_of(options))

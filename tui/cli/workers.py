@@ -1,4 +1,4 @@
-"""Where tasks run: in this process, in others on this machine, on a Dask cluster, or in any executor.
+"""Where tasks run: in this process, in others, on a Dask cluster, or in any executor.
 
     with workers_of(options) as workers:
         for result in workers.map(function, tasks):
@@ -134,10 +134,10 @@ def workers_of(options: argparse.Namespace) -> Iterator[Workers]:
         try:
             yield workers
         except BaseException:
-            if options.workers > 1:
-                for child in active_children():
-                    child.terminate()
-            workers.close(wait=False)
+            is_local = options.workers > 1
+            for child in active_children() if is_local else ():
+                child.terminate()
+            workers.close(wait=is_local)
             raise
         workers.close()
 

@@ -138,10 +138,6 @@ def test_a_verdict_is_compared_with_one_of_its_words(word: str, quote: str) -> N
             "rk4.max_enrgy_error > 1",
             "there is no field 'max_enrgy_error': did you mean max_energy_error?",
         ),
-        (
-            "beeman.energy > 1",
-            "there is no method 'beeman': choose from explicit_euler, symplectic_euler, velocity_verlet, rk4.",
-        ),
         ("rk4.energy > 1e999", "'1e999' is not a finite number; use for example 0.05 or 1e-2."),
         ("rk4.energy > 1_0", "'1_0' is not a finite number; use for example 0.05 or 1e-2."),
         ("rk4.energy > 1 +", f"'rk4.energy > 1 +' {NO_COMPARISON}"),

@@ -1,6 +1,6 @@
-"""Find where each method becomes unstable: theory next to measurement, for the linear oscillator and the pendulum.
+"""Find where each method becomes unstable: theory next to measurement.
 
---section draws the phase portrait of a method's own map, and describes the orbit of the scene's start.
+--section draws the phase portrait of a method's own map, with the orbit of the scene's start.
 """
 
 import argparse
