@@ -5,7 +5,6 @@ import math
 import pytest
 
 from tests.tui.command_line import own_method, pendu
-from tests.tui.conftest import text_of
 
 
 def section(*arguments):
@@ -54,14 +53,11 @@ def test_json_has_the_rotation_numbers_and_lyapunov_numbers_of_the_start():
 @pytest.mark.parametrize("theme", ["dark", "light", "ansi"])
 def test_the_file_is_the_same_every_time_and_has_the_size_asked_for(theme, tmp_path):
     command = (*ISLANDS, *FEW, "--size", "70x20", "--theme", theme, "-o")
-    one, two, text = tmp_path / "one.svg", tmp_path / "two.svg", tmp_path / "one.txt"
-    for file in (one, two, text):
+    one, two = tmp_path / "one.txt", tmp_path / "two.txt"
+    for file in (one, two):
         assert section(*command, file).out.startswith(f"{file}: Velocity Verlet")
     assert one.read_bytes() == two.read_bytes()
-    assert (
-        text_of(one.read_text(encoding="utf-8")).split() == text.read_text(encoding="utf-8").split()
-    )
-    assert len(text.read_text(encoding="utf-8").splitlines()) == 21
+    assert len(one.read_text(encoding="utf-8").splitlines()) == 21
 
 
 def test_pixels_and_methods_can_be_chosen(tmp_path):
@@ -89,7 +85,7 @@ def test_one_may_draw_a_method_of_ones_own(tmp_path):
         (("--starts", "0"), ("--starts", "1 or more")),
         (("--starts", "20000"), ("--starts 20000", "at most 10000")),
         (("--steps", "200000"), ("--steps 200000", "at most 100000")),
-        (("-o", "map.png"), ("map.png", "map.svg")),
+        (("-o", "map.jpg"), ("map.jpg", "map.svg")),
         (("--size", "3x3"), ("'3x3' is not a size", "120x40")),
         (("--h", "0"), ("h",)),
     ],

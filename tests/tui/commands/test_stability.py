@@ -137,7 +137,7 @@ def test_lost_workers_end_with_exit_3_and_what_is_done_is_kept(monkeypatch):
         (("--map", "--z-values", "0.1:3:3000", "--theta-values", "0.1:3:2000"), ("24008000",)),
         (("--theta-values", "0.1:3:10001"), ("32523252",)),
         (("--section", "--csv"), (".svg",)),
-        (("-o", "map.svg"), ("--section",)),
+        (("-o", "map.txt"), ("--section",)),
         (("--map", "--section"), ("not allowed",)),
     ],
 )

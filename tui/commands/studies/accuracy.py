@@ -12,6 +12,7 @@ from tui.cli.options import count, positive
 from tui.cli.output import progress, warn
 from tui.cli.report import add_report_options, publish
 from tui.cli.scene import add_scene_options, general_scene_of
+from tui.commands.studies.reports import figures
 
 if TYPE_CHECKING:
     from engine.accuracy.advice import Advice
@@ -55,7 +56,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     limit = "limit of force evaluations; alone: find the least error within it"
     add("--budget", metavar="N", type=positive, help=limit)
     add("--no-compiled", action="store_true", help="do not use Numba (results are identical)")
-    add_report_options(parser, csv=True, files=(".csv", ".json"))
+    add_report_options(parser, csv=True, files=(".csv", ".json", *figures.SUFFIXES))
 
 
 def times(text: str) -> list[float]:
@@ -100,6 +101,8 @@ def run(options: argparse.Namespace) -> int:
     rungs = _ladder(scene, durations[-1], options.h_values, options.all)
     if options.output:
         check_free(options.output, options.force)
+    if figures.is_figure(options.output):
+        figures.check(options.output, options.force)
     from tui.commands.studies.reports.accuracy import Findings, report
 
     found = Findings(
@@ -118,7 +121,10 @@ def run(options: argparse.Namespace) -> int:
         _fill(found, durations, rungs, fast and not options.no_compiled)
     except KeyboardInterrupt:
         found.interrupted = True
-    publish(report(found), options)
+    if figures.is_figure(options.output):
+        figures.draw_accuracy(options.output, options.force, found)
+    else:
+        publish(report(found), options)
     if found.interrupted:
         warn("interrupted; partial results are kept.")
         return Exit.INTERRUPTED

@@ -20,6 +20,7 @@ from tui.cli.output import progress, warn
 from tui.cli.report import Report, add_report_options, publish
 from tui.cli.scene import add_scene_options, scenes_of
 from tui.cli.workers import add_worker_options
+from tui.commands.studies.reports import figures
 from tui.commands.studies.reports.run import (
     columns_of,
     known,
@@ -46,6 +47,7 @@ verdicts:
 """ + "\n".join(f"  {verdict}: {text}" for verdict, text in DEFINITIONS.items())
 
 MAX_TIME = 1e9  # s, 30 years; a recording's clock ends there, too
+MAX_POINTS = 20_000  # of a figure, from which it takes the largest
 LARGE = 200e6  # bytes of a recording that deserve a warning; half a minute to write
 SAMPLE_BYTES = 320  # of a recording, measured with h from 0.01 to 0.05 s
 
@@ -74,7 +76,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
     add_check_options(parser, names, meaning)
     add("--no-compiled", action="store_true", help="do not use Numba (same results)")
-    add_report_options(parser, csv=True, files=(".csv", ".json"))
+    add_report_options(parser, csv=True, files=(".csv", ".json", *figures.SUFFIXES))
     add("--resume", action="store_true", help="go on with the list of runs in FILE.csv.partial")
     add_worker_options(parser)
 
@@ -94,6 +96,10 @@ def run(options: argparse.Namespace) -> int:
 
 def _check_list(options: argparse.Namespace) -> None:
     """Refuse what a list of runs cannot do."""
+    if figures.is_figure(options.output):
+        raise UserError(
+            f"{options.output} would be a figure of one run; use .csv, or give each number one value."
+        )
     if options.record:
         raise UserError("--record is for one run; leave it out, or give each number one value.")
     is_csv = options.output and options.output.suffix.lower() == ".csv"
@@ -108,8 +114,11 @@ def _run(scene: Scene, options: argparse.Namespace, gate: Gate | None, steps: in
     for path in (options.record, options.output):
         if path:
             check_free(path, options.force)
+    curve: list[Sample] = []
+    if figures.is_figure(options.output):
+        figures.check(options.output, options.force)
     began = time.perf_counter()
-    sample, lockstep, stopped = _simulate(scene, options, steps)
+    sample, lockstep, stopped = _simulate(scene, options, steps, curve)
     wall_seconds = time.perf_counter() - began
     rows = rows_of(scene, sample, lockstep, stopped)
     if options.record:
@@ -130,7 +139,10 @@ def _run(scene: Scene, options: argparse.Namespace, gate: Gate | None, steps: in
         },
         records=[{name: row[name] for name in row if name != "progress"} for row in rows],
     )
-    publish(report, options)
+    if curve:
+        figures.draw_run(options.output, options.force, scene, curve)
+    else:
+        publish(report, options)
     if stopped:
         warn(f"interrupted at t = {sample.t:g} s, showing the results up to then.")
         return Exit.INTERRUPTED
@@ -157,9 +169,12 @@ def _steps(scene: Scene, seconds: float | None) -> int:
 
 
 def _simulate(
-    scene: Scene, options: argparse.Namespace, steps: int
+    scene: Scene, options: argparse.Namespace, steps: int, curve: "list[Sample]"
 ) -> "tuple[Sample, Lockstep, bool]":
-    """Return the last sample, its lockstep, and whether a signal stopped the run before its end."""
+    """Return the last sample, its lockstep, and whether a signal stopped the run before its end.
+
+    For a figure, `curve` gets the samples.
+    """
     from recordings.headless import SAMPLE_EVERY, simulate
     from tui.commands.studies.lists import MAX_BATCH, lockstep_of
 
@@ -171,10 +186,15 @@ def _simulate(
         every = options.sample_every or min(MAX_BATCH, max(1, round(SAMPLE_EVERY / scene.h)))
         _warn_of_size(steps, every)
         recorder = Recorder(options.record, wall=None, overwrite=options.force)
+    wants_curve = figures.is_figure(options.output)
+    if wants_curve:
+        every = min(every, math.ceil(steps / MAX_POINTS))
     lockstep = lockstep_of(scene, steps, not options.no_compiled)
     with stop_requests() as stopped, progress(f"{steps:,} steps") as show, recorder as recording:
         for sample in simulate(scene, options.time, recording, every, lockstep=lockstep):
             show(sample.step, steps)
+            if wants_curve and sample.step:
+                curve.append(sample)
             if stopped() and sample.step < steps:
                 return sample, lockstep, True
     return sample, lockstep, False

@@ -15,6 +15,7 @@ from tui.cli.output import progress, warn
 from tui.cli.report import add_report_options, publish
 from tui.cli.scene import add_scene_options, general_scene_of
 from tui.cli.workers import Workers, add_worker_options, workers_of
+from tui.commands.studies.reports import figures
 from tui.terminal.options import add_picture_options, cells
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
     add("--starts", metavar="N", type=count, default=300, help="orbits of --section (%(default)s)")
     add("--size", metavar="CxR", type=cells, help="columns x rows of --section (the terminal's)")
-    add_report_options(parser, csv=True, files=(".npz", ".csv", ".json", ".svg", ".txt"))
+    add_report_options(parser, csv=True, files=(".npz", ".csv", ".json", ".txt", *figures.SUFFIXES))
     add_worker_options(parser)
     add_picture_options(parser, "auto", "auto")
 
@@ -66,8 +67,8 @@ def run(options: argparse.Namespace) -> int:
     suffix = "" if options.output is None else options.output.suffix.lower()
     if options.section:
         return _section(scene, options, suffix)
-    if suffix in (".svg", ".txt"):
-        raise UserError(f"only --section writes {suffix} files; use .npz, .csv or .json.")
+    if suffix == ".txt":
+        raise UserError("only --section writes .txt files; use .npz, .csv, .json or .svg.")
     steps = options.steps or STEPS
     _check(scene, options, steps)
     grids = _grids(scene, options, steps, suffix)
@@ -80,7 +81,9 @@ def run(options: argparse.Namespace) -> int:
                 computed.append((grid, swings))
     from tui.commands.studies.reports.stability import report, write_map
 
-    if suffix == ".npz":
+    if suffix in figures.SUFFIXES:
+        figures.draw_map(options.output, options.force, *computed[0])
+    elif suffix == ".npz":
         write_map(options.output, options.force, *computed[0])
     else:
         publish(report(scene, steps, computed, is_whole=ended is None), options)
@@ -93,7 +96,7 @@ def run(options: argparse.Namespace) -> int:
 def _section(scene: Scene, options: argparse.Namespace, suffix: str) -> int:
     if options.csv or suffix in (".npz", ".csv"):
         raise UserError(
-            "--section is a picture; write it to a file that ends in .svg or .txt, or use --json."
+            "--section is a picture; write it to a file that ends in .svg, .pdf, .png or .txt, or use --json."
         )
     from tui.commands.studies.reports import section
 
@@ -104,17 +107,20 @@ def _grids(scene: Scene, options: argparse.Namespace, steps: int, suffix: str) -
     """Return the grid of the table, where there is one, and that of the map, where it is asked for."""
     from engine.stability.study import ladder_of, map_of
 
+    is_map = suffix in (".npz", *figures.SUFFIXES)
     grids = []
-    if scene.equations.turns and suffix != ".npz":
+    if scene.equations.turns and not is_map:
         grids.append(ladder_of(scene, options.theta_values, options.z_values, steps))
-    if options.map or suffix == ".npz":
+    if options.map or is_map:
         grids.append(map_of(scene, options.theta_values, options.z_values, steps))
     for grid in grids:
         if math.prod(grid.shape) > MAX_SWINGS:
             raise UserError(
                 f"{math.prod(grid.shape)} swings are too many; use at most {MAX_SWINGS}."
             )
-    if options.output:
+    if suffix in figures.SUFFIXES:
+        figures.check(options.output, options.force)
+    elif options.output:
         check_free(options.output, options.force)
     return grids
 

@@ -1,18 +1,14 @@
 """The report of `stability --section`: the portrait of a method's map, and the orbits of the scene's start."""
 
 import argparse
-import io
 import math
 import os
 from functools import partial
 from operator import itemgetter
-from pathlib import Path
 from typing import Any
 
-from rich.console import Console
 from rich.segment import Segment
 from rich.style import Style
-from rich.terminal_theme import DEFAULT_TERMINAL_THEME, SVG_EXPORT_THEME
 from rich.text import Text
 from textual.color import Color
 
@@ -21,6 +17,7 @@ from engine.methods.verlet import VELOCITY_VERLET
 from engine.models.model import State
 from engine.phase_space.section import (
     OrbitKind,
+    Points,
     batches,
     iterate,
     kind_of,
@@ -33,6 +30,7 @@ from tui.cli.files import whole_file
 from tui.cli.output import console, progress, scene_line
 from tui.cli.report import Column, Report, Table, publish
 from tui.cli.workers import workers_of
+from tui.commands.studies.reports import figures
 from tui.drawing.palette import PALETTES, ink_of
 from tui.terminal.character_sets import CharacterSetFilter
 from tui.terminal.options import terminal_options_of
@@ -56,11 +54,19 @@ def run(scene: Scene, options: argparse.Namespace, steps: int) -> int:
     path = options.output
     is_picture = path is not None and path.suffix.lower() != ".json"
     lines: list[Text] = []
+    if is_picture and figures.is_figure(path):
+        figures.check(path, options.force)
+        orbits, viewport = _orbits(scene, method, options, steps, FILE_SIZE)
+        edges = (math.pi, viewport.omega_at(0.0))
+        figures.draw_section(path, options.force, title_of(scene, method), orbits, edges)
+        print(f"{path}: {title_of(scene, method)}")
+        return Exit.FINE
     if is_picture:
         with whole_file(path, options.force) as part:
             size = options.size or FILE_SIZE
             lines = [Text(title_of(scene, method)), *portrait(scene, method, options, steps, size)]
-            write(part, path.suffix.lower(), size, lines, options.theme == "light")
+            text = "\n".join(line.plain.rstrip() for line in lines) + "\n"
+            part.write_text(text, encoding="utf-8")
         print(f"{path}: {title_of(scene, method)}")
         return Exit.FINE
     if path is None and not options.json:
@@ -74,21 +80,36 @@ def title_of(scene: Scene, method: Method) -> str:
     return f"{method.label}, h {scene.h:g} s (z = {scene.z:.4g}): its own phase portrait"
 
 
+def _orbits(
+    scene: Scene,
+    method: Method,
+    options: argparse.Namespace,
+    steps: int,
+    size: tuple[int, int],
+) -> tuple[list[Points], Viewport]:
+    """Return orbits that start all over a portrait of so many columns and rows, and the portrait."""
+    viewport = Viewport.portrait(*size, scene)
+    orbits: list[Points] = []
+    followed = partial(iterate, method, scene.equations, scene.h, steps=steps)
+    done = 0
+    with workers_of(options) as workers, progress("section") as show:
+        for piece in workers.map(followed, batches(starts(viewport, options.starts))):
+            orbits.append(piece)
+            done += piece[0].shape[1]
+            show(done, options.starts)
+    return orbits, viewport
+
+
 def portrait(
     scene: Scene, method: Method, options: argparse.Namespace, steps: int, size: tuple[int, int]
 ) -> list[Text]:
     """Return the lines of the phase portrait of a method's map, in the colours and characters of the options."""
     model = scene.equations
     start = State(scene.theta, scene.omega)
-    viewport = Viewport.portrait(*size, scene)
+    orbits, viewport = _orbits(scene, method, options, steps, size)
     section = Section(viewport, model, method, ink_of(method, scene.cast))
-    done = 0
-    followed = partial(iterate, method, model, scene.h, steps=steps)
-    with workers_of(options) as workers, progress("section") as show:
-        for piece in workers.map(followed, batches(starts(viewport, options.starts))):
-            section.add(piece)
-            done += piece[0].shape[1]
-            show(done, options.starts)
+    for piece in orbits:
+        section.add(piece)
     display = terminal_options_of(
         options, os.environ, "utf-8" if options.output else console().encoding
     )
@@ -105,27 +126,6 @@ def portrait(
             segments = characters.apply(segments, Color(0, 0, 0))
         lines.append(Text.assemble(*((segment.text, segment.style or "") for segment in segments)))
     return lines
-
-
-def write(
-    file: Path, suffix: str, size: tuple[int, int], lines: list[Text], is_light: bool
-) -> None:
-    """Write the picture as SVG or as text; the same bytes every time."""
-    text = "\n".join(line.plain.rstrip() for line in lines) + "\n"
-    if suffix == ".svg":
-        on = Console(
-            file=io.StringIO(),
-            record=True,
-            width=size[0],
-            height=size[1] + 1,
-            color_system="truecolor",
-        )
-        on.print(*lines, sep="\n", no_wrap=True, overflow="crop")
-        theme = DEFAULT_TERMINAL_THEME if is_light else SVG_EXPORT_THEME
-        text = on.export_svg(
-            title="pendu-tui stability --section", theme=theme, unique_id="terminal"
-        )
-    file.write_text(text, encoding="utf-8")
 
 
 def report(scene: Scene, method: Method, steps: int, picture: list[Text]) -> Report:

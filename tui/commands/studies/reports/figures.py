@@ -1,0 +1,182 @@
+"""Figures for paper and slide, by Matplotlib: as wide as a column, the same bytes for the same input."""
+
+import math
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from engine.methods import Cast
+from engine.scenes import Scene
+from tui.cli.errors import UserError
+from tui.cli.files import check_free, whole_file
+from tui.cli.install import install_advice
+from tui.drawing.palette import PALETTES, inks
+
+if TYPE_CHECKING:
+    from engine.phase_space.section import Points
+    from engine.run.lockstep import Sample
+    from engine.stability.grid import Grid
+    from engine.stability.outcomes import Cells
+    from tui.commands.studies.reports.accuracy import Findings
+
+SUFFIXES = (".svg", ".pdf", ".png")
+CM = 1 / 2.54  # inches
+WIDTH, HEIGHT = 8.5 * CM, 6.0 * CM  # a column of a journal
+MAX_PARTS = 400  # of a run; of each the largest error is drawn
+LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 2)))
+LOST = "#C8C8C8"
+STYLE = {
+    "font.size": 7,
+    "axes.linewidth": 0.5,
+    "lines.linewidth": 0.9,
+    "lines.markersize": 2.5,
+    "legend.frameon": False,
+    "legend.handlelength": 2.4,
+    "figure.constrained_layout.use": True,
+    "savefig.dpi": 600,
+    "svg.fonttype": "path",  # letters as outlines: the reader need not have the font
+    "svg.hashsalt": "pendu-tui",
+    "pdf.fonttype": 42,  # TrueType, which journals ask for
+}
+NO_DATE = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {"Software": None}}
+
+
+def is_figure(path: Path | None) -> bool:
+    """Return whether a file is one for Matplotlib."""
+    return path is not None and path.suffix.lower() in SUFFIXES
+
+
+def check(path: Path, force: bool) -> None:
+    """Raise UserError if no figure can be made, DiskError if the name is taken."""
+    if find_spec("matplotlib") is None:
+        advice = install_advice("matplotlib", "plot")
+        raise UserError(f"{path.suffix} files need Matplotlib: {advice}.")
+    check_free(path, force)
+
+
+@contextmanager
+def _figure(path: Path, force: bool, height: float = HEIGHT) -> Iterator[Any]:
+    """Yield a Matplotlib figure, which is written to the file afterwards."""
+    check(path, force)
+    import matplotlib as mpl
+    from matplotlib.figure import Figure
+
+    suffix = path.suffix.lower()
+    defaults = {key: value for key, value in mpl.rcParamsDefault.items() if "backend" not in key}
+    with mpl.rc_context({**defaults, **STYLE}), whole_file(path, force) as part:
+        figure = Figure((WIDTH, height))
+        yield figure
+        figure.savefig(part, format=suffix[1:], metadata=NO_DATE[suffix])
+
+
+def _styles(cast: Cast) -> list[dict[str, Any]]:
+    """Return colour, line and label of each method: no two have the same line, so none needs its colour."""
+    palette = PALETTES["light"]
+    return [
+        {
+            "color": palette.colour(ink),
+            "linestyle": LINES[place % len(LINES)],
+            "label": method.label,
+        }
+        for place, (method, ink) in enumerate(zip(cast, inks(cast), strict=True))
+    ]
+
+
+def draw_run(path: Path, force: bool, scene: Scene, samples: Sequence["Sample"]) -> None:
+    """Draw the largest energy error in each half swing of a run, or in longer parts of it."""
+    import numpy as np
+
+    t = np.array([sample.t for sample in samples])
+    errors = np.array([[one.energy_error for one in sample.readings] for sample in samples]).T
+    swing = scene.exact().period or math.tau / scene.w0
+    parts = max(1, min(MAX_PARTS, len(t), round(2 * t[-1] / swing)))
+    first = np.linspace(0, len(t), parts + 1).astype(int)[:-1]
+    with _figure(path, force) as figure:
+        axes = figure.add_subplot(
+            xlabel="time / s", ylabel="largest |ΔE / E₀| of a half swing", yscale="log"
+        )
+        for row, style in zip(errors, _styles(scene.cast), strict=True):
+            axes.plot(t[first], np.fmax.reduceat(np.abs(row), first), **style)
+        axes.set_xlim(0, t[-1])
+        figure.legend(loc="outside upper center", ncols=2)
+
+
+def draw_accuracy(path: Path, force: bool, found: "Findings") -> None:
+    """Draw error against cost, a line for each method; flawed points are left out."""
+    cast = found.scene.cast
+    what = {"theta": "largest error of θ / rad", "final": "error of θ at the end / rad"}
+    cost = "force evaluations" if found.cost == "evaluations" else "time of computation / s"
+    with _figure(path, force) as figure:
+        axes = figure.add_subplot(xlabel=cost, ylabel=what.get(found.kind, "largest |ΔE / E₀|"))
+        axes.set(xscale="log", yscale="log")
+        for method, style in zip(cast, _styles(cast), strict=True):
+            points = sorted(
+                (
+                    point.force_evaluations if found.cost == "evaluations" else point.seconds or 0,
+                    point.error(found.kind),
+                )
+                for point in found.points
+                if point.method == method and point.flaw(found.kind) is None
+            )
+            if points:
+                axes.plot(*zip(*points, strict=True), marker="o", **style)
+        figure.legend(loc="outside upper center", ncols=2)
+
+
+def draw_map(path: Path, force: bool, grid: "Grid", cells: "Cells") -> None:
+    """Draw for each method where it holds a swing, by z and amplitude, with its largest energy error."""
+    import numpy as np
+
+    from engine.stability.outcomes import is_lost
+
+    rows = math.ceil(len(grid.methods) / 2)
+    extent = (0, grid.z[-1] + grid.z[0], 0, np.degrees(grid.theta[-1] + grid.theta[0]))
+    with _figure(path, force, height=(1 + 3.6 * rows) * CM) as figure:
+        panels = figure.subplots(rows, 2, sharex=True, sharey=True, squeeze=False).ravel()
+        for panel in panels[len(grid.methods) :]:
+            panel.set_axis_off()
+        for place, method in enumerate(grid.methods):
+            panel = panels[place]
+            errors = np.where(is_lost(cells[:, place]), np.nan, cells["error"][:, place])
+            with np.errstate(all="ignore"):
+                shown = np.log10(errors).T
+            image = panel.imshow(
+                shown, origin="lower", aspect="auto", extent=extent, vmin=-6, vmax=0,
+                cmap="viridis_r", interpolation="none",
+            )  # fmt: skip
+            panel.set_facecolor(LOST)
+            panel.set_title(method.label, size=7)
+            if method.linear_limit and method.linear_limit < extent[1]:
+                panel.axvline(method.linear_limit, color="black", linestyle="--", linewidth=0.5)
+        figure.supxlabel("z = h ω₀   (grey: the swing is lost; dashed: linear limit)", size=7)
+        figure.supylabel("amplitude / °", size=7)
+        figure.colorbar(image, ax=list(panels), label="log₁₀ of the largest |ΔE / E₀|")
+
+
+def draw_section(
+    path: Path,
+    force: bool,
+    title: str,
+    orbits: Sequence["Points"],
+    edges: tuple[float, float],
+) -> None:
+    """Draw the orbits of a method's own map, a point for each step."""
+    import numpy as np
+
+    with _figure(path, force) as figure:
+        axes = figure.add_subplot(xlabel="θ / rad", ylabel="ω / (rad/s)", title=title)
+        axes.set(xlim=(-edges[0], edges[0]), ylim=(-edges[1], edges[1]))
+        axes.title.set_size(7)
+        for theta, omega in orbits:
+            wrapped = np.remainder(theta + math.pi, 2 * math.pi) - math.pi
+            axes.plot(
+                wrapped.ravel(),
+                omega.ravel(),
+                ".",
+                color="black",
+                rasterized=True,
+                markersize=0.5,
+                mew=0,
+            )
