@@ -12,6 +12,7 @@ from engine.methods.own import OwnMethodError
 from engine.models.model import Model, State
 from engine.run.lockstep import Sample
 from engine.scenes import SceneError
+from tui.cli.time_limit import limited
 from tui.drawing.palette import TEXT, inks
 from tui.drawing.picture import Picture
 from tui.playback.live import has_own
@@ -108,9 +109,10 @@ class PhasePane(Chooser[State]):
         self.neighbours = self.neighbours or Neighbours(self.radius)
         steps = 1 if has_own(source.scene) else RING_STEPS
         try:
-            self.ring = self.neighbours.follow(
-                source.scene, sample.run, sample.step, source.changes, steps
-            )
+            with limited("the ring"):
+                self.ring = self.neighbours.follow(
+                    source.scene, sample.run, sample.step, source.changes, steps
+                )
         except OwnMethodError as error:
             self.radius = self.neighbours = self.ring = None
             self.notify(str(error), severity="warning", markup=False)

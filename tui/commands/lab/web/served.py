@@ -9,7 +9,6 @@ from typing import Any
 from textual.drivers.web_driver import WebDriver
 
 from recordings import library
-from tui.cli.time_limit import limited_steps
 from tui.playback.live import Live
 from tui.screens.app import PenduApp
 from tui.screens.launch import live_screen
@@ -17,12 +16,12 @@ from tui.terminal.options import LARGEST
 
 
 class BoundedDriver(WebDriver):
-    """Textual's driver for a browser, which may ask for any size."""
+    """Textual's driver for a browser, which may have any size."""
 
     def on_meta(self, packet_type: str, payload: dict[str, Any]) -> None:
         if packet_type == "resize":
-            size = payload["width"], payload["height"]
-            payload["width"], payload["height"] = bounded(*size)
+            columns, rows = bounded(payload["width"], payload["height"])
+            payload.update(width=columns, height=rows)
         super().on_meta(packet_type, payload)
 
 
@@ -37,12 +36,10 @@ def main() -> None:
     columns, rows = bounded(int(os.environ["COLUMNS"]), int(os.environ["ROWS"]))
     os.environ.update(COLUMNS=str(columns), ROWS=str(rows))
     live = Live(scene)
-    path = None if folder is None else library.new_path(folder)
-    app = PenduApp(live_screen(live, path), terminal=terminal)
+    app = PenduApp(live_screen(live, folder and library.new_path(folder)), terminal=terminal)
     app.driver_class = BoundedDriver
     try:
-        with limited_steps():
-            app.run()
+        app.run()
     finally:
         live.close()
 

@@ -1,4 +1,4 @@
-"""The server: textual-serve, behind checks of who asks, and how often."""
+"""textual-serve, behind checks of who asks."""
 
 import asyncio
 import ipaddress
@@ -17,14 +17,14 @@ from textual_serve.server import Server
 
 from tui.cli.files import ENDING
 
-CONNECTIONS_PER_LAB = 10  # a browser opens six at most
-MAX_IDLE_TIME = 10.0  # s that a connection may be without a whole request
-MAX_STOP_TIME = 1.0  # s that labs are waited for at the end
+CONNECTIONS_PER_LAB = 10  # browsers open six
+MAX_IDLE_TIME = 10.0  # s without a whole request
+MAX_STOP_TIME = 1.0  # s to wait for labs at the end
 POLICY = "default-src 'self' 'unsafe-inline' data: ws: wss:; frame-ancestors 'none'"
 
 
 class LabServer(Server):  # type: ignore[misc]
-    """Serves at most so many labs, and only to pages of its own address."""
+    """Serves at most so many labs, to its own pages."""
 
     def __init__(self, settings_file: str, max_labs: int, host: str) -> None:
         served = [sys.executable, "-P", "-m", "tui.commands.lab.web.served", settings_file]
@@ -33,8 +33,8 @@ class LabServer(Server):  # type: ignore[misc]
         self._labs = 0
 
     async def run(self, port: int, listening: Callable[[str], None]) -> None:
-        """Serve until a signal asks for an end; `listening` gets the address.  Raises OSError."""
-        logging.disable()  # whoever can reach the server can cause errors that do not matter
+        """Serve until a signal; `listening` gets the address.  Raises OSError."""
+        logging.disable()  # anybody can cause errors that do not matter
         loop = asyncio.get_running_loop()
         stop = asyncio.Event()
         for number in ENDING:
@@ -65,15 +65,14 @@ class LabServer(Server):  # type: ignore[misc]
 
     @web.middleware  # type: ignore[untyped-decorator]
     async def check(self, request: web.Request, handler: Any) -> web.StreamResponse:
-        """Answer requests for this address from its own pages, while there are labs left."""
+        """Answer requests from own pages, while there are labs left."""
         here = f"http://{request.host}"
         if not is_ours(request.host, self.host):
-            return web.Response(status=421, text="This server has another address.\n")
+            return web.Response(status=421, text="Wrong address.\n")
         if request.headers.get("Origin", here) not in (here, f"https://{request.host}"):
-            return web.Response(status=403, text="This page belongs to another server.\n")
+            return web.Response(status=403, text="Wrong page.\n")
         if self._labs >= self._max_labs and request.path in ("/", "/ws"):
-            text = f"All {self._max_labs} labs are in use: close one, or reload this page later.\n"
-            return web.Response(status=503, text=text)
+            return web.Response(status=503, text="All labs are in use; reload later.\n")
         self.public_url = f"{request.scheme}://{request.host}"
         response: web.StreamResponse = await handler(request)
         return response
@@ -89,17 +88,14 @@ class LabServer(Server):  # type: ignore[misc]
 def serve(
     settings: object, host: str, port: int, max_labs: int, listening: Callable[[str], None]
 ) -> None:
-    """Serve labs with these settings, which may hold code: they are in a file of mode 0600."""
+    """Serve labs with these settings, which may hold code, in a file of mode 0600."""
     with tempfile.NamedTemporaryFile(prefix="pendu-") as file:
         Path(file.name).write_bytes(pickle.dumps(settings))
         asyncio.run(LabServer(file.name, max_labs, host).run(port, listening))
 
 
 def is_ours(authority: str, host: str) -> bool:
-    """Return whether host:port is an IP address, localhost, or the host that the user gave.
-
-    An attacker's name server may lead any other name here.
-    """
+    """Return whether host:port is an address, localhost or the user's host: not rebound."""
     try:
         name = urlsplit(f"//{authority}").hostname or ""
         return name in ("localhost", host) or bool(ipaddress.ip_address(name))
@@ -108,5 +104,5 @@ def is_ours(authority: str, host: str) -> bool:
 
 
 async def add_policy(request: web.Request, response: web.StreamResponse) -> None:
-    """Let no page frame the lab, and the lab load nothing from elsewhere."""
+    """Allow no frame around the lab, and nothing from elsewhere."""
     response.headers["Content-Security-Policy"] = POLICY
