@@ -40,7 +40,12 @@ class PtyLab:
         if self.pid == 0:
             fcntl.ioctl(0, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
             os.chdir(folder)
-            terminal = {"TERM": "xterm-256color", "COLORTERM": "truecolor", "PYTHONUTF8": "1"}
+            terminal = {
+                "TERM": "xterm-256color",
+                "COLORTERM": "truecolor",
+                "COLORFGBG": "15;0",  # so that nobody asks for the background
+                "PYTHONUTF8": "1",
+            }
             ours = {
                 name: value
                 for name, value in os.environ.items()

@@ -127,9 +127,13 @@ def replay_screen(replay: "Replay", no_record: bool) -> "ReplayScreen":
 def show(screen: "SourceScreen", options: argparse.Namespace) -> int:
     """Run the app with this screen first, and say goodbye; returns the exit code."""
     from tui.screens.app import PenduApp
-    from tui.terminal.options import terminal_options_of
+    from tui.terminal.check import background
+    from tui.terminal.options import fitting_theme, terminal_options_of
 
     assert sys.__stderr__ is not None  # where Textual draws
+    if options.theme == "auto" and not os.environ.get("COLORFGBG"):
+        theme = fitting_theme(os.environ)
+        options.theme = theme if theme == "ansi" else background() or theme
     terminal = terminal_options_of(options, os.environ, sys.__stderr__.encoding)
     app = PenduApp(
         screen, lambda path: replay_screen(open_replay(path), options.no_record), terminal

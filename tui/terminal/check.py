@@ -1,8 +1,11 @@
 """Whether the lab can be shown on this terminal, and whether the terminal is there and keeps up."""
 
 import os
+import re
+import select
 import sys
-from typing import Any
+import time
+from typing import Any, Literal
 
 from tui.cli.errors import Exit, UserError
 
@@ -42,3 +45,54 @@ def is_writing(app: Any) -> bool:
     writer = getattr(app._driver, "_writer_thread", None)
     queue = getattr(writer, "_queue", None)
     return queue is not None and not queue.empty()
+
+
+BACKGROUND = re.compile(rb"\x1b\]11;rgba?:([0-9a-fA-F]+)/([0-9a-fA-F]+)/([0-9a-fA-F]+)")
+ATTRIBUTES = re.compile(rb"\x1b\[\?[\d;]*c")
+MAX_WAIT = 1.0  # s, for a terminal that never answers
+
+
+def background() -> Literal["light", "dark"] | None:
+    """Ask the terminal for its background, before Textual reads from it; None if it does not say.
+
+    OSC 11 asks for the colour, DA1 for the terminal's attributes, which every terminal answers, in order: whatever
+    comes before that answer is not left for Textual to take for keys.
+    """
+    try:
+        import termios
+        import tty
+    except ImportError:  # Windows
+        return None
+    if sys.__stdin__ is None or sys.__stderr__ is None:
+        return None
+    if not (sys.__stdin__.isatty() and sys.__stderr__.isatty()):
+        return None
+    keyboard, screen = sys.__stdin__.fileno(), sys.__stderr__.fileno()
+    before = termios.tcgetattr(keyboard)
+    try:
+        tty.setcbreak(keyboard, termios.TCSANOW)
+        os.write(screen, b"\x1b]11;?\x1b\\\x1b[c")
+        return _tone(_reply(keyboard))
+    finally:
+        termios.tcsetattr(keyboard, termios.TCSAFLUSH, before)
+
+
+def _reply(keyboard: int) -> bytes:
+    """Return what comes up to the terminal's attributes, or within MAX_WAIT."""
+    reply = b""
+    end = time.monotonic() + MAX_WAIT
+    while not ATTRIBUTES.search(reply):
+        ready, _, _ = select.select([keyboard], [], [], max(0.0, end - time.monotonic()))
+        if not ready:
+            break
+        reply += os.read(keyboard, 1024)
+    return reply
+
+
+def _tone(reply: bytes) -> Literal["light", "dark"] | None:
+    """Return whether the colour in a reply is light, by its luminance (ITU-R BT.709)."""
+    found = BACKGROUND.search(reply)
+    if found is None:
+        return None
+    red, green, blue = (int(part, 16) / (16 ** len(part) - 1) for part in found.groups())
+    return "light" if 0.2126 * red + 0.7152 * green + 0.0722 * blue > 0.5 else "dark"

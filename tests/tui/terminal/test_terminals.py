@@ -226,3 +226,31 @@ def test_with_reduced_motion_a_paused_lab_stands_still_and_what_lies_over_it_doe
             assert becomes_silent(pendu)
             pendu.type("\x1b")
             pendu.run(0.3)
+
+
+@pytest.mark.parametrize(
+    ("colour", "paper"), [("ffff/ffff/f0f0", b"244;244;244"), ("12/12/12", b"18;18;18")]
+)
+def test_the_terminal_is_asked_for_its_background_and_a_late_answer_is_no_key(
+    tmp_path, colour, paper
+):
+    path = tmp_path / "lab.mcap"
+    with session(tmp_path, "live", "--record", str(path), COLORFGBG="") as pendu:
+        pendu.wait_for("\x1b]11;?")
+        pendu.run(0.5)
+        pendu.type(f"\x1b]11;rgb:{colour}\x1b\\\x1b[?62;22c")
+        pendu.wait_for(RECORDING)
+        pendu.run(1.0)
+        pendu.type("q")
+        assert pendu.end() == 0
+        assert b"48;2;" + paper in pendu.output
+    with Recording.open(path) as recording:
+        assert [event.kind for _, event in recording.events] == ["start", "stop"]
+
+
+def test_a_terminal_that_never_answers_costs_a_second(tmp_path):
+    with session(tmp_path, COLORFGBG="") as pendu:
+        asked = pendu.wait_for("\x1b]11;?")
+        assert pendu.wait_for(RECORDING) - asked > 0.9
+        pendu.type("q")
+        assert pendu.end() == 0
