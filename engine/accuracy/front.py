@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal
 
-from engine.accuracy.references import AnyPoint, Reference
 from engine.accuracy.study import ErrorKind, Point
 from engine.methods import Method
 from engine.methods.runge_kutta import RK4
@@ -20,27 +19,25 @@ class Cheapest:
     """The cheapest method at one accuracy."""
 
     target: float  # of the error
-    method: Method | Reference
+    method: Method
     cost: float  # force evaluations or seconds
     saves: (
         float | None
     )  # RK4's force evaluations over this method's; None: one of the two was not measured there
 
 
-def cost_of(point: AnyPoint, cost: Cost) -> float:
+def cost_of(point: Point, cost: Cost) -> float:
     """The cost of a run; 0 where it is unknown: seconds of an untimed run, force evaluations of a series."""
-    if cost == "seconds":
-        return point.seconds or 0.0
-    return point.force_evaluations if isinstance(point, Point) else 0.0
+    return point.seconds or 0.0 if cost == "seconds" else point.force_evaluations
 
 
-def front(points: Iterable[AnyPoint], kind: ErrorKind, cost: Cost) -> list[Cheapest]:
+def front(points: Iterable[Point], kind: ErrorKind, cost: Cost) -> list[Cheapest]:
     """The cheapest method for each error of a power of ten that some method reaches, the largest error first.
 
     Costs are interpolated between a method's points, log over log.  An error is left out where the coarsest run of a
     method is that accurate already, since a coarser one may be cheaper.
     """
-    lines: dict[Method | Reference, list[AnyPoint]] = {}
+    lines: dict[Method, list[Point]] = {}
     for point in points:
         lines.setdefault(point.method, []).append(point)
     found = []
@@ -66,7 +63,7 @@ def front(points: Iterable[AnyPoint], kind: ErrorKind, cost: Cost) -> list[Cheap
     return found
 
 
-def cost_at(line: Sequence[AnyPoint], kind: ErrorKind, cost: Cost, target: float) -> float | None:
+def cost_at(line: Sequence[Point], kind: ErrorKind, cost: Cost, target: float) -> float | None:
     """The cost at which a method's error falls to `target`, interpolated; None if no point reaches it."""
     line = _coarsest_first(line)
     at = next(
@@ -84,7 +81,7 @@ def cost_at(line: Sequence[AnyPoint], kind: ErrorKind, cost: Cost, target: float
     return float(cheap * (dear / cheap) ** share)
 
 
-def ranges(found: Sequence[Cheapest]) -> list[tuple[Method | Reference, Sequence[Cheapest]]]:
+def ranges(found: Sequence[Cheapest]) -> list[tuple[Method, Sequence[Cheapest]]]:
     """The front by method: each with its targets in a row, the largest error first."""
     starts = [
         0,
@@ -96,9 +93,9 @@ def ranges(found: Sequence[Cheapest]) -> list[tuple[Method | Reference, Sequence
     ]
 
 
-def _coarsest_first(line: Sequence[AnyPoint]) -> list[AnyPoint]:
+def _coarsest_first(line: Sequence[Point]) -> list[Point]:
     return sorted(line, key=lambda point: point.steps)
 
 
-def _usable(point: AnyPoint, kind: ErrorKind) -> bool:
+def _usable(point: Point, kind: ErrorKind) -> bool:
     return point.flaw(kind) in (None, "rounding")

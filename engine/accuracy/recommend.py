@@ -1,86 +1,133 @@
 """Which method and which h: the cheapest that reaches a target, or the most accurate within a budget.
 
-Cost is counted in force evaluations.  What is recommended was run, and compared at more times than
-the search compares.
+What is recommended was run, and compared at more times than the search compares.
 """
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 
-from engine.accuracy.study import REASONS, ErrorKind, Point, Study
+from engine.accuracy.study import FITTED_BELOW, REASONS, Clock, ErrorKind, Point, Study, timed
 from engine.methods import Method
+from engine.run.loops import LoopsOf, PlainLoops
 from engine.scenes import Z_LIMITS
 
 MOST_EVALUATIONS = 20_000_000  # of a run; some seconds in plain Python
+MAX_TIMES = 300  # the force evaluations of the cheapest method, beyond which none is searched
+PREDICTED = 2.0  # times the affordable steps: a method that needs more by its order is given up
 TOLERANCE = 0.02  # to which the fewest steps are found
 CONFIRMING_COMPARISONS = 10_000
 CONFIRMING_RUNS = 20  # before a method is given up
-SECONDS_SLACK = 3.0  # where seconds count: no method's force evaluation takes a third of another's
 IN_VAIN = 2  # doublings of the steps that do not lower the error: then rounding stops it
 REFINED = 1.1  # times the steps must reach the target, too: an error may happen to cross zero
 
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
-    """A method's run that reaches the target, or its last one and why it does not."""
+    """A method's cheapest run that reaches the target, or its last one and why it does not."""
 
     method: Method
     point: Point | None  # None: there was no usable h
     why_not: str | None = None
+    times: float | None = None  # its cost, in that of the cheapest method
 
     @property
     def succeeded(self) -> bool:
         return self.why_not is None
 
 
-def reach(
+@dataclass(frozen=True, slots=True)
+class Advice:
+    """The recommendation for one simulated time, and what was tried for it, the best first."""
+
+    time: float  # s
+    attempts: list[Attempt]
+
+    @property
+    def point(self) -> Point | None:
+        """The recommended run; None: nothing reaches the target."""
+        best = self.attempts[0]
+        return best.point if best.succeeded else None
+
+
+def least_cost(
     study: Study,
     kind: ErrorKind,
     target: float,
-    most: int = MOST_EVALUATIONS,
-    slack: float = 1.0,
+    budget: int | None = None,
+    show: Callable[[float], None] = lambda share: None,
+    clock: Clock | None = None,
+    loops: LoopsOf = PlainLoops,
+) -> Advice:
+    """Each method's cheapest run for a target, by force evaluations, or by a clock with these loops.
+
+    `show` is given the share of methods tried.
+    """
+    attempts: list[Attempt] = []
+    for attempt in reach(study, kind, target, budget or MOST_EVALUATIONS):
+        if clock and attempt.point and attempt.succeeded:
+            attempt = replace(attempt, point=timed(attempt.point, study.scene, clock, loops))
+        attempts.append(attempt)
+        show(len(attempts) / len(study.scene.cast))
+    attempts.sort(key=_cost)
+    least = _cost(attempts[0])
+    return Advice(
+        study.time,
+        [replace(each, times=_cost(each) / least) if each.succeeded else each for each in attempts],
+    )
+
+
+def _cost(attempt: Attempt) -> float:
+    """Seconds where they are measured, or force evaluations; infinite where the target is not reached."""
+    if attempt.point is None or not attempt.succeeded:
+        return math.inf
+    return attempt.point.seconds or attempt.point.force_evaluations
+
+
+def least_error(
+    study: Study, kind: ErrorKind, budget: int, show: Callable[[float], None] = lambda share: None
+) -> Advice:
+    """Each method's most accurate run within a budget of force evaluations; of equal errors the cheaper."""
+    attempts: list[Attempt] = []
+    for method in study.scene.cast:
+        attempts.append(_spend(study, method, kind, budget))
+        show(len(attempts) / len(study.scene.cast))
+
+    def error(attempt: Attempt) -> tuple[float, float]:
+        if attempt.point is None or not attempt.succeeded:
+            return math.inf, math.inf
+        return attempt.point.error(kind), attempt.point.force_evaluations
+
+    return Advice(study.time, sorted(attempts, key=error))
+
+
+def reach(
+    study: Study, kind: ErrorKind, target: float, most: int = MOST_EVALUATIONS
 ) -> Iterator[Attempt]:
     """For each method, from the highest order down, its cheapest run with an error up to `target`.
 
-    A method is given up where it costs more than `most` evaluations or than `slack` times one before it.
+    A method is given up where it costs more than `most` evaluations, or than MAX_TIMES those of one before it.
     """
     for method in sorted(study.scene.cast, key=lambda method: -method.order):
         attempt = _cheapest(study, method, kind, target, most)
         if attempt.point and attempt.succeeded:
-            most = min(most, int(slack * attempt.point.force_evaluations))
+            most = min(most, MAX_TIMES * attempt.point.force_evaluations)
         yield attempt
 
 
-def spend(study: Study, kind: ErrorKind, budget: int) -> Iterator[Attempt]:
-    """For each method its run with the smallest error for at most `budget` evaluations."""
-    for method in study.scene.cast:
-        steps = _affordable(study, method, budget)
-        if not steps:
-            yield Attempt(method, None, _no_h(budget))
-            continue
-        point = study.run(method, steps, CONFIRMING_COMPARISONS)
-        while point.flaw(kind) == "rounding" and (
-            steps := steps // 2
-        ):  # fewer steps round less often
-            coarser = study.run(method, steps, CONFIRMING_COMPARISONS)
-            if coarser.error(kind) > point.error(kind):
-                break
-            point = coarser
-        flaw = point.flaw(kind)
-        yield Attempt(method, point, REASONS[flaw] if flaw in ("lost", "diverged") else None)
-
-
-def cheapest(attempts: Sequence[Attempt]) -> Point | None:
-    """The recommendation after `reach`."""
-    points = [attempt.point for attempt in attempts if attempt.point and attempt.succeeded]
-    return min(points, key=lambda point: point.force_evaluations, default=None)
-
-
-def most_accurate(attempts: Sequence[Attempt], kind: ErrorKind) -> Point | None:
-    """The recommendation after `spend`; of equal errors the cheaper."""
-    points = [attempt.point for attempt in attempts if attempt.point and attempt.succeeded]
-    return min(points, key=lambda point: (point.error(kind), point.force_evaluations), default=None)
+def _spend(study: Study, method: Method, kind: ErrorKind, budget: int) -> Attempt:
+    steps = _affordable(study, method, budget)
+    if not steps:
+        return Attempt(method, None, _no_h(budget))
+    point = study.run(method, steps, CONFIRMING_COMPARISONS)
+    while point.flaw(kind) == "rounding" and steps > 1:  # fewer steps round less often
+        steps //= 2
+        coarser = study.run(method, steps, CONFIRMING_COMPARISONS)
+        if coarser.error(kind) > point.error(kind):
+            break
+        point = coarser
+    flaw = point.flaw(kind)
+    return Attempt(method, point, REASONS[flaw] if flaw in ("lost", "diverged") else None)
 
 
 def _affordable(study: Study, method: Method, budget: int) -> int:
@@ -108,11 +155,14 @@ def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most
         if in_vain == IN_VAIN or (in_vain and steps == most_steps):
             return Attempt(method, best, f"rounding stops it at {best.error(kind):.1e}")
         if steps == most_steps:
-            return Attempt(method, best, _still(best, kind))
+            return Attempt(method, best, _not_within(point))
         flaw = point.flaw(kind)
         factor = 2.0 if flaw == "rounding" else 4.0
         if flaw is None:
-            factor = min(max((point.error(kind) / target) ** (1 / method.order), 1.1), factor)
+            needed = (point.error(kind) / target) ** (1 / method.order)
+            if needed * steps > PREDICTED * most_steps and point.error(kind) < FITTED_BELOW:
+                return Attempt(method, best, _about(method.evaluations(round(needed * steps))))
+            factor = min(max(needed, 1.1), factor)
         too_few, steps = steps, min(most_steps, math.ceil(steps * factor))
     while steps - too_few > max(1, TOLERANCE * steps):
         middle = max(too_few + 1, math.isqrt(too_few * steps))
@@ -128,12 +178,16 @@ def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most
         if steps == most_steps:
             break
         steps = min(most_steps, math.ceil(steps * (1 + TOLERANCE)))
-    return Attempt(method, point, _still(point, kind))
+    return Attempt(method, point, _not_within(point))
 
 
 def _no_h(most: int) -> str:
     return f"no usable h within {most} evaluation{'s' * (most != 1)}"
 
 
-def _still(point: Point, kind: ErrorKind) -> str:
-    return f"still {point.error(kind):.1e} after {point.force_evaluations} evaluations"
+def _not_within(point: Point) -> str:
+    return f"not within {point.force_evaluations} evaluations"
+
+
+def _about(evaluations: int) -> str:
+    return f"needs about {evaluations:.1e} evaluations"

@@ -8,14 +8,14 @@ every machine, or in seconds by a clock that is passed in.
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
 from statistics import linear_regression
 from typing import Literal, NamedTuple
 
 from engine.accuracy.rounding import rounding_floor
-from engine.methods import Cast, Method
+from engine.methods import GENERAL, Cast, Method
 from engine.methods.own import OwnMethod
-from engine.run.compiled import TieredLoops, available, compiled
+from engine.run.compiled import TieredLoops, available
 from engine.run.lockstep import Lockstep
 from engine.run.loops import LoopsOf, PlainLoops, count_evaluations
 from engine.scenes import Z_LIMITS, Scene
@@ -57,6 +57,7 @@ class Point:
 
     method: Method
     time: float  # s, simulated
+    w0: float  # rad/s
     steps: int
     theta_error: float  # rad, the largest against the exact swing
     energy_error: float  # relative, the largest of all steps
@@ -64,12 +65,23 @@ class Point:
     flaws: Flaws
     seconds: float | None = None  # the shortest of REPEATS runs without errors taken
     spread: float | None = None  # by how much the longest took longer, relative
+    tolerance: float | None = None  # rad/s, of a series: it has no h and no force evaluations
     counted: int | None = None  # force evaluations, where they vary
 
     @property
     def h(self) -> float:
         """The step size [s]."""
         return self.time / self.steps
+
+    @property
+    def z(self) -> float:
+        """The step in the system's own unit of time."""
+        return self.h * self.w0
+
+    @property
+    def steps_per_swing(self) -> float:
+        """How many steps a small swing takes."""
+        return math.tau / self.z
 
     @property
     def force_evaluations(self) -> int:
@@ -101,9 +113,11 @@ class Study:
         self.time = time
         self.loops = cache(loops)  # so that the steps of all its runs count
         self.exact = scene.exact()
+        self.energy_scale = scene.equations.reference(scene.theta, scene.omega).scale
         self._energy_floor, self._theta_floor = rounding_floor(scene, time)
         times = (time * comparison / COMPARISONS for comparison in range(COMPARISONS + 1))
-        self._width = min(math.pi, max(abs(self.exact.at(t).theta) for t in times))
+        self.thetas = [self.exact.at(t).theta for t in times]  # rad
+        self._width = min(math.pi, max(map(abs, self.thetas)))
 
     def run(self, method: Method, steps: int, comparisons: int = COMPARISONS) -> Point:
         """Take this many steps; at least `comparisons` of them, the last included, are compared with the exact swing.
@@ -114,27 +128,50 @@ class Study:
         Raises SceneError where time/steps is no usable h.
         """
         errors, diverged = self._errors(method, steps, comparisons)
-        if diverged:
-            flawed = Flaws("diverged", "diverged", "diverged")
-            return Point(method, self.time, steps, *errors, flawed)
+        flaws = Flaws("diverged", "diverged", "diverged")
+        counted = None
+        if not diverged:
+            refines = partial(self._refines, method, steps, comparisons, errors)
+            flaws = self.flaws(errors, steps, refines)
+            counted = self._evaluations(method, steps) if method.varies else None
+        return Point(method, self.time, self.scene.w0, steps, *errors, flaws=flaws, counted=counted)
+
+    def _refines(
+        self, method: Method, steps: int, comparisons: int, errors: Sequence[float]
+    ) -> list[bool]:
+        """Return which errors still fall with the step, by half of what the order promises."""
+        half, quarter = (
+            self._errors(method, max(1, steps // part), comparisons)[0] for part in (2, 4)
+        )
+        least = 2 ** (method.order - 1)
+        ladder = zip(errors, half, quarter, strict=True)
+        return [a * least <= b and b * least <= c for a, b, c in ladder]
+
+    def flaws(
+        self,
+        errors: Sequence[float],
+        roundings: int,
+        refines: Callable[[], Sequence[bool]] = lambda: (False, False, False),
+    ) -> Flaws:
+        """Return what is wrong with the errors in theta, energy and final theta of a run.
+
+        An error below the floor of so many roundings is rounding, unless a smaller step still
+        `refines` it, which is asked only there.
+        """
         floors = [
-            floor * math.sqrt(steps)
+            floor * math.sqrt(roundings)
             for floor in (self._theta_floor, self._energy_floor, self._theta_floor)
         ]
-        sizes = self._width, 1.0, self._width
-        pairs = zip(errors, sizes, strict=True)
-        flaws: list[Flaw | None] = ["lost" if error >= size else None for error, size in pairs]
-        if any(error <= floor for error, floor in zip(errors, floors, strict=True)):
-            half, quarter = (
-                self._errors(method, max(1, steps // part), comparisons)[0] for part in (2, 4)
-            )
-            least = 2 ** (method.order - 1)
-            for kind, (error, floor) in enumerate(zip(errors, floors, strict=True)):
-                refined = error * least <= half[kind] and half[kind] * least <= quarter[kind]
-                if flaws[kind] is None and error <= floor and not refined:
-                    flaws[kind] = "rounding"
-        counted = self._evaluations(method, steps) if method.varies else None
-        return Point(method, self.time, steps, *errors, Flaws(*flaws), counted=counted)
+        sizes = (self._width, 1.0, self._width)
+        found: list[Flaw | None] = [
+            "lost" if error >= size else None for error, size in zip(errors, sizes, strict=True)
+        ]
+        below = [error <= floor for error, floor in zip(errors, floors, strict=True)]
+        if any(below):
+            for kind, refined in enumerate(refines()):
+                if found[kind] is None and below[kind] and not refined:
+                    found[kind] = "rounding"
+        return Flaws(*found)
 
     def _evaluations(self, method: Method, steps: int) -> int:
         """Force evaluations of so many steps: counted, of many as an average of the first."""
@@ -204,21 +241,23 @@ def usual(scene: Scene, all: bool = False) -> tuple[float, list[int]]:
     return time, ladder(time, largest / scene.w0, smallest / scene.w0, rungs)
 
 
+def with_all_methods(scene: Scene) -> Scene:
+    """Return the scene with every other method that takes any force after its cast."""
+    others = (method for method in GENERAL if method not in scene.cast)
+    return scene.altered(cast=(*scene.cast, *others))
+
+
 def compilable(cast: Cast) -> bool:
     """Whether to time these methods compiled by Numba: a user's own cannot be, and then, to be fair, none is."""
     return available() and not any(isinstance(method, OwnMethod) for method in cast)
 
 
-def measured(
-    scene: Scene, time: float, rungs: Sequence[int], clock: Clock | None = None
-) -> Iterator[Point]:
-    """A point for every number of steps and every method, with its seconds where there is a clock.
+def measured(scene: Scene, time: float, rungs: Sequence[int]) -> Iterator[Point]:
+    """A point for every number of steps and every method.
 
     For another process, which has only the arguments.
     """
-    points = Study(scene, time, TieredLoops).points(rungs)
-    loops = compiled if compilable(scene.cast) else PlainLoops
-    return points if clock is None else (timed(point, scene, clock, loops) for point in points)
+    return Study(scene, time, TieredLoops).points(rungs)
 
 
 def orders(scene: Scene, time: float, loops: LoopsOf = PlainLoops) -> list[Order]:

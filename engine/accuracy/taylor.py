@@ -1,4 +1,4 @@
-"""The pendulum's motion by its Taylor series of order 20, for Numba.
+"""The pendulum's motion by its Taylor series of order 20, compiled by Numba.
 
 With u = w0² cos theta the motion is theta' = omega, omega'' = -omega u, u' = omega omega'.  The
 energy is not used, so nothing cancels near the separatrix.  Bits depend on the machine.
@@ -6,21 +6,18 @@ Step size: Jorba & Zou, Exp. Math. 14 (2005) 99.
 """
 
 import math
-from functools import cache
-from importlib import import_module
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numba import njit
 
-Floats = NDArray[np.float64]
 ORDER = 20
-MAX_STEPS = 20_000_000  # some seconds
-FACTORS = np.array([-1 / ((k + 1) * (k + 2)) for k in range(ORDER - 1)])
 RECIPROCALS = np.array([1 / (k + 1) for k in range(ORDER)])
+compiled: Any = njit(nogil=True, fastmath={"contract"}, error_model="numpy")
 
 
-def expand(w0_squared: float, theta: float, omega: float, w: Floats, u: Floats) -> None:
+@compiled
+def expand(w0_squared: float, theta: float, omega: float, w: Any, u: Any) -> None:
     """Fill w and u with the coefficients of the series of omega and of u.
 
     The sums of products run from the middle outwards, because the newest coefficients come last.
@@ -44,40 +41,33 @@ def expand(w0_squared: float, theta: float, omega: float, w: Floats, u: Floats) 
         for j in range(middle):
             left += w[middle - 1 - j] * u[k + 1 - middle + j]
             right += u[middle - 1 - j] * w[k + 1 - middle + j]
-        w[k + 2] = (left + right) * FACTORS[k]
+        w[k + 2] = (left + right) * (-RECIPROCALS[k] * RECIPROCALS[k + 1])
 
 
-def evaluate(theta: float, w: Floats, t: float) -> tuple[float, float]:
+@compiled
+def evaluate(theta: float, w: Any, t: float) -> tuple[float, float]:
     """Return theta and omega of the series t [s] after its start."""
-    turned = w[0] * t
+    turned = 0.0
     faster = 0.0
-    power = t
-    for k in range(1, ORDER):
-        faster += w[k] * power
-        power *= t
-        turned += w[k] * RECIPROCALS[k] * power
-    return theta + turned, w[0] + (faster + w[ORDER] * power)
+    for k in range(ORDER, 0, -1):
+        turned = (turned + w[k - 1] * RECIPROCALS[k - 1]) * t
+        faster = (faster + w[k]) * t
+    return theta + turned, w[0] + faster
 
 
-def propagate(
-    expand: Any,
-    evaluate: Any,
-    w0_squared: float,
-    theta: float,
-    omega: float,
-    times: Floats,
-    tolerance: float,
-    max_steps: int,
-    states: Floats,
-) -> int:
-    """Fill `states` with (theta, omega) at ascending times [s]; return the steps taken."""
+@compiled
+def solve(
+    w0_squared: float, theta: float, omega: float, times: Any, tolerance: float
+) -> tuple[Any, int]:
+    """Return (theta, omega) at ascending times [s], and the steps taken; tolerance in rad/s."""
+    states = np.empty((times.size, 2))
     w = np.empty(ORDER + 1)
     u = np.empty(ORDER - 1)
     index = 0
     steps = 0
     t = 0.0
     lost = 0.0  # by rounding, of t: uncompensated, it would be an error of each step
-    while index < times.size and steps < max_steps:
+    while index < times.size:
         expand(w0_squared, theta, omega, w, u)
         h = min(
             (tolerance / abs(w[ORDER])) ** (1 / ORDER),
@@ -92,43 +82,4 @@ def propagate(
         end = t + moved
         lost = moved - (end - t)
         t = end
-    return steps
-
-
-@cache
-def compiled() -> Any:
-    """Return `propagate` as compiled by Numba.  Raises ImportError without it."""
-    njit = import_module("numba").njit(nogil=True, fastmath={"contract"}, error_model="numpy")
-    series = njit(expand)
-    value = njit(evaluate)
-    loop = njit(propagate)
-
-    def run(
-        w0_squared: Any,
-        theta: Any,
-        omega: Any,
-        times: Any,
-        tolerance: Any,
-        max_steps: Any,
-        states: Any,
-    ) -> Any:
-        return loop(series, value, w0_squared, theta, omega, times, tolerance, max_steps, states)
-
-    return njit(run)
-
-
-def solve(
-    w0_squared: float,
-    theta: float,
-    omega: float,
-    times: Floats,
-    tolerance: float,
-    max_steps: int = MAX_STEPS,
-) -> tuple[Floats, int]:
-    """Return (theta, omega) at ascending times [s], nan after `max_steps`, and the steps taken.
-
-    The tolerance is that of omega [rad/s].
-    """
-    states = np.full((len(times), 2), np.nan)
-    steps = compiled()(w0_squared, theta, omega, times, tolerance, max_steps, states)
     return states, steps

@@ -21,13 +21,19 @@ def length(seconds: float) -> str:
     return f"{seconds:.3g} s"
 
 
+def few(number: float) -> str:
+    """Return a number with three digits, or with all of a whole number."""
+    return f"{number:.0f}" if number >= 100 else f"{number:.3g}"
+
+
 def point_words(point: Point, kind: ErrorKind, note: str) -> str:
     """Return a method, its h, its error and its force evaluations, and a note."""
     flaw = point.flaw(kind)
     reason = f" ({REASONS[flaw]})" if flaw else ""
     error = f"{kind} error {point.error(kind):.1e}{reason}"
     cost = f"{point.force_evaluations} force evaluations"
-    text = f"{point.method.label} at h {point.h:.4g} s: {error} for {cost}"
+    swing = f"z {point.z:.3g}, {few(point.steps_per_swing)} steps a small swing"
+    text = f"{point.method.label} at h {point.h:.4g} s ({swing}): {error} for {cost}"
     return f"{text}; {note}" if note else text
 
 

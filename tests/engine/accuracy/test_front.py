@@ -1,9 +1,11 @@
 """The cheapest method at each accuracy, interpolated between made-up points."""
 
+from dataclasses import replace
+
 import pytest
 
 from engine.accuracy.front import cost_at, front, ranges
-from engine.accuracy.references import TAYLOR_20, TaylorPoint
+from engine.accuracy.references import TAYLOR_20
 from engine.accuracy.study import Flaws, Point
 from engine.methods import method_of
 
@@ -11,11 +13,11 @@ RK4, BM6 = method_of("rk4"), method_of("blanes_moan_6")
 
 
 def at(method, steps, error, seconds=None, flaw=None):
-    return Point(method, 10.0, steps, error, error, error, Flaws(flaw, flaw, flaw), seconds)
+    return Point(method, 10.0, 3.0, steps, error, error, error, Flaws(flaw, flaw, flaw), seconds)
 
 
 def series(steps, error, seconds):
-    return TaylorPoint(1e-9, steps, error, error, error, Flaws(None, None, None), seconds, 0.0)
+    return replace(at(TAYLOR_20, steps, error, seconds), tolerance=1e-9)
 
 
 LINES = [at(RK4, 10**n, 10.0 ** (4 - 4 * n), 1e-4 * 10**n) for n in range(1, 5)] + [

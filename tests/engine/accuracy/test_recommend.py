@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import pytest
 
-from engine.accuracy.recommend import cheapest, most_accurate, reach, spend
-from engine.accuracy.study import Study
-from engine.methods import METHODS, USUAL_CAST
+from engine.accuracy.recommend import MAX_TIMES, least_cost, least_error, reach
+from engine.accuracy.study import Study, with_all_methods
+from engine.methods import USUAL_CAST
 from engine.run import compiled
 from engine.run.lockstep import Lockstep
 from engine.run.loops import PlainLoops
@@ -19,7 +19,7 @@ LOOPS = compiled.compiled if compiled.available() else PlainLoops  # the same bi
 
 
 def recommended(scene, time, kind, target):
-    return cheapest(list(reach(Study(scene, time, LOOPS), kind, target)))
+    return least_cost(Study(scene, time, LOOPS), kind, target).point
 
 
 def largest_error(scene, point, kind):
@@ -54,7 +54,7 @@ def test_explicit_euler_never_reaches_1e_3_over_100_s():
     assert not euler.succeeded
     assert euler.point.force_evaluations >= 1_000_000
     assert euler.point.theta_error > 1e-3
-    assert "still" in euler.why_not
+    assert "not within" in euler.why_not
 
 
 @pytest.mark.parametrize(("target", "time"), [(2e-13, 20.0), (1e-12, 100.0)])
@@ -76,50 +76,59 @@ def test_an_error_that_still_falls_with_the_order_is_not_rounding():
 
 
 def test_if_no_method_reaches_the_target_each_has_its_reason():
-    attempts = list(reach(Study(DRIFT, 2.0, LOOPS), "theta", 1e-17, most=400_000))
-    assert cheapest(attempts) is None
-    reasons = {attempt.method: attempt.why_not for attempt in attempts}
+    advice = least_cost(Study(DRIFT, 2.0, LOOPS), "theta", 1e-17, budget=400_000)
+    assert advice.point is None
+    reasons = {attempt.method: attempt.why_not for attempt in advice.attempts}
     assert reasons[R].startswith("rounding stops it at ")
-    assert all("400000 evaluations" in reasons[method] for method in (E, S))
+    assert reasons[V].startswith("needs about ")
 
 
-def test_rk4_is_cheapest_for_a_short_time_and_verlet_for_a_long_one_in_energy():
-    winners = [
-        recommended(DRIFT, time, "energy", 1e-3).method for time in (2.0, 20.0, 100.0, 1000.0)
-    ]
-    assert winners == [R, R, V, V]
+def test_each_method_has_its_own_h_and_its_cost_in_that_of_the_cheapest():
+    study = Study(with_all_methods(DRIFT), 20.0, LOOPS)
+    best, *others = least_cost(study, "theta", 1e-6).attempts
+    assert (best.method.key, best.times) == ("blanes_moan_6", 1)
+    for attempt in others:
+        point = attempt.point
+        if attempt.succeeded:
+            alone = Study(study.scene.with_cast((attempt.method,)), 20.0, LOOPS)
+            assert least_cost(alone, "theta", 1e-6).point == point
+            assert attempt.times == point.force_evaluations / best.point.force_evaluations
+        else:
+            assert attempt.method in (E, S)
+            assert point.force_evaluations <= MAX_TIMES * best.point.force_evaluations
+    assert [attempt.method for attempt in others if attempt.succeeded][-1] is V
 
 
-def test_a_method_is_not_searched_beyond_the_cost_of_one_that_got_there():
-    attempts = list(reach(Study(DRIFT, 10.0, LOOPS), "theta", 1e-6))
-    cost = cheapest(attempts).force_evaluations
-    assert attempts[0].method is R
-    assert all(attempt.point.force_evaluations <= cost for attempt in attempts)
+def test_a_method_that_is_given_up_needs_about_what_its_order_promises():
+    (attempt,) = reach(Study(replace(DRIFT, cast=(V,)), 10.0, LOOPS), "theta", 1e-8, 50_000)
+    about = float(attempt.why_not.removeprefix("needs about ").removesuffix(" evaluations"))
+    needed = recommended(replace(DRIFT, cast=(V,)), 10.0, "theta", 1e-8).force_evaluations
+    assert attempt.point.force_evaluations < 50_000 < needed
+    assert about == pytest.approx(needed, rel=0.1)
 
 
 @pytest.mark.parametrize("kind", ["theta", "energy"])
 @pytest.mark.parametrize("budget", [100, 1_000, 20_000])
 def test_a_budget_is_spent_and_not_exceeded(budget, kind):
-    attempts = list(spend(Study(DRIFT, 10.0, LOOPS), kind, budget))
-    assert [attempt.method for attempt in attempts] == list(USUAL_CAST)
-    for attempt in attempts:
+    advice = least_error(Study(DRIFT, 10.0, LOOPS), kind, budget)
+    assert {attempt.method for attempt in advice.attempts} == {*USUAL_CAST}
+    for attempt in advice.attempts:
         assert attempt.point.force_evaluations <= budget
         # a step more would exceed it; these steps are too few for rounding to make fewer of them the better ones
         assert attempt.point.force_evaluations + attempt.method.force_evaluations > budget
-    best = most_accurate(attempts, kind)
-    assert all(
-        best.error(kind) <= attempt.point.error(kind) for attempt in attempts if attempt.succeeded
-    )
+    errors = [attempt.point.error(kind) for attempt in advice.attempts if attempt.succeeded]
+    assert errors == sorted(errors)
 
 
 def test_a_budget_is_not_spent_beyond_the_rounding_floor():
-    (rk4,) = spend(Study(replace(DRIFT, cast=(R,)), 2.0, LOOPS), "theta", 1_000_000)
-    assert rk4.point.force_evaluations < 500_000
-    assert rk4.point.theta_error <= Study(DRIFT, 2.0, LOOPS).run(R, 250_000, 10_000).theta_error
+    rk4 = least_error(Study(replace(DRIFT, cast=(R,)), 2.0, LOOPS), "theta", 1_000_000).point
+    assert rk4.force_evaluations < 500_000
+    assert rk4.theta_error <= Study(DRIFT, 2.0, LOOPS).run(R, 250_000, 10_000).theta_error
 
 
 def test_a_budget_below_one_step_buys_nothing():
-    attempts = {attempt.method: attempt for attempt in spend(Study(DRIFT, 0.1), "theta", 1)}
+    advice = least_error(Study(DRIFT, 0.1), "theta", 1)
+    attempts = {attempt.method: attempt for attempt in advice.attempts}
     assert attempts[V].point is None
     assert attempts[R].point is None
     assert attempts[R].why_not == "no usable h within 1 evaluation"
@@ -129,21 +138,24 @@ def test_a_budget_below_one_step_buys_nothing():
 @pytest.mark.parametrize(("time", "budget"), [(1e-6, 10_000), (1e6, 10)])
 def test_an_h_that_no_lab_would_take_is_not_tried(time, budget):
     study = Study(DRIFT, time)
-    for attempt in [*spend(study, "theta", budget), *reach(study, "theta", 1e-30, budget)]:
+    for attempt in [
+        *least_error(study, "theta", budget).attempts,
+        *reach(study, "theta", 1e-30, budget),
+    ]:
         assert attempt.point is None or Z_LIMITS[0] <= attempt.point.h * DRIFT.w0 <= Z_LIMITS[1]
 
 
 def test_where_every_method_is_lost_nothing_is_recommended():
-    attempts = list(spend(Study(SCENES["spin"], 100.0), "theta", 300))
-    assert most_accurate(attempts, "theta") is None
-    assert all(math.isfinite(attempt.point.theta_error) for attempt in attempts)
+    advice = least_error(Study(SCENES["spin"], 100.0), "theta", 300)
+    assert advice.point is None
+    assert all(math.isfinite(attempt.point.theta_error) for attempt in advice.attempts)
 
 
 @pytest.mark.skipif(LOOPS is PlainLoops, reason="takes a minute without Numba")
 @pytest.mark.parametrize(("kind", "target"), [("theta", 1e-3), ("theta", 1e-9), ("energy", 1e-6)])
 def test_no_method_on_a_dense_ladder_is_three_percent_cheaper(kind, target):
-    study = Study(replace(DRIFT, cast=tuple(m for m in METHODS if m.general)), 20.0, LOOPS)
-    cost = cheapest(list(reach(study, kind, target))).force_evaluations
+    study = Study(with_all_methods(DRIFT), 20.0, LOOPS)
+    cost = least_cost(study, kind, target).point.force_evaluations
 
     def robust(
         method, steps

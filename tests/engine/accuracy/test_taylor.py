@@ -8,12 +8,13 @@ from statistics import fmean
 import numpy as np
 import pytest
 
-from engine.accuracy.taylor import solve
 from engine.models.pendulum import energy
 from engine.run.compiled import available
 from engine.scenes import Scene
 
 needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed")
+if available():
+    from engine.accuracy.taylor import solve
 SWING = Scene(theta=2.0)
 
 
@@ -90,14 +91,7 @@ def test_a_pendulum_at_rest_stays_at_rest_in_one_step():
     assert not states.any()
 
 
-@needs_numba
-def test_a_run_of_too_many_steps_is_given_up():
-    states, steps = solve(9.81, 1.0, 0.0, np.array([1.0, 1e9]), 1e-12, max_steps=1000)
-    assert steps == 1000
-    assert np.isnan(states).tolist() == [[False, False], [True, True]]
-
-
-def test_the_module_does_not_import_numba():
+def test_the_reference_lines_do_not_import_numba():
     work = "import sys; import engine.accuracy.references; print('numba' in sys.modules)"
     told = subprocess.run([sys.executable, "-c", work], check=True, capture_output=True, text=True)
     assert told.stdout == "False\n"

@@ -15,7 +15,7 @@ from tui.cli.scene import add_scene_options, general_scene_of
 from tui.commands.studies.reports import figures
 
 if TYPE_CHECKING:
-    from engine.accuracy.advice import Advice
+    from engine.accuracy.recommend import Advice
     from engine.accuracy.study import Study
     from tui.commands.studies.reports.accuracy import Findings
 
@@ -37,7 +37,7 @@ MAX_BUDGET = 10**9  # force evaluations of a run; minutes for each method, compi
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_scene_options(parser)
     add = parser.add_argument
-    every = "all methods that run on any force, your own, and with --cost seconds Taylor's series and the closed form"
+    every = "chart all methods that run on any force, and with --cost seconds Taylor's series and the closed form"
     add("--all", action="store_true", help=every)
     some = "simulated time in s; if several, the last is charted (ten small swings)"
     add("--time", metavar="S[,S...]", type=times, help=some)
@@ -47,12 +47,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add("--error", choices=("theta", "energy", "final"), default="theta", help=kinds)
     costs = "force evaluations, or measured seconds, without Numba where a method is your own (%(default)s)"
     add("--cost", choices=("evaluations", "seconds"), default="evaluations", help=costs)
-    add(
-        "--target",
-        metavar="ERROR",
-        type=positive,
-        help="find the cheapest method and h for this error",
-    )
+    wish = "find each method's cheapest h for this error, of all that run on any force without --methods"
+    add("--target", metavar="ERROR", type=positive, help=wish)
+    margin = "reach a target FACTOR times as small, for other starts and longer times (%(default)g)"
+    add("--safety", metavar="FACTOR", type=positive, default=1.0, help=margin)
     limit = "limit of force evaluations; alone: find the least error within it"
     add("--budget", metavar="N", type=positive, help=limit)
     add("--no-compiled", action="store_true", help="do not use Numba (results are identical)")
@@ -80,15 +78,15 @@ def h_values(text: str) -> tuple[float, float, int]:
 
 def run(options: argparse.Namespace) -> int:
     """Measure, recommend, print.  Ctrl+C keeps what is done."""
-    from engine.accuracy.references import with_all_methods
-    from engine.accuracy.study import compilable, usual
+    from engine.accuracy.study import compilable, usual, with_all_methods
     from engine.run.compiled import available
 
     if options.all and options.methods is not None:
         raise UserError("--all and --methods exclude each other; choose one of them.")
     scene = general_scene_of(options)
+    searched = scene if options.methods else with_all_methods(scene)
     if options.all:
-        scene = with_all_methods(scene)
+        scene = searched
     if scene.theta == scene.omega == 0:
         raise UserError(
             "the pendulum hangs at rest, so there is no error to measure; use another --theta or --omega."
@@ -97,6 +95,8 @@ def run(options: argparse.Namespace) -> int:
         raise UserError(
             f"--budget {options.budget:g} is out of range; use 1 to {MAX_BUDGET:g} force evaluations."
         )
+    if options.safety < 1:
+        raise UserError(f"--safety {options.safety:g} is less than 1; use 2, for example.")
     durations = options.time or [usual(scene)[0]]
     rungs = _ladder(scene, durations[-1], options.h_values, options.all)
     if options.output:
@@ -107,10 +107,12 @@ def run(options: argparse.Namespace) -> int:
 
     found = Findings(
         scene=scene,
+        searched=searched,
         time=durations[-1],
         kind=options.error,
         cost=options.cost,
         target=options.target,
+        safety=options.safety,
         budget=None if options.budget is None else int(options.budget),
         all=options.all,
     )
@@ -159,36 +161,29 @@ def _fill(found: "Findings", durations: list[float], rungs: list[int], fast: boo
         return
     with progress("searching") as show:
         for number, duration in enumerate(durations):
-            longer = study if duration == study.time else Study(scene, duration, study.loops)
+            wider = Study(found.searched, duration, study.loops)
 
             def show_share(share: float, done: int = number) -> None:
                 show(done + share, len(durations))
 
-            found.advice.append(_advice(found, longer, fast, show_share))
+            found.advice.append(_advice(found, wider, fast, show_share))
 
 
 def _advice(
     found: "Findings", study: "Study", fast: bool, show: Callable[[float], None]
 ) -> "Advice":
     """Return what is recommended for the time of a study."""
-    from engine.accuracy.advice import (
-        least_error,
-        least_evaluations,
-        least_seconds,
-        with_saving_over_rk4,
-    )
+    from engine.accuracy.recommend import least_cost, least_error
     from engine.run import compiled, loops
 
     if found.target is None:
         return least_error(study, found.kind, found.budget or 0, show)
-    wish = (study, found.kind, found.target, found.budget, show)
+    target = found.target / found.safety
     if found.cost == "evaluations":
-        advice = least_evaluations(*wish)
-    else:
-        advice = least_seconds(
-            *wish, time.perf_counter, compiled.compiled if fast else loops.PlainLoops
-        )
-    return with_saving_over_rk4(advice, study, found.kind, found.target) if found.all else advice
+        return least_cost(study, found.kind, target, found.budget, show)
+    timed_loops = compiled.compiled if fast else loops.PlainLoops
+    clock = time.perf_counter
+    return least_cost(study, found.kind, target, found.budget, show, clock, timed_loops)
 
 
 def _ladder(

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from engine.accuracy.front import Cost, cost_of
 from engine.accuracy.growth import Growth
-from engine.accuracy.references import CLOSED_FORM, TAYLOR_20, AnyPoint, References
+from engine.accuracy.references import TAYLOR_20, References
 from engine.accuracy.study import ErrorKind, Flaw, Point
 from engine.methods import Cast
 from tui.drawing.chart import MIN_COLUMNS, MIN_ROWS, LogLog, Series, loglog_chart
@@ -78,10 +78,10 @@ def accuracy_series(
     are Taylor's series and, upright, what the closed form takes.
     """
 
-    def series(ink: int, some: Sequence[AnyPoint], mark: str) -> Series:
+    def series(ink: int, some: Sequence[Point], mark: str) -> Series:
         return Series(ink, mark, [cost_of(p, cost) for p in some], [p.error(kind) for p in some])
 
-    def flawed(some: Sequence[AnyPoint], ink: int) -> list[Series]:
+    def flawed(some: Sequence[Point], ink: int) -> list[Series]:
         return [series(ink, [p], MARKS[flaw]) for p in some if (flaw := p.flaw(kind))]
 
     taylor = references.taylor if references else ()
@@ -98,11 +98,11 @@ def accuracy_series(
         flaws += flawed(ours, ink)
     if references:
         lines += [series(TEXT, taylor, TAYLOR_20.letter)] if taylor else []
-        every: list[AnyPoint] = [*points, *taylor]
+        every: list[Point] = [*points, *taylor]
         errors = [error for p in every if (error := p.error(kind)) and math.isfinite(error)]
         ends = [min(errors), max(errors)] if errors else []
         flaws += flawed(taylor, TEXT)
-        flaws.append(Series(EXACT, CLOSED_FORM.letter, [references.floor] * len(ends), ends))
+        flaws.append(Series(EXACT, "c", [references.closed_form] * len(ends), ends))
     marked = [series(ink_of(point.method, cast), [point], mark) for mark, point in marks]
     return [*slopes.values(), *lines, *flaws, *marked]
 

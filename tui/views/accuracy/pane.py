@@ -9,8 +9,7 @@ from textual.binding import Binding, BindingType
 
 from engine.accuracy.front import Cost, front
 from engine.accuracy.growth import Growth
-from engine.accuracy.references import with_all_methods
-from engine.accuracy.study import ErrorKind, Point
+from engine.accuracy.study import ErrorKind, Point, with_all_methods
 from engine.methods import Cast, Method
 from engine.run.lockstep import Sample
 from tui.drawing.picture import Picture

@@ -4,8 +4,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 
 from engine.accuracy.growth import Growth, growths
-from engine.accuracy.references import with_all_methods
-from engine.accuracy.study import Point, measured, usual
+from engine.accuracy.study import Point, measured, usual, with_all_methods
 from tui.playback.source import Source
 from tui.views.accuracy.pane import MAX_STEPS, AccuracyPane, AccuracyPoints
 from tui.views.background import computed

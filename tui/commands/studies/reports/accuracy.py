@@ -1,17 +1,17 @@
 """The report of the accuracy command: points, chart, measured orders, and what is recommended."""
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
+from operator import methodcaller
 from typing import Any
 
 from rich.text import Text
 
-from engine.accuracy.advice import Advice
 from engine.accuracy.front import Cheapest, Cost, front
 from engine.accuracy.growth import Growth
-from engine.accuracy.references import CLOSED_FORM, AnyPoint, References
+from engine.accuracy.recommend import Advice, Attempt
+from engine.accuracy.references import References
 from engine.accuracy.study import REASONS, ErrorKind, Order, Point
 from engine.methods import Method
 from engine.methods.own import OwnMethod
@@ -20,7 +20,7 @@ from tui.cli.output import console, fields_of, scene_line
 from tui.cli.report import Column, Report, Table
 from tui.drawing.palette import PALETTES
 from tui.views.accuracy.chart import ERROR_LABELS, MARKS, accuracy_chart, accuracy_series
-from tui.words.accuracy import WORTH_SAYING, factor_words, front_words, growth_words, length
+from tui.words.accuracy import factor_words, few, front_words, growth_words, length
 
 CHART_SIZE = (100, 24)  # columns at most, rows
 NUMBERS = (
@@ -46,6 +46,8 @@ class Findings:
     cost: Cost
     target: float | None
     budget: int | None
+    searched: Scene  # whose methods are tried for the target
+    safety: float = 1.0  # by which the target is divided
     points: list[Point] = field(default_factory=list)
     orders: list[Order] = field(default_factory=list)
     growth: list[Growth] = field(default_factory=list)  # of the theta error, at the scene's h
@@ -60,7 +62,7 @@ class Findings:
         return front([*self.points, *self.series], self.kind, self.cost)
 
     @property
-    def series(self) -> Sequence[AnyPoint]:
+    def series(self) -> Sequence[Point]:
         """Return the points of Taylor's series."""
         return self.references.taylor if self.references else ()
 
@@ -110,20 +112,21 @@ def _records(found: Findings) -> Iterator[dict[str, Any]]:
     """Yield the points of all lines, in the fields of JSON and CSV."""
     for point in (*found.points, *found.series):
         flaw = point.flaw(found.kind)
-        numbers = {name: getattr(point, name, None) for name in NUMBERS}
-        tolerance = getattr(point, "tolerance", None)
+        numbers = {name: getattr(point, name) for name in NUMBERS}
+        if point.tolerance is not None:
+            numbers |= {"h": None, "force_evaluations": None}
         reason = REASONS[flaw] if flaw else None
         yield {
             "method": point.method.key,
             **numbers,
             "valid": flaw is None,
             "reason": reason,
-            "tolerance": tolerance,
+            "tolerance": point.tolerance,
         }
     if found.references:
-        numbers = dict.fromkeys(NUMBERS) | {"seconds": found.references.floor}
+        numbers = dict.fromkeys(NUMBERS) | {"seconds": found.references.closed_form}
         yield {
-            "method": CLOSED_FORM.key,
+            "method": "closed_form",
             **numbers,
             "valid": False,
             "reason": TRUTH,
@@ -135,9 +138,8 @@ def _rungs(found: Findings) -> list[dict[str, str]]:
     """Return the rows of the table: the errors of all methods with one h, and the orders."""
     rows: dict[int, dict[str, str]] = {}
     for point in found.points:
-        z = point.h * found.scene.w0
         row = rows.setdefault(
-            point.steps, {"h": f"{point.h:.4g}", "z": f"{z:.3g}", "steps": str(point.steps)}
+            point.steps, {"h": f"{point.h:.4g}", "z": f"{point.z:.3g}", "steps": str(point.steps)}
         )
         row[point.method.key] = _cell(point, found.kind)
     measured = {"h": "order", "steps": "measured"}
@@ -154,13 +156,10 @@ def _columns(found: Findings) -> list[Column]:
         method.key: f"{method.label} ({method.force_evaluations}/step)"
         for method in found.scene.cast
     }
-    return [
-        Column(head, lambda row, key=key: row.get(key, ""), right=True)
-        for key, head in heads.items()
-    ]  # type: ignore[misc]
+    return [Column(head, methodcaller("get", key, ""), right=True) for key, head in heads.items()]
 
 
-def _cell(point: AnyPoint, kind: ErrorKind) -> str:
+def _cell(point: Point, kind: ErrorKind) -> str:
     flaw = point.flaw(kind)
     mark = f"{MARKS[flaw]} " if flaw else ""
     seconds = "" if point.seconds is None else f" in {length(point.seconds)}"
@@ -175,7 +174,7 @@ def _notes(found: Findings) -> Iterator[Any]:
         yield f"at h = {found.scene.h:g} s, {growth}"
     if found.references:
         yield from filter(None, [found.references.absent])
-        yield f"{CLOSED_FORM.label}, the floor: {length(found.references.floor)}"
+        yield f"Closed form, the floor: {length(found.references.closed_form)}"
     yield from ("", *_chart(found))
     if found.all and found.points:
         alone = front(found.points, found.kind, "evaluations")
@@ -219,20 +218,19 @@ def _advice_notes(found: Findings, advice: Advice) -> Iterator[Any]:
         if found.target is None
         else f"{found.kind} error up to {found.target:g}"
     )
+    if found.safety > 1:
+        wish += f" with a margin of {found.safety:g}"
     if found.budget is not None:
         wish += f" within {found.budget} force evaluations"
     point = advice.point
     if point is None:
         yield f"\nNo method reaches the target over {advice.time:g} s: {wish}"
     else:
-        w0 = found.scene.w0
-        z = f"z = {point.h * w0:.3g}, {math.tau / (point.h * w0):.3g} steps a small swing"
+        z = f"z = {point.z:.3g}, {few(point.steps_per_swing)} steps a small swing"
         yield f"\nOver {advice.time:g} s, {wish}: {point.method.label} at h = {point.h:.5g} s ({z})"
         seconds = "" if point.seconds is None else f" in {length(point.seconds)}"
         error = f"{found.kind} error {point.error(found.kind):.2e}, confirmed"
         yield f"{point.force_evaluations} force evaluations{seconds}, {error}"
-        if advice.rk4 and advice.saves and advice.saves >= WORTH_SAYING:
-            yield f"RK4 takes {advice.saves:.2g} times as many force evaluations, {advice.rk4.force_evaluations}"
     yield Table(_attempt_columns(found, advice), advice.attempts)
 
 
@@ -243,7 +241,9 @@ def _attempt_columns(found: Findings, advice: Advice) -> list[Column]:
     columns = [
         Column("method", lambda attempt: attempt.method.label),
         of_point("h [s]", lambda point: f"{point.h:.5g}"),
-        of_point("force evaluations", lambda point: str(point.force_evaluations)),
+        of_point("z", lambda point: f"{point.z:.3g}"),
+        of_point("steps a swing", lambda point: few(point.steps_per_swing)),
+        of_point("evaluations", lambda point: str(point.force_evaluations)),
     ]
     if any(attempt.point and attempt.point.seconds is not None for attempt in advice.attempts):
         columns.append(
@@ -251,12 +251,15 @@ def _attempt_columns(found: Findings, advice: Advice) -> list[Column]:
                 "seconds", lambda point: None if point.seconds is None else length(point.seconds)
             )
         )
-    columns.append(of_point(f"{found.kind} error", lambda point: f"{point.error(found.kind):.2e}"))
-    recommended = {id(advice.point): "recommended"}
-    columns.append(
-        Column("", lambda attempt: attempt.why_not or recommended.get(id(attempt.point), ""))
-    )
+    columns.append(of_point(f"{found.kind} error", lambda point: f"{point.error(found.kind):.1e}"))
+    columns.append(Column("times the cheapest", _times))
     return columns
+
+
+def _times(attempt: Attempt) -> str:
+    if attempt.times is None:
+        return attempt.why_not or ""
+    return f"{attempt.times:.3g}"
 
 
 def winners(advice: Sequence[Advice]) -> str:
@@ -271,29 +274,29 @@ def winners(advice: Sequence[Advice]) -> str:
     return "; ".join(changes) + "." if changes else f"{names[0]} for all these times."
 
 
-def _run_fields(
-    method: Method | None, point: Point | None, error: str, kind: ErrorKind
-) -> dict[str, Any]:
-    """Return a method and its run, whose error is called `error`; None for what there is not."""
+def _attempt_fields(attempt: Attempt, kind: ErrorKind) -> dict[str, Any]:
+    """Return a method, its run and its cost; None for what there is not."""
+    point = attempt.point
     return {
-        "method": method.key if method else None,
-        "h": point.h if point else None,
-        "force_evaluations": point.force_evaluations if point else None,
-        error: point.error(kind) if point else None,
-        "seconds": point.seconds if point else None,
+        "method": attempt.method.key,
+        "h": point and point.h,
+        "z": point and point.z,
+        "steps_per_swing": point and point.steps_per_swing,
+        "force_evaluations": point and point.force_evaluations,
+        "error": point and point.error(kind),
+        "seconds": point and point.seconds,
+        "times_the_cheapest": attempt.times,
+        "why_not": attempt.why_not,
     }
 
 
 def _advice_fields(found: Findings, advice: Advice) -> dict[str, Any]:
-    point = advice.point
+    attempts = [_attempt_fields(each, found.kind) for each in advice.attempts]
+    best = attempts[0] if advice.point else dict.fromkeys(attempts[0])
     return {
         "time": advice.time,
-        **fields_of(found, "target", "budget"),
-        **_run_fields(point.method if point else None, point, "reached", found.kind),
-        "saves_over_rk4": advice.saves,
-        "reason": None if point else "no method gets there",
-        "attempts": [
-            _run_fields(each.method, each.point, "error", found.kind) | {"why_not": each.why_not}
-            for each in advice.attempts
-        ],
+        **fields_of(found, "target", "budget", "safety"),
+        **best,
+        "why_not": None if advice.point else "no method gets there",
+        "attempts": attempts,
     }
