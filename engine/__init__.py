@@ -12,9 +12,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from engine.library import METHODS, SCENES, judge, limits, simulate
+    from engine.library import METHODS, SCENES, judge, limits, recommend, simulate
 
-__all__ = ["METHODS", "SCENES", "judge", "limits", "simulate"]
+__all__ = ["METHODS", "SCENES", "judge", "limits", "recommend", "simulate"]
 
 
 def __getattr__(name: str) -> Any:

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
+    from engine.accuracy.recommend import Attempt
+    from engine.accuracy.study import ErrorKind
+
     Floats = NDArray[np.float64]
 
 MAX_READINGS = 10_000_000  # of all methods of a run: 320 MB
@@ -233,6 +236,39 @@ def limits(
             reason=row.failure.reason if row.failure else "",
         )
     return found
+
+
+def recommend(
+    target: float,
+    scene: str | Scene = "drift",
+    *,
+    time: float | None = None,
+    methods: Methods | None = None,
+    error: "ErrorKind" = "theta",
+    safety: float = 1.0,
+    **numbers: float,
+) -> "list[Attempt]":
+    """Return the cheapest run of each method whose error stays up to `target`, the cheapest first.
+
+    By default of all that can, over ten small swings.  Of the best, `method.key`, `point.h` [s],
+    `point.z`, `point.steps_per_swing` and `point.force_evaluations` are the answer; `times` is how
+    many times the cheapest another costs, or `why_not` why there is no such run.  `error` is
+    "theta" [rad], "energy" or "final" (theta at the end); a `safety` of 2 halves the target.
+    """
+    from engine.accuracy.recommend import least_cost
+    from engine.accuracy.study import Study, usual
+    from engine.run.compiled import TieredLoops
+
+    chosen = _general(scene, methods, numbers)
+    if chosen.theta == chosen.omega == 0:
+        raise ValueError("the pendulum hangs at rest; use another theta or omega.")
+    if error not in ("theta", "energy", "final"):
+        raise ValueError(f"error = {error!r} is none of theta, energy and final.")
+    wanted = _number("target", target) / _number("safety", safety)
+    seconds = usual(chosen)[0] if time is None else _number("time", time)
+    if not 0 < wanted <= target or seconds <= 0:
+        raise ValueError("target and time must be above zero, and safety 1 or more.")
+    return least_cost(Study(chosen, seconds, TieredLoops), error, wanted).attempts
 
 
 def _scene(scene: str | Scene, methods: Methods | None, numbers: Mapping[str, float]) -> Scene:

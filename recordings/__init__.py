@@ -11,7 +11,8 @@
 - Using: `verification`, `recovery`, `diff`; `pytest`, a plugin.
 - `library`: the folder, the names, and who is using a file; `errors`.
 
-The library is `verify`, which re-simulates a recording, and `Recording`, any moment of one.
+The library is `verify`, which re-simulates a recording, `Recording`, any moment of one, and
+`pytest`, a plugin.
 """
 
 from importlib import import_module

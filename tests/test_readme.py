@@ -75,29 +75,22 @@ def test_every_command_that_is_mentioned_exists_with_its_options(command):
     parser.parse_args(words + ["."] * (name == "verify"))
 
 
+def ran(*command: str | Path, folder: Path, **environment: str) -> subprocess.CompletedProcess:
+    """Run a command in a folder, with the program that is tested first on the path."""
+    programs = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    env = {**os.environ, "PATH": programs, **environment}
+    return subprocess.run(command, cwd=folder, env=env, capture_output=True, text=True, check=False)
+
+
 @pytest.fixture
 def shell(tmp_path):
     """Run a line as a reader would, in a folder of its own."""
-    environment = {
-        **os.environ,
-        "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
-        "PENDU_RECORDINGS": str(tmp_path / "library"),
-    }
 
     def run(line: str) -> str:
-        done = subprocess.run(
-            ["bash", "-c", line],
-            cwd=tmp_path,
-            env=environment,
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-        told = [
-            text
-            for text in done.stderr.splitlines()
-            if not text.startswith(("pendu-tui: recorded", "pendu-tui: wrote"))
-        ]
+        library = str(tmp_path / "library")
+        done = ran("bash", "-c", line, folder=tmp_path, PENDU_RECORDINGS=library)
+        usual = ("pendu-tui: recorded", "pendu-tui: wrote")
+        told = [text for text in done.stderr.splitlines() if not text.startswith(usual)]
         assert (done.returncode, told) == (0, []), line
         return done.stdout
 
@@ -122,30 +115,86 @@ def without_seconds(text: str) -> list[str]:
     return [re.sub(r"in [\d.]+ s$", "", line.rstrip()) for line in text.splitlines()]
 
 
-def test_the_five_lines_for_pytest_are_a_test(tmp_path):
-    lines = block_with("python", "import pytest")
-    assert len(lines.splitlines()) == 5
-    (tmp_path / "test_numbers.py").write_text(lines)
+MY_MD = """
+import math
+
+def run(steps):
+    q, p, times, energies = 1.0, 0.0, [], []
+    for step in range(steps):
+        p -= 0.05 * math.sin(q)
+        q += 0.1 * p
+        p -= 0.05 * math.sin(q)
+        times.append(0.1 * step)
+        energies.append(p * p / 2 - math.cos(q))
+    return times, energies
+"""
+IN_PYTEST = (
+    "-q -W error -p no:cacheprovider -p no:asyncio -p no:xdist --rootdir . --junit-xml j.xml"
+)
+
+
+@pytest.fixture
+def project(tmp_path):
+    """A project with a test file; return what its pytest prints."""
+
+    def tested(test: str, plugins: str = "") -> str:
+        (tmp_path / "test_mine.py").write_text(test, encoding="utf-8")
+        (tmp_path / "conftest.py").write_text(plugins, encoding="utf-8")
+        (tmp_path / "my_md.py").write_text(MY_MD, encoding="utf-8")
+        command = [sys.executable, "-m", "pytest", *IN_PYTEST.split()]
+        done = ran(*command, folder=tmp_path, PYTHONPATH=str(ROOT))
+        return done.stdout + done.stderr
+
+    return tested
+
+
+def test_the_pytest_plugin_guards_energies_and_recordings(project, tmp_path):
+    test = block_with("python", "import my_md")
+    (plugins,) = set(re.findall(r"`(pytest_plugins = .*)`", README))
+    told = project(test, plugins)
+    assert "1 failed, 1 passed" in told
+    assert f"there is no recording (*.mcap) in {tmp_path}" in told
+    report = (tmp_path / "j.xml").read_text(encoding="utf-8")
+    assert '<property name="verdict" value="bounded"' in report
     data = bytearray((ROOT / "recordings" / "golden" / "drift.mcap").read_bytes())
     (tmp_path / "whole.mcap").write_bytes(data)
     data[len(data) // 2] ^= 1
     (tmp_path / "damaged.mcap").write_bytes(data)
-    command = [
-        sys.executable,
-        "-m",
-        "pytest",
-        "-q",
-        "-p",
-        "no:cacheprovider",
-        "--rootdir",
-        ".",
-        "test_numbers.py",
-    ]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    done = subprocess.run(
-        command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
+    (tmp_path / "odd.mcap").touch()
+    told = project(
+        f"{test}\n"
+        "def test_short(energy_drift):\n    energy_drift.check(*my_md.run(steps=50))\n"
+        "def test_exact(energy_drift):\n    energy_drift.check(*my_md.run(5000), max_drift=1e-15)\n",
+        plugins,
     )
-    assert "1 failed, 1 passed" in done.stdout, done.stdout
+    assert "4 failed, 2 passed" in told
+    for reason in (
+        "damaged.mcap: ",
+        "odd.mcap: ",
+        "too early, 50 of 64 samples",
+        "the energies drift by more than 1e-15: bounded, trend ",
+    ):
+        assert reason in told
+
+
+@pytest.mark.slow
+def test_where_a_project_hides_a_package_of_ours_the_command_line_works(project, tmp_path):
+    (tmp_path / "engine").mkdir()
+    (tmp_path / "engine" / "__init__.py").touch()
+    told = project("", 'pytest_plugins = ["recordings.pytest"]')
+    assert "hides the package engine of pendu-tui" in told
+    assert "Traceback" not in told
+    (tmp_path / "tests" / "recordings").mkdir(parents=True)
+    shutil.copy(ROOT / "recordings" / "golden" / "drift.mcap", tmp_path / "tests" / "recordings")
+    assert "1 passed" in project(block_with("python", "import subprocess"))
+
+
+def test_the_library_does_what_the_readme_shows(capsys):
+    exec(block_with("python", "from engine import"), names := {})
+    assert capsys.readouterr().out.startswith("bounded, trend ")
+    assert names["run"]["rk4"].verdict == "loses"
+    general = sum(method.general for method in names["METHODS"].values())
+    assert f"\n{general} methods take any force" in README
 
 
 def test_the_recipes_name_columns_that_the_csv_has():
@@ -216,57 +265,23 @@ def test_a_method_is_added_to_the_project_as_described(tmp_path):
     family.write_text(
         f"{source}{function}\n\n{entry}\n{of_family}RUTH_3, {members}", encoding="utf-8"
     )
-    program = [
-        sys.executable,
-        "-P",
-        "-c",
-        "import sys; from tui.cli.dispatch import main; sys.exit(main())",
-    ]
-    environment = {**os.environ, "PYTHONPATH": str(tmp_path)}
-    for arguments, word in [
-        (["methods"], "ruth_3"),
-        (
-            ["run", "--time", "60", "--methods", "ruth,rk4", "--record", "two.mcap"],
-            "Ruth 3  bounded",
-        ),
-        (["verify", "two.mcap", "golden"], "11 recordings, 11 identical"),
-    ]:
-        done = subprocess.run(
-            [*program, *arguments],
-            cwd=tmp_path,
-            env=environment,
-            capture_output=True,
-            text=True,
-            check=False,
-        )
+
+    def run(*arguments: str) -> str:
+        done = ran(sys.executable, "-P", *arguments, folder=tmp_path, PYTHONPATH=str(tmp_path))
         assert done.returncode == 0, done.stderr
-        assert word in done.stdout
-    claims = [
-        str(ROOT / "tests" / "engine" / "methods" / "test_claims.py"),
-        "-k",
-        "ruth_3",
-    ]
-    pytest_alone = [
-        sys.executable,
-        "-P",
-        "-m",
-        "pytest",
-        "-c",
-        os.devnull,
-        "--rootdir",
-        ".",
-        "-p",
-        "no:cacheprovider",
-    ]
-    done = subprocess.run(
-        [*pytest_alone, *claims],
-        cwd=tmp_path,
-        env=environment,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert re.search(r"= [7-9] passed, \d+ deselected", done.stdout), done.stdout
+        return done.stdout
+
+    for command, word in [
+        ("methods", "ruth_3"),
+        ("run --time 60 --methods ruth,rk4 --record two.mcap", "Ruth 3  bounded"),
+        ("verify two.mcap golden", "11 recordings, 11 identical"),
+    ]:
+        program = "import sys; from tui.cli.dispatch import main; sys.exit(main())"
+        assert word in run("-c", program, *command.split())
+    claims = str(ROOT / "tests" / "engine" / "methods" / "test_claims.py")
+    alone = ("-c", os.devnull, "--rootdir", ".", "-p", "no:cacheprovider")
+    told = run("-m", "pytest", *alone, claims, "-k", "ruth_3")
+    assert re.search(r"= [7-9] passed, \d+ deselected", told)
 
 
 def methods_after(seconds: float, scene: str, *options: str) -> dict[str, dict]:

@@ -12,7 +12,7 @@ import pytest
 
 import engine
 import recordings
-from engine import METHODS, SCENES, judge, limits, simulate
+from engine import METHODS, SCENES, judge, limits, recommend, simulate
 from engine.methods import METHODS as LISTED
 from engine.run.lockstep import Lockstep
 
@@ -40,6 +40,7 @@ def test_no_module_hides_a_name_of_the_library():
     assert engine.simulate(time=1).t[-1] == 1
     assert engine.judge(TIMES, WAVE).verdict == "bounded"
     assert engine.limits(methods="rk4", steps=10)["rk4"].linear == pytest.approx(math.sqrt(8))
+    assert engine.recommend(1e-2, time=2, methods="rk4")[0].succeeded
     assert "rk4" in engine.METHODS
     assert "drift" in engine.SCENES
 
@@ -111,6 +112,10 @@ def test_an_energy_that_never_changes_is_bounded_on_every_scale():
         (lambda: simulate(time=1, every=0.5), "every = 0.5"),
         (lambda: simulate(time=1, theta="90"), "theta = '90'"),
         (lambda: simulate(time=1, friction=0.1), "no friction"),
+        (lambda: recommend(0), "above zero"),
+        (lambda: recommend(1e-3, safety=0.5), "safety 1 or more"),
+        (lambda: recommend(1e-3, error="omega"), "none of theta"),
+        (lambda: recommend(1e-3, theta=0), "at rest"),
         (lambda: limits(omega=20), "a pendulum that swings"),
         (lambda: limits("stiff-limit"), "not for the model spring"),
         (lambda: limits(steps=0), "steps = 0"),
@@ -119,6 +124,15 @@ def test_an_energy_that_never_changes_is_bounded_on_every_scale():
 def test_what_cannot_be_used_is_refused_with_a_sentence(call, word):
     with pytest.raises(ValueError, match=word):
         call()
+
+
+def test_the_recommended_run_is_as_accurate_as_it_says():
+    best, *others = recommend(1e-4, theta=2.0, time=30, methods="verlet,rk4", safety=2)
+    run = simulate(theta=2.0, h=best.point.h, time=30, methods=best.method.key)
+    exact = [run.scene.exact().at(t).theta for t in run.t]
+    assert np.abs(run[best.method.key].theta - exact).max() <= 5e-5
+    assert best.times == 1 < others[0].times
+    assert len(recommend(1e-2, time=5)) == len(GENERAL)
 
 
 def test_limits_are_where_the_swing_is_lost():
