@@ -1,9 +1,11 @@
 """A picture of the lab: the same every time, because the clock is moved by hand."""
 
 import asyncio
+import html
 import re
 from collections.abc import Sequence
 
+from rich.cells import cell_len
 from textual.widget import Widget
 
 from engine.scenes import Scene
@@ -57,3 +59,31 @@ def _is_settled(pane: Widget) -> bool:
 def normalised(svg: str) -> str:
     """The picture without the random number in Rich's names."""
     return re.sub(r"terminal-\d+-", "terminal-", svg)
+
+
+TEXT = re.compile(
+    r'(<text [^>]*)x="([\d.]+)" (y="[^>]*) textLength="([\d.]+)"([^>]*)>([^<]*)</text>'
+)
+WORD = re.compile(r"[!-~]+|[^\s]")
+
+
+def portable(svg: str) -> str:
+    """The picture with a place for every word and every other character, where Rich gives a text's length.
+
+    Inkscape and librsvg ignore the length, and their fonts have other widths, of braille above all.
+    """
+    fonts = "font-family: Fira Code, DejaVu Sans Mono, monospace"
+    return TEXT.sub(_placed, svg).replace("font-family: Fira Code, monospace", fonts)
+
+
+def _placed(found: re.Match[str]) -> str:
+    opening, start, y, length, rest, escaped = found.groups()
+    text = html.unescape(escaped)
+    cell = float(length) / max(1, cell_len(text))
+    parts = []
+    for word in WORD.finditer(text):
+        x = float(start) + cell_len(text[: word.start()]) * cell
+        width = cell_len(word[0]) * cell
+        place = f'{opening}x="{x:.5g}" {y} textLength="{width:.5g}"{rest}'
+        parts.append(f"{place}>{html.escape(word[0])}</text>")
+    return "".join(parts)

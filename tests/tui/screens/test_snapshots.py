@@ -4,14 +4,17 @@ The studies are stored beside the pictures: chaos would show the last bits of an
 """
 
 import pickle
+import shutil
+import subprocess
 import zlib
 
+import numpy as np
 import pytest
 
 from engine.scenes import DEFAULT_SCENE, SCENES
 from recordings.library import resolve
 from tests.tui.command_line import pendu
-from tests.tui.conftest import SNAPSHOTS
+from tests.tui.conftest import SNAPSHOTS, text_of
 from tests.tui.harness import player
 from tui.screens.still import normalised, still
 from tui.terminal.options import TerminalOptions
@@ -144,3 +147,20 @@ def test_a_still_needs_a_name_that_ends_in_svg(tmp_path, name):
 async def test_a_still_is_the_same_to_the_letter_whenever_it_is_made():
     one, other = [await still(DEFAULT_SCENE, 3.0, (120, 40)) for _ in range(2)]
     assert one == other
+
+
+@pytest.mark.skipif(shutil.which("rsvg-convert") is None, reason="needs rsvg-convert")
+def test_librsvg_which_ignores_the_lengths_of_texts_draws_each_character_in_its_cell(tmp_path):
+    imread = pytest.importorskip("matplotlib.image").imread
+    svg, png = tmp_path / "lab.svg", tmp_path / "lab.png"
+    assert pendu("snapshot", "--time", SECONDS, "-o", svg).code == 0
+    subprocess.run(["rsvg-convert", svg, "-o", png], check=True)
+    picture = imread(png)[:, :, :3].sum(axis=2)
+    right = total = 0
+    for row, line in enumerate(text_of(svg.read_text(encoding="utf-8")).splitlines()):
+        for column, character in enumerate(line):
+            x, y = 9 + 12.2 * column, 41 + 24.4 * row  # Rich's frame and cells
+            cell = picture[round(y) + 2 : round(y + 24.4) - 2, round(x) + 2 : round(x + 12.2) - 2]
+            total += 1
+            right += (np.ptp(cell) > 0.1) == (not character.isspace())
+    assert right / total > 0.97

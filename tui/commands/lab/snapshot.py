@@ -43,13 +43,12 @@ def run(options: argparse.Namespace) -> int:
     scene = scene_of(options)
     import asyncio
 
-    from tui.screens.still import still
+    from tui.screens.still import portable, still
 
     display = terminal_options_of(options, os.environ, "utf-8")
     with whole_file(options.output, options.force) as file:
-        file.write_text(
-            asyncio.run(still(scene, options.time, options.size, display)), encoding="utf-8"
-        )
+        svg = asyncio.run(still(scene, options.time, options.size, display))
+        file.write_text(portable(svg), encoding="utf-8")
     return Exit.FINE
 
 
