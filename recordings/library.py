@@ -55,7 +55,7 @@ def folder() -> Path:
     try:
         return Path(chosen).expanduser()
     except RuntimeError as error:
-        raise DiskError(f"PENDU_RECORDINGS names no folder: {error}", chosen) from error
+        raise DiskError("PENDU_RECORDINGS names no folder", chosen) from error
 
 
 def new_path(where: Path | None = None, now: time.struct_time | None = None) -> Path:

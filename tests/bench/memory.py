@@ -1,28 +1,43 @@
-"""An hour in the lab, by a clock that is moved by hand, recorded: what memory it takes.  Prints one JSON object.
+"""An hour in the lab with everything on, by a clock that is moved by hand: what memory it takes.  Prints one JSON object.
 
-Every frame is simulated and recorded; one a second is drawn.
+Six methods, one of them the user's own, a ghost and a recording.  Every frame is simulated and
+recorded; once in ten seconds one is drawn, by turns in each view, and once a minute h changes.
 """
 
 import asyncio
+import gc
 import json
 import os
 import sys
 import tempfile
+from itertools import cycle
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
+from engine.methods import METHODS
+from engine.methods.examine import load
 from engine.scenes import DEFAULT_SCENE
+from recordings.library import resolve
 from recordings.live_recorder import LiveRecorder
 from tui.playback.live import Live
 from tui.screens.app import PenduApp
+from tui.screens.launch import open_ghost
 from tui.screens.live import LiveScreen
-from tui.screens.still import settled
 from tui.terminal.options import FPS
+from tui.views import VIEWS
 
-SECONDS = 3600
-SETTLED = 600  # s, after which nothing may grow: histories are full, modules are loaded
-BUDGET = 120  # MB
+MINUTES = 60
+SETTLED = 10  # min, after which histories are full and modules are loaded
+MAX_GROWTH = 8.0  # MB from then on; 3 of them are the index of the recording
+OWN = """
+def mine(force, phase, h):
+    theta, omega = phase
+    while True:
+        omega = omega + h * force(theta)
+        theta = theta + h * omega
+        yield theta, omega
+"""
 
 
 def resident() -> float:
@@ -31,30 +46,40 @@ def resident() -> float:
     return pages * os.sysconf("SC_PAGE_SIZE") / 1e6
 
 
-async def measure(folder: Path) -> dict[str, float]:
-    """Run the hour."""
+async def measure(folder: Path) -> dict[int, float]:
+    """Run the hour; returns the memory [MB] after each ten minutes."""
     now = 0.0
-    live = Live(DEFAULT_SCENE, clock=lambda: 0.0)
+    own = load(OWN, "mine", "m", "mine.py")
+    live = Live(DEFAULT_SCENE.with_cast((*METHODS[:5], own)), clock=lambda: 0.0)
+    live.laid_under = open_ghost(resolve("drift"))
     stage = LiveScreen(
         live, clock=lambda: now, prepare=lambda: live.record(LiveRecorder(folder / "hour.mcap"))
     )
     app = PenduApp(stage)
     at: dict[int, float] = {}
+    views = cycle(f"f{number}" for number, _ in enumerate(VIEWS, 2))
     async with app.run_test(size=(120, 40)) as pilot:
-        for second in range(1, SECONDS + 1):
+        for second in range(1, 60 * MINUTES + 1):
             for frame in range(FPS):
                 now = second + frame / FPS
                 live.tick(now)
-            stage.show_now()
-            await pilot.pause()
-            if second in (SETTLED, SECONDS):
-                await settled(app)
-                at[second] = resident()
+            if second % 10 == 0:
+                await pilot.press(next(views))
+                stage.show_now()
+                await pilot.pause()
+            if second % 60 == 0:
+                await pilot.press("plus" if second % 120 else "minus")
+            if second % 600 == 0:
+                gc.collect()
+                at[second // 60] = round(resident(), 1)
+                print(at, file=sys.stderr, flush=True)
     live.close()
-    return {"after_10_min_mb": round(at[SETTLED], 1), "after_60_min_mb": round(at[SECONDS], 1)}
+    return at
 
 
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as name:
-        result = asyncio.run(measure(Path(name)))
-    print(json.dumps({"bench": "memory", **result, "budget_mb": BUDGET}))
+        at = asyncio.run(measure(Path(name)))
+    growth = round(at[MINUTES] - at[SETTLED], 1)
+    report = {"mb_after_minutes": at, "growth_mb": growth, "max_growth_mb": MAX_GROWTH}
+    print(json.dumps({"bench": "memory", **report}))

@@ -178,12 +178,13 @@ def _simulate(
     from recordings.headless import SAMPLE_EVERY, simulate
     from tui.commands.studies.lists import MAX_BATCH, lockstep_of
 
-    every = options.sample_every or MAX_BATCH
+    batch = 16 if options.method else MAX_BATCH  # a user's method may be slow, and Ctrl+C waits
+    every = options.sample_every or batch
     recorder: Any = nullcontext()
     if options.record:
         from recordings.recorder import Recorder
 
-        every = options.sample_every or min(MAX_BATCH, max(1, round(SAMPLE_EVERY / scene.h)))
+        every = options.sample_every or min(batch, max(1, round(SAMPLE_EVERY / scene.h)))
         _warn_of_size(steps, every)
         recorder = Recorder(options.record, wall=None, overwrite=options.force)
     wants_curve = figures.is_figure(options.output)
