@@ -83,11 +83,8 @@ class Workers:
                 if not self._pending:
                     return
                 result = self._next(function)
-            except UserError:
-                raise
             except Exception as error:
-                why = printable(f"{type(error).__name__}: {error}", 300).rstrip(".: ")
-                raise UserError(f"the workers are lost ({why}).", Exit.INPUT_UNREADABLE) from error
+                raise _explained(error) from error
             yield result
 
     def _next(self, function: Callable[[Any], Result]) -> Result:
@@ -113,6 +110,16 @@ class Workers:
             future.cancel()
         if self._executor is not None:
             self._executor.shutdown(wait=wait)
+
+
+def _explained(error: Exception) -> UserError:
+    """Return the sentence about what a task raised, or what happened to its worker."""
+    from engine.methods.own import OwnMethodError
+
+    if isinstance(error, UserError | OwnMethodError):
+        return UserError(str(error))
+    why = printable(f"{type(error).__name__}: {error}", 300).rstrip(".: ")
+    return UserError(f"the workers are lost ({why}).", Exit.INPUT_UNREADABLE)
 
 
 @contextmanager

@@ -18,6 +18,7 @@ from itertools import islice
 from pathlib import Path
 from typing import IO, Any
 
+from engine.methods.own import OwnMethodError
 from engine.run import compiled, loops
 from engine.run.lockstep import Lockstep
 from engine.scenes import Scene
@@ -32,6 +33,7 @@ from tui.cli.junit import Check, conclude
 from tui.cli.output import progress, warn
 from tui.cli.report import Column, Report, publish
 from tui.cli.scene import SceneList
+from tui.cli.time_limit import limited_steps
 from tui.cli.workers import workers_of
 from tui.commands.studies.reports.run import columns_of, known, rows_of
 
@@ -65,8 +67,9 @@ class Task:
     def rows(self) -> list[Row]:
         """Run and return a row for each method."""
         lockstep = lockstep_of(self.scene, self.expected_steps, self.is_compiled)
-        for sample in simulate(self.scene, self.time, None, MAX_BATCH, lockstep=lockstep):
-            last = sample
+        with limited_steps():  # in a worker, too
+            for sample in simulate(self.scene, self.time, None, MAX_BATCH, lockstep=lockstep):
+                last = sample
         return [self.start | row for row in rows_of(self.scene, last, lockstep, stopped=False)]
 
 
@@ -239,8 +242,8 @@ def _fill(
                 show(steps, tasks.steps)
     except KeyboardInterrupt:
         return UserError("interrupted.", Exit.INTERRUPTED)
-    except UserError as error:
-        return error
+    except (UserError, OwnMethodError) as error:
+        return UserError(str(error), getattr(error, "code", Exit.USAGE))
     return None
 
 
