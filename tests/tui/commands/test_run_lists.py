@@ -137,10 +137,14 @@ def test_what_a_list_cannot_do_is_one_sentence(arguments, words):
 def test_a_step_that_does_not_end_ends_a_list_in_other_processes(tmp_path):
     lines = [
         "def endless(force, phase, h):",
-        "    yield from [phase] * 900",
+        "    theta, omega = phase",
+        "    for step in range(100_000):",
+        "        omega = omega + h * force(theta)",
+        "        theta = theta + h * omega",
+        "        yield theta, omega",
         "    while True: pass",
     ]
     (tmp_path / "mine.py").write_text("\n".join(lines))
     own = ("--method", f"{tmp_path}/mine.py:endless", "--methods", "endless")
-    outcome = pendu("run", *own, "--h", "0.1,0.2", "--time", 100, "--csv", "--workers", 2)
-    assert outcome.refused(2, "line 3", "takes more than 3 s for a step")
+    outcome = pendu("run", *own, "--h", "0.001,0.002", "--time", 200, "--csv", "--workers", 2)
+    assert outcome.refused(2, "line 7", "takes more than 3 s for a step")
