@@ -23,7 +23,7 @@ CEILINGS = {
     "characters_of_engine": 331_500,
     "characters_of_recordings": 93_500,
     "characters_of_tui": 665_000,
-    "characters_of_tests": 1_019_600,
+    "characters_of_tests": 1_020_000,
     "files": 223,
     "long_lines": 632,
     "parallel_assignments": 199,

@@ -71,7 +71,7 @@ def own_methods(options: argparse.Namespace) -> tuple["OwnMethod", ...]:
     """
     own: list[OwnMethod] = []
     for text in options.method:
-        own.append(_own(text, own))
+        own.append(own_method_at(text, own))
     return tuple(own)
 
 
@@ -119,7 +119,7 @@ def _listed(methods: Sequence[Method]) -> str:
     return "; ".join(f"{family}: {', '.join(keys)}" for family, keys in families.items() if keys)
 
 
-def _own(text: str, others: Sequence[Method]) -> "OwnMethod":
+def own_method_at(text: str, others: Sequence[Method]) -> "OwnMethod":
     """Return the method of FILE.py:FUNCTION[,letter=m]."""
     match = re.fullmatch(r"(?P<file>[^,]+):(?P<key>[^,:]+)(,letter=(?P<letter>[^,]*))?", text)
     if match is None:

@@ -13,11 +13,11 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from engine.methods import METHODS, Cast
+from engine.methods import METHODS, Cast, Method
 from engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
 from engine.scenes import DEFAULT_SCENE, MOST_METHODS, SCENES, Scene, SceneError
 from recordings.errors import printable
-from tui.cli.cast import add_cast_options, cast_of, find
+from tui.cli.cast import add_cast_options, cast_of, find, own_method_at
 from tui.cli.errors import Exit, UserError
 from tui.cli.options import (
     LIST,
@@ -154,8 +154,8 @@ def general_scene_of(options: argparse.Namespace) -> Scene:
     return scene
 
 
-def read_scene(path: Path) -> Scene:
-    """Return the scene in a file.  Raises UserError with line and field."""
+def _read(path: Path) -> tuple[str, dict[str, Any]]:
+    """Return the text of a TOML file, and what it holds."""
     try:
         with path.open("rb") as file:
             raw = file.read(MAX_BYTES + 1)
@@ -164,7 +164,7 @@ def read_scene(path: Path) -> Scene:
                 f"{path} is longer than {MAX_BYTES} bytes; is it a scene?", Exit.INPUT_UNREADABLE
             )
         text = raw.decode("utf-8-sig")
-        given = tomllib.loads(text)
+        return text, tomllib.loads(text)
     except OSError as error:
         raise UserError(f"cannot read {path}: {error.strerror}.", Exit.INPUT_UNREADABLE) from None
     except (
@@ -174,10 +174,18 @@ def read_scene(path: Path) -> Scene:
         raise UserError(
             f"{path} is not TOML: {printable(str(error), 200)}.", Exit.INPUT_UNREADABLE
         ) from None
+
+
+def read_scene(path: Path) -> Scene:
+    """Return the scene in a file.  Raises UserError with line and field."""
+    text, given = _read(path)
     values: dict[str, Any] = {"name": path.stem}
     for name, value in given.items():
         try:
-            values["cast" if name == "methods" else name] = _value(name, value)
+            if name == "methods":
+                values["cast"] = _methods(value, path.parent)
+            else:
+                values[name] = _value(name, value)
         except UserError as error:
             raise UserError(
                 f"{path}, line {_line(text, name)}: {error}", Exit.INPUT_UNREADABLE
@@ -202,30 +210,35 @@ def _value(name: str, value: Any) -> Any:
     if name not in FIELDS:
         advice = did_you_mean(name, FIELDS) or f"; choose from {', '.join(FIELDS)}."
         raise UserError(f"a scene has no field {printable(name, 40)}{advice}")
-    if name == "methods":
-        return _methods(value)
     if name in TEXTS:
         if not isinstance(value, str) or (name == "model" and value not in MODELS):
             allowed = f"one of {', '.join(MODELS)}" if name == "model" else "a text"
             raise UserError(f"{name} is not {allowed}.")
         return printable(value, 200)
     if isinstance(value, bool) or not isinstance(value, int | float | str):
-        example = getattr(DEFAULT_SCENE, name, None) or 1.0
-        raise UserError(f"{name} is not a number; use for example {name} = {example}.")
+        usual = (scene.numbers.get(name) or getattr(scene, name, 0) for scene in SCENES.values())
+        example = next(filter(None, usual))
+        raise UserError(f"{name} is not a number; use for example {name} = {example:g}.")
     try:
         return READERS.get(name, number)(str(value))
     except argparse.ArgumentTypeError as error:
         raise UserError(f"{name}: {error}.") from None
 
 
-def _methods(value: Any) -> Cast:
+def _methods(value: Any, folder: Path) -> Cast:
+    """Return the methods of a scene file; the user's own are FILE.py:FUNCTION, in its folder."""
     if not isinstance(value, list) or not value or not all(isinstance(key, str) for key in value):
         raise UserError(
-            'methods is not a list of names; use for example ["velocity_verlet", "rk4"].'
+            'methods is not a list of names; use for example ["velocity_verlet", "mine.py:step"].'
         )
     if len(set(value)) < len(value):
         raise UserError("methods has a name twice; name each method once.")
-    return tuple(find(key, METHODS, "methods") for key in value)
+    cast: list[Method] = []
+    for key in value:
+        is_own = ".py:" in key
+        found = own_method_at(f"{folder / key}", cast) if is_own else find(key, METHODS, "methods")
+        cast.append(found)
+    return tuple(cast)
 
 
 def _line(text: str, name: str) -> int:

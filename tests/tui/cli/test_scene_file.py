@@ -5,7 +5,7 @@ import math
 import pytest
 
 from engine.scenes import SCENES
-from tests.tui.command_line import pendu
+from tests.tui.command_line import own_method, pendu
 from tui.cli.scene import read_scene
 
 
@@ -40,6 +40,7 @@ def test_without_methods_it_has_those_that_are_for_its_model(tmp_path, name):
         ("h = 0.1\n\nlength = 'long'", "line 3: length: 'long' is not a number"),
         ("h = -1", "line 1: h = -1 s is not a usable step"),
         ("h = 0.1\nspeed = 0", "line 2: speed = 0 is not usable"),
+        ("stiffness = [1]", "line 1: stiffness is not a number; use for example stiffness = 2500."),
         ("model = 'cubic'", "line 1: model is not one of pendulum"),
         ("theta = 1\nmethods = ['rk5']", "line 2: "),
         ("theta = 1\nfriction = 0.1", "line 2: the model pendulum has no friction"),
@@ -66,3 +67,10 @@ def test_a_missing_file_is_one_sentence():
 def test_it_may_begin_with_a_byte_order_mark_and_give_angles_in_degrees(tmp_path):
     (tmp_path / "mine.toml").write_text("\ufefftheta = '180deg'", encoding="utf-8")
     assert read_scene(tmp_path / "mine.toml").theta == math.pi
+
+
+def test_methods_of_ones_own_lie_beside_the_file(tmp_path):
+    own_method(tmp_path)
+    path = tmp_path / "scene.toml"
+    path.write_text('methods = ["rk4", "my methods.py:mine"]\n')
+    assert [method.key for method in read_scene(path).cast] == ["rk4", "mine"]
