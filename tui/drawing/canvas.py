@@ -25,9 +25,8 @@ if TYPE_CHECKING:
 
     Numbers = NDArray[np.float64] | NDArray[np.intp]
 
-_ORDER = (0, 3, 1, 4, 2, 5, 6, 7)
-"""The places of a cell's dots, row by row, among Unicode's bits of braille."""
-_BITS = tuple(1 << place for place in _ORDER)
+_BITS = bytes(1 << place for place in (0, 3, 1, 4, 2, 5, 6, 7))
+"""A cell's dots, row by row, as Unicode's bits of braille."""
 _BRAILLE = " " + "".join(map(chr, range(0x2801, 0x2900)))
 _SPANS = re.compile(rb"\0*([^\0])(?:\1|\0)*|\0+", re.DOTALL)
 """Cells of one ink; blank ones look the same in any ink, so they belong to what is before them."""
@@ -74,10 +73,8 @@ class Canvas:
         i = x[inside].astype(np.intp)
         j = y[inside].astype(np.intp)
         cells = (j >> 2) * self.columns + (i >> 1)
-        dots = np.zeros(8 * len(self._bits), np.uint8)
-        dots[8 * cells + np.array(_ORDER)[(j & 3) << 1 | i & 1]] = 1
-        bits = np.frombuffer(self._bits, np.uint8)
-        bits |= np.packbits(dots, bitorder="little")
+        dots = np.frombuffer(_BITS, np.uint8)[(j & 3) << 1 | i & 1]
+        np.bitwise_or.at(np.frombuffer(self._bits, np.uint8), cells, dots)
         np.frombuffer(self._inks, np.uint8)[cells] = ink - NOBODY
 
     def line(

@@ -166,8 +166,6 @@ def _sentence(error: BaseException) -> UserError:
 
 def open_lab(live: "Live", options: argparse.Namespace, with_tour: bool = False) -> int:
     """Record and show a lab, or print it as sentences; returns the exit code."""
-    from tui.words.recovered import recover_leftovers
-
     path = None if options.no_record else recording_path(options.record)
     notices = [] if path is None else recover_leftovers(path.parent)
     for notice in notices:
@@ -181,6 +179,27 @@ def open_lab(live: "Live", options: argparse.Namespace, with_tour: bool = False)
     screen = live_screen(live, path, notices, or_next)
     screen.begins_with_tour = with_tour
     return show(screen, options)
+
+
+def recover_leftovers(folder: Path) -> list[str]:
+    """Recover all unfinished recordings in a folder; return a sentence on each, also where the disk fails."""
+    from recordings.errors import printable
+    from recordings.library import leftovers
+
+    sentences = []
+    for part in leftovers(folder):
+        from recordings.recovery import rescue  # mcap: only if there is something to do
+
+        name = printable(str(part))
+        try:
+            with progress(f"recovering {printable(part.name)}") as show:
+                sentences.append(rescue(part, show))
+        except FileNotFoundError:
+            pass  # another lab was quicker
+        except OSError as error:
+            why = error.strerror or error
+            sentences.append(f"The unfinished recording {name} cannot be recovered now: {why}.")
+    return sentences
 
 
 def print_sentences(source: Any, write: Callable[..., None]) -> int:

@@ -20,7 +20,6 @@ from tui.drawing.palette import TEXT
 from tui.drawing.picture import Picture, Row
 from tui.playback.shown import Shown
 from tui.playback.source import Source
-from tui.terminal.options import SMALLEST
 
 Place = TypeVar("Place")
 
@@ -153,14 +152,11 @@ class Pane(CellWidget):
             self.border_subtitle = Content(below)
 
     def draw(self) -> None:
-        source, sample = self.source, self.sample
+        source = self.source
+        sample = self.sample
         if source is None or sample is None or not self.drawable:
             return
-        if self.app.size.width < SMALLEST[0] or self.app.size.height < SMALLEST[1]:
-            return  # too small: there is a message instead
-        if (
-            sample.run == source.sample.run
-        ):  # else another run has just begun, maybe with other methods
+        if sample.run == source.sample.run:  # else another has begun, maybe with other methods
             self.show(self.picture(source, sample))
 
     def picture(self, source: Source, sample: Sample) -> Picture:

@@ -158,21 +158,6 @@ def test_the_largest_errors_of_half_a_swing_over_decades():
     )
 
 
-def test_all_values_of_a_column_on_a_linear_axis():
-    t = np.linspace(0, 20, 400)
-    assert chart(window(t, np.sin(t)), 48, 9, log=False, seconds=20, shown=[1]).text == (
-        "    1┤ ⢀⣠⢤⢄        ⢀⣠⢤⣀        ⢀⣠⢤⡀        ⢀s\n"
-        "     │ ⣸  ⢸       ⢀⣸  ⢸       ⢀⣸  ⢸       ⢀⠼\n"
-        "     │⢸    ⢹      ⢸   ⠈⢹      ⢸   ⠈⢱      ⢸\n"
-        "    0┤⠸    ⠘⢢    ⢠⠚    ⠘⢤    ⢰⠚    ⠸⢤    ⢰⠊\n"
-        "     │      ⢸   ⢀⣸      ⢸   ⢀⣸      ⢸   ⢀⠼\n"
-        "     │       ⢹  ⢸       ⠈⢹  ⢸       ⠈⢱  ⣸\n"
-        "   -1┤       ⠈⠙⠚⠉        ⠈⠙⠚⠉        ⠈⠙⠚\n"
-        "     └┬──────────────────┬─────────────────┬────\n"
-        "      0                  10               20 s"
-    )
-
-
 def test_speed_against_accuracy():
     h = 2.0 ** -np.arange(1, 8)
     series = [
@@ -198,18 +183,6 @@ def test_speed_against_accuracy():
         "                               force evaluations"
     )
     assert inks(picture) == {0, 3, EXACT, FRAME, TEXT}
-
-
-@given(st.sets(st.integers(0, COUNT - 1)))
-@settings(max_examples=20)
-def test_only_shown_methods_have_letters(shown):
-    letters = "".join(
-        line[6:]
-        for line in chart(window([1, 2, 3], [1, 1, 1]), shown=sorted(shown)).text.splitlines()[:-2]
-    )
-    assert {letter for letter in letters if letter.isalpha()} == {
-        USUAL_CAST[index].letter for index in shown
-    }
 
 
 def test_a_failed_method_leaves_room_for_the_others():

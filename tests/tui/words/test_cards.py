@@ -48,10 +48,6 @@ def test_a_scene_card_has_what_to_watch_and_the_numbers(scene):
         assert f"{number:.5g}" in card
 
 
-def test_a_scene_of_ones_own_has_nothing_to_watch():
-    assert "watch" not in scene_card(SCENES["drift"].altered(theta=2.0))
-
-
 def test_lines_fit_the_text_screen():
     for card in (*map(method_card, METHODS), *map(scene_card, SCENES.values())):
         assert max(map(len, card.splitlines())) <= WIDTH

@@ -76,12 +76,6 @@ def test_any_start_is_reproduced_to_the_last_bit(
     assert reproduces(before)
 
 
-@pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
-def test_a_scene_with_another_cast_keeps_its_name_and_what_to_watch(scene):
-    other = scene.with_cast(scene.cast[::-1])
-    assert scene_of(options_of(command(Live(other)))) == other
-
-
 def test_a_step_changed_before_the_first_one_is_part_of_the_start_but_time_that_runs_back_is_not():
     live = Live(SCENES["drift"])
     live.set_stepping(Stepping(0.1))
@@ -96,10 +90,6 @@ def test_a_method_of_ones_own_is_loaded_again_from_its_file(tmp_path):
     )
     scene = scene_of(given)
     assert scene_of(options_of(command(Live(scene)))) == scene
-
-
-def test_the_speed_is_kept():
-    assert options_of(command(Live(SCENES["spin"], speed=0.25))).speed == 0.25
 
 
 def test_after_a_change_of_step_size_the_command_points_into_the_recording(tmp_path):

@@ -1,11 +1,9 @@
 """The list of events: inputs and milestones, in order and with their times."""
 
-from typing import get_args
-
 import pytest
 
 from engine.methods import USUAL_CAST
-from engine.run.judgement import Milestone, Verdict
+from engine.run.judgement import Milestone
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES
 from recordings.recording import Recording
@@ -86,13 +84,6 @@ def test_an_error_that_passes_anothers_is_listed_and_is_the_news_of_the_moment()
     assert (found.kind, found.values) == ("errors cross", {"t": 33.4})
 
 
-def test_every_verdict_has_words():
-    for verdict in get_args(Verdict):
-        if verdict != "too early":
-            milestone = Milestone("verdict", USUAL_CAST[3], 10, 0.5, 0.0, verdict)
-            assert milestone_text(milestone).startswith("RK4 ")
-
-
 def test_marks_next_to_a_recording_have_the_time_of_their_step(tmp_path):
     larger, backwards = (lambda live, h=h: live.set_stepping(Stepping(h)) for h in (0.1, -0.02))
     path = recorded(tmp_path / "run.mcap", 2.0, larger, 2.0, backwards, 1.0)
@@ -126,13 +117,6 @@ def test_a_step_back_removes_what_comes_later():
     assert texts(changed) == ["start drift, h 0.05 s", "h 0.1 s"]
     changed.step(-30)
     assert texts(changed) == ["start drift, h 0.05 s"]
-
-
-def test_a_failed_method_is_listed():
-    live = Live(DRIFT.altered(theta=1e-150), clock=lambda: 0.0)
-    while live.sample.readings[0].diverged_at is None:
-        live.step(1000)
-    assert "Explicit Euler failed" in texts(live)
 
 
 async def test_the_pane_shows_the_newest_last_and_only_where_there_is_room():

@@ -40,13 +40,6 @@ def test_an_angle_keeps_its_decimals_until_the_width_is_used_up_and_then_turns_s
     ]
 
 
-def test_energy_errors_are_scientific_with_a_sign():
-    assert scientific(3.3, 8) == "+3.3e+00"
-    assert scientific(-4.12e-2, 8) == "-4.1e-02"
-    assert scientific(3.3, 8, sign="-") == " 3.3e+00"
-    assert scientific(1e-300, 9) == "+1.0e-300"
-
-
 @pytest.mark.parametrize("value", [None, math.nan, math.inf, -math.inf])
 def test_what_is_not_a_number_is_a_hyphen(value):
     assert decimal(value, 4) == scientific(value, 4) == "   -"

@@ -33,15 +33,10 @@ def place_text(model: Model, state: State, width: int) -> str:
     theta, omega = state
     half_turns = round(theta / math.pi)
     angle = in_pi(half_turns) if theta == half_turns * math.pi else f"{theta:.15g}"
-    texts = [
-        f"theta {angle} rad  omega {omega:.15g} rad/s",
-        f"theta {angle}  omega {omega:.15g}",
-        f"{angle}, {omega:.15g}",
-    ]
+    text = f"theta {angle}  omega {omega:.15g}"
     if model.has_separatrix:
-        motion = f"  E/Es {energy_share(model, theta, omega)}  {regime(model, theta, omega)}"
-        texts = [text + motion for text in texts]
-    return next((text for text in texts if len(text) <= width), texts[-1][:width])
+        text += f"  E/Es {energy_share(model, theta, omega)}  {regime(model, theta, omega)}"
+    return text[:width]
 
 
 def fact_rows(source: Source, shown: Shown, neighbours: Neighbours | None, width: int) -> list[Row]:

@@ -16,15 +16,6 @@ from tui.views.phase.facts import area_text, fact_rows, place_text
 MODEL = Scene().equations
 
 
-@pytest.mark.parametrize("width", [10, 30, 46, 60, 78, 120])
-def test_a_place_is_said_in_the_words_there_is_room_for(width):
-    text = place_text(MODEL, State(1.25, -0.5), width)
-    assert len(text) <= width
-    assert "1.25" in text
-    if width >= 46:
-        assert all(part in text for part in ("-0.5", "E/Es", "libration"))
-
-
 def test_multiples_of_pi_are_called_so():
     assert (
         place_text(MODEL, State(math.pi, 0.0), 46)
@@ -93,13 +84,6 @@ def test_a_ring_of_the_run_before_is_not_shown():
     rows = fact_rows(live, Shown(), neighbours, 80)
     assert "7 steps behind" in rows[0][0][0]
     assert [row[1][0].split()[:2] for row in rows[2:]] == 5 * [["-", "-"]]
-
-
-def test_where_there_is_no_ring_it_says_which_method_has_none():
-    assert SCENES["drift"].why_no_ring == SCENES["damped"].why_no_ring == ""
-    halving = SCENES["drift"].with_cast((*USUAL_CAST, method_of("halving_verlet")))
-    assert halving.why_no_ring == "No ring with Step doubling in the cast."
-    assert "four dimensions" in SCENES["stiff-limit"].why_no_ring
 
 
 @pytest.mark.parametrize("width", range(20, 90, 7))

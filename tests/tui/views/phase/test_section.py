@@ -175,11 +175,3 @@ async def test_words_follow_the_crosshair_and_the_pointer():
         assert theatre.source.scene.theta == pytest.approx(
             expected.theta, abs=pane.viewport.theta_per_dot
         )
-
-
-async def test_a_closer_look_is_another_section():
-    async with lab(SCENE, size=(100, 30)) as theatre:
-        pane = await section_of(theatre, "x")
-        wanted = pane.wanted
-        pane = await section_of(theatre, "right", "z")
-        assert pane.wanted.viewport.theta_span == pytest.approx(wanted.viewport.theta_span / 2)

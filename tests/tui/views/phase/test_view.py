@@ -2,13 +2,10 @@
 
 import pytest
 
-from engine.phase_space.area import Neighbourhood
-from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene
-from tests.tui.harness import Theatre, lab, until
+from tests.tui.harness import Theatre, lab
 from tui.drawing.cells import CellWidget
 from tui.views.phase.pane import PhasePane
-from tui.views.phase.view import RADIUS
 
 DRIFT = SCENES["drift"]
 
@@ -17,14 +14,6 @@ def shown(theatre: Theatre) -> PhasePane:
     """The phase space on screen."""
     (pane,) = (pane for pane in theatre.stage.query(PhasePane) if pane.drawable)
     return pane
-
-
-@pytest.mark.parametrize("size", [(120, 40), (200, 60)])
-async def test_the_lab_has_phase_space_where_there_is_room(size):
-    async with lab(size=size) as theatre:
-        await theatre.run(1)
-        assert "separatrix" in shown(theatre).text
-        assert "exact period 2.13914 s" in shown(theatre).text
 
 
 async def test_a_click_in_the_lab_starts_all_four_there_with_the_step_in_force_and_u_takes_it_back():
@@ -57,22 +46,6 @@ async def test_f3_shows_all_of_it_and_the_arrows_are_its_keys(size):
         await theatre.press("f2")
         await theatre.press("f3")
         assert shown(theatre).has_focus
-
-
-async def test_the_view_shows_the_area_ratios_of_the_ring_around_the_start():
-    async with lab() as theatre:
-        await theatre.press("f3")
-        await theatre.run(20)
-        await until(
-            theatre.pilot, lambda: shown(theatre).neighbours.step == theatre.source.sample.step
-        )
-        ring = Neighbourhood(DRIFT, RADIUS)
-        ring.advance(theatre.source.sample.step, Stepping(DRIFT.h))
-        assert shown(theatre).ring.area_ratios == ring.area_ratios
-        theatre.stage.show_now()
-        lines = theatre.stage.query_one("#facts", CellWidget).text.splitlines()
-        assert "radius 0.1 rad" in lines[0]
-        assert f"{ring.area_ratios[3]:.9f}" in lines[5]
 
 
 @pytest.mark.filterwarnings("error")

@@ -11,7 +11,6 @@ from engine.stability.outcomes import UNKNOWN
 from tests.tui.harness import until, view_of
 from tui.playback.live import Live
 from tui.screens.live import LiveScreen
-from tui.screens.status_line import StatusLine
 from tui.views.stability.pane import StabilityPane
 
 VERLET, RK4 = 2, 3  # in USUAL_CAST
@@ -92,14 +91,6 @@ async def test_the_cursor_stays_on_the_map_and_esc_leaves_it(monkeypatch: pytest
         assert pane.aim(VERLET) == before
 
 
-async def test_it_takes_the_keys_whenever_it_is_shown(monkeypatch: pytest.MonkeyPatch):
-    async with stability_view(monkeypatch) as (pilot, pane, _live):
-        await pilot.press("f2", "f5")
-        await pilot.pause()
-        await pilot.press("right")
-        assert pane.cursor is not None
-
-
 async def test_tab_goes_through_the_methods_in_words(monkeypatch: pytest.MonkeyPatch):
     async with stability_view(monkeypatch) as (pilot, pane, _):
         for label in ("RK4 at", "Explicit Euler at", "Symplectic Euler at", "Velocity Verlet at"):
@@ -126,15 +117,6 @@ async def test_hidden_methods_leave_their_panels_to_the_others(monkeypatch: pyte
         assert "1 e" not in pane.text
 
 
-async def test_another_theme_recolours_it(monkeypatch: pytest.MonkeyPatch):
-    async with stability_view(monkeypatch) as (pilot, pane, _):
-        before = pane.render_line(2)
-        pilot.app.theme = "light"
-        await pilot.pause(0.3)
-        assert pane.render_line(2).text == before.text
-        assert pane.render_line(2) != before
-
-
 async def test_a_scene_that_spins_is_not_on_the_map(monkeypatch: pytest.MonkeyPatch):
     async with stability_view(monkeypatch, SCENES["spin"]) as (_, pane, _live):
         assert pane.here(VERLET) is None
@@ -154,16 +136,3 @@ async def test_on_a_terminal_that_is_too_small_it_draws_nothing(monkeypatch: pyt
     async with stability_view(monkeypatch, size=(30, 8)) as (pilot, pane, _):
         await pilot.press("right", "up")
         assert pane.text == ""
-
-
-async def test_a_larger_step_beyond_a_limit_is_warned_of_and_taken(monkeypatch: pytest.MonkeyPatch):
-    scene = Scene(theta=0.1, length=9.81, h=1.0)  # w0 = 1, so h is z
-    async with stability_view(monkeypatch, scene) as (pilot, pane, live):
-        status = pane.screen.query_one(StatusLine)
-        await pilot.press("plus")
-        assert live.stepping.h == 2.0
-        assert "beyond" not in status.text
-        await pilot.press("plus")
-        assert live.stepping.h == 5.0
-        assert "z 5  unstable: e, s v (z > 2), r (z > 2.83)" in status.text
-        assert pane.aim(VERLET) is None  # it is beyond the map, too

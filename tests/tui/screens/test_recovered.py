@@ -3,7 +3,7 @@ from pathlib import Path
 from recordings.recording import Recording
 from recordings.verification import verify
 from tests.tui.harness import Lab
-from tui.words.recovered import recover_leftovers
+from tui.screens.launch import recover_leftovers
 
 
 def left_unfinished(path: Path) -> Path:
@@ -68,7 +68,7 @@ def test_a_full_disk_does_not_keep_the_lab_from_starting(tmp_path, monkeypatch):
 
 def test_leftovers_recovered_by_another_lab_are_skipped(tmp_path, monkeypatch):
     one, two = left_unfinished(tmp_path / "one.mcap"), left_unfinished(tmp_path / "two.mcap")
-    monkeypatch.setattr("tui.words.recovered.leftovers", lambda folder: [one, two])
+    monkeypatch.setattr("recordings.library.leftovers", lambda folder: [one, two])
     one.unlink()
     assert len(recover_leftovers(tmp_path)) == 1
     assert not two.exists()
