@@ -49,7 +49,7 @@ class Palette(NamedTuple):
 
 # Optimised for contrast and for distance in OKLab under all kinds of colour blindness, in the casts of the scenes.
 # The worst pair of the classics is 19.5 apart (dark), 13.3 (light) and 21.6 (high-contrast, all with 7:1), of any
-# scene's cast 10.7, 7.8 and 8.8; red, green, yellow and blue are 3.5 apart.  Light colours must be dark to be read on
+# scene's cast 10.7, 10.2 and 11.2; red, green, yellow and blue are 3.5 apart.  Light colours must be dark to be read on
 # white, yet none is so dark that it is taken for black.  The terminal's own are at least 14.4 apart on black in the
 # palettes of xterm, VGA, Tango and Windows.
 PALETTES = {
@@ -68,7 +68,7 @@ PALETTES = {
     "light": Palette(
         methods=(
             *("#78240C", "#A800FC", "#0C3C90", "#547800"),
-            *("#6C00CC", "#9C546C", "#3C6CCC", "#1818F0", "#6C0C78", "#C024A8"),
+            *("#C72575", "#8713E9", "#6E0F42", "#2300B4", "#752AB6", "#005ED2"),
         ),
         exact="#686868",
         frame="#84888C",
@@ -80,7 +80,7 @@ PALETTES = {
     "high-contrast": Palette(
         methods=(
             *("#EE7766", "#8888FF", "#77FFFF", "#FFDD00"),
-            *("#CCBBFF", "#00BBBB", "#44AA11", "#66EE66", "#BBBB77", "#DD77CC"),
+            *("#00B0AC", "#BB8FFF", "#D48A22", "#ABE4FF", "#50CBDB", "#77C340"),
         ),
         exact="#C0C0C0",
         frame="#A0A0A0",
