@@ -72,7 +72,6 @@ class Recorder:
         self._schemas: dict[str, int] = {}
         self._topics: list[str] = []  # of the run's methods
         self._entries = 0
-        self._events = 0
         self._log_time = CLOCK_OFFSET
         self._paused = False
         self._flushed_at = 0.0  # s, on the recording clock
@@ -98,7 +97,8 @@ class Recorder:
         A recording that holds all the events that one may is finished, and raises DiskError.
         """
         data = encode_event(event)
-        is_full = self._events == MAX_EVENTS - 1 or event.run > MAX_RUNS
+        others = self._entries - self.samples
+        is_full = others > MAX_EVENTS - 20 or event.run > MAX_RUNS  # a start brings its sources
         if is_full and event.kind != "stop":
             self.close()
             raise DiskError("is full and was finished; start the lab again for another", self.path)
@@ -107,7 +107,6 @@ class Recorder:
         if event.scene is not None:
             self._begin(event.scene, clock)
         self._add([(EVENTS, data)], clock)
-        self._events += 1
         self._paused = event.kind == "pause" or (self._paused and event.kind != "resume")
         self._flush_if_due(urgent=self._paused)
 

@@ -191,6 +191,8 @@ class Recording:
         """Read all events, and the last sample of each run."""
         starts: list[int] = []  # chunks
         for chunk, place in enumerate(self._places):
+            if self._decoder.others > MAX_EVENTS or len(self._runs) > MAX_RUNS:
+                raise RecordingError(f"it has more than {MAX_EVENTS} events or {MAX_RUNS} runs")
             for clock, event in self._entries(chunk, only_events=True) if place.has_events else ():
                 if not isinstance(event, Event):
                     continue
@@ -200,8 +202,6 @@ class Recording:
                     run = Run(event.run, event.scene, event.arithmetic, clock, clock)
                     self._runs[run.number] = run
                     starts.append(chunk)
-                if len(self.events) == MAX_EVENTS or event.run > MAX_RUNS:
-                    raise RecordingError(f"it has more than {MAX_EVENTS} events or {MAX_RUNS} runs")
                 self.events.append((clock, event))
                 self._runs[event.run].events.append((clock, event))
         if not self._runs:
