@@ -12,7 +12,7 @@ from engine.methods.method import Method
 from engine.models.exact_pendulum import exact_pendulum
 from engine.scenes import Scene
 
-MAX_RADIANS = 1e6  # of motion, two million steps
+MAX_RADIANS = 1e6  # of motion
 ROUNDINGS = 16  # of a step, in those of a force evaluation
 ABSENT = "Taylor's series is for shorter runs of the pendulum, where Numba compiles the methods."
 TAYLOR_20 = Method(
@@ -37,7 +37,7 @@ class References(NamedTuple):
 
 
 def references(scene: Scene, time: float, clock: Clock, fast: bool) -> References:
-    """Time the reference lines over `time` [s]; `fast`: compiled, next to compiled methods."""
+    """Time the reference lines over `time` [s]; `fast`: compiled, as the methods are."""
     motion: Any = scene.exact().at
     states: Any = _states
     series: tuple[Point, ...] = ()
