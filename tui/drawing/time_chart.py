@@ -397,10 +397,11 @@ def _linear_y_axis(runs: Sequence[_Curves], level: float | None, rows: int) -> A
     highest = np.hstack([run.high.ravel() for run in runs])
     if np.isnan(highest).all():
         return linear_axis(-1, 1, rows)
-    ends = [np.nanmin(lowest), np.nanmax(highest)]
+    ends = [float(np.nanmin(lowest)), float(np.nanmax(highest))]
     if level is not None:
         ends.append(level)
-    return linear_axis(*np.clip([min(ends), max(ends)], -LARGEST, LARGEST).tolist(), rows)
+    low, high = np.clip([min(ends), max(ends)], -LARGEST, LARGEST).tolist()
+    return linear_axis(low, high, rows)
 
 
 def _outline(low: Floats, high: Floats) -> tuple[Floats, Floats]:
