@@ -169,7 +169,7 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "std")
     """
     import numpy as np
 
-    from engine.run.energies import judge_energies
+    from engine.run.judge import Judge
 
     t = _array("times", times)
     e = _array("energies", energies)
@@ -181,18 +181,18 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "std")
         raise ValueError(
             f"times must increase, and times[{place}] is not later than the one before."
         )
-    found = judge_energies(t, e)
+    found = Judge().read(t, e, absolute=scale != "std")
     e = e[found.first :]
     size = _size(e, scale)
-    slope = found.judgement.slope
-    uncertainty = found.judgement.uncertainty
+    slope = found.slope
+    uncertainty = found.uncertainty
     return Judged(
-        verdict=found.judgement.verdict,
+        verdict=found.verdict,
         trend=None if slope is None else slope / size,
         uncertainty=None if uncertainty is None else uncertainty / size,
         max_error=float(np.abs(e - e[0]).max()) / size,
         scale=size,
-        progress=str(found.judgement.progress or ""),
+        progress=str(found.progress or ""),
     )
 
 

@@ -1,104 +1,64 @@
-"""Energies without a method: a verdict on any program, from times and energies alone.
+"""The record of any program: a verdict from times and energies alone.
 
-The record is cut into up to 64 blocks of equal time.  The means of the blocks are held against a
-few descriptions: a level, a line, a curve that still moves, a curve or a step that has settled, each
-with or without slow waves, and all with correlated noise (engine.run.noise).
+The record is cut into up to 64 blocks, and their means are held against a few descriptions: a
+level, a line, a curve that still moves, a curve or a step that has settled, all in correlated noise
+(engine.run.noise).
 
-In this order: energies that move by no more than rounding are `bounded`; a start outside the band
-of the rest is left out; what settles after a change of level is `caught`; a trend `grows` or
-`loses`; no trend, in a record of enough independent samples, is `bounded`; a record that has moved
-further than any noise about a level would is one that `wanders`.
+In this order: a start outside the band of the rest is left out, and so is an approach that is over
+early; what moves by no more than its last digit is `bounded`; what settles after a change of level
+is `caught`; a trend `grows` or `loses`; no trend, in a record of enough independent samples, is
+`bounded`; what has moved further than noise about a level does, or fluctuates more and more,
+`wanders`.
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
+from engine.run import judgement as limits
+from engine.run.bands import MAX_BINS
 from engine.run.judgement import Judgement, Progress
-from engine.run.noise import Fit, Noises, regressors, waves
-
-MIN_SAMPLES = 64  # 32 blocks: a line, three waves and a noise leave 20 degrees of freedom
-MAX_BLOCKS = 64  # resolve a correlation time of a 20th of the record
-SAMPLES_PER_BLOCK = 2
-MIN_BLOCKS = 12  # where a gap leaves some of them empty
-MIN_INDEPENDENT = 15  # correlation times in a record: uncertainties were tested down to here
-STILL = 2.6  # standard deviations: a level exceeds them in 1 of 100 records
-TREND = 3.3  # standard deviations: a level exceeds them in 1 of 1000 records
-STEEP = 2.0  # standard deviations of a line beside a curve: not an end alone
-CHANGE = 5.0  # standard deviations of a change of level: the best of 200 in white noise has 3.3
-LINE_OF_FEW = 7.0  # standard deviations, where independent samples are few: 2 in 100 random walks
-CURVE_OF_FEW = 12.0  # have a steeper line, or a clearer curve
-STILL_MOVING = 0.05  # of a change of level, in the second half: it has not settled
-SETTLED = math.log(100)  # of a likelihood ratio: wrong in 1 of 100 where both are as common
-CLEAR = math.log(10)  # of a likelihood ratio, between curves of as many parameters
-WALKS = 3.5  # of a likelihood ratio: noise with a correlation time of T/5 exceeds it in 1 of 100
-MIN_CYCLES = 4.0  # of a slow wave that is called bounded: thirds of the record look alike
-WAVES = 12.0  # log likelihood that waves must gain: in random walks they gained up to 10
-TRANSIENT = 0.1  # of the record: a start that is over so early belongs to the preparation
-ROUNDING = 1e-12  # of the energy: a random walk of 1e7 roundings of 1e-16
-AT_REST = 0.01  # of the first energy: losing all of it is no other level
-MULTIPLIED = 1e3  # times the smallest energy: what multiplies is judged in its logarithm
+from engine.run.noise import Noises
 
 _RATES = np.array([-4, -3, -2, -1.4, -1, *np.geomspace(1, 25, 15)])  # exponentials that still move
 _LOGARITHMS = np.geomspace(1, 3000, 15)  # of log(1 + k t), which never settles
 _SETTLING = np.geomspace(6, 600, 30)  # exponential approaches that are over within the record
 
 
-class SeriesJudgement(NamedTuple):
-    """The judgement on a series, with the evidence that only a whole record can give."""
-
-    judgement: Judgement
-    transient: float = 0.0  # time at the start that was left out
-    first: int = 0  # the index of the first sample that was judged
-    independent: float = 0.0  # correlation times in the record
-    fluctuation: float | None = None  # standard deviation about a line, of the energies' unit
-
-
-class _Blocks(NamedTuple):
-    """Arrays with one value a block; times run from 0 to 1."""
-
-    places: Any  # numbers of the blocks
-    times: Any
-    means: Any
-    sizes: Any  # samples
-
-
-def judge_energies(times: Any, energies: Any, failed: bool = False) -> SeriesJudgement:
+def judged(times: Any, energies: Any, absolute: bool = True) -> Judgement:
     """Judge finite `energies` at increasing `times`; the slope has their units.
 
-    `failed`: nan or inf came after the last of them.
+    The zero of energy means something if it is `absolute`.
     """
-    if failed:
-        return SeriesJudgement(Judgement("failed"))
-    if len(times) < MIN_SAMPLES:
-        return SeriesJudgement(_too_early(len(times), MIN_SAMPLES, "samples"))
+    if len(times) < limits.MIN_SAMPLES:
+        return _too_early(len(times), limits.MIN_SAMPLES, "samples")
     unit = float(np.abs(energies).max()) or 1.0
     energies = energies / unit  # squares must not overflow
-    floor = max(_last_digit(energies * unit) / unit, ROUNDING)
-    first = _transient(times, energies, floor)
-    if np.abs(energies[-(len(energies) // 4) :]).max() < AT_REST * abs(float(energies[first])):
-        return SeriesJudgement(Judgement("loses" if energies[first] > 0 else "grows"), first=first)
-    found = _judge(times[first:], energies[first:], floor)
-    if found.first:
-        first += found.first
-        found = _judge(times[first:], energies[first:], floor, again=True)
-    judgement = found.judgement
+    floor = max(_last_digit(energies), limits.ROUNDING)
+    first = _outliers(energies, floor)
+    if absolute and np.abs(energies[-(len(energies) // 4) :]).max() < limits.LOST * abs(
+        energies[0]
+    ):
+        return Judgement("loses" if energies[0] > 0 else "grows")
+    first += _transient(times[first:], energies[first:], floor)
+    at = times[first:]
     rest = energies[first:]
-    if 0 < MULTIPLIED * np.abs(rest).min() < np.abs(rest).max() and rest.min() * rest.max() > 0:
-        logarithms = np.sign(rest) * np.log(np.abs(rest))
-        verdict = _judge(times[first:], logarithms, ROUNDING, again=True).judgement.verdict
-        judgement = judgement._replace(verdict=verdict)
-    if judgement.slope is not None and judgement.uncertainty is not None:
-        rate = unit / float(times[-1] - times[first])
-        slope = judgement.slope * rate
-        judgement = judgement._replace(slope=slope, uncertainty=judgement.uncertainty * rate)
-    return SeriesJudgement(
-        judgement=judgement,
-        transient=float(times[first] - times[0]),
+    judgement = _judge(at, rest, floor)
+    sizes = np.abs(rest)
+    multiplied = float(sizes.max()) > limits.MULTIPLIED * float(sizes.min()) > 0
+    multiplied = multiplied and absolute and float(rest.min() * rest.max()) > 0
+    if multiplied and judgement.verdict not in ("grows", "loses"):
+        logarithms = np.sign(rest) * np.log(sizes)
+        judgement = judgement._replace(verdict=_judge(at, logarithms, limits.ROUNDING).verdict)
+    scale = unit / float(at[-1] - at[0])
+    return judgement._replace(
+        slope=judgement.slope and judgement.slope * scale,
+        uncertainty=judgement.uncertainty and judgement.uncertainty * scale,
+        fluctuation=judgement.fluctuation and judgement.fluctuation * unit,
+        significant=judgement.verdict in ("grows", "loses"),
+        transient=float(at[0] - times[0]),
         first=first,
-        independent=found.independent,
-        fluctuation=None if found.fluctuation is None else found.fluctuation * unit,
     )
 
 
@@ -107,28 +67,18 @@ def _too_early(have: float, need: float, unit: str) -> Judgement:
 
 
 def _last_digit(energies: Any) -> float:
-    """Return the last printed digit of the energies, or the rounding of a double."""
-    some = energies[:: max(1, len(energies) // 4096)]
-    rounding = 8 * np.finfo(float).eps * float(np.abs(some).max())
-    for exponent in range(8, -18, -1):
-        digit = 10.0**exponent
-        if digit > np.abs(some).max():
-            continue
-        if digit <= rounding:
-            break
-        if np.all(np.abs(some - np.round(some / digit) * digit) <= rounding):
-            return digit
-    return rounding
+    """Return the step between energies that were rounded: the least difference, if they repeat."""
+    different = np.diff(np.unique(energies))
+    rounding = 8 * float(np.finfo(float).eps)
+    different = different[different > rounding]
+    return float(different.min()) if 0 < len(different) < len(energies) / 2 else rounding
 
 
-def _transient(times: Any, energies: Any, floor: float) -> int:
+def _outliers(energies: Any, floor: float) -> int:
     """Return how many samples at the start lie outside the band of the rest, by half its width."""
-    at = (times - times[0]) / (times[-1] - times[0])
-    early = int(np.searchsorted(at, TRANSIENT))
-    if early > len(at) // 2:  # a gap: the rest is the smaller part
-        return 0
-    line = np.polyfit(at[early:], energies[early:], 1)
-    rest = energies - np.polyval(line, at)
+    early = int(len(energies) * limits.TRANSIENT)
+    at = np.arange(len(energies))
+    rest = energies - np.polyval(np.polyfit(at[early:], energies[early:], 1), at)
     low = float(rest[early:].min())
     high = float(rest[early:].max())
     margin = max((high - low) / 2, floor)
@@ -136,144 +86,115 @@ def _transient(times: Any, energies: Any, floor: float) -> int:
     return int(outside[-1]) + 1 if len(outside) else 0
 
 
-def _judge(times: Any, energies: Any, floor: float, again: bool = False) -> SeriesJudgement:
-    """Judge a record; `first` of the result is not 0 where so many samples are a transient."""
-    at = (times - times[0]) / (times[-1] - times[0])
-    energies = energies - float(np.median(energies))
-    count = min(MAX_BLOCKS, len(at) // SAMPLES_PER_BLOCK)
-    blocks = _cut(at, energies, count)
-    if len(blocks.means) < MIN_BLOCKS:
-        return SeriesJudgement(_too_early(len(blocks.means), MIN_BLOCKS, "blocks with samples"))
+def _transient(times: Any, energies: Any, floor: float) -> int:
+    """Return how many samples belong to an approach to a level that is over early."""
+    stories = _Stories(times, energies, floor)
+    if not stories.has_settled or stories.settling > limits.TRANSIENT:
+        return 0
+    size = abs(stories.settled.amplitude) / max(math.sqrt(stories.within), floor)
+    end = stories.settling / 3 * min(max(math.log(size) + 1, 3.0), 6.0)
+    return int(np.searchsorted(stories.at, end))
+
+
+def _judge(times: Any, energies: Any, floor: float) -> Judgement:
+    """Judge a record without a transient; the slope is that over the whole record."""
     if float(np.ptp(energies)) <= 2 * floor:
-        return SeriesJudgement(Judgement("bounded", 0.0, floor))
-    stories = _best_stories(blocks, count, floor)
-    rest = energies - np.polyval(np.polyfit(at, energies, 1), at)
-    error = max(stories.line.deviation, floor / len(at))
-    independent = min(len(at), 24 * float(np.mean(rest**2)) / error**2)
-    within = float(np.mean(energies**2) - np.average(blocks.means**2, weights=blocks.sizes))
-    within = max(within, 0.0)
-    has_settled = stories.settled_gain > SETTLED and stories.settled.amplitude**2 > within
-    if has_settled and stories.settling <= TRANSIENT and not again:
-        times_over = math.log(abs(stories.settled.amplitude) / max(math.sqrt(within), floor)) + 1
-        end = stories.settling / 3 * min(max(times_over, 3.0), 6.0)
-        return SeriesJudgement(Judgement(), first=int(np.searchsorted(at, end)))
-    judgement = _conclude(stories, independent, has_settled)
-    if judgement.verdict == "caught" and len(at) >= 2 * MIN_SAMPLES:
-        half = len(at) // 2
-        later = _judge(times[half:], energies[half:], floor, again=True).judgement
-        moves = abs(later.slope or 0.0) > STILL_MOVING * abs(stories.settled.amplitude)
-        judgement = later if moves and later.significant else judgement
-    if judgement.verdict == "bounded" and not again:
-        wobble = np.abs(rest)
-        wider = _judge(times, wobble, floor, again=True).judgement
-        if wider.verdict == "grows" and (wider.slope or 0.0) > float(np.mean(wobble)):
-            judgement = Judgement("wanders")  # it triples
-    slope = stories.line.amplitude
-    if abs(slope) < 2 * floor and judgement.verdict in ("grows", "loses"):
-        judgement = Judgement("bounded")
-    significant = judgement.verdict in ("grows", "loses")
-    return SeriesJudgement(
-        judgement._replace(
-            slope=slope, uncertainty=stories.line.deviation, significant=significant
-        ),
-        independent=independent,
-        fluctuation=float(np.std(rest)),
+        return Judgement("bounded", slope=0.0, uncertainty=floor)
+    stories = _Stories(times, energies, floor)
+    judgement = stories.conclude()
+    if judgement.verdict == "bounded":
+        wobble = np.abs(stories.rest)
+        wider = _Stories(times, wobble, floor)
+        if wider.conclude().verdict == "grows" and wider.line.amplitude > float(
+            wobble.mean()
+        ) * 2 * (limits.WIDER - 1) / (limits.WIDER + 1):
+            judgement = Judgement("wanders")
+    return judgement._replace(
+        slope=stories.line.amplitude,
+        uncertainty=stories.line.deviation,
+        independent=stories.independent,
+        fluctuation=float(np.std(stories.rest)),
     )
 
 
-def _conclude(stories: "_Stories", independent: float, has_settled: bool) -> Judgement:
-    """Return the verdict that the descriptions allow."""
-    line = stories.line.sigmas
-    few = independent < MIN_INDEPENDENT or stories.cycles < MIN_CYCLES
-    walk_like = few or independent < 2 * MIN_INDEPENDENT
-    if has_settled and stories.settled.sigmas > (CURVE_OF_FEW if few else CHANGE):
-        return Judgement("caught")
-    curved = stories.moving.likelihood - stories.line.likelihood > CLEAR
-    clear = not curved or stories.settled_gain < -CLEAR
-    sure = line > LINE_OF_FEW or stories.moving.sigmas > CURVE_OF_FEW
-    trend = sure or (not walk_like and stories.moving.sigmas > TREND)
-    if trend and line > STEEP and clear:
-        return Judgement("grows" if stories.line.amplitude > 0 else "loses")
-    still = line < STILL and not has_settled
-    if still and not few:
-        return Judgement("bounded")
-    if still and stories.walks > WALKS and not math.isfinite(stories.cycles):
-        return Judgement("wanders")
-    if stories.cycles < MIN_CYCLES:
-        return _too_early(stories.cycles, MIN_CYCLES, "cycles of its slowest wave")
-    return _too_early(independent, max(MIN_INDEPENDENT, 2 * independent), "independent samples")
-
-
-def _cut(at: Any, energies: Any, count: int) -> _Blocks:
-    """Cut samples at times from 0 to 1 into blocks."""
-    places = np.minimum((at * count).astype(np.int64), count - 1)
-    firsts = np.flatnonzero(np.diff(places, prepend=-1))
-    sizes = np.diff(firsts, append=len(places))
-    means = np.add.reduceat(energies, firsts) / sizes
-    return _Blocks(
-        places=places[firsts],
-        times=np.add.reduceat(at, firsts) / sizes,
-        means=means,
-        sizes=sizes,
-    )
-
-
-class _Stories(NamedTuple):
+class _Stories:
     """The best description of each kind."""
 
-    walks: float  # of noise about a level: log likelihood ratio of a random walk
-    line: Fit
-    moving: Fit
-    settled: Fit
-    settling: float  # the share of the record after which an approach is over; 1 for a step
-    cycles: float  # of the slowest wave; infinite without waves
-    likelihood: float  # of the best, less a penalty for its parameters
+    def __init__(self, times: Any, energies: Any, floor: float) -> None:
+        """Fit them all; times count from 0 to 1 then."""
+        count = min(MAX_BINS, len(times) // 2)
+        self.at = (times - times[0]) / (times[-1] - times[0])
+        energies = energies - float(energies.mean())
+        times = _means(self.at, count)
+        means = _means(energies, count)
+        noises = Noises(count, floor)
+        base = noises.waves(times, means)
+        self.cycles = noises.cycles
+        self.level = noises.fit(base, means)
+        self.line = noises.fit([*base, times], means)
+        families = (
+            np.expm1(_RATES[:, None] * times) / np.expm1(_RATES)[:, None],
+            np.log1p(_LOGARITHMS[:, None] * times),
+            -np.expm1(-_SETTLING[:, None] * times),
+            _steps(count),
+        )
+        best = [_best(family, base, means) for family in families]
+        curve, logarithm, approach, step = (
+            noises.fit([*base, family[index]], means)
+            for family, index in zip(families, best, strict=True)
+        )
+        self.moving = max(self.line, curve, logarithm, key=lambda fit: fit.likelihood)
+        is_step = step.likelihood > approach.likelihood
+        self.settled = step if is_step else approach
+        self.settling = 1.0 if is_step else 3 / float(_SETTLING[best[2]])  # to a 20th of the way
+        self.rest = energies - np.polyval(np.polyfit(self.at, energies, 1), self.at)
+        self.floor = floor
+        error = max(self.line.deviation, floor / len(self.at))
+        self.independent = min(len(self.at), 24 * float(np.mean(self.rest**2)) / error**2)
+        # an incomplete wobble at the end tilts a line by so much
+        self.incomplete = 12 * float(np.std(self.rest)) / len(self.at)
+        self.within = max(float(np.mean(energies**2) - np.mean(means**2)), 0.0)
 
     @property
-    def settled_gain(self) -> float:
-        """The log likelihood of the best that has settled, less that of the best that moves."""
-        return self.settled.likelihood - self.moving.likelihood
+    def has_settled(self) -> bool:
+        """Whether the best that has settled is better than the best that moves."""
+        return (
+            self.settled.likelihood - self.moving.likelihood > limits.SETTLED
+            and self.settled.amplitude**2 > self.within
+        )
+
+    def conclude(self) -> Judgement:
+        """Return the verdict that the descriptions allow."""
+        line = self.line.sigmas
+        few = self.independent < limits.MIN_INDEPENDENT or self.cycles < limits.MIN_CYCLES
+        walk_like = few or self.independent < 2 * limits.MIN_INDEPENDENT
+        if self.has_settled and self.settled.sigmas > (
+            limits.CURVE_OF_FEW if few else limits.CHANGE
+        ):
+            return Judgement("caught")
+        curved = self.moving.likelihood - self.line.likelihood > limits.CLEAR
+        clear = not curved or self.settled.likelihood - self.moving.likelihood < -limits.CLEAR
+        sure = line > limits.LINE_OF_FEW or self.moving.sigmas > limits.CURVE_OF_FEW
+        trend = sure or (not walk_like and self.moving.sigmas > limits.TREND)
+        if trend and line > limits.STEEP and clear:
+            if abs(self.line.amplitude) < max(2 * self.floor, self.incomplete):
+                return Judgement("bounded")
+            return Judgement("grows" if self.line.amplitude > 0 else "loses")
+        still = line < limits.STILL and not self.has_settled and self.settled.sigmas < limits.CHANGE
+        if still and not walk_like:
+            return Judgement("bounded")
+        if still and self.level.walks > limits.WALKS and math.isinf(self.cycles):
+            return Judgement("wanders")
+        if self.cycles < limits.MIN_CYCLES:
+            return _too_early(self.cycles, limits.MIN_CYCLES, "cycles of its slowest wave")
+        need = 2 * max(limits.MIN_INDEPENDENT, self.independent)
+        return _too_early(self.independent, need, "independent samples")
 
 
-def _best_stories(blocks: _Blocks, count: int, floor: float) -> _Stories:
-    """Fit all descriptions, with waves if they make a better one."""
-    means = blocks.means - float(blocks.means.mean())
-    noises = Noises(blocks.places, blocks.sizes, count, floor)
-    found = waves(blocks.times, means)
-    stories = [
-        _stories(blocks.times, means, noises, some) for some in ([], found)[: 1 + bool(found)]
-    ]
-    return max(stories, key=lambda each: each.likelihood)
-
-
-def _stories(times: Any, means: Any, noises: Noises, frequencies: list[float]) -> _Stories:
-    """Fit all descriptions, with waves of these frequencies."""
-    base = [np.ones(len(times)), *regressors(frequencies, times)]
-    level = noises.fit(base, means)
-    line = noises.fit([*base, times], means)
-    curves = np.expm1(_RATES[:, None] * times) / np.expm1(_RATES)[:, None]
-    logarithms = np.log1p(_LOGARITHMS[:, None] * times)
-    approaches = -np.expm1(-_SETTLING[:, None] * times)
-    best = [
-        _best(family, base, means)
-        for family in (curves, logarithms, approaches, _steps(len(times)))
-    ]
-    curve, logarithm, approach, step = (noises.fit([*base, family], means) for family, _ in best)
-    moving = max(line, curve, logarithm, key=lambda fit: fit.likelihood)
-    is_step = step.likelihood > approach.likelihood
-    penalty = math.log(len(times))
-    likelihood = max(
-        level.likelihood, *(fit.likelihood - penalty for fit in (moving, approach, step))
-    )
-    return _Stories(
-        walks=level.walks,
-        line=line,
-        moving=moving,
-        settled=step if is_step else approach,
-        settling=1.0 if is_step else 3 / float(_SETTLING[best[2][1]]),  # to a 20th of the way
-        cycles=min(frequencies, default=math.inf),
-        likelihood=likelihood - 1.5 * len(frequencies) * penalty - (WAVES if frequencies else 0),
-    )
+def _means(values: Any, count: int) -> Any:
+    """Return the means of so many blocks of as many values."""
+    ends = np.arange(count) * len(values) // count
+    return np.add.reduceat(values, ends) / np.diff(ends, append=len(values))
 
 
 def _steps(count: int) -> Any:
@@ -283,10 +204,9 @@ def _steps(count: int) -> Any:
     return np.clip(np.arange(count) - places[:, None] + 1, 0, 1)
 
 
-def _best(family: Any, base: list[Any], means: Any) -> tuple[Any, int]:
-    """Return the member that explains most of the means, beside the base, and its index."""
-    basis = np.linalg.qr(np.column_stack(base))[0]
+def _best(family: Any, base: list[Any], means: Any) -> int:
+    """Return the index of the member that explains most of the means, beside the base."""
+    basis = np.linalg.qr(np.column_stack([np.ones(len(means)), *base]))[0]
     members = family - (family @ basis) @ basis.T
     lengths = np.maximum((members**2).sum(axis=1), 1e-12)
-    index = int(np.argmax((members @ means) ** 2 / lengths))
-    return family[index], index
+    return int(np.argmax((members @ means) ** 2 / lengths))

@@ -1,5 +1,6 @@
-"""The vocabulary of judging: verdicts with their definitions, what a judge is fed, and what it returns."""
+"""Verdicts with their definitions, the table of thresholds, what a judge is fed, and its judgement."""
 
+import math
 from typing import Literal, NamedTuple, get_args
 
 from engine.methods import Method
@@ -20,6 +21,60 @@ DEFINITIONS: dict[Verdict, str] = {
     "too early": "the data do not support one of these yet",
 }
 """One definition of each verdict, for the help, the README and every judge."""
+
+
+# A method in a run.  z = h·w0, times a method's longest substep; errors are relative energy errors.
+# Theorems:
+QUIET = (
+    0.25  # z: chaos is thinner than exp(-pi²/z): Gelfreich & Lazutkin, Russ. Math. Surv. 56 (2001)
+)
+FENCED = 0.9  # z: below, invariant curves fence orbits in; the last breaks at 0.9857: Greene (1979)
+MIN_STEPS_A_TURN = 4  # Nyquist for the error, which turns twice as often: fewer beat with it
+NEAR_TOP = 11.0  # w0·period: longer swings come within 30° of upright, where fences break first
+CONSERVED = 0.045  # z² E: half of what the modified energy of order 4 moves by in a regular orbit
+ELLIPSE = 0.15  # the ellipse of swings below SMALL moves by theta²/4, half of it the other way
+SMALL = 0.7  # rad
+GONE = 1e6  # an error from which no force brings a bob back, where there is no way over the top
+# Rounding:
+WALK = 8.0  # standard deviations of a random walk of roundings: it gets there once in 10^14 runs
+REFERENCE = 1e-9  # of ln(E/E_true): ten times the error of the true motion
+ABOVE_ROUNDING = 1e3  # times the rounding of theta: a thousandth of the energy's root is left
+ROUNDING = 1e-12  # of an energy: a million roundings, or a random walk of 1e7
+AT_REST = -1 + 1e-9  # an error: nothing is left to lose
+# Risk of error: none wrong in 3 300 runs of a million steps.
+LOOKS = 8  # a period: Nyquist for the second harmonic of the error, twice over
+MIN_PERIODS = 8  # for a theorem to be applied: the orbit has then shown its band
+MIN_BINS = 4  # for a line with two degrees of freedom
+MIN_BIN_STEPS = 16  # beyond z = 0.4 a swing has fewer, and their extremes miss those of the band
+STRAIGHT_BINS = 24  # of which a random walk goes 9 in 10 the same way once in 60 000
+LONG = 4096  # steps that show regularity: chaos separates by e^15 with a Lyapunov number of 0.004
+APART = 15.0  # ln of separation beyond that of regular neighbours: chaos
+TOGETHER = 5.0  # ln of separation beyond proportion to time: still regular
+LYAPUNOV_STEPS = 100_000  # neighbours are followed for so long: tenths of a second in plain Python
+SIGMAS = 3.0  # of Student's t for a slope: one false trend in 370
+HORIZON = 500  # periods for which a bounded error is to stay in its band
+ONE_BAND = 2.0  # typical bins are as wide as the half of a run that lies in one band
+NO_BAND = 4.5  # of one that does not; random walks of 32 bins are wider
+
+# A record of any program.  Standard deviations and likelihood ratios are those of white noise;
+# tests/bench/foreign.py measures the errors in other noises.
+MIN_SAMPLES = 64  # 32 blocks: a line, three waves and a noise leave 20 degrees of freedom
+MIN_INDEPENDENT = 15  # correlation times: uncertainties were tested down to here
+STILL = 2.6  # standard deviations: a level exceeds them in 1 of 100 records
+TREND = 3.3  # standard deviations: a level exceeds them in 1 of 1000 records
+STEEP = 2.0  # standard deviations of a line beside a curve: not an end alone
+CHANGE = 5.0  # standard deviations of a change of level: the best of 200 in white noise has 3.3
+LINE_OF_FEW = 7.0  # standard deviations, where independent samples are few: 2 in 100 random walks
+CURVE_OF_FEW = 12.0  # have a steeper line, or a clearer curve
+SETTLED = math.log(100)  # of a likelihood ratio: wrong in 1 of 100 where both are as common
+CLEAR = math.log(10)  # of a likelihood ratio, between curves of as many parameters
+WALKS = 3.5  # of a likelihood ratio: noise with a correlation time of T/5 exceeds it in 1 of 100
+WAVE = 12.0  # of a likelihood ratio: a wave in a random walk gains up to 10
+MIN_CYCLES = 4.0  # of a slow wave that is called bounded: thirds of the record look alike
+TRANSIENT = 0.1  # of the record: a start that is over so early belongs to the preparation
+LOST = 0.01  # of the first energy: losing all of it is no other level
+MULTIPLIED = 1e3  # times the smallest energy: what multiplies is judged in its logarithm
+WIDER = 3.0  # times: what fluctuates so much more at its end is in no band
 
 
 class LookPoint(NamedTuple):
@@ -55,9 +110,12 @@ class Judgement(NamedTuple):
     periods: float = 0.0  # how many periods the verdict rests on
     lyapunov: float | None = None  # 1/s; only where the verdict rests on it
     progress: Progress | None = None  # only while it is too early
-    growth: float | None = (
-        None  # 1/s, of the logarithm of the error; only beyond the initial energy
-    )
+    growth: float | None = None  # 1/s, of the logarithm of the error; only beyond E0
+    # of a whole record, in its own units
+    transient: float = 0.0  # time at the start that was left out
+    first: int = 0  # the index of the first sample that was judged
+    independent: float = 0.0  # correlation times in the record
+    fluctuation: float | None = None  # standard deviation about a line
 
     def __str__(self) -> str:
         """Return the verdict, with the progress to it if it is too early for one."""

@@ -6,8 +6,8 @@ from typing import Self
 
 from engine.methods import Cast
 from engine.models.model import Model
-from engine.run.judge import ROUNDING, Judge
-from engine.run.judgement import Judgement, LookPoint, Milestone, MilestoneKind
+from engine.run.judge import Judge
+from engine.run.judgement import ROUNDING, Judgement, LookPoint, Milestone, MilestoneKind
 
 
 class Judges:

@@ -22,7 +22,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from engine.run.compiled import compiled
-from engine.run.energies import judge_energies
+from engine.run.judge import Judge
 from tests.truths import scene_at, truths
 
 PERIODS, SAMPLES_A_PERIOD, LEAST_SAMPLES, LINES = 300, 16, 2048, 10**6
@@ -75,9 +75,8 @@ def of_cells(every: int) -> tuple[dict[str, Counter[str]], list[tuple[object, ..
             errors.append(reference.error(value))
         energies = 1 + np.array(errors)
         for name, which in samplings(len(energies), random).items():
-            verdict = judge_energies(
-                which * stride * scene.h, energies[which], ended
-            ).judgement.verdict
+            times = which * stride * scene.h
+            verdict = Judge().read(times, energies[which], failed=ended).verdict
             table[f"{name} {letter}"][verdict] += 1
             if verdict not in CELLS[letter] | {"too early"}:
                 wrong.append((name, method.key, start, z, letter, verdict))

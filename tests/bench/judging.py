@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from engine.methods import GENERAL, Method
-from engine.run.energies import judge_energies
+from engine.run.judge import Judge
 from engine.run.lockstep import Lockstep
 from engine.scenes import SCENES, Scene
 
@@ -49,9 +49,8 @@ def agreement(seconds: float) -> dict[str, Any]:
                 ]
             )
             times = np.array([abs(sample.t) for sample in samples[: len(energies)]])
-            alone = judge_energies(
-                times, energies, failed=len(energies) < len(samples)
-            ).judgement.verdict
+            failed = len(energies) < len(samples)
+            alone = Judge().read(times, energies, failed=failed).verdict
             cells += 1
             if alone != judgement.verdict:
                 where = (scene.name, method.key, judgement.verdict, alone)

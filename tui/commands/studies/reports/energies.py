@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from engine.run.judgement import Progress
 from recordings.errors import printable
 from tui.cli.columns import REASONS, Table
 from tui.cli.errors import UserError
@@ -33,11 +34,14 @@ def judged(
     """Return the fields of the result for a table of times, energies and kinetic energies."""
     import numpy as np
 
-    from engine.run.energies import judge_energies
+    from engine.run.judge import Judge
 
     times = np.asarray(table.columns[0])
     energies = np.asarray(table.columns[1])
-    found = judge_energies(times, energies, failed=table.failed_at is not None)
+    # a deviation does not depend on the zero of energy, and then nor does the verdict
+    found = Judge().read(
+        times, energies, failed=table.failed_at is not None, absolute=scale != "std"
+    )
     rest = energies[found.first :]
     size = _size(table, rest, scale)
     with np.errstate(over="ignore"):
@@ -45,10 +49,10 @@ def judged(
     fields = {
         "table": table.number,
         "tables": table.count,
-        "verdict": found.judgement.verdict,
-        "progress": found.judgement.progress and found.judgement.progress._asdict(),
+        "verdict": found.verdict,
+        "progress": found.progress and found.progress._asdict(),
         "transient": found.transient,
-        **_trend_fields(table, found.judgement.slope, found.judgement.uncertainty, size),
+        **_trend_fields(table, found.slope, found.uncertainty, size),
         "independent_samples": found.independent,
         "fluctuation": found.fluctuation,
         "max_energy_error": float(np.abs(errors).max()),
@@ -186,14 +190,23 @@ def lines_of(fields: dict[str, Any]) -> list[tuple[str, str]]:
         ("verdict", _verdict(fields)),
         *_trend(fields, energy_unit),
         ("energy error", f"{error}, relative to {fields['scale']:.6g}{energy_unit}"),
+        *_hint(fields),
     ]
+
+
+def _hint(fields: dict[str, Any]) -> list[tuple[str, str]]:
+    """Return a better scale where the energies lie around zero."""
+    at_first = fields["scale"] == abs(fields["first_energy"])
+    if not at_first or fields["max_energy_error"] < 1 or fields["verdict"] != "bounded":
+        return []
+    return [("hint", "the energies lie around zero; --scale std compares errors with their spread")]
 
 
 def _verdict(fields: dict[str, Any]) -> str:
     unit = f" {fields['time_unit']}" if fields["time_unit"] else ""
     text = str(fields["verdict"])
     if progress := fields["progress"]:
-        text += f": {progress['have']} of {progress['need']} {progress['unit']}"
+        text += f": {Progress(**progress)}"
     if fields["diverged_at"] is not None:
         text += f": the energies are nan or inf from {fields['diverged_at']:g}{unit} on"
     if fields["transient"]:
@@ -221,4 +234,6 @@ def _trend(fields: dict[str, Any], energy_unit: str) -> list[tuple[str, str]]:
         kt = fields.get("kt_per_ns_per_atom")
         text = f"{each:+.2e}{energy_unit} per ns"
         lines.append(("per atom", text if kt is None else f"{text}, {kt:+.2e} kT per ns"))
+    if fields["independent_samples"] == 0 and fields["verdict"] == "bounded":
+        lines.append(("±", "the energies move by no more than their last digit, or rounding"))
     return lines
