@@ -74,7 +74,7 @@ class Replay(Source):
 
     @property
     def judgements(self) -> Sequence[Judgement]:
-        """The verdicts that the lab gave since the stepping last changed; trends are not recorded as they change."""
+        """The verdicts that the lab gave since the stepping last changed, with their trends then."""
         since = change_before(self.changes, self.sample.step).step
         swings = (
             (self.sample.step - since)
@@ -86,6 +86,8 @@ class Replay(Source):
                 verdict=each.verdict,
                 periods=swings,
                 lyapunov=each.lyapunov,
+                slope=each.trend,
+                significant=each.trend is not None,
             )
             for each in self.milestones
             if each.kind == "verdict" and each.step > since
