@@ -20,7 +20,7 @@ from functools import partial
 from typing import Any
 
 from engine.methods import USUAL_CAST, Cast
-from engine.run.judgement import VERDICTS
+from engine.run.judgement import VERDICTS, Progress
 from recordings.fields import EXTRA_NAMES, NUMBERS, OPTIONAL
 from tui.cli.cast import find
 from tui.cli.errors import UserError
@@ -143,7 +143,7 @@ def _found(
     text = ours if isinstance(ours, str) else format(ours, ".3g")
     progress = reading.get("progress")
     if field == "verdict" and isinstance(progress, Mapping):
-        text += f": {progress['have']} of {progress['need']} {progress['unit']}"
+        text += f": {Progress(**progress)}"
     return f"{name} is {text}"
 
 

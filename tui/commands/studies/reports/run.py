@@ -3,6 +3,7 @@
 import math
 from typing import TYPE_CHECKING, Any
 
+from engine.run.judgement import Judgement, Progress
 from engine.scenes import Scene
 from tui.cli.output import fields_of, scene_line
 from tui.cli.report import Column
@@ -103,7 +104,7 @@ def verdict_of(row: dict[str, Any]) -> str:
     progress = row["progress"]
     if progress is None:
         return str(row["verdict"])
-    return f"{row['verdict']}: {progress['have']} of {progress['need']} {progress['unit']}"
+    return str(Judgement(row["verdict"], progress=Progress(**progress)))
 
 
 def notes_of(scene: Scene, lockstep: "Lockstep") -> list[str]:
