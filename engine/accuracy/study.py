@@ -8,7 +8,7 @@ every machine, or in seconds by a clock that is passed in.
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, partial
+from functools import cache, lru_cache, partial
 from statistics import linear_regression
 from typing import Literal, NamedTuple
 
@@ -258,6 +258,20 @@ def measured(scene: Scene, time: float, rungs: Sequence[int]) -> Iterator[Point]
     For another process, which has only the arguments.
     """
     return Study(scene, time, TieredLoops).points(rungs)
+
+
+def measured_point(scene: Scene, time: float, loops: LoopsOf, task: tuple[int, int]) -> Point:
+    """Return the point of one task, the number of a method in the cast and that of its steps.
+
+    For other processes, which get one task after the other and keep the study between them.
+    """
+    index, steps = task
+    return _cached_study(scene, time, loops).run(scene.cast[index], steps)
+
+
+@lru_cache(maxsize=1)
+def _cached_study(scene: Scene, time: float, loops: LoopsOf) -> Study:
+    return Study(scene, time, loops)
 
 
 def orders(scene: Scene, time: float, loops: LoopsOf = PlainLoops) -> list[Order]:

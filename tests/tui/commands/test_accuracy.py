@@ -3,7 +3,7 @@
 import csv
 import io
 import math
-from itertools import islice
+from itertools import count
 
 import pytest
 
@@ -154,14 +154,23 @@ def test_extreme_starts_print_numbers_and_no_nan(extreme):
     assert pendu(*quick).code == 0
 
 
+def test_other_processes_find_the_same_and_measure_no_seconds():
+    arguments = ("accuracy", "--time", "5", "--h-values", "0.1:0.01:2", "--json")
+    alone = pendu(*arguments)
+    assert pendu(*arguments, "--workers", "2").out == alone.out
+    assert pendu(*arguments, "--workers", "2", "--cost", "seconds").code == 2
+
+
 def test_ctrl_c_keeps_what_is_done(monkeypatch):
-    measured = Study.points
+    measured = Study.run
+    calls = count()
 
-    def interrupted(study, rungs):
-        yield from islice(measured(study, rungs), 5)
-        raise KeyboardInterrupt
+    def interrupted(study, *arguments):
+        if next(calls) == 5:
+            raise KeyboardInterrupt
+        return measured(study, *arguments)
 
-    monkeypatch.setattr(Study, "points", interrupted)
+    monkeypatch.setattr(Study, "run", interrupted)
     told = pendu(*QUICK, "--target", "1e-4", "--json")
     assert (told.code, told.err) == (130, "pendu-tui: interrupted; partial results are kept.\n")
     assert told.json["interrupted"]

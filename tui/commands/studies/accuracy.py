@@ -3,6 +3,7 @@
 import argparse
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING
 
 from engine.scenes import Scene, check_h
@@ -12,6 +13,7 @@ from tui.cli.options import count, positive
 from tui.cli.output import progress, warn
 from tui.cli.report import add_report_options, publish
 from tui.cli.scene import add_scene_options, general_scene_of
+from tui.cli.workers import add_worker_options, workers_of
 from tui.commands.studies.reports import figures
 
 if TYPE_CHECKING:
@@ -25,6 +27,7 @@ examples:
   pendu-tui accuracy --all --cost seconds --target 1e-9
   pendu-tui accuracy --target 1e-3 --error energy --time 10,100,1000
   pendu-tui accuracy --cost seconds --h-values 0.1:0.001:8 -o points.csv
+  pendu-tui accuracy --all --time 1000 --workers 4
   pendu-tui accuracy --json | jq '.points[] | select(.method == "rk4" and .valid)'
 """
 
@@ -54,6 +57,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     limit = "limit of force evaluations; alone: find the least error within it"
     add("--budget", metavar="N", type=positive, help=limit)
     add("--no-compiled", action="store_true", help="do not use Numba (results are identical)")
+    add_worker_options(parser)
     add_report_options(parser, csv=True, files=(".csv", ".json", *figures.SUFFIXES))
 
 
@@ -95,6 +99,11 @@ def run(options: argparse.Namespace) -> int:
         raise UserError(
             f"--budget {options.budget:g} is out of range; use 1 to {MAX_BUDGET:g} force evaluations."
         )
+    if options.cost == "seconds" and (options.workers > 1 or options.dask or options.executor):
+        raise UserError(
+            "seconds are measured in this process, where others would disturb them;"
+            " use workers with --cost evaluations."
+        )
     if options.safety < 1:
         raise UserError(f"--safety {options.safety:g} is less than 1; use 2, for example.")
     durations = options.time or [usual(scene)[0]]
@@ -120,7 +129,7 @@ def run(options: argparse.Namespace) -> int:
         fast = (
             available() if options.cost == "evaluations" else compilable(scene.cast)
         )  # all, or none is
-        _fill(found, durations, rungs, fast and not options.no_compiled)
+        _fill(found, durations, rungs, fast and not options.no_compiled, options)
     except KeyboardInterrupt:
         found.interrupted = True
     if figures.is_figure(options.output):
@@ -133,26 +142,34 @@ def run(options: argparse.Namespace) -> int:
     return Exit.FINE
 
 
-def _fill(found: "Findings", durations: list[float], rungs: list[int], fast: bool) -> None:
+def _fill(
+    found: "Findings",
+    durations: list[float],
+    rungs: list[int],
+    fast: bool,
+    options: argparse.Namespace,
+) -> None:
     """Add to the findings what was asked for, so that an interrupt keeps what was found before it."""
     from engine.accuracy.growth import growth
     from engine.accuracy.references import references
-    from engine.accuracy.study import Study, orders, timed
+    from engine.accuracy.study import Study, measured_point, orders, timed
     from engine.run import compiled, loops
 
     scene = found.scene
-    study = Study(scene, found.time, compiled.TieredLoops if fast else loops.PlainLoops)
-    steps = len(scene.cast) * sum(rungs)
+    study_loops = compiled.TieredLoops if fast else loops.PlainLoops
+    study = Study(scene, found.time, study_loops)
+    timed_loops = compiled.compiled if fast else loops.PlainLoops
+    tasks = [(index, steps) for steps in rungs for index in range(len(scene.cast))]
+    all_steps = len(scene.cast) * sum(rungs)
     done = 0
-    with progress("measuring") as show:
-        for point in study.points(rungs):
+    measure = partial(measured_point, scene, found.time, study_loops)
+    with workers_of(options) as workers, progress("measuring") as show:
+        for point in workers.map(measure, tasks):
             if found.cost == "seconds":
-                point = timed(
-                    point, scene, time.perf_counter, compiled.compiled if fast else loops.PlainLoops
-                )
+                point = timed(point, scene, time.perf_counter, timed_loops)
             found.points.append(point)
             done += point.steps
-            show(done, steps)
+            show(done, all_steps)
     if found.all and found.cost == "seconds":
         found.references = references(scene, found.time, time.perf_counter, fast)
     found.orders += orders(scene, found.time, study.loops)
