@@ -82,38 +82,20 @@ def h_values(text: str) -> tuple[float, float, int]:
 
 def run(options: argparse.Namespace) -> int:
     """Measure, recommend, print.  Ctrl+C keeps what is done."""
-    from engine.accuracy.study import compilable, usual, with_all_methods
-    from engine.run.compiled import available
+    from engine.accuracy.study import usual, with_all_methods
+    from tui.commands.studies.reports.accuracy import Findings, report
 
-    if options.all and options.methods is not None:
-        raise UserError("--all and --methods exclude each other; choose one of them.")
+    _check_options(options)
     scene = general_scene_of(options)
-    searched = scene if options.methods else with_all_methods(scene)
-    if options.all:
-        scene = searched
     if scene.theta == scene.omega == 0:
         raise UserError(
             "the pendulum hangs at rest, so there is no error to measure; use another --theta or --omega."
         )
-    if options.budget is not None and not 1 <= options.budget <= MAX_BUDGET:
-        raise UserError(
-            f"--budget {options.budget:g} is out of range; use 1 to {MAX_BUDGET:g} force evaluations."
-        )
-    if options.cost == "seconds" and (options.workers > 1 or options.dask or options.executor):
-        raise UserError(
-            "seconds are measured in this process, where others would disturb them;"
-            " use workers with --cost evaluations."
-        )
-    if options.safety < 1:
-        raise UserError(f"--safety {options.safety:g} is less than 1; use 2, for example.")
+    searched = scene if options.methods else with_all_methods(scene)
+    if options.all:
+        scene = searched
     durations = options.time or [usual(scene)[0]]
     rungs = _ladder(scene, durations[-1], options.h_values, options.all)
-    if options.output:
-        check_free(options.output, options.force)
-    if figures.is_figure(options.output):
-        figures.check(options.output, options.force)
-    from tui.commands.studies.reports.accuracy import Findings, report
-
     found = Findings(
         scene=scene,
         searched=searched,
@@ -126,10 +108,7 @@ def run(options: argparse.Namespace) -> int:
         all=options.all,
     )
     try:
-        fast = (
-            available() if options.cost == "evaluations" else compilable(scene.cast)
-        )  # all, or none is
-        _fill(found, durations, rungs, fast and not options.no_compiled, options)
+        _fill(found, durations, rungs, options)
     except KeyboardInterrupt:
         found.interrupted = True
     if figures.is_figure(options.output):
@@ -142,11 +121,41 @@ def run(options: argparse.Namespace) -> int:
     return Exit.FINE
 
 
+def _check_options(options: argparse.Namespace) -> None:
+    """Raise UserError for options that exclude each other, or an output that cannot be written."""
+    if options.all and options.methods is not None:
+        raise UserError("--all and --methods exclude each other; choose one of them.")
+    if options.budget is not None and not 1 <= options.budget <= MAX_BUDGET:
+        raise UserError(
+            f"--budget {options.budget:g} is out of range; use 1 to {MAX_BUDGET:g} force evaluations."
+        )
+    if options.cost == "seconds" and (options.workers > 1 or options.dask or options.executor):
+        raise UserError(
+            "seconds are measured in this process, where others would disturb them;"
+            " use workers with --cost evaluations."
+        )
+    if options.safety < 1:
+        raise UserError(f"--safety {options.safety:g} is less than 1; use 2, for example.")
+    if options.output:
+        check_free(options.output, options.force)
+    if figures.is_figure(options.output):
+        figures.check(options.output, options.force)
+
+
+def _is_compiled(scene: Scene, options: argparse.Namespace) -> bool:
+    """Return whether Numba compiles the methods; where seconds are measured, all of them or none."""
+    from engine.accuracy.study import compilable
+    from engine.run.compiled import available
+
+    if options.no_compiled:
+        return False
+    return compilable(scene.cast) if options.cost == "seconds" else available()
+
+
 def _fill(
     found: "Findings",
     durations: list[float],
     rungs: list[int],
-    fast: bool,
     options: argparse.Namespace,
 ) -> None:
     """Add to the findings what was asked for, so that an interrupt keeps what was found before it."""
@@ -156,6 +165,7 @@ def _fill(
     from engine.run import compiled, loops
 
     scene = found.scene
+    fast = _is_compiled(scene, options)
     study_loops = compiled.TieredLoops if fast else loops.PlainLoops
     study = Study(scene, found.time, study_loops)
     timed_loops = compiled.compiled if fast else loops.PlainLoops
@@ -180,10 +190,13 @@ def _fill(
         for number, duration in enumerate(durations):
             wider = Study(found.searched, duration, study.loops)
 
-            def show_share(share: float, done: int = number) -> None:
-                show(done + share, len(durations))
-
+            show_share = partial(_show_share, show, number, len(durations))
             found.advice.append(_advice(found, wider, fast, show_share))
+
+
+def _show_share(show: Callable[[float, float], None], done: int, all: int, share: float) -> None:
+    """Show the share of the times that are searched, with that of the next one."""
+    show(done + share, all)
 
 
 def _advice(
