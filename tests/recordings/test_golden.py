@@ -122,5 +122,5 @@ def test_the_csv_has_a_row_for_each_sample_and_method_and_every_number(tmp_path)
         )
         assert row[4] == key
         assert row[5:] == [
-            "" if value is None else repr(value) for value in values_of(reading)[: len(row) - 5]
+            "NaN" if value is None else repr(value) for value in values_of(reading)[: len(row) - 5]
         ]

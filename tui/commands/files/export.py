@@ -56,7 +56,7 @@ def run(options: argparse.Namespace) -> int:
             _write_parquet(options.output, options.force, columns, rows)
         else:
             with text_file(options.output, options.force) as out:
-                write_csv(out, columns, rows)
+                write_csv(out, columns, map(_with_nan, rows))
         if recording.reason:
             warn(f"{printable(str(path))}: {recording.reason}; the rest is exported.")
     if options.output:
@@ -88,6 +88,11 @@ def _rows(recording: "Recording", show: Callable[[int, int], None]) -> Rows:
             yield *place, *scalars_of(reading), *map(reading.extra.get, extra)
         if count % 1000 == 0:
             show(count, recording.samples)
+
+
+def _with_nan(row: tuple[object, ...]) -> Iterator[object]:
+    """Yield the row with NaN for what is missing: readers take an empty column for text."""
+    return ("NaN" if value is None else value for value in row)
 
 
 def _write_parquet(path: Path, force: bool, columns: tuple[str, ...], rows: Rows) -> None:
