@@ -161,6 +161,23 @@ class ErrorHistory:
         """Return what lies between two x [s], and half a swing before."""
         return self.window().cut(begin - self._repeats, end)
 
+    def since(self, step: int) -> tuple[list[float], list[float]] | None:
+        """Return the largest energy errors after a step, and the theta errors there."""
+        number = self.rows.number_after(step)
+        now = self._now
+        if now is None or not 0 < number <= self._until:
+            return None
+        x = self.rows.times_before(number)[1]
+        window = self.window()
+        before = int((window.x <= x).sum()) - 1
+        if before < 0:
+            return None
+        low = -window.low["energy_error"][before + 1 :]
+        high = window.high["energy_error"][before + 1 :]
+        errors = [abs(reading.energy_error) for reading in now.sample.readings]
+        largest = [max(each) for each in zip(errors, *low.tolist(), *high.tolist(), strict=True)]
+        return largest, window.high["theta_error"][before].tolist()
+
     def trails(self, length: int) -> "NDArray":  # type: ignore[type-arg]
         """Return theta [rad] and omega [rad/s] of every method and the exact motion, oldest first.
 

@@ -28,23 +28,26 @@ SIGNS: dict[Verdict, str] = {
 GLOSSARY = {
     "h": "the step size [s]: methods know the pendulum only at times 0, h, 2h, ...",
     "z": "h w0, the step in units of the swing; w0 = sqrt(g/L). Methods become unstable beyond a z of their own",
-    "theta, omega": "angle from the downward vertical [rad], -5 t +0.89: five turns back and 0.89; its speed [rad/s]",
+    "theta, omega": "angle from the downward vertical [rad], -5 turns +0.89: five turns back and 0.89; its speed [rad/s]",
     "dE/E0": EnergyError().about,
-    "largest": "the largest |dE/E0| of the run so far",
+    "largest": "the largest |dE/E0| since the start, or since the last change of h",
     "trend per s": "the mean change of dE/E0 per second; a bounded error can be larger than one that grows",
     "E/Es": "the energy over that of the separatrix: below 1 it swings (libration), above it turns (rotation)",
     **{f"{sign} {verdict}".strip(): DEFINITIONS[verdict] for verdict, sign in SIGNS.items()},
     "colours": "each method keeps its own, and its letter, wherever it is shown; its digit is its place and its key",
     "×": "in the chart: one error passes another, and stays above it",
     "dotted": "the exact motion",
-    "dim": "a recording laid under the lab, maybe with another h: pendu-tui live --ghost FILE",
+    "dim": "the run before r, maybe with another h, or a recording: pendu-tui live --ghost FILE",
 }
 HEADS = {
     **dict.fromkeys(("theta", "omega"), GLOSSARY["theta, omega"]),
     "per s": GLOSSARY["trend per s"],
     "verdict": "what the energy error does in the long run; ? explains each word",
-    **dict.fromkeys(("th.err", "theta error"), "the distance from the exact angle [rad]"),
-    **dict.fromkeys(("f", "evals/step"), "force evaluations a step: what the method costs"),
+    **dict.fromkeys(
+        ("th.err", "theta error"),
+        "the distance from the exact angle [rad]; after a change of h, what it has added since",
+    ),
+    "evals/step": "force evaluations a step: what the method costs",
     **{
         head: each.about
         for model in MODELS.values()

@@ -36,10 +36,10 @@ def scientific(value: float | None, width: int, digits: int = 1, sign: str = "+"
 
 
 def angle(theta: float, width: int, decimals: int) -> str:
-    """An angle [rad]; beyond a turn, where there is room, as turns and the rest: "-5 t +0.89"."""
+    """An angle [rad]; beyond a turn, where there is room, as turns and the rest: "-5 turns +0.89"."""
     turns = round(theta / math.tau) if math.isfinite(theta) else 0
     rest = theta - turns * math.tau
-    text = f"{turns:+d} t {rest:+.2f}"
+    text = f"{turns:+d} turn{'s' * (abs(turns) != 1)} {rest:+.2f}"
     if abs(theta) > math.tau and len(text) <= width:
         return text.rjust(width)
     return decimal(theta, width, max(decimals, 1))

@@ -3,7 +3,7 @@
 import math
 
 from engine.methods import Method
-from engine.phase_space.section import OrbitKind, numerical_period
+from engine.phase_space.section import OrbitKind, least_lyapunov, numerical_period
 from tui.playback.source import Source
 from tui.words.numbers import counted
 
@@ -35,6 +35,15 @@ def fraction(kind: OrbitKind) -> str:
     )
 
 
+def lyapunov(kind: OrbitKind) -> str:
+    """Return a Lyapunov number a step; a regular orbit's is 0 as far as its steps can tell."""
+    if not math.isfinite(kind.lyapunov):
+        return "-"
+    if kind.chaotic or kind.lyapunov < 0:
+        return f"{kind.lyapunov:+.4f}"
+    return f"0 within {least_lyapunov(kind.steps):.1g}"
+
+
 def cells(method: Method, kind: OrbitKind) -> tuple[str, ...]:
     """Return what stands below HEADS."""
     rotation = kind.rotation
@@ -43,7 +52,7 @@ def cells(method: Method, kind: OrbitKind) -> tuple[str, ...]:
         "-" if rotation is None else f"{rotation:.7f}",
         "-" if not rotation else f"{1 / abs(rotation):.5g}",
         fraction(kind),
-        f"{kind.lyapunov:+.4f}" if math.isfinite(kind.lyapunov) else "-",
+        lyapunov(kind),
     )
 
 

@@ -89,7 +89,7 @@ def test_sizes_have_two_or_three_digits(count, text):
 
 
 def test_an_angle_beyond_a_turn_is_turns_and_the_rest():
-    assert angle(-30.52848, 11, 5) == "-5 t +0.89".rjust(11)
+    assert angle(-30.52848, 14, 5) == "-5 turns +0.89"
     assert angle(-30.52848, 6, 3) == "-30.53"
     assert angle(3.0, 11, 5) == "   +3.00000"
     assert angle(math.nan, 6, 3).strip() == "-"

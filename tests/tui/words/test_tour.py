@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 from itertools import pairwise
 
+import numpy as np
 import pytest
 
 from engine.accuracy.recommend import reach
@@ -16,22 +17,24 @@ from engine.run.tangent import jacobian
 from engine.scenes import SCENES, Scene
 from tests.tui.harness import FPS, Clocked
 from tui.playback.live import Live
+from tui.playback.shown import Shown
 from tui.views import VIEWS
+from tui.views.phase.viewport import Viewport
 from tui.words.plain_text import READING, THINKING, print_tour
-from tui.words.tour import ASTRAY, SHOTS, Shot, Tour
+from tui.words.tour import ASTRAY, STEPS, Tour, TourStep
 
 EXPLICIT, SYMPLECTIC, VERLET, RK = range(4)
-GAINS, WHY, SMALLER, CROSSING, REVERSED, AREA, BREAKS, COSTS = SHOTS
+GAINS, WHY, SMALLER, CROSSING, REVERSED, AREA, BREAKS, COSTS = STEPS
 
 
 class Walked(Clocked):
     """A lab that follows one shot to its question."""
 
-    def __init__(self, shot: Shot) -> None:
+    def __init__(self, shot: TourStep) -> None:
         live = Live(SCENES["spin"], clock=lambda: 0.0)
         super().__init__(live)
         self.tour = Tour(live)
-        self.tour.begin(SHOTS.index(shot))
+        self.tour.begin(STEPS.index(shot))
         while not self.tour.follow():
             self.run(1 / FPS)
             assert self.now < 60
@@ -49,13 +52,13 @@ def miss(reading: Reading, scene: Scene) -> float:
     return math.hypot(reading.theta - scene.theta, (reading.omega - scene.omega) / scene.w0)
 
 
-@pytest.mark.parametrize("shot", SHOTS, ids=lambda shot: shot.title)
+@pytest.mark.parametrize("shot", STEPS, ids=lambda shot: shot.title)
 def test_the_question_comes_after_about_ten_seconds_exactly_at_the_moment(shot):
     walked = Walked(shot)
     assert 6 < walked.now < 13
     assert walked.source.playhead.paused
     assert walked.source.sample.t == pytest.approx(0.0 if shot.returns else shot.moment, abs=1e-9)
-    assert shot.view in VIEWS
+    assert shot.shot.view in VIEWS
     assert shot.answers[0] != shot.answers[1]
 
 
@@ -75,6 +78,27 @@ def test_the_numbers_of_the_first_step():
         )
         < 0.01
     )
+
+
+def test_the_tilted_ellipse_is_seen_to_be_tilted_and_nothing_covers_it():
+    shown = Shown().through(WHY.scene, WHY.shot)
+    assert (WHY.shot.view, shown.places(WHY.scene.cast)) == ("phase", [EXPLICIT, SYMPLECTIC])
+    assert not shown.ring
+    half = WHY.shot.theta
+    for columns, rows in ((118, 24), (78, 11)):
+        viewport = Viewport.portrait(columns, rows, WHY.scene, half)
+        lockstep = Lockstep(WHY.scene)
+        points = []
+        for _ in range(200):
+            lockstep.advance(1)
+            reading = lockstep.sample().readings[SYMPLECTIC]
+            points.append((viewport.x(reading.theta), viewport.y(reading.omega)))
+        x, y = np.array(points).T
+        assert np.ptp(x) > 0.8 * columns  # 40 % of the dots across
+        assert np.ptp(y) > 1.6 * rows
+        covariance = np.cov(x, y)
+        correlation = covariance[0, 1] / math.sqrt(covariance[0, 0] * covariance[1, 1])
+        assert abs(correlation) > 0.2  # an upright ellipse has none
 
 
 def test_why_explicit_euler_gains_and_symplectic_euler_does_not():
@@ -195,7 +219,7 @@ def begun() -> Tour:
 
 def test_forward_goes_to_the_moment_then_to_the_truth_then_to_the_next_shot():
     tour = begun()
-    for index, shot in enumerate(SHOTS):
+    for index, shot in enumerate(STEPS):
         assert (tour.index, tour.stage) == (index, "watching")
         assert tour.forward()
         assert tour.stage == "asked"
@@ -203,7 +227,7 @@ def test_forward_goes_to_the_moment_then_to_the_truth_then_to_the_next_shot():
         assert tour.live.sample.t == pytest.approx(0.0 if shot.returns else shot.moment, abs=1e-9)
         assert tour.forward()
         assert tour.stage == "answered"
-        assert tour.forward() == (shot is not SHOTS[-1])
+        assert tour.forward() == (shot is not STEPS[-1])
     assert tour.index == 0
 
 
@@ -272,12 +296,12 @@ def printed(stop_at: float = math.inf) -> list[tuple[float, str]]:
 
 def test_without_a_screen_it_asks_waits_and_answers():
     lines = printed()
-    assert len(lines) == 4 * len(SHOTS) + 1
+    assert len(lines) == 4 * len(STEPS) + 1
     asked, answered, following = (at for at, _ in lines[2:5])
     assert answered - asked == pytest.approx(THINKING, abs=0.1)
     assert following - answered == pytest.approx(READING, abs=0.1)
     assert [line for _, line in lines[3::4]] == [
-        f"Answer: {shot.right + 1}. {shot.truth}" for shot in SHOTS
+        f"Answer: {shot.right + 1}. {shot.truth}" for shot in STEPS
     ]
 
 

@@ -14,6 +14,7 @@ from engine.methods import Method
 from engine.models.model import Model, State
 from engine.run.judgement import Judgement
 from engine.run.lockstep import Reading, Sample
+from engine.run.stepping import change_before
 from tui.drawing.palette import GOOD, QUIET, TEXT, WARN, inks, mark
 from tui.drawing.picture import Picture, Row
 from tui.playback.shown import Shown
@@ -32,6 +33,8 @@ class TableLine(NamedTuple):
     judgement: Judgement
     exact: State
     h: float  # s, its own step size
+    largest: float  # |dE/E0|, since h last changed
+    theta_before: float = 0.0  # rad, the theta error when h last changed
 
 
 class Column(NamedTuple):
@@ -48,8 +51,8 @@ COLUMNS = (
     Column(
         4,
         ("theta", 6),
-        ("theta [rad]", 11),
-        lambda line, width: angle(line.reading.theta, width, max(width - 6, 3)),
+        ("theta [rad]", 14),
+        lambda line, width: angle(line.reading.theta, width, max(width - 9, 3)),
     ),
     Column(
         2,
@@ -60,14 +63,14 @@ COLUMNS = (
     Column(
         7,
         ("dE/E0", 8),
-        ("dE/E0", 9),
+        ("dE/E0", 8),
         lambda line, width: scientific(line.reading.energy_error, width),
     ),
     Column(
         6,
         ("largest", 7),
         ("largest", 8),
-        lambda line, width: scientific(line.reading.max_energy_error, width, 1, "-"),
+        lambda line, width: scientific(line.largest, width, 1, "-"),
     ),
     Column(
         5,
@@ -87,7 +90,12 @@ COLUMNS = (
         ("theta error", 11),
         lambda line, width: scientific(theta_error(line), width, 1, "-"),
     ),
-    Column(1, ("f", 1), ("evals/step", 10), lambda line, width: evaluations(line.method, width)),
+    Column(
+        1,
+        ("evals/step", 10),
+        ("evals/step", 10),
+        lambda line, width: str(line.method.force_evaluations).rjust(width),
+    ),
 )
 
 
@@ -108,12 +116,6 @@ NAME = 20  # columns of a name and its mark, or as many as the longest takes
 MOST_GAP = 3
 
 
-def evaluations(method: Method, width: int) -> str:
-    """Force evaluations a step; "+" where they have more digits than there is room for."""
-    text = str(method.force_evaluations)
-    return text.rjust(width) if len(text) <= width else "+".rjust(width)
-
-
 def short(value: float, width: int) -> str:
     """With three digits, or as many as fit."""
     text = f"{value:.3g}"
@@ -121,9 +123,9 @@ def short(value: float, width: int) -> str:
 
 
 def theta_error(line: TableLine) -> float:
-    """|theta - exact theta|."""
+    """Return by how much a method is off the exact angle, or further off than when h changed."""
     error = line.model.theta_error(line.reading.theta, line.exact.theta)
-    return abs(error)
+    return abs(error - line.theta_before)
 
 
 SIGNS = {
@@ -163,6 +165,22 @@ def chosen(
     return [(*column.narrow, column.cell) for column in left]
 
 
+def since_change(source: Source, sample: Sample) -> tuple[list[float], list[float], str]:
+    """Return the largest energy errors and the theta errors at the last change of h, and a head.
+
+    Of the whole run, and zero, unless h has changed.
+    """
+    readings = sample.readings
+    change = change_before(source.changes, sample.step)
+    largest = [reading.max_energy_error for reading in readings]
+    if change.step == 0:
+        return largest, [0.0] * len(readings), "method"
+    found = source.history.since(change.step)
+    if found is None:  # a replay that has not read so far
+        return largest, [0.0] * len(readings), "method"
+    return *found, f"since h {change.stepping.h:.4g} s"
+
+
 def table(source: Source, sample: Sample, shown: Shown, width: int) -> list[Row]:
     """The table's rows, its head first; each method's own step size where they differ."""
     cast, judgements, h = source.scene.cast, source.judgements, source.stepping.own
@@ -177,10 +195,20 @@ def table(source: Source, sample: Sample, shown: Shown, width: int) -> list[Row]
     gap = " " * (1 + min(spare // max(len(columns), 1), MOST_GAP))
     heads = [(head.replace("dE/E0", model.energy_error.symbol), size) for head, size, _ in columns]
     names = [(gap + head.rjust(size), QUIET) for head, size in heads]
-    rows: list[Row] = [[("method".ljust(room), QUIET), *names]]
+    largest, before, head = since_change(source, sample)
+    rows: list[Row] = [[(head.ljust(room), QUIET), *names]]
     for place in shown.places(cast):
         method = cast[place]
-        line = TableLine(model, method, sample.readings[place], judgements[place], exact, h[place])
+        line = TableLine(
+            model,
+            method,
+            sample.readings[place],
+            judgements[place],
+            exact,
+            h[place],
+            largest[place],
+            before[place],
+        )
         failed = line.reading.diverged_at is not None
         name = f"{mark(place, method)} {method.label}".ljust(room)
         rows.append([(name, inks(cast)[place])])

@@ -2,10 +2,9 @@
 
 from textual.widgets import Tooltip
 
-from engine.methods import METHODS
 from engine.scenes import SCENES
 from tests.tui.harness import lab
-from tui.views.lab.error_table import COLUMNS, ErrorTable, evaluations, extra_columns
+from tui.views.lab.error_table import COLUMNS, ErrorTable, extra_columns
 from tui.views.phase.pane import PhasePane
 from tui.words.cards import head_text
 
@@ -69,9 +68,3 @@ async def test_a_head_that_is_left_out_in_a_narrow_terminal_hands_over_to_the_la
         assert table._chosen >= len(table._head)
         table.draw()
         assert theatre.text(ErrorTable).startswith("method")
-
-
-def test_evaluations_are_never_cut_to_another_number():
-    for method in METHODS:
-        assert evaluations(method, 10).strip() == str(method.force_evaluations)
-        assert evaluations(method, 1) in (str(method.force_evaluations), "+")

@@ -4,6 +4,7 @@ import re
 
 import pytest
 
+from engine.run.stepping import Stepping
 from engine.scenes import DEFAULT_SCENE, SCENES
 from tests.tui.harness import after
 from tui.drawing.palette import GOOD, WARN
@@ -24,13 +25,13 @@ def text(row) -> str:
     return "".join(words for words, _ in row).rstrip()
 
 
-def test_the_table_at_80_columns_has_every_column():
+def test_the_table_at_80_columns_leaves_out_what_methods_cost():
     assert rows(lab(), 80) == (
-        "method                theta  omega    dE/E0 largest    per s   verdict  th.err f\n"
-        "1 e Explicit Euler   -30.53 -7.643 +6.3e+00 6.6e+00 +5.4e-01   + grows 3.0e+01 1\n"
-        "2 s Symplectic Euler -0.719 +1.885 -6.8e-02 7.9e-02        - too early 5.9e-02 1\n"
-        "3 v Velocity Verlet  -0.758 +1.904 -1.7e-03 5.7e-03        - too early 2.0e-02 1\n"
-        "4 r RK4              -0.778 +1.835 -3.6e-05 3.6e-05 -2.9e-06   - loses 3.1e-05 4"
+        "method                theta  omega    dE/E0 largest    per s   verdict  th.err\n"
+        "1 e Explicit Euler   -30.53 -7.643 +6.3e+00 6.6e+00 +5.4e-01   + grows 3.0e+01\n"
+        "2 s Symplectic Euler -0.719 +1.885 -6.8e-02 7.9e-02        - too early 5.9e-02\n"
+        "3 v Velocity Verlet  -0.758 +1.904 -1.7e-03 5.7e-03        - too early 2.0e-02\n"
+        "4 r RK4              -0.778 +1.835 -3.6e-05 3.6e-05 -2.9e-06   - loses 3.1e-05"
     )
 
 
@@ -43,7 +44,7 @@ def test_of_a_bob_that_is_gone_the_table_has_length_and_spring_and_is_no_wider(w
 
 
 def test_a_wide_table_shows_an_angle_beyond_a_turn_as_turns_and_the_rest():
-    assert "-5 t +0.89" in rows(lab(), 120)
+    assert "-5 turns +0.89" in rows(lab(), 120)
 
 
 def test_a_verdict_has_a_colour_and_a_sign():
@@ -92,3 +93,19 @@ def test_hidden_methods_are_not_in_the_table_and_failed_ones_are_called_so():
     ).splitlines()
     assert [line[0] for line in lines] == ["m", "2", "4"]
     assert "failed" in lines[2]
+
+
+def test_after_a_change_of_h_the_largest_error_and_the_theta_error_count_from_it():
+    live = lab()
+    live.set_stepping(Stepping(0.01))
+    at_change = live.sample
+    live.step(400)
+    head, _, _, verlet, rk4 = rows(live, 120).splitlines()
+    assert head.startswith("since h 0.01 s ")
+    largest, theta_error = float(verlet.split()[5]), float(verlet.split()[-2])
+    assert largest < at_change.readings[2].max_energy_error / 2  # 5.7e-3, with h = 0.05
+    before, now = (
+        each.readings[2].theta - live.exact.at(each.t).theta for each in (at_change, live.sample)
+    )
+    assert theta_error == pytest.approx(abs(now - before), rel=0.05)
+    assert float(rk4.split()[-2]) < 1e-4
