@@ -7,6 +7,8 @@ from engine.scenes.scene import LIMITS as LIMITS
 from engine.scenes.scene import MOST_METHODS as MOST_METHODS
 from engine.scenes.scene import UNITS as UNITS
 from engine.scenes.scene import Z_LIMITS as Z_LIMITS
+from engine.scenes.scene import Line as Line
 from engine.scenes.scene import Scene as Scene
 from engine.scenes.scene import SceneError as SceneError
+from engine.scenes.scene import Shot as Shot
 from engine.scenes.scene import check_h as check_h

@@ -3,10 +3,9 @@
 import math
 
 from engine.methods import Cast, method_of
-from engine.scenes.scene import Scene
+from engine.scenes.scene import Line, Scene, Shot
 
 _UNIT_W0 = 9.81  # m, the length with which w0 = 1 s⁻¹, so that z reads like h
-_GOLDEN = (1 + math.sqrt(5)) / 2
 
 
 def _cast(*keys: str) -> Cast:
@@ -23,11 +22,13 @@ _FIRST_LOOK = (
     Scene(
         "drift",
         watch="Explicit Euler gains energy, the symplectic ones keep it, RK4 loses a little.",
+        shot=Shot(theta=math.pi),
     ),
     Scene(
         "gentle",
         theta=0.1,
         watch="Nearly linear: a step gains explicit Euler z² of its energy, costs RK4 z⁶/72.",
+        shot=Shot(front=("explicit_euler", "velocity_verlet", "rk4")),
     ),
     Scene(
         "linear",
@@ -36,6 +37,7 @@ _FIRST_LOOK = (
         model="linear",
         speed=2.0,
         watch="Linear, so theory is exact: a step gains explicit Euler 25 % of its energy.",
+        shot=Shot(theta=math.pi),
     ),
     Scene(
         "large-swing",
@@ -47,6 +49,11 @@ _FIRST_LOOK = (
         h=0.2,
         speed=4.0,
         watch="RK4 starts far ahead of Verlet in energy and falls behind after half a minute.",
+        shot=Shot(
+            theta=math.pi,
+            moment=33.6,
+            sentence="Here RK4's error passes Verlet's, for good: it grows, Verlet's does not.",
+        ),
     ),
     Scene(
         "near-separatrix",
@@ -54,13 +61,14 @@ _FIRST_LOOK = (
         h=0.02,
         speed=4.0,
         watch="RK4's energy error is smallest, yet soon it falls at the wrong time.",
+        shot=Shot(quantity="theta_error"),
     ),
     Scene(
         "spin",
         theta=0.0,
         omega=8.0,
         h=0.02,
-        watch="A turn a second: symplectic Euler is half a kick from Verlet, the angles agree.",
+        watch="A turn a second: symplectic Euler errs by half a kick, not in the angle.",
     ),
 )
 
@@ -68,8 +76,9 @@ _STABILITY = (
     Scene(
         "euler-caught",
         h=0.1,
-        speed=20.0,
+        speed=60.0,
         watch="Explicit Euler does not gain for ever: half a turn a step holds it near 110 E0.",
+        shot=Shot(theta=math.pi, line=Line("energy_error", 110.0, "110 E0")),
     ),
     Scene(
         "verlet-limit",
@@ -78,6 +87,13 @@ _STABILITY = (
         h=1.98,
         speed=16.0,
         watch="Just below z = 2: Verlet loses 98 % of its energy, has it back every 11 steps.",
+        shot=Shot(
+            log=False,
+            seconds=60.0,
+            front=("velocity_verlet",),
+            moment=43.56,
+            sentence="Twice in 43 s Verlet's energy went down to 2 %, and it has come back.",
+        ),
     ),
     Scene(
         "verlet-limit-above",
@@ -86,6 +102,7 @@ _STABILITY = (
         h=2.02,
         speed=16.0,
         watch="Just above z = 2: Verlet leaves the bottom, the pendulum holds it at 0.48 rad.",
+        shot=Shot(theta=0.6, log=False, seconds=60.0, front=("velocity_verlet",)),
     ),
     Scene(
         "rk4-limit",
@@ -94,6 +111,7 @@ _STABILITY = (
         h=2.80,
         speed=8.0,
         watch="Just below z = 2√2: RK4 loses half its energy in 4 steps, the others go over.",
+        shot=Shot(log=False, seconds=60.0, front=("rk4",)),
     ),
     Scene(
         "rk4-limit-above",
@@ -102,6 +120,7 @@ _STABILITY = (
         h=2.86,
         speed=8.0,
         watch="Just above z = 2√2: RK4 gains energy till the pendulum catches it at 0.2 rad.",
+        shot=Shot(theta=0.25, log=False, front=("rk4",)),
     ),
     Scene(
         "chaos-fenced",
@@ -110,6 +129,12 @@ _STABILITY = (
         h=math.sqrt(0.95),
         speed=64.0,
         watch="K = z² = 0.95: the symplectic ones tumble in chaos, yet |omega| stays < pi/h.",
+        shot=Shot(
+            view="phase",
+            theta=math.pi,
+            line=Line("omega", math.pi / math.sqrt(0.95), "pi/h"),
+            front=("symplectic_euler", "velocity_verlet"),
+        ),
     ),
     Scene(
         "chaos-loose",
@@ -118,6 +143,12 @@ _STABILITY = (
         h=math.sqrt(1.1),
         speed=2048.0,
         watch="K = z² = 1.1: no fence is left, |omega| passes 2 pi/h within a million steps.",
+        shot=Shot(
+            view="phase",
+            theta=math.pi,
+            line=Line("omega", math.pi / math.sqrt(1.1), "pi/h"),
+            front=("symplectic_euler", "velocity_verlet"),
+        ),
     ),
     Scene(
         "resonance",
@@ -126,18 +157,10 @@ _STABILITY = (
         h=1.45,
         cast=_RESONANT,
         speed=16.0,
-        watch="A swing takes Verlet 4 steps, a resonance: its energy doubles and comes back.",
-    ),
-    Scene(
-        "resonance-golden",
-        theta=0.6,
-        length=_UNIT_W0,
-        h=1.45 / _GOLDEN,
-        cast=_RESONANT,
-        speed=16.0,
-        watch="h over the golden ratio: no resonance, but nor at 5/8 h: irrational is no cure.",
+        watch="4 steps a swing: Verlet's energy doubles and comes back. - ends the resonance.",
         often_said="h over the golden ratio avoids resonances because it is irrational. 5/8 of h "
         "does, too: it is far from the resonance that counts.",
+        shot=Shot(log=False, front=("velocity_verlet",)),
     ),
 )
 
@@ -162,6 +185,7 @@ _STRUCTURE = (
         speed=4.0,
         watch="Step doubling gains 19 % a minute; Verlet, 8 times cheaper, stays within 8 %.",
         often_said="Adaptive steps are better. They make the energy of a symplectic method drift.",
+        shot=Shot(log=False),
     ),
 )
 
@@ -175,6 +199,7 @@ _STIFFNESS = (
         speed=0.5,
         watch="h·omega = 1: RK4 takes the energy out of the spring, IMEX Euler all of it.",
         often_said="IMEX Euler is stable at any h. True, but it stops the swing as well as the spring.",
+        shot=Shot(quantity="spring_energy", log=False),
     ),
     Scene(
         "stiff-limit",
@@ -192,7 +217,7 @@ _STIFFNESS = (
         h=0.125,
         cast=_SPRING,
         speed=0.5,
-        watch="A period of the spring a step: r-RESPA resonates, implicit midpoint holds.",
+        watch="One step per period of the spring: RESPA resonates, implicit midpoint holds.",
         often_said="With impulses h follows the slow motion. But not where it comes near the spring's period.",
     ),
 )
@@ -204,14 +229,16 @@ _PRECISION = (
         h=1 / 256,
         cast=_PRECISE,
         watch="32 bits carry Verlet over the top at 5.5 s; 64 bits are right to 0.003 rad.",
+        shot=Shot(quantity="theta_error"),
     ),
     Scene(
         "precision-deep",
         theta=math.pi - 1e-6,
         h=1 / 1024,
         cast=_PRECISE,
-        speed=2.0,
-        watch="64 bits lose the angle at 35 s; with compensated sums Verlet is right to 3e-4.",
+        speed=4.0,
+        watch="64 bits lose the angle at 35 s; with compensated sums it is right to 3e-4 rad.",
+        shot=Shot(quantity="theta_error"),
     ),
 )
 
@@ -228,7 +255,7 @@ _LEARNING = (
             "rk4",
         ),
         speed=8.0,
-        watch="Of the same data, in 100 s: field and map lose 60 %, H and SympNet under 1 %.",
+        watch="Same data, 100 s: field and map lose 60 %, H and SympNet under 1 %.",
         often_said="A learned Hamiltonian conserves energy. It conserves the learned one; the true "
         "one errs by a percent.",
     ),
@@ -240,8 +267,9 @@ _MEAN_FIELD = (
         model="mean_field",
         parameters={"coupling": 2.0, "level_frequency": 20.0},
         cast=_cast("rk4", "mean_field_splitting", "explicit_euler"),
-        speed=2.0,
+        speed=4.0,
         watch="RK4's energy is right to 4e-4; in a minute 15 % of the probability is gone.",
+        shot=Shot(quantity="probability_error", log=False, front=("rk4", "mean_field_splitting")),
     ),
 )
 

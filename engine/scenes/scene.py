@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 
 from engine.methods import USUAL_CAST, Cast
 from engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
@@ -49,6 +49,30 @@ def _check_range(name: str, value: float, low: float, high: float) -> None:
         )
 
 
+class Line(NamedTuple):
+    """A reference line: in the chart of its quantity, or on both sides of zero in phase space."""
+
+    quantity: str  # of a chart, or "omega"
+    value: float
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Shot:
+    """What of a run to look at first; it changes no number."""
+
+    view: str = "lab"
+    theta: float | None = None  # rad, from the middle of phase space to its edge; None: the motion
+    quantity: str = "energy_error"  # of the chart
+    log: bool = True
+    seconds: float | None = None  # of the chart; None: from the first step to now
+    line: Line | None = None
+    front: tuple[str, ...] = ()  # keys of the methods that are shown; (): all
+    ring: bool = False  # of neighbouring starts in phase space
+    moment: float | None = None  # s, simulated; there it pauses,
+    sentence: str = ""  # and says this
+
+
 @dataclass(frozen=True, slots=True)
 class Scene:
     """Everything that determines a run, with a name and what to watch."""
@@ -71,6 +95,7 @@ class Scene:
     speed: float = field(
         default=1.0, compare=False
     )  # times real time, at which a lab starts: it changes no number
+    shot: Shot = field(default=Shot(), compare=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "parameters", self._complete(self.parameters))
@@ -188,7 +213,11 @@ class Scene:
         if others:
             fields["parameters"] = {**fields.get("parameters", self.parameters), **others}
         other = replace(self, **fields)
-        return self if other == self else replace(other, name="custom", watch="", often_said="")
+        return (
+            self
+            if other == self
+            else replace(other, name="custom", watch="", often_said="", shot=Shot())
+        )
 
     def with_cast(self, cast: Cast) -> "Scene":
         """This scene with other methods; it keeps `watch` if it keeps all methods that show it."""

@@ -222,7 +222,7 @@ def test_spin_symplectic_euler_and_verlet_show_the_same_angle_a_turn_a_second() 
 def test_euler_caught_half_a_turn_a_step_holds_explicit_euler_near_110_times_its_energy() -> None:
     scene, lockstep = SCENES["euler-caught"], Lockstep(SCENES["euler-caught"], judged=True)
     turns, energies = [], []
-    while lockstep.t < 30 * scene.speed:  # half a minute of watching
+    while lockstep.t < 10 * scene.speed:  # seconds of watching
         lockstep.advance(10)
         euler = lockstep.sample().readings[EXPLICIT]
         turns.append(abs(euler.omega) * scene.h / math.tau)  # a step
@@ -301,13 +301,11 @@ def test_resonance_verlet_doubles_its_energy_and_comes_back() -> None:
     )  # exact; Verlet's is 4 steps
 
 
-def test_resonance_golden_there_is_no_resonance_at_an_irrational_or_at_a_rational_part_of_h() -> (
-    None
-):
-    scene, golden = SCENES["resonance"], SCENES["resonance-golden"]
-    assert scene.h / golden.h == pytest.approx((1 + math.sqrt(5)) / 2, rel=1e-15)
-    for h in (golden.h, 5 / 8 * scene.h):
-        lockstep = Lockstep(replace(golden, h=h))
+def test_there_is_no_resonance_at_an_irrational_or_at_a_rational_part_of_h() -> None:
+    scene = SCENES["resonance"]
+    golden = (1 + math.sqrt(5)) / 2
+    for h in (scene.h / golden, 5 / 8 * scene.h):
+        lockstep = Lockstep(replace(scene, h=h))
         lockstep.advance(10_000)
         verlet = lockstep.sample().readings[0]
         assert -0.21 < verlet.energy_error_low < -0.19  # the wobble of any step, z²/4

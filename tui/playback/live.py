@@ -122,17 +122,11 @@ class Live(Source):
         began = self._clock()
         # A sample at home shows what each method misses its start by.
         target = int(min(self._run.step_at(self.playhead.position), self._run.home))
-        spacing = self._row_steps
         chunk = 1 if has_own(self.scene) else CHUNK
-        while (left := target - self._run.step) > 0:
-            if self._clock() - began >= FRAME_BUDGET:
-                break
-            with self._standing_still():
-                self._run.forward(min(left, chunk, spacing - self._run.step % spacing))
+        while (left := target - self._run.step) > 0 and self._clock() - began < FRAME_BUDGET:
+            self._forward(min(left, chunk))
             if self.failure:
                 break
-            if self._run.step % spacing == 0:
-                self._take_sample()
         due = self.playhead.position - before.position
         if left > 0:
             self.playhead = self.playhead.moved_to(self._run.x)
@@ -140,6 +134,14 @@ class Live(Source):
             max(0.0, now - before.seen), due, self.playhead.position - before.position
         )
         return self._take_sample(is_row=False)
+
+    def _forward(self, steps: int) -> None:
+        """Go so many steps forward, or to the next row."""
+        spacing = self._row_steps
+        with self._standing_still():
+            self._run.forward(min(steps, spacing - self._run.step % spacing))
+        if self._run.step % spacing == 0 and not self.failure:
+            self._take_sample()
 
     @property
     def _row_steps(self) -> int:
@@ -149,10 +151,13 @@ class Live(Source):
 
     def step(self, n: int) -> Sample:
         self.pause(True)
-        with self._standing_still():
-            if n >= 0:
-                self._run.forward(n)
-            else:
+        target = self._run.step + n
+        while self._run.step < target:
+            self._forward(target - self._run.step)
+            if self.failure:
+                break
+        if n < 0:
+            with self._standing_still():
                 self._run.back_to(max(0, self._run.step + n))
         self.playhead = self.playhead.moved_to(self._run.x)
         return self._take_sample()

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from engine.methods import Cast
-from engine.scenes import Scene
+from engine.scenes import SCENES, Line, Scene, Shot
 
 Quantity = str
 """One of QUANTITIES, or a variable of the model outside its state."""
@@ -45,6 +45,29 @@ class Shown(NamedTuple):
     log: bool = True
     seconds: float | None = None  # of the chart, one of WINDOWS
     stretch: Stretch | None = None  # in place of that
+    theta: float | None = None  # rad, the half width of phase space; None: frame the motion
+    overview: bool = False  # all of phase space, pendulums as they are
+    ring: bool = False
+    line: Line | None = None
+
+    def through(self, scene: Scene, shot: Shot | None = None) -> "Shown":
+        """Return these settings with a shot of the scene, or its own."""
+        if shot is None:
+            known = SCENES.get(scene.name)
+            shot = known.shot if known == scene else scene.shot  # a recording has none
+        cast = {method.key for method in scene.cast}
+        front = cast.intersection(shot.front) or cast
+        return self._replace(
+            hidden=frozenset(cast - front),
+            quantity=shot.quantity,
+            log=shot.log,
+            seconds=shot.seconds,
+            stretch=None,
+            theta=shot.theta,
+            overview=False,
+            ring=shot.ring,
+            line=shot.line,
+        )
 
     def places(self, cast: Cast) -> list[int]:
         """Return the places in the cast of the methods that are shown."""

@@ -87,6 +87,7 @@ class SourceScreen(Screen[None]):
         Binding("e", "quantity", "chart: next quantity", show=False),
         Binding("y", "switch('log')", "chart: log or linear", show=False),
         Binding("w", "window", "chart: last 20 s, 60 s, …", show=False),
+        Binding("o", "switch('overview')", "overview: all angles", show=False),
         Binding("z", "zoom(0.5)", "chart: zoom in", show=False),
         Binding("escape", "back", "chart: back from the zoom", False, "esc"),
         Binding("v", "view", "View", tooltip="next view"),
@@ -131,6 +132,7 @@ class SourceScreen(Screen[None]):
         self._prepare = prepare
         self._notices = notices
         self.first_source = source
+        self.set_reactive(SourceScreen.shown, Shown().through(source.scene))
         self.clock = clock
         self._view_in_front: View = create(self.view)
         self._lines: list[Pane] = []
@@ -205,7 +207,7 @@ class SourceScreen(Screen[None]):
         """Follow the clock, and show where it has led unless the terminal is behind."""
         now = self.clock() - self._missed
         seen = self.source.playhead.seen
-        if seen is not None and now - seen > STALL:
+        if seen is not None and (now - seen > STALL or self.is_held):
             self._missed += now - seen
             now = seen
         sample = self.source.tick(now)
@@ -223,6 +225,11 @@ class SourceScreen(Screen[None]):
             text = f"{failure} The run stands still; space tries again."
             self.notify(text, severity="warning", markup=False, timeout=15)
         self._failure = failure
+
+    @property
+    def is_held(self) -> bool:
+        """Whether the clock stands, because the user holds a pendulum."""
+        return False
 
     def show_now(self) -> None:
         """Show everything now, or with the next frame if the terminal is behind."""
@@ -315,7 +322,11 @@ class SourceScreen(Screen[None]):
         self.change_shown(self.shown._replace(**changes))
 
     def on_method_chosen(self, message: MethodChosen) -> None:
-        self.change_shown(self.shown.alone(message.place, self.source.scene.cast))
+        cast = self.source.scene.cast
+        self.change_shown(self.shown.alone(message.place, cast))
+        if self.shown.places(cast) == [message.place]:
+            label = cast[message.place].label
+            self.notify(f"{label} alone. Click it again, or u, to see all.", timeout=4)
 
     def action_quantity(self) -> None:
         quantity = self.shown.quantity_ahead(1, self.source.scene)

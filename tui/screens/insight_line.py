@@ -18,7 +18,7 @@ def fitted(text: str, width: int, height: int) -> list[str]:
 
 
 class InsightLine(Pane):
-    """The sentence; trouble with the recording comes first."""
+    """What to watch in the scene, and the sentence; trouble with the recording comes first."""
 
     def picture(self, source: Source, sample: Sample) -> Picture:
         status = source.recording_status
@@ -28,5 +28,12 @@ class InsightLine(Pane):
             ink = WARN
         else:
             text = insight_text(source, self.shown.hidden)
-        lines = fitted(text, self.room.width - 2, self.room.height)
-        return Picture([[(f" {line}", ink)] for line in lines])
+        watch = source.scene.watch
+        if self.room.height < 2 or not watch:
+            lines = fitted(text, self.room.width - 2, self.room.height)
+            return Picture([[(f" {line}", ink)] for line in lines])
+        rest = "" if text == watch else text
+        lines = fitted(watch, self.room.width - 2, 1) + fitted(rest, self.room.width - 2, 1)
+        return Picture(
+            [[(f" {line}", each)] for line, each in zip(lines, (TEXT, ink), strict=False)]
+        )

@@ -14,7 +14,7 @@ from tui.playback.live import Live
 from tui.playback.state import State
 from tui.screens.base import SourceScreen
 from tui.screens.tour import TourGuide
-from tui.views.messages import SceneChosen, StepSizeChosen
+from tui.views.messages import Held, SceneChosen, StepSizeChosen
 from tui.words.insight import return_text
 
 _STEP = Binding.Group("larger, smaller step h")
@@ -48,6 +48,8 @@ class LiveScreen(SourceScreen):
     ]
 
     begins_with_tour = False
+    held: float | None = None
+    """The angle [rad] at which the user holds the pendulums."""
     tour: TourGuide | None = None
 
     @property
@@ -56,14 +58,29 @@ class LiveScreen(SourceScreen):
         return self.source
 
     def frame(self) -> None:
-        """Pause where reversed time is back at 0, and mark how far each method misses its start."""
+        """Pause where reversed time is back at 0, and mark how far each method misses its start.
+
+        Pause at the moment of the scene's shot, too.
+        """
         before = self.source.history.returned
+        step = self.source.sample.step
         super().frame()
+        self._pause_at_moment(step)
         returned = self.source.history.returned
         if returned is not None and returned is not before:
             self._stop_at_start(returned)
         if self.tour is not None:
             self.tour.follow()
+
+    def _pause_at_moment(self, before: int) -> None:
+        """Pause where the scene's moment has come since the step before, unless h has changed."""
+        scene = self.live.scene
+        if scene.shot.moment is None or self.is_on_tour or len(self.live.changes) > 1:
+            return
+        step = round(scene.shot.moment / scene.h)
+        if before < step <= self.live.sample.step and not self.live.playhead.paused:
+            self.live.go_to(self.live.sample.run, step)
+            self.show_now()
 
     def _stop_at_start(self, returned: Sample) -> None:
         is_here = returned.step == self.source.sample.step
@@ -79,9 +96,11 @@ class LiveScreen(SourceScreen):
         before = self.state
         if self._changed(lambda: self.live.start(scene)):
             self.live.set_speed(speed or before.speed)
+            self.shown = self.shown._replace(theta=scene.shot.theta, line=scene.shot.line)
 
     def set_stepping(self, stepping: Stepping) -> None:
-        self._changed(lambda: self.live.set_stepping(stepping))
+        if self._changed(lambda: self.live.set_stepping(stepping)):
+            self.shown = self.shown._replace(line=None)  # which belongs to the scene's own h
 
     def _changed(self, change: Callable[[], None]) -> bool:
         """Change the run so that it can be undone, or notify why not."""
@@ -101,6 +120,26 @@ class LiveScreen(SourceScreen):
         if state.stepping != self.live.stepping:
             self.live.set_stepping(state.stepping)
         super().restore(state)
+
+    @property
+    def is_held(self) -> bool:
+        return self.held is not None
+
+    def on_held(self, message: Held) -> None:
+        """Show the pendulums where the pointer holds them."""
+        self.held = message.theta
+        self.show_now()
+
+    def _follow(self, sample: Sample, read: bool = True) -> None:
+        if self.held is not None:
+            model = self.live.scene.equations
+            energy = model.energy()(model.start(self.held, 0.0))
+            reference = model.reference(self.live.scene.theta, self.live.scene.omega)
+            error = reference.error(energy)
+            held = {"theta": self.held, "omega": 0.0, "energy": energy, "energy_error": error}
+            readings = [reading._replace(**held) for reading in sample.readings]
+            sample = sample._replace(readings=tuple(readings))
+        super()._follow(sample, read)
 
     def on_scene_chosen(self, choice: SceneChosen) -> None:
         self.start(choice.scene)
@@ -129,7 +168,12 @@ class LiveScreen(SourceScreen):
         self.action_start_scene(names[following % len(names)])
 
     def action_start_scene(self, name: str) -> None:
-        self.start(SCENES[name], SCENES[name].speed)
+        """Start a listed scene with its shot."""
+        scene = SCENES[name]
+        self.start(scene, scene.speed)
+        self.shown = self.shown.through(scene)
+        if scene.shot.view != self.view:
+            self.action_view(scene.shot.view)
 
     # Forms; they are imported when they are needed
 
@@ -164,6 +208,8 @@ class LiveScreen(SourceScreen):
     def on_source_screen_began(self) -> None:
         if self.begins_with_tour:
             self.action_tour()
+        elif self.live.scene.shot.view != self.view:
+            self.action_view(self.live.scene.shot.view)
 
     @property
     def is_on_tour(self) -> bool:

@@ -8,7 +8,6 @@ from tui.drawing.cells import CellWidget
 from tui.drawing.palette import EXACT, TEXT, WARN
 from tui.drawing.picture import Picture, Row
 from tui.playback.live import Live
-from tui.playback.shown import Shown
 from tui.screens.base import SourceScreen
 from tui.screens.insight_line import InsightLine
 from tui.words.tour import Tour
@@ -50,7 +49,9 @@ class TourGuide:
         """Go to the moment, to the truth, or to the next shot."""
         index = self.tour.index
         if not self.tour.forward():
-            self._leave("That was the tour. Now the lab is yours: ? lists its keys.")
+            self._leave(
+                "That was the tour. At equal cost each method has its own h; n gives all the same again."
+            )
         elif self.tour.index != index:
             self._show_shot()
         else:
@@ -88,13 +89,11 @@ class TourGuide:
         self._show()
 
     def _show_shot(self) -> None:
-        """Show the methods, the view and the words of the shot."""
-        default = Shown()
-        self.screen.shown = self.screen.shown._replace(
-            hidden=frozenset(), quantity=default.quantity, seconds=None, stretch=None
-        )
-        if self.screen.view != self.tour.shot.view:
-            self.screen.action_view(self.tour.shot.view)
+        """Show the shot of the step, and its words."""
+        step = self.tour.step
+        self.screen.shown = self.screen.shown.through(step.scene, step.shot)
+        if self.screen.view != step.shot.view:
+            self.screen.action_view(step.shot.view)
         self._show()
 
     def _show(self) -> None:

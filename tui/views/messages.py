@@ -31,6 +31,13 @@ class MethodChosen(Message):
 
 
 @dataclass
+class Held(Message):
+    """The user holds the pendulums at an angle [rad], or no longer."""
+
+    theta: float | None
+
+
+@dataclass
 class Zoomed(Message):
     """The user wants to see this part of the run in the chart, or all of it."""
 

@@ -110,6 +110,8 @@ def insight(source: Source, hidden: Collection[str] = ()) -> Insight:
     pace = abs(source.playhead.speed)
     if source.exact.regime == "equilibrium":
         return Insight("at rest")
+    if text := _moment(source):
+        return Insight("watch", values={"text": text})
     if returned is not None and abs(sample.t) < WATCH:
         return _returned(source.scene, returned)
     if found := _news(source, FRESH * pace, hidden):
@@ -119,6 +121,15 @@ def insight(source: Source, hidden: Collection[str] = ()) -> Insight:
     known = lasting(source, hidden)
     turn = int(sample.step * abs(source.stepping.h) / (TURN * pace))
     return known[turn % len(known)]
+
+
+def _moment(source: Source) -> str:
+    """Return what the scene's shot says at its moment."""
+    scene = source.scene
+    shot = scene.shot
+    if shot.moment is None or source.stepping.h != scene.h:
+        return ""
+    return shot.sentence if source.sample.step == round(shot.moment / scene.h) else ""
 
 
 def _news(source: Source, seconds: float, hidden: Collection[str]) -> Insight | None:

@@ -11,7 +11,7 @@ from tui.words.describe import description
 from tui.words.events import event_lines
 from tui.words.insight import TURN, insight_text, short_name
 from tui.words.numbers import seconds
-from tui.words.tour import SHOTS, Tour
+from tui.words.tour import STEPS, Tour
 
 TICK = 1 / 30  # s, as often as the screen would be painted
 THINKING = 6.0  # s, to find an answer
@@ -82,18 +82,18 @@ def print_tour(
         end = clock() + time
         wait_until(lambda: clock() >= end)
 
-    for index, shot in enumerate(SHOTS):
+    for index, step in enumerate(STEPS):
         tour.begin(index)
-        emit(f"{tour.title}. {shot.watch}")
+        emit(f"{tour.title}. {step.watch}")
         wait_until(tour.follow)
         if stopped():
             return
-        emit(f"{seconds(live.sample.t)}: {shot.happened}")
-        emit(f"Question: {shot.question}  1: {shot.answers[0]}  2: {shot.answers[1]}")
+        emit(f"{seconds(live.sample.t)}: {step.happened}")
+        emit(f"Question: {step.question}  1: {step.answers[0]}  2: {step.answers[1]}")
         pause(THINKING)
         if stopped():
             return
-        emit(f"Answer: {shot.right + 1}. {shot.truth}")
+        emit(f"Answer: {step.right + 1}. {step.truth}")
         pause(READING)
     if not stopped():
         emit("That was the tour.")

@@ -1,27 +1,27 @@
-"""SHOTS: the tour as data: a run, its moment, a question, two answers, and the truth.
+"""STEPS: the tour as data: a run and a shot of it, a question, two answers, and the truth.
 
 Tests measure the truths.
 """
 
-from dataclasses import dataclass, replace
+import math
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from engine.models import DEFAULT_MODEL
 from engine.run.stepping import Stepping
-from engine.scenes import SCENES, Scene
+from engine.scenes import SCENES, Scene, Shot
 from tui.playback.live import Live
 
 ASTRAY = "This is your own run now. Enter begins the step again."
 
 
 @dataclass(frozen=True, slots=True)
-class Shot:
-    """A step of the tour."""
+class TourStep:
+    """A step of the tour: a run, and what to look at in it."""
 
     title: str
     scene: Scene
     speed: float  # so that the moment comes after about ten seconds
-    view: str  # a key of VIEWS
     watch: str  # what to look at until the moment comes
     moment: float  # s, simulated
     happened: str
@@ -29,6 +29,7 @@ class Shot:
     answers: tuple[str, str]
     right: int  # index of the right answer
     truth: str
+    shot: Shot = field(default=Shot())
     returns: bool = False  # at the moment time turns round; the question comes at t = 0
     equal_cost: bool = False
 
@@ -46,12 +47,12 @@ class Shot:
 
 # The formatter would join the sentences to longer lines.
 # fmt: off
-SHOTS = (
-    Shot(
+STEPS = (
+    TourStep(
         title="who gains",
         scene=SCENES["drift"],
         speed=1.0,
-        view="lab",
+        shot=Shot(theta=math.pi),
         watch="Four methods, one pendulum without friction, the same step. Watch Explicit Euler.",
         moment=7.15,
         happened="Explicit Euler went over the top: it has five times its initial energy.",
@@ -63,13 +64,13 @@ SHOTS = (
             "0.002 %, but a little more with each swing."
         ),
     ),
-    Shot(
+    TourStep(
         title="why",
         scene=SCENES["linear"].altered(theta=0.3, model=DEFAULT_MODEL),
-        speed=0.5,
-        view="phase",
+        speed=1.5,
+        shot=Shot(view="phase", theta=0.7, front=("explicit_euler", "symplectic_euler")),
         watch="A small swing in phase space, almost an ellipse. Watch Explicit Euler step by step.",
-        moment=5.5,
+        moment=16.5,
         happened=(
             "Each step of Explicit Euler follows the tangent and lands outside: its energy grows "
             "by about z², 25 % a step."
@@ -85,11 +86,11 @@ SHOTS = (
             "% and +33 %, however long it runs."
         ),
     ),
-    Shot(
+    TourStep(
         title="smaller h",
         scene=replace(SCENES["drift"], h=0.025),
         speed=2.0,
-        view="lab",
+        shot=Shot(theta=math.pi),
         watch=(
             "The first scene with half the step, at twice the speed, until Verlet has its "
             "verdict."
@@ -107,11 +108,11 @@ SHOTS = (
             "still goes over the top, only later."
         ),
     ),
-    Shot(
+    TourStep(
         title="the crossing",
         scene=SCENES["crossover"],
         speed=3.0,
-        view="lab",
+        shot=Shot(theta=math.pi, front=("velocity_verlet", "rk4")),
         watch="A step of 0.2 s. RK4's energy error starts far below Verlet's.",
         moment=33.4,
         happened="After half a minute RK4's energy error has passed Verlet's, for good.",
@@ -123,11 +124,11 @@ SHOTS = (
             "bounded, RK4's grows with each swing."
         ),
     ),
-    Shot(
+    TourStep(
         title="time reversed",
         scene=SCENES["drift"],
         speed=1.5,
-        view="lab",
+        shot=Shot(theta=math.pi),
         watch=(
             "When Explicit Euler goes over the top, time turns round: the same steps with -h, "
             "back to 0."
@@ -146,11 +147,11 @@ SHOTS = (
         ),
         returns=True,
     ),
-    Shot(
+    TourStep(
         title="phase space and area",
         scene=SCENES["drift"],
         speed=0.5,
-        view="phase",
+        shot=Shot(view="phase", ring=True, theta=math.pi),
         watch=(
             "The rings are neighbouring starts, carried along by each method. Watch them for two "
             "swings."
@@ -168,11 +169,11 @@ SHOTS = (
             "it by 1 + z² cos(theta), RK4's by a little less than 1."
         ),
     ),
-    Shot(
+    TourStep(
         title="where it breaks",
         scene=SCENES["verlet-limit-above"],
         speed=2.0,
-        view="stability",
+        shot=Shot(view="stability"),
         watch=(
             "z = h·sqrt(g/L) goes to the right, the amplitude up; @ is here, just above Verlet's "
             "limit 2."
@@ -190,11 +191,11 @@ SHOTS = (
             "lasts to z = 2.83, Explicit Euler is never stable."
         ),
     ),
-    Shot(
+    TourStep(
         title="what it costs",
         scene=SCENES["drift"],
         speed=0.25,
-        view="accuracy",
+        shot=Shot(view="accuracy"),
         watch=(
             "To the right: more force evaluations. Down: smaller errors. At equal cost RK4's step"
             " is four times as long."
@@ -228,12 +229,12 @@ class Tour:
         self._home: tuple[int, Stepping] | None = None  # the run of the shot, and its stepping
 
     @property
-    def shot(self) -> Shot:
-        return SHOTS[self.index]
+    def step(self) -> TourStep:
+        return STEPS[self.index]
 
     @property
     def title(self) -> str:
-        return f"Tour {self.index + 1} of {len(SHOTS)}: {self.shot.title}"
+        return f"Tour {self.index + 1} of {len(STEPS)}: {self.step.title}"
 
     @property
     def is_astray(self) -> bool:
@@ -243,24 +244,24 @@ class Tour:
     @property
     def text(self) -> tuple[str, ...]:
         """Return the sentences of this stage."""
-        shot = self.shot
+        step = self.step
         if self.stage == "watching":
-            return (ASTRAY,) if self.is_astray else (shot.watch,)
+            return (ASTRAY,) if self.is_astray else (step.watch,)
         if self.stage == "asked":
-            return shot.happened, f"{shot.question}  1: {shot.answers[0]}  2: {shot.answers[1]}"
-        result = {None: "", shot.right: "Right. "}.get(self.choice, "Not quite. ")
-        return f"{result}{shot.right + 1}: {shot.answers[shot.right]}", shot.truth
+            return step.happened, f"{step.question}  1: {step.answers[0]}  2: {step.answers[1]}"
+        result = {None: "", step.right: "Right. "}.get(self.choice, "Not quite. ")
+        return f"{result}{step.right + 1}: {step.answers[step.right]}", step.truth
 
     def begin(self, index: int) -> None:
-        """Set a shot's run in the lab."""
+        """Set the run of a step in the lab."""
         self.index = index
         self.stage = "watching"
         self.choice = None
-        shot = self.shot
-        if (self.live.scene, self.live.sample.step) != (shot.scene, 0):
-            self.live.start(shot.scene)
-        self._step(shot.stepping)
-        self.live.set_speed(shot.speed)
+        step = self.step
+        if (self.live.scene, self.live.sample.step) != (step.scene, 0):
+            self.live.start(step.scene)
+        self._step(step.stepping)
+        self.live.set_speed(step.speed)
         self.live.pause(False)
 
     def _step(self, stepping: Stepping) -> None:
@@ -272,14 +273,14 @@ class Tour:
         """Return whether the moment has come, or is to come `at_once`; the lab is paused there."""
         if self.stage != "watching" or self.is_astray:
             return False
-        turn = self.shot.turn
+        turn = self.step.turn
         forwards = self.live.stepping.h > 0
-        if self.shot.returns and forwards and self._reach(turn, at_once):
+        if self.step.returns and forwards and self._reach(turn, at_once):
             self._step(self.live.stepping.reversed())
             self.live.pause(False)
             forwards = False
-        end = 2 * turn if self.shot.returns else turn
-        if (forwards and self.shot.returns) or not self._reach(end, at_once):
+        end = 2 * turn if self.step.returns else turn
+        if (forwards and self.step.returns) or not self._reach(end, at_once):
             return False
         self.stage = "asked"
         return True
@@ -305,7 +306,7 @@ class Tour:
         elif self.stage == "asked":
             self.answer(None)
         else:
-            if self.index + 1 == len(SHOTS):
+            if self.index + 1 == len(STEPS):
                 self.index = 0
                 return False
             self.begin(self.index + 1)

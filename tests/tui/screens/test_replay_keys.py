@@ -67,7 +67,7 @@ async def test_events_speed_direction_and_space_at_the_end(path):
 
 
 async def test_a_click_on_an_event_goes_there(path):
-    async with player(path) as theatre:
+    async with player(path, (120, 45)) as theatre:
         await theatre.press("end")
         await theatre.pilot.pause(0.1)
         listed = theatre.stage.query_one(EventList)

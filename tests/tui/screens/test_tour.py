@@ -5,12 +5,13 @@ import pytest
 from engine.scenes import SCENES
 from tests.tui.harness import FPS, Theatre, lab, on_stage
 from tui.playback.live import Live
+from tui.playback.shown import Shown
 from tui.screens.insight_line import InsightLine
 from tui.screens.key_line import KeyLine
 from tui.screens.live import LiveScreen
 from tui.screens.still import normalised
 from tui.screens.tour import TourPanel
-from tui.words.tour import ASTRAY, SHOTS
+from tui.words.tour import ASTRAY, STEPS
 
 SIZES = [(80, 24), (120, 40), (200, 60)]
 
@@ -42,9 +43,9 @@ async def to_the_question(theatre: Theatre) -> None:
 async def test_it_is_walked_from_the_first_shot_to_the_last(size):
     async with lab(SCENES["spin"], size) as theatre:
         await theatre.press("T")
-        for number, shot in enumerate(SHOTS):
+        for number, shot in enumerate(STEPS):
             await theatre.pilot.pause()
-            assert (theatre.stage.view, theatre.source.scene) == (shot.view, shot.scene)
+            assert (theatre.stage.view, theatre.source.scene) == (shot.shot.view, shot.scene)
             assert words(shot.watch) in panel(theatre)
             await to_the_question(theatre)
             assert words(shot.question) in panel(theatre)
@@ -52,7 +53,7 @@ async def test_it_is_walked_from_the_first_shot_to_the_last(size):
             await theatre.press(str(1 + number % 2))
             assert ("Right." in panel(theatre)) == (shot.right == number % 2)
             assert words(shot.truth) in panel(theatre)
-            assert not theatre.stage.shown.hidden
+            assert theatre.stage.shown == Shown().through(shot.scene, shot.shot)
             await theatre.press("enter")
         await theatre.pilot.pause()
         assert not theatre.stage.query_one(TourPanel).is_on_screen
@@ -78,7 +79,7 @@ async def test_the_panel_takes_the_place_of_the_insight_line_and_covers_nothing(
 async def test_on_the_smallest_terminal_question_and_truth_are_there_in_full():
     async with lab(size=(60, 16)) as theatre:
         await theatre.press("T")
-        for shot in SHOTS:
+        for shot in STEPS:
             await theatre.press("enter")
             assert words(shot.question) in panel(theatre)
             await theatre.press("enter")
@@ -103,7 +104,7 @@ async def test_leaving_it_restores_view_and_settings_and_u_the_run():
         assert (theatre.source.scene, theatre.source.sample.t) == (SCENES["spin"], t)
         await theatre.press("T")
         await theatre.pilot.pause()
-        assert words(SHOTS[1].watch) in panel(theatre)
+        assert words(STEPS[1].watch) in panel(theatre)
 
 
 async def test_a_change_of_the_run_is_noticed_and_enter_begins_the_shot_again():
@@ -112,7 +113,7 @@ async def test_a_change_of_the_run_is_noticed_and_enter_begins_the_shot_again():
         theatre.stage.frame()
         assert ASTRAY in panel(theatre)
         await theatre.press("enter")
-        assert words(SHOTS[0].watch) in panel(theatre)
+        assert words(STEPS[0].watch) in panel(theatre)
 
 
 async def test_while_a_shot_runs_the_other_keys_keep_their_meaning():
@@ -134,7 +135,7 @@ async def test_a_click_on_the_panel_goes_on_and_outside_a_tour_its_keys_do_nothi
         await theatre.press("T")
         await theatre.pilot.click(TourPanel)
         await theatre.pilot.pause()
-        assert words(SHOTS[0].question) in panel(theatre)
+        assert words(STEPS[0].question) in panel(theatre)
 
 
 async def test_the_command_begins_with_it(text_snapshot):

@@ -10,7 +10,7 @@ from engine.scenes import SCENES
 from tests.tui.drawn import cells
 from tests.tui.harness import Lab
 from tui.views.lab.pendulums import TOP, Bob, pendulum_picture
-from tui.views.lab.reach import REACHES, reach
+from tui.views.reach import REACHES, reach
 
 SMALL, MIDDLE, QUARTER = REACHES
 

@@ -75,8 +75,8 @@ def span_text(begin: float, end: float) -> str:
 
 
 def read_out(reading: "Reading", letters: Sequence[str], room: int) -> str:
-    """All methods at a moment, as far as there is room: "12.35 s: e 3.3, s 0.079, v 0.0057, r 3.8e-5"."""
-    numbers = [f"{value:.1e}".replace("e-0", "e-").replace("e+0", "e") for value in reading.values]
+    """All methods at a moment, as far as there is room: "12.35 s: e 3.3e+00 s 7.9e-02 v 5.7e-03"."""
+    numbers = [f"{value:.1e}" for value in reading.values]
     text = f"{seconds(reading.t)}:"
     for letter, number in zip(letters, numbers, strict=True):
         part = f" {letter} {number}"
@@ -146,7 +146,9 @@ class TimeChart(Pane):
             back = until - look.stretch.begin
         ghost = source.ghost
         behind = None if ghost is None else (ghost.window(until, back), ghost.scene.cast)
-        marks = Marks(behind, step_changes(source.changes))
+        line = look.line if look.line and look.line.quantity == look.quantity else None
+        reference = None if line is None else (line.value, line.name)
+        marks = Marks(behind, step_changes(source.changes), reference)
         return time_chart(window, self.cast, look, *self.room, marks)
 
     def _below(self, source: Source, look: Shown, room: int) -> str:

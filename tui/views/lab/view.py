@@ -13,9 +13,9 @@ from tui.views.lab.error_table import ErrorTable
 from tui.views.lab.event_list import EventList
 from tui.views.lab.layout import CellLayout, places
 from tui.views.lab.pendulums import Pendulum
-from tui.views.lab.reach import Reach
 from tui.views.lab.time_chart import TimeChart
 from tui.views.phase.pane import PhasePane
+from tui.views.reach import Reach
 from tui.views.view import Box, View
 
 

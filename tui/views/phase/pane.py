@@ -1,5 +1,6 @@
 """Phase space with the methods in it, or the map of one method, and a start to choose with mouse or keyboard."""
 
+import math
 from functools import lru_cache
 from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
@@ -19,6 +20,7 @@ from tui.playback.live import has_own
 from tui.playback.source import Source
 from tui.views.messages import Asked, SceneChosen
 from tui.views.phase.viewport import Viewport
+from tui.views.reach import amplitude, frame
 from tui.views.view import Chooser
 
 if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
@@ -28,6 +30,7 @@ if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
 
 TITLE = "Phase space (F3): theta [rad], omega [rad/s]"
 DOTS = 4  # that an arrow moves the crosshair
+RING = 0.1  # of the amplitude: large enough to be seen, and it stays a ring for a while
 RING_STEPS = 100  # a frame, for a ring that has to catch up; they cost 5 ms
 ORBIT_STEPS = 2000  # some ms
 
@@ -45,7 +48,7 @@ class PhasePane(Chooser[State]):
     NEEDS_NUMPY = True
 
     radius: var[float | None] = var(None)
-    """Of the ring of neighbours [rad]; None: no ring."""
+    """Of the ring of neighbours, over the amplitude or 1 rad; None: no ring but that of a shot."""
 
     def __init__(self, radius: float | None = None) -> None:
         super().__init__()
@@ -77,9 +80,21 @@ class PhasePane(Chooser[State]):
     def viewport(self) -> Viewport:
         assert self.source is not None
         if self.zoomed is None:
-            return Viewport.portrait(*self.cells, self.source.scene)
+            line = self.shown.line
+            fence = abs(line.value) if line and line.quantity == "omega" else 0.0
+            return Viewport.portrait(*self.cells, self.source.scene, self._half_width, fence)
         self.zoomed = self.zoomed.resized(*self.cells)
         return self.zoomed
+
+    @property
+    def _half_width(self) -> float:
+        """What is shown of theta [rad], to both sides."""
+        source = self.source
+        if source is None or self.sample is None or self.shown.overview:
+            return math.pi
+        if self.shown.theta is not None:
+            return self.shown.theta
+        return frame(source.scene, source.stepping, self.sample, self.places)
 
     @property
     def aim(self) -> State | None:
@@ -96,17 +111,21 @@ class PhasePane(Chooser[State]):
         portrait = Portrait.of(self.viewport, source.scene.equations)
         orbit = self.pointer if self.aiming else self.cursor
         points = method_points(source, sample, self.shown, self.ring)
-        plot = phase_picture(portrait, points, self.cursor, orbit)
+        plot = phase_picture(portrait, points, self.cursor, orbit, self.shown.line)
         return Picture((*plot.rows, caption(source, self.aim, self.room.width)))
 
     def _carry_ring(self, source: Source, sample: Sample) -> None:
         """Let the ring keep up; where it has not, go on without waiting for the next sample."""
-        if self.radius is None or source.scene.why_no_ring:
+        share = self.radius or (RING if self.shown.ring else None)
+        if share is None or source.scene.why_no_ring:
             self.neighbours = self.ring = None
             return
+        scene = source.scene
+        radius = share * min(amplitude(scene.equations, scene.theta, scene.omega), 1.0)
         from engine.phase_space.area import Neighbours
 
-        self.neighbours = self.neighbours or Neighbours(self.radius)
+        if self.neighbours is None or self.neighbours.radius != radius:
+            self.neighbours = Neighbours(radius)
         steps = 1 if has_own(source.scene) else RING_STEPS
         try:
             with limited("the ring"):
@@ -164,10 +183,11 @@ class PhasePane(Chooser[State]):
         self.draw()
 
     def action_radius(self) -> None:
-        """Take the next larger ring, after the largest none."""
+        """Take the next larger ring, then the small ones, then none."""
         from engine.phase_space.area import RADII
 
-        radii = (None, *RADII)
+        first = RADII.index(RING)
+        radii = (None, *RADII[first:], *RADII[:first])
         self.radius = radii[(radii.index(self.radius) + 1) % len(radii)]
 
     def place_under(self, event: events.MouseEvent) -> State | None:

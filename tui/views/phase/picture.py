@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from engine.models.model import State
 from engine.phase_space.area import Neighbourhood
 from engine.run.lockstep import Sample
+from engine.scenes import Line
 from tui.drawing.canvas import Canvas
 from tui.drawing.palette import EXACT, TEXT, faint, inks
 from tui.drawing.picture import Picture
@@ -19,6 +20,7 @@ from tui.views.phase.portrait import Portrait, write_words
 from tui.views.phase.viewport import Viewport
 
 TRAIL = 300  # samples, ten seconds at 30 frames a second
+SPARSE = 60  # samples
 BESIDE = (
     (2, 0),
     (-2, 0),
@@ -70,14 +72,21 @@ def phase_picture(
     points: Sequence[PhasePoint],
     crosshair: State | None = None,
     orbit: State | None = None,
+    line: Line | None = None,
 ) -> Picture:
-    """Draw trails, rings and points, later ones in front; perhaps a crosshair, perhaps a state's exact orbit."""
+    """Draw trails, rings and points, later ones in front; perhaps a crosshair, an orbit, a line."""
     viewport = portrait.viewport
     canvas = portrait.ground.copy()
     for point in points:
         if point.trail is not None:
             theta, omega = point.trail
-            canvas.scatter(viewport.x(theta), viewport.y(omega), faint(point.ink))
+            x, y = viewport.x(theta), viewport.y(omega)
+            canvas.scatter(x, y, faint(point.ink))
+            if len(x) <= SPARSE:  # and single dots would be lost among the curves
+                for down, right in ((0, 1), (1, 0), (1, 1)):
+                    canvas.scatter(x + right, y + down, faint(point.ink))
+    if line is not None and line.quantity == "omega":
+        draw_fence(canvas, viewport, line)
     if crosshair is not None:
         draw_crosshair(canvas, viewport, crosshair)
     if orbit is not None:
@@ -93,6 +102,14 @@ def phase_picture(
         draw_point(canvas, viewport, point)
     write_words(canvas, portrait.words)
     return canvas.picture()
+
+
+def draw_fence(canvas: Canvas, viewport: Viewport, line: Line) -> None:
+    """Draw dotted lines at an omega to both sides of zero, with their name."""
+    for omega, name in ((line.value, line.name), (-line.value, f"-{line.name}")):
+        y = float(viewport.y(omega))
+        canvas.line(0, y, canvas.width, y, EXACT, dotted=True)
+        canvas.label(1, int(y) // 4, name, EXACT)
 
 
 def draw_crosshair(canvas: Canvas, viewport: Viewport, state: State) -> None:

@@ -13,7 +13,6 @@ from tui.views.phase.facts import fact_rows
 from tui.views.phase.pane import ORBIT_STEPS, SectionPane, Wanted
 from tui.views.view import Pane, StudyView
 
-RADIUS = 0.1  # rad; large enough to be seen, small enough to stay a ring for a while
 MIN_ROWS = 18  # of the screen, with the table
 STARTS = 300  # of a section
 DELAY = 0.1  # s that a picture has to stand before its section is computed: a wheel turns on and on
@@ -38,7 +37,7 @@ class PhaseView(StudyView[SectionPane]):
     """The portrait or a section, and the table below it."""
 
     def __init__(self, id: str | None = None) -> None:
-        super().__init__(SectionPane(RADIUS), id)
+        super().__init__(SectionPane(), id)
         self._computed: Wanted | None = None
 
     def compose(self) -> ComposeResult:

@@ -25,22 +25,25 @@ class Viewport(NamedTuple):
     wrap: bool = True  # every angle is shown, in the one turn that is there
 
     @classmethod
-    def portrait(cls, columns: int, rows: int, scene: Scene) -> "Viewport":
-        """Return -pi to pi, and all three regimes.
+    def portrait(
+        cls, columns: int, rows: int, scene: Scene, theta: float = math.pi, omega: float = 0.0
+    ) -> "Viewport":
+        """Return -theta to theta [rad], with the orbit that comes to rest there, and +-omega.
 
-        It reaches beyond the fastest of the separatrix and of the scene's orbit, by a power of 1.3: so another start
-        seldom changes it.
+        At pi it holds all three regimes: it reaches beyond the fastest of the separatrix and of the
+        scene's orbit, by a power of 1.3, so that another start seldom changes it.
         """
-        separatrix = 2 * scene.w0
-        fastest = max(separatrix, math.hypot(scene.omega, separatrix * math.sin(scene.theta / 2)))
-        fastest = separatrix * 1.3 ** math.ceil(math.log(fastest / separatrix, 1.3) - 1e-9)
+        fastest = 2 * scene.w0 * math.sin(theta / 2)
+        if theta == math.pi:
+            size = max(fastest, math.hypot(scene.omega, fastest * math.sin(scene.theta / 2)))
+            fastest *= 1.3 ** (1 + math.ceil(math.log(size / fastest, 1.3) - 1e-9))
         return cls(
             columns,
             rows,
             theta=0.0,
             omega=0.0,
-            theta_per_dot=math.pi / (columns - 0.5),  # half a dot, or rounding loses points at pi
-            omega_per_dot=1.3 * fastest / max(2 * rows - 2, 2),
+            theta_per_dot=theta / (columns - 0.5),  # half a dot, or rounding loses points at pi
+            omega_per_dot=max(fastest, 1.1 * omega) / max(2 * rows - 2, 2),
             wrap=scene.equations.turns,
         )
 

@@ -5,10 +5,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from engine.scenes import SCENES
 from tests.tui.drawing.test_canvas import dots
 from tests.tui.drawn import cells, inks, size
+from tests.tui.harness import lab, player, recorded
 from tui.drawing.palette import EXACT, FAINT, FRAME
-from tui.views.lab.pendulums import Bob, pendulum_picture
+from tui.views.lab.pendulums import Bob, Pendulum, pendulum_picture
 
 ANGLE = st.integers(1, 10_000).map(
     lambda number: number * 0.6180339887
@@ -85,3 +87,74 @@ def test_a_bob_on_a_spring_is_as_far_from_the_pivot_as_its_rod_is_long():
 
     assert lowest(0.5) < lowest(0.9) < lowest(1.08)
     assert lowest(1e300) <= 20
+
+
+async def grabbed(theatre, *moves, wait=0.3):
+    """Drag the first pendulum's bob over these cells of its pane, wait, and let it go."""
+    pane = theatre.stage.query(Pendulum).first()
+    await theatre.pilot.mouse_down(pane, offset=(12, 9))
+    for move in moves:
+        await theatre.pilot.hover(pane, offset=move)
+    await theatre.pilot.pause(wait)
+    held = theatre.stage.held
+    table = theatre.text("ErrorTable")
+    await theatre.pilot.mouse_up(pane, offset=moves[-1])
+    await theatre.pilot.pause()
+    return held, table
+
+
+async def test_a_bob_is_dragged_and_starts_at_rest_where_it_is_let_go_as_one_step_of_undo():
+    async with lab() as theatre:
+        await theatre.run(2)
+        before = theatre.source.sample
+        held, table = await grabbed(theatre, (16, 9), (20, 2))
+        assert held == pytest.approx(2.1, abs=0.4)
+        assert table.count(f"{held:+.3f}") == 4
+        scene = theatre.source.scene
+        assert (scene.theta, scene.omega) == (held, 0.0)
+        assert [event.kind for event in theatre.source.events] == ["start", "start"]
+        assert theatre.stage.held is None
+        await theatre.press("u")
+        assert theatre.source.scene == SCENES["drift"]
+        assert theatre.source.sample.step == before.step
+
+
+async def test_a_thrown_bob_has_the_speed_of_the_pointer():
+    async with lab() as theatre:
+        await theatre.run(1)
+        theatre.source.set_speed(2.0)
+        pane = theatre.stage.query(Pendulum).first()
+        pane._start([(0.0, 0.0), (1.0, 0.5), (1.05, 0.6)], 1.06)
+        await theatre.pilot.pause()
+        assert theatre.source.scene.theta == 0.6
+        assert theatre.source.scene.omega == 1.0  # 2 rad in a second of the clock, at 2×
+
+
+async def test_less_than_three_columns_is_a_click_that_shows_the_method_alone():
+    async with lab() as theatre:
+        await grabbed(theatre, (13, 9), (14, 9))
+        assert theatre.stage.shown.places(theatre.source.scene.cast) == [0]
+        assert theatre.source.sample.run == 1
+        await grabbed(theatre, (13, 9))
+        assert not theatre.stage.shown.hidden
+
+
+async def test_a_bob_of_a_recording_cannot_be_grabbed_and_a_sentence_says_so(tmp_path):
+    async with player(recorded(tmp_path / "a.mcap", 2.0)) as theatre:
+        pane = theatre.stage.query(Pendulum).first()
+        await theatre.pilot.mouse_down(pane, offset=(12, 9))
+        await theatre.pilot.hover(pane, offset=(20, 4))
+        await theatre.pilot.mouse_up(pane, offset=(20, 4))
+        await theatre.pilot.pause()
+        (notice,) = theatre.app._notifications
+        assert "cannot be changed" in notice.message
+        assert not theatre.stage.shown.hidden
+
+
+async def test_small_swings_are_enlarged_and_say_so_and_o_shows_them_as_they_are():
+    async with lab(SCENES["gentle"]) as theatre:
+        await theatre.run(1)
+        titles = [str(pane.border_title) for pane in theatre.stage.query(Pendulum) if pane.drawable]
+        assert all(title.endswith("×6") for title in titles[1:])
+        await theatre.press("o")
+        assert "×" not in str(theatre.stage.query(Pendulum).first().border_title)

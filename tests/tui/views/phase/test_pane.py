@@ -9,9 +9,10 @@ from textual import events
 from textual.app import App, ComposeResult
 from textual.pilot import Pilot
 
-from engine.phase_space.area import RADII, Neighbours
+from engine.phase_space.area import Neighbours
 from engine.scenes import SCENES, Scene
 from tui.playback.live import Live
+from tui.playback.shown import Shown
 from tui.views.messages import SceneChosen
 from tui.views.phase.pane import DOTS, PhasePane
 from tui.views.phase.viewport import MIN_SPAN
@@ -58,7 +59,9 @@ async def shown(
     app = PhaseApp(live or Live(DRIFT), columns, rows)
     async with app.run_test(size=(max(columns + 2, 60), max(rows + 3, 16))) as pilot:
         await pilot.pause()
-        yield pilot, app.query_one(PhasePane)
+        pane = app.query_one(PhasePane)
+        pane.shown = Shown(overview=True)
+        yield pilot, pane
 
 
 def at(column: int, row: int) -> tuple[int, int]:
@@ -191,14 +194,14 @@ async def test_a_ring_has_the_radius_one_chooses_or_is_not_there():
     live = Live(DRIFT)
     async with shown(live) as (pilot, pane):
         assert pane.ring is None
-        await pilot.press("g", "g", "g")
+        await pilot.press(*"g" * 6)
         live.step(20)
         pane.follow(live.sample)
         await pilot.pause()
         assert pane.radius == 0.05
         expected = Neighbours(0.05).follow(DRIFT, 1, 20, live.changes, 20)
         assert pane.ring.area_ratios == expected.area_ratios
-        await pilot.press(*"g" * (len(RADII) - 2))
+        await pilot.press("g")
         assert pane.ring is None
 
 

@@ -9,7 +9,7 @@ from engine.methods import USUAL_CAST
 from engine.scenes import SCENES
 from tests.tui.drawn import cells
 from tui.drawing.palette import EXACT, FAINT
-from tui.views.phase.picture import PhasePoint, phase_picture
+from tui.views.phase.picture import SPARSE, PhasePoint, phase_picture
 from tui.views.phase.portrait import Portrait
 from tui.views.phase.viewport import Viewport
 
@@ -81,7 +81,7 @@ def test_dots_of_different_methods_in_one_cell_all_stay():
 
 
 def test_a_trail_is_faint_and_where_the_method_was():
-    theta, omega = np.linspace(0.5, 1.0, 5), np.linspace(1.0, 2.0, 5)
+    theta, omega = np.linspace(0.5, 1.0, SPARSE + 1), np.linspace(1.0, 2.0, SPARSE + 1)
     picture = phase_picture(PORTRAIT, [PhasePoint(1.5, 3.0, 1, "s", (theta, omega))])
     expected = {
         (int(SMALL.x(a)) // 2, int(SMALL.y(b)) // 4)

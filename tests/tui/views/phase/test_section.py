@@ -162,7 +162,7 @@ async def test_a_lab_that_is_paused_redraws_it_for_another_step_and_another_star
 
 async def test_words_follow_the_crosshair_and_the_pointer():
     async with lab(Scene(theta=0.5, h=0.1), size=(100, 30)) as theatre:
-        pane = await section_of(theatre, "x", "up")
+        pane = await section_of(theatre, "o", "x", "up")
         assert pane.cursor is not None
         assert pane.text.splitlines()[-1].startswith(
             f"{pane.cursor.theta:g}, {pane.cursor.omega:g}: Regular: "

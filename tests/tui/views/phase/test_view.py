@@ -81,7 +81,7 @@ async def test_the_ring_catches_up_while_the_lab_is_paused():
     async with lab() as theatre:
         await theatre.run(20)
         await theatre.pilot.press("space")
-        await theatre.press("f3")
+        await theatre.press("f3", "g")
         for _ in range(100):
             await theatre.pilot.pause(0.02)
             if shown(theatre).settled:
@@ -95,7 +95,7 @@ async def test_the_ring_catches_up_while_the_lab_is_paused():
 
 async def test_nothing_is_computed_for_phase_space_that_is_not_shown():
     async with lab(size=(80, 24)) as theatre:
-        await theatre.press("f3")
+        await theatre.press("f3", "g")
         await theatre.run(1)
         pane = shown(theatre)
         await theatre.press("f2")
