@@ -95,7 +95,7 @@ class Scene:
     speed: float = field(
         default=1.0, compare=False
     )  # times real time, at which a lab starts: it changes no number
-    shot: Shot = field(default=Shot(), compare=False)
+    shot: Shot = field(default=Shot(), compare=False, repr=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "parameters", self._complete(self.parameters))

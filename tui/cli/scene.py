@@ -49,7 +49,7 @@ _HELP = {
 }
 
 TEXTS = ("name", "watch", "model")
-NO_FIELDS = ("cast", "parameters", "often_said")
+NO_FIELDS = ("cast", "parameters", "often_said", "shot")
 FIELDS = (
     *(field.name for field in fields(Scene) if field.name not in NO_FIELDS),
     *PARAMETERS,

@@ -2,7 +2,7 @@
 
 A screen binds its Source and Samples to a View, and the View to its Panes, both of which `view` defines.  Panes draw,
 and post `messages` that ask the lab for another start or step size.
-`background` computes in another process for F4 and F5.
+`background` computes in another process for F4 and F5; `reach` frames the motion.
 """
 
 from importlib import import_module
