@@ -19,11 +19,11 @@ MAX_COLUMNS = 100
 MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
-    "characters": 1_101_000,
+    "characters": 1_102_000,
     "characters_of_engine": 331_500,
     "characters_of_recordings": 93_500,
-    "characters_of_tui": 680_000,
-    "characters_of_tests": 1_026_000,
+    "characters_of_tui": 682_000,
+    "characters_of_tests": 1_030_000,
     "files": 223,
     "long_lines": 632,
     "parallel_assignments": 199,
