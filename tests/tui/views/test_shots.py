@@ -87,7 +87,7 @@ PROMISES = {
     "stiff-slow": (10, lambda seen: seen.spread("r"), 4),
     "stiff-limit": (10, lambda seen: seen.chart.picture.text.count("↑v"), 1),
     "stiff-resonance": (10, lambda seen: seen.chart.picture.text.count("↑"), 1),
-    "learned": (15, lambda seen: seen.apart("j", "g"), 3),
+    "learned": (15, lambda seen: seen.apart("z", "t"), 3),
     "precision": (10, lambda seen: seen.apart("n", "k"), 3),
     "precision-deep": (10, lambda seen: seen.apart("v", "k"), 3),
     "mean-field": (15, lambda seen: seen.spread("r"), 3),
