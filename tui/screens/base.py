@@ -134,6 +134,7 @@ class SourceScreen(Screen[None]):
         self.first_source = source
         self.set_reactive(SourceScreen.shown, Shown().through(source.scene))
         self.clock = clock
+        self.set_reactive(SourceScreen.view, self.first_view(source))
         self._view_in_front: View = create(self.view)
         self._lines: list[Pane] = []
         self._timer: Timer | None = None  # of the frames
@@ -147,6 +148,10 @@ class SourceScreen(Screen[None]):
     @property
     def host(self) -> Host:
         return cast(Host, self.app)
+
+    def first_view(self, source: Source) -> str:
+        """Return the view that is in front at the start."""
+        return "lab"
 
     # What is on the screen
 

@@ -11,6 +11,7 @@ from engine.run.lockstep import Sample
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene, SceneError
 from tui.playback.live import Live
+from tui.playback.source import Source
 from tui.playback.state import State
 from tui.screens.base import SourceScreen
 from tui.screens.tour import TourGuide
@@ -208,8 +209,10 @@ class LiveScreen(SourceScreen):
     def on_source_screen_began(self) -> None:
         if self.begins_with_tour:
             self.action_tour()
-        elif self.live.scene.shot.view != self.view:
-            self.action_view(self.live.scene.shot.view)
+
+    def first_view(self, source: Source) -> str:
+        """Return the view of the scene's shot."""
+        return source.scene.shot.view
 
     @property
     def is_on_tour(self) -> bool:
