@@ -37,7 +37,7 @@ GLOSSARY = {
     "colours": "each method keeps its own, and its letter, wherever it is shown; its digit is its place and its key",
     "×": "in the chart: one error passes another, and stays above it",
     "dotted": "the exact motion",
-    "dim": "the run before r, maybe with another h, or a recording: pendu-tui live --ghost FILE",
+    "dim": "a recording under the lab: pendu-tui live --ghost FILE",
 }
 HEADS = {
     **dict.fromkeys(("theta", "omega"), GLOSSARY["theta, omega"]),

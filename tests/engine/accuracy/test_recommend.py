@@ -83,6 +83,7 @@ def test_if_no_method_reaches_the_target_each_has_its_reason():
     assert reasons[V].startswith("needs about ")
 
 
+@pytest.mark.slow
 def test_each_method_has_its_own_h_and_its_cost_in_that_of_the_cheapest():
     study = Study(with_all_methods(DRIFT), 20.0, LOOPS)
     best, *others = least_cost(study, "theta", 1e-6).attempts
@@ -94,9 +95,9 @@ def test_each_method_has_its_own_h_and_its_cost_in_that_of_the_cheapest():
             assert least_cost(alone, "theta", 1e-6).point == point
             assert attempt.times == point.force_evaluations / best.point.force_evaluations
         else:
-            assert attempt.method in (E, S)
+            assert attempt.method.order <= 2
             assert point.force_evaluations <= MAX_TIMES * best.point.force_evaluations
-    assert [attempt.method for attempt in others if attempt.succeeded][-1] is V
+    assert [attempt.method.order for attempt in others if attempt.succeeded][-1] == 2
 
 
 def test_a_method_that_is_given_up_needs_about_what_its_order_promises():
