@@ -20,16 +20,16 @@ MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
     "characters": 1_102_000,
-    "characters_of_engine": 331_500,
-    "characters_of_recordings": 93_500,
-    "characters_of_tui": 682_000,
-    "characters_of_tests": 1_030_000,
-    "files": 223,
-    "long_lines": 632,
-    "parallel_assignments": 199,
+    "characters_of_engine": 327_000,
+    "characters_of_recordings": 93_400,
+    "characters_of_tui": 681_800,
+    "characters_of_tests": 1_029_600,
+    "files": 220,
+    "long_lines": 584,
+    "parallel_assignments": 180,
     "conditional_expressions_per_1000_lines": 27,
-    "long_functions": 6,
-    "numeric_constants": 295,
+    "long_functions": 4,
+    "numeric_constants": 294,
 }
 """What each measure may be at the most.  Lower a ceiling whenever its measure has fallen; never raise one."""
 
