@@ -50,6 +50,7 @@ SENTENCES = {
     "loses": "{0} loses {rate:two} of {unit} per s.",
     "will pass": "{0} loses {rate:two} of E0 per s; its error will pass {1}'s in {seconds:about}.",
     "exceeds": "{0} {gains} {rate:two} of {unit} per s; its error is {ratio:two} × {1}'s maximum.",
+    "so far alone": "{0}'s largest energy error so far is {most:.2g}.",
     "so far": "Energy errors so far: {least:.2g} ({0}) to {most:.2g} ({1}).",
 }
 
@@ -313,6 +314,8 @@ def _so_far(source: Source, hidden: Collection[str] = ()) -> Insight:
         return Insight("watch", values={"text": ""})
     least, nearest = shown[0]
     most, furthest = shown[-1]
+    if nearest == furthest:
+        return Insight("so far alone", (cast[furthest],), {"most": most})
     return Insight("so far", (cast[nearest], cast[furthest]), {"least": least, "most": most})
 
 
