@@ -31,6 +31,7 @@ from tui.cli.heads import (
 from tui.cli.objects import is_mdout, of_arrays, of_objects, pairs, parsed
 
 MAX_LINE = 1 << 20  # bytes
+MAX_RECORDS = 20_000_000  # of the input, which may never end; half a minute, 320 MB
 MAX_PAGE = 64  # rows below a header that comes again on each page, as NAMD's; fewer are no table
 LATEST = 1e300  # a time; squares and differences of later ones overflow
 
@@ -137,7 +138,9 @@ def _tables(records: Records) -> Iterator[Table]:
     table = Table((), [])
     head = Head((), ())
     on_page = 0  # rows since the head
-    for record in records:
+    for number, record in enumerate(records):
+        if number >= MAX_RECORDS:
+            raise unreadable(f"more than {MAX_RECORDS:,} rows; leave some out.")
         if isinstance(record, Head):
             if record != head or not 0 < on_page < MAX_PAGE:
                 if table.first is not None:

@@ -458,3 +458,10 @@ def test_a_hundred_thousand_lines_with_gaps_take_a_fraction_of_a_second():
     outcome = pendu("judge", "energies.csv", "--time", "t", "--energy", "E", "--json")
     assert time.process_time() - began < 1.0  # 0.15 s on an idle machine; 10⁶ lines may take 2 s
     assert (outcome.json["samples"], outcome.json["skipped"]["without_numbers"]) == (90_000, 10_000)
+
+
+def test_an_input_that_never_ends_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr("tui.cli.columns.MAX_RECORDS", 100)
+    path = tmp_path / "long.csv"
+    path.write_text("".join(f"{t},1.0\n" for t in range(101)))
+    assert pendu("judge", path, "--time", 1, "--energy", 2).code == 3
