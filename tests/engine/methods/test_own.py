@@ -123,7 +123,7 @@ WRONG = {
     "an exception at once": (euler("1 / 0"), "line 7: `1 / 0` raises ZeroDivisionError: division by zero."),
     "an exception later": (euler("n = n + 1; assert n < 30", "n = 0"), "line 7: `n = n + 1; assert n < 30` raises A"),
     "a name that is not there": (euler("omega = omega * gamma"), "line 7: `omega = omega * gamma` raises NameError"),
-    "a square root of less than 0": (euler("__import__('math').sqrt(-1)"), "raises ValueError: math domain error."),
+    "a square root of less than 0": (euler("__import__('math').sqrt(-1)"), "raises ValueError: "),
     "an array changed in place": (
         "def mine(force, phase, h):\n    theta, omega = phase\n    while True:\n        theta += h * omega\n"
         "        omega += h * force(theta)\n        yield theta, omega",

@@ -259,16 +259,12 @@ def test_bad_input_is_refused_before_the_terminal_is_looked_at(arguments, code, 
     assert pendu(*arguments).refused(code, words)
 
 
-def test_when_the_folder_goes_away_the_lab_goes_on_says_so_and_records_again(library):
+def test_when_the_folder_goes_away_the_lab_goes_on_and_says_so(library):
     with lab(library) as session:
         session.wait_for(RECORDING)
         for path in library.iterdir():
             path.unlink()
         library.rmdir()
         session.wait_for("NOT RECORDED")
-        began = time.monotonic()
-        session.wait_for(RECORDING)
-        assert time.monotonic() - began > 1  # it is another file, begun at the next try
         session.type("q")
-        assert session.end() == 0
-    assert whole(library)
+        assert session.end() == 5
