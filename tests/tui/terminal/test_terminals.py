@@ -160,17 +160,19 @@ def painted_anew(pendu: PtyLab) -> Emulator:
     return emulator
 
 
-def still(emulator: Emulator) -> list[str]:
-    """The screen once it is whole, without what goes on: the insight line, and how much of the recording is on disk."""
+def still(emulator: Emulator, title: str = "") -> list[str]:
+    """Wait until the screen is whole and shows the title; returns its standing part."""
 
-    def whole(lines: list[str]) -> bool:
+    def is_right(lines: list[str]) -> bool:
         panes = [line for line in lines if line.startswith("╭") and line.endswith("╮")]
-        return "paused" in lines[0] and bool(panes) and "Help" in lines[-1]
+        is_whole = "paused" in lines[0] and bool(panes) and "Help" in lines[-1]
+        return is_whole and title in "".join(lines)
 
-    return standing_part(emulator.wait_until(whole))
+    return standing_part(emulator.wait_until(is_right))
 
 
 def standing_part(lines: list[str]) -> list[str]:
+    """The screen without the insight line and the recording's length, which go on changing."""
     return [lines[0].partition("REC")[0], *lines[1:-3], lines[-1]]
 
 
@@ -200,7 +202,7 @@ def test_a_storm_of_sizes_leaves_every_view_whole(tmp_path):
                 pendu.run(0.04)
             emulator = Emulator(pendu)
             pendu.resize(120, 40)
-            assert title in "".join(still(emulator))
+            still(emulator, title)
         emulator.wait_until(lambda lines: standing_part(lines) == before)
         pendu.type("q")
         assert pendu.end() == 0
