@@ -97,6 +97,7 @@ def shell(tmp_path):
     return run
 
 
+@pytest.mark.slow
 def test_the_commands_of_the_blocks_do_what_they_say(shell, tmp_path):
     for line in "".join(blocks("sh")).splitlines():
         shell(line)
@@ -105,6 +106,7 @@ def test_the_commands_of_the_blocks_do_what_they_say(shell, tmp_path):
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", re.findall(r"^\$ (.*)$", README, re.MULTILINE))
 def test_what_is_shown_of_a_command_is_what_it_prints(shell, command):
     shown = README.partition(f"$ {command}\n")[2].partition("```")[0].partition("\n$ ")[0]
@@ -148,6 +150,7 @@ def project(tmp_path):
     return tested
 
 
+@pytest.mark.slow
 def test_the_pytest_plugin_guards_energies_and_recordings(project, tmp_path):
     test = block_with("python", "import my_md")
     (plugins,) = set(re.findall(r"`(pytest_plugins = .*)`", README))
@@ -239,6 +242,7 @@ def test_every_command_is_in_the_list():
     assert f"| command | does |\n|---|---|\n{rows}" in README
 
 
+@pytest.mark.slow
 def test_a_method_of_ones_own_is_measured_and_put_on_stage_as_described(shell, tmp_path):
     (tmp_path / "mine.py").write_text(block_with("python", "def ruth_3"), encoding="utf-8")
     commands = re.findall(r"`(pendu-tui [^`]*--method mine[^`]*)`", README)
@@ -254,6 +258,7 @@ def test_a_method_of_ones_own_is_measured_and_put_on_stage_as_described(shell, t
     ]
 
 
+@pytest.mark.slow
 def test_a_method_is_added_to_the_project_as_described(tmp_path):
     for package in ("engine", "recordings", "tui"):
         shutil.copytree(

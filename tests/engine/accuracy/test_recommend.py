@@ -152,6 +152,7 @@ def test_where_every_method_is_lost_nothing_is_recommended():
     assert all(math.isfinite(attempt.point.theta_error) for attempt in advice.attempts)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(LOOPS is PlainLoops, reason="takes a minute without Numba")
 @pytest.mark.parametrize(("kind", "target"), [("theta", 1e-3), ("theta", 1e-9), ("energy", 1e-6)])
 def test_no_method_on_a_dense_ladder_is_three_percent_cheaper(kind, target):

@@ -40,6 +40,7 @@ def test_a_tighter_tolerance_costs_steps_and_buys_accuracy_down_to_rounding(poin
     assert good[-1].theta_error < 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", [name for name, scene in SCENES.items() if scene.model == "pendulum"]
 )

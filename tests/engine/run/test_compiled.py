@@ -8,7 +8,7 @@ from resource import RUSAGE_SELF, getrusage
 
 import pytest
 
-from engine.methods import GENERAL
+from engine.methods import GENERAL, RK4, VELOCITY_VERLET
 from engine.models import MODELS
 from engine.models.pendulum import Pendulum
 from engine.run import compiled
@@ -50,7 +50,7 @@ def test_runs_of_compiled_loops_leave_no_memory_behind(method):
 
 
 @needs_numba
-@each_method
+@pytest.mark.parametrize("method", [VELOCITY_VERLET, RK4], ids=lambda method: method.key)
 @pytest.mark.parametrize(
     "model", [kind(98.1) for kind in MODELS.values() if not kind.without_force], ids=str
 )

@@ -35,7 +35,7 @@ def move(course: RewindableRun, n: int) -> None:
         course.back_to(max(0, course.step + n))
 
 
-@settings(max_examples=25)
+@settings(max_examples=15)
 @given(MOVES)
 def test_back_and_forth_ends_where_the_straight_way_does_with_the_same_bits(moves):
     course = RewindableRun(DEFAULT_SCENE, 1)
@@ -46,7 +46,7 @@ def test_back_and_forth_ends_where_the_straight_way_does_with_the_same_bits(move
     assert (sample.step, sample.t, phases(sample)) == (expected.step, expected.t, phases(expected))
 
 
-@settings(max_examples=25)
+@settings(max_examples=15)
 @given(MOVES, H_VALUES)
 def test_changes_of_h_are_repeated_on_the_way_there(moves, h):
     course = RewindableRun(DEFAULT_SCENE, 1)
@@ -115,11 +115,11 @@ def test_extremes_after_going_back_are_those_since_the_furthest_step_again():
 
 def test_the_way_back_is_kept_in_few_copies_the_closer_the_more_recent():
     course = RewindableRun(SCENES["gentle"], 1)
-    for _ in range(400):
+    for _ in range(150):
         course.forward(COPY_EVERY)
     steps = [place.lockstep.step for place in course._copies]
     gaps = [after - before for before, after in itertools.pairwise(steps)]
-    assert len(steps) < 60  # 400 without thinning; 8 an octave of age with it
+    assert len(steps) < 50  # 150 without thinning; 8 an octave of age with it
     assert max(gaps[-8:]) <= COPY_EVERY
     assert all(
         gap <= max(COPY_EVERY, (steps[-1] - at) / 4) for at, gap in zip(steps, gaps, strict=False)

@@ -2,12 +2,15 @@
 
 import signal
 
+import pytest
+
 from recordings.library import listing
 from recordings.verification import verify
 from tests.tui.commands.test_plain import read_until, started
 from tests.tui.pty_lab import PtyLab
 
 
+@pytest.mark.slow
 def test_in_plain_it_asks_when_the_moment_has_come_and_records_as_the_lab_does(tmp_path):
     with started(tmp_path, "tour", "--plain") as process:
         lines = read_until(process, "Question: Nothing pushes this pendulum.")

@@ -59,10 +59,10 @@ class Bench(Lab):
 
 
 @pytest.mark.parametrize("h", [0.05, 0.013, 1 / 30])
-def test_after_ten_minutes_simulated_and_running_time_differ_by_less_than_a_frame(h):
+def test_after_a_minute_simulated_and_running_time_differ_by_less_than_a_frame(h):
     bench = Bench(DEFAULT_SCENE.altered(h=h))
-    sample = bench.run(600)
-    assert abs(sample.t - 600) < max(1 / FPS, h)
+    sample = bench.run(60)
+    assert abs(sample.t - 60) < max(1 / FPS, h)
 
 
 def test_time_follows_the_clock_through_pauses_speeds_and_changes_of_h():

@@ -246,7 +246,7 @@ async def test_less_and_greater_halve_and_double_the_speed():
         assert theatre.source.sample.t == pytest.approx(2, abs=0.05)
 
 
-@pytest.mark.parametrize("opening", ["question_mark", "ctrl+p", "i", "M", "P", "d", "E"])
+@pytest.mark.parametrize("opening", ["question_mark", "ctrl+p", "i"])
 async def test_a_dialog_pauses_the_lab_and_it_goes_on_afterwards(opening):
     async with lab() as theatre:
         await theatre.run(1)

@@ -106,7 +106,7 @@ async def test_the_palette_shows_names_as_they_are(tmp_path, monkeypatch):
         assert "replay b]x" in str(options.get_option_at_index(0).prompt)
 
 
-@pytest.mark.parametrize("opening", ["question_mark", "i", "ctrl+p", "E", "P"])
+@pytest.mark.parametrize("opening", ["question_mark", "i", "ctrl+p"])
 async def test_what_lies_over_the_lab_can_be_as_narrow_as_a_terminal(opening):
     async with lab() as theatre:
         theatre.app._disable_notifications = False

@@ -88,8 +88,6 @@ async def test_what_has_no_key_lies_there():
         await theatre.press("greater_than_sign")
         await found(theatre, "normal speed")
         assert theatre.source.playhead.speed == 1
-        await found(theatre, "one pivot")
-        assert theatre.stage.shown.overlay
         await found(theatre, "copy the command")
         assert theatre.app.clipboard == command(theatre.source) == "pendu-tui live --scene drift"
 

@@ -56,7 +56,7 @@ def test_the_first_minute_of_the_default_scene():
 def test_every_insight_of_every_scene_has_words_and_events_fit_the_smallest_pane():
     for scene in SCENES.values():
         lab = Lab(scene)
-        for _ in range(20):
+        for _ in range(10):
             lab.run(3)
             assert 10 < len(insight_text(lab.live)) <= 110
         assert all(len(str(line)) <= 46 for line in event_lines(lab.live))
