@@ -38,9 +38,7 @@ def largest_error(scene, point, kind):
 
 @pytest.mark.parametrize("target", [1e-2, 1e-5])
 @pytest.mark.parametrize("kind", ["theta", "energy", "final"])
-@pytest.mark.parametrize(
-    ("name", "time"), [("drift", 10.0), ("large-swing", 20.0), ("spin", 3.0), ("gentle", 0.5)]
-)
+@pytest.mark.parametrize(("name", "time"), [("large-swing", 20.0), ("spin", 3.0)])
 def test_the_recommended_run_reaches_its_target(name, time, kind, target):
     point = recommended(SCENES[name], time, kind, target)
     assert point.error(kind) <= target

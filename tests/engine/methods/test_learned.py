@@ -44,6 +44,7 @@ def learned_energy(theta: float, omega: float) -> float:
     )
 
 
+@pytest.mark.slow
 def test_the_numbers_are_those_that_the_script_learns() -> None:
     """But for the last digits, which depend on the library behind NumPy."""
     weights, biases, theta, omega, energy = learn.learned(learn.SEED)

@@ -22,8 +22,8 @@ E, S, V, R = USUAL_CAST
 LOOPS = compiled.compiled if compiled.available() else PlainLoops  # the same bits
 CELLS = list(truths())
 SAMPLED = CELLS[
-    ::23
-]  # 23 and the 36 steps of a line have no divisor in common: every start and step has its turn
+    ::47
+]  # 47 and the 36 steps of a line have no divisor in common: every start and step has its turn
 BELOW_THE_LIMITS = ["grows", "bounded", "bounded", "loses"]
 
 

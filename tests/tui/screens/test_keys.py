@@ -6,7 +6,7 @@ from engine.methods import USUAL_CAST
 from engine.scenes import DEFAULT_SCENE, SCENES
 from recordings.live_recorder import LiveRecorder
 from recordings.verification import verify
-from tests.tui.harness import lab, on_stage
+from tests.tui.harness import lab, on_stage, uncomputed
 from tui.playback.live import Live
 from tui.playback.shown import WINDOWS, quantities
 from tui.screens.dialogs.text import TextScreen
@@ -268,7 +268,9 @@ async def test_a_lab_that_was_paused_stays_so_after_a_dialog():
 
 
 @pytest.mark.parametrize("view", [None, "f3", "f4", "f5"])
-async def test_the_help_begins_with_the_keys_of_the_view_in_front(view):
+async def test_the_help_begins_with_the_keys_of_the_view_in_front(view, monkeypatch):
+    monkeypatch.setattr("tui.views.accuracy.view.computed", uncomputed)
+    monkeypatch.setattr("tui.views.stability.view.computed", uncomputed)
     async with lab() as theatre:
         await theatre.press(*([view] if view else []), "question_mark")
         await theatre.pilot.pause()

@@ -35,7 +35,8 @@ def places(columns: int, rows: int, methods: int, overlay: bool = False) -> Plac
     Each method has a pane of its own where there is room, unless an `overlay` is wanted.
     """
     events = max(EVENTS, -(-rows // 5)) if rows >= TWO_ROWS else 0
-    grid = None if overlay else _grid(columns, rows - events, methods)
+    has_grid = not overlay and columns >= NARROW
+    grid = _grid(columns, rows - events, methods) if has_grid else None
     if grid is not None:
         across, side = grid
         pendulums, whole = _tiles(side, rows - events, methods, across), None

@@ -3,7 +3,7 @@
 from itertools import combinations
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from textual.geometry import Region
 
@@ -25,6 +25,7 @@ def regions(found: Places) -> list[Region]:
 
 
 @given(st.integers(1, 400), st.integers(1, 150), st.integers(0, 6), st.booleans())
+@example(columns=78, rows=9, methods=1, overlay=False)
 def test_panes_cover_the_stage_and_never_each_other(columns, rows, methods, overlay):
     found = regions(places(columns, rows, methods, overlay))
     assert sum(region.area for region in found) == columns * rows
