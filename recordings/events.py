@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterable, Iterator
-from functools import lru_cache
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from engine.methods import Method, method_of
@@ -18,8 +17,7 @@ if TYPE_CHECKING:
     from engine.run.judgement import Milestone
 
 EventKind = Literal["start", "set_h", "mark", "pause", "resume", "speed", "stop", "noticed"]
-MAX_EVENTS = 100_000  # of a recording: 30 MB; a lesson has a few hundred
-MAX_RUNS = 10_000
+MAX_EVENTS = 50_000  # of a recording; a lesson has a few hundred
 NOT_DONE = ("start", "stop", "noticed")
 """Events that nobody did in a run."""
 
@@ -45,6 +43,7 @@ class Event(NamedTuple):
     text: str | None = None  # mark
     milestone: "Milestone | None" = None  # noticed
     arithmetic: Arithmetic | None = None  # start; None: of this version on this machine
+    sources: tuple[str, ...] = ()  # start; the texts of a user's own methods, never executed
 
 
 class Entry(NamedTuple):
@@ -69,53 +68,26 @@ def remember(own: Iterable["OwnMethod"]) -> None:
 
 def name_of(method: Method) -> str:
     """Return a method's name in recordings: its key, and of a user's own the hash of its source."""
+    if method.phases is _no_phases:
+        return method.reference
     sha256 = getattr(method, "sha256", "")
     return f"{method.key}@{sha256}" if sha256 else method.key
 
 
 def method_named(name: str) -> Method:
-    """Return the method of this name; an AbsentMethod for a user's own that was not given."""
-    key, _, sha256 = name.partition("@")
-    if sha256:
-        return _own.get(name) or _absent_method(key, sha256)
-    try:
-        return method_of(key)
-    except KeyError as error:
-        raise RecordingError(f"this version has no method {key}") from error
+    """Return the method of this name.
 
-
-class AbsentMethod(Method):
-    """A user's own method without its source: it plays as recorded, and cannot be simulated."""
-
-    __slots__ = ()
-
-    @property
-    def sha256(self) -> str:
-        """The hash of its source."""
-        return self.reference
-
-
-def check_present(scene: Scene, only: Iterable[str] | None = None) -> None:
-    """Raise RecordingError if a method of the scene, or of these keys, cannot be simulated."""
-    for method in scene.cast:
-        if isinstance(method, AbsentMethod) and (only is None or method.key in only):
-            raise RecordingError(
-                f"it cannot be verified without the method {method.key}, a user's own; give it with"
-                f" --method FILE.py:{method.key}, its file as it was"
-                f" (SHA-256 {method.sha256[:12]}…)"
-            )
-
-
-def _no_phases(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
-    """Yield phases that are no numbers, so that no loop takes a step."""
-    theta, omega = phase
-    while True:
-        yield math.nan * theta, math.nan * omega
-
-
-@lru_cache(64)
-def _absent_method(key: str, sha256: str) -> Method:
-    return AbsentMethod(
+    A user's own that was not given plays as recorded, and cannot be simulated.
+    """
+    key, is_own, _ = name.partition("@")
+    if name in _own:
+        return _own[name]
+    if not is_own:
+        try:
+            return method_of(key)
+        except KeyError as error:
+            raise RecordingError(f"this version has no method {key}") from error
+    return Method(
         key=key,
         label=key,
         letter="?",
@@ -124,7 +96,25 @@ def _absent_method(key: str, sha256: str) -> Method:
         order=1,
         force_evaluations=1,
         linear_limit=0.0,
-        reference=sha256,
+        reference=name,
         used=None,
         models=tuple(MODELS),
     )
+
+
+def check_present(scene: Scene, only: Iterable[str] | None = None) -> None:
+    """Raise RecordingError if a method of the scene, or of these keys, cannot be simulated."""
+    for method in scene.cast:
+        if method.phases is _no_phases and (only is None or method.key in only):
+            raise RecordingError(
+                f"it cannot be verified without the method {method.key}, a user's own; give it with"
+                f" --method FILE.py:{method.key}, its file as it was"
+                f" (SHA-256 {method.reference.partition('@')[2][:12]}…)"
+            )
+
+
+def _no_phases(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
+    """Yield phases that are no numbers, so that no loop takes a step."""
+    theta, omega = phase
+    while True:
+        yield math.nan * theta, math.nan * omega

@@ -59,7 +59,7 @@ class Field(NamedTuple):
             case "string", str():
                 return printable(value)
             case "array", list() if all(isinstance(each, str) for each in value):
-                return list(map(printable, value))
+                return value
         raise RecordingError(f"{self.name!r} of a message is no {self.type}, or not finite")
 
 
@@ -102,7 +102,7 @@ EVENT = (
     Field("gravity", "m/s^2", required=False),
     Field("h", "s", required=False),
     *(Field(each.name, _ascii(each.unit), required=False) for each in PARAMETERS.values()),
-    *_optional("array", "methods"),
+    *_optional("array", "methods", "sources"),  # texts of a user's own methods
     *_optional("integer", "numerics"),
     *_optional("string", "sin", "sqrt"),  # fingerprints
     *_optional("boolean", "equal_cost"),
@@ -143,8 +143,6 @@ def schema_of(title: str, fields: Sequence[Field]) -> dict[str, Any]:
 
 
 EVENT_SCHEMA = schema_of("pendu.Event", (*MOMENT, *EVENT))
-TEXT_SCHEMA = schema_of("pendu.Text", ())
-"""Texts by name: how a recording was made, and the source of a user's own method."""
 
 
 def sample_schema(model: str) -> dict[str, Any]:

@@ -5,7 +5,6 @@ It writes to NAME.mcap.part, which becomes NAME.mcap when it is finished.
 
 import json
 import os
-import platform
 import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -15,23 +14,20 @@ from typing import Any, Self
 
 from mcap.writer import CompressionType, Writer
 
-from engine.methods.own import OwnMethod
 from engine.run.lockstep import Sample
 from engine.scenes import Scene
 from recordings.errors import DiskError, NameTakenError, writing
-from recordings.events import MAX_EVENTS, MAX_RUNS, Event
-from recordings.fields import EVENT_SCHEMA, TEXT_SCHEMA, sample_schema, without_extremes
+from recordings.events import MAX_EVENTS, Event
+from recordings.fields import EVENT_SCHEMA, sample_schema, without_extremes
 from recordings.files import check_target, is_stream, publish
 from recordings.format import (
-    ABOUT,
     CLOCK_OFFSET,
     EVENTS,
     FORMAT_VERSION,
     PROFILE,
-    SOURCES,
     encode_event,
     encode_readings,
-    topic,
+    topics_of,
 )
 from recordings.library import free_path, hold, part_of
 
@@ -48,8 +44,7 @@ class Recorder:
 
     Clocks are in seconds since the recording began, pauses excluded.  Headless recordings have no
     `wall` clock: nothing in them depends on when or where they were made, so the same run gives the
-    same bytes.  `about` describes the recording that is copied, if one is.  A failing disk raises
-    DiskError; after that, only `abandon` is of use.
+    same bytes.  A failing disk raises DiskError; after that, only `abandon` is of use.
     """
 
     def __init__(
@@ -57,7 +52,6 @@ class Recorder:
         path: Path,
         wall: WallClock | None = time.time_ns,
         overwrite: bool = False,
-        about: dict[str, str] | None = None,
     ) -> None:
         self.path = path
         self.part = part_of(path)
@@ -65,12 +59,11 @@ class Recorder:
         self.bytes = 0  # size of the file so far
         self.samples = 0
         self._wall = wall
-        self._about = _about(wall) if about is None else about
         self._overwrite = overwrite
         self._last: Sample | None = None  # of the run
         self._channels: dict[str, int] = {}
         self._schemas: dict[str, int] = {}
-        self._topics: list[str] = []  # of the run's methods
+        self._topics: tuple[str, ...] = ()  # of the run's methods
         self._entries = 0
         self._log_time = CLOCK_OFFSET
         self._paused = False
@@ -89,7 +82,7 @@ class Recorder:
         self._writer = Writer(
             self._file, chunk_size=1 << 62, compression=CompressionType.ZSTD, enable_data_crcs=True
         )
-        self._writer.start(PROFILE, program())
+        self._writer.start(PROFILE, f"pendu-tui {version('pendu-tui')}")
 
     def event(self, event: Event, clock: float) -> None:
         """Write an event; a pause, and whatever is done while paused, is on disk at once.
@@ -97,15 +90,13 @@ class Recorder:
         A recording that holds all the events that one may is finished, and raises DiskError.
         """
         data = encode_event(event)
-        others = self._entries - self.samples
-        is_full = others > MAX_EVENTS - 20 or event.run > MAX_RUNS  # a start brings its sources
-        if is_full and event.kind != "stop":
+        if self._entries - self.samples == MAX_EVENTS - 1 and event.kind != "stop":
             self.close()
             raise DiskError("is full and was finished; start the lab again for another", self.path)
         if event.kind in ("start", "stop"):
             self._last = None
         if event.scene is not None:
-            self._begin(event.scene, clock)
+            self._begin(event.scene)
         self._add([(EVENTS, data)], clock)
         self._paused = event.kind == "pause" or (self._paused and event.kind != "resume")
         self._flush_if_due(urgent=self._paused)
@@ -195,19 +186,10 @@ class Recorder:
         else:
             self.close()
 
-    def _begin(self, scene: Scene, clock: float) -> None:
-        """Register the channels of a run, and in the first chunk describe the recording."""
-        if not self._channels:
-            self._register(EVENTS, EVENT_SCHEMA)
-            self._register(ABOUT, TEXT_SCHEMA)
-            self._add([(ABOUT, json.dumps(self._about).encode())], clock)
-        for method in scene.cast:
-            if isinstance(method, OwnMethod):
-                self._register(SOURCES, TEXT_SCHEMA)
-                names = ("letter", "sha256", "source")
-                source = {"method": method.key, **{name: getattr(method, name) for name in names}}
-                self._add([(SOURCES, json.dumps(source).encode())], clock)
-        self._topics = [topic(method.key, scene.model) for method in scene.cast]
+    def _begin(self, scene: Scene) -> None:
+        """Register the channels of a run."""
+        self._register(EVENTS, EVENT_SCHEMA)
+        self._topics = topics_of(scene)
         for name in self._topics:
             self._register(name, sample_schema(scene.model))
 
@@ -242,18 +224,3 @@ class Recorder:
         is_late = self._wall is not None and self.seconds >= self._flushed_at + FLUSH_EVERY
         if urgent or is_late or self._unflushed > MAX_CHUNK:
             self.flush()
-
-
-def program() -> str:
-    """Return the name and the version of this program."""
-    return f"pendu-tui {version('pendu-tui')}"
-
-
-def _about(wall: WallClock | None) -> dict[str, str]:
-    """Return where and when a recording is made; a headless one depends on neither."""
-    about = {"program": program()}
-    if wall is not None:
-        about["python"] = platform.python_version()
-        about["platform"] = f"{platform.system()} {platform.machine()}"
-        about["started"] = time.strftime("%Y-%m-%dT%H:%M:%S%z", time.localtime(wall() / 1e9))
-    return about

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import lru_cache
 from io import SEEK_END
+from itertools import groupby
 from math import inf
 from operator import attrgetter
 from pathlib import Path
@@ -17,13 +18,14 @@ from mcap.records import Message
 
 from engine.run.judgement import Milestone
 from engine.run.lockstep import Sample
-from engine.scenes import Scene
+from engine.run.stepping import Stepping
+from engine.scenes import Scene, SceneError
 from recordings.arithmetic import Arithmetic
 from recordings.errors import RecordingError, named
-from recordings.events import MAX_EVENTS, MAX_RUNS, NOT_DONE, Entry, Event
-from recordings.format import CLOCK_OFFSET
+from recordings.events import MAX_EVENTS, NOT_DONE, Entry, Event
+from recordings.format import CLOCK_OFFSET, EVENTS, decode_event, decode_reading, topics_of
 from recordings.library import open_file
-from recordings.reader import Contents, Decoder, ShowProgress, read_chunk, read_contents
+from recordings.reader import Contents, ShowProgress, read_chunk, read_contents
 
 CHUNKS_KEPT = 3  # decoded; playing meets the same one thirty times, stepping about an edge two
 
@@ -59,12 +61,25 @@ class Run:
         found = (event.milestone for _, event in self.events if event.milestone)
         return sorted(found, key=attrgetter("step"))
 
+    def check(self, event: Event) -> None:
+        """Raise RecordingError for an event that this run cannot have."""
+        cast = self.scene.cast
+        if event.h is not None:
+            try:
+                Stepping(event.h, event.equal_cost, cast).check(self.scene.w0)
+            except SceneError as error:
+                why = f"run {self.number} cannot have been recorded: {error}"
+                raise RecordingError(why) from error
+        milestone = event.milestone
+        if milestone and not {milestone.method, milestone.other} <= {*cast, None}:
+            raise RecordingError("a milestone is of a method that the run does not have")
+
 
 class Recording:
     """A recording that is open for reading.
 
-    `damaged`: something was changed or lost; `reason`: what is wrong, a clause, or None.  Of a file
-    too long to be checked at opening, damage may show only while it plays.  Clocks are in s.
+    `damaged`: something was changed or lost; `reason`: what is wrong, a clause, or None.  Unless a
+    file is checked, damage may show only while it plays.  Clocks are in s.
     """
 
     def __init__(self, path: Path, stream: BinaryIO, contents: Contents) -> None:
@@ -74,16 +89,18 @@ class Recording:
         self.reason = contents.reason
         self.entries_lost = contents.entries_lost
         self.events: list[tuple[float, Event]] = []  # as recorded, each with its clock [s]
+        self.lost_runs: set[int] = set()  # of which something was read, but not the start
         self._runs: dict[int, Run] = {}
         self._stream = stream
         self._places = contents.places
+        self._topics = contents.topics
+        self._models: dict[str, str] = {}  # of the runs' topics
         self._unreadable: set[int] = set()  # chunks
-        self._decoder = Decoder(contents.channels)
+        self._others = 0  # entries that are no samples, in the chunks with events
         self._decode = lru_cache(CHUNKS_KEPT)(self._entries)
         self._find_runs()
         self.runs = list(self._runs.values())
-        self.about = self._decoder.about  # where and how it was made
-        self.length = (self._places[-1].end - CLOCK_OFFSET) / 1e9
+        self.length = _clock(self._places[-1].end)
         self.models = tuple(dict.fromkeys(run.scene.model for run in self.runs))
         methods = (method.key for run in self.runs for method in run.scene.cast)
         self.methods = tuple(dict.fromkeys(methods))
@@ -117,18 +134,13 @@ class Recording:
         return self.reason is None
 
     @property
-    def runs_lost(self) -> int:
-        """The number of runs of which something was read, but not the start."""
-        return len(self._decoder.lost_runs)
-
-    @property
     def samples(self) -> int:
         """The number of samples."""
         try:
             last = read_chunk(self._stream, self._places[-1].offset)[1][-1]
         except (RecordingError, OSError):
             return 0
-        return last.sequence + 1 - self.entries_lost - self._decoder.others
+        return last.sequence + 1 - self.entries_lost - self._others
 
     def at(self, clock: float) -> SamplePlace | None:
         """Return the last sample at or before that time, or else the first, if any."""
@@ -190,20 +202,14 @@ class Recording:
     def _find_runs(self) -> None:
         """Read all events, and the last sample of each run."""
         starts: list[int] = []  # chunks
-        for chunk, place in enumerate(self._places):
-            if self._decoder.others > MAX_EVENTS or len(self._runs) > MAX_RUNS:
-                raise RecordingError(f"it has more than {MAX_EVENTS} events or {MAX_RUNS} runs")
-            for clock, event in self._entries(chunk, only_events=True) if place.has_events else ():
-                if not isinstance(event, Event):
-                    continue
-                if event.scene is not None and event.arithmetic is not None:
-                    if event.run <= next(reversed(self._runs), 0):
-                        raise RecordingError("its runs are not in order")
-                    run = Run(event.run, event.scene, event.arithmetic, clock, clock)
-                    self._runs[run.number] = run
-                    starts.append(chunk)
-                self.events.append((clock, event))
-                self._runs[event.run].events.append((clock, event))
+        for chunk in (index for index, place in enumerate(self._places) if place.has_events):
+            for clock, event in self._entries(chunk, only_events=True):
+                if isinstance(event, Event):
+                    self.events.append((clock, event))
+                    self._runs[event.run].events.append((clock, event))
+                    starts += [chunk] if event.scene else []
+            if self._others > MAX_EVENTS:
+                raise RecordingError(f"it has more than {MAX_EVENTS} events")
         if not self._runs:
             raise RecordingError(self.reason or "it has no runs")
         for chunk in dict.fromkeys([*starts, len(self._places) - 1]):
@@ -217,13 +223,13 @@ class Recording:
     def _entries(self, chunk: int, only_events: bool = False) -> list[Entry]:
         """Return a chunk's entries; a gap before those after one, or instead of unreadable ones."""
         place = self._places[chunk]
-        gap = [Entry((place.start - CLOCK_OFFSET) / 1e9, None)]
+        gap = [Entry(_clock(place.start), None)]
         messages: list[Message] = []
         try:
             _, messages = read_chunk(self._stream, place.offset)
             if (messages[0].log_time, messages[-1].log_time) != (place.start, place.end):
                 raise RecordingError("a chunk differs from its entry in the summary")
-            entries = list(self._decoder.entries(messages, only_events))
+            entries = list(self._decoded(messages, only_events))
             return gap + entries if place.is_after_gap else entries
         except (RecordingError, OSError) as error:
             if chunk not in self._unreadable:
@@ -233,7 +239,62 @@ class Recording:
             self.reason = self.reason or str(error)
             return gap
 
+    def _decoded(self, messages: list[Message], only_events: bool) -> Iterator[Entry]:
+        """Yield the entries of a chunk, without those of runs whose start is lost.
+
+        Messages of unknown topics are skipped.  Raises RecordingError for anything impossible.
+        """
+        for _, group in groupby(messages, attrgetter("sequence")):
+            parts = list(group)
+            clock = _clock(parts[0].log_time)
+            topics = tuple(self._topics.get(part.channel_id, "") for part in parts)
+            is_sample = topics[0] in self._models
+            if only_events and not is_sample:
+                self._others += 1
+            value: Event | Sample
+            if topics == (EVENTS,):
+                value = self._event(parts[0].data, clock)
+            elif is_sample and not only_events:
+                value = self._sample(parts, topics)
+            else:
+                continue
+            if value.run in self._runs:
+                yield Entry(clock, value)
+            else:
+                self.lost_runs.add(value.run)
+
+    def _event(self, data: bytes, clock: float) -> Event:
+        """Return the event of a message; a start that comes first begins its run."""
+        event = decode_event(data)
+        run = self._runs.get(event.run)
+        if run is not None:
+            run.check(event)
+        elif event.scene is not None and event.arithmetic is not None:
+            if event.run < next(reversed(self._runs), 0):
+                raise RecordingError("its runs are not in order")
+            self._runs[event.run] = Run(event.run, event.scene, event.arithmetic, clock, clock)
+            self._models |= dict.fromkeys(topics_of(event.scene), event.scene.model)
+        return event
+
+    def _sample(self, parts: list[Message], topics: tuple[str, ...]) -> Sample:
+        if not set(topics) <= self._models.keys():
+            raise RecordingError("a sample is incomplete")
+        decoded = [
+            decode_reading(part.data, self._models[topic])
+            for part, topic in zip(parts, topics, strict=True)
+        ]
+        run, step, t, _ = decoded[0]
+        of_run = topics_of(self._runs[run].scene) if run in self._runs else topics
+        if topics != of_run or any(each[:3] != (run, step, t) for each in decoded):
+            raise RecordingError("a sample is incomplete")
+        return Sample(run, step, t, tuple(reading for *_, reading in decoded))
+
 
 def _as_recorded(clock: float) -> int:
     """Return the log_time of a clock [s]: files round to nanoseconds."""
     return CLOCK_OFFSET + round(max(clock, 0.0) * 1e9)
+
+
+def _clock(log_time: int) -> float:
+    """Return the clock [s] of a log_time."""
+    return (log_time - CLOCK_OFFSET) / 1e9

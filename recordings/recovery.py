@@ -39,7 +39,7 @@ def recover(
     if out.exists() and path.exists() and out.samefile(path):
         raise DiskError("is the recording to recover; choose another name", out)
     with Recording.open(path, check=True, progress=progress) as recording:
-        recorder = Recorder(out, None, overwrite, recording.about | {"recovered": "yes"})
+        recorder = Recorder(out, None, overwrite)
         try:
             for clock, value in recording.entries():
                 if value is None:
@@ -61,7 +61,7 @@ def recover(
             reason=recording.reason,
             samples_kept=recorder.samples,
             entries_lost=recording.entries_lost,
-            runs_lost=recording.runs_lost,
+            runs_lost=len(recording.lost_runs),
         )
 
 

@@ -94,7 +94,7 @@ def verify(
                 rerun.compare(value)
             elif value.h is not None:
                 rerun.change(value)
-        if recording.runs_lost and not recording.damaged:
+        if recording.lost_runs and not recording.damaged:
             raise RecordingError("a run has no start")
         if result.samples == 0:
             raise RecordingError(recording.reason or "it has no samples")

@@ -36,7 +36,6 @@ class Damaged:
         with Recording.open(self.path) as recording:
             self.entries = list(recording.entries())
             self.runs = [run.scene for run in recording.runs]
-            self.about = recording.about
         with self.path.open("rb") as stream:
             self.chunks = read_contents(stream, check=True, progress=None).places
         self.samples = sum(isinstance(value, Sample) for _, value in self.entries)
@@ -70,7 +69,7 @@ class Damaged:
     def is_harmless(self) -> bool:
         """Return whether all that is read is what was recorded."""
         with Recording.open(self.path) as recording:
-            same = list(recording.entries()) == self.entries and recording.about == self.about
+            same = list(recording.entries()) == self.entries
             return same and [run.scene for run in recording.runs] == self.runs
 
     def is_noticed_by_show(self) -> bool:

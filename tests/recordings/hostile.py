@@ -12,15 +12,14 @@ from engine.run.judgement import Milestone
 from engine.run.lockstep import Lockstep, Sample
 from recordings.events import Event, noticed
 from recordings.format import (
-    ABOUT,
     CLOCK_OFFSET,
     EVENTS,
     FORMAT_VERSION,
     encode_event,
     encode_readings,
-    topic,
+    topics_of,
 )
-from tests.recordings.examples import METHOD_KEYS, SCENE, start
+from tests.recordings.examples import SCENE, start
 
 Part = tuple[str, float, bytes]
 """Topic, clock [s], data."""
@@ -40,7 +39,7 @@ def write(path: Path, entries: Iterator[list[Part]], chunk_size: int = 1 << 20) 
         )
         writer.start("pendu", "forger")
         schema = writer.register_schema("x", "jsonschema", b'{"type": "object"}')
-        names = (EVENTS, ABOUT, FOREIGN, *map(topic, METHOD_KEYS))
+        names = (EVENTS, FOREIGN, *topics_of(SCENE))
         facts = {"format": FORMAT_VERSION}
         channels = {name: writer.register_channel(name, "json", schema, facts) for name in names}
         for number, parts in enumerate(entries):
@@ -58,8 +57,8 @@ def event(value: Event, clock: float = 0.0, **changes: object) -> list[Part]:
 
 
 def sample(value: Sample, clock: float = 0.0) -> list[Part]:
-    messages = zip(METHOD_KEYS, encode_readings(value), strict=True)
-    return [(topic(key), clock, data) for key, data in messages]
+    messages = zip(topics_of(SCENE), encode_readings(value), strict=True)
+    return [(topic, clock, data) for topic, data in messages]
 
 
 def first_sample(run: int = 1) -> Sample:
@@ -142,7 +141,6 @@ FILES: dict[str, Callable[[int], Iterator[list[Part]]]] = {
     "escapes": lambda n: iter(
         [
             event(start(), scene=ESCAPES, watch=ESCAPES),
-            [(ABOUT, 0.0, json.dumps({ESCAPES: ESCAPES}).encode())],
             sample(first_sample()),
             event(Event("mark", 1, 0, 0.0, text="x"), text=ESCAPES),
         ]

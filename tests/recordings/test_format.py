@@ -14,7 +14,7 @@ from engine.methods import METHODS
 from engine.models import MODELS
 from engine.run.judgement import Milestone, Verdict
 from engine.run.lockstep import Reading, Sample
-from engine.scenes import LIMITS, Scene
+from engine.scenes import LIMITS, SCENES, Scene
 from recordings.arithmetic import FUNCTIONS, fingerprint
 from recordings.errors import MAX_TEXT, RecordingError, printable
 from recordings.events import Event, noticed
@@ -24,8 +24,7 @@ from recordings.format import (
     decode_reading,
     encode_event,
     encode_readings,
-    keys_of,
-    topic,
+    topics_of,
 )
 from tests.recordings.examples import SCENE, start
 
@@ -105,7 +104,7 @@ milestones |= made(
     Milestone, st.just("errors cross"), methods, counts, finite, finite, other=methods
 )
 events = st.one_of(
-    made(Event, st.just("start"), counts, counts, finite, scene=scenes),
+    made(Event, st.just("start"), counts, st.just(0), st.just(0.0), scene=scenes),
     made(Event, st.just("set_h"), counts, counts, finite, h=finite, equal_cost=st.booleans()),
     made(Event, st.just("speed"), counts, counts, finite, speed=finite),
     made(Event, st.just("mark"), counts, counts, finite, text=st.none() | texts.filter(bool)),
@@ -189,8 +188,8 @@ def test_an_unknown_field_is_ignored_and_a_missing_optional_one_is_none():
 
 
 def test_a_topic_names_a_method_and_a_model():
-    assert keys_of(topic("rk4", "spring")) == ("spring", "rk4")
-    assert keys_of(topic("rk4")) == ("pendulum", "rk4")
+    assert topics_of(SCENE)[3] == "/pendu/rk4"
+    assert topics_of(SCENES["stiff-slow"])[0] == "/pendu/spring/velocity_verlet"
 
 
 @pytest.mark.parametrize("name", ["run", "step"])
@@ -202,8 +201,8 @@ def test_a_count_is_a_whole_number_in_range(name, value):
 
 @pytest.mark.parametrize(
     "data",
-    [b"", b"{", b"[]", b"null", b"\xff", b"{} {}", b"[" * 60_000, b'{"run": 1, "nonfinite": {}}'],
-    ids=["empty", "cut", "list", "null", "not text", "two", "deep", "nonfinite"],
+    [b"", b"{", b"[]", b"null", b"\xff", b"{} {}", b"[" * 60_000, b'{"run": 1}'],
+    ids=["empty", "cut", "list", "null", "not text", "two", "deep", "lacking"],
 )
 def test_an_unexpected_message_is_refused(data):
     with pytest.raises(RecordingError):
@@ -229,8 +228,6 @@ START = json.loads(encode_event(start()))
         {"methods": []},
         {"methods": "rk4"},
         {"methods": ["rk 4"]},
-        {"methods": ["rk4/"]},
-        {"methods": ["r" * 65]},
         {"methods": [["rk4"]]},
         {"model": 1},
         {"model": "kepler"},
@@ -276,24 +273,6 @@ def test_an_impossible_milestone_is_refused(wrong):
     assert decode_event(json.dumps(NOTICED).encode()).milestone.verdict == "grows"
     with pytest.raises(RecordingError):
         decode_event(json.dumps(NOTICED | wrong).encode())
-
-
-@pytest.mark.parametrize(
-    "name",
-    [
-        "/pendu/events",
-        "/pendu/sources",
-        "/pendu/kepler/rk4",
-        "/camera/rk4",
-        "/pendu",
-        "/pendu/",
-        "/pendu/a/b/c",
-        "/pendu/rk 4",
-        "",
-    ],
-)
-def test_other_topics_are_not_of_a_method(name):
-    assert keys_of(name) is None
 
 
 @pytest.mark.parametrize("function", FUNCTIONS)

@@ -54,13 +54,15 @@ def test_the_other_methods_verify_without_it(path):
     assert pendu("verify", path, "--methods", "rk4").code == 0
 
 
-def test_the_recording_keeps_the_text_and_its_hash(path):
-    with path.open("rb") as stream:
-        ((_, _, message),) = make_reader(stream).iter_messages(["/pendu/sources"])
-    own = json.loads(message.data)
-    assert own["source"] == HEUN
-    assert own["sha256"] == hashlib.sha256(HEUN.encode()).hexdigest()
-    assert own["method"] == "my_heun"
+def test_the_recording_and_its_recovery_keep_the_text_and_its_hash(path):
+    events._own.clear()
+    assert pendu("recordings", "recover", path, "-o", "copy.mcap").code == 0
+    for each in (path, Path("copy.mcap")):
+        with each.open("rb") as stream:
+            _, _, message = next(make_reader(stream).iter_messages(["/pendu/events"]))
+        own = json.loads(message.data)
+        assert own["sources"] == [HEUN]
+        assert own["methods"] == ["rk4", f"my_heun@{hashlib.sha256(HEUN.encode()).hexdigest()}"]
 
 
 def test_show_and_export_work_without_the_text(path):

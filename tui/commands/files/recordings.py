@@ -164,10 +164,9 @@ def _contents(recording: "Recording") -> Report:
         "length": seconds(recording.length),
         "size": f"{file_size(recording.bytes)}, {counted(recording.samples, 'sample')}",
         "methods": ", ".join(recording.methods),
-        **recording.about,
     }
     more = len(runs) - MAX_RUNS_SHOWN
-    names = ("complete", "damaged", "reason", "methods", "samples", "bytes", "about")
+    names = ("complete", "damaged", "reason", "methods", "samples", "bytes")
     return Report(
         name="recordings-show",
         columns=(Column("", "name"), Column("", "value")),
