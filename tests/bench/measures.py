@@ -23,7 +23,7 @@ CEILINGS = {
     "characters_of_engine": 327_000,
     "characters_of_recordings": 93_400,
     "characters_of_tui": 682_200,
-    "characters_of_tests": 1_029_900,
+    "characters_of_tests": 1_009_300,
     "files": 220,
     "long_lines": 584,
     "parallel_assignments": 180,
