@@ -132,7 +132,10 @@ def simulate(
 
 
 def _stops(scene: Scene, time: float, every: int) -> list[int]:
-    """Return the steps whose numbers a run keeps.  Raises ValueError if there are none, or too many."""
+    """Return the steps whose numbers a run keeps.
+
+    Raises ValueError if there are none, or too many.
+    """
     steps = round(min(time, 1e15) / scene.h)
     if steps < 1:
         raise ValueError(f"time = {time:g} s is shorter than one step of {scene.h:g} s.")

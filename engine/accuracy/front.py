@@ -1,4 +1,7 @@
-"""The front of speed against accuracy: the cheapest method at each accuracy, interpolated between measured points."""
+"""The front of speed against accuracy: the cheapest method at each accuracy.
+
+Costs are interpolated between measured points.
+"""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -27,7 +30,10 @@ class Cheapest:
 
 
 def cost_of(point: Point, cost: Cost) -> float:
-    """The cost of a run; 0 where it is unknown: seconds of an untimed run, force evaluations of a series."""
+    """Return the cost of a run; 0 where it is unknown.
+
+    Unknown are the seconds of an untimed run and the force evaluations of a series.
+    """
     return point.seconds or 0.0 if cost == "seconds" else point.force_evaluations
 
 
@@ -64,7 +70,7 @@ def front(points: Iterable[Point], kind: ErrorKind, cost: Cost) -> list[Cheapest
 
 
 def cost_at(line: Sequence[Point], kind: ErrorKind, cost: Cost, target: float) -> float | None:
-    """The cost at which a method's error falls to `target`, interpolated; None if no point reaches it."""
+    """Return the interpolated cost at which the error falls to `target`, or None."""
     line = _coarsest_first(line)
     at = next(
         (n for n, point in enumerate(line) if _usable(point, kind) and point.error(kind) <= target),

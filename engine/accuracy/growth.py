@@ -44,7 +44,10 @@ class Growth:
 
 
 def duration(scene: Scene) -> float | None:
-    """For how long the error is followed [s]; None where the motion is not periodic or takes too many steps."""
+    """Return how long to follow the error [s].
+
+    None: the motion is not periodic, or takes too many steps.
+    """
     period = scene.exact().period
     if period is None or PERIODS * period / scene.h > MOST_STEPS or period < 4 * scene.h:
         return None
@@ -52,7 +55,7 @@ def duration(scene: Scene) -> float | None:
 
 
 def growth(scene: Scene, method: Method) -> Growth:
-    """The largest error in theta of each period, of PERIODS at most, and the power of t that fits them."""
+    """Largest theta error in each of at most PERIODS periods, and the fitted power of t."""
     exact, time = scene.exact(), duration(scene)
     if time is None or exact.period is None:
         return Growth(method, [], [], None)
@@ -76,7 +79,7 @@ def growth(scene: Scene, method: Method) -> Growth:
 
 
 def growths(scene: Scene, own: Sequence[float]) -> Iterator[Growth]:
-    """The growth of each method of the cast at its own h [s]; for another process, which has only the arguments."""
+    """Return how each method's error grows [s] at its own h; picklable, for another process."""
     return (
         growth(scene.altered(h=abs(h)), method) for method, h in zip(scene.cast, own, strict=True)
     )

@@ -78,7 +78,7 @@ def least_cost(
 
 
 def _cost(attempt: Attempt) -> float:
-    """Seconds where they are measured, or force evaluations; infinite where the target is not reached."""
+    """Seconds if measured, else force evaluations; infinite if the target is not reached."""
     if attempt.point is None or not attempt.succeeded:
         return math.inf
     return attempt.point.seconds or attempt.point.force_evaluations
@@ -87,7 +87,7 @@ def _cost(attempt: Attempt) -> float:
 def least_error(
     study: Study, kind: ErrorKind, budget: int, show: Callable[[float], None] = lambda share: None
 ) -> Advice:
-    """Each method's most accurate run within a budget of force evaluations; of equal errors the cheaper."""
+    """Return each method's most accurate run within a budget; of equal errors, the cheaper one."""
     attempts: list[Attempt] = []
     for method in study.scene.cast:
         attempts.append(_spend(study, method, kind, budget))

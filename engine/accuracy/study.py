@@ -183,7 +183,7 @@ class Study:
     def _errors(
         self, method: Method, steps: int, comparisons: int
     ) -> tuple[tuple[float, float, float], bool]:
-        """The largest errors in theta [rad] and energy, the last in theta; and whether the numbers overflowed."""
+        """Largest errors in theta [rad] and energy, last error in theta, whether it overflowed."""
         lockstep = Lockstep(
             self.scene.altered(h=self.time / steps, cast=(method,)), loops=self.loops
         )
@@ -217,7 +217,7 @@ def timed(point: Point, scene: Scene, clock: Clock, loops: LoopsOf = PlainLoops)
 
 
 def shortest(work: Callable[[], object], runs: int, clock: Clock) -> tuple[float, float]:
-    """Seconds of one piece of work, the shortest of REPEATS; and by how much the longest took longer, relative."""
+    """Return the shortest of REPEATS timings [s], and the relative excess of the longest."""
     work()  # may have to be compiled
     lengths = []
     for _ in range(REPEATS):
@@ -235,7 +235,10 @@ def ladder(time: float, h_max: float, h_min: float, count: int) -> list[int]:
 
 
 def usual(scene: Scene, all: bool = False) -> tuple[float, list[int]]:
-    """A time [s], ten small swings (20 s for 1 m), and a ladder for the usual cast, or for `all` methods."""
+    """Return a time [s] and a ladder of steps for the usual cast, or for `all` methods.
+
+    The time is that of ten small swings: 20 s for 1 m.
+    """
     time = float(f"{SWINGS * math.tau / scene.w0:.2g}")
     largest, smallest, rungs = ALL_LADDER if all else Z_LADDER
     return time, ladder(time, largest / scene.w0, smallest / scene.w0, rungs)
@@ -248,7 +251,10 @@ def with_all_methods(scene: Scene) -> Scene:
 
 
 def compilable(cast: Cast) -> bool:
-    """Whether to time these methods compiled by Numba: a user's own cannot be, and then, to be fair, none is."""
+    """Return whether to time these methods compiled by Numba.
+
+    If one of them is a user's own, which cannot be compiled, none is: the timing is fair.
+    """
     return available() and not any(isinstance(method, OwnMethod) for method in cast)
 
 

@@ -20,7 +20,10 @@ def explicit_euler(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
 
 
 def explicit_euler_on_rates(rates: Rates, phase: Phase, h: float) -> Iterator[Phase]:
-    """Explicit Euler on a first-order system.  With friction, small swings gain energy from h = gamma/w0² on."""
+    """Explicit Euler on a first-order system.
+
+    With friction, small swings gain energy from h = gamma/w0² on.
+    """
     while True:
         phase = tuple(value + h * rate for value, rate in zip(phase, rates(phase), strict=True))
         yield phase

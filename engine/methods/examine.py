@@ -19,7 +19,10 @@ SAME = (
 
 
 def load(source: str, key: str, letter: str, file: str) -> OwnMethod:
-    """A user's method, examined and measured.  Raises OwnMethodError, whose text is a sentence for the user."""
+    """Return a user's method, examined and measured.
+
+    Raises OwnMethodError, whose text is a sentence for the user.
+    """
     if len(source) > LONGEST_SOURCE:
         raise OwnMethodError(
             f"{file} is too long; use a file of at most {LONGEST_SOURCE:,} characters."

@@ -119,7 +119,10 @@ RK4_LEARNED_HAMILTONIAN = _learned(
 
 
 def learned_map(model: Model, phase: Phase, h: float) -> Iterator[Phase]:
-    """The learned map; it is right for w0 h = 0.1, and at other h as long as what it adds is proportional to h."""
+    """The learned map.
+
+    It is right for w0 h = 0.1, and for other h as far as its increment is proportional to h.
+    """
     w0 = model.w0
     tau = w0 * h
     rows = _rows(MAP)

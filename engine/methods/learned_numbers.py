@@ -1,4 +1,4 @@
-"""What tests/bench/learn.py learned from 600 noisy measurements of a pendulum with w0² = 9.81 s⁻²."""
+"""Weights that tests/bench/learn.py learned from 600 noisy measurements, w0² = 9.81 s⁻²."""
 
 FEATURES = """
 0.346,0.822,1.359 0.33,-1.303,0.906 0.905,0.446,-0.54 -0.537,0.581,-0.206 0.365,0.294,-0.529 0.028,0.547,-1.561

@@ -104,7 +104,7 @@ def evaluations(phases: Phases, steps: int = 50) -> tuple[float, int]:
 
 
 def determinant(phases: Phases, phase: Phase, h: float) -> float:
-    """Of the derivative of one step, by complex step (engine.run.tangent): area after it over area before."""
+    """Return area after a step over area before, from the complex-step derivative of the step."""
     tiny, force = 1e-100, PENDULUM.force(cmath.sin)
     theta, omega = phase
     a, c = after(phases, force, (theta + 1j * tiny, complex(omega)), h, 1)
@@ -128,7 +128,7 @@ def is_reversible(phases: Phases) -> bool:
 
 
 def out_and_back(phases: Phases, start: Phase, h: float, steps: int) -> float:
-    """How far from its start a swing ends that turns round after some steps and takes as many more [rad, rad/s]."""
+    """Return how far from its start a swing ends that is reversed after some steps [rad, rad/s]."""
     force = PENDULUM.force()
     theta, omega = after(phases, force, start, h, steps)
     theta, omega = after(phases, force, (theta, -omega), h, steps)

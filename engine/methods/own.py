@@ -123,7 +123,7 @@ def _no_print(*values: object, file: Any = None, **settings: Any) -> None:
 
 
 def _guarded(function: Callable[..., Any], name: str, source: str, file: str) -> Phases:
-    """The method, which raises OwnMethodError where it does anything but yield phases; overflow passes."""
+    """Return the method wrapped to raise OwnMethodError if it does not yield phases."""
     code = getattr(function, "__code__", None)
     where = f"{file}, line {code.co_firstlineno}" if code else file
 
@@ -213,7 +213,7 @@ def _frames(error: BaseException) -> Iterator[tuple[Any, int]]:
 
 
 def _sentence(error: BaseException, source: str, file: str, where: str) -> str:
-    """What happened, with the last line of the file on the way to it, or `where` if there is none."""
+    """Return the error with the last line of the user's file in its traceback, else `where`."""
     lines = [line for frame, line in _frames(error) if frame.f_code.co_filename == file]
     if lines:
         where = f"{file}, line {lines[-1]}: `{source.splitlines()[lines[-1] - 1].strip()[:60]}`"

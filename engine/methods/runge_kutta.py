@@ -60,7 +60,10 @@ def explicit_midpoint(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
 
 
 def rk4_on_rates(rates: Rates, phase: Phase, h: float) -> Iterator[Phase]:
-    """The classical Runge-Kutta method on a first-order system.  Hairer, Lubich & Wanner (2006), II.1.1."""
+    """The classical Runge-Kutta method on a first-order system.
+
+    Hairer, Lubich & Wanner (2006), II.1.1.
+    """
     while True:
         k1 = rates(phase)
         k2 = rates(_moved(phase, h / 2, k1))

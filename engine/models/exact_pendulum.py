@@ -63,7 +63,7 @@ def _k_squared(theta: float, omega: float, w0_squared: float) -> Decimal:
 
 
 def _half_angle(start: _Start) -> tuple[float, float, float]:
-    """sin and cos of half the start angle brought to (-pi, pi), and the whole turns taken off [rad]."""
+    """Return sin and cos of half the start angle in (-pi, pi), and the turns taken off [rad]."""
     s, c = math.sin(start.theta / 2), math.cos(start.theta / 2)
     if c < 0:
         s, c = -s, -c
@@ -95,7 +95,10 @@ def _libration(start: _Start, k: float, k_prime: float, compile: Compile) -> Exa
 
 
 def _rotation(start: _Start, k: float, k_prime: float, compile: Compile) -> ExactMotion:
-    """theta = ±2 am(u, 1/k), omega = ±2 w0 k dn(u, 1/k), u = k w0 t + F(±theta0/2), a turn 2 K(1/k)/(k w0)."""
+    """Rotation: theta = ±2 am(u, 1/k), omega = ±2 w0 k dn(u, 1/k).
+
+    u = k w0 t + F(±theta0/2); a turn takes 2 K(1/k)/(k w0).
+    """
     direction = math.copysign(1.0, start.omega)
     rate = start.w0 * k
     s, c, turns = _half_angle(start)
@@ -116,7 +119,10 @@ def _rotation(start: _Start, k: float, k_prime: float, compile: Compile) -> Exac
 
 
 def _separatrix(start: _Start) -> Motion:
-    """theta = 2 gd(u), omega = ±2 w0/cosh u, u = ±w0 t + u0: upright only after an infinite time."""
+    """Separatrix: theta = 2 gd(u), omega = ±2 w0/cosh u, with u = ±w0 t + u0.
+
+    The pendulum is upright only after an infinite time.
+    """
     s, c, turns = _half_angle(start)
     rate = math.copysign(start.w0, start.omega)
     offset = math.asinh(s / c)
@@ -132,7 +138,10 @@ def _separatrix(start: _Start) -> Motion:
 
 
 def _carlson_rf(x: float, y: float, z: float) -> float:
-    """Carlson's symmetric integral of the first kind, R_F(x, y, z), by duplication; at most one argument 0."""
+    """Return Carlson's symmetric integral of the first kind, R_F(x, y, z), by duplication.
+
+    At most one argument may be 0.
+    """
     while True:
         mean = (x + y + z) / 3
         dx, dy, dz = 1 - x / mean, 1 - y / mean, 1 - z / mean
@@ -148,7 +157,10 @@ def _carlson_rf(x: float, y: float, z: float) -> float:
 
 
 def _jacobi(k_prime: float) -> tuple[float, Callable[[float], tuple[float, float]]]:
-    """K(k), and u -> (sn u, cn u) for |u| <= K, from k' by the arithmetic-geometric mean (Bulirsch's sncndn)."""
+    """Return K(k), and u -> (sn u, cn u) for |u| <= K, from k'.
+
+    By the arithmetic-geometric mean: Bulirsch's sncndn.
+    """
     means: list[tuple[float, float]] = []
     a, b = 1.0, k_prime
     while True:

@@ -1,4 +1,4 @@
-"""The linear oscillator theta'' = -w0² theta: the limit of small swings, and what the linear theory talks about."""
+"""The linear oscillator theta'' = -w0² theta: the limit of small swings."""
 
 import math
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from engine.models.model import Energy, ExactMotion, Force, Model, Phase, Sine, 
 
 @dataclass(frozen=True)
 class LinearOscillator(Model):
-    """theta'' = -w0² theta.  It swings with the same period however wide, and never goes over the top."""
+    """theta'' = -w0² theta: one period for every amplitude, and never over the top."""
 
     w0_squared: float  # s⁻²
 

@@ -42,7 +42,7 @@ class Variable(NamedTuple):
     about: str = ""
     label: str = ""  # the title of its chart, if it is not a part of the state
     is_state: bool = True
-    """Whether it is a part of the phase.  Any other is a quantity of the phase, which charts can show."""
+    """Whether it is a component of the phase, or else a function of it that charts can show."""
     relative: bool = False  # readings have it over its value at the start of the run
 
 
@@ -96,7 +96,7 @@ class EnergyReference(NamedTuple):
         return self._log(energy) - self._log(self.true(t))
 
     def _log(self, energy: float) -> float:
-        """The logarithm of an energy [s⁻²], finite also where there is none left, or too much for a double."""
+        """ln of an energy [s⁻²], finite even if the energy is 0 or overflows a double."""
         return math.log(min(max(energy, self.least), 1e300))
 
 
@@ -107,7 +107,7 @@ class ExactMotion(NamedTuple):
     """The exact motion from one start."""
 
     at: Callable[[float], State]
-    """The state at a time [s], negative times included; theta continues from the start, unwrapped."""
+    """The state at a time [s], which may be negative; theta is unwrapped."""
     regime: Regime
     period: float | None = None  # s, per swing or, in rotation, per turn; None: not periodic
     accuracy: float = (
@@ -153,7 +153,10 @@ class Model(ABC):
         ""  # of its phase portrait, if the motion does not follow curves of equal energy
     )
     without_force: ClassVar[str] = ""
-    """Why studies and maps, made for one angle and a force that keeps the energy, do not apply; "": they do."""
+    """Return why studies and maps do not apply to the model, or an empty string.
+
+    They are made for one angle and a force that conserves the energy.
+    """
     without_ring: ClassVar[str] = ""
     """Why a ring of neighbouring starts does not apply; "": it does."""
 
@@ -166,7 +169,7 @@ class Model(ABC):
 
     @property
     def has_force(self) -> bool:
-        """Whether it is one angle and a force that keeps energy: studies, maps and modified energies apply."""
+        """Whether it is one angle with a conservative force, as studies and maps require."""
         return not self.without_force
 
     @property
@@ -219,7 +222,7 @@ class Model(ABC):
         return second_order_rates
 
     def parts(self, sin: Sine = math.sin) -> Any:
-        """Return the parts of the equations that methods made for this model take; by default the model itself."""
+        """Return the parts of the equations for this model's methods; by default, the model."""
         return self
 
     @abstractmethod
@@ -231,20 +234,20 @@ class Model(ABC):
         """Return the exact motion from theta [rad] and omega [rad/s]."""
 
     def reference(self, theta: float, omega: float) -> EnergyReference:
-        """Return what the energy errors of a run from theta [rad] and omega [rad/s] are relative to."""
+        """Return the scale of the energy errors of a run from theta [rad] and omega [rad/s]."""
         start: float = self.energy()(self.start(theta, omega))
         return EnergyReference(start, start if start > 0 else 2 * self.w0_squared)
 
     def invariant(self) -> Callable[[Phase], float] | None:
-        """Return a quantity above zero that the true motion keeps besides the energy; None: there is none."""
+        """Return a positive invariant besides the energy, or None."""
         return None
 
     def exact_length(self, theta: float, omega: float, t: float) -> float:
-        """Return the exact distance of the bob from the pivot at a time [s], over the length at rest."""
+        """Return the bob's exact distance from the pivot at a time [s], over the rest length."""
         return 1.0
 
     def area_share(self, t: float) -> float:
-        """Return the share of an area in phase space that the true motion leaves after a time [s]."""
+        """Return the share of a phase-space area that the exact flow leaves after a time [s]."""
         return 1.0
 
     def level(self, theta: Any, omega: Any, cos: Sine = math.cos) -> Any:

@@ -14,13 +14,19 @@ ModifiedEnergy = Callable[[Model, Phase, float], float]
 
 
 def velocity_verlet_modified_energy(model: Model, phase: Phase, h: float) -> float:
-    """H - h² (2 omega² f'(theta) + f(theta)²)/24 [s⁻²], f being the force; what remains wobbles with h⁴."""
+    """Return H - h² (2 omega² f'(theta) + f(theta)²)/24 [s⁻²], where f is the force.
+
+    What remains oscillates with h⁴.
+    """
     omega, force, slope, energy = _parts(model, phase)
     return energy - h * h / 24 * (2 * omega * omega * slope + force * force)
 
 
 def symplectic_euler_modified_energy(model: Model, phase: Phase, h: float) -> float:
-    """Verlet's modified energy half a kick later: symplectic Euler is Verlet seen between its kicks."""
+    """Return Verlet's modified energy half a kick later.
+
+    Symplectic Euler is velocity Verlet seen between its kicks.
+    """
     theta, omega = phase
     return velocity_verlet_modified_energy(model, (theta, omega + h / 2 * model.force()(theta)), h)
 
@@ -32,7 +38,10 @@ def position_verlet_modified_energy(model: Model, phase: Phase, h: float) -> flo
 
 
 def implicit_midpoint_modified_energy(model: Model, phase: Phase, h: float) -> float:
-    """H + h² (omega² f'(theta) - f(theta)²)/24 [s⁻²], f being the force; of small swings a multiple of H."""
+    """Return H + h² (omega² f'(theta) - f(theta)²)/24 [s⁻²], where f is the force.
+
+    For small swings it is a multiple of H.
+    """
     omega, force, slope, energy = _parts(model, phase)
     return energy + h * h / 24 * (omega * omega * slope - force * force)
 

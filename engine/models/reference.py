@@ -30,7 +30,10 @@ EVERY = 64  # steps from one that is kept to the next
 
 
 class Reference:
-    """The motion from a start, computed when asked for.  The order of the times asked for changes no bit."""
+    """The motion from a start, computed on demand.
+
+    Its bits do not depend on the order in which times are requested.
+    """
 
     def __init__(self, step: Step, start: Phase, h: float) -> None:
         """In steps of h [s]."""

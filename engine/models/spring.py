@@ -107,7 +107,7 @@ class Spring(Model):
         return -1j * cmath.exp(1j * theta), 0j
 
     def observe(self, phase: Phase) -> Observation:
-        """Return the swing's angle, within ±pi, and angular velocity, place, velocity, and the spring's energy."""
+        """Return the angle within ±pi, its velocity, place, velocity, and the spring's energy."""
         z, w = phase
         extra = {
             "x": z.real,
@@ -119,7 +119,7 @@ class Spring(Model):
         return Observation(*self._swing(phase), extra)
 
     def theta_error(self, theta: float, exact: float) -> float:
-        """Return theta - exact theta [rad], the shorter way round: theta is known within ±pi only."""
+        """Return theta - exact theta within ±pi [rad]: theta is known up to whole turns."""
         return math.remainder(theta - exact, math.tau)
 
     def length(self, extra: Mapping[str, float]) -> float:
@@ -189,7 +189,7 @@ class Spring(Model):
         return radial * radial / 2 + self.stiffness / 2 * (length - held) * (length - held)  # type: ignore[no-any-return]
 
     def exact(self, theta: float, omega: float) -> ExactMotion:
-        """By the reference, as the swing's angle and angular velocity; nan where the spring is too fast for it."""
+        """The reference's angle and angular velocity; nan if the spring is too fast for it."""
 
         def at(t: float) -> State:
             return self._swing(self.place(theta, omega, t))
@@ -197,7 +197,7 @@ class Spring(Model):
         return ExactMotion(at, "libration", accuracy=ACCURACY)
 
     def place(self, theta: float, omega: float, t: float) -> Phase:
-        """Position and velocity in the plane at a time [s], by the reference; nan where the spring is too fast."""
+        """The reference's position and velocity at a time [s]; nan if the spring is too fast."""
         if self.fastest > STIFFEST * self.w0:
             return complex(math.nan, math.nan), complex(math.nan, math.nan)
         return _reference(self, theta, omega).at(t)

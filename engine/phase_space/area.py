@@ -1,4 +1,4 @@
-"""Area in phase space: a ring of neighbouring starts, and how much each method changes the area in it."""
+"""Area in phase space: how each method changes the area of a ring of neighbouring starts."""
 
 import math
 from collections.abc import Sequence
@@ -39,7 +39,7 @@ class Neighbourhood:
     """
 
     def __init__(self, scene: Scene, radius: float, points: int = 64) -> None:
-        """Put `points` starts around the scene's, `radius` rad away in theta and radius·w0 in omega."""
+        """Put `points` starts around the scene's: `radius` in theta, `radius`·w0 in omega."""
         self._model = scene.equations
         angle = np.linspace(0.0, 2 * math.pi, points, endpoint=False)
         ring = (
@@ -55,7 +55,7 @@ class Neighbourhood:
 
     @property
     def area_ratios(self) -> tuple[float, ...]:
-        """Area now over area at the start, in the limit of a small ring; inf beyond a double's range."""
+        """Area now over area at the start, for an infinitesimal ring; inf if it overflows."""
         return tuple(math.exp(c.log_area) if c.log_area < 709 else math.inf for c in self._carried)
 
     def advance(self, n: int, stepping: Stepping) -> None:
@@ -104,7 +104,10 @@ class Neighbours:
     def follow(
         self, scene: Scene, run: int, step: int, changes: Sequence[SteppingChange], most: int
     ) -> Neighbourhood:
-        """Carry the ring towards a step of a run, by at most `most` steps; `changes` are all of the run's, in order."""
+        """Carry the ring towards a step of a run, by at most `most` steps.
+
+        `changes` are all of the run's, in order.
+        """
         known = [change for change in changes if change.step < self.step]
         if (
             self._ring is None

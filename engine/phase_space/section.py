@@ -22,14 +22,17 @@ Floats = NDArray[np.float64]
 Points = tuple[Floats, Floats]  # theta [rad], unwrapped, and omega [rad/s], of one shape
 
 SETTLED = 1e-4
-"""Where the rotation numbers of the two halves of an orbit differ by a larger part of them, it has none."""
+"""An orbit whose halves' rotation numbers differ by a larger share has none."""
 LARGEST = 12  # denominator of a fraction that counts as small
 PERIODS, FEWEST_STEPS, MOST_STEPS = 30, 2_000, 25_000  # that a period is averaged over
 _CHUNK = 8  # steps between two looks at a displacement
 
 
 def spread(count: int, theta: tuple[float, float], omega: tuple[float, float]) -> Points:
-    """`count` starts spread evenly over a rectangle, and so are the first n of them: Roberts' sequence R2 (2018)."""
+    """Spread `count` starts evenly over a rectangle, so that the first n are spread evenly, too.
+
+    Roberts' sequence R2 (2018).
+    """
     n = np.arange(1.0, count + 1)
     across, up = (
         n * 0.7548776662466927 % 1,
@@ -61,7 +64,7 @@ def pieces(method: Method, model: Model, h: float, starts: Points, steps: int) -
 
 
 def orbit(method: Method, model: Model, h: float, start: Phase, steps: int) -> Points:
-    """One start in plain floats, as a run takes it: two arrays (at most steps + 1), as far as numbers are finite."""
+    """Return the phases of one start: two arrays of at most steps + 1 finite numbers."""
     found = [start]
     try:
         for phase in islice(method.phases(model.force(), start, h), steps):
@@ -82,7 +85,7 @@ class OrbitKind:
     moves: bool  # not an equilibrium
     spins: bool  # goes over the top, at least once
     rotation: float | None
-    """Turns a step: around the bottom, or over the top with its sign; None: the orbit has no single number."""
+    """Turns per step: around the bottom, or over the top with its sign; None if there are none."""
     fraction: Fraction | None  # the nearest small one, of |rotation|
     island: bool  # every so many steps, by the fraction's denominator, the orbit is back in the same island
     lyapunov: float  # mean growth of ln |a small displacement| a step; tends to 0 where the orbit is regular
@@ -126,7 +129,10 @@ def kind_of(method: Method, model: Model, h: float, points: Points) -> OrbitKind
 
 
 def least_lyapunov(steps: int) -> float:
-    """The largest Lyapunov number [a step] that a regular orbit may show after so many steps, away from upright."""
+    """The largest Lyapunov number [1/step] of a regular orbit after so many steps.
+
+    Starts near the upright position are excepted.
+    """
     return (15 + math.log(max(steps, 1))) / max(steps, 1)
 
 

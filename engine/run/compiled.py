@@ -122,6 +122,6 @@ class TieredLoops:
 
 @cache
 def _same_sine(numba: Any) -> bool:
-    """Whether compiled code has Python's sine.  Of another library's values, one in 1400 or so differs."""
+    """Return whether compiled code uses Python's sine; other libraries differ now and then."""
     sine = numba.njit(lambda x: math.sin(x))
     return all(sine(x) == math.sin(x) for x in (0.001 * n for n in range(20_000)))

@@ -134,7 +134,7 @@ MilestoneKind = Literal["over the top", "failed", "verdict", "errors cross"]
 
 
 class Milestone(NamedTuple):
-    """A method went over the top, failed, was given a verdict, or its error passed another's for good."""
+    """A method went over the top, failed, got a verdict, or its error passed another's for good."""
 
     kind: MilestoneKind
     method: Method

@@ -154,7 +154,10 @@ class Lockstep:
         return self._judges.milestones if self._judges else ()
 
     def set_stepping(self, stepping: Stepping) -> None:
-        """Step like this from the next step on.  Raises SceneError for an h that is zero, not finite or absurd."""
+        """Step like this from the next step on.
+
+        Raises SceneError for an h that is zero, not finite or absurd.
+        """
         check_h(stepping.h, self.scene.w0)
         self._t_base = self.t
         self._base_step = self.step
@@ -280,7 +283,7 @@ class Lockstep:
         return most
 
     def sample(self, resets: bool = True) -> Sample:
-        """Return the readings now; unless it `resets` nothing, later lows and highs count from here."""
+        """Return the present readings; if it `resets`, extremes count from here on."""
         readings = tuple(self._read(track) for track in self._tracks)
         if resets:
             for track in self._tracks:

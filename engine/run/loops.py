@@ -1,4 +1,4 @@
-"""The loops that carry one method's way through a run: the phases of its generator, and their energies."""
+"""Loops that advance one method: the phases of its generator, and their energies."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -32,7 +32,10 @@ LoopsOf = Callable[[Method, Model], Loops]
 def advance(
     phases: Iterator[Phase], energy: Energy, phase: Phase, n: int, limit: float
 ) -> Advanced:
-    """Take n phases, or up to the last one whose energy is below `limit`; `phase` is the one before."""
+    """Take n phases, or up to the last one whose energy is below `limit`.
+
+    `phase` is the one before.
+    """
     done, value, low, high = 0, math.nan, math.inf, -math.inf
     for following in phases:
         now = energy(following)
@@ -51,7 +54,10 @@ def advance(
 
 
 def _advance_all(phases: Iterator[Phase], energy: Energy, n: int, limit: float) -> Advanced:
-    """`advance` in a tenth less time where all n steps succeed.  Raises OverflowError where one does not."""
+    """Do as `advance`, a tenth faster if all n steps succeed.
+
+    Raises OverflowError if one does not.
+    """
     low, high = math.inf, -math.inf
     for phase in islice(phases, n):
         now = energy(phase)
@@ -67,7 +73,10 @@ def _advance_all(phases: Iterator[Phase], energy: Energy, n: int, limit: float) 
 
 
 class PlainLoops:
-    """The loops in Python.  Where a call goes on from the last one, so does its generator, at no cost."""
+    """The loops in Python.
+
+    A call that continues the previous one continues its generator.
+    """
 
     def __init__(self, method: Method, model: Model) -> None:
         self._phases = method.on(model)

@@ -98,7 +98,7 @@ class RewindableRun:
 
     @property
     def home(self) -> float:
-        """The step ahead at which simulated time is back at 0; inf where it runs away from 0, or past it."""
+        """Return the step at which the simulated time is back at 0; inf if it never is."""
         ahead = -self.t / self.stepping.h
         return (
             self.step + round(ahead)
@@ -153,7 +153,10 @@ class RewindableRun:
             raise
 
     def set_stepping(self, stepping: Stepping) -> None:
-        """Step like this from here on; in the past, branch first.  Raises SceneError for an absurd h."""
+        """Step like this from here on; in the past, branch first.
+
+        Raises SceneError for an absurd h.
+        """
         x = self.x
         self._lockstep.set_stepping(stepping)
         self.changes.append(SteppingChange(self.step, self.t, stepping))

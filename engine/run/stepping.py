@@ -27,7 +27,7 @@ class Stepping(NamedTuple):
 
     @property
     def parts(self) -> tuple[int, ...]:
-        """In how many parts each method takes a step: at equal cost 4, 4, 4 and 1 for the usual cast."""
+        """Parts that each method divides a step into: at equal cost 4, 4, 4, 1 as a rule."""
         return _parts(self.cast) if self.equal_cost else (1,) * len(self.cast)
 
     @property
@@ -41,12 +41,12 @@ class Stepping(NamedTuple):
         return min(map(abs, self.own))
 
     def with_own(self, method: Method, h: float) -> Self:
-        """With |h| [s] as this method's own step size, in the same direction; or as h, if it is not in the cast."""
+        """With |h| [s] as this method's step in the same direction; as h if it is not cast."""
         parts = self.parts[self.cast.index(method)] if method in self.cast else 1
         return self._replace(h=math.copysign(h * parts, self.h))
 
     def next(self, up: bool) -> Self:
-        """With the smallest own step size at the next rung of 1, 2, 5, 10, …, or at the one before."""
+        """With the smallest own step size on the next or previous rung of 1, 2, 5, 10, …"""
         return self.with_smallest(_next_rung(self.smallest, up))
 
     def with_smallest(self, h: float) -> Self:
@@ -62,7 +62,7 @@ class Stepping(NamedTuple):
         return self._replace(equal_cost=not self.equal_cost).with_smallest(self.smallest)
 
     def check(self, w0: float) -> None:
-        """Raise SceneError unless a pendulum of natural frequency w0 [rad/s] can be given each method's own step."""
+        """Raise SceneError unless each method's own step suits the frequency w0 [rad/s]."""
         for h in dict.fromkeys((self.h, *self.own)):
             check_h(h, w0)
 

@@ -67,7 +67,7 @@ class Stretching:
         self.steps = 0
 
     def carry(self, phase: Phase, steps: int) -> None:
-        """Carry it forward, from this phase, by some steps; few enough that its length stays a double."""
+        """Advance from this phase, by few enough steps that the length stays a double."""
         _, (theta, omega) = tangent_map(self._phases, phase, self._along, self._h, steps)
         length = math.hypot(theta, omega / self._w0)
         if 0 < length < math.inf:

@@ -124,7 +124,7 @@ class Scene:
                 )
 
     def _complete(self, given: Mapping[str, float]) -> dict[str, float]:
-        """Return the model's parameters in its order, with their defaults; of an unknown model those given."""
+        """Return the parameters in the model's order, with defaults; as given if it is unknown."""
         if self.model not in MODELS:
             return dict(given)
         own = {each.name: each.default for each in MODELS[self.model].parameters}
@@ -168,12 +168,12 @@ class Scene:
 
     @property
     def z(self) -> float:
-        """The step in units of the highest frequency, h·w0 as a rule: what linear stability depends on."""
+        """The step times the highest frequency, as a rule h·w0: it decides linear stability."""
         return self.h * self.equations.fastest
 
     @property
     def general(self) -> bool:
-        """Whether model and methods take any force and numbers, as maps, areas and error-cost charts need."""
+        """Whether model and methods take any force, as maps, areas and charts need."""
         return not self.why_not_mapped
 
     @property
@@ -202,7 +202,7 @@ class Scene:
         return named | {"methods": [method.key for method in self.cast]}
 
     def altered(self, **changes: Any) -> "Scene":
-        """This scene with other numbers, parameters by name; it keeps its name only if nothing changes."""
+        """Return the scene with other numbers; it keeps its name only if nothing changes."""
         fields = {name: value for name, value in changes.items() if name in self.__slots__}
         others = {name: value for name, value in changes.items() if name not in fields}
         if "model" in fields:

@@ -37,7 +37,7 @@ HELD = (HOLDS, WOBBLES, CAUGHT)
 UNKNOWN = 255  # the fate of a cell that was not computed
 
 CELL = np.dtype([("steps", "<i4"), ("error", "<f8"), ("fate", "u1")])
-"""Steps survived; largest relative energy error |E - E0|/E0 up to the step that lost the swing; index into FATES."""
+"""Steps survived, largest relative energy error before the swing was lost, index into FATES."""
 
 Cells = NDArray[Any]  # of CELL
 

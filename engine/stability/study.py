@@ -50,7 +50,7 @@ def early_steps(steps: int) -> int:
 def ladder_of(
     scene: Scene, thetas: Sequence[float] | None, zs: Sequence[float] | None, steps: int
 ) -> Grid:
-    """Return the grid of a table: amplitudes [rad] on a ladder of z, to which the scene's own z is added."""
+    """Return a table's grid: amplitudes [rad] on a ladder of z that includes the scene's own."""
     swing = amplitude(scene)
     own = () if swing is None else (swing,)
     rungs = np.union1d(LADDER if zs is None else zs, [scene.z])

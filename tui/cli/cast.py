@@ -25,7 +25,10 @@ KEYS = [method.key for method in METHODS]
 
 
 def add_cast_options(parser: argparse._ActionsContainer, default: str = "the scene's") -> None:
-    """Add the options that choose methods, for `cast_of`; the help calls those without --methods `default`."""
+    """Add the options that choose methods, for `cast_of`.
+
+    `default` is what the help calls the cast without --methods.
+    """
     parser.add_argument(
         "--methods",
         metavar="KEY,KEY",

@@ -1,4 +1,7 @@
-"""pendu-tui: find the command, run it, return the exit code.  Imports nothing that the command does not need."""
+"""pendu-tui: find the command, run it, return the exit code.
+
+Imports only what the command needs.
+"""
 
 import io
 import os
@@ -115,7 +118,7 @@ def _main(arguments: Sequence[str] | None) -> int:
 
 
 def _drop_output() -> None:
-    """Discard what stdout did not take: at its end the interpreter would try again, and complain."""
+    """Discard what stdout did not take, which the interpreter would retry at its exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
@@ -144,7 +147,10 @@ def _run(arguments: list[str]) -> int:
 
 
 def split(arguments: list[str]) -> tuple[str, list[str]]:
-    """Return the command and its arguments; a scene or a file as the first word stands for a command, too."""
+    """Return the command and its arguments.
+
+    A scene or a file as the first word stands for a command.
+    """
     first = arguments[0] if arguments else "-"
     if first in COMMANDS or first in RENAMED:
         return first, arguments[1:]
@@ -208,7 +214,7 @@ def module_of(name: str) -> ModuleType:
 
 
 def completion_parser() -> "Parser":
-    """Return one parser of all commands, whose --print-completion prints a script for the tab key."""
+    """Return a parser of all commands, whose --print-completion prints a shell's script."""
     import shtab
 
     from tui.cli.options import Parser

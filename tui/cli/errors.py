@@ -18,7 +18,10 @@ class Exit(IntEnum):
 
 
 class UserError(Exception):
-    """An error that the user can fix.  Its text is one sentence: what is wrong, why, and what to do."""
+    """An error that the user can fix.
+
+    Its text is one sentence: what is wrong, why, and what to do.
+    """
 
     def __init__(self, message: str, code: Exit = Exit.USAGE) -> None:
         super().__init__(message)

@@ -85,7 +85,7 @@ def stop_requests() -> Iterator[Callable[[], bool]]:
 
 @contextmanager
 def _signals_to(handler: Callable[[int, FrameType | None], None]) -> Iterator[None]:
-    """Handle the signals that ask for an end; one that is ignored, as under nohup, stays ignored."""
+    """Handle the signals that ask for an end; ignored ones, as under nohup, stay ignored."""
     heard = [number for number in ENDING if signal.getsignal(number) is not signal.SIG_IGN]
     before = {number: signal.signal(number, handler) for number in heard}
     try:

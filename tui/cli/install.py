@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 def install_advice(package: str, extra: str) -> str:
-    """Return the command that adds a package, which an extra names, by the tool that installed pendu-tui."""
+    """Return the command that adds an extra's package, by the tool that installed pendu-tui."""
     environment = Path(sys.prefix)
     if (environment / "uv-receipt.toml").exists():
         return f"uv tool install --with {package} pendu-tui"

@@ -51,7 +51,7 @@ def print_lines(*lines: str) -> None:
 
 
 def console(piped_width: int | None = None) -> "Console":
-    """Return where tables and pictures are drawn: as wide as the terminal, or as given where the output is none."""
+    """Return where to draw: as wide as the terminal, or as the options ask."""
     from rich.console import Console
 
     return Console(

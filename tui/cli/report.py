@@ -43,7 +43,7 @@ class Column(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Rows in columns, folded to the width of the terminal; a text is the head of the rows below."""
+    """Rows in columns, folded to the terminal's width; a text is the head of the rows below."""
 
     columns: Sequence[Column]
     rows: Iterable[Any]
@@ -85,7 +85,10 @@ class Report:
     notes: Sequence["str | Table | RenderableType"] = ()
 
     def show(self, form: Form = "table", out: TextIO | None = None) -> None:
-        """Print the report on `out` (default: stdout).  Raises ValueError for JSON of nan or inf."""
+        """Print the report on `out`, by default stdout.
+
+        Raises ValueError for JSON of nan or inf.
+        """
         if form == "json":
             schema = f"pendu.{self.name}/{self.version}"
             text = json.dumps({"schema": schema, **self.fields}, indent=2, allow_nan=False)

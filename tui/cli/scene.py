@@ -147,7 +147,10 @@ def scene_named(name: str) -> Scene:
 
 
 def general_scene_of(options: argparse.Namespace) -> Scene:
-    """Return the scene of the options if it can be mapped and its errors charted.  Raises UserError as well."""
+    """Return the scene of the options, if it can be mapped and charted.
+
+    Raises UserError.
+    """
     scene = scene_of(options)
     if why := scene.why_not_mapped:
         raise UserError(why)

@@ -12,7 +12,7 @@ Ticks = list[tuple[float, str]]
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """A range of numbers with labels, which stand in the middle of a row of characters or at a moment."""
+    """A range of numbers with labels at the middle of a row or at a moment."""
 
     low: float
     high: float
@@ -26,7 +26,7 @@ class Axis:
 
     @property
     def label_width(self) -> int:
-        """Columns for the widest label; at least 5, so that a chart does not jump with every digit."""
+        """Columns of the widest label, at least 5: a chart does not jump with every digit."""
         return max([5, *map(len, self.labels.values())])
 
 
@@ -125,7 +125,10 @@ def _label(value: float, step: float) -> str:
 
 
 def time_axis(start: float, end: float, columns: int, note: str = "") -> Axis:
-    """An axis of seconds labelled in s, min or h about every 10 columns; the last label adds unit and note."""
+    """Return an axis of seconds with labels in s, min or h about every 10 columns.
+
+    The last label adds unit and note.
+    """
     size, unit = next(
         (unit for unit in ((3600, "h"), (60, "min")) if end - start >= 5 * unit[0]), (1, "s")
     )
@@ -147,7 +150,7 @@ _TIMES = (
 
 
 def log_time_axis(start: float, end: float, columns: int, note: str = "") -> Axis:
-    """An axis of log10 of seconds, labelled in s, min, h or d, each label 8 columns or more from the next."""
+    """Return an axis of log10 of seconds, labelled in s, min, h or d every 8 columns or more."""
     low, high = math.log10(start), math.log10(end)
     labels: dict[float, str] = {}
     for seconds, text in _TIMES:
@@ -223,12 +226,12 @@ LONG = 60.0  # s; a whole run that is longer has a logarithmic time axis
 
 
 def log_start(end: float) -> float:
-    """Where a logarithmic time axis to `end` begins: a power of ten, two or three decades before."""
+    """Return where a log time axis to `end` begins: a power of ten, two or three decades before."""
     return float(10.0 ** math.floor(math.log10(end) - 2.3))
 
 
 def envelope(x: Floats, values: Floats, hold: float) -> Floats:
-    """At each x the largest value of the piece of `hold` seconds that it is in, and of the piece before."""
+    """Return at each x the largest value of its piece of `hold` seconds and the piece before."""
     if not hold or not len(x):
         return values
     starts = np.flatnonzero(np.diff(np.floor(x / hold), prepend=-1.0))
@@ -259,7 +262,7 @@ def per_column(
 
 
 def held(x: Floats, values: Floats, start: float, end: float, columns: int, hold: float) -> Floats:
-    """Largest value of the last `hold` seconds at each column up to the last x, (columns, series)."""
+    """Return the largest value of the last `hold` seconds at each column, (columns, series)."""
     column = (end - start) / columns
     back = min(math.ceil(hold / column), columns)
     _, highs = per_column(x, values, values, start - back * column, end, back + columns)

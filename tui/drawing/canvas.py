@@ -66,7 +66,7 @@ class Canvas:
                 inks[cell] = colour
 
     def scatter(self, x: "Numbers", y: "Numbers", ink: int) -> None:
-        """Set the dots at x, y, which are arrays of the same shape: quicker than `points` for many of them."""
+        """Set the dots of arrays x and y of one shape: faster than `points` for many."""
         import numpy as np
 
         inside = (x >= 0) & (x < self.width) & (y >= 0) & (y < self.height)
@@ -80,7 +80,7 @@ class Canvas:
     def line(
         self, x0: float, y0: float, x1: float, y1: float, ink: int, dotted: bool = False
     ) -> None:
-        """Draw a straight line: a dot in each column of dots, or row where it is steep; dotted: every third of them."""
+        """Draw a straight line, one dot per column or row; dotted: every third dot."""
         dx = x1 - x0
         dy = y1 - y0
         if not (isfinite(dx) and isfinite(dy)):
@@ -118,7 +118,7 @@ class Canvas:
             self.line(x0, y0, x1, y1, ink)
 
     def disc(self, x: float, y: float, radius: float, ink: int, hollow: bool = False) -> None:
-        """Set the dots whose centres are within `radius` of (x, y); hollow: only the rim, one dot wide."""
+        """Set the dots within `radius` of (x, y); hollow: only the rim, one dot wide."""
         if not (abs(x) < _FAR and abs(y) < _FAR):
             return
         most = radius * radius

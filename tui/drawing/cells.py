@@ -1,4 +1,4 @@
-"""CellWidget: a widget that shows a Picture.  Only rows that changed are made anew and sent to the terminal."""
+"""CellWidget: a widget that shows a Picture and repaints only the rows that changed."""
 
 from typing import Self
 
@@ -66,7 +66,7 @@ class CellWidget(Widget):
         return super().refresh(*regions, repaint=repaint, layout=layout, recompose=recompose)
 
     def render_lines(self, crop: Region) -> list[Strip]:
-        """Return the visible lines.  For rows inside an unchanged border, Textual would go through the whole sheet."""
+        """Return the visible lines without consulting the style sheet inside a fixed border."""
         if crop != self._crop:
             self._lines = super().render_lines(crop)
             self._crop = crop if crop == Region(0, 0, *self.outer_size) else None

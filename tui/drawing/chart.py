@@ -49,7 +49,7 @@ class LogLog:
 
     @classmethod
     def fitting(cls, series: Sequence[Series], width: int, height: int) -> Self:
-        """Return axes that fit all points with marks, in a picture of this many columns and rows."""
+        """Return axes that fit all points, with marks, for this many columns and rows."""
         rows = height - 4
         marked = [points for one in series if not one.dotted and len(points := one.logs())]
         corners = np.concatenate(marked or [np.array([(0.0, -4.0), (1.0, 0.0)])])
@@ -59,7 +59,7 @@ class LogLog:
         return cls(log_x_axis(left, right, columns), y_axis, columns, rows, width - columns - ROOM)
 
     def curve(self, series: Series) -> tuple[list[float], list[float]]:
-        """Return x and y in characters from the lower left corner; what a reference has outside is cut off."""
+        """Return x and y in characters from the lower left corner, clipped for a reference."""
         x, y = series.logs().T
         if series.dotted and len(x):
             across = np.linspace(self.x_axis.low, self.x_axis.high, self.columns)
@@ -155,7 +155,7 @@ def _plot(
 def _first_free(
     canvas: Canvas, places: Iterable[tuple[int, int]], length: int, rows: int
 ) -> tuple[int, int] | None:
-    """Return the first of these places (column, row) where `length` cells of the chart's rows are blank."""
+    """Return the first of these places (column, row) with `length` blank cells."""
     for column, row in places:
         if 1 <= row <= rows and all(canvas.is_blank(column + at, row) for at in range(length)):
             return column, row

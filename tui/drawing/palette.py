@@ -113,13 +113,13 @@ def palette(theme: str) -> Palette:
 
 
 def inks(cast: Cast) -> tuple[int, ...]:
-    """Return the ink of each method of a cast: the classics' own, of the others the next free one."""
+    """Return the ink of each method of a cast: the classics' own, or the next free one."""
     free = itertools.count(CLASSICS)
     return tuple(next(free) if method.hue is None else method.hue for method in cast)
 
 
 def ink_of(method: Method, cast: Cast) -> int:
-    """Return the ink of a method in a cast; of one that is not in it QUIET, but a classic has its own everywhere."""
+    """Return a method's ink in a cast; outside of it QUIET, or a classic's own."""
     keys = [each.key for each in cast]
     if method.key in keys:
         return inks(cast)[keys.index(method.key)]
@@ -137,7 +137,7 @@ def mark(place: int, method: Method) -> str:
 
 
 def mixed(colour: str, other: str, share: float) -> str:
-    """`colour` with a share of `other`; of the terminal's own colours, the darker one of the pair."""
+    """Return `colour` mixed with `other`; of the terminal's own colours, the darker one."""
     if not colour.startswith("#"):
         return colour if share < 0.2 else colour.removeprefix("bright_")
     parts = (

@@ -59,7 +59,7 @@ class TimePlot:
     log_time: bool = False
 
     def at(self, column: int) -> Reading | None:
-        """Return the values in a column of the picture, or in the last one before it that has any."""
+        """Return the values in a column, or in the last column before it that has any."""
         at = column - self.left
         if self.values is None or not 0 <= at < len(self.times):
             return None

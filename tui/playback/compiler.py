@@ -11,7 +11,7 @@ from engine.run.loops import Loops
 
 
 def patient(method: Method, model: Model) -> Loops:
-    """The method's loops: plain until the thread has compiled them, with the same bits at any time."""
+    """A method's loops: plain until a thread has compiled them; the bits are the same."""
     return TieredLoops(method, model, _ready)
 
 

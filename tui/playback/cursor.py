@@ -23,7 +23,7 @@ NANOSECOND = 1e-9  # s; clocks in a file are rounded to it
 
 
 class ReplayCursor:
-    """A place in a recording: the run there, and its past, which after a jump is read bit by bit."""
+    """A place in a recording: its run and past; after a jump the past is read piecemeal."""
 
     run: "Run"
     so_far: RunSoFar
@@ -56,7 +56,7 @@ class ReplayCursor:
             self._move(place)
 
     def place(self, number: int, step: int) -> float | None:
-        """Return when a run came to a step, on the recording clock [s]; None if there is no such run."""
+        """Return when a run came to a step [s of the recording clock]; None if it never did."""
         run = self.recording.run_of(number)
         if run is None:
             return None
@@ -95,7 +95,7 @@ class ReplayCursor:
         self.so_far.add(sample)
 
     def _jump(self, place: "SamplePlace") -> None:
-        """Show the sample at any place: the trails' past at once, the rest during the next frames."""
+        """Show the sample at a place: the trails at once, the rest over the next frames."""
         self._place = place
         self.clock, sample = self.recording.sample(place)
         assert isinstance(sample, Sample)
@@ -130,7 +130,7 @@ class ReplayCursor:
             self.so_far = so_far
 
     def _read(self, so_far: RunSoFar, start: float, end: float, last: int) -> Iterator[None]:
-        """Add the run's samples of a piece of the recording clock before step `last`, one by one."""
+        """Add the run's samples from a piece of the recording clock before step `last`."""
         for _, sample in self.recording.samples_between(start, end):
             before = getattr(so_far, "sample", None)
             is_new = before is None or sample.step > before.step
@@ -140,7 +140,7 @@ class ReplayCursor:
 
 
 def pieces(start: float, end: float) -> list[tuple[float, float]]:
-    """Return what to read of [start, end]: the last DENSE seconds, and pieces of what lies before."""
+    """Return what to read of [start, end]: the last DENSE seconds, and samples of the rest."""
     middle = max(start, end - DENSE)
     count = min(MAX_PIECES, math.ceil(middle - start))
     edges = [start + (middle - start) * n / count for n in range(count + 1)] if count else []

@@ -24,7 +24,7 @@ class Rod(NamedTuple):
 
 
 class Ghost:
-    """The longest run of a recording, up to where its time turns or to its MAX_SAMPLES-th sample."""
+    """Return the longest run, up to its time's turn or MAX_SAMPLES."""
 
     def __init__(self, recording: "Recording") -> None:
         run = max(recording.runs, key=lambda run: abs(run.t))
@@ -63,7 +63,7 @@ class Ghost:
         return text if len(text) <= room else short
 
     def rods(self, t: float) -> dict[str, Rod]:
-        """The pendulums at a simulated time [s] by method key, but for those that have ended or failed by then."""
+        """The pendulums by method key at a time [s]; failed ones and finished runs are missing."""
         if not self._times or not 0 <= t <= self._times[-1] + abs(self.scene.h):
             return {}
         count, at = 2 * len(self.scene.cast), bisect_right(self._times, t + ROUNDING) - 1

@@ -44,7 +44,7 @@ class Live(Source):
         changes: Sequence[SteppingChange] = (),
         so_far: RunSoFar | None = None,
     ) -> None:
-        """With what is known of a run `so_far`, and the `changes` on the way there, go on from there."""
+        """Go on from a run known `so_far`, with the `changes` made on the way there."""
         self.playhead = Playhead(speed=speed)
         self.pace = Pace()
         self.recorder: LiveRecorder | None = None
@@ -145,7 +145,7 @@ class Live(Source):
 
     @property
     def _row_steps(self) -> int:
-        """The steps from row to row: those of the run, not of the frames, decide when there is one."""
+        """The steps from row to row: they depend on the run, not on the frames."""
         steps = abs(self.playhead.speed / self.stepping.h) / ROW_RATE
         return max(1, round(min(steps, 10_000)))  # a processor may be too slow for the speed
 
@@ -281,7 +281,7 @@ class Live(Source):
         return self._clocked
 
     def _note_start(self) -> None:
-        """The start of the run; where it goes on from another's past, its changes of the step size and milestones."""
+        """The run's start; a branch also has its parent's changes of h and milestones."""
         self._note(Event("start", self._run.run, 0, 0.0, scene=self.scene))
         for step, t, stepping in self._run.changes[1:]:
             self._note(
@@ -316,7 +316,7 @@ def has_own(scene: Scene) -> bool:
 
 @contextmanager
 def _limited(scene: Scene, run: RewindableRun | None = None) -> Iterator[None]:
-    """Bound the time that a user's methods take, if there are any; an error leaves the run as it was."""
+    """Limit the time of a user's methods, if there are any; an error leaves the run as it was."""
     if not has_own(scene):
         yield
         return

@@ -48,7 +48,10 @@ class Marks:
         return iter(self._marks)
 
     def add(self, mark: Mark) -> None:
-        """Add a mark and save them all.  Raises OSError where that is impossible; the mark is there nevertheless."""
+        """Add a mark and save all of them.
+
+        Raises OSError if they cannot be saved; the mark is set nevertheless.
+        """
         others = {*_read(self.path), *self._marks}  # another replay may have added some
         self._marks = sorted({*others, mark}, key=lambda each: each.clock)
         text = json.dumps(

@@ -13,7 +13,7 @@ class Playhead(NamedTuple):
     seen: float | None = None  # s, the last clock reading
 
     def at(self, now: float) -> "Playhead":
-        """The playhead when the clock reads `now` [s]; a clock that stands or jumps back moves nothing."""
+        """Return the playhead at `now` [s] of a clock, which moves nothing by going back."""
         elapsed = 0.0 if self.seen is None or self.paused else max(0.0, now - self.seen)
         return Playhead(self.position + elapsed * self.speed, self.speed, self.paused, now)
 

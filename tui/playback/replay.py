@@ -74,7 +74,7 @@ class Replay(Source):
 
     @property
     def judgements(self) -> Sequence[Judgement]:
-        """The verdicts that the lab gave since the stepping last changed, with their trends then."""
+        """The lab's verdicts since the stepping last changed, with their trends then."""
         since = change_before(self.changes, self.sample.step).step
         swings = (
             (self.sample.step - since)
@@ -140,7 +140,7 @@ class Replay(Source):
             self.seek(self.length if backwards else 0.0)
 
     def set_speed(self, speed: float) -> None:
-        """Play `speed` seconds of the recording for each second of the clock; a negative one plays backwards."""
+        """Play `speed` seconds of the recording per second; negative plays backwards."""
         self.playhead = self.playhead._replace(speed=speed)
 
     def step(self, n: int) -> Sample:
@@ -184,7 +184,7 @@ class Replay(Source):
         return self._ticks
 
     def mark(self, text: str | None = None) -> None:
-        """Leave a mark at the sample, unless it has one; it is kept next to the recording, which is not touched."""
+        """Set a mark at the sample, unless it has one; it is saved beside the recording."""
         if not self.is_marked:
             self.marks.add(Mark(self.playhead.position, self.sample.run, self.sample.step, text))
 

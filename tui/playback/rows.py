@@ -40,7 +40,7 @@ class Window:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A sample: where it is, and the extremes of what is stored of each method since the row before."""
+    """A sample's place, and each method's extremes since the row before."""
 
     step: int
     times: tuple[float, float]  # s: x and t
@@ -124,7 +124,7 @@ class Rows:
             self._whole.put(number // self._width, row)
 
     def number_after(self, step: int) -> int:
-        """Return the number of the first row after a step; long ago, of the wide row that it is in."""
+        """Return the number of the first row after a step; of old steps, that of their wide row."""
         recent = self._recent.steps[self._slots(self._first, self.count)]
         number = self._first + int(np.searchsorted(recent, step, "right"))
         if number > self._first or not self._first:

@@ -59,18 +59,18 @@ class Source(ABC):
 
     @property
     def changes(self) -> Sequence[SteppingChange]:
-        """How the run steps, its start's stepping first; in a recording also what is still to come."""
+        """How the run steps, in order; in a recording including what is still to come."""
         return self.so_far.changes
 
     @property
     def history(self) -> ErrorHistory:
-        """The past of the run up to the sample; in a replay it grows for some frames after a jump."""
+        """The past of the run up to the sample; after a jump, a replay's grows for some frames."""
         return self.so_far.history
 
     @property
     @abstractmethod
     def judgements(self) -> Sequence[Judgement]:
-        """The verdicts on the run, and the trends per second, since the last change of the stepping."""
+        """The verdicts, and trends per second, since the last change of the stepping."""
 
     @property
     @abstractmethod
@@ -89,7 +89,7 @@ class Source(ABC):
 
     @property
     def later_marks(self) -> Sequence[Event]:
-        """Marks up to the playhead that were made while replaying, and are no part of the recording."""
+        """Marks up to the playhead that were set in a replay and are not in the recording."""
         return ()
 
     @property
@@ -114,7 +114,7 @@ class Source(ABC):
 
     @property
     def knows_past(self) -> bool:
-        """Whether all of the past of the sample is at hand, as far as it can be; a replay reads it bit by bit."""
+        """Whether the whole past of the sample is at hand; a replay reads it piecemeal."""
         return True
 
     @property

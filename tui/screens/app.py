@@ -38,7 +38,10 @@ HEIGHTS = [(0, "-flat"), (SMALLEST[1], "-low"), (24, "-middle"), (36, "-high")]
 
 
 class PenduApp(App[Exit | BaseException]):
-    """Shows the lab or a replay.  Returns the exit code, or the error that ended it; None if the user quit."""
+    """Shows the lab or a replay.
+
+    Returns the exit code, the error that ended it, or None if the user quit.
+    """
 
     HORIZONTAL_BREAKPOINTS = WIDTHS
     VERTICAL_BREAKPOINTS = HEIGHTS
@@ -58,7 +61,7 @@ class PenduApp(App[Exit | BaseException]):
         open_replay: Callable[[Path], SourceScreen] | None = None,
         terminal: TerminalOptions = USUAL,
     ) -> None:
-        """`open_replay` makes the screen for a recording; it may raise an exception with a sentence."""
+        """`open_replay` makes a recording's screen; it may raise an error with a sentence."""
         if not os.environ.get("NO_COLOR", "?"):
             del os.environ["NO_COLOR"]  # no-color.org: empty means nothing
         super().__init__(
@@ -94,7 +97,7 @@ class PenduApp(App[Exit | BaseException]):
             SignalThread(asyncio.get_running_loop(), self.interrupt, self.finish, job).start()
 
     async def on_event(self, event: Event) -> None:
-        """Survive a key that Textual's command palette stumbles over: an error here would end the app."""
+        """Survive a key that breaks Textual's command palette: an error would end the app."""
         try:
             await super().on_event(event)
         except Exception as error:
@@ -127,7 +130,7 @@ class PenduApp(App[Exit | BaseException]):
         timeout: float | None = None,
         markup: bool = True,
     ) -> None:
-        """Show a notice in place of an equal one: a key held down is to cover no more than a line."""
+        """Replace an equal notice: a key that is held down shall cover one line at most."""
         if message == self._last_notice:
             self.clear_notifications()
         self._last_notice = message

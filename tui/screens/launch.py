@@ -39,7 +39,10 @@ def check(options: argparse.Namespace) -> None:
 
 
 def recording_path(file: Path | None) -> Path:
-    """Where to record: the given file, or a new one in the library.  Raises UserError or OSError if it cannot be."""
+    """Return where to record: the given file, or a new one in the library.
+
+    Raises UserError or OSError.
+    """
     from recordings import library
 
     if file is not None and file.exists():
@@ -111,7 +114,7 @@ def open_ghost(path: Path) -> "Ghost":
 
 
 def replay_screen(replay: "Replay", no_record: bool) -> "ReplayScreen":
-    """The replay's screen; a lab that continues from it is recorded in the library, or not at all."""
+    """The replay's screen; a lab that continues it is recorded in the library, or not at all."""
     from tui.screens.replay import ReplayScreen
 
     def go_live(live: "Live") -> "LiveScreen":
@@ -182,7 +185,7 @@ def open_lab(live: "Live", options: argparse.Namespace, with_tour: bool = False)
 
 
 def recover_leftovers(folder: Path) -> list[str]:
-    """Recover all unfinished recordings in a folder; return a sentence on each, also where the disk fails."""
+    """Recover a folder's unfinished recordings; return a sentence on each, errors included."""
     from recordings.errors import printable
     from recordings.library import leftovers
 

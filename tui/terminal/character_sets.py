@@ -1,4 +1,4 @@
-"""Braille to half blocks or ASCII for terminals without it: a filter for everything that is drawn."""
+"""Braille to half blocks or ASCII, for terminals without it."""
 
 import unicodedata
 
@@ -40,7 +40,7 @@ _LIKE = {
 
 
 class _Ascii(dict[int, str]):
-    """For str.translate.  A character with no likeness becomes question marks; each keeps its width."""
+    """A table for str.translate; a character without a likeness becomes question marks."""
 
     def __missing__(self, code: int) -> str:
         character = chr(code)

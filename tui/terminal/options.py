@@ -1,4 +1,4 @@
-"""Theme, characters, mouse and frames a second: from the command line, else from what the terminal reports."""
+"""Theme, characters, mouse and frame rate, from the command line or the terminal."""
 
 import argparse
 import re

@@ -1,4 +1,4 @@
-"""How far from the bottom the pendulums of a run may swing: what stays below the pivot can be drawn larger."""
+"""How far the pendulums of a run may swing: what stays below the pivot is drawn larger."""
 
 import math
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ from engine.scenes import Scene
 from tui.playback.source import Source
 
 REACHES = (0.5, 1.2, math.pi / 2)
-"""rad; beyond the last one the pivot has to be in the middle.  So few, that the picture hardly ever changes."""
+"""Steps [rad] of the reach: few, so that the scale hardly ever changes."""
 
 
 def reach(scene: Scene, stepping: Stepping, sample: Sample, shown: Sequence[int]) -> float:

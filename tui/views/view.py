@@ -1,4 +1,4 @@
-"""What views are made of: a View fills the screen between status line and key line with Panes; some are Choosers."""
+"""View and Pane: what the screen shows between the status line and the key line."""
 
 from collections.abc import Callable, Coroutine, Iterable
 from textwrap import wrap
@@ -27,7 +27,7 @@ DESCRIBED_FIRST = "velocity_verlet"
 
 
 class Box(Container):
-    """A container that its children cover, so that Textual need not ask the sheet how it looks with every paint."""
+    """A container hidden by its children, which saves Textual a style lookup per paint."""
 
     BLANK = True
 
@@ -86,16 +86,16 @@ class View(Box):
             pane.draw()
 
     def zoom(self, factor: float, shift: float = 0.0) -> None:
-        """Show `factor` times the stretch of time, or later by a `shift` of it, where the view has a chart of that."""
+        """Zoom by `factor`, or move by `shift`, in views that have a chart of time."""
 
     def compute(
         self, work: Callable[[], Coroutine[None, None, None]], group: str = "default"
     ) -> Worker[None]:
-        """Run this instead of the group's earlier work.  A function, since work that is replaced may not have begun."""
+        """Run this in place of the group's earlier work; the function starts the work."""
         return self.run_worker(work, group=group, exclusive=True, exit_on_error=False)
 
     def on_worker_state_changed(self, event: Worker.StateChanged) -> None:
-        """Show at the panes what is wrong with a method of one's own; any other error ends the program."""
+        """Show a user's method error in the panes; any other error ends the program."""
         if (error := event.worker.error) is not None and event.state is WorkerState.ERROR:
             if not isinstance(error, OwnMethodError):
                 raise error
@@ -108,10 +108,10 @@ class View(Box):
 
 
 class Pane(CellWidget):
-    """Draws a source at one of its samples: when it follows another one, and when source or shown change."""
+    """Draws a source at one sample; redraws when the source or what is shown changes."""
 
     NEEDS_NUMPY: ClassVar[bool] = False
-    """Whether it is drawn after the first paint only: NumPy takes as long to import as all else to paint."""
+    """Whether to draw after the first paint: importing NumPy takes as long as the rest."""
 
     source: var[Source | None] = var(None)
     sample: Sample | None = None
@@ -188,7 +188,7 @@ class Chooser(Pane, Generic[Place], can_focus=True):
 
     @property
     def index(self) -> int:
-        """The place in the cast of the method that is described, one of those that are shown if there are any."""
+        """The index of the described method, one of those shown if there are any."""
         shown = self.places or range(len(self.cast))
         return next(
             (place for place in shown if self.cast[place].key == self._described),

@@ -48,7 +48,7 @@ def front_words(found: Sequence[Cheapest], cost: Cost, without: Sequence[Cheapes
 
 
 def factor_words(found: Sequence[Cheapest]) -> str:
-    """How many force evaluations the cheapest methods save over RK4; empty where none is worth saying."""
+    """Return how much the cheapest methods save over RK4; empty if not worth stating."""
     savings = [
         f"{one.method.label} {one.saves:.2g} at {_power(one.target)}"
         for one in found

@@ -99,7 +99,7 @@ def method_card(method: Method) -> str:
 
 
 def scene_card(scene: Scene, now: str = "") -> str:
-    """Return a scene and what to watch in it; `now`: the current step, if it differs from the scene's."""
+    """Return a scene and what to watch in it; `now` is the step if it differs."""
     exact = scene.exact()
     reference = f"no closed form: Kahan & Li's method of order 8, theta right to {exact.accuracy:g} rad for a minute"
     return _card(

@@ -43,7 +43,7 @@ def step_text(source: Source) -> str:
 
 
 def method_sentence(source: Source, index: int) -> str:
-    """Return how a method failed or went over the top; if it did not, its verdict or its error so far."""
+    """Return how a method failed or went over the top, else its verdict or error so far."""
     method, reading = source.scene.cast[index], source.sample.readings[index]
     if milestone := endings(source).get(index):
         conserved = source.scene.equations.energy_error.conserved

@@ -90,7 +90,7 @@ def sentence(found: Insight) -> str:
 
 
 def short_name(method: Method) -> str:
-    """Return the last word of a usual method's name if no other ends with it: "Verlet", but "Symplectic Euler"."""
+    """Return a usual method's last word if it is unique: "Verlet", but "Symplectic Euler"."""
     last = method.label.split()[-1]
     alone = sum(each.label.endswith(last) for each in USUAL_CAST) == 1
     return last if alone and method in USUAL_CAST else method.label

@@ -25,7 +25,7 @@ def decimal(value: float | None, width: int, decimals: int = 3) -> str:
 
 
 def scientific(value: float | None, width: int, digits: int = 1, sign: str = "+") -> str:
-    """As "+3.3e+00", with fewer digits if the exponent needs the room.  `sign` "-": a sign only if negative."""
+    """As "+3.3e+00", with fewer digits if needed; `sign` "-": a sign only if negative."""
     if value is None or not math.isfinite(value):
         return "-".rjust(width)
     for places in range(digits, -1, -1):
@@ -36,7 +36,7 @@ def scientific(value: float | None, width: int, digits: int = 1, sign: str = "+"
 
 
 def angle(theta: float, width: int, decimals: int) -> str:
-    """An angle [rad]; beyond a turn, where there is room, as turns and the rest: "-5 turns +0.89"."""
+    """An angle [rad]; beyond a turn, if there is room, in turns: "-5 turns +0.89"."""
     turns = round(theta / math.tau) if math.isfinite(theta) else 0
     rest = theta - turns * math.tau
     text = f"{turns:+d} turn{'s' * (abs(turns) != 1)} {rest:+.2f}"

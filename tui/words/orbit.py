@@ -79,7 +79,7 @@ def sentence(method: Method, kind: OrbitKind) -> str:
 
 
 def period_sentence(source: Source) -> str:
-    """Return how long a swing takes each method, next to the exact one; empty where that is unknown."""
+    """Return how long each method's swing takes, beside the exact one; empty if unknown."""
     scene, exact = source.scene, source.exact.period
     if exact is None or scene.why_not_mapped:
         return ""

@@ -115,7 +115,7 @@ def colour(environment: Mapping[str, str]) -> Check:
 
 
 def folder(path: Path) -> Check:
-    """Try whether a file can be made in the folder or its nearest parent, since permissions are not enough."""
+    """Try to make a file in the folder or its nearest parent: permissions alone do not tell."""
     try:
         there = next(each for each in (path, *path.parents) if each.exists() or each.is_symlink())
         with TemporaryFile(dir=there):

@@ -1,4 +1,7 @@
-"""List the methods with their claimed properties, and as measured now; your own method is measured only."""
+"""List the methods with their claimed and measured properties.
+
+Of your own method, only measured ones are known.
+"""
 
 import argparse
 import math
@@ -120,7 +123,7 @@ def _about(method: dict[str, Any]) -> str:
 
 
 def _measured(cast: Cast) -> list[dict[str, Any]]:
-    """Return the methods with the order that their errors show on the default scene, and what else is measured."""
+    """Return the methods with the order of their errors on the default scene, and more."""
     from engine.accuracy.study import orders
 
     general = tuple(method for method in cast if method.general)

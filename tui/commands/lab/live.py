@@ -51,7 +51,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def lab_of(scene: Scene, options: argparse.Namespace) -> "Live":
-    """The lab of a scene that the other options describe.  Raises SceneError for a step too large at equal cost."""
+    """Return the lab of the options' scene.
+
+    Raises SceneError for a step too large at equal cost.
+    """
     from tui.playback.live import Live
 
     live = Live(scene, options.speed or scene.speed)

@@ -1,4 +1,4 @@
-"""A recording on the lab's screen: pause, step, seek, loop, play backwards, continue live from any moment."""
+"""Replay a recording in the lab: pause, step, seek, loop, play backwards, or continue live."""
 
 import argparse
 from functools import partial

@@ -93,7 +93,10 @@ def is_local(host: str) -> bool:
 
 
 def recording_folder(folder: Path) -> Path:
-    """Return the folder, made if it is not there.  Raises UserError or OSError if it cannot be written to."""
+    """Return the folder, made if it is missing.
+
+    Raises UserError or OSError if it cannot be written to.
+    """
     folder.mkdir(exist_ok=True)
     if not os.access(folder, os.W_OK | os.X_OK):
         raise UserError(f"{folder} is not writable: choose another folder for --record.", Exit.DISK)

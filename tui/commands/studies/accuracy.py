@@ -1,4 +1,4 @@
-"""Chart speed against accuracy over a ladder of h, and find the cheapest method and h for a target or a budget."""
+"""Chart speed against accuracy over a ladder of h; find the cheapest method and h."""
 
 import argparse
 import time
@@ -143,7 +143,7 @@ def _check_options(options: argparse.Namespace) -> None:
 
 
 def _is_compiled(scene: Scene, options: argparse.Namespace) -> bool:
-    """Return whether Numba compiles the methods; where seconds are measured, all of them or none."""
+    """Return whether Numba compiles the methods; if seconds are measured, all or none."""
     from engine.accuracy.study import compilable
     from engine.run.compiled import available
 
@@ -158,7 +158,7 @@ def _fill(
     rungs: list[int],
     options: argparse.Namespace,
 ) -> None:
-    """Add to the findings what was asked for, so that an interrupt keeps what was found before it."""
+    """Add what was asked for to the findings, so that an interrupt keeps what was found."""
     from engine.accuracy.growth import growth
     from engine.accuracy.references import references
     from engine.accuracy.study import Study, measured_point, orders, timed
@@ -219,7 +219,7 @@ def _advice(
 def _ladder(
     scene: Scene, time: float, given: tuple[float, float, int] | None, all: bool
 ) -> list[int]:
-    """Return the numbers of steps to measure; for all methods, from where the most accurate ones begin."""
+    """Return the numbers of steps to measure, from the most accurate methods' coarsest on."""
     from engine.accuracy.study import ALL_LADDER, Z_LADDER, ladder
 
     z_max, z_min, rungs = ALL_LADDER if all else Z_LADDER

@@ -104,7 +104,7 @@ def _section(scene: Scene, options: argparse.Namespace, suffix: str) -> int:
 
 
 def _grids(scene: Scene, options: argparse.Namespace, steps: int, suffix: str) -> "list[Grid]":
-    """Return the grid of the table, where there is one, and that of the map, where it is asked for."""
+    """Return the grids of the table and the map, each if it is wanted."""
     from engine.stability.study import ladder_of, map_of
 
     is_map = suffix in (".npz", *figures.SUFFIXES)

@@ -110,7 +110,7 @@ def accuracy_series(
 def _slope(
     ours: Sequence[Point], kind: ErrorKind, cost: Cost, points: Sequence[Point]
 ) -> dict[int, Series]:
-    """Return by order a line with the slope of a method's order, below its errors; none without valid points."""
+    """Return a line per order, with its slope, below the methods' errors; none without points."""
     order = ours[0].method.order
     valid = [p for p in ours if not p.flaw(kind) and p.error(kind) and cost_of(p, cost)]
     if not valid:
@@ -123,7 +123,7 @@ def _slope(
 
 
 def growth_chart(found: Sequence[Growth], cast: Cast, width: int, height: int) -> Picture:
-    """Draw letters for errors in theta along a run, and dotted lines of the powers of t that they follow."""
+    """Draw errors in theta along a run as letters, and the powers of t they follow as dots."""
     lines: list[Series] = []
     slopes: dict[int, Series] = {}
     for growth in found:

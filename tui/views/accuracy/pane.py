@@ -1,4 +1,4 @@
-"""AccuracyPane: charts of error over cost and over time; h is chosen on the first, with keyboard or mouse."""
+"""AccuracyPane: error over cost and over time; h is chosen with keyboard or mouse."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -53,7 +53,7 @@ class AccuracyPoints:
 
 
 class AccuracyPane(Chooser[Point]):
-    """Draws the points computed so far, with a mark at the present h of each method, and describes one of them."""
+    """Draws the points computed so far, marks each method's h, and describes one point."""
 
     BINDING_GROUP_TITLE = "Accuracy"
     HELP = "A click uses that point's h; the pointer reads points out."
@@ -95,7 +95,7 @@ class AccuracyPane(Chooser[Point]):
 
     @property
     def kind(self) -> ErrorKind:
-        """The error that is charted over cost: what the lab's chart shows, until another one is asked for."""
+        """The error charted over cost: the lab chart's, until another is chosen."""
         return self._kind or ("theta" if self.shown.quantity == "theta_error" else "energy")
 
     @property
@@ -175,7 +175,7 @@ class AccuracyPane(Chooser[Point]):
         self.write_titles(title, f"{LEGEND} {', '.join(raised('h', order) for order in orders)}")
 
     def _sentences(self, aim: Point | None) -> list[str]:
-        """Return the words below the chart: a point, and the cheapest methods; or how errors grow."""
+        """Return the words on a point and the cheapest methods, or on how errors grow."""
         study = self.study
         if self.over_time:
             return growth_lines(self.growths, done=len(self.growths) == len(study.here))
@@ -217,7 +217,7 @@ class AccuracyPane(Chooser[Point]):
         self.over_time = False
 
     def action_move(self, right: int, up: int) -> None:
-        """Move the cursor along the method's points, of which those to the right cost more, or to another method."""
+        """Move along a method's points, costlier ones to the right, or to another method."""
         if up:
             self.action_method(-up)
             return

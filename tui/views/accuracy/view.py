@@ -1,4 +1,4 @@
-"""AccuracyView: error over cost and over time for the pendulum on screen; the charts fill in as they are computed."""
+"""AccuracyView: error over cost and over time, charted while it is computed."""
 
 from collections.abc import Callable, Iterator
 from functools import partial

@@ -38,7 +38,7 @@ class TableLine(NamedTuple):
 
 
 class Column(NamedTuple):
-    """A column: its head and width where room is scarce and where it is not, and how its cells are made."""
+    """A column: head and width, narrow and wide, and how its cells are made."""
 
     keep: int  # columns with the smallest numbers go first where there is no room
     narrow: tuple[str, int]
@@ -141,7 +141,7 @@ SIGNS = {
 
 
 def verdict_of(reading: Reading, judgement: Judgement) -> str:
-    """The verdict in a word after its sign, as "+ grows"; "failed" for a method that has diverged."""
+    """Return the verdict with its sign, as in "+ grows"; "failed" for a diverged method."""
     word = "failed" if reading.diverged_at is not None else judgement.verdict
     return f"{SIGNS.get(word, '')} {word}".strip()
 
@@ -156,7 +156,7 @@ def verdict_ink(text: str) -> int:
 def chosen(
     columns: Sequence[Column], room: int
 ) -> list[tuple[str, int, Callable[[TableLine, int], str]]]:
-    """(head, width, cell) of the columns that fit, in their order: wide ones, or as many narrow ones as possible."""
+    """Return (head, width, cell) of the columns that fit: wide ones, or many narrow ones."""
     if sum(column.wide[1] + 1 for column in columns) <= room:
         return [(*column.wide, column.cell) for column in columns]
     left = list(columns)

@@ -1,4 +1,4 @@
-"""Where the lab's panes go, by the free cells: pure arithmetic, and Textual's Layout that follows it."""
+"""Where the lab's panes go: pure arithmetic, and the Textual Layout that uses it."""
 
 from collections.abc import Callable
 from itertools import pairwise
@@ -66,7 +66,7 @@ def places(columns: int, rows: int, methods: int, overlay: bool = False) -> Plac
 
 
 def _grid(columns: int, rows: int, methods: int) -> tuple[int, int] | None:
-    """How many pendulums side by side make the largest panes, and their columns in all; None: no room for any."""
+    """Return how many pendulums stand side by side, and their columns; None if none fit."""
     best, found = 0, None
     for across in range(1, min(methods, 3) + 1):
         side = min(max(PANE.width * across, columns * 2 // 5), columns - CHART)
@@ -90,7 +90,7 @@ def _tiles(columns: int, rows: int, count: int, across: int) -> tuple[Region, ..
 
 
 class CellLayout(Layout):
-    """Places widgets where a function of the size says; those that it does not name are not shown."""
+    """Places widgets where a function of the size puts them; unplaced ones are hidden."""
 
     name = "cells"
 

@@ -199,7 +199,7 @@ class Pendulum(Pane):
         return max(1, int(MAGNIFIED / half)) if max(thetas, default=pi) <= half else 1
 
     def _below(self, source: Source, exact: str) -> str:
-        """Return what is beside the methods: the exact motion, and a ghost, which comes first if room is short."""
+        """Return the extra pendulums: a ghost, which comes first, and the exact motion."""
         room = self.room.width - 4
         if source.ghost is None:
             return exact

@@ -27,7 +27,7 @@ NAMES: dict[Quantity, tuple[str, str]] = {
     "shadow_error": ("shadow energy error", "|shadow error|"),
     "energy": ("energy per m L² [1/s²]", "energy [1/s²]"),
 }
-"""Of the quantity itself, and of its magnitude for a logarithmic chart; a model's own quantities bring theirs."""
+"""A quantity, and its magnitude for logarithmic charts; models add their own quantities."""
 READING = "reading what came before …"
 HELP = "e: quantity, w: window, z: zoom, y: log"
 HELP_ZOOMED = "z: zoom, w: back, ctrl+p: earlier, later"
@@ -75,7 +75,7 @@ def span_text(begin: float, end: float) -> str:
 
 
 def read_out(reading: "Reading", letters: Sequence[str], room: int) -> str:
-    """All methods at a moment, as far as there is room: "12.35 s: e 3.3e+00 s 7.9e-02 v 5.7e-03"."""
+    """All methods at a moment, as far as they fit: "12.35 s: e 3.3e+00 s 7.9e-02 v 5.7e-03"."""
     numbers = [f"{value:.1e}" for value in reading.values]
     text = f"{seconds(reading.t)}:"
     for letter, number in zip(letters, numbers, strict=True):
@@ -195,7 +195,7 @@ class TimeChart(Pane):
         self._pointer = None if offset is None else offset.x
 
     def zoom(self, factor: float, shift: float = 0.0) -> None:
-        """Ask for `factor` times the stretch about the pointer, or a `shift` of it later, if that has MIN_ROWS."""
+        """Zoom by `factor` about the pointer, or `shift` later, down to MIN_ROWS."""
         source, plot = self.source, self.plot
         if source is None or plot is None or plot.values is None:
             return

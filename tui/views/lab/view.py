@@ -58,7 +58,7 @@ class LabView(View):
         yield SystemCommand("chart: later", "", lambda: self.zoom(1.0, 0.25))
 
     def regions(self, size: Size) -> dict[Widget, Region]:
-        """Where each pane is on a stage of this size.  A method that is hidden leaves its room to the others."""
+        """Place the panes on a stage of this size; hidden methods leave their room to others."""
         shown = self.shown.places(self.source.scene.cast) if self.source is not None else []
         found = places(size.width, size.height, len(shown), self.shown.overlay)
         self.phase.can_focus = found.phase is not None  # Tab is not to lead where nobody sees it

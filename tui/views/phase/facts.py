@@ -1,4 +1,4 @@
-"""Words and numbers below the portrait: a state, and what each method made of area, time and energy."""
+"""Words and numbers below the portrait: a state, and each method's area, time and energy."""
 
 import math
 
@@ -17,7 +17,7 @@ NAME, CELL = 22, 14  # columns
 
 
 def caption(source: Source, aim: State | None, width: int) -> Row:
-    """Return the line below the portrait: a state, if one is aimed at, and the motion if there is room for it."""
+    """Return the line below the portrait: the state aimed at, and the motion if it fits."""
     model = source.scene.equations
     motion = model.caption or motion_text(source.scene, source.exact)
     if aim is None:
@@ -29,7 +29,7 @@ def caption(source: Source, aim: State | None, width: int) -> Row:
 
 
 def place_text(model: Model, state: State, width: int) -> str:
-    """Return a state and, if there is a separatrix, its energy in units of the separatrix' and its regime."""
+    """Return a state, with its energy relative to the separatrix and its regime if there is one."""
     theta, omega = state
     half_turns = round(theta / math.pi)
     angle = in_pi(half_turns) if theta == half_turns * math.pi else f"{theta:.15g}"
@@ -40,7 +40,7 @@ def place_text(model: Model, state: State, width: int) -> str:
 
 
 def fact_rows(source: Source, shown: Shown, neighbours: Neighbours | None, width: int) -> list[Row]:
-    """Return a line about the ring, the heads, and a row for each method; the first columns that fit."""
+    """Return a line about the ring, the heads, and each method's row, in the columns that fit."""
     scene = source.scene
     exact = source.exact.at(source.sample.t)
     fit = max((width - NAME) // CELL, 0)
@@ -84,7 +84,7 @@ def _ring_text(source: Source, neighbours: Neighbours | None) -> str:
 
 
 def area_text(ratio: float) -> tuple[str, str]:
-    """Return ln of an area ratio, and the ratio so that it differs from 1: "1 + 2.2e-16", "0.997838501"."""
+    """Return ln of an area ratio, and the ratio as a text that differs from 1: "1 + 2.2e-16"."""
     if not 0 < ratio < math.inf:
         return "-", "> 1e308" if ratio else "< 1e-308"
     logarithm = scientific(math.log(ratio), 10, 3)

@@ -1,4 +1,4 @@
-"""Phase space with the methods in it, or the map of one method, and a start to choose with mouse or keyboard."""
+"""Phase space with the methods in it, or one method's map, and a start to choose."""
 
 import math
 from functools import lru_cache
@@ -173,7 +173,7 @@ class PhasePane(Chooser[State]):
         super().action_cancel()
 
     def action_zoom(self, factor: float) -> None:
-        """Zoom at the crosshair or the pointer, which comes to the middle, or else at the middle."""
+        """Zoom about the crosshair or the pointer, which moves to the middle."""
         viewport = self.viewport
         x, y = viewport.middle
         if at := self.aim:
@@ -278,7 +278,7 @@ class SectionPane(PhasePane):
         return self._map(source) if self.shows_section else super().picture(source, sample)
 
     def _map(self, source: Source) -> Picture:
-        """Return the section, and a line about the orbit at the crosshair, under the pointer, or of the start."""
+        """Return the section, and a line about the orbit aimed at, or that of the start."""
         from tui.views.phase.section import Section
         from tui.words.orbit import sentence
 

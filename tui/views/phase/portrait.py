@@ -1,4 +1,4 @@
-"""The theoretical portrait: curves of equal energy, the separatrix, the regimes' names and the axes."""
+"""The theoretical portrait: energy contours, separatrix, names of regimes, and axes."""
 
 import math
 from collections.abc import Sequence
@@ -66,7 +66,7 @@ class Portrait:
 
 
 def write_words(canvas: Canvas, words: Sequence[Word]) -> None:
-    """Write words, except those that would cover part of a point, a ring or an orbit; a blank covers no trail."""
+    """Write words unless they cover part of a point, ring or orbit; blanks cover no trail."""
     for column, row, text, ink in words:
         below = [canvas.ink_at(at, row) for at in range(column, column + len(text))]
         if any(EXACT <= one < FAINT for one in below):
@@ -97,7 +97,7 @@ def axes(viewport: Viewport) -> list[Word]:
 
 
 def _bands(levels: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Return the band of energy of each dot: evenly spaced in amplitude, for rotations in their smallest omega."""
+    """Return each dot's energy band: evenly spaced in amplitude, beyond the top in omega."""
     spacing = np.where(
         levels > 0, np.arcsin(np.sqrt(np.clip(levels, 0, 1))), -np.sqrt(np.maximum(-levels, 0))
     )
@@ -106,7 +106,7 @@ def _bands(levels: NDArray[np.float64]) -> NDArray[np.int64]:
 
 
 def _border(values: NDArray[Any], heavy: bool = False) -> NDArray[np.bool_]:
-    """Return dots whose value differs from that of the dot to the right or below; heavy: also those beyond."""
+    """Return dots that differ from the one to the right or below; heavy: also those beyond."""
     border = np.zeros(values.shape, np.bool_)
     right, below = values[:, 1:] != values[:, :-1], values[1:] != values[:-1]
     border[:, :-1] |= right
@@ -123,7 +123,7 @@ def _dots(mask: NDArray[np.bool_]) -> Dots:
 
 
 def _names(levels: Any, omega: Any) -> list[Word]:
-    """Name the regimes in the middle of what is in view of them, and the separatrix beside it, where there is room."""
+    """Name the regimes in view at their middles, and the separatrix where there is room."""
     spins = levels < 0
     words: list[Word] = []
     for name, region in (

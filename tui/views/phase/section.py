@@ -15,7 +15,7 @@ from tui.views.phase.viewport import Viewport
 
 GAP = 2  # dots between orbits
 MAX_TAKEN = {True: 0.6, False: 0.3}
-"""The share of an orbit's dots that may lie within a gap of others'; of symplectic methods and of others."""
+"""The share of an orbit's dots that may lie in a gap of others', symplectic or not."""
 SPIRAL = 300  # steps of an orbit that are joined by lines, if the method is not symplectic
 
 
@@ -55,7 +55,7 @@ class Section:
                         self._near[j + down, i + right] = True
 
     def picture(self, orbit: Points, start: State, crosshair: State | None = None) -> Picture:
-        """Return all that was drawn, one orbit in thick dots or, if it is a spiral, joined, and its start."""
+        """Return the drawing with one orbit in thick dots, or a joined spiral, and its start."""
         canvas = self._ground.copy()
         if self.method.symplectic:
             x, y = self._dots(orbit)

@@ -97,7 +97,7 @@ class Viewport(NamedTuple):
         return 2 * self.columns * self.theta_per_dot
 
     def zoomed(self, factor: float, x: float, y: float) -> "Viewport":
-        """Return `factor` times as much of phase space, with (x, y) [dots] showing what it showed."""
+        """Return `factor` times as much of phase space; (x, y) [dots] keeps its state."""
         factor = min(max(factor, MIN_SPAN / self.theta_span), MAX_SPAN / self.theta_span)
         return self._replace(
             theta=self.theta + (x - self.middle[0]) * self.theta_per_dot * (1 - factor),
@@ -114,7 +114,7 @@ class Viewport(NamedTuple):
         return self._replace(theta=theta, omega=self.omega + down * self.omega_per_dot)
 
     def stepped(self, start: State, right: float, up: float) -> State:
-        """Return a state so many dots from another one, or from the middle if that is out of view."""
+        """Return the state so many dots from another, or from the middle if that is hidden."""
         x, y = float(self.x(start.theta)), float(self.y(start.omega))
         width, height = 2 * self.columns, 4 * self.rows
         if not (0 <= x < width and 0 <= y < height):

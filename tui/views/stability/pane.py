@@ -1,4 +1,4 @@
-"""StabilityPane: the map of stability, a panel per method, to choose h and amplitude from with mouse or keyboard."""
+"""StabilityPane: a panel of the stability map per method, to choose h and amplitude from."""
 
 from textual import events
 
@@ -61,7 +61,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
         return abs(self.source.stepping.own[index]) * self.source.scene.w0, theta
 
     def aim(self, index: int) -> tuple[int, int] | None:
-        """The place that is described for a method: at the cursor, under the pointer, or nearest to here."""
+        """The described place of a method: at the cursor, at the pointer, or nearest to here."""
         if self.cursor or self.pointer:
             return self.cursor or self.pointer
         if (here := self.here(index)) is None or here[0] > self.grid.z[-1]:
@@ -98,7 +98,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
         return Picture([*side_by_side(panels, 2), *below, *self._legend()])
 
     def _panel(self, index: int, columns: int, rows: int) -> list[Row]:
-        """Return a method's panel, with a mark at the cursor or, if there is none, at the present h."""
+        """Return a method's panel, with a mark at the cursor or at the present h."""
         assert self.source is not None
         here = self.here(index)
         if self.cursor is not None:
@@ -111,7 +111,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
         return None if self.app.no_color or self.app.native_ansi_color else palette(self.app.theme)
 
     def panel_size(self) -> tuple[int, int]:
-        """Columns of a panel, and rows of its map: two panels in a row, below them words and the legend."""
+        """Columns of a panel and rows of its map, two panels side by side above the words."""
         lines = -(-len(self.places) // 2) or 1
         return (self.room.width - 2) // 2, max(
             1, (self.room.height - WORDS - len(self._legend())) // lines - 2

@@ -46,7 +46,7 @@ def scores(cells: Cells, steps: int) -> Scores:
 
 
 def picture(grid: Grid, cells: Cells, columns: int, palette: Palette | None) -> Picture:
-    """Draw all panels and the legend, `columns` wide; with no palette, characters instead of colours."""
+    """Draw all panels and the legend, `columns` wide; without a palette, in characters."""
     across = 2 if columns >= 70 else 1
     width = (columns - 2 * (across - 1)) // across
     rows = max(6, (width - MARGIN) // 4)  # a cell is twice as high as wide, so panels are about 2:1
@@ -112,7 +112,7 @@ def _in_characters(values: Scores, steps: int) -> list[list[Cell]]:
 
 
 def _in_colours(values: Scores, ink: int, palette: Palette) -> list[list[Cell]]:
-    """Return half-blocks, two rows of pixels in each, and LOST where both are lost, so that colour is not alone."""
+    """Return half-blocks, two rows of pixels each, hatched with LOST where both are lost."""
     shades = [colour(level / SHADES, ink, palette) for level in range(-SHADES, 2 * SHADES + 1)]
     levels = np.rint((values + 1) * SHADES).astype(int).tolist()
 
@@ -145,7 +145,7 @@ def _axis(grid: Grid, width: int, w0: float | None) -> str:
 
 
 def title(place: int, method: Method, columns: int, palette: Palette | None, note: str = "") -> Row:
-    """Return the line above a panel, with a note behind the method's name or, if there is no room, instead of it."""
+    """Return the line above a panel: the method and a note, or the note alone if room is short."""
     mine = f"{'':{MARGIN}}{mark(place, method)} "
     text = f"{mine}{method.label}  {note}"
     if len(text) > columns:
@@ -180,7 +180,7 @@ def worst(values: Scores, columns: int, rows: int) -> Scores:
 
 
 def colour(score: float, ink: int, palette: Palette) -> str:
-    """Held: the method's colour, brighter for a smaller energy error.  Lost: the warning colour, darker if sooner."""
+    """Return colours: the method's where held, brighter for smaller errors; else the warning's."""
     if score < 0:
         return palette.background
     if score < 1:
@@ -189,7 +189,7 @@ def colour(score: float, ink: int, palette: Palette) -> str:
 
 
 def character(score: float, steps: int) -> str:
-    """The same without colour: # + - held, by energy error; lost within 10 steps: a dot, after 10^n steps: n."""
+    """Return characters: # + - where held, by energy error; a dot or n where lost in 10^n steps."""
     if score < 0:
         return " "
     if score < 1:
@@ -223,7 +223,7 @@ def _theta_of_row(grid: Grid, row: int, rows: int) -> float:
 
 
 def place_at(grid: Grid, row: int, column: int, rows: int, columns: int) -> tuple[int, int]:
-    """The indices (z, theta) of the map's cell under the middle of a panel's character, or the nearest."""
+    """Return the indices (z, theta) of the map's cell nearest to a character's middle."""
     z, theta = (
         int((column + 0.5) / columns * len(grid.z)),
         int((rows - row - 0.5) / rows * len(grid.theta)),

@@ -22,7 +22,7 @@ def _grid(cast: Cast) -> Grid:
 
 
 class StabilityView(StudyView[StabilityPane]):
-    """The map depends on z and amplitude only: another scene moves the mark and the axis, not the map."""
+    """The map depends only on z and amplitude: another scene moves the mark and the axis."""
 
     def __init__(self, id: str | None = None) -> None:
         super().__init__(StabilityPane(_grid(())), id)
@@ -36,7 +36,7 @@ class StabilityView(StudyView[StabilityPane]):
             self.compute(self._fill)
 
     async def _fill(self) -> None:
-        """Compute the map, and show how far it is in tenths: with a new title, Textual sends all of the pane again."""
+        """Compute the map; show progress in tenths, as each new title repaints the pane."""
         pane = self.pane
         async for piece in computed(pieces, pane.grid, PASSES):
             pane.fill(piece.z, piece.method, piece.cells)

@@ -30,7 +30,10 @@ def note(cell: Any) -> str:
 
 
 def verdict(method: Method, theta: float, zs: Floats, cells: Cells, at: int, w0: float) -> str:
-    """The outcome of the swing from theta [rad] at zs[at], and the nearest h with another; `cells` go along zs."""
+    """Return the outcome from theta [rad] at zs[at], and the nearest h with another outcome.
+
+    `cells` go along zs.
+    """
     cell = cells[at]
     place = f"{method.label} at h {zs[at] / w0:.3g} s, {math.degrees(theta):.3g} deg:"
     if cell["fate"] == UNKNOWN:

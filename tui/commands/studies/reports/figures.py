@@ -1,4 +1,4 @@
-"""Figures for paper and slide, by Matplotlib: as wide as a column, the same bytes for the same input."""
+"""Figures by Matplotlib, one column wide; the same input gives the same bytes."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -72,7 +72,7 @@ def _figure(path: Path, force: bool, height: float = HEIGHT) -> Iterator[Any]:
 
 
 def _styles(cast: Cast) -> list[dict[str, Any]]:
-    """Return colour, line and label of each method: no two have the same line, so none needs its colour."""
+    """Return colour, line style and label of each method; styles differ without colour, too."""
     palette = PALETTES["light"]
     return [
         {
@@ -126,7 +126,7 @@ def draw_accuracy(path: Path, force: bool, found: "Findings") -> None:
 
 
 def draw_map(path: Path, force: bool, grid: "Grid", cells: "Cells") -> None:
-    """Draw for each method where it holds a swing, by z and amplitude, with its largest energy error."""
+    """Draw where each method holds a swing, by z and amplitude, with its largest energy error."""
     import numpy as np
 
     from engine.stability.outcomes import is_lost

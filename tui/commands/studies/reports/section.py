@@ -1,4 +1,4 @@
-"""The report of `stability --section`: the portrait of a method's map, and the orbits of the scene's start."""
+"""The report of `stability --section`: a method's portrait, and the orbits of the start."""
 
 import argparse
 import math
@@ -44,7 +44,7 @@ FILE_SIZE = (120, 36)  # columns, rows
 
 
 def run(scene: Scene, options: argparse.Namespace, steps: int) -> int:
-    """Draw the portrait of the first of --methods, and describe the orbit of the start under each method."""
+    """Draw the portrait of the first method, and describe the start's orbit under each method."""
     for name, value, limit in (("starts", options.starts, MAX_STARTS), ("steps", steps, MAX_STEPS)):
         if value > limit:
             raise UserError(f"--{name} {value} is too many; use at most {limit}.")
@@ -87,7 +87,7 @@ def _orbits(
     steps: int,
     size: tuple[int, int],
 ) -> tuple[list[Points], Viewport]:
-    """Return orbits that start all over a portrait of so many columns and rows, and the portrait."""
+    """Return orbits from all over a portrait of so many columns and rows, and the portrait."""
     viewport = Viewport.portrait(*size, scene)
     orbits: list[Points] = []
     followed = partial(iterate, method, scene.equations, scene.h, steps=steps)
@@ -103,7 +103,7 @@ def _orbits(
 def portrait(
     scene: Scene, method: Method, options: argparse.Namespace, steps: int, size: tuple[int, int]
 ) -> list[Text]:
-    """Return the lines of the phase portrait of a method's map, in the colours and characters of the options."""
+    """Return the lines of a method's portrait in the options' colours and characters."""
     model = scene.equations
     start = State(scene.theta, scene.omega)
     orbits, viewport = _orbits(scene, method, options, steps, size)
