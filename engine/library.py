@@ -99,8 +99,9 @@ def simulate(
 ) -> Run:
     """Run methods side by side for `time` [s], by default those of the scene.
 
-    `numbers` replace the scene's: theta [rad], omega [rad/s], length [m], gravity [m/s²], h [s], and
-    the parameters of its model.  The arrays have the start, every `every`-th step, and the last one.
+    `numbers` replace the scene's: theta [rad], omega [rad/s], length [m], gravity [m/s²], h [s],
+    and the parameters of its model.  The arrays have the start, every `every`-th step, and the last
+    one.
     """
     import numpy as np
 
@@ -167,8 +168,8 @@ class Judged:
 def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "std") -> Judged:
     """Judge the energies of any program at increasing times.
 
-    Errors and trend are relative to `scale`: "std", the standard deviation of the energies, "first",
-    the first energy, or a number.
+    Errors and trend are relative to `scale`: "std", the standard deviation of the energies,
+    "first", the first energy, or a number.
     """
     import numpy as np
 

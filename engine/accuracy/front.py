@@ -40,8 +40,8 @@ def cost_of(point: Point, cost: Cost) -> float:
 def front(points: Iterable[Point], kind: ErrorKind, cost: Cost) -> list[Cheapest]:
     """The cheapest method for each error of a power of ten that some method reaches, the largest error first.
 
-    Costs are interpolated between a method's points, log over log.  An error is left out where the coarsest run of a
-    method is that accurate already, since a coarser one may be cheaper.
+    Costs are interpolated between a method's points, log over log.  An error is left out where the
+    coarsest run of a method is that accurate already, since a coarser one may be cheaper.
     """
     lines: dict[Method, list[Point]] = {}
     for point in points:

@@ -1,7 +1,7 @@
 """How fast the error in theta grows with time, and the power of t that it follows, if it follows one.
 
-A symplectic method's phase error grows as t, that of a method whose energy drifts as t²: Hairer, Lubich & Wanner,
-Geometric Numerical Integration (2006), X.3.
+A symplectic method's phase error grows as t, that of a method whose energy drifts as t²: Hairer,
+Lubich & Wanner, Geometric Numerical Integration (2006), X.3.
 """
 
 from collections.abc import Iterator, Sequence

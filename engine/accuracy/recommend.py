@@ -106,7 +106,8 @@ def reach(
 ) -> Iterator[Attempt]:
     """For each method, from the highest order down, its cheapest run with an error up to `target`.
 
-    A method is given up where it costs more than `most` evaluations, or than MAX_TIMES those of one before it.
+    A method is given up where it costs more than `most` evaluations, or than MAX_TIMES those of one
+    before it.
     """
     for method in sorted(study.scene.cast, key=lambda method: -method.order):
         attempt = _cheapest(study, method, kind, target, most)

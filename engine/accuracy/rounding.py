@@ -16,11 +16,11 @@ MARGIN = 2  # errors above the floor are then due to the method, but for a fract
 def rounding_floor(scene: Scene, time: float) -> tuple[float, float]:
     """What rounding leaves in energy (relative) and theta [rad] after one step; n steps leave sqrt(n) times that.
 
-    A step changes the energy by a relative epsilon, at random (Brouwer, Astron. J. 46 (1937) 149); by more
-    where theta has grown by many turns and its last digit is coarse.  Theta follows the energy as the
-    exact swing does when it passes the bottom a little slower: the more the longer, and steeply next to
-    the separatrix.
-    An estimate from above: RK4 at tiny steps errs by 0.005 to 0.6 times it.
+    A step changes the energy by a relative epsilon, at random (Brouwer, Astron. J. 46 (1937) 149);
+    by more where theta has grown by many turns and its last digit is coarse.  Theta follows the
+    energy as the exact swing does when it passes the bottom a little slower: the more the longer,
+    and steeply next to the separatrix. An estimate from above: RK4 at tiny steps errs by 0.005 to
+    0.6 times it.
     """
     epsilon = sys.float_info.epsilon
     exact = scene.exact()

@@ -1,8 +1,8 @@
 """Speed against accuracy: for a scene and a time, each method's errors and costs over a ladder of h.
 
-Every h is a whole fraction of the time, and errors in theta are taken at whole steps, the same for all
-methods, so that nothing is interpolated.  Cost is counted in force evaluations, which are the same on
-every machine, or in seconds by a clock that is passed in.
+Every h is a whole fraction of the time, and errors in theta are taken at whole steps, the same for
+all methods, so that nothing is interpolated.  Cost is counted in force evaluations, which are the
+same on every machine, or in seconds by a clock that is passed in.
 """
 
 import math
@@ -122,8 +122,9 @@ class Study:
     def run(self, method: Method, steps: int, comparisons: int = COMPARISONS) -> Point:
         """Take this many steps; at least `comparisons` of them, the last included, are compared with the exact swing.
 
-        An error counts as rounding if it lies below the rounding floor, and if runs with a half and a quarter of the
-        steps do not have errors larger by half of what the method's order promises.
+        An error counts as rounding if it lies below the rounding floor, and if runs with a half and
+        a quarter of the steps do not have errors larger by half of what the method's order
+        promises.
 
         Raises SceneError where time/steps is no usable h.
         """
@@ -283,11 +284,11 @@ def _cached_study(scene: Scene, time: float, loops: LoopsOf) -> Study:
 def orders(scene: Scene, time: float, loops: LoopsOf = PlainLoops) -> list[Order]:
     """The order of each method: the slope of log theta error over log h, fitted over one period or less.
 
-    Over longer times RK4 reads 5 and more.  Its phase error at the time t is a·h⁴·t, but it also loses energy
-    at a rate of b·h⁵, so the frequency drifts and the phase with it by b·h⁵·t²/2, which wins in the long
-    run: it reads 5, and more where h is so large that terms of h⁶ count.  Next to the separatrix,
-    where phase hangs steeply on energy, it reads 5 within the first period.  Symplectic Euler reads 2
-    from theta = 0, where its angles are velocity Verlet's.
+    Over longer times RK4 reads 5 and more.  Its phase error at the time t is a·h⁴·t, but it also
+    loses energy at a rate of b·h⁵, so the frequency drifts and the phase with it by b·h⁵·t²/2,
+    which wins in the long run: it reads 5, and more where h is so large that terms of h⁶ count.
+    Next to the separatrix, where phase hangs steeply on energy, it reads 5 within the first period.
+    Symplectic Euler reads 2 from theta = 0, where its angles are velocity Verlet's.
     """
     study = Study(scene, min(time, scene.exact().period or math.tau / scene.w0), loops)
     usable = [steps for steps in ORDER_STEPS if study.time / steps * scene.w0 >= Z_LIMITS[0]]

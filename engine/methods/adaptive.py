@@ -1,7 +1,8 @@
 """Step size control: a step is divided until it looks accurate enough.
 
-Where a step is divided depends on where it is, and back from its end it may be divided otherwise: neither symplectic
-nor reversible, whatever the method inside.  Hairer, Lubich & Wanner (2006), VIII.1.
+Where a step is divided depends on where it is, and back from its end it may be divided otherwise:
+neither symplectic nor reversible, whatever the method inside.  Hairer, Lubich & Wanner (2006),
+VIII.1.
 """
 
 import math
@@ -21,9 +22,9 @@ TOLERANCE = 0.1  # rad and rad/s, of a step
 def halving(phases: Phases, tolerance: float, richardson: bool = False) -> Phases:
     """The method with step doubling: where one step and two halves differ by more than the tolerance, h is halved.
 
-    The two halves are what counts, or with `richardson` their extrapolation for a method of order 2, which is of
-    order 4.  Nothing is kept from step to step, so each begins with h again.  The difference is
-    hypot(theta, omega), in rad and rad/s.
+    The two halves are what counts, or with `richardson` their extrapolation for a method of order
+    2, which is of order 4.  Nothing is kept from step to step, so each begins with h again.  The
+    difference is hypot(theta, omega), in rad and rad/s.
     """
 
     def step(force: Force, phase: Phase, h: float, halvings: int) -> Phase:
@@ -47,10 +48,12 @@ def _halving(*, richardson: bool, ends: str, **fields: Any) -> Method:
     return Method(
         **fields,
         phases=halving(velocity_verlet, TOLERANCE, richardson),
-        formula=f"a step of velocity Verlet, and two halves: if they differ by more than {TOLERANCE}, halve h; {ends}",
+        formula="a step of velocity Verlet, and two halves: if they differ by more than "
+        f"{TOLERANCE}, halve h; {ends}",
         reference="Press et al., Numerical Recipes, 2nd edition (1992), 16.2",
         used=None,
-        note="Its force evaluations are those of a minute of scene halving, on average, and equal cost goes by them; "
+        note="Its force evaluations are those of a minute of scene halving, on average, and equal "
+        "cost goes by them; "
         "a step that is not divided takes six, and of this order it is as long as none is.",
         models=("pendulum", "linear"),
         any_numbers=False,

@@ -11,7 +11,8 @@ from engine.models.modified_energy import symplectic_euler_modified_energy
 def explicit_euler(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
     """Explicit (forward) Euler: both updates from the old state.
 
-    Order 1.  Not symplectic: the step's determinant is 1 + h² w0² cos theta.  Hairer, Lubich & Wanner (2006), I.1.2.
+    Order 1.  Not symplectic: the step's determinant is 1 + h² w0² cos theta.  Hairer, Lubich &
+    Wanner (2006), I.1.2.
     """
     theta, omega = phase
     while True:
@@ -32,7 +33,8 @@ def explicit_euler_on_rates(rates: Rates, phase: Phase, h: float) -> Iterator[Ph
 def symplectic_euler(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
     """Symplectic Euler: kick omega, then drift theta with the new omega.
 
-    Order 1, symplectic.  Not reversible under omega -> -omega.  Hairer, Lubich & Wanner (2006), I.1.2 and VI.3.1.
+    Order 1, symplectic.  Not reversible under omega -> -omega.  Hairer, Lubich & Wanner (2006),
+    I.1.2 and VI.3.1.
     """
     theta, omega = phase
     while True:
@@ -53,7 +55,8 @@ EXPLICIT_EULER = Method(
     linear_limit=0.0,
     other_names=("forward Euler",),
     reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), I.1.2",
-    used="equations with additive noise (Euler-Maruyama): Brian 2 [brian2.readthedocs.io, Numerical integration]",
+    used="equations with additive noise (Euler-Maruyama): Brian 2 [brian2.readthedocs.io, "
+    "Numerical integration]",
     on_rates=explicit_euler_on_rates,
     models=("pendulum", "linear", *FIRST_ORDER),
 )
@@ -71,7 +74,8 @@ SYMPLECTIC_EULER = Method(
     linear_limit=2.0,
     other_names=("semi-implicit Euler", "Euler-Cromer"),
     reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), I.1.2",
-    used="robots and physics simulation: the default of MuJoCo [mujoco.readthedocs.io, XML Reference, integrator]",
+    used="robots and physics simulation: the default of MuJoCo [mujoco.readthedocs.io, XML "
+    "Reference, integrator]",
     modified_energy=symplectic_euler_modified_energy,
 )
 

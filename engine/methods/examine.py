@@ -51,7 +51,8 @@ def _examine(phases: Phases, who: str) -> None:
     middle = after(phases, force, START, H, STEPS // 2)
     if after(phases, force, middle, H, STEPS - STEPS // 2) != path[-1]:
         raise OwnMethodError(
-            f"{who} keeps more than theta and omega from step to step: {STEPS} steps differ from two times"
+            f"{who} keeps more than theta and omega from step to step: {STEPS} steps differ from "
+            "two times"
             f" {STEPS // 2}; a run is cut anywhere, so start from theta and omega alone."
         )
     if not evaluations(phases)[0] > 0:
@@ -68,7 +69,8 @@ def _examine(phases: Phases, who: str) -> None:
             ) from None
         if not same:
             raise OwnMethodError(
-                f"{who} gives other numbers for {kind} than for floats; use only +, -, * and / on theta and omega."
+                f"{who} gives other numbers for {kind} than for floats; use only +, -, * and / on "
+                "theta and omega."
             )
 
 

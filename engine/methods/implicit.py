@@ -1,7 +1,7 @@
 """Implicit methods for any force: each step solves an equation for theta, by Newton's iteration.
 
-The slope of the force is a difference quotient, so that they run on anybody's force.  A number of an array that has
-converged is left as it is, so that its bits do not depend on its neighbours.
+The slope of the force is a difference quotient, so that they run on anybody's force.  A number of
+an array that has converged is left as it is, so that its bits do not depend on its neighbours.
 """
 
 import math
@@ -22,7 +22,8 @@ WIDTH = 2.0**-26  # rad, and relative: of the difference quotient: half the digi
 def implicit(share: float) -> Phases:
     """Return the method whose force is that at a share of the step: 1/2 the middle, 1 the end.
 
-    A step solves theta_s = theta + s h omega + (s h)² a(theta_s), which has one solution where s z < 1.
+    A step solves theta_s = theta + s h omega + (s h)² a(theta_s), which has one solution where s z
+    < 1.
     """
     for_numbers = _solving(share, abs, bool)
 
@@ -91,8 +92,10 @@ BACKWARD_EULER = Method(
     other_names=("implicit Euler",),
     reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), I.1.2",
     used="stiff and differential-algebraic equations: PETSc, TSBEULER [petsc.org, TSBEULER]",
-    note="The mirror of explicit Euler: it loses energy at every h. Newton's iteration, to 1e-12 rad, takes two "
-    "evaluations each time, on a usual swing three times; beyond z = 1 there may be several solutions.",
+    note="The mirror of explicit Euler: it loses energy at every h. Newton's iteration, to 1e-12 "
+    "rad, takes two "
+    "evaluations each time, on a usual swing three times; beyond z = 1 there may be several "
+    "solutions.",
 )
 
 IMPLICIT_MIDPOINT = Method(
@@ -110,9 +113,12 @@ IMPLICIT_MIDPOINT = Method(
     linear_limit=math.inf,
     other_names=("Gauss method of order 2",),
     reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), II.1.1",
-    used="Markov chain Monte Carlo: BlackJAX, implicit_midpoint [blackjax-devs.github.io, blackjax.mcmc.integrators]",
-    note="It keeps the energy of small swings exactly, at any h, with a phase that is wrong where h is long. Newton's "
-    "iteration, to 1e-12 rad, takes two evaluations each time; a spring is solved in closed form, counted as one.",
+    used="Markov chain Monte Carlo: BlackJAX, implicit_midpoint [blackjax-devs.github.io, "
+    "blackjax.mcmc.integrators]",
+    note="It keeps the energy of small swings exactly, at any h, with a phase that is wrong where "
+    "h is long. Newton's "
+    "iteration, to 1e-12 rad, takes two evaluations each time; a spring is solved in closed form, "
+    "counted as one.",
     modified_energy=implicit_midpoint_modified_energy,
     models=("pendulum", "linear", "spring"),
 )

@@ -1,9 +1,11 @@
 """A pendulum learned from noisy measurements in four ways, and what structure each keeps.
 
-A field and a Hamiltonian are integrated by RK4; a map and a symplectic map are steps themselves.  The first two are sums of the same 60 random features, each fitted to the same 600 measurements by one least-squares problem
-(tests/bench/learn.py); only in one of them the field is made of the slopes of one function, which it then conserves.
-The one that was measured had w0² = 9.81 s⁻²; what was learned is in units of w0, so it holds for any w0.  These methods
-take w0 from the model, and never ask for the force.
+A field and a Hamiltonian are integrated by RK4; a map and a symplectic map are steps themselves.
+The first two are sums of the same 60 random features, each fitted to the same 600 measurements by
+one least-squares problem (tests/bench/learn.py); only in one of them the field is made of the
+slopes of one function, which it then conserves. The one that was measured had w0² = 9.81 s⁻²; what
+was learned is in units of w0, so it holds for any w0.  These methods take w0 from the model, and
+never ask for the force.
 """
 
 import math
@@ -102,7 +104,8 @@ RK4_LEARNED_FIELD = _learned(
     "learned vector field",
     learned_field,
     "RK4 on (theta', omega') = sums of 60 tanh(a theta + b omega + c), fitted to 600 measurements",
-    "It conserves nothing: within 100 s the true energy is off by 36 % from 1 rad, 60 % from 1.5, ninefold from 0.2.",
+    "It conserves nothing: within 100 s the true energy is off by 36 % from 1 rad, 60 % from 1.5, "
+    "ninefold from 0.2.",
 )
 
 RK4_LEARNED_HAMILTONIAN = _learned(
@@ -112,9 +115,11 @@ RK4_LEARNED_HAMILTONIAN = _learned(
     "learned Hamiltonian",
     learned_hamiltonian,
     "RK4 on the slopes of H = a sum of 60 tanh(a theta + b omega + c), fitted to 600 measurements",
-    "Its field is as inexact as the learned field, yet it conserves its H: the true energy is off by 1.2 % from 1 rad, "
+    "Its field is as inexact as the learned field, yet it conserves its H: the true energy is off "
+    "by 1.2 % from 1 rad, "
     "0.3 % from 2 rad, 12 % from 0.2 rad.",
-    "learned dynamics that conserve: DiffEqFlux, HamiltonianNN [docs.sciml.ai, Hamiltonian Neural Network]",
+    "learned dynamics that conserve: DiffEqFlux, HamiltonianNN [docs.sciml.ai, Hamiltonian Neural "
+    "Network]",
 )
 
 
@@ -151,7 +156,8 @@ def _module(numbers: str) -> Callable[[float], float]:
 def learned_symplectic_map(model: Model, phase: Phase, h: float) -> Iterator[Phase]:
     """The learned symplectic map: half a kick by a function of theta, a drift by one of omega, half a kick.
 
-    Symplectic whatever the functions are.  Jin et al., Neural Networks 132 (2020) 166, gradient modules.
+    Symplectic whatever the functions are.  Jin et al., Neural Networks 132 (2020) 166, gradient
+    modules.
     """
     w0 = model.w0
     tau = w0 * h
@@ -173,13 +179,15 @@ LEARNED_MAP = Method(
     phases=learned_map,
     takes_parts=True,
     any_numbers=False,
-    formula="(theta, omega/w0) + w0 h (two sums of 60 tanh(a theta + b omega/w0 + c)), learned for w0 h = 0.1",
+    formula="(theta, omega/w0) + w0 h (two sums of 60 tanh(a theta + b omega/w0 + c)), learned for "
+    "w0 h = 0.1",
     order=1,
     force_evaluations=1,
     other_names=("plain learned map",),
     reference="Jin, Zhang, Zhu, Tang & Karniadakis, Neural Networks 132 (2020) 166",
     used=None,
-    note="It keeps no structure: within 100 s at w0 h = 0.1 the true energy is off by 35 % from 1 rad, 61 % from "
+    note="It keeps no structure: within 100 s at w0 h = 0.1 the true energy is off by 35 % from 1 "
+    "rad, 61 % from "
     "1.5, ninefold from 0.2. Of this order in what was learned; counted are evaluations of that.",
     models=("pendulum",),
 )
@@ -191,7 +199,8 @@ LEARNED_SYMPLECTIC_MAP = Method(
     phases=learned_symplectic_map,
     takes_parts=True,
     any_numbers=False,
-    formula="half a kick, a drift, half a kick, by sums of 20 k tanh(a x + c) of theta and of omega/w0",
+    formula="half a kick, a drift, half a kick, by sums of 20 k tanh(a x + c) of theta and of "
+    "omega/w0",
     order=2,
     force_evaluations=1,
     first_same_as_last=True,
@@ -199,8 +208,10 @@ LEARNED_SYMPLECTIC_MAP = Method(
     other_names=("learned symplectic map",),
     reference="Jin, Zhang, Zhu, Tang & Karniadakis, Neural Networks 132 (2020) 166",
     used=None,
-    note="It keeps area, so it conserves an energy of its own: within 100 s at w0 h = 0.1 the true one is off by 0.6 % "
-    "from 1 rad, 0.4 % from 1.5, 3 % from 0.2. Of this order in what was learned; counted are evaluations of that.",
+    note="It keeps area, so it conserves an energy of its own: within 100 s at w0 h = 0.1 the true "
+    "one is off by 0.6 % "
+    "from 1 rad, 0.4 % from 1.5, 3 % from 0.2. Of this order in what was learned; counted are "
+    "evaluations of that.",
     models=("pendulum",),
 )
 

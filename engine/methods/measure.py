@@ -1,7 +1,7 @@
 """The properties of a method as measured: order, cost, symplectic or not, reversible or not, linear limit.
 
-All but the linear limit on the pendulum with w0² = 9.81 s⁻².  The tests hold the claims of METHODS against these; for
-a user's own method they are the claims.
+All but the linear limit on the pendulum with w0² = 9.81 s⁻².  The tests hold the claims of METHODS
+against these; for a user's own method they are the claims.
 """
 
 import cmath
@@ -136,8 +136,8 @@ def out_and_back(phases: Phases, start: Phase, h: float, steps: int) -> float:
 
 
 def linear_limit(phases: Phases) -> float:
-    """The first z beyond which small swings grow, to 1e-9; 0 where no step is small enough, inf where
-    all up to WIDEST_Z are.
+    """The first z beyond which small swings grow, to 1e-9; 0 where no step is small enough, inf
+    where all up to WIDEST_Z are.
 
     Looked for upwards, as high-order methods are stable again beyond it, in islands.
     """
@@ -161,7 +161,8 @@ def linear_limit(phases: Phases) -> float:
 def is_stable(phases: Phases, z: float) -> bool:
     """Whether both multipliers of a linear step lie in the closed unit disc, but for rounding.
 
-    They do if det <= 1 and |trace| <= 1 + det: Jury, Theory and Application of the z-Transform Method (1964).
+    They do if det <= 1 and |trace| <= 1 + det: Jury, Theory and Application of the z-Transform
+    Method (1964).
     """
     return bool(_stable(phases, z))
 

@@ -44,11 +44,13 @@ class Method:
     formula: str
     order: int  # global order on the nonlinear pendulum, over at most one period
     force_evaluations: int  # a step
-    first_same_as_last: bool = False  # the last force of a step is the next one's first: a run needs one more than its steps
+    # the last force of a step is the next one's first: a run needs one more than its steps
+    first_same_as_last: bool = False
     symplectic: bool = False  # the step's Jacobian has determinant 1
     reversible: bool = False  # the step and omega -> -omega undo each other
     linear_limit: float | None = (
-        None  # largest stable z = h·w0 on the linear oscillator; 0: none; inf: all; None: no one number
+        # largest stable z = h·w0 on the linear oscillator; 0: none; inf: all; None: no one number
+        None
     )
     other_names: tuple[str, ...] = ()
     reference: str

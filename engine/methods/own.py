@@ -1,7 +1,7 @@
 """A user's own method: a generator function from the text of a file, measured, and guarded while it runs.
 
-It claims nothing: its properties are measured when the text is loaded.  Its code is executed like any Python.
-Another process receives the text and compiles it again.
+It claims nothing: its properties are measured when the text is loaded.  Its code is executed like
+any Python. Another process receives the text and compiles it again.
 """
 
 import copyreg

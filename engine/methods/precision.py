@@ -15,8 +15,8 @@ from engine.models.model import Force, Phase
 class Float32(float):
     """A number of 32 bits, IEEE binary32.
 
-    A sum or product of two, rounded to a double and then to 32 bits, is the same as rounded once: a double has more
-    than twice the digits.  Figueroa, ACM SIGNUM Newsletter 30 (1995) 21.
+    A sum or product of two, rounded to a double and then to 32 bits, is the same as rounded once: a
+    double has more than twice the digits.  Figueroa, ACM SIGNUM Newsletter 30 (1995) 21.
     """
 
     __slots__ = ()
@@ -74,7 +74,8 @@ def verlet_float32(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
 def verlet_compensated(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
     """Velocity Verlet that keeps what its additions round off.
 
-    It yields Compensated numbers, which are doubles: what is lost stays in the phase, so a run may be cut anywhere.
+    It yields Compensated numbers, which are doubles: what is lost stays in the phase, so a run may
+    be cut anywhere.
     """
     theta, omega = (x if isinstance(x, Compensated) else Compensated(x) for x in phase)
     return velocity_verlet(force, (theta, omega), h)
@@ -106,7 +107,8 @@ VERLET_FLOAT32 = _verlet(
     keeps_area=False,
     note="Rounding is not symplectic: the modified energy walks, by 1e-5 in 10 000 steps.",
     epsilon=2.0**-24,
-    used="molecular dynamics: positions and velocities in GROMACS [manual.gromacs.org, Definitions and Units]",
+    used="molecular dynamics: positions and velocities in GROMACS [manual.gromacs.org, Definitions "
+    "and Units]",
 )
 
 VERLET_COMPENSATED = _verlet(

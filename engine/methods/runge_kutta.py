@@ -11,8 +11,8 @@ from engine.models.model import Force, Phase, Rates
 def rk4(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
     """The classical Runge-Kutta method of order 4.
 
-    Neither symplectic nor reversible: det - 1 ~ h⁶, so it loses a little area on most of the plane and gains
-    some near upright.  Hairer, Lubich & Wanner (2006), II.1.1.
+    Neither symplectic nor reversible: det - 1 ~ h⁶, so it loses a little area on most of the plane
+    and gains some near upright.  Hairer, Lubich & Wanner (2006), II.1.1.
     """
     theta, omega = phase
     half, sixth = h / 2, h / 6
@@ -84,7 +84,8 @@ RK4 = Method(
     letter="r",
     hue=3,
     phases=rk4,
-    formula="y' = y + h/6 (k1 + 2 k2 + 2 k3 + k4), the slopes k at the start, twice the middle, the end",
+    formula="y' = y + h/6 (k1 + 2 k2 + 2 k3 + k4), the slopes k at the start, twice the middle, "
+    "the end",
     order=4,
     force_evaluations=4,
     linear_limit=2 * math.sqrt(2),
@@ -100,13 +101,15 @@ HEUN = Method(
     label="Heun",
     letter="w",
     phases=heun,
-    formula="y' = y + h/2 (k1 + k2), the slopes k at the start and at the end of a step of explicit Euler",
+    formula="y' = y + h/2 (k1 + k2), the slopes k at the start and at the end of a step of "
+    "explicit Euler",
     order=2,
     force_evaluations=2,
     linear_limit=0.0,
     other_names=("RK2", "improved Euler", "explicit trapezoidal rule"),
     reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), II.1.1",
-    used="equations with multiplicative noise: Brian 2, heun [brian2.readthedocs.io, Numerical integration]",
+    used="equations with multiplicative noise: Brian 2, heun [brian2.readthedocs.io, Numerical "
+    "integration]",
     note="It gains energy at every h: a step multiplies that of small swings by 1 + z⁴/4.",
 )
 

@@ -1,6 +1,7 @@
 """Methods as data: kicks and drifts in turn, of order 4 and 6.
 
-Made of kicks and drifts they are symplectic, and the same forwards as backwards they are reversible.
+Made of kicks and drifts they are symplectic, and the same forwards as backwards they are
+reversible.
 """
 
 from collections.abc import Iterator
@@ -13,8 +14,8 @@ from engine.models.model import Force, Phase
 def splitting(kicks: tuple[float, ...], drifts: tuple[float, ...]) -> Phases:
     """The method that kicks omega and drifts theta in turn, by these fractions of h, beginning and ending with a kick.
 
-    There is one kick more than there are drifts, and both add up to 1.  The last force of a step is the next one's
-    first.  Hairer, Lubich & Wanner (2006), II.5.
+    There is one kick more than there are drifts, and both add up to 1.  The last force of a step is
+    the next one's first.  Hairer, Lubich & Wanner (2006), II.5.
     """
     first, following = kicks[0], kicks[1:]
 
@@ -78,7 +79,8 @@ FOREST_RUTH = Method(
     reference="Forest & Ruth, Physica D 43 (1990) 105",
     used="orbits in galaxies: gala, Ruth4Integrator [gala.adrian.pw, Ruth4Integrator]",
     note="A warning: its middle step goes backwards, by 1.7 h. Its limit is the smallest of the "
-    "symplectic methods, and at 20 evaluations a second its energy error is hardly less than Verlet's. Three "
+    "symplectic methods, and at 20 evaluations a second its energy error is hardly less than "
+    "Verlet's. Three "
     "evaluations, not five, and energy is not exact.",
 )
 
@@ -93,7 +95,8 @@ BLANES_MOAN_4 = Method(
         ),
         mirrored((0.24529895718427116, 0.60487266571107997, -0.35017162289535114), odd=False),
     ),
-    formula="7 kicks and 6 drifts in turn: .083, .245, .396, .605, -.039, -.350, .120 and the same backwards, times h",
+    formula="7 kicks and 6 drifts in turn: .083, .245, .396, .605, -.039, -.350, .120 and the same "
+    "backwards, times h",
     order=4,
     force_evaluations=6,
     first_same_as_last=True,
@@ -102,9 +105,12 @@ BLANES_MOAN_4 = Method(
     linear_limit=3.16346506656,
     other_names=("Blanes-Moan SRKN 6b",),
     reference="Blanes & Moan, J. Comput. Appl. Math. 142 (2002) 313, table 3",
-    used="spaceflight among many bodies: Principia [github.com, mockingbirdnest/Principia, integrators/methods.hpp]",
-    note="To follow a swing from 2 rad for 100 s to 1e-3 (1e-6) rad takes 2800 (7800) evaluations, RK4 15 600 "
-    "(59 000). Yoshida 6 and, left out here, PEFRL, Suzuki, Kahan-Li 6 and 8 take 3700 (13 000) or more.",
+    used="spaceflight among many bodies: Principia [github.com, mockingbirdnest/Principia, "
+    "integrators/methods.hpp]",
+    note="To follow a swing from 2 rad for 100 s to 1e-3 (1e-6) rad takes 2800 (7800) evaluations, "
+    "RK4 15 600 "
+    "(59 000). Yoshida 6 and, left out here, PEFRL, Suzuki, Kahan-Li 6 and 8 take 3700 (13 000) or "
+    "more.",
 )
 
 BLANES_MOAN_6 = Method(
@@ -135,7 +141,8 @@ BLANES_MOAN_6 = Method(
             odd=True,
         ),
     ),
-    formula="12 kicks and 11 drifts in turn: .041, .123, .198, .291, -.040, -.127, .075, -.246, -.012, .357, .237, "
+    formula="12 kicks and 11 drifts in turn: .041, .123, .198, .291, -.040, -.127, .075, -.246, "
+    "-.012, .357, .237, "
     ".205 and the same backwards, times h",
     order=6,
     force_evaluations=11,
@@ -145,9 +152,12 @@ BLANES_MOAN_6 = Method(
     linear_limit=3.14143108775,
     other_names=("Blanes-Moan SRKN 11b",),
     reference="Blanes & Moan, J. Comput. Appl. Math. 142 (2002) 313, table 3",
-    used="spaceflight among many bodies: Principia [github.com, mockingbirdnest/Principia, integrators/methods.hpp]",
-    note="Of order 6 only where the force depends on the position alone. To follow a swing from 2 rad for 100 s to "
-    "1e-9 rad takes 26 400 evaluations, BM4 36 000, RK4 182 000; of those left out, Kahan and Li's of order 8 30 600.",
+    used="spaceflight among many bodies: Principia [github.com, mockingbirdnest/Principia, "
+    "integrators/methods.hpp]",
+    note="Of order 6 only where the force depends on the position alone. To follow a swing from 2 "
+    "rad for 100 s to "
+    "1e-9 rad takes 26 400 evaluations, BM4 36 000, RK4 182 000; of those left out, Kahan and Li's "
+    "of order 8 30 600.",
 )
 
 _YOSHIDA = (0.78451361047755726, 0.23557321335935813, -1.1776799841788710)
@@ -167,7 +177,8 @@ YOSHIDA_6 = Method(
     longest_substep=1 - 2 * sum(_YOSHIDA),
     other_names=("Yoshida 6A",),
     reference="Yoshida, Phys. Lett. A 150 (1990) 262, solution A",
-    used="Hamiltonian systems: OrdinaryDiffEq.jl, Yoshida6 [docs.sciml.ai, Dynamical, Hamiltonian, and 2nd Order ODE "
+    used="Hamiltonian systems: OrdinaryDiffEq.jl, Yoshida6 [docs.sciml.ai, Dynamical, Hamiltonian, "
+    "and 2nd Order ODE "
     "Solvers]",
     note="Here for its name: BM6 needs fewer evaluations at every accuracy.",
 )

@@ -63,15 +63,18 @@ RESPA = Method(
     label="RESPA",
     letter="p",
     phases=respa(velocity_verlet, INNER),
-    formula=f"w + h/2 slow;  {INNER} steps of velocity Verlet with h/{INNER} and the fast force;  w + h/2 slow",
+    formula=f"w + h/2 slow;  {INNER} steps of velocity Verlet with h/{INNER} and the fast force;  "
+    "w + h/2 slow",
     order=2,
     force_evaluations=INNER + 1,
     symplectic=True,
     reversible=True,
     other_names=("impulse method", "IVI"),
     reference="Tuckerman, Berne & Martyna, J. Chem. Phys. 97 (1992) 1990",
-    used="molecular dynamics: LAMMPS, run_style respa, OpenMM, MTSIntegrator [docs.openmm.org, MTSIntegrator]",
-    note="Its kicks resonate where h is a period of the fast motion, or several. Counted are evaluations of its parts.",
+    used="molecular dynamics: LAMMPS, run_style respa, OpenMM, MTSIntegrator [docs.openmm.org, "
+    "MTSIntegrator]",
+    note="Its kicks resonate where h is a period of the fast motion, or several. Counted are "
+    "evaluations of its parts.",
     models=("spring",),
     takes_parts=True,
 )
@@ -86,8 +89,10 @@ IMEX_EULER = Method(
     force_evaluations=1,
     other_names=("implicit-explicit Euler",),
     reference="Ascher, Ruuth & Spiteri, Appl. Numer. Math. 25 (1997) 151",
-    used="equations with a stiff part: OrdinaryDiffEq.jl, IMEXEuler [docs.sciml.ai, IMEX SDIRK Methods]",
-    note="Stable at any h; it takes energy out of the spring, the faster the longer h is, and then out of the swing.",
+    used="equations with a stiff part: OrdinaryDiffEq.jl, IMEXEuler [docs.sciml.ai, IMEX SDIRK "
+    "Methods]",
+    note="Stable at any h; it takes energy out of the spring, the faster the longer h is, and then "
+    "out of the swing.",
     models=("spring",),
     takes_parts=True,
 )
@@ -97,7 +102,8 @@ MEAN_FIELD_SPLITTING = Method(
     label="Exact splitting",
     letter="x",
     phases=mean_field_splitting,
-    formula="theta + h/2 omega;  s turned by nu h about b(theta), omega kicked by it;  theta + h/2 omega",
+    formula="theta + h/2 omega;  s turned by nu h about b(theta), omega kicked by it;  theta + h/2 "
+    "omega",
     order=2,
     force_evaluations=1,
     symplectic=True,

@@ -46,7 +46,8 @@ VELOCITY_VERLET = Method(
     letter="v",
     hue=2,
     phases=velocity_verlet,
-    formula="omega½ = omega + h/2 a(theta);  theta' = theta + h omega½;  omega' = omega½ + h/2 a(theta')",
+    formula="omega½ = omega + h/2 a(theta);  theta' = theta + h omega½;  omega' = omega½ + h/2 "
+    "a(theta')",
     order=2,
     force_evaluations=1,
     first_same_as_last=True,
@@ -65,7 +66,8 @@ POSITION_VERLET = Method(
     label="Position Verlet",
     letter="o",
     phases=position_verlet,
-    formula="theta½ = theta + h/2 omega;  omega' = omega + h a(theta½);  theta' = theta½ + h/2 omega'",
+    formula="theta½ = theta + h/2 omega;  omega' = omega + h a(theta½);  theta' = theta½ + h/2 "
+    "omega'",
     order=2,
     force_evaluations=1,
     symplectic=True,

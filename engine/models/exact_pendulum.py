@@ -1,10 +1,10 @@
 """The exact motion in closed form, from any start; the reference of every error in theta.
 
-Notation as in the books: k² = sin²(theta0/2) + omega0²/(4 w0²), D = 1 - k².  D > 0 is libration,
-D < 0 rotation, D = 0 the separatrix.  Everything near the separatrix hangs on D, whose two terms
-cancel there, so it is computed once in 100 digits.  F by Carlson's R_F, K by the arithmetic-geometric
-mean from k', sn and cn by Bulirsch from k', the argument reduced modulo 2K: library routines that take
-m = k² instead lose every digit where 1 - m < 1e-10.
+Notation as in the books: k² = sin²(theta0/2) + omega0²/(4 w0²), D = 1 - k².  D > 0 is libration, D
+< 0 rotation, D = 0 the separatrix.  Everything near the separatrix hangs on D, whose two terms
+cancel there, so it is computed once in 100 digits.  F by Carlson's R_F, K by the
+arithmetic-geometric mean from k', sn and cn by Bulirsch from k', the argument reduced modulo 2K:
+library routines that take m = k² instead lose every digit where 1 - m < 1e-10.
 
 Carlson, Numer. Algorithms 10 (1995) 13.  Bulirsch, Numer. Math. 7 (1965) 78.
 """
@@ -51,8 +51,8 @@ def exact_pendulum(
 def _k_squared(theta: float, omega: float, w0_squared: float) -> Decimal:
     """k² = (1 - cos theta)/2 + omega²/(4 w0²) in the precision of the decimal context.
 
-    1 - cos is taken at theta/2⁶⁴, where five terms of its series are right to 100 digits, and doubled
-    64 times by 1 - cos 2x = 2 (1 - cos x)(1 + cos x): no pi, and no reduction modulo 2 pi.
+    1 - cos is taken at theta/2⁶⁴, where five terms of its series are right to 100 digits, and
+    doubled 64 times by 1 - cos 2x = 2 (1 - cos x)(1 + cos x): no pi, and no reduction modulo 2 pi.
     """
     small = Decimal(theta) / 2**64
     square = small * small

@@ -12,7 +12,8 @@ Number = (
 Phase = tuple[Number, ...]
 """(theta, omega) as a method takes and yields it: a bare tuple, the quickest value CPython builds.
 
-Some models have other numbers, or more of them; `Model.observe` reads angle and angular velocity from any phase.
+Some models have other numbers, or more of them; `Model.observe` reads angle and angular velocity
+from any phase.
 """
 
 Force = Callable[[Number], Number]
@@ -127,8 +128,9 @@ class EnergyError(NamedTuple):
 class Model(ABC):
     """A frozen dataclass of the parameters of some equations of motion, and whatever differs between models.
 
-    Most models are theta'' = force(theta).  Where that is not all of the right side, `second_order` is False, and
-    methods integrate `rates`; methods made for one model take its `parts`, such as exact parts of the flow.
+    Most models are theta'' = force(theta).  Where that is not all of the right side, `second_order`
+    is False, and methods integrate `rates`; methods made for one model take its `parts`, such as
+    exact parts of the flow.
     """
 
     key: ClassVar[str]  # in scenes, recordings and on the command line

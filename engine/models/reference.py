@@ -1,6 +1,7 @@
 """An accurate motion where there is no closed form: Kahan and Li's method of order 8, in steps of its own.
 
-Kahan & Li, Math. Comput. 66 (1997) 1089: a symmetric step of order 2 with 17 fractions of h in turn.
+Kahan & Li, Math. Comput. 66 (1997) 1089: a symmetric step of order 2 with 17 fractions of h in
+turn.
 """
 
 import math

@@ -1,7 +1,8 @@
 """A bob on a stiff spring in the plane: a swing, and a vibration that is some ten times as fast.
 
-A position is a complex number x + iy in units of the spring's length at rest, y upwards and the pivot at 0:
-z'' = -k (1 - 1/|z|) z - i w0².  So every method that has only + and * on the phase runs on it unchanged.
+A position is a complex number x + iy in units of the spring's length at rest, y upwards and the
+pivot at 0: z'' = -k (1 - 1/|z|) z - i w0².  So every method that has only + and * on the phase runs
+on it unchanged.
 """
 
 import cmath
@@ -30,7 +31,8 @@ from engine.models.reference import Reference, compose_verlet
 STRETCH = 0.04  # of its length, beyond equilibrium: how far the spring is stretched at a start
 STEP = 0.1  # of the reference, times the spring's frequency
 ACCURACY = 1e-10  # rad
-STIFFEST = 320  # times the swing's frequency; a faster spring would take the reference more time than it saves
+# times the swing's frequency; a faster spring would take the reference more time than it saves
+STIFFEST = 320
 
 
 class SpringParts(NamedTuple):
@@ -88,7 +90,8 @@ class Spring(Model):
         "Maps and studies are for one angle; the bob on a spring has two coordinates."
     )
     without_ring: ClassVar[str] = (
-        "Angle and angular velocity of the swing: a projection of four dimensions, without curves or ring."
+        "Angle and angular velocity of the swing: a projection of four dimensions, without curves "
+        "or ring."
     )
 
     @property

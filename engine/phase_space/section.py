@@ -1,7 +1,7 @@
 """The phase portrait of a method's own map: many starts iterated, and the kind of a single orbit.
 
-A step of fixed h is a map of the phase plane, and its orbits are a Poincaré section as they are: a smooth curve, a
-chain of islands, a chaotic layer or, if the method is not symplectic, a spiral.
+A step of fixed h is a map of the phase plane, and its orbits are a Poincaré section as they are: a
+smooth curve, a chain of islands, a chaotic layer or, if the method is not symplectic, a spiral.
 """
 
 import math
@@ -87,9 +87,12 @@ class OrbitKind:
     rotation: float | None
     """Turns per step: around the bottom, or over the top with its sign; None if there are none."""
     fraction: Fraction | None  # the nearest small one, of |rotation|
-    island: bool  # every so many steps, by the fraction's denominator, the orbit is back in the same island
-    lyapunov: float  # mean growth of ln |a small displacement| a step; tends to 0 where the orbit is regular
-    chaotic: bool  # of a symplectic method: neighbouring starts part faster than regular ones do in so many steps
+    # every so many steps, by the fraction's denominator, the orbit is back in the same island
+    island: bool
+    # mean growth of ln |a small displacement| a step; tends to 0 where the orbit is regular
+    lyapunov: float
+    # of a symplectic method: neighbouring starts part faster than regular ones do in so many steps
+    chaotic: bool
     energy_error: float  # (E - E0)/E0 at the end, as in a run
 
 
@@ -139,8 +142,8 @@ def least_lyapunov(steps: int) -> float:
 def rotation_number(theta: Floats, omega: Floats, w0: float, spins: bool = False) -> float | None:
     """Turns a step of an orbit around the bottom or, if it spins, over the top; None where its halves disagree.
 
-    A weighted Birkhoff average, which on smooth curves converges faster than any power of the steps:
-    Das, Saiki, Sander & Yorke, Nonlinearity 30 (2017) 4111.
+    A weighted Birkhoff average, which on smooth curves converges faster than any power of the
+    steps: Das, Saiki, Sander & Yorke, Nonlinearity 30 (2017) 4111.
     """
     if spins:
         turns = np.diff(theta) / math.tau
@@ -157,8 +160,8 @@ def rotation_number(theta: Floats, omega: Floats, w0: float, spins: bool = False
 def numerical_period(method: Method, model: Model, h: float, start: Phase) -> float | None:
     """The time of a method's swing or turn [s], on average over many: h over the rotation number of its map.
 
-    Small swings of velocity Verlet and symplectic Euler take h·pi / asin(h·w0/2).  None where there is no rotation
-    number, or where PERIODS take more than MOST_STEPS.
+    Small swings of velocity Verlet and symplectic Euler take h·pi / asin(h·w0/2).  None where there
+    is no rotation number, or where PERIODS take more than MOST_STEPS.
     """
     period = model.exact(*start).period
     if period is None or (steps := round(PERIODS * period / h)) > MOST_STEPS:

@@ -1,8 +1,9 @@
 """Bands: how low and how high a wobbling number goes, over parts of a run.  From a stream, in constant memory.
 
-Within a swing the energy error of every method wobbles by more than it moves from swing to swing.  So the
-stream is cut into bins of a swing or more, and of a bin only its band is kept: lowest, highest.  The middle
-of a band hardly wobbles, wherever the swing was cut.  When there are 64 bins they merge pairwise.
+Within a swing the energy error of every method wobbles by more than it moves from swing to swing.
+So the stream is cut into bins of a swing or more, and of a bin only its band is kept: lowest,
+highest.  The middle of a band hardly wobbles, wherever the swing was cut.  When there are 64 bins
+they merge pairwise.
 """
 
 import copy
@@ -95,8 +96,8 @@ def line(bins: Sequence[Bin]) -> Line:
 def fit(times: Sequence[float], values: Sequence[float]) -> Line:
     """Fit a line through three values or more.
 
-    A residual is taken to be correlated with the next one, which leaves n (1 - r)/(1 + r) of n values that
-    count: Santer et al., J. Geophys. Res. 105 (2000) 7337.
+    A residual is taken to be correlated with the next one, which leaves n (1 - r)/(1 + r) of n
+    values that count: Santer et al., J. Geophys. Res. 105 (2000) 7337.
     """
     n = len(times)
     mean_time = sum(times) / n

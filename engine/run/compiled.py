@@ -1,8 +1,8 @@
 """The loops of engine.run.loops compiled by Numba, from the same functions: the same bits, some ten times as fast.
 
 Numba is the optional extra `fast`.  It is imported at the first use and not before: it takes half a
-second, and compiling another fifth of a second for each method and model.  Nothing is kept on disk: Numba's
-cache does not notice when a function in another file changes, and ours are in three.
+second, and compiling another fifth of a second for each method and model.  Nothing is kept on disk:
+Numba's cache does not notice when a function in another file changes, and ours are in three.
 """
 
 import math
@@ -40,9 +40,9 @@ def compiled(method: Method, model: Model) -> Loops:
     """Return the method's loops on this model, compiled; its parameters become constants.
 
     They release the interpreter's lock while they run.  Where Numba's sine is not Python's, which
-    depends on the platform's libraries, bits would differ: there the plain loops are returned, and for a user's own
-    method, which may hold anything, for one that is not general, and on a model that is not plain.  Raises
-    ImportError without Numba.
+    depends on the platform's libraries, bits would differ: there the plain loops are returned, and
+    for a user's own method, which may hold anything, for one that is not general, and on a model
+    that is not plain.  Raises ImportError without Numba.
     """
     return _compiled(method, model) or PlainLoops(method, model)
 

@@ -18,8 +18,8 @@ from engine.scenes import Scene, check_h
 class Reading(NamedTuple):
     """One method at one step.  Always finite: a method that diverges stays where it last was finite.
 
-    Energies are per unit m·L² [s⁻²]; energy errors are relative, (E - E0)/E0, or to 2 w0² where E0 = 0, or with
-    friction ln(E/E_true).
+    Energies are per unit m·L² [s⁻²]; energy errors are relative, (E - E0)/E0, or to 2 w0² where E0
+    = 0, or with friction ln(E/E_true).
     """
 
     theta: float  # rad, unwrapped
@@ -71,8 +71,8 @@ class _Track:
     def reduce(self) -> None:
         """Take whole turns off theta if it is beyond one, because its rounding grows with it.
 
-        2 pi is taken off in two numbers: the nearest double, and what that lacks.  Sums keep what compensated numbers
-        carry.
+        2 pi is taken off in two numbers: the nearest double, and what that lacks.  Sums keep what
+        compensated numbers carry.
         """
         theta, *others = self.phase
         if abs(theta) >= math.tau:
@@ -86,11 +86,11 @@ class _Track:
 class Lockstep:
     """A scene's cast in lockstep.  The same scene and stepping give the same bits, however the steps are cut.
 
-    `scene.h` is the step size at the start, `stepping` what is in force.  Time is `t_base + n·h`, never a
-    running sum.  A method whose numbers stop being finite is frozen; the others go on.
+    `scene.h` is the step size at the start, `stepping` what is in force.  Time is `t_base + n·h`,
+    never a running sum.  A method whose numbers stop being finite is frozen; the others go on.
 
-    The lockstep stops by itself at look points, every `stride` steps since the last change of the stepping: there
-    theta is reduced, and each method is shown to its judge, if there are judges.
+    The lockstep stops by itself at look points, every `stride` steps since the last change of the
+    stepping: there theta is reduced, and each method is shown to its judge, if there are judges.
     """
 
     def __init__(

@@ -127,7 +127,8 @@ def advance_with_errors(
 ) -> Errors:
     """Advance by n >= 1 steps; the first is after `begin`: a time [s] and the number of steps since.
 
-    Where energy is not conserved, it is compared with the true one at each step; `watch` sees each phase.
+    Where energy is not conserved, it is compared with the true one at each step; `watch` sees each
+    phase.
     """
     if reference.true is None and watch is None:
         done, phase, energy, low, high = advance(phase, h, n, limit)

@@ -129,7 +129,8 @@ class RewindableRun:
                 stops.append(self._reset)
             self._lockstep.advance(min(stops) - self.step)
             if self.step == self._reset:
-                self._lockstep.sample()  # the next sample's extremes are again those since this step
+                # the next sample's extremes are again those since this step
+                self._lockstep.sample()
             if self.step >= self._copies[-1].lockstep.step + COPY_EVERY:
                 self._copies.append(self._copy())
                 self._thin()

@@ -1,10 +1,11 @@
 """Stepping: the lockstep's step size, and what of it each method takes.  The one place that converts between them.
 
-At equal cost a method that needs fewer force evaluations takes a step of the lockstep in equal parts, so that
-all methods need about as many: RK4 one step of h, the others four of h/4.
+At equal cost a method that needs fewer force evaluations takes a step of the lockstep in equal
+parts, so that all methods need about as many: RK4 one step of h, the others four of h/4.
 
-The parts hang on the cast alone, so that a step size and a switch say how a run goes on.  Of a method whose cost
-varies, the usual cost counts: measured at each h and phase it would change the steps of all the others on the way.
+The parts hang on the cast alone, so that a step size and a switch say how a run goes on.  Of a
+method whose cost varies, the usual cost counts: measured at each h and phase it would change the
+steps of all the others on the way.
 """
 
 import math
@@ -21,7 +22,8 @@ from engine.scenes import check_h
 class Stepping(NamedTuple):
     """How a run steps: its step size, whether at equal cost, and the methods that share it."""
 
-    h: float  # s, of the lockstep, and so of the method that is not cut; negative: time runs backwards
+    # s, of the lockstep, and so of the method that is not cut; negative: time runs backwards
+    h: float
     equal_cost: bool = False
     cast: Cast = USUAL_CAST
 

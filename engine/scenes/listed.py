@@ -174,7 +174,8 @@ _STRUCTURE = (
         cast=_cast("explicit_euler", "lagged_verlet", "conformal_verlet", "rk4"),
         speed=2.0,
         watch="Explicit Euler gains energy against friction, and spins; the others slow down.",
-        often_said="RK4 is to be preferred where energy is lost. True from an accuracy of 0.1 % on; "
+        often_said="RK4 is to be preferred where energy is lost. True from an accuracy of 0.1 % "
+        "on; "
         "at 1 % conformal Verlet costs half.",
     ),
     Scene(
@@ -198,7 +199,8 @@ _STIFFNESS = (
         cast=_SPRING,
         speed=0.5,
         watch="h·omega = 1: RK4 takes the energy out of the spring, IMEX Euler all of it.",
-        often_said="IMEX Euler is stable at any h. True, but it stops the swing as well as the spring.",
+        often_said="IMEX Euler is stable at any h. True, but it stops the swing as well as the "
+        "spring.",
         shot=Shot(quantity="spring_energy", log=False),
     ),
     Scene(
@@ -218,7 +220,8 @@ _STIFFNESS = (
         cast=_SPRING,
         speed=0.5,
         watch="One step per period of the spring: RESPA resonates, implicit midpoint holds.",
-        often_said="With impulses h follows the slow motion. But not where it comes near the spring's period.",
+        often_said="With impulses h follows the slow motion. But not where it comes near the "
+        "spring's period.",
     ),
 )
 

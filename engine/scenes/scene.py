@@ -37,7 +37,8 @@ def check_h(h: float, w0: float) -> None:
     low, high = Z_LIMITS
     if not math.isfinite(h) or not low <= abs(h) * w0 <= high:
         raise SceneError(
-            f"h = {h:g} s is not a usable step; use {low / w0:.2g} to {high / w0:.2g} s, for example {0.15 / w0:.1g}."
+            f"h = {h:g} s is not a usable step; use {low / w0:.2g} to {high / w0:.2g} s, for "
+            f"example {0.15 / w0:.1g}."
         )
 
 
@@ -110,7 +111,8 @@ class Scene:
             )
         if self.h <= 0:
             raise SceneError(
-                f"h = {self.h:g} s is not a usable step; use a positive one, for example {0.15 / self.w0:.1g}."
+                f"h = {self.h:g} s is not a usable step; use a positive one, for example "
+                f"{0.15 / self.w0:.1g}."
             )
         check_h(self.h, self.w0)
         if not 0 < self.speed < math.inf:
@@ -120,7 +122,8 @@ class Scene:
         for method in self.cast:
             if self.model in MODELS and self.model not in method.models:
                 raise SceneError(
-                    f"{method.label} is not for the model {self.model}; it is for {' and '.join(method.models)}."
+                    f"{method.label} is not for the model {self.model}; it is for "
+                    f"{' and '.join(method.models)}."
                 )
 
     def _complete(self, given: Mapping[str, float]) -> dict[str, float]:

@@ -1,8 +1,8 @@
 """Chaos in a method's own map: the pendulum is not chaotic, but at large steps its numerical motion is.
 
-Symplectic Euler on the pendulum is the Chirikov standard map with K = z²; velocity Verlet is the same map,
-seen half a kick later.  Up to Greene's threshold invariant curves fence the chaotic orbits in; above
-it they wander off without bound.  Greene, J. Math. Phys. 20 (1979) 1183.
+Symplectic Euler on the pendulum is the Chirikov standard map with K = z²; velocity Verlet is the
+same map, seen half a kick later.  Up to Greene's threshold invariant curves fence the chaotic
+orbits in; above it they wander off without bound.  Greene, J. Math. Phys. 20 (1979) 1183.
 """
 
 import math
@@ -21,9 +21,10 @@ GREENE_Z = math.sqrt(GREENE_K)  # 0.985716
 def parting(method: Method, theta: Any, omega: Any, z: Any, steps: int) -> Any:
     """ln of how far two neighbouring starts have parted after so many steps, with w0 = 1; for numbers or arrays.
 
-    The displacement is brought back to length 1 after each step: Benettin et al., Meccanica 15 (1980) 9.  On
-    regular orbits it grows in proportion to the steps, on chaotic ones exponentially.  Divided by the steps the
-    logarithm tends to the largest Lyapunov exponent; for K >= 10 that is ln(K/2): Chirikov, Phys. Rep. 52 (1979) 263.
+    The displacement is brought back to length 1 after each step: Benettin et al., Meccanica 15
+    (1980) 9.  On regular orbits it grows in proportion to the steps, on chaotic ones exponentially.
+    Divided by the steps the logarithm tends to the largest Lyapunov exponent; for K >= 10 that is
+    ln(K/2): Chirikov, Phys. Rep. 52 (1979) 263.
     """
     phases = method.on(Pendulum(1.0), np.sin)
     along, across, total = 1.0 + 0.0 * theta, 0.0 * theta, 0.0 * theta
@@ -37,8 +38,9 @@ def parting(method: Method, theta: Any, omega: Any, z: Any, steps: int) -> Any:
 def is_chaotic(method: Method, theta: Any, z: Any, steps: int = 10_000) -> Any:
     """Whether swings from rest at theta [rad] are chaotic, judged from `steps` steps; for numbers or arrays.
 
-    Over a million steps regular orbits part by at most e^14, chaotic ones by e^28 within some thousand.  From
-    beside upright the exact swing alone parts neighbours by 1/cos²(theta/2), which counts as none.
+    Over a million steps regular orbits part by at most e^14, chaotic ones by e^28 within some
+    thousand.  From beside upright the exact swing alone parts neighbours by 1/cos²(theta/2), which
+    counts as none.
     """
     return parting(method, theta, 0.0 * theta, z, steps) > 15 + math.log(steps) - 2 * np.log(
         np.cos(theta / 2)

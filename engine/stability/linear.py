@@ -1,7 +1,7 @@
 """The linear oscillator theta'' = -w0² theta, the limit of small swings: what a step does to their size.
 
-Everything is read from the method's own step, and depends on z = h·w0 only.  Up to which z a method stays bounded
-is a claim of `methods`, measured in `methods.measure`.
+Everything is read from the method's own step, and depends on z = h·w0 only.  Up to which z a method
+stays bounded is a claim of `methods`, measured in `methods.measure`.
 """
 
 import cmath
@@ -34,12 +34,13 @@ class Wobble(NamedTuple):
 def wobble(method: Method, z: float) -> Wobble:
     """The lowest and highest energy and the largest amplitude that this step takes a linear swing from rest to.
 
-    A symplectic step keeps a quadratic form, not the energy: the swing stays on the ellipse
-    -c theta² + (a - d) theta omega + b omega² = -c theta0², where ((a, b), (c, d)) is its Jacobian at
-    w0 = 1.  The half axes, squared, are the extremes of the energy: (1 - z²/4, 1) for velocity Verlet, for symplectic
-    Euler (1/(1 + z/2), 1/(1 - z/2)).  Explicit Euler and RK4 do not wobble: (1, 1).  The reach of the ellipse is 1 for
-    velocity Verlet, 1/sqrt(1 - z²/4) for symplectic Euler.  Beyond the limit of a symplectic step there is no
-    ellipse, and (0, 1, 1) is what velocity Verlet's has become there.
+    A symplectic step keeps a quadratic form, not the energy: the swing stays on the ellipse -c
+    theta² + (a - d) theta omega + b omega² = -c theta0², where ((a, b), (c, d)) is its Jacobian at
+    w0 = 1.  The half axes, squared, are the extremes of the energy: (1 - z²/4, 1) for velocity
+    Verlet, for symplectic Euler (1/(1 + z/2), 1/(1 - z/2)).  Explicit Euler and RK4 do not wobble:
+    (1, 1).  The reach of the ellipse is 1 for velocity Verlet, 1/sqrt(1 - z²/4) for symplectic
+    Euler.  Beyond the limit of a symplectic step there is no ellipse, and (0, 1, 1) is what
+    velocity Verlet's has become there.
     """
     a, b, c, d = at_bottom(method, z)
     skew = (a - d) ** 2 / 4 + b * c

@@ -1,8 +1,9 @@
 """The pendulum's own stability: which swings a method holds, for how long, and how it loses them.
 
-A swing starts at rest at an amplitude theta and depends on z = h·w0 only, so everything here is computed with
-w0 = 1 and h = z.  A symplectic method neither gains nor loses for good: it loses a swing that goes over the top, or
-whose orbit is chaotic.  Any other method also loses it when its energy leaves the band.
+A swing starts at rest at an amplitude theta and depends on z = h·w0 only, so everything here is
+computed with w0 = 1 and h = z.  A symplectic method neither gains nor loses for good: it loses a
+swing that goes over the top, or whose orbit is chaotic.  Any other method also loses it when its
+energy leaves the band.
 """
 
 import math
@@ -20,17 +21,20 @@ from engine.stability.chaos import is_chaotic
 from engine.stability.linear import wobble
 
 BAND = 0.5
-"""How far, as a fraction, energy may go above the highest and below the lowest that the method's own
-bounded wobble on the linear oscillator takes it to (engine.stability.linear.wobble)."""
+"""How far, as a fraction, energy may go above the highest and below the lowest that the method's
+own bounded wobble on the linear oscillator takes it to (engine.stability.linear.wobble).
+"""
 
 WOBBLE = 1.1  # times as wide as the linear oscillator: a swing that is wider counts as wobbling
 PARKED = 1 / 8  # of the swings in an ensemble: when so many are lost, it goes on without them
 CHAOS_STEPS = 2000  # for which neighbours of a wobbling swing are followed
 
 FATES = ("holds", "over the top", "grows", "loses", "holds, wobbling", "caught", "chaotic")
-"""What becomes of a swing: it swings as wide as it should; |theta| passes pi; its energy leaves the band upwards or
-downwards; it stays, with a larger wobble; it stays beyond a symplectic method's linear limit, as around the two places
-between which velocity Verlet then jumps; neighbouring swings part exponentially."""
+"""What becomes of a swing: it swings as wide as it should; |theta| passes pi; its energy leaves the
+band upwards or downwards; it stays, with a larger wobble; it stays beyond a symplectic method's
+linear limit, as around the two places between which velocity Verlet then jumps; neighbouring swings
+part exponentially.
+"""
 
 HOLDS, OVER_THE_TOP, GROWS, LOSES, WOBBLES, CAUGHT, CHAOTIC = range(len(FATES))
 HELD = (HOLDS, WOBBLES, CAUGHT)
@@ -113,9 +117,9 @@ class Failure:
 def first_failure(z: Floats, cells: Cells, within: int | None = None) -> Failure | None:
     """The first failure of a swing on an ascending ladder of z; None if it is held on all of it.
 
-    `cells` are the outcomes on the ladder.  `within`: in so many steps, which shows how the limit moves
-    with them; an orbit is chaotic however many steps of it are taken.
-    There is no bisection: above the first failure there are windows of z where the swing is held again.
+    `cells` are the outcomes on the ladder.  `within`: in so many steps, which shows how the limit
+    moves with them; an orbit is chaotic however many steps of it are taken. There is no bisection:
+    above the first failure there are windows of z where the swing is held again.
     """
     lost = is_lost(cells)
     if within is not None:

@@ -33,7 +33,8 @@ def add_cast_options(parser: argparse._ActionsContainer, default: str = "the sce
         "--methods",
         metavar="KEY,KEY",
         choices=Suggestions(KEYS),
-        help=f"these methods, 1 to {MOST_METHODS}, in this order (default: {default}); the start of a name is enough",
+        help=f"these methods, 1 to {MOST_METHODS}, in this order (default: {default}); the start "
+        "of a name is enough",
     )
     add_file(
         parser,
@@ -41,7 +42,8 @@ def add_cast_options(parser: argparse._ActionsContainer, default: str = "the sce
         metavar="FILE.py:FUNCTION[,letter=m]",
         action="append",
         default=[],
-        help="add your own method: a generator function (force, phase, h) as in the README; the file is run as any"
+        help="add your own method: a generator function (force, phase, h) as in the README; the "
+        "file is run as any"
         " Python program of yours, with your rights (repeatable)",
     )
 
@@ -54,8 +56,8 @@ def cast_of(
 ) -> Cast:
     """Return the methods that the options choose, `default` without --methods.
 
-    The user's own that --methods does not name come last.  Only those for the model, if it is given, are advised.
-    Raises UserError and OwnMethodError.
+    The user's own that --methods does not name come last.  Only those for the model, if it is
+    given, are advised. Raises UserError and OwnMethodError.
     """
     own = own_methods(options)
     cast = default if options.methods is None else _named(options.methods, (*METHODS, *own), model)
@@ -96,8 +98,8 @@ def find(
 ) -> Method:
     """Return the method of a name, of the start of a key, or of the start of a word in one.
 
-    Case, accents and hyphens do not count.  General methods come before the others.  Raises UserError for the
-    option, with those for the model, if it is given.
+    Case, accents and hyphens do not count.  General methods come before the others.  Raises
+    UserError for the option, with those for the model, if it is given.
     """
     found = matching(name, methods)
     if len(found) == 1:
@@ -130,7 +132,8 @@ def own_method_at(text: str, others: Sequence[Method]) -> "OwnMethod":
     file, key, letter = match["file"], match["key"], match["letter"]
     if not (key.isidentifier() and key.isascii() and len(key) <= MAX_NAME):
         raise UserError(
-            f"--method: {key!r} cannot be a method's name; use a function's with at most {MAX_NAME} ASCII letters."
+            f"--method: {key!r} cannot be a method's name; use a function's with at most "
+            f"{MAX_NAME} ASCII letters."
         )
     taken = {method.letter: method for method in (*METHODS, *others)}
     if key in {method.key for method in taken.values()}:

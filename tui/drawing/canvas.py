@@ -1,11 +1,11 @@
 """Points, lines and words -> characters.
 
 A canvas has 2×4 dots in every cell.  Coordinates are in dots, x to the right and y downwards from
-the upper left corner; dot (i, j) covers [i, i+1) × [j, j+1).  Dots of several inks can share a cell,
-which has the ink of the last one drawn.  Points outside or not finite are not drawn.
+the upper left corner; dot (i, j) covers [i, i+1) × [j, j+1).  Dots of several inks can share a
+cell, which has the ink of the last one drawn.  Points outside or not finite are not drawn.
 
-Frames of the lab have a few hundred dots: plain integers are faster than NumPy for so few, and the first paint
-need not wait for NumPy.
+Frames of the lab have a few hundred dots: plain integers are faster than NumPy for so few, and the
+first paint need not wait for NumPy.
 """
 
 import codecs

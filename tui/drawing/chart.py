@@ -1,7 +1,7 @@
 """Charts with two logarithmic axes, drawn by plotext.  The only module that imports plotext.
 
-plotext 6 aborts the process if a number is not finite or far outside the limits, so it only gets numbers inside
-them; and its own logarithmic scale has wrong labels, so it gets logarithms.
+plotext 6 aborts the process if a number is not finite or far outside the limits, so it only gets
+numbers inside them; and its own logarithmic scale has wrong labels, so it gets logarithms.
 """
 
 import math

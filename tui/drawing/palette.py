@@ -1,7 +1,7 @@
 """Inks, and their colours in each theme.
 
-Every character of a picture has an ink, a method's or one of those below; only here does an ink become a colour.
-Colour is never alone: methods also have a digit and a letter.
+Every character of a picture has an ink, a method's or one of those below; only here does an ink
+become a colour. Colour is never alone: methods also have a digit and a letter.
 """
 
 import itertools
@@ -10,8 +10,9 @@ from typing import NamedTuple
 from engine.methods import Cast, Method
 
 EXACT, FRAME, TEXT, WARN, QUIET, GOOD, NOBODY = -1, -2, -3, -4, -5, -6, -7
-"""Inks that are not methods': exact motion, lines and borders, text, warnings, text that matters less, what is as it
-should be, blanks.  FRAME is too faint for words."""
+"""Inks that are not methods': exact motion, lines and borders, text, warnings, text that matters
+less, what is as it should be, blanks.  FRAME is too faint for words.
+"""
 
 FAINT = 64
 """Added to a method's ink: its fainter colour, for trails."""

@@ -181,7 +181,8 @@ class Live(Source):
     def start(self, scene: Scene) -> None:
         """Begin a new run.
 
-        Raises SceneError, before anything has changed, for a step too large at equal cost, and OwnMethodError.
+        Raises SceneError, before anything has changed, for a step too large at equal cost, and
+        OwnMethodError.
         """
         stepping = Stepping(scene.h, self.stepping.equal_cost, scene.cast).with_smallest(scene.h)
         stepping.check(scene.w0)

@@ -37,8 +37,8 @@ class RunSoFar:
     def _modified_energy_errors(self, sample: Sample, change: SteppingChange) -> list[float]:
         """Return how far each method's modified energy is from where it was at the change of the stepping, relative.
 
-        Another step size has another modified energy.  nan for a method without one, and where no sample
-        before this one has been added since the change.
+        Another step size has another modified energy.  nan for a method without one, and where no
+        sample before this one has been added since the change.
         """
         starts = self._modified_starts.get(change.step)
         if starts is None:

@@ -35,7 +35,8 @@ def check(options: argparse.Namespace) -> None:
         from tui.terminal.check import check_terminal
 
         check_terminal()
-        gc.disable()  # until the screen is up: collections would delay the first paint by a thirtieth
+        # until the screen is up: collections would delay the first paint by a thirtieth
+        gc.disable()
 
 
 def recording_path(file: Path | None) -> Path:
@@ -52,7 +53,8 @@ def recording_path(file: Path | None) -> Path:
         path.parent.mkdir(parents=True, exist_ok=True)
     if not path.parent.is_dir() or not os.access(path.parent, os.W_OK | os.X_OK):
         raise UserError(
-            f"{path.parent} is not writable: choose another folder with --record or PENDU_RECORDINGS,"
+            f"{path.parent} is not writable: choose another folder with --record or "
+            "PENDU_RECORDINGS,"
             " or turn recording off with --no-record.",
             Exit.DISK,
         )

@@ -50,7 +50,8 @@ class TourGuide:
         index = self.tour.index
         if not self.tour.forward():
             self._leave(
-                "That was the tour. At equal cost each method has its own h; n gives all the same again."
+                "That was the tour. At equal cost each method has its own h; n gives all the same "
+                "again."
             )
         elif self.tour.index != index:
             self._show_shot()

@@ -23,7 +23,8 @@ def check_terminal() -> None:
     term = os.environ.get("TERM", "")
     if term in ("", "dumb", "unknown"):
         raise UserError(
-            f"the terminal (TERM={term}) cannot move its cursor: set TERM correctly, e.g. xterm-256color.",
+            f"the terminal (TERM={term}) cannot move its cursor: set TERM correctly, e.g. "
+            "xterm-256color.",
             Exit.TERMINAL_UNSUITABLE,
         )
 
@@ -40,7 +41,8 @@ def is_gone() -> bool:
 def is_writing(app: Any) -> bool:
     """Return whether frames still wait to be written: on a slow line, another adds only delay.
 
-    Textual queues 30 of them, some seconds at 64 KiB/s.  Where it has no such queue the answer is no.
+    Textual queues 30 of them, some seconds at 64 KiB/s.  Where it has no such queue the answer is
+    no.
     """
     writer = getattr(app._driver, "_writer_thread", None)
     queue = getattr(writer, "_queue", None)
@@ -55,8 +57,8 @@ MAX_WAIT = 1.0  # s, for a terminal that never answers
 def background() -> Literal["light", "dark"] | None:
     """Ask the terminal for its background, before Textual reads from it; None if it does not say.
 
-    OSC 11 asks for the colour, DA1 for the terminal's attributes, which every terminal answers, in order: whatever
-    comes before that answer is not left for Textual to take for keys.
+    OSC 11 asks for the colour, DA1 for the terminal's attributes, which every terminal answers, in
+    order: whatever comes before that answer is not left for Textual to take for keys.
     """
     try:
         import termios

@@ -1,7 +1,7 @@
 """The views between status line and key line, each in a folder with its panes: `lab`, `phase`, `accuracy`, `stability`.
 
-A screen binds its Source and Samples to a View, and the View to its Panes, both of which `view` defines.  Panes draw,
-and post `messages` that ask the lab for another start or step size.
+A screen binds its Source and Samples to a View, and the View to its Panes, both of which `view`
+defines.  Panes draw, and post `messages` that ask the lab for another start or step size.
 `background` computes in another process for F4 and F5; `reach` frames the motion.
 """
 

@@ -27,14 +27,19 @@ SIGNS: dict[Verdict, str] = {
 }
 GLOSSARY = {
     "h": "the step size [s]: methods know the pendulum only at times 0, h, 2h, ...",
-    "z": "h w0, the step in units of the swing; w0 = sqrt(g/L). Methods become unstable beyond a z of their own",
-    "theta, omega": "angle from the downward vertical [rad], -5 turns +0.89: five turns back and 0.89; its speed [rad/s]",
+    "z": "h w0, the step in units of the swing; w0 = sqrt(g/L). Methods become unstable beyond a z "
+    "of their own",
+    "theta, omega": "angle from the downward vertical [rad], -5 turns +0.89: five turns back and "
+    "0.89; its speed [rad/s]",
     "dE/E0": EnergyError().about,
     "largest": "the largest |dE/E0| since the start, or since the last change of h",
-    "trend per s": "the mean change of dE/E0 per second; a bounded error can be larger than one that grows",
-    "E/Es": "the energy over that of the separatrix: below 1 it swings (libration), above it turns (rotation)",
+    "trend per s": "the mean change of dE/E0 per second; a bounded error can be larger than one "
+    "that grows",
+    "E/Es": "the energy over that of the separatrix: below 1 it swings (libration), above it turns "
+    "(rotation)",
     **{f"{sign} {verdict}".strip(): DEFINITIONS[verdict] for verdict, sign in SIGNS.items()},
-    "colours": "each method keeps its own, and its letter, wherever it is shown; its digit is its place and its key",
+    "colours": "each method keeps its own, and its letter, wherever it is shown; its digit is its "
+    "place and its key",
     "×": "in the chart: one error passes another, and stays above it",
     "dotted": "the exact motion",
     "dim": "a recording under the lab: pendu-tui live --ghost FILE",
@@ -84,7 +89,8 @@ def method_card(method: Method) -> str:
     lines = {
         "also called": ", ".join(method.other_names),
         "formula": method.formula,
-        "order": f"{method.order}: as a rule, over one swing half of h divides the error by {2**method.order}",
+        "order": f"{method.order}: as a rule, over one swing half of h divides the error by "
+        f"{2**method.order}",
         "costs": f"{about}{counted(method.force_evaluations, 'force evaluation')} per step",
         "symplectic": "yes: conserves phase-space area"
         if method.symplectic
@@ -108,7 +114,8 @@ def scene_card(scene: Scene, now: str = "") -> str:
             "watch": scene.watch,
             "often said": scene.often_said,
             "start": f"theta {math.degrees(scene.theta):.5g}°, omega {scene.omega:.5g} rad/s",
-            "pendulum": f"length {scene.length:.5g} m, gravity {scene.gravity:.5g} m/s², w0 = {scene.w0:.4g} 1/s",
+            "pendulum": f"length {scene.length:.5g} m, gravity {scene.gravity:.5g} m/s², w0 = "
+            f"{scene.w0:.4g} 1/s",
             **{name: f"{value:.5g} {UNITS[name]}" for name, value in scene.parameters.items()},
             "step": f"h = {scene.h:.5g} s, {z_text(scene)}",
             "now": now,

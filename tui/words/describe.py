@@ -25,7 +25,8 @@ def _run(source: Source) -> list[str]:
         motion = f"; one {cycle} takes {about(source.exact.period)}"
     lines = [
         f'{kind} {state} at {seconds(sample.t)} of run {sample.run} of the scene "{scene.name}".',
-        f"The pendulum is {scene.length:.4g} m long and started at {start(scene.theta, scene.omega)}{motion}.",
+        f"The pendulum is {scene.length:.4g} m long and started at "
+        f"{start(scene.theta, scene.omega)}{motion}.",
         f"The step size is {step_text(source)}.",
     ]
     if source.failure:

@@ -74,7 +74,8 @@ def run(options: argparse.Namespace) -> int:
     scene = scene_of(options, None if ghost is None else ghost.scene)
     if ghost is not None and ghost.scene.model != scene.model:
         raise UserError(
-            f"--ghost: the recording is of the model {ghost.scene.model}, the scene of {scene.model};"
+            f"--ghost: the recording is of the model {ghost.scene.model}, the scene of "
+            f"{scene.model};"
             " leave out --scene, or choose one of that model."
         )
     launch.check(options)

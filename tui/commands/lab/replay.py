@@ -51,7 +51,8 @@ def run(options: argparse.Namespace) -> int:
     replay = launch.open_replay(path)
     if not 0 <= options.start_at <= replay.length:
         raise UserError(
-            f"--start-at {options.start_at:g} is outside the recording; use 0 to {replay.length:.2f} s."
+            f"--start-at {options.start_at:g} is outside the recording; use 0 to "
+            f"{replay.length:.2f} s."
         )
     replay.set_speed(options.speed)
     replay.looping = options.loop

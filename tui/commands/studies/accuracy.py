@@ -89,7 +89,8 @@ def run(options: argparse.Namespace) -> int:
     scene = general_scene_of(options)
     if scene.theta == scene.omega == 0:
         raise UserError(
-            "the pendulum hangs at rest, so there is no error to measure; use another --theta or --omega."
+            "the pendulum hangs at rest, so there is no error to measure; use another --theta or "
+            "--omega."
         )
     searched = scene if options.methods else with_all_methods(scene)
     if options.all:
@@ -127,7 +128,8 @@ def _check_options(options: argparse.Namespace) -> None:
         raise UserError("--all and --methods exclude each other; choose one of them.")
     if options.budget is not None and not 1 <= options.budget <= MAX_BUDGET:
         raise UserError(
-            f"--budget {options.budget:g} is out of range; use 1 to {MAX_BUDGET:g} force evaluations."
+            f"--budget {options.budget:g} is out of range; use 1 to {MAX_BUDGET:g} force "
+            "evaluations."
         )
     if options.cost == "seconds" and (options.workers > 1 or options.dask or options.executor):
         raise UserError(
@@ -235,6 +237,7 @@ def _ladder(
         )
     if time / smallest > MAX_STEPS:
         raise UserError(
-            f"{time:g} s in steps of {smallest:.2g} s take hours; use --h-values, for example 0.2:0.01:8."
+            f"{time:g} s in steps of {smallest:.2g} s take hours; use --h-values, for example "
+            "0.2:0.01:8."
         )
     return ladder(time, largest, smallest, rungs)

@@ -98,7 +98,8 @@ def _check_list(options: argparse.Namespace) -> None:
     """Refuse what a list of runs cannot do."""
     if figures.is_figure(options.output):
         raise UserError(
-            f"{options.output} would be a figure of one run; use .csv, or give each number one value."
+            f"{options.output} would be a figure of one run; use .csv, or give each number one "
+            "value."
         )
     if options.record:
         raise UserError("--record is for one run; leave it out, or give each number one value.")

@@ -96,7 +96,8 @@ def run(options: argparse.Namespace) -> int:
 def _section(scene: Scene, options: argparse.Namespace, suffix: str) -> int:
     if options.csv or suffix in (".npz", ".csv"):
         raise UserError(
-            "--section is a picture; write it to a file that ends in .svg, .pdf, .png or .txt, or use --json."
+            "--section is a picture; write it to a file that ends in .svg, .pdf, .png or .txt, or "
+            "use --json."
         )
     from tui.commands.studies.reports import section
 
@@ -158,7 +159,8 @@ def _check(scene: Scene, options: argparse.Namespace, steps: int) -> None:
     given = next((name for name, value in asked.items() if value), None)
     if given and not scene.equations.turns:
         raise UserError(
-            f"{given} is about a pendulum, and limits of the linear oscillator hold everywhere; leave it out."
+            f"{given} is about a pendulum, and limits of the linear oscillator hold everywhere; "
+            "leave it out."
         )
     for what, numbers, (low, high) in (
         ("amplitude", options.theta_values or (), (0, math.pi)),

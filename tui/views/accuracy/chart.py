@@ -74,8 +74,8 @@ def accuracy_series(
 ) -> list[Series]:
     """Return letters for points, x for useless and ~ for rounding-limited ones, dotted lines for orders, and `marks`.
 
-    Of methods with fewer points than a `whole` line has, no line joins those that are there.  The reference lines
-    are Taylor's series and, upright, what the closed form takes.
+    Of methods with fewer points than a `whole` line has, no line joins those that are there.  The
+    reference lines are Taylor's series and, upright, what the closed form takes.
     """
 
     def series(ink: int, some: Sequence[Point], mark: str) -> Series:

@@ -1,7 +1,8 @@
 """Pendulum: one method's pendulum, or all on one pivot, in braille.
 
-Dots are square in a cell twice as high as wide, so x and y have the same physical scale.  The pivot is exactly in
-the middle, since explicit Euler goes over the top; where no method can, it is at the top and the rods are longer.
+Dots are square in a cell twice as high as wide, so x and y have the same physical scale.  The pivot
+is exactly in the middle, since explicit Euler goes over the top; where no method can, it is at the
+top and the rods are longer.
 """
 
 from collections.abc import Sequence

@@ -156,8 +156,9 @@ def title(place: int, method: Method, columns: int, palette: Palette | None, not
 def theory(method: Method, grid: Grid, rows: int) -> Iterator[tuple[float, float, str]]:
     """Points (z, theta) that theory names, one a row: the linear limit, Greene's threshold and the catching orbit.
 
-    Greene's threshold is that of the standard map, which symplectic Euler is, and velocity Verlet half a kick earlier.
-    Velocity Verlet's catching orbit jumps between q and -q, z² sin q = 4 q, and is stable where 0 < z² cos q < 4.
+    Greene's threshold is that of the standard map, which symplectic Euler is, and velocity Verlet
+    half a kick earlier. Velocity Verlet's catching orbit jumps between q and -q, z² sin q = 4 q,
+    and is stable where 0 < z² cos q < 4.
     """
     for row in range(rows):
         theta = _theta_of_row(grid, row, rows)

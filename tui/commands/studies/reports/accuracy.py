@@ -269,7 +269,8 @@ def winners(advice: Sequence[Advice]) -> str:
     for (before, after), (earlier, later) in zip(pairwise(names), pairwise(advice), strict=True):
         if before != after:
             changes.append(
-                f"{after} instead of {before} from {later.time:g} s on (not yet at {earlier.time:g} s)"
+                f"{after} instead of {before} from {later.time:g} s on (not yet at "
+                f"{earlier.time:g} s)"
             )
     return "; ".join(changes) + "." if changes else f"{names[0]} for all these times."
 

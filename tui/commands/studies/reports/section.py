@@ -147,7 +147,8 @@ def report(scene: Scene, method: Method, steps: int, picture: list[Text]) -> Rep
             *picture,
             f"\n{scene_line(scene, 'h', 'z')}, {steps} steps",
             Table(columns, [(each.label, *cells(each, kind)) for each, kind in kinds]),
-            f"{steps} steps cannot tell a Lyapunov number below about {least_lyapunov(steps):.2g} from 0.",
+            f"{steps} steps cannot tell a Lyapunov number below about {least_lyapunov(steps):.2g} "
+            "from 0.",
             f"\n{method.label}: {words}",
         ],
         fields={

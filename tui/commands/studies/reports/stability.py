@@ -143,7 +143,8 @@ def _words(scene: Scene) -> Iterator[str]:
     """Yield what is to be known of the pendulum's table."""
     yield "\nPendulum: the z from which a swing is lost in so many steps; more steps move it down (--steps)."
     yield (
-        "Lost: it goes over the top, or is chaotic and 10 % wider than on the linear oscillator; without a symplectic"
+        "Lost: it goes over the top, or is chaotic and 10 % wider than on the linear oscillator; "
+        "without a symplectic"
         f" method also if its energy leaves the linear oscillator's band by {100 * BAND:.0f} %."
     )
     yield f"Margin = limit / z, of the scene's z = {scene.z:.4g}. Below 1, the scene is beyond the limit."
@@ -185,8 +186,9 @@ def _picture(grid: Grid, cells: Cells) -> list[Text]:
 def write_map(path: Path, force: bool, grid: Grid, cells: Cells) -> None:
     """Write a map to a file for numpy.load.
 
-    Arrays `z`, `theta` [rad], `methods`, `steps`, `fates`, and `cells`, of axes (z, methods, theta) and fields
-    steps (survived), error (the largest relative energy error) and fate (an index into `fates`, or 255: unknown).
+    Arrays `z`, `theta` [rad], `methods`, `steps`, `fates`, and `cells`, of axes (z, methods, theta)
+    and fields steps (survived), error (the largest relative energy error) and fate (an index into
+    `fates`, or 255: unknown).
     """
     keys = [method.key for method in grid.methods]
     with whole_file(path, force) as part, part.open("wb") as file:
