@@ -1,7 +1,9 @@
 """Diff: what was done differently in two recordings, and where their numbers part."""
 
 from collections.abc import Iterator
-from math import inf, isclose
+from heapq import merge
+from itertools import groupby
+from operator import itemgetter
 from typing import Any
 
 from engine.run.lockstep import Sample
@@ -9,9 +11,7 @@ from recordings.events import NOT_DONE, name_of
 from recordings.fields import EXTREMES, differences
 from recordings.recording import Recording, Run
 
-SAME_TIME = 1e-9  # relative: multiples of h are rounded
-Timed = tuple[float, float, Sample | None]
-END: Timed = (inf, inf, None)
+SAME_TIME = 9  # decimals of a second: multiples of h are rounded
 
 
 def compare(a: Recording, b: Recording) -> dict[str, Any]:
@@ -23,11 +23,16 @@ def compare(a: Recording, b: Recording) -> dict[str, Any]:
     samples, only_in_a, only_in_b = 0, 0, 0
     first: dict[str, Any] | None = None
     errors: dict[str, dict[str, float]] = {}
-    for one, other in _paired(_timed(a), _timed(b)):
-        only_in_a += other is None
-        only_in_b += one is None
-        if one is None or other is None:
+    both = merge(_timed(a, "a"), _timed(b, "b"), key=itemgetter(0))
+    for _, group in groupby(both, itemgetter(0)):
+        at_once = {side: sample for _, side, sample in group}
+        if "b" not in at_once:
+            only_in_a += 1
             continue
+        if "a" not in at_once:
+            only_in_b += 1
+            continue
+        one, other = at_once["a"], at_once["b"]
         samples += 1
         theirs = dict(zip(b.methods_of(other.run), other.readings, strict=True))
         for method, x in zip(a.methods_of(one.run), one.readings, strict=True):
@@ -70,27 +75,12 @@ def _inputs(run: Run | None) -> dict[str, str]:
     return inputs
 
 
-def _timed(recording: Recording) -> Iterator[Timed]:
-    """Yield (run, time simulated since its start, forwards or backwards [s], sample)."""
+def _timed(recording: Recording, side: str) -> Iterator[tuple[tuple[int, float], str, Sample]]:
+    """Yield (run, time simulated since its start, forwards or backwards [s]), side and sample."""
     run, elapsed, t = 0, 0.0, 0.0
     for _, sample in recording.samples_between():
         if sample.run != run:
             run, elapsed, t = sample.run, 0.0, 0.0
         elapsed += abs(sample.t - t)
         t = sample.t
-        yield run, elapsed, sample
-
-
-def _paired(a: Iterator[Timed], b: Iterator[Timed]) -> Iterator[tuple[Sample | None, ...]]:
-    """Yield the samples of both in order, those of one time together."""
-    one, other = next(a, END), next(b, END)
-    while one is not END or other is not END:
-        if one[0] == other[0] and isclose(one[1], other[1], rel_tol=SAME_TIME):
-            yield one[2], other[2]
-            one, other = next(a, END), next(b, END)
-        elif one[:2] < other[:2]:
-            yield one[2], None
-            one = next(a, END)
-        else:
-            yield None, other[2]
-            other = next(b, END)
+        yield (run, round(elapsed, SAME_TIME)), side, sample

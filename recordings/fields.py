@@ -5,7 +5,6 @@ value of a reading, add it to `Reading` and to READING.
 """
 
 import math
-import struct
 from collections.abc import Iterator, Sequence
 from operator import attrgetter
 from typing import Any, NamedTuple, get_args
@@ -119,11 +118,6 @@ EXTREMES = ("energy_error_low", "energy_error_high")
 OPTIONAL = tuple(each.name for each in READING if not (each.required or each.name in EXTREMES))
 EXTRA_NAMES = tuple(dict.fromkeys(field.name for fields in EXTRA.values() for field in fields))
 VALUES = (*(field.name for field in READING), *EXTRA_NAMES)
-STATE = {
-    "theta",
-    "omega",
-    *(each.name for model in MODELS.values() for each in model.variables if each.is_state),
-}
 _scalars_of = attrgetter(*(field.name for field in READING))
 
 
@@ -159,24 +153,6 @@ def differences(a: Reading, b: Reading) -> Iterator[tuple[str, float | None, flo
     for name, x, y in zip(VALUES, ours, theirs, strict=True):
         if repr(x) != repr(y):
             yield name, x, y
-
-
-def distance(a: float | None, b: float | None) -> float:
-    """Return how far apart two numbers are; infinite if only one is there."""
-    if a == b:
-        return 0.0
-    return math.inf if a is None or b is None else abs(a - b)
-
-
-def ulps(a: float | None, b: float | None) -> int | None:
-    """Return how many doubles apart two numbers are: 1 for 0.0 and -0.0; None if one is missing."""
-    return None if a is None or b is None else abs(_ordinal(a) - _ordinal(b))
-
-
-def _ordinal(value: float) -> int:
-    """Return the position of a double among all doubles; -0.0 comes just before 0.0."""
-    bits = int.from_bytes(struct.pack(">d", value), "big", signed=True)
-    return bits if bits >= 0 else -(bits & (1 << 63) - 1) - 1
 
 
 def without_extremes(sample: Sample) -> Sample:

@@ -79,24 +79,18 @@ def resolve(name: str) -> Path:
 
     Raises RecordingError, a sentence, if there is none.
     """
-    path, where = Path(name), folder()
-    if path.exists() and not path.is_dir():
-        return path
+    where = folder()
+    items = listing(where)
+    for path in (Path(name), GOLDEN / (name + SUFFIX), where / name, where / (name + SUFFIX)):
+        if path.exists() and not path.is_dir():
+            return path
     if name == "latest":
-        items = listing(where)
-        if not items:
-            raise RecordingError(
-                f"no recordings in {printable(str(where))} yet; start pendu-tui to make one."
-            )
-        return items[0].path
+        if items:
+            return items[0].path
+        why = f"no recordings in {printable(str(where))} yet; start pendu-tui to make one."
+        raise RecordingError(why)
     golden = golden_names()
-    if name in golden:
-        return GOLDEN / (name + SUFFIX)
-    if path.name == name:
-        for candidate in (where / name, where / (name + SUFFIX)):
-            if candidate.is_file():
-                return candidate
-    names = ["latest", *golden, *(item.path.name for item in listing(where))]
+    names = ["latest", *golden, *(item.path.name for item in items)]
     close = get_close_matches(name, names, n=1)
     advice = f"choose a file, or one of latest, {', '.join(golden)}."
     if close:
@@ -109,14 +103,10 @@ def golden_names() -> list[str]:
     return sorted(path.stem for path in GOLDEN.glob("*" + SUFFIX))
 
 
-def leftovers(where: Path | None = None) -> list[Path]:
-    """Return the unfinished recordings that no lab is writing any more."""
-    return [path for path in _files(where or folder(), SUFFIX + PART) if not in_use(path)]
-
-
-def being_made(where: Path | None = None) -> list[Path]:
-    """Return the recordings that a lab is writing now."""
-    return [path for path in _files(where or folder(), SUFFIX + PART) if in_use(path)]
+def leftovers(where: Path | None = None, being_made: bool = False) -> list[Path]:
+    """Return the unfinished recordings that no lab is writing any more, or those being made."""
+    unfinished = _files(where or folder(), SUFFIX + PART)
+    return [path for path in unfinished if in_use(path) == being_made]
 
 
 def prune(items: Iterable[Item]) -> list[Item]:

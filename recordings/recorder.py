@@ -138,15 +138,11 @@ class Recorder:
         """
         if self._file.closed:
             return
-        wanted = self.path
         try:
             if self._channels:
                 self._finish()
         finally:
             self.abandon()
-        if self.path != wanted:
-            why = "a file of this name appeared meanwhile; the recording is saved as"
-            raise NameTakenError(f"{why} {self.path.name}", wanted)
 
     def _finish(self) -> None:
         if (last := self._last) is not None:
@@ -157,12 +153,14 @@ class Recorder:
             self._file.flush()
             os.fsync(self._file.fileno())
             self.bytes = self._file.tell()
-        wanted = self.path
-        while self.part.exists():  # still locked, until the name is right
-            with suppress(NameTakenError):
-                publish(self.part, self.path, self._overwrite)
-                return
+        try:
+            publish(self.part, self.path, self._overwrite)  # still locked, until the name is right
+        except NameTakenError as error:
+            wanted = self.path
             self.path = free_path(wanted)
+            publish(self.part, self.path)
+            why = f"a file of this name appeared meanwhile; the recording is saved as {self.path.name}"
+            raise NameTakenError(why, wanted) from error
 
     def abandon(self, delete: bool = False) -> None:
         """Leave what was flushed in NAME.mcap.part; an empty file is deleted."""

@@ -16,7 +16,7 @@ from recordings.errors import RecordingError
 from recordings.events import Entry, Event
 from recordings.headless import simulate
 from recordings.recorder import Recorder
-from recordings.verification import TOLERANCE, Difference, verify
+from recordings.verification import TOLERANCE, verify
 from tests.recordings.examples import SCENE, record, start, two_runs, with_changes
 
 
@@ -102,7 +102,7 @@ def test_minus_zero_differs_from_zero(tmp_path):
     difference = verify(
         record(tmp_path / "b.mcap", altered(entries, 1, 0, omega=-0.0))
     ).first_difference
-    assert (difference.field, difference.ulps) == ("omega", 1)
+    assert (difference.field, difference.recorded) == ("omega", 0.0)
 
 
 def test_a_wrong_time_of_divergence_is_found(tmp_path):
@@ -120,17 +120,6 @@ def test_a_wrong_time_of_divergence_is_found(tmp_path):
 def test_a_missing_change_of_h_is_found(tmp_path):
     entries = [entry for entry in two_runs() if getattr(entry.value, "kind", "") != "set_h"]
     assert not verify(record(tmp_path / "a.mcap", entries)).identical
-
-
-@given(st.floats(-1e300, 1e300) | st.floats(-1e-322, 1e-322), st.integers(0, 50))
-def test_ulps_count_doubles_across_zero_too(value, n):
-    other = value
-    for _ in range(n):
-        other = math.nextafter(other, -math.inf)
-    passed_minus_zero = (
-        math.copysign(1, value) > 0 > other
-    )  # nextafter goes from 0.0 to the double below -0.0
-    assert Difference(1, 0, 0.0, "rk4", "theta", value, other).ulps == n + passed_minus_zero
 
 
 @pytest.mark.parametrize(
@@ -187,7 +176,7 @@ def foreign_loops(monkeypatch, every):
     return loops_of
 
 
-@pytest.mark.parametrize("scene", {scene.model: name for name, scene in SCENES.items()}.values())
+@pytest.mark.parametrize("scene", ["crossover", "near-separatrix", "spin", "stiff-slow"])
 def test_a_recording_from_a_machine_with_another_sin_verifies_within_the_tolerance(
     tmp_path, monkeypatch, scene
 ):
@@ -201,28 +190,19 @@ def test_a_recording_from_a_machine_with_another_sin_verifies_within_the_toleran
     assert verification.other_functions == ("sin",)
     assert verification.identical
     of_another_machine(monkeypatch)
-    assert verify(path).identical == (
-        SCENES[scene].model in ("linear", "spring")
-    )  # or it was no other sin; these need none
+    assert verify(path).identical == (scene == "stiff-slow")  # the only one without a sine
 
 
 def test_a_difference_beyond_the_tolerance_is_found_even_if_sin_differs(tmp_path, monkeypatch):
     entries = two_runs()
     right = reading_of(entries, 7, 2).theta
-    near = right * (1 + TOLERANCE / 2)
-    outside = altered(entries, 7, 2, theta=right * (1 + 1e3 * TOLERANCE))
     with monkeypatch.context() as elsewhere:
         of_another_machine(elsewhere)
-        record(tmp_path / "a.mcap", altered(entries, 7, 2, theta=near))
-        record(tmp_path / "b.mcap", outside)
-    verification = verify(tmp_path / "a.mcap")
-    assert verification.identical
-    difference = verify(tmp_path / "b.mcap").first_difference
-    assert (difference.method, difference.field, difference.computed) == (
-        "velocity_verlet",
-        "theta",
-        right,
-    )
+        wrong = altered(entries, 7, 2, theta=right * (1 + 10 * TOLERANCE))
+        record(tmp_path / "a.mcap", wrong)
+    difference = verify(tmp_path / "a.mcap").first_difference
+    assert (difference.method, difference.field) == ("velocity_verlet", "theta")
+    assert difference.computed == right
 
 
 def test_no_more_steps_are_simulated_than_samples_need(tmp_path):

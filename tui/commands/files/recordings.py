@@ -94,7 +94,8 @@ def _list(options: argparse.Namespace) -> Report:
     rows = [_facts(item) for item in library.listing()]
     folder = printable(str(library.folder()))
     being_made = [
-        f"recording now: {printable(str(path.with_suffix('')))}" for path in library.being_made()
+        f"recording now: {printable(str(path.with_suffix('')))}"
+        for path in library.leftovers(being_made=True)
     ]
     unfinished = [
         f"unfinished: {printable(str(path))}; will be recovered the next time the lab starts"
