@@ -3,16 +3,8 @@
     samples, events --format--> messages --recorder--> file --reader--> chunks --recording--> any
     moment
 
-- What a file holds: `events`; `fields`, the one table of names and units; `format`, messages to
-  bytes and back; `arithmetic`, what the bits of a run depend on besides its inputs.
-- Writing: `recorder`, in the lab as `live_recorder`, `headless` without a screen; `files`, whole or
-  not at all.
-- Reading: `reader` finds the intact chunks, with mcap; `recording` gives any moment.
-- Using: `verification`, `recovery`, `diff`; `pytest`, a plugin.
-- `library`: the folder, the names, and who is using a file; `errors`.
-
-The library is `verify`, which re-simulates a recording, `Recording`, any moment of one, and
-`pytest`, a plugin.
+`fields` is the one table of names and units, `library` the folder with its names and locks, `files`
+writes whole files, and `pytest` is a plugin.
 """
 
 from importlib import import_module

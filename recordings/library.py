@@ -80,10 +80,10 @@ def resolve(name: str) -> Path:
     Raises RecordingError, a sentence, if there is none.
     """
     where = folder()
-    items = listing(where)
     for path in (Path(name), GOLDEN / (name + SUFFIX), where / name, where / (name + SUFFIX)):
         if path.exists() and not path.is_dir():
             return path
+    items = listing(where)
     if name == "latest":
         if items:
             return items[0].path

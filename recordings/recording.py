@@ -61,19 +61,6 @@ class Run:
         found = (event.milestone for _, event in self.events if event.milestone)
         return sorted(found, key=attrgetter("step"))
 
-    def check(self, event: Event) -> None:
-        """Raise RecordingError for an event that this run cannot have."""
-        cast = self.scene.cast
-        if event.h is not None:
-            try:
-                Stepping(event.h, event.equal_cost, cast).check(self.scene.w0)
-            except SceneError as error:
-                why = f"run {self.number} cannot have been recorded: {error}"
-                raise RecordingError(why) from error
-        milestone = event.milestone
-        if milestone and not {milestone.method, milestone.other} <= {*cast, None}:
-            raise RecordingError("a milestone is of a method that the run does not have")
-
 
 class Recording:
     """A recording that is open for reading.
@@ -95,7 +82,6 @@ class Recording:
         self._places = contents.places
         self._topics = contents.topics
         self._models: dict[str, str] = {}  # of the runs' topics
-        self._unreadable: set[int] = set()  # chunks
         self._others = 0  # entries that are no samples, in the chunks with events
         self._decode = lru_cache(CHUNKS_KEPT)(self._entries)
         self._find_runs()
@@ -224,7 +210,6 @@ class Recording:
         """Return a chunk's entries; a gap before those after one, or instead of unreadable ones."""
         place = self._places[chunk]
         gap = [Entry(_clock(place.start), None)]
-        messages: list[Message] = []
         try:
             _, messages = read_chunk(self._stream, place.offset)
             if (messages[0].log_time, messages[-1].log_time) != (place.start, place.end):
@@ -232,9 +217,6 @@ class Recording:
             entries = list(self._decoded(messages, only_events))
             return gap + entries if place.is_after_gap else entries
         except (RecordingError, OSError) as error:
-            if chunk not in self._unreadable:
-                self._unreadable.add(chunk)
-                self.entries_lost += len({message.sequence for message in messages})
             self.damaged = True
             self.reason = self.reason or str(error)
             return gap
@@ -267,25 +249,23 @@ class Recording:
         """Return the event of a message; a start that comes first begins its run."""
         event = decode_event(data)
         run = self._runs.get(event.run)
-        if run is not None:
-            run.check(event)
-        elif event.scene is not None and event.arithmetic is not None:
-            if event.run < next(reversed(self._runs), 0):
-                raise RecordingError("its runs are not in order")
+        if event.scene is not None and event.arithmetic is not None and run is None:
             self._runs[event.run] = Run(event.run, event.scene, event.arithmetic, clock, clock)
             self._models |= dict.fromkeys(topics_of(event.scene), event.scene.model)
+        elif run is not None and event.h is not None:
+            try:
+                stepping = Stepping(event.h, event.equal_cost, run.scene.cast)
+                stepping.check(run.scene.w0)
+            except SceneError as error:
+                why = f"run {event.run} cannot have been recorded: {error}"
+                raise RecordingError(why) from error
         return event
 
     def _sample(self, parts: list[Message], topics: tuple[str, ...]) -> Sample:
-        if not set(topics) <= self._models.keys():
-            raise RecordingError("a sample is incomplete")
-        decoded = [
-            decode_reading(part.data, self._models[topic])
-            for part, topic in zip(parts, topics, strict=True)
-        ]
+        model = self._models[topics[0]]
+        decoded = [decode_reading(part.data, model) for part in parts]
         run, step, t, _ = decoded[0]
-        of_run = topics_of(self._runs[run].scene) if run in self._runs else topics
-        if topics != of_run or any(each[:3] != (run, step, t) for each in decoded):
+        if run in self._runs and topics != topics_of(self._runs[run].scene):
             raise RecordingError("a sample is incomplete")
         return Sample(run, step, t, tuple(reading for *_, reading in decoded))
 
