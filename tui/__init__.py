@@ -5,6 +5,6 @@
 - `views`: lab, phase space, accuracy and stability, each with its panes, pictures, words and keys.
 - `words`: sentences; `terminal`: what the terminal can do, and how it is driven.
 - `drawing`: numbers into characters: canvas, axes, charts, colours, cells.
-- `playback`: what a screen shows, a lab or a recording, and how it follows the clock; without Textual.
+- `playback`: what a screen shows, a lab or a recording, and its clock; without Textual.
 - `cli`: what all commands share; `__main__` starts it for `python -m tui`.
 """

@@ -38,7 +38,7 @@ def cost_of(point: Point, cost: Cost) -> float:
 
 
 def front(points: Iterable[Point], kind: ErrorKind, cost: Cost) -> list[Cheapest]:
-    """The cheapest method for each error of a power of ten that some method reaches, the largest error first.
+    """Return the cheapest method for each power of ten of the error, the largest first.
 
     Costs are interpolated between a method's points, log over log.  An error is left out where the
     coarsest run of a method is that accurate already, since a coarser one may be cheaper.

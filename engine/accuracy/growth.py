@@ -1,4 +1,4 @@
-"""How fast the error in theta grows with time, and the power of t that it follows, if it follows one.
+"""How fast the error in theta grows with time, and which power of t it follows, if any.
 
 A symplectic method's phase error grows as t, that of a method whose energy drifts as t²: Hairer,
 Lubich & Wanner, Geometric Numerical Integration (2006), X.3.

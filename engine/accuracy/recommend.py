@@ -1,4 +1,4 @@
-"""Which method and which h: the cheapest that reaches a target, or the most accurate within a budget.
+"""Which method and h: the cheapest for a target, or the most accurate within a budget.
 
 What is recommended was run, and compared at more times than the search compares.
 """
@@ -59,7 +59,7 @@ def least_cost(
     clock: Clock | None = None,
     loops: LoopsOf = PlainLoops,
 ) -> Advice:
-    """Each method's cheapest run for a target, by force evaluations, or by a clock with these loops.
+    """Return each method's cheapest run for a target, by force evaluations or a clock.
 
     `show` is given the share of methods tried.
     """

@@ -14,7 +14,7 @@ MARGIN = 2  # errors above the floor are then due to the method, but for a fract
 
 
 def rounding_floor(scene: Scene, time: float) -> tuple[float, float]:
-    """What rounding leaves in energy (relative) and theta [rad] after one step; n steps leave sqrt(n) times that.
+    """Rounding errors of energy (relative) and theta [rad] after a step; n leave sqrt(n) times.
 
     A step changes the energy by a relative epsilon, at random (Brouwer, Astron. J. 46 (1937) 149);
     by more where theta has grown by many turns and its last digit is coarse.  Theta follows the

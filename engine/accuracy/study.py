@@ -1,4 +1,4 @@
-"""Speed against accuracy: for a scene and a time, each method's errors and costs over a ladder of h.
+"""Speed against accuracy: each method's errors and costs over a ladder of h.
 
 Every h is a whole fraction of the time, and errors in theta are taken at whole steps, the same for
 all methods, so that nothing is interpolated.  Cost is counted in force evaluations, which are the
@@ -120,7 +120,7 @@ class Study:
         self._width = min(math.pi, max(map(abs, self.thetas)))
 
     def run(self, method: Method, steps: int, comparisons: int = COMPARISONS) -> Point:
-        """Take this many steps; at least `comparisons` of them, the last included, are compared with the exact swing.
+        """Take this many steps and compare at least `comparisons` of them with the exact swing.
 
         An error counts as rounding if it lies below the rounding floor, and if runs with a half and
         a quarter of the steps do not have errors larger by half of what the method's order
@@ -282,7 +282,7 @@ def _cached_study(scene: Scene, time: float, loops: LoopsOf) -> Study:
 
 
 def orders(scene: Scene, time: float, loops: LoopsOf = PlainLoops) -> list[Order]:
-    """The order of each method: the slope of log theta error over log h, fitted over one period or less.
+    """Return each method's order: the slope of log theta error over log h, up to a period.
 
     Over longer times RK4 reads 5 and more.  Its phase error at the time t is a·h⁴·t, but it also
     loses energy at a rate of b·h⁵, so the frequency drifts and the phase with it by b·h⁵·t²/2,

@@ -90,5 +90,5 @@ def simplified(name: str) -> str:
 
 _BY_KEY = {method.key: method for method in METHODS}
 
-# A method goes to another process by its key: the generator functions of builders have no name to be found by.
+# Methods are pickled by key: the generator functions of builders have no importable name.
 copyreg.pickle(Method, lambda method: (method_of, (method.key,)))

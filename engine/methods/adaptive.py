@@ -20,7 +20,7 @@ TOLERANCE = 0.1  # rad and rad/s, of a step
 
 
 def halving(phases: Phases, tolerance: float, richardson: bool = False) -> Phases:
-    """The method with step doubling: where one step and two halves differ by more than the tolerance, h is halved.
+    """The method with step doubling: h is halved where a step and two halves differ too much.
 
     The two halves are what counts, or with `richardson` their extrapolation for a method of order
     2, which is of order 4.  Nothing is kept from step to step, so each begins with h again.  The

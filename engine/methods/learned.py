@@ -154,7 +154,7 @@ def _module(numbers: str) -> Callable[[float], float]:
 
 
 def learned_symplectic_map(model: Model, phase: Phase, h: float) -> Iterator[Phase]:
-    """The learned symplectic map: half a kick by a function of theta, a drift by one of omega, half a kick.
+    """The learned symplectic map: half a kick by theta, a drift by omega, half a kick.
 
     Symplectic whatever the functions are.  Jin et al., Neural Networks 132 (2020) 166, gradient
     modules.

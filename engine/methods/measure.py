@@ -1,4 +1,4 @@
-"""The properties of a method as measured: order, cost, symplectic or not, reversible or not, linear limit.
+"""Measured properties of a method: order, cost, symplecticity, reversibility, linear limit.
 
 All but the linear limit on the pendulum with w0² = 9.81 s⁻².  The tests hold the claims of METHODS
 against these; for a user's own method they are the claims.

@@ -1,4 +1,4 @@
-"""A user's own method: a generator function from the text of a file, measured, and guarded while it runs.
+"""A user's own method: a generator function from a file, measured, and guarded in use.
 
 It claims nothing: its properties are measured when the text is loaded.  Its code is executed like
 any Python. Another process receives the text and compiles it again.

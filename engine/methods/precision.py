@@ -58,7 +58,7 @@ class Compensated(float):
 
 
 def verlet_float32(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
-    """Velocity Verlet with theta, omega, h and the force in 32 bits; the sine is taken in double and rounded.
+    """Velocity Verlet with all numbers in 32 bits; the sine is rounded from a double.
 
     It yields doubles, which hold the 32 bits exactly.
     """

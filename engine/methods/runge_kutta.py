@@ -30,7 +30,7 @@ def rk4(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
 
 
 def heun(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
-    """Heun's method: the mean of the slopes at the start and at the end of a step of explicit Euler.
+    """Heun's method: the mean of the slopes at both ends of a step of explicit Euler.
 
     Order 2; det - 1 ~ h⁴.  Hairer, Lubich & Wanner (2006), II.1.1.
     """

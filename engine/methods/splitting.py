@@ -12,7 +12,7 @@ from engine.models.model import Force, Phase
 
 
 def splitting(kicks: tuple[float, ...], drifts: tuple[float, ...]) -> Phases:
-    """The method that kicks omega and drifts theta in turn, by these fractions of h, beginning and ending with a kick.
+    """The method of kicks and drifts by these fractions of h in turn, from kick to kick.
 
     There is one kick more than there are drifts, and both add up to 1.  The last force of a step is
     the next one's first.  Hairer, Lubich & Wanner (2006), II.5.

@@ -1,4 +1,4 @@
-"""Methods for two time scales, made for the parts of a spring: a fast force, a slow one, and a solution of the fast.
+"""Methods for two time scales, made for a spring's fast and slow forces.
 
 `solve(b, c)` is the solution of z = b + c fast(z); `slow` is a constant here.
 """
@@ -14,7 +14,7 @@ from engine.models.spring import SpringParts
 
 
 def respa(inner: Phases, n: int) -> Phases:
-    """r-RESPA, or the impulse method: half a kick of the slow force, n inner steps with the fast one, half a kick.
+    """r-RESPA, the impulse method: n steps with the fast force between half kicks of the slow.
 
     Tuckerman, Berne & Martyna, J. Chem. Phys. 97 (1992) 1990.
     """

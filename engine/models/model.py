@@ -122,11 +122,14 @@ class EnergyError(NamedTuple):
     conserved: bool = True  # the true motion keeps its energy, and errors are shares of the start's
     symbol: str = "dE/E0"
     name: str = "energy error"
-    about: str = "the energy error over the start's energy. The exact pendulum keeps its energy, so all of it is error"
+    about: str = (
+        "the energy error over the start's energy. The exact pendulum keeps its energy, so all of it "
+        "is error"
+    )
 
 
 class Model(ABC):
-    """A frozen dataclass of the parameters of some equations of motion, and whatever differs between models.
+    """Equations of motion: a frozen dataclass of their parameters, and what differs by model.
 
     Most models are theta'' = force(theta).  Where that is not all of the right side, `second_order`
     is False, and methods integrate `rates`; methods made for one model take its `parts`, such as
@@ -253,7 +256,7 @@ class Model(ABC):
         return 1.0
 
     def level(self, theta: Any, omega: Any, cos: Sine = math.cos) -> Any:
-        """Return a number that is equal along curves of equal energy; 1 - E/E_separatrix if there is a separatrix.
+        """Return a function of the energy: 1 - E/E_separatrix if there is a separatrix.
 
         Pass the `cos` of your numbers.  A model without curves has one level.
         """

@@ -80,7 +80,7 @@ def separatrix_energy(w0_squared: float) -> float:
 def separatrix_margin(
     w0: float, theta: Any, omega: Any, cos: Callable[[Any], Any] = math.cos
 ) -> Any:
-    """1 - E/E_separatrix: 1 at rest, 0 on the separatrix, negative in rotation.  Pass the `cos` of your numbers.
+    """1 - E/E_separatrix: 1 at rest, 0 on the separatrix, negative in rotation.
 
     The product of two numbers of which one is exact near the separatrix, where 1 - E/E_separatrix
     itself would cancel.

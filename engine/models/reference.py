@@ -1,4 +1,4 @@
-"""An accurate motion where there is no closed form: Kahan and Li's method of order 8, in steps of its own.
+"""A reference where there is no closed form: Kahan and Li's order 8 in its own steps.
 
 Kahan & Li, Math. Comput. 66 (1997) 1089: a symmetric step of order 2 with 17 fractions of h in
 turn.
@@ -82,7 +82,7 @@ def compose(step: Step) -> Step:
 
 
 def compose_verlet(force: Force, friction: float = 0.0) -> Step:
-    """Return the composition of velocity Verlet, which shares a force between one part and the next.
+    """Return the composition of velocity Verlet; adjacent parts share a force.
 
     With friction [s⁻¹] each part is a conformal step, which damps before and after; parts that go
     backwards undo it exactly.

@@ -180,7 +180,7 @@ class Spring(Model):
         return total_energy
 
     def spring_energy(self, phase: Phase) -> float:
-        """vr²/2 + k/2 (r - r_eq)² [s⁻²]: r_eq is where gravity and the swing would hold the spring at rest.
+        """vr²/2 + k/2 (r - r_eq)² [s⁻²], r_eq being the length at which the forces balance.
 
         The true motion keeps it within 2.5 % at k = 2500 s⁻²: an adiabatic invariant.
         """

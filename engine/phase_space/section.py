@@ -106,7 +106,7 @@ def kind_of(method: Method, model: Model, h: float, points: Points) -> OrbitKind
     neighbours = Stretching(method, model, h)
     for at in range(0, steps - _CHUNK + 1, _CHUNK):
         neighbours.carry((float(theta[at]), float(omega[at])), _CHUNK)
-    # Regular orbits part in proportion to the steps, beside upright with a large factor: engine.stability.chaos.
+    # Regular orbits separate in proportion to the steps, fast near the upright position.
     slack = -math.log(max(abs(model.level(*start)), 1e-16)) if model.turns else 0.0
     parted = neighbours.log > least_lyapunov(steps) * max(steps, 1) + max(slack, 0.0)
     chaotic = method.symplectic and parted  # else neighbours part while they spiral outwards, too
@@ -140,7 +140,7 @@ def least_lyapunov(steps: int) -> float:
 
 
 def rotation_number(theta: Floats, omega: Floats, w0: float, spins: bool = False) -> float | None:
-    """Turns a step of an orbit around the bottom or, if it spins, over the top; None where its halves disagree.
+    """Return turns per step, around the bottom or over the top; None if the halves disagree.
 
     A weighted Birkhoff average, which on smooth curves converges faster than any power of the
     steps: Das, Saiki, Sander & Yorke, Nonlinearity 30 (2017) 4111.
@@ -158,7 +158,7 @@ def rotation_number(theta: Floats, omega: Floats, w0: float, spins: bool = False
 
 
 def numerical_period(method: Method, model: Model, h: float, start: Phase) -> float | None:
-    """The time of a method's swing or turn [s], on average over many: h over the rotation number of its map.
+    """Return the mean time of a swing or turn [s]: h over the rotation number of the map.
 
     Small swings of velocity Verlet and symplectic Euler take h·pi / asin(h·w0/2).  None where there
     is no rotation number, or where PERIODS take more than MOST_STEPS.

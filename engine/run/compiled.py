@@ -1,4 +1,4 @@
-"""The loops of engine.run.loops compiled by Numba, from the same functions: the same bits, some ten times as fast.
+"""The loops of engine.run.loops compiled by Numba: the same bits, about ten times as fast.
 
 Numba is the optional extra `fast`.  It is imported at the first use and not before: it takes half a
 second, and compiling another fifth of a second for each method and model.  Nothing is kept on disk:
@@ -83,7 +83,7 @@ def _travel(phases: Iterator[Phase], phase: Phase, n: int) -> Phase:
 
 
 class TieredLoops:
-    """Plain loops at first, and compiled ones once enough steps have been taken, if Numba is installed.
+    """Plain loops that are compiled after enough steps, if Numba is installed.
 
     Both give the same bits.  The steps of one run count, so each run has loops of its own.
     """

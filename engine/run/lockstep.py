@@ -16,7 +16,7 @@ from engine.scenes import Scene, check_h
 
 
 class Reading(NamedTuple):
-    """One method at one step.  Always finite: a method that diverges stays where it last was finite.
+    """One method at one step; a diverged one stays at its last finite numbers.
 
     Energies are per unit m·L² [s⁻²]; energy errors are relative, (E - E0)/E0, or to 2 w0² where E0
     = 0, or with friction ln(E/E_true).
@@ -84,7 +84,7 @@ class _Track:
 
 
 class Lockstep:
-    """A scene's cast in lockstep.  The same scene and stepping give the same bits, however the steps are cut.
+    """A scene's cast in lockstep; its bits depend on scene and stepping alone.
 
     `scene.h` is the step size at the start, `stepping` what is in force.  Time is `t_base + n·h`,
     never a running sum.  A method whose numbers stop being finite is frozen; the others go on.
@@ -145,7 +145,7 @@ class Lockstep:
 
     @property
     def judgements(self) -> list[Judgement]:
-        """The verdicts since the last change of the stepping, in the order of the cast; none without judges."""
+        """Verdicts since the last change of the stepping, by method; none without judges."""
         return self._judges.judgements if self._judges else []
 
     @property
@@ -248,7 +248,7 @@ class Lockstep:
         )
 
     def _following_stop(self) -> int:
-        """Return the step of the next look point, or one before it at which a method may be over the top."""
+        """Return the next look point, or an earlier step where a method may be over the top."""
         done = (self.step - self._base_step) // self._stride + 1
         stop = self._base_step + done * self._stride
         for index, track in enumerate(self._tracks):

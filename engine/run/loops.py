@@ -125,7 +125,7 @@ def advance_with_errors(
     begin: tuple[float, int],
     watch: Callable[[Phase], object] | None = None,
 ) -> Errors:
-    """Advance by n >= 1 steps; the first is after `begin`: a time [s] and the number of steps since.
+    """Advance by n >= 1 steps after `begin`, a time [s] and the steps since then.
 
     Where energy is not conserved, it is compared with the true one at each step; `watch` sees each
     phase.
@@ -166,7 +166,7 @@ class _Counted:
 
 
 def count_evaluations(method: Method, model: Model, phase: Phase, h: float, n: int) -> int:
-    """Count force evaluations of an n-step run by running it, n >= 1; `Method.evaluations` where that is fixed.
+    """Count the force evaluations of n >= 1 steps, by taking them unless their cost is fixed.
 
     Of a method that takes the parts of its model, the parts in `Model.counted_parts` count.
     """

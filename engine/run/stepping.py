@@ -1,4 +1,4 @@
-"""Stepping: the lockstep's step size, and what of it each method takes.  The one place that converts between them.
+"""Stepping: converts between the lockstep's step size and each method's own.
 
 At equal cost a method that needs fewer force evaluations takes a step of the lockstep in equal
 parts, so that all methods need about as many: RK4 one step of h, the others four of h/4.

@@ -1,4 +1,4 @@
-"""Chaos in a method's own map: the pendulum is not chaotic, but at large steps its numerical motion is.
+"""Chaos in a method's map: at large steps, a pendulum's numerical motion is chaotic.
 
 Symplectic Euler on the pendulum is the Chirikov standard map with K = z²; velocity Verlet is the
 same map, seen half a kick later.  Up to Greene's threshold invariant curves fence the chaotic
@@ -19,7 +19,7 @@ GREENE_Z = math.sqrt(GREENE_K)  # 0.985716
 
 
 def parting(method: Method, theta: Any, omega: Any, z: Any, steps: int) -> Any:
-    """ln of how far two neighbouring starts have parted after so many steps, with w0 = 1; for numbers or arrays.
+    """Return ln of the growth of neighbours' distance after so many steps, with w0 = 1.
 
     The displacement is brought back to length 1 after each step: Benettin et al., Meccanica 15
     (1980) 9.  On regular orbits it grows in proportion to the steps, on chaotic ones exponentially.
@@ -36,7 +36,7 @@ def parting(method: Method, theta: Any, omega: Any, z: Any, steps: int) -> Any:
 
 
 def is_chaotic(method: Method, theta: Any, z: Any, steps: int = 10_000) -> Any:
-    """Whether swings from rest at theta [rad] are chaotic, judged from `steps` steps; for numbers or arrays.
+    """Return whether swings from rest at theta [rad] are chaotic within `steps` steps.
 
     Over a million steps regular orbits part by at most e^14, chaotic ones by e^28 within some
     thousand.  From beside upright the exact swing alone parts neighbours by 1/cos²(theta/2), which

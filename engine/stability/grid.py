@@ -99,7 +99,7 @@ def pieces(grid: Grid, passes: Sequence[int], width: int = 10) -> Iterator[Piece
 
 
 def default_grid(cast: Cast = USUAL_CAST) -> Grid:
-    """Return the middles of 200 steps z, beyond every method's limit, and of 100 amplitudes up to pi.
+    """Return the centres of 200 steps z, beyond every limit, and of 100 amplitudes up to pi.
 
     z goes up to 3, or where a method of the cast is still stable there, as BM4 is, up to 3.5.
     """

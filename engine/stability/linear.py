@@ -1,4 +1,4 @@
-"""The linear oscillator theta'' = -w0² theta, the limit of small swings: what a step does to their size.
+"""What a step does to the amplitude of the linear oscillator, the limit of small swings.
 
 Everything is read from the method's own step, and depends on z = h·w0 only.  Up to which z a method
 stays bounded is a claim of `methods`, measured in `methods.measure`.
@@ -32,7 +32,7 @@ class Wobble(NamedTuple):
 
 
 def wobble(method: Method, z: float) -> Wobble:
-    """The lowest and highest energy and the largest amplitude that this step takes a linear swing from rest to.
+    """Return the energy's range and the largest amplitude of a linear swing from rest.
 
     A symplectic step keeps a quadratic form, not the energy: the swing stays on the ellipse -c
     theta² + (a - d) theta omega + b omega² = -c theta0², where ((a, b), (c, d)) is its Jacobian at

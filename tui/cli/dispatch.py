@@ -61,7 +61,8 @@ RENAMED = {
 USAGE = """\
 usage: pendu-tui [COMMAND | SCENE | FILE] [OPTIONS]
 
-Four integrators simulate the same pendulum in your terminal: see which gains, conserves or slowly loses energy.
+Integrators simulate the same pendulum side by side in your terminal, live: see which gain energy,
+which conserve it and which lose it.
 
 commands (pendu-tui COMMAND --help shows details):
 {commands}
@@ -69,8 +70,8 @@ commands (pendu-tui COMMAND --help shows details):
 Without a command: live.  A scene or a scene file opens in the lab, a recording is replayed.
 --version prints the version, --print-completion bash|zsh|tcsh|fish a script for the tab key.
 
-exit codes: 0 fine, 1 a check failed, 2 usage error, 3 unreadable input, 4 unsuitable terminal, 5 disk error, \
-130 interrupted.
+exit codes: 0 fine, 1 a check failed, 2 usage error, 3 unreadable input, 4 unsuitable terminal,
+5 disk error, 130 interrupted.
 
 examples:
   pendu-tui crossover

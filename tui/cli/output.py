@@ -41,7 +41,8 @@ def scene_line(scene: Scene, *more: str) -> str:
     """Return the scene's name and numbers, and `more` of its attributes."""
     numbers = fields_of(scene, *LIMITS, *more)
     model = "" if scene.model == DEFAULT_MODEL else f" ({scene.equations.equation})"
-    return f"{scene.name}{model}: {', '.join(f'{name} {value:g}' for name, value in numbers.items())} (SI units)"
+    listed = ", ".join(f"{name} {value:g}" for name, value in numbers.items())
+    return f"{scene.name}{model}: {listed} (SI units)"
 
 
 def print_lines(*lines: str) -> None:

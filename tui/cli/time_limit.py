@@ -61,7 +61,7 @@ def limited_steps() -> Iterator[None]:
 
 @contextmanager
 def limited(what: str, seconds: float | None = None) -> Iterator[None]:
-    """Interrupt a user's methods also if all their steps in the block take longer, by default than one may.
+    """Interrupt a user's methods also if the block takes longer, by default than one step may.
 
     A call in C that goes on ends the program by SIGPROF.
     """

@@ -243,12 +243,12 @@ def envelope(x: Floats, values: Floats, hold: float) -> Floats:
 def per_column(
     x: Floats, low: Floats, high: Floats, start: float, end: float, columns: int
 ) -> tuple[Floats, Floats]:
-    """Lowest `low` and highest `high` (n, series) of the rows in each of `columns` parts of [start, end].
+    """Return the lowest `low` and highest `high` of the rows in each part of [start, end].
 
     x ascends.  Returns (columns, series); nan where no row falls into a column.
     """
     lows, highs = np.full((columns, low.shape[1]), np.nan), np.full((columns, low.shape[1]), np.nan)
-    # A row on an edge belongs to the right-hand column, even if rounding puts the edge a little late.
+    # A row on an edge belongs to the right-hand column, however the edge is rounded.
     edges = np.searchsorted(
         x, np.linspace(start, end, columns + 1) - 1e-9 * (end - start) / columns
     )

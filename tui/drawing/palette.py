@@ -48,11 +48,11 @@ class Palette(NamedTuple):
         return others.get(ink, self.text)
 
 
-# Optimised for contrast and for distance in OKLab under all kinds of colour blindness, in the casts of the scenes.
-# The worst pair of the classics is 19.5 apart (dark), 13.3 (light) and 21.6 (high-contrast, all with 7:1), of any
-# scene's cast 10.7, 10.2 and 11.2; red, green, yellow and blue are 3.5 apart.  Light colours must be dark to be read on
-# white, yet none is so dark that it is taken for black.  The terminal's own are at least 14.4 apart on black in the
-# palettes of xterm, VGA, Tango and Windows.
+# Optimised for contrast and for distance in OKLab under all kinds of colour blindness, in the
+# casts of the scenes.  The worst pair of the classics is 19.5 apart (dark), 13.3 (light) and 21.6
+# (high-contrast, all with 7:1), of any scene's cast 10.7, 10.2 and 11.2; red, green, yellow and
+# blue are 3.5 apart.  Light colours must be dark to be read on white, yet none looks black.  The
+# terminal's own are at least 14.4 apart on black in the palettes of xterm, VGA, Tango and Windows.
 PALETTES = {
     "dark": Palette(
         methods=(

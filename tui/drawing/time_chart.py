@@ -71,7 +71,7 @@ class TimePlot:
     def zoomed(
         self, whole: Window, factor: float, column: int | None = None, shift: float = 0.0
     ) -> tuple[float, float] | None:
-        """Return begin and end [s] of a stretch of `factor` times the length, or a `shift` of its length later.
+        """Return the ends [s] of a stretch `factor` times as long, or `shift` lengths later.
 
         What is in the column, or in the middle, stays there.  None where it would be the whole run.
         """
@@ -405,7 +405,7 @@ def _linear_y_axis(runs: Sequence[_Curves], level: float | None, rows: int) -> A
 
 
 def _outline(low: Floats, high: Floats) -> tuple[Floats, Floats]:
-    """Return columns and heights of a line through the lows and highs of all columns, in the order that keeps it short.
+    """Return columns and heights of a short line through all columns' lows and highs.
 
     What lies on the way between two points at the same height is left out.
     """

@@ -35,7 +35,7 @@ class RunSoFar:
         self.step = sample.step
 
     def _modified_energy_errors(self, sample: Sample, change: SteppingChange) -> list[float]:
-        """Return how far each method's modified energy is from where it was at the change of the stepping, relative.
+        """Return each modified energy's relative change since the stepping changed.
 
         Another step size has another modified energy.  nan for a method without one, and where no
         sample before this one has been added since the change.

@@ -68,7 +68,7 @@ WORD = re.compile(r"[!-~]+|[^\s]")
 
 
 def portable(svg: str) -> str:
-    """The picture with a place for every word and every other character, where Rich gives a text's length.
+    """Return the picture with a position for each word, where Rich gives a text's length.
 
     Inkscape and librsvg ignore the length, and their fonts have other widths, of braille above all.
     """

@@ -110,7 +110,7 @@ def is_utf8(encoding: str) -> bool:
 
 
 def fitting_theme(environment: Mapping[str, str]) -> str:
-    """The terminal's own colours if it has few or NO_COLOR is set, else the theme for its background.
+    """Return the terminal's own colours if they are few or NO_COLOR is set, else a theme.
 
     COLORFGBG, such as "0;15", ends with the background's number among the 16 colours: 7 and 9 to 15
     are light.

@@ -1,4 +1,4 @@
-"""The views between status line and key line, each in a folder with its panes: `lab`, `phase`, `accuracy`, `stability`.
+"""The views, each in a folder with its panes: `lab`, `phase`, `accuracy`, `stability`.
 
 A screen binds its Source and Samples to a View, and the View to its Panes, both of which `view`
 defines.  Panes draw, and post `messages` that ask the lab for another start or step size.

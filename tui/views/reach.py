@@ -15,7 +15,7 @@ REACHES = (0.5, 1.2, math.pi / 2)
 
 
 def reach(scene: Scene, stepping: Stepping, sample: Sample, shown: Sequence[int]) -> float:
-    """The smallest of REACHES that neither a shown method nor the exact motion can leave with its energy; else pi.
+    """Return the smallest of REACHES that no shown motion can leave with its energy; else pi.
 
     A method that is unstable at its h gets all the room at once.  Largest errors only grow during a
     run, so the picture never jumps back and forth.

@@ -1,4 +1,4 @@
-"""What the numbers mean, in English sentences: Source -> text, without colours and without a screen.
+"""What the numbers mean, in English: Source -> text, without colours or a screen.
 
 `motion` is about the exact pendulum, and `orbit` about the orbits of a method's own map; `numbers`
 writes the numbers. `insight` chooses the fact of the moment and has the table of its sentences,

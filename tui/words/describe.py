@@ -55,7 +55,8 @@ def method_sentence(source: Source, index: int) -> str:
         ]
         return " ".join(sentence(each) for each in parts if each)
     if source.judgements[index].verdict == "bounded":
-        return f"{method.label} stays bounded: its largest energy error is {reading.max_energy_error:.2g}."
+        error = reading.max_energy_error
+        return f"{method.label} stays bounded: its largest energy error is {error:.2g}."
     judgement = source.judgements[index]
     verdict = (
         str(judgement) if judgement.verdict == "too early" else f"verdict: {judgement.verdict}"

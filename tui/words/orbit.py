@@ -71,7 +71,10 @@ def sentence(method: Method, kind: OrbitKind) -> str:
     over = " over the top" if kind.spins else ""
     if kind.island:
         turns, steps = kind.fraction.as_integer_ratio()
-        return f"A chain of islands: {counted(turns, 'turn')}{over} in every {steps} steps, {turns}:{steps}."
+        ratio = f"{turns}:{steps}"
+        return (
+            f"A chain of islands: {counted(turns, 'turn')}{over} in every {steps} steps, {ratio}."
+        )
     near = f"{1 / abs(kind.rotation):.5g} steps a turn{over}, nearest {fraction(kind)}."
     if spirals:
         return f"It {words}, {near}"
@@ -90,4 +93,5 @@ def period_sentence(source: Source) -> str:
             taken.append(f"{method.label} {period:.6g} s")
     if not taken:
         return ""
-    return f"From this start and with this step, a period takes {', '.join(taken)}; the exact one is {exact:.6g} s."
+    periods = ", ".join(taken)
+    return f"From this start with this step, a period takes {periods}; exact: {exact:.6g} s."

@@ -26,7 +26,8 @@ examples:
   pendu-tui verify crossover.mcap --methods rk4
 
 A folder means all recordings below it; golden means the bundled ones.
-Exit 0: all are identical; 1: at least one differs or is incomplete (a .part may be); 3: one cannot be read.
+Exit 0: all are identical; 1: at least one differs or is incomplete (a .part may be);
+3: one cannot be read.
 """
 
 

@@ -18,7 +18,8 @@ examples:
   pendu-tui serve --port 8080 --scene crossover
   pendu-tui serve --at-most 30 --record recorded/
 
-From another computer: ssh -L 8000:127.0.0.1:8000 HOST, then open http://127.0.0.1:8000 there.  Ctrl+C ends it.
+From another computer: ssh -L 8000:127.0.0.1:8000 HOST, then open http://127.0.0.1:8000 there.
+Ctrl+C ends it.
 """
 
 

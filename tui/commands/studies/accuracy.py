@@ -40,17 +40,17 @@ MAX_BUDGET = 10**9  # force evaluations of a run; minutes for each method, compi
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_scene_options(parser)
     add = parser.add_argument
-    every = "chart all methods that run on any force, and with --cost seconds Taylor's series and the closed form"
+    every = "chart all methods for any force, with --cost seconds also series and closed form"
     add("--all", action="store_true", help=every)
     some = "simulated time in s; if several, the last is charted (ten small swings)"
     add("--time", metavar="S[,S...]", type=times, help=some)
-    ladder = "N step sizes from A to B in s, logarithmically spaced (12 with z = h·w0 from 0.6 to 0.0015)"
+    ladder = "N step sizes in s, logarithmically spaced (12 with z = h·w0 from 0.6 to 0.0015)"
     add("--h-values", metavar="A:B:N", type=h_values, help=ladder)
-    kinds = "the largest angle error [rad], the largest relative energy error, the angle error at the end (%(default)s)"
+    kinds = "largest angle error [rad], largest energy error, last angle error (%(default)s)"
     add("--error", choices=("theta", "energy", "final"), default="theta", help=kinds)
-    costs = "force evaluations, or measured seconds, without Numba where a method is your own (%(default)s)"
+    costs = "force evaluations, or seconds, without Numba if a method is your own (%(default)s)"
     add("--cost", choices=("evaluations", "seconds"), default="evaluations", help=costs)
-    wish = "find each method's cheapest h for this error, of all that run on any force without --methods"
+    wish = "find each method's cheapest h for this error; without --methods, try all of them"
     add("--target", metavar="ERROR", type=positive, help=wish)
     margin = "reach a target FACTOR times as small, for other starts and longer times (%(default)g)"
     add("--safety", metavar="FACTOR", type=positive, default=1.0, help=margin)

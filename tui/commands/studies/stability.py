@@ -45,7 +45,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     what.add_argument(
         "--section", action="store_true", help="draw the phase portrait of the first of the methods"
     )
-    thetas = f"amplitudes in rad or deg: 0.5,1,2 or {LIST} (0.1, 0.5, 1, 2, 3 and the scene's; of a map 100)"
+    thetas = f"amplitudes: 0.5,1,120deg or {LIST} (0.1, 0.5, 1, 2, 3 and the scene's; of a map 100)"
     add("--theta-values", metavar="LIST", type=values(angle), help=thetas)
     zs = f"z = h·w0: 0.5,1 or {LIST} (one every 1 %% up to 3.2; of a map 200 up to 3)"
     add("--z-values", metavar="LIST", type=values(number), help=zs)

@@ -1,4 +1,4 @@
-"""Error over cost and over time (F4): `view` has points computed, `pane` shows them as a `chart` to choose h from.
+"""Error over cost and time (F4): computed by `view`, shown by `pane` as a `chart`.
 
 The command `pendu-tui accuracy` draws the same chart.
 """

@@ -72,7 +72,7 @@ def accuracy_series(
     references: References | None = None,
     whole: int = 0,
 ) -> list[Series]:
-    """Return letters for points, x for useless and ~ for rounding-limited ones, dotted lines for orders, and `marks`.
+    """Return points as letters, x if useless, ~ if limited by rounding; orders as dots.
 
     Of methods with fewer points than a `whole` line has, no line joins those that are there.  The
     reference lines are Taylor's series and, upright, what the closed form takes.

@@ -30,7 +30,7 @@ class Places(NamedTuple):
 
 
 def places(columns: int, rows: int, methods: int, overlay: bool = False) -> Places:
-    """Pendulums and events to the left, charts and phase space to the right of `columns` × `rows` cells.
+    """Place pendulums and events to the left, charts and phase space to the right.
 
     Each method has a pane of its own where there is room, unless an `overlay` is wanted.
     """

@@ -77,7 +77,10 @@ def _ring_text(source: Source, neighbours: Neighbours | None) -> str:
     change = change_before(source.changes, step)
     left = source.scene.equations.area_share(change.t + (step - change.step) * change.stepping.h)
     if left != 1:
-        return f" Ring, radius {neighbours.radius:g} rad: the true motion leaves {left:.9f} of its area"
+        return (
+            f" Ring, radius {neighbours.radius:g} rad: the true motion leaves {left:.9f} of its "
+            "area"
+        )
     behind = source.sample.step - step
     text = f" Ring of neighbouring starts, radius {neighbours.radius:g} rad"
     return f"{text}: {behind} steps behind" if behind else f"{text} (g: another)"

@@ -74,7 +74,7 @@ class Viewport(NamedTuple):
         return self.omega - (y - self.middle[1]) * self.omega_per_dot
 
     def at(self, x: float, y: float) -> State:
-        """Return the roundest state within half a dot of (x, y), its angle brought to [-pi, pi] when wrapped.
+        """Return the roundest state within half a dot of (x, y), in [-pi, pi] if wrapped.
 
         No angle is rounder than a multiple of pi, so the equilibria can be reached.
         """

@@ -34,7 +34,7 @@ Cell = tuple[str, Ink]
 
 
 def scores(cells: Cells, steps: int) -> Scores:
-    """A score per swing: -1 not computed; 0 to 1 lost, early to late; 1 to 2 held, energy error large to small.
+    """Return a score per swing: -1 unknown; 0 to 1 lost, later; 1 to 2 held, more accurately.
 
     Both parts are logarithmic, in steps survived and in the largest energy error.
     """
@@ -154,7 +154,7 @@ def title(place: int, method: Method, columns: int, palette: Palette | None, not
 
 
 def theory(method: Method, grid: Grid, rows: int) -> Iterator[tuple[float, float, str]]:
-    """Points (z, theta) that theory names, one a row: the linear limit, Greene's threshold and the catching orbit.
+    """Return theory's (z, theta): the linear limit, Greene's threshold, the catching orbit.
 
     Greene's threshold is that of the standard map, which symplectic Euler is, and velocity Verlet
     half a kick earlier. Velocity Verlet's catching orbit jumps between q and -q, z² sin q = 4 q,

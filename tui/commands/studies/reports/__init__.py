@@ -1,4 +1,4 @@
-"""Reports of `run`, `accuracy`, `stability` and its --section, and of `energies` judged; they load NumPy and Rich.
+"""Reports of `run`, `accuracy`, `stability` and judged `energies`; they load NumPy, Rich.
 
 `figures` draws them for paper and slide.
 """

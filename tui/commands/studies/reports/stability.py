@@ -141,18 +141,19 @@ def _swings(grid: Grid, cells: Cells) -> Iterator[dict[str, Any]]:
 
 def _words(scene: Scene) -> Iterator[str]:
     """Yield what is to be known of the pendulum's table."""
-    yield "\nPendulum: the z from which a swing is lost in so many steps; more steps move it down (--steps)."
+    yield "\nPendulum: the z from which a swing is lost in so many steps; with more steps, it is lower."
     yield (
         "Lost: it goes over the top, or is chaotic and 10 % wider than on the linear oscillator; "
         "without a symplectic"
         f" method also if its energy leaves the linear oscillator's band by {100 * BAND:.0f} %."
     )
-    yield f"Margin = limit / z, of the scene's z = {scene.z:.4g}. Below 1, the scene is beyond the limit."
+    yield f"Margin = limit / z; the scene has z = {scene.z:.4g}. Below 1, it is beyond the limit."
     swing = amplitude(scene)
     if swing is not None and not math.isclose(swing, scene.theta):
         speed = f" with {scene.omega:g} rad/s" if scene.omega else ""
         start = f"{math.degrees(scene.theta):.4g} deg{speed}"
-        yield f"The start at {start} swings as far as one from rest at {math.degrees(swing):.4g} deg."
+        amplitude = f"{math.degrees(swing):.4g} deg"
+        yield f"The start at {start} swings as far as one from rest at {amplitude}."
 
 
 def _columns(scene: Scene, steps: int) -> list[Column]:
