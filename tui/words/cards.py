@@ -108,7 +108,7 @@ def scene_card(scene: Scene, now: str = "") -> str:
     """Return a scene and what to watch in it; `now` is the step if it differs."""
     exact = scene.exact()
     accuracy = f"theta right to {exact.accuracy:g} rad for a minute"
-        reference = f"no closed form: Kahan & Li's method of order 8, {accuracy}"
+    reference = f"no closed form: Kahan & Li's method of order 8, {accuracy}"
     return _card(
         f"Scene {scene.name}",
         {

@@ -94,4 +94,4 @@ def period_sentence(source: Source) -> str:
     if not taken:
         return ""
     periods = ", ".join(taken)
-    return f"From this start with this step, a period takes {periods}; exact: {exact:.6g} s."
+    return f"From this start, a period takes {periods}; the exact one is {exact:.6g} s."

@@ -74,8 +74,7 @@ def test_numbers_that_there_are_not_are_a_hyphen():
 
 
 def test_the_period_of_each_method_stands_beside_the_exact_one():
-    assert period_sentence(Live(Scene(theta=0.1, h=0.1))) == (
-        "From this start and with this step, a period takes Symplectic Euler 1.9991 s, Velocity Verlet 1.99907 s,"
-        " RK4 2.00746 s; the exact one is 2.00732 s."
-    )
+    sentence = period_sentence(Live(Scene(theta=0.1, h=0.1)))
+    periods = ("Symplectic Euler 1.9991 s", "Velocity Verlet 1.99907 s", "RK4 2.00746 s")
+    assert all(period in sentence for period in (*periods, "2.00732 s"))
     assert period_sentence(Live(Scene(theta=0.0))) == ""

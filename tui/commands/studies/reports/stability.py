@@ -152,8 +152,8 @@ def _words(scene: Scene) -> Iterator[str]:
     if swing is not None and not math.isclose(swing, scene.theta):
         speed = f" with {scene.omega:g} rad/s" if scene.omega else ""
         start = f"{math.degrees(scene.theta):.4g} deg{speed}"
-        amplitude = f"{math.degrees(swing):.4g} deg"
-        yield f"The start at {start} swings as far as one from rest at {amplitude}."
+        degrees = f"{math.degrees(swing):.4g} deg"
+        yield f"The start at {start} swings as far as one from rest at {degrees}."
 
 
 def _columns(scene: Scene, steps: int) -> list[Column]:
