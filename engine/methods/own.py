@@ -4,6 +4,7 @@ It claims nothing: its properties are measured when the text is loaded.  Its cod
 any Python. Another process receives the text and compiles it again.
 """
 
+import ast
 import copyreg
 import math
 from collections.abc import Callable, Iterator
@@ -91,10 +92,12 @@ def own_phases(source: str, name: str, file: str) -> Phases:
     try:
         UserCode.is_running = True
         UserCode.steps = 0
-        exec(compile(source, file, "exec", dont_inherit=True), namespace)
+        tree = ast.parse(source, file)
+        _check_caught(tree, file)
+        exec(compile(tree, file, "exec", dont_inherit=True), namespace)
     except SyntaxError as error:
         raise OwnMethodError(f"{file}, line {error.lineno or 1}: {error.msg}.") from None
-    except KeyboardInterrupt:
+    except (OwnMethodError, KeyboardInterrupt):
         raise
     except BaseException as error:
         raise OwnMethodError(_sentence(error, source, file, file)) from None
@@ -110,6 +113,15 @@ def own_phases(source: str, name: str, file: str) -> Phases:
         there = f"; it has {', '.join(functions[:6])}" if functions else ""
         raise OwnMethodError(f"{file} has no function {name!r}{there}.")
     return _guarded(function, name, source, file)
+
+
+def _check_caught(tree: ast.AST, file: str) -> None:
+    """Raise OwnMethodError for code that would catch KeyboardInterrupt and TooLongError."""
+    for node in ast.walk(tree):
+        is_bare = isinstance(node, ast.ExceptHandler) and node.type is None
+        if is_bare or (isinstance(node, ast.Name) and node.id == "BaseException"):
+            line = getattr(node, "lineno", 0)
+            raise OwnMethodError(f"{file}, line {line}: this would catch Ctrl+C; use Exception.")
 
 
 class _PrintedError(Exception):

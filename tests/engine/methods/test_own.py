@@ -135,6 +135,10 @@ WRONG = {
     "an exception that most programs do not catch": (
         euler("raise GeneratorExit"), "line 7: `raise GeneratorExit` raises GeneratorExit."
     ),
+    "an except that catches the limit of time": (
+        "def mine(force, phase, h):\n    try: yield phase\n    except: pass", "line 3: this would catch Ctrl+C; use"
+    ),
+    "the same by its name": (euler(above="suppressed = BaseException"), "line 1: this would catch Ctrl+C; use"),
     "not a number": (euler("omega = omega * float('nan')"), "mine does not stay finite for 6 steps"),
     "numbers that overflow": (euler("theta = (theta * 1e200) ** 2"), "mine overflows on an ordinary swing"),
     "a memory": (
