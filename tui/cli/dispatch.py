@@ -179,9 +179,9 @@ def _parsed(parser: "Parser", arguments: list[str], command: ModuleType | None =
         raise UserError(f"put the command first: pendu-tui {late}.")
     if not getattr(options, "method", None):
         return int(command.run(options))
-    from tui.cli.time_limit import limited_steps
+    from tui.cli.time_limit import limited_calls, limited_steps
 
-    with limited_steps():
+    with limited_calls(), limited_steps():
         return int(command.run(options))
 
 

@@ -3,7 +3,6 @@
 import os
 import select
 import signal
-import termios
 import time
 from asyncio import AbstractEventLoop
 from collections.abc import Callable
@@ -12,16 +11,13 @@ from threading import Thread
 
 from tui.cli.errors import Exit
 from tui.cli.files import ENDING
+from tui.cli.time_limit import PLAIN_SCREEN
 from tui.terminal.check import is_gone
 
 MARGIN = 0.1  # s; of two signals that come closer than that, the order is unknown
 LOOK_INTERVAL = 1.0  # s between looks at the terminal
 MAX_LEAVE_TIME = 5.0  # s that the event loop has to end the program
 MAX_CLOSE_TIME = 3.0  # s to finish the recording without the loop
-PLAIN_SCREEN = (
-    b"\x1b[<u\x1b[?1049l\x1b[?25h\x1b[?7h\x1b[?1000l\x1b[?1003l\x1b[?1006l\x1b[?1004l\x1b[?2004l"
-)
-"""Ends the alternate screen, and reports of mouse, focus and paste."""
 
 
 class Job:
@@ -63,7 +59,7 @@ class Job:
 
 
 class SignalThread(Thread):
-    """A thread that passes signals on to the event loop, and ends a program whose loop is stuck.
+    """Passes signals on to the event loop, and ends a program whose loop is stuck.
 
     Textual's own handlers run wherever a signal interrupts Python, which may be in the middle of a
     write to the terminal; what they write would then wait for that write for ever.
@@ -114,11 +110,6 @@ class SignalThread(Thread):
                 os._exit(Exit.INTERRUPTED)
 
     def _end(self) -> None:
-        """Finish the recording, and set the terminal to lines and echo, as a shell expects it."""
+        """Finish the recording, and set the terminal as a shell expects it."""
         self._close()
-        with suppress(termios.error, OSError):
-            attributes = termios.tcgetattr(0)
-            attributes[0] |= termios.ICRNL | termios.IXON
-            attributes[3] |= termios.ECHO | termios.ICANON | termios.IEXTEN | termios.ISIG
-            termios.tcsetattr(0, termios.TCSANOW, attributes)
-            os.write(2, PLAIN_SCREEN)
+        os.system(f"stty sane 2>/dev/null && printf '{PLAIN_SCREEN}' >&2")

@@ -138,6 +138,20 @@ def test_a_method_that_does_not_yield_is_told_within_4_s_and_the_keys_work(tmp_p
     assert pendu("verify", recorded, "--method", f"{tmp_path / 'mine.py'}:mine").code == 0
 
 
+@pytest.mark.slow
+def test_a_call_in_c_that_never_returns_ends_the_lab_with_a_sentence(tmp_path):
+    (tmp_path / "mine.py").write_text(ENDLESS.replace("pass", "sum(iter(int, 1))"))
+    library = tmp_path / "library"
+    path = {"PENDU_RECORDINGS": str(library), "PYTHONPATH": str(ROOT)}
+    with PtyLab("live", "--method", "mine.py:mine", folder=tmp_path, **path) as session:
+        session.wait_for("REC 1 s")
+        (tmp_path / "endless").touch()
+        assert session.end() == -9
+        assert b"1049l" in session.output
+        assert b"the next lab recovers" in session.output
+    assert pendu("recordings", "recover", *library.iterdir(), "-o", tmp_path / "x.mcap").code == 0
+
+
 BROKEN = """
 from tui.screens.live import LiveScreen
 def broken(self): raise ZeroDivisionError("in the lab")
