@@ -8,6 +8,7 @@ import shlex
 import sys
 import tempfile
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
@@ -76,6 +77,17 @@ class LabServer(Server):  # type: ignore[misc]
         self.public_url = f"{request.scheme}://{request.host}"
         response: web.StreamResponse = await handler(request)
         return response
+
+    async def _process_messages(self, websocket: web.WebSocketResponse, app_service: Any) -> None:
+        """Take messages; then end the lab, even if nobody reads what it draws."""
+        lab = app_service._process
+        try:
+            await super()._process_messages(websocket, app_service)
+        finally:
+            with suppress(ProcessLookupError):
+                lab.terminate()
+            while lab.returncode is None:
+                await asyncio.sleep(0.1)
 
     async def handle_websocket(self, request: web.Request) -> web.WebSocketResponse:
         self._labs += 1
