@@ -6,12 +6,14 @@ It writes to NAME.mcap.part, which becomes NAME.mcap when it is finished.
 import json
 import os
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Self
 
+from mcap.data_stream import RecordBuilder
+from mcap.records import ChunkIndex
 from mcap.writer import CompressionType, Writer
 
 from engine.run.lockstep import Sample
@@ -37,6 +39,22 @@ MAX_CLOCK = 1e10  # s; log_time has 64 bits of nanoseconds
 
 WallClock = Callable[[], int]
 """ns since 1970."""
+
+
+class _ChunkIndices:
+    """The file's index as bytes; a list of mcap's objects would grow by 4 MB an hour."""
+
+    def __init__(self) -> None:
+        self._records = RecordBuilder()
+
+    def append(self, index: ChunkIndex) -> None:
+        index.write(self._records)
+
+    def __iter__(self) -> Iterator[Self]:
+        yield self
+
+    def write(self, summary: RecordBuilder) -> None:
+        summary.write(self._records.end())  # type: ignore[no-untyped-call]
 
 
 class Recorder:
@@ -82,6 +100,7 @@ class Recorder:
         self._writer = Writer(
             self._file, chunk_size=1 << 62, compression=CompressionType.ZSTD, enable_data_crcs=True
         )
+        vars(self._writer)["_Writer__chunk_indices"] = _ChunkIndices()
         self._writer.start(PROFILE, f"pendu-tui {version('pendu-tui')}")
 
     def event(self, event: Event, clock: float) -> None:
