@@ -49,14 +49,6 @@ def endless(force, phase, h):
         except Exception:
             pass
     yield phase
-
-def loud(force, phase, h):
-    import os, sys
-    while True:
-        sys.stdout.write("x")
-        theta, omega = phase
-        phase = theta + h * omega, omega + h * force(theta)
-        yield phase
 """
 
 
@@ -151,7 +143,6 @@ def test_a_method_of_ones_own_stands_where_methods_names_it_or_last(mine):
         ("mine.py:größer", 2, "cannot be a method's name"),
         (f"mine.py:{'a' * 31}", 2, "cannot be a method's name"),
         ("mine.py:kick", 2, "mine.py has no function 'kick'; it has kick_drift, rk4"),
-        ("mine.py:loud", 2, "writes to stdout"),
         ("absent.py:kick_drift", 3, "absent.py cannot be read: No such file"),
         (".:kick_drift", 3, "cannot be read: Is a directory"),
         ("/dev/zero:kick_drift", 2, "too long; use a file of at most 30,000 characters"),
