@@ -24,9 +24,8 @@ class Cheapest:
     target: float  # of the error
     method: Method
     cost: float  # force evaluations or seconds
-    saves: (
-        float | None
-    )  # RK4's force evaluations over this method's; None: one of the two was not measured there
+    # RK4's force evaluations over this method's; None: one of the two was not measured there
+    saves: float | None
 
 
 def cost_of(point: Point, cost: Cost) -> float:

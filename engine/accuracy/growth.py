@@ -13,16 +13,12 @@ from engine.methods import Method
 from engine.phase_space.section import orbit
 from engine.scenes import Scene
 
-PERIODS, FEWEST = (
-    100,
-    10,
-)  # of the motion that are followed, unless the error becomes too large before; for a fit
+# of the motion that are followed, unless the error becomes too large before; for a fit
+PERIODS, FEWEST = 100, 10
 MOST_STEPS = 100_000
 LARGEST = 0.4  # rad; larger errors no longer grow freely, for they begin to wrap
-STRAIGHT, WHOLE = (
-    0.05,
-    0.15,
-)  # largest departure of ln error from the line, and of its slope from a whole number
+# largest departure of ln error from the line, and of its slope from a whole number
+STRAIGHT, WHOLE = 0.05, 0.15
 _LOOKS = 30  # in each period
 
 

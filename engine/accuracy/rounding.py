@@ -7,9 +7,8 @@ from statistics import fmean
 from engine.scenes import Scene
 
 SAMPLES = 400
-NUDGE = (
-    1e-9  # relative; small even next to the separatrix, and far above the exact swing's own error
-)
+# relative; small even next to the separatrix, and far above the exact swing's own error
+NUDGE = 1e-9
 MARGIN = 2  # errors above the floor are then due to the method, but for a fraction
 
 
@@ -33,11 +32,9 @@ def rounding_floor(scene: Scene, time: float) -> tuple[float, float]:
     times = [time * sample / SAMPLES for sample in range(SAMPLES + 1)]
     widest = max(abs(exact.at(t).theta) for t in times)
     fastest = max(abs(exact.at(t).omega) for t in times)
-    pace = (
-        scene.w0 * math.sqrt(widest) * math.sqrt(min(widest, 1.0)) / fastest
-    )  # squares of 1e-170 are 0
+    # squares of 1e-170 are 0
+    pace = scene.w0 * math.sqrt(widest) * math.sqrt(min(widest, 1.0)) / fastest
     energy = MARGIN * epsilon * max(1.0, pace * pace)
     response = [(moving.at(t).theta - slower.at(t).theta) / NUDGE for t in times]
-    return energy, energy * math.sqrt(
-        fmean(r * r for r in response)
-    )  # changes come at any time of the run
+    # changes come at any time of the run
+    return energy, energy * math.sqrt(fmean(r * r for r in response))

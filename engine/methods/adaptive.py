@@ -13,9 +13,8 @@ from engine.methods.method import Method, Phases
 from engine.methods.verlet import velocity_verlet
 from engine.models.model import Force, Phase
 
-MOST_HALVINGS = (
-    10  # of a step: where nothing looks accurate, as at 1e9 rad/s, it ends with 1024 parts
-)
+# of a step: where nothing looks accurate, as at 1e9 rad/s, it ends with 1024 parts
+MOST_HALVINGS = 10
 TOLERANCE = 0.1  # rad and rad/s, of a step
 
 

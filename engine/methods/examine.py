@@ -13,9 +13,8 @@ from engine.models.model import Phase
 
 H = 0.05  # s
 STEPS = 6
-SAME = (
-    1e-9  # relative; rounding makes far smaller differences, a wrong kind of number far larger ones
-)
+# relative; rounding makes far smaller differences, a wrong kind of number far larger ones
+SAME = 1e-9
 
 
 def load(source: str, key: str, letter: str, file: str) -> OwnMethod:

@@ -19,10 +19,8 @@ from engine.models.pendulum import Pendulum
 PENDULUM = Pendulum(9.81)
 START = (1.0, 0.3)
 LARGE_H = 0.2  # s: at small steps a high order hides a change of area, or a miss of the start
-WIDEST_Z, RUNGS = (
-    16,
-    2048,
-)  # z is looked at up to here, in steps of 1/2048: two thirds of the narrowest gap, BM6's
+# z is looked at up to here, in steps of 1/2048: two thirds of the narrowest gap, BM6's
+WIDEST_Z, RUNGS = 16, 2048
 NO_LIMIT_BELOW = 0.1  # z up to which some unstable methods grow by less than rounding
 ROUNDING = 1e-12
 LINEAR_ROUNDING = 3e-13  # of a linear step; a limit moves by up to a thousand times as much

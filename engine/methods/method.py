@@ -48,10 +48,8 @@ class Method:
     first_same_as_last: bool = False
     symplectic: bool = False  # the step's Jacobian has determinant 1
     reversible: bool = False  # the step and omega -> -omega undo each other
-    linear_limit: float | None = (
-        # largest stable z = h·w0 on the linear oscillator; 0: none; inf: all; None: no one number
-        None
-    )
+    # largest stable z = h·w0 on the linear oscillator; 0: none; inf: all; None: no one number
+    linear_limit: float | None = None
     other_names: tuple[str, ...] = ()
     reference: str
     used: str | None  # a program that uses it, with its page in brackets; None if we know of none
@@ -64,9 +62,8 @@ class Method:
     any_numbers: bool = True  # also arrays, complex and mpmath numbers
     longest_substep: float = 1.0  # of a symplectic splitting, in steps: chaos begins there first
     epsilon: float = 2.0**-53  # the relative error of a rounding
-    varies: bool = (
-        False  # its evaluations depend on the phase; `force_evaluations` is then an average
-    )
+    # its evaluations depend on the phase; `force_evaluations` is then an average
+    varies: bool = False
 
     @property
     def general(self) -> bool:

@@ -145,9 +145,8 @@ def _carlson_rf(x: float, y: float, z: float) -> float:
     while True:
         mean = (x + y + z) / 3
         dx, dy, dz = 1 - x / mean, 1 - y / mean, 1 - z / mean
-        if (
-            max(abs(dx), abs(dy), abs(dz)) < 2e-3
-        ):  # the series below errs by the sixth power of this
+        # the series below errs by the sixth power of this
+        if max(abs(dx), abs(dy), abs(dz)) < 2e-3:
             break
         root_x, root_y, root_z = math.sqrt(x), math.sqrt(y), math.sqrt(z)
         shift = root_x * root_y + root_y * root_z + root_z * root_x

@@ -5,9 +5,8 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from typing import Any, ClassVar, Literal, NamedTuple
 
-Number = (
-    Any  # float, complex, NumPy array or mpmath number: one definition of a method serves them all
-)
+# float, complex, NumPy array or mpmath number: one definition of a method serves them all
+Number = Any
 
 Phase = tuple[Number, ...]
 """(theta, omega) as a method takes and yields it: a bare tuple, the quickest value CPython builds.
@@ -111,9 +110,8 @@ class ExactMotion(NamedTuple):
     """The state at a time [s], which may be negative; theta is unwrapped."""
     regime: Regime
     period: float | None = None  # s, per swing or, in rotation, per turn; None: not periodic
-    accuracy: float = (
-        0.0  # rad; largest error of theta in the first minute; 0 where the motion has a closed form
-    )
+    # rad; largest error of theta in the first minute; 0 where the motion has a closed form
+    accuracy: float = 0.0
 
 
 class EnergyError(NamedTuple):
@@ -143,9 +141,8 @@ class Model(ABC):
     ] = ()  # the dataclass' fields after w0_squared, in order
     turns: ClassVar[bool]  # whether theta + 2 pi is the same place, and it can go over the top
     second_order: ClassVar[bool] = True  # theta'' = force(theta), in whatever numbers
-    counted_parts: ClassVar[tuple[str, ...]] = (
-        "force",
-    )  # of `parts`, those that cost a force evaluation
+    # of `parts`, those that cost a force evaluation
+    counted_parts: ClassVar[tuple[str, ...]] = ("force",)
     rigid: ClassVar[bool] = True  # whether the bob stays at one distance from the pivot
     variables: ClassVar[
         tuple[Variable, ...]
@@ -154,9 +151,8 @@ class Model(ABC):
     energy_error: ClassVar[EnergyError] = EnergyError()
     frequency_symbol: ClassVar[str] = "w0"  # of `fastest`
     has_separatrix: ClassVar[bool] = False  # where `level` is 0
-    caption: ClassVar[str] = (
-        ""  # of its phase portrait, if the motion does not follow curves of equal energy
-    )
+    # of its phase portrait, if the motion does not follow curves of equal energy
+    caption: ClassVar[str] = ""
     without_force: ClassVar[str] = ""
     """Return why studies and maps do not apply to the model, or an empty string.
 

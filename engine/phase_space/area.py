@@ -13,9 +13,8 @@ from engine.run.stepping import Stepping, SteppingChange, change_before
 from engine.run.tangent import jacobian
 from engine.scenes import Scene
 
-Ring = tuple[
-    NDArray[np.float64], NDArray[np.float64]
-]  # theta [rad] and omega [rad/s] of the neighbours
+# theta [rad] and omega [rad/s] of the neighbours
+Ring = tuple[NDArray[np.float64], NDArray[np.float64]]
 RADII = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5)  # rad, worth looking at
 
 

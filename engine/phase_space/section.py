@@ -34,10 +34,8 @@ def spread(count: int, theta: tuple[float, float], omega: tuple[float, float]) -
     Roberts' sequence R2 (2018).
     """
     n = np.arange(1.0, count + 1)
-    across, up = (
-        n * 0.7548776662466927 % 1,
-        n * 0.5698402909980532 % 1,
-    )  # 1/p and 1/p², where p³ = p + 1
+    # 1/p and 1/p², where p³ = p + 1
+    across, up = n * 0.7548776662466927 % 1, n * 0.5698402909980532 % 1
     return theta[0] + (theta[1] - theta[0]) * across, omega[0] + (omega[1] - omega[0]) * up
 
 
@@ -191,9 +189,8 @@ def nearest_fraction(rotation: float) -> Fraction:
 def _is_island(points: Points, w0: float, rotation: float, fraction: Fraction, spins: bool) -> bool:
     """Whether the points of every q-th step wind around a point of their own."""
     q, steps = fraction.denominator, len(points[0]) - 1
-    if (
-        q > LARGEST or fraction.numerator == 0 or abs(abs(rotation) - fraction) > 0.1 / steps
-    ):  # a tenth of a turn in all
+    # a tenth of a turn in all
+    if q > LARGEST or fraction.numerator == 0 or abs(abs(rotation) - fraction) > 0.1 / steps:
         return False
     theta, omega = points[0][::q], points[1][::q] / w0
     if spins:
@@ -202,6 +199,5 @@ def _is_island(points: Points, w0: float, rotation: float, fraction: Fraction, s
         )
     x, y = theta - theta.mean(), omega - omega.mean()
     angle = np.unwrap(np.arctan2(y, x))
-    return bool(
-        np.hypot(x, y).max() > 1e-9 and abs(angle[-1] - angle[0]) >= math.tau
-    )  # not rounding that winds
+    # not rounding that winds
+    return bool(np.hypot(x, y).max() > 1e-9 and abs(angle[-1] - angle[0]) >= math.tau)

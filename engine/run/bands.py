@@ -114,9 +114,8 @@ def fit(times: Sequence[float], values: Sequence[float]) -> Line:
     if total == 0:
         return Line(slope, 0.0, math.inf if slope else 0.0)
     correlation = sum(a * b for a, b in pairwise(residuals)) / total
-    correlation = min(
-        max(correlation, 0.0), 0.9
-    )  # a poor estimate: neither shrink the result nor blow it up
+    # a poor estimate: neither shrink the result nor blow it up
+    correlation = min(max(correlation, 0.0), 0.9)
     uncertainty = math.sqrt(total / (n - 2) / square * (1 + correlation) / (1 - correlation))
     return Line(slope, uncertainty, sigmas(slope / uncertainty, n - 2))
 

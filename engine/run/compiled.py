@@ -18,9 +18,8 @@ from engine.models.model import Model, Phase
 from engine.run import loops
 from engine.run.loops import Advanced, Loops, PlainLoops
 
-COMPILED_FROM = (
-    1_000_000  # steps of a method: in plain Python they take as long as importing and compiling
-)
+# steps of a method: in plain Python they take as long as importing and compiling
+COMPILED_FROM = 1_000_000
 
 
 @cache
@@ -49,17 +48,15 @@ def compiled(method: Method, model: Model) -> Loops:
 
 @cache
 def _compiled(method: Method, model: Model) -> CompiledLoops | None:
-    from engine.methods.own import (
-        OwnMethod,
-    )  # with all that measures one, which most runs do not need
+    # with all that measures one, which most runs do not need
+    from engine.methods.own import OwnMethod
 
     numba: Any = import_module("numba")
     general = method.general and model.has_force and not isinstance(method, OwnMethod)
     if not general or not _same_sine(numba):
         return None
-    inner = numba.njit(
-        no_cpython_wrapper=True, no_cfunc_wrapper=True
-    )  # never called by Python: compiles twice as fast
+    # never called by Python: compiles twice as fast
+    inner = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)
     phases = inner(compilable(method.phases))
     force, energy = inner(model.force()), inner(model.energy())
     travel, advance = inner(_travel), inner(loops.advance)

@@ -25,9 +25,8 @@ DEFINITIONS: dict[Verdict, str] = {
 
 # A method in a run.  z = h·w0, times a method's longest substep; errors are relative energy errors.
 # Theorems:
-QUIET = (
-    0.25  # z: chaos is thinner than exp(-pi²/z): Gelfreich & Lazutkin, Russ. Math. Surv. 56 (2001)
-)
+# z: chaos is thinner than exp(-pi²/z): Gelfreich & Lazutkin, Russ. Math. Surv. 56 (2001)
+QUIET = 0.25
 FENCED = 0.9  # z: below, invariant curves fence orbits in; the last breaks at 0.9857: Greene (1979)
 MIN_STEPS_A_TURN = 4  # Nyquist for the error, which turns twice as often: fewer beat with it
 NEAR_TOP = 11.0  # w0·period: longer swings come within 30° of upright, where fences break first

@@ -26,9 +26,8 @@ class Judges:
         self._period = period
         self._scale = scale
         self._judges: list[Judge] = []
-        self._below: set[tuple[int, int]] = (
-            set()
-        )  # methods that leave, and bounded ones that they were below
+        # methods that leave, and bounded ones that they were below
+        self._below: set[tuple[int, int]] = set()
         self._passed: set[tuple[int, int]] = set()  # once is enough
 
     @property

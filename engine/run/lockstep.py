@@ -32,12 +32,10 @@ class Reading(NamedTuple):
     )
     energy_error_high: float  # so that a chart of samples loses no extreme
     diverged_at: float | None = None  # s; first time at which the method's numbers were not finite
-    max_invariant_error: float | None = (
-        None  # relative, of `Model.invariant` over every step of the run so far
-    )
-    extra: Mapping[str, float] = (
-        NO_EXTRA  # the values of the model's own variables, `Model.variables`
-    )
+    # relative, of `Model.invariant` over every step of the run so far
+    max_invariant_error: float | None = None
+    # the values of the model's own variables, `Model.variables`
+    extra: Mapping[str, float] = NO_EXTRA
 
 
 TAU_REST = 2.4492935982947064e-16  # 2 pi - math.tau
@@ -115,9 +113,8 @@ class Lockstep:
         self._scales = {
             each.name: start[each.name] or 1.0 for each in model.variables if each.relative
         }
-        self._limit = (
-            min(1.0, self._reference.scale) * 1e300
-        )  # so that relative errors are finite, too
+        # so that relative errors are finite, too
+        self._limit = min(1.0, self._reference.scale) * 1e300
         self._tracks = [
             _Track(loops(method, model).advance, scene, self._reference.start)
             for method in scene.cast

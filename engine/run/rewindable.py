@@ -38,9 +38,8 @@ class RewindableRun:
         self.changes = [SteppingChange(0, 0.0, Stepping(scene.h, cast=scene.cast))]
         self.furthest = 0  # the last step sampled
         self._reset = 0  # the last step from which lows and highs count
-        self._x = [
-            0.0
-        ]  # s, the simulated time run up to each change; it goes up even while t goes down
+        # s, the simulated time run up to each change; it goes up even while t goes down
+        self._x = [0.0]
         self._applied = 1
         self._lockstep = Lockstep(scene, run, loops=loops, judged=True)
         self._copies = [self._copy()]

@@ -87,15 +87,12 @@ class Scene:
     watch: str = ""
     model: str = DEFAULT_MODEL  # a key of MODELS
     cast: Cast = USUAL_CAST  # the methods, in order
-    parameters: Mapping[str, float] = field(
-        default_factory=dict, hash=False
-    )  # the model's own, such as friction
-    often_said: str = field(
-        default="", compare=False
-    )  # what is often said about such scenes, and what is true of it
-    speed: float = field(
-        default=1.0, compare=False
-    )  # times real time, at which a lab starts: it changes no number
+    # the model's own, such as friction
+    parameters: Mapping[str, float] = field(default_factory=dict, hash=False)
+    # what is often said about such scenes, and what is true of it
+    often_said: str = field(default="", compare=False)
+    # times real time, at which a lab starts: it changes no number
+    speed: float = field(default=1.0, compare=False)
     shot: Shot = field(default=Shot(), compare=False, repr=False)
 
     def __post_init__(self) -> None:

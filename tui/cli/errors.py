@@ -34,9 +34,8 @@ def explained(error: BaseException) -> UserError:
         return error
     if isinstance(error, KeyboardInterrupt) or isinstance(error.__context__, KeyboardInterrupt):
         return UserError("interrupted.", Exit.INTERRUPTED)  # the second: a library's error about it
-    from engine.methods.own import (
-        OwnMethodError,
-    )  # here, because --help and --version need none of them
+    # here, because --help and --version need none of them
+    from engine.methods.own import OwnMethodError
     from engine.scenes import SceneError
     from recordings.errors import RecordingError
 

@@ -121,11 +121,7 @@ def _any(gates: Sequence[Gate], values: Values) -> str:
 
 
 def _found(
-    method: str,
-    field: str,
-    compare: Callable[[Any, Any], bool],
-    limit: float | str,
-    values: Values,
+    method: str, field: str, compare: Callable[[Any, Any], bool], limit: float | str, values: Values
 ) -> str:
     """Return the value for which a comparison is true, or why it cannot be checked."""
     reading = values.get(method, {})

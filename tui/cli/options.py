@@ -46,10 +46,8 @@ class Parser(argparse.ArgumentParser):
             if argument == "--" or " " in name or name in self._option_string_actions:
                 continue
             if re.match(r"--?[a-z]", name, re.IGNORECASE):
-                hint = (
-                    did_you_mean(name, self._option_string_actions)
-                    or f"; {self.prog} --help shows the options."
-                )
+                similar = did_you_mean(name, self._option_string_actions)
+                hint = similar or f"; {self.prog} --help shows the options."
                 return UserError(f"{self.prog.rpartition(' ')[2]} has no option {name}{hint}")
         return None
 

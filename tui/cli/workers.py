@@ -186,9 +186,8 @@ def _client(address: str) -> Any:
     try:
         import distributed
 
-        logging.getLogger("distributed.client").setLevel(
-            logging.CRITICAL
-        )  # or it prints tracebacks
+        # or it prints tracebacks
+        logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
         return distributed.Client(address, timeout="10s")
     except ImportError:
         advice = install_advice("distributed", "cluster")

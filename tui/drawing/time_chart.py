@@ -76,11 +76,9 @@ class TimePlot:
         What is in the column, or in the middle, stays there.  None where it would be the whole run.
         """
         low, high = self.ends
-        at = (
-            0.5
-            if column is None
-            else min(max((column - self.left + 0.5) / max(len(self.times), 1), 0.0), 1.0)
-        )
+        at = 0.5
+        if column is not None:
+            at = min(max((column - self.left + 0.5) / max(len(self.times), 1), 0.0), 1.0)
         fixed = low + at * (high - low)
         length = factor * (high - low)
         low, high = (
@@ -156,12 +154,7 @@ class Marks:
 
 
 def time_chart(
-    window: Window,
-    cast: Cast,
-    shown: Shown,
-    width: int,
-    height: int,
-    marks: Marks = Marks(),
+    window: Window, cast: Cast, shown: Shown, width: int, height: int, marks: Marks = Marks()
 ) -> TimePlot:
     """Chart the quantity that is shown over a stretch, the last seconds, or the whole run.
 

@@ -31,10 +31,8 @@ class Ghost:
         self.scene = run.scene
         self._name = recording.path.stem
         self._history = ErrorHistory(run.scene, ROWS)
-        self._times, self._rods = (
-            array("d"),
-            array("d"),
-        )  # s; theta and length of each method in turn
+        # s; theta and length of each method in turn
+        self._times, self._rods = array("d"), array("d")
         exact, latest = run.scene.exact(), -math.inf
         for _, value in recording.samples_between(run.begin, run.end):
             if value.run > run.number or len(self._times) == MAX_SAMPLES:

@@ -50,9 +50,8 @@ class Live(Source):
         self.recorder: LiveRecorder | None = None
         self.laid_under: Ghost | None = None
         self._events: list[Event] = []
-        self._recorded = (
-            Playhead()
-        )  # the recording clock: it stands while the lab is paused, whatever the speed
+        # the recording clock: it stands while the lab is paused, whatever the speed
+        self._recorded = Playhead()
         self._clock = clock
         self._clocked = 0.0  # s, of what was recorded last
         self._noticed_step = 0  # up to which the milestones of the run are events
@@ -172,11 +171,9 @@ class Live(Source):
         run, here, end = self._run.run, self._run.step, self._run.furthest
         kept = ("start", "set_h", "mark", "noticed")
         steps = {event.step for event in self._events if event.run == run and event.kind in kept}
-        before, after = (
-            (step for step in steps if step < here),
-            (step for step in steps if step > here),
-        )
-        self.step((min(after, default=end) if direction > 0 else max(before, default=0)) - here)
+        before = max((step for step in steps if step < here), default=0)
+        after = min((step for step in steps if step > here), default=end)
+        self.step((after if direction > 0 else before) - here)
 
     def start(self, scene: Scene) -> None:
         """Begin a new run.

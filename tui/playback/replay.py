@@ -76,11 +76,8 @@ class Replay(Source):
     def judgements(self) -> Sequence[Judgement]:
         """The lab's verdicts since the stepping last changed, with their trends then."""
         since = change_before(self.changes, self.sample.step).step
-        swings = (
-            (self.sample.step - since)
-            * abs(self.stepping.h)
-            / (self.exact.period or math.tau / self.scene.w0)
-        )
+        period = self.exact.period or math.tau / self.scene.w0
+        swings = (self.sample.step - since) * abs(self.stepping.h) / period
         given = {
             each.method: Judgement(
                 verdict=each.verdict,

@@ -22,9 +22,8 @@ class RunSoFar:
         self.history = ErrorHistory(scene)
         self.step = -1  # of the last sample
         self._scale = scene.equations.reference(scene.theta, scene.omega).scale
-        self._modified_starts: dict[
-            int, list[float]
-        ] = {}  # by the step of the change that they begin at
+        # by the step of the change that they begin at
+        self._modified_starts: dict[int, list[float]] = {}
 
     def add(self, sample: Sample, is_row: bool = True) -> None:
         """Show a sample, and remember it if it is a row of the history."""
@@ -59,7 +58,6 @@ class RunSoFar:
             energy = math.nan
             if method.modified_energy and model.has_force:
                 energy = method.modified_energy(model, (reading.theta, reading.omega), h)
-            energies.append(
-                energy if math.isfinite(energy) else math.nan
-            )  # it overflows where H does not
+            # it overflows where H does not
+            energies.append(energy if math.isfinite(energy) else math.nan)
         return energies

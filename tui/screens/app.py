@@ -23,13 +23,7 @@ from tui.drawing.palette import PALETTES, Palette
 from tui.screens.base import SourceScreen
 from tui.terminal.character_sets import CharacterSetFilter
 from tui.terminal.check import is_gone
-from tui.terminal.options import (
-    CHARACTER_SETS,
-    SMALLEST,
-    USUAL,
-    CharacterSet,
-    TerminalOptions,
-)
+from tui.terminal.options import CHARACTER_SETS, SMALLEST, USUAL, CharacterSet, TerminalOptions
 from tui.terminal.signals import Job, SignalThread
 
 WIDTHS = [(0, "-tiny"), (SMALLEST[0], "-narrow"), (80, "-normal"), (120, "-wide")]
@@ -64,9 +58,8 @@ class PenduApp(App[Exit | BaseException]):
         """`open_replay` makes a recording's screen; it may raise an error with a sentence."""
         if not os.environ.get("NO_COLOR", "?"):
             del os.environ["NO_COLOR"]  # no-color.org: empty means nothing
-        super().__init__(
-            ansi_color=True if "NO_COLOR" in os.environ else None
-        )  # else Textual greys
+        # else Textual greys
+        super().__init__(ansi_color=True if "NO_COLOR" in os.environ else None)
         self.open_replay = open_replay
         for name, colours in PALETTES.items():
             self.register_theme(_theme(name, colours))

@@ -349,9 +349,8 @@ class SourceScreen(Screen[None]):
         self._view_in_front.zoom(factor)
 
     def on_zoomed(self, message: Zoomed) -> None:
-        self.shown = self.shown.zoomed(
-            message.stretch
-        )  # w leads back: no undo of every turn of the wheel
+        # w leads back: no undo of every turn of the wheel
+        self.shown = self.shown.zoomed(message.stretch)
 
     # Undo
 
@@ -467,11 +466,9 @@ class SourceScreen(Screen[None]):
         """Copy the command for this moment, and show it: not every terminal has a clipboard."""
         text = command(self.source)
         self.app.copy_to_clipboard(text)
-        rest = (
-            ""
-            if reproduces(self.source)
-            else " (start values only; later changes of h are in the recording)"
-        )
+        rest = ""
+        if not reproduces(self.source):
+            rest = " (start values only; later changes of h are in the recording)"
         self.notify(f"Copied: {text}{rest}", markup=False, timeout=15)
 
     def action_replay(self, path: str) -> None:

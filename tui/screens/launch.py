@@ -16,9 +16,8 @@ from typing import TYPE_CHECKING, Any
 from tui.cli.errors import Exit, UserError, explained
 from tui.cli.output import progress, warn
 
-if (
-    TYPE_CHECKING
-):  # Textual is imported only where there is a screen, NumPy and mcap only when they are needed
+# Textual is imported only where there is a screen, NumPy and mcap only when they are needed
+if TYPE_CHECKING:
     from recordings.recording import Recording
     from tui.playback.ghost import Ghost
     from tui.playback.live import Live

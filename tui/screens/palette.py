@@ -76,10 +76,8 @@ class LabCommands(Provider):
             run = entry.action
             if isinstance(run, str):
                 run = partial(screen.run_action, run)
-            yield (
-                line(entry, width),
-                partial(screen.call_later, run),
-            )  # once the screen is in front again
+            # once the screen is in front again
+            yield (line(entry, width), partial(screen.call_later, run))
 
     async def discover(self) -> Hits:
         for text, run in self._lines():

@@ -50,9 +50,8 @@ async def settled(app: PenduApp) -> None:
 
 
 def _is_settled(pane: Widget) -> bool:
-    shown = (
-        getattr(pane, "drawable", True) or not pane.is_on_screen
-    )  # else it is still to hear that it is shown
+    # else it is still to hear that it is shown
+    shown = getattr(pane, "drawable", True) or not pane.is_on_screen
     return shown and getattr(pane, "settled", True)
 
 

@@ -117,11 +117,8 @@ def fitting_theme(environment: Mapping[str, str]) -> str:
     """
     if environment.get("NO_COLOR") or colours(environment) <= 16:
         return "ansi"
-    return (
-        "light"
-        if environment.get("COLORFGBG", "").rpartition(";")[2] in map(str, (7, *range(9, 16)))
-        else "dark"
-    )
+    ground = environment.get("COLORFGBG", "").rpartition(";")[2]
+    return "light" if ground in map(str, (7, *range(9, 16))) else "dark"
 
 
 def colours(environment: Mapping[str, str]) -> int:

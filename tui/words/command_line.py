@@ -30,11 +30,9 @@ def command(source: Source) -> str:
         scene = scene.altered(h=start)
     first = [change.stepping for change in source.changes if change.step == 0][-1]
     equal_cost = ["--equal-cost"] if first.equal_cost else []
-    speed = (
-        []
-        if source.playhead.speed == _listed(scene).speed
-        else ["--speed", f"{source.playhead.speed:g}"]
-    )
+    speed = []
+    if source.playhead.speed != _listed(scene).speed:
+        speed = ["--speed", f"{source.playhead.speed:g}"]
     return shlex.join(["pendu-tui", "live", *scene_arguments(scene), *equal_cost, *speed])
 
 
@@ -53,10 +51,8 @@ def _start_h(source: Source) -> float | None:
     if any(0 < change.step <= source.sample.step for change in source.changes):
         return None
     stepping = source.stepping
-    candidates = (
-        source.scene.h,
-        stepping.smallest,
-    )  # a scene's h is positive: time does not run back from its start
+    # a scene's h is positive: time does not run back from its start
+    candidates = source.scene.h, stepping.smallest
     return next(
         (h for h in candidates if stepping._replace(h=1.0).with_smallest(h) == stepping), None
     )

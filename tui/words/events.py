@@ -48,9 +48,8 @@ def event_lines(source: Source) -> list[EventLine]:
         EventLine(run, m.step, m.t, milestone_text(m, conserved), "milestone", m.method)
         for m in source.milestones
     ]
-    return sorted(
-        [*_inputs(source), *milestones], key=lambda line: line[:2]
-    )  # stable: inputs first
+    # stable: inputs first
+    return sorted([*_inputs(source), *milestones], key=lambda line: line[:2])
 
 
 def numbered(lines: Sequence[EventLine]) -> list[str]:

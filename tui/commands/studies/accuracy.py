@@ -155,10 +155,7 @@ def _is_compiled(scene: Scene, options: argparse.Namespace) -> bool:
 
 
 def _fill(
-    found: "Findings",
-    durations: list[float],
-    rungs: list[int],
-    options: argparse.Namespace,
+    found: "Findings", durations: list[float], rungs: list[int], options: argparse.Namespace
 ) -> None:
     """Add what was asked for to the findings, so that an interrupt keeps what was found."""
     from engine.accuracy.growth import growth

@@ -23,10 +23,8 @@ from tui.views.reach import Reach, frame
 from tui.views.view import Pane
 
 TOP = 4  # dots between the edge and a pivot at the top
-STRETCHED, LONGEST = (
-    1.1,
-    4.0,
-)  # rods of a spring, over that at rest: what there is room for, and what is drawn
+# rods of a spring, over that at rest: what there is room for, and what is drawn
+STRETCHED, LONGEST = 1.1, 4.0
 GRAB = 3  # columns that the pointer moves before it is no click
 THROW = 0.1  # s of the pointer's way that decide its speed
 MAGNIFIED = 0.8  # rad, to which small swings are enlarged

@@ -119,14 +119,7 @@ class TimeChart(Pane):
 
     def picture(self, source: Source, sample: Sample) -> Picture:
         look = self._look(source)
-        plotted = (
-            sample,
-            look,
-            self.room,
-            source.ghost,
-            source.history,
-            source.knows_past,
-        )
+        plotted = (sample, look, self.room, source.ghost, source.history, source.knows_past)
         if self.plot is None or plotted != self._plotted:  # the run may be paused
             self._plotted = plotted
             self.plot = self._charted(source, sample, look)

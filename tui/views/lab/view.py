@@ -91,6 +91,5 @@ class LabView(View):
         shown = self.shown.places(self.source.scene.cast) if self.source is not None else []
         if (shown, self.shown.overlay) != self._arranged_for and self.is_mounted:
             self._arranged_for = shown, self.shown.overlay
-            self.overlay.refresh(
-                layout=True
-            )  # of one pane: Textual forgets what it knows of what is around it
+            # of one pane: Textual forgets what it knows of what is around it
+            self.overlay.refresh(layout=True)

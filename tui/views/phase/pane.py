@@ -252,7 +252,7 @@ class SectionPane(PhasePane):
     """The portrait or, after x, the section of the method that is described."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("x", "section", "Map", tooltip="a method's own map"),
+        Binding("x", "section", "Map", tooltip="a method's own map")
     ]
 
     shows_section: var[bool] = var(False)

@@ -21,14 +21,8 @@ from tui.views.phase.viewport import Viewport
 
 TRAIL = 300  # samples, ten seconds at 30 frames a second
 SPARSE = 60  # samples
-BESIDE = (
-    (2, 0),
-    (-2, 0),
-    (0, -1),
-    (0, 1),
-    (2, -1),
-    (-2, 1),
-)  # columns, rows from a point to its letter
+# columns, rows from a point to its letter
+BESIDE = (2, 0), (-2, 0), (0, -1), (0, 1), (2, -1), (-2, 1)
 Floats = NDArray[np.float64]
 Track = tuple[Floats, Floats]  # theta [rad], omega [rad/s]
 
@@ -64,9 +58,8 @@ def method_points(
     return points
 
 
-@np.errstate(
-    over="ignore", invalid="ignore"
-)  # a method may be farther out than dots can be counted
+# a method may be farther out than dots can be counted
+@np.errstate(over="ignore", invalid="ignore")
 def phase_picture(
     portrait: Portrait,
     points: Sequence[PhasePoint],

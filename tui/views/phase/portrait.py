@@ -57,9 +57,8 @@ class Portrait:
             return _dots(np.zeros((0, 0), np.bool_))
         level = self.model.level(theta, omega)
         curve = _border(self.levels < level)
-        if (
-            self.model.has_separatrix and level < 0
-        ):  # two orbits have this energy, one for each sense of rotation
+        # two orbits have this energy, one for each sense of rotation
+        if self.model.has_separatrix and level < 0:
             rows = self.viewport.omega_at(np.arange(len(curve)) + 0.5)
             curve &= (rows * omega > 0)[:, None]
         return _dots(curve)
@@ -84,10 +83,8 @@ def axes(viewport: Viewport) -> list[Word]:
         (0, math.floor(viewport.y(omega) / 4), label[:columns], TEXT)
         for omega, label in number_ticks(low, high, max(bottom // 3, 1))
     ]
-    left, right = (
-        viewport.theta_at(0.0),
-        viewport.theta_at(2.0 * columns + 1),
-    )  # pi may be at the very edge
+    # pi may be at the very edge
+    left, right = viewport.theta_at(0.0), viewport.theta_at(2.0 * columns + 1)
     for theta, label in theta_ticks(left, right, min(columns // 9 + 1, 8), viewport.wrap):
         middle = math.floor((theta - left) / viewport.theta_per_dot / 2)
         begin = max(min(middle - len(label) // 2, columns - len(label)) - 1, 0)

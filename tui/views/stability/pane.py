@@ -118,9 +118,8 @@ class StabilityPane(Chooser[tuple[int, int]]):
         )
 
     def _legend(self) -> list[Row]:
-        lines = legend(
-            self.grid.steps, self._colours, self.room.width + 2
-        )  # as if the frame were part of it
+        # as if the frame were part of it
+        lines = legend(self.grid.steps, self._colours, self.room.width + 2)
         return lines if self.room.height >= ROOMY else lines[:1]
 
     def _note(self, index: int) -> str:

@@ -149,10 +149,7 @@ def orders(steps: Sequence[float], results: Sequence[dict[str, Any]]) -> dict[st
         for fields in results
     ]
     fluctuations = [fields["fluctuation"] or 0.0 for fields in results]
-    return {
-        "fluctuation_order": _power(steps, fluctuations),
-        "drift_order": _power(steps, drifts),
-    }
+    return {"fluctuation_order": _power(steps, fluctuations), "drift_order": _power(steps, drifts)}
 
 
 def _power(steps: Sequence[float], values: Sequence[float]) -> float | None:

@@ -156,11 +156,7 @@ def draw_map(path: Path, force: bool, grid: "Grid", cells: "Cells") -> None:
 
 
 def draw_section(
-    path: Path,
-    force: bool,
-    title: str,
-    orbits: Sequence["Points"],
-    edges: tuple[float, float],
+    path: Path, force: bool, title: str, orbits: Sequence["Points"], edges: tuple[float, float]
 ) -> None:
     """Draw the orbits of a method's own map, a point for each step."""
     import numpy as np

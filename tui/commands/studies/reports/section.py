@@ -81,11 +81,7 @@ def title_of(scene: Scene, method: Method) -> str:
 
 
 def _orbits(
-    scene: Scene,
-    method: Method,
-    options: argparse.Namespace,
-    steps: int,
-    size: tuple[int, int],
+    scene: Scene, method: Method, options: argparse.Namespace, steps: int, size: tuple[int, int]
 ) -> tuple[list[Points], Viewport]:
     """Return orbits from all over a portrait of so many columns and rows, and the portrait."""
     viewport = Viewport.portrait(*size, scene)
