@@ -34,9 +34,8 @@ class Growth:
     @property
     def name(self) -> str:
         """The method and its power of t, if there is one, for people."""
-        return (
-            self.method.label if self.power is None else f"{self.method.label} t^{self.power:.2f}"
-        )
+        power = "" if self.power is None else f" t^{self.power:.2f}"
+        return self.method.label + power
 
 
 def duration(scene: Scene) -> float | None:
@@ -59,11 +58,8 @@ def growth(scene: Scene, method: Method) -> Growth:
     theta, _ = orbit(method, scene.equations, scene.h, (scene.theta, scene.omega), steps)
     errors: list[float] = []
     for number in range(1, PERIODS + 1):
-        looks = (
-            np.linspace((number - 1) * width, min(number * width, steps), _LOOKS)
-            .astype(int)
-            .tolist()
-        )
+        ends = (number - 1) * width, min(number * width, steps)
+        looks = np.linspace(*ends, _LOOKS).astype(int).tolist()
         if looks[-1] >= len(theta):  # the numbers have overflowed
             break
         errors.append(max(abs(float(theta[k]) - exact.at(k * scene.h).theta) for k in looks))

@@ -30,10 +30,8 @@ def load(source: str, key: str, letter: str, file: str) -> OwnMethod:
     try:
         _examine(phases, f"{file}: {key}")
         found = measured(phases)
-    except (
-        ValueError,
-        ArithmeticError,
-    ) as error:  # a run may overflow; these few small steps must not
+    except (ValueError, ArithmeticError) as error:
+        # a run may overflow; these few small steps must not
         raise OwnMethodError(f"{file}: {key} overflows on an ordinary swing ({error}).") from None
     return own_method(source, key, letter, file, found)
 

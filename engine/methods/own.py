@@ -49,7 +49,7 @@ class OwnMethod(Method):
     @property
     def sha256(self) -> str:
         """Of the source in UTF-8, in hexadecimal."""
-        import hashlib  # takes longer than all of this module
+        import hashlib  # slow
 
         return hashlib.sha256(self.source.encode()).hexdigest()
 
@@ -118,10 +118,10 @@ def own_phases(source: str, name: str, file: str) -> Phases:
 def _check_caught(tree: ast.AST, file: str) -> None:
     """Raise OwnMethodError for code that would catch KeyboardInterrupt and TooLongError."""
     for node in ast.walk(tree):
-        is_bare = isinstance(node, ast.ExceptHandler) and node.type is None
-        if is_bare or (isinstance(node, ast.Name) and node.id == "BaseException"):
-            line = getattr(node, "lineno", 0)
-            raise OwnMethodError(f"{file}, line {line}: this would catch Ctrl+C; use Exception.")
+        match node:
+            case ast.ExceptHandler(type=None) | ast.Name(id="BaseException"):
+                where = f"{file}, line {node.lineno}"
+                raise OwnMethodError(f"{where}: this would catch Ctrl+C; use Exception.")
 
 
 class _PrintedError(Exception):

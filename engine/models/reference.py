@@ -63,11 +63,8 @@ class Reference:
             self._last = steps, phase
             rest = t - steps * self._h
             return self._step(phase, rest) if rest else phase
-        except (
-            ValueError,
-            ArithmeticError,
-        ):  # far back, where friction has made it faster than doubles hold
-            return phase
+        except (ValueError, ArithmeticError):
+            return phase  # far back, where friction has made it faster than doubles hold
 
 
 def compose(step: Step) -> Step:

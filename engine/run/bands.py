@@ -104,12 +104,9 @@ def fit(times: Sequence[float], values: Sequence[float]) -> Line:
     mean = sum(values) / n
     offsets = [time - mean_time for time in times]
     square = sum(offset * offset for offset in offsets)
-    slope = (
-        sum(offset * (value - mean) for offset, value in zip(offsets, values, strict=True)) / square
-    )
-    residuals = [
-        value - mean - slope * offset for offset, value in zip(offsets, values, strict=True)
-    ]
+    placed = [*zip(offsets, values, strict=True)]
+    slope = sum(offset * (value - mean) for offset, value in placed) / square
+    residuals = [value - mean - slope * offset for offset, value in placed]
     total = sum(residual * residual for residual in residuals)
     if total == 0:
         return Line(slope, 0.0, math.inf if slope else 0.0)

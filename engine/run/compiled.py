@@ -48,7 +48,7 @@ def compiled(method: Method, model: Model) -> Loops:
 
 @cache
 def _compiled(method: Method, model: Model) -> CompiledLoops | None:
-    # with all that measures one, which most runs do not need
+    # slow, and most runs do not need it
     from engine.methods.own import OwnMethod
 
     numba: Any = import_module("numba")

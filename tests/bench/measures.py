@@ -19,17 +19,17 @@ MAX_COLUMNS = 100
 MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
-    "characters": 1_098_800,
+    "characters": 1_091_600,
     "characters_of_engine": 327_000,
-    "characters_of_recordings": 89_600,
-    "characters_of_tui": 682_200,
-    "characters_of_tests": 1_008_700,
+    "characters_of_recordings": 84_100,
+    "characters_of_tui": 680_300,
+    "characters_of_tests": 1_008_000,
     "files": 220,
-    "long_lines": 583,
-    "parallel_assignments": 179,
-    "conditional_expressions_per_1000_lines": 27,
+    "long_lines": 139,
+    "parallel_assignments": 177,
+    "conditional_expressions_per_1000_lines": 26,
     "long_functions": 4,
-    "numeric_constants": 292,
+    "numeric_constants": 291,
 }
 """What each measure may be at the most.  Lower a ceiling whenever its measure has fallen; never raise one."""
 
