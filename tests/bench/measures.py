@@ -19,13 +19,13 @@ MAX_COLUMNS = 100
 MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
-    "characters": 1_091_600,
-    "characters_of_engine": 327_000,
+    "characters": 1_090_100,
+    "characters_of_engine": 326_100,
     "characters_of_recordings": 84_100,
-    "characters_of_tui": 680_300,
+    "characters_of_tui": 680_000,
     "characters_of_tests": 1_008_000,
     "files": 220,
-    "long_lines": 139,
+    "long_lines": 29,
     "parallel_assignments": 177,
     "conditional_expressions_per_1000_lines": 26,
     "long_functions": 4,
