@@ -3,8 +3,9 @@
     samples, events --format--> messages --recorder--> file --reader--> chunks --recording--> any
     moment
 
-`fields` is the one table of names and units, `library` the folder with its names and locks, `files`
-writes whole files, and `pytest` is a plugin.
+- What a file holds: `events`; `fields`, the one table of names and units; `arithmetic`.
+- Writing: `recorder`; `headless`, without a screen; `files`, whole or not at all.
+- Using: `verification`, `recovery`, `diff`; `library`, the folder; `errors`; `pytest`, a plugin.
 """
 
 from importlib import import_module

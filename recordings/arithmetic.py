@@ -8,12 +8,12 @@ from typing import NamedTuple
 
 from engine.run import NUMERICS
 
-FUNCTIONS = ("sin", "sqrt")
-"""Library functions that the simulation calls; + - * / give the same bits everywhere."""
-
 
 class Arithmetic(NamedTuple):
-    """The version of the numerics and fingerprints of library functions, where a run was made."""
+    """The version of the numerics, and fingerprints of library functions, where a run was made.
+
+    The simulation calls no others; + - * / give the same bits everywhere.
+    """
 
     numerics: int
     sin: str
@@ -21,8 +21,7 @@ class Arithmetic(NamedTuple):
 
     def other_functions(self) -> tuple[str, ...]:
         """Return the names of the functions that this machine computes differently."""
-        here = arithmetic_here()
-        return tuple(name for name in FUNCTIONS if getattr(self, name) != getattr(here, name))
+        return tuple(each for each in ("sin", "sqrt") if getattr(self, each) != fingerprint(each))
 
 
 @cache
@@ -31,10 +30,10 @@ def fingerprint(function: str) -> str:
 
     Another libm, or the same one on another processor, rounds one sine in 1400 the other way.
     """
-    arguments = ((-1) ** i * 10 ** (i / 256 - 8) * 1.1 for i in range(4096))
+    places = [(-1) ** i * 10 ** (i / 256 - 8) * 1.1 for i in range(4096)]
     if function == "sqrt":
-        arguments = (abs(x) for x in arguments)
-    values = map(getattr(math, function), arguments)
+        places = list(map(abs, places))
+    values = map(getattr(math, function), places)
     return hashlib.sha256(struct.pack("<4096d", *values)).hexdigest()[:16]
 
 

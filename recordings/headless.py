@@ -26,12 +26,9 @@ def simulate(
 ) -> Iterator[Sample]:
     """Run a scene for `time` [s]; record and yield its samples, of which the last is the result.
 
-    Milestones are recorded, too.  A caller that reads them, or verdicts, passes the `lockstep` of
-    the scene.
-
     Samples are `sample_every` steps apart, or 1/30 s rounded to whole steps; always the first and
-    the last step.  Memory does not grow.  The caller closes the recorder; without a wall clock, the
-    recording has the same bytes each time.
+    the last step.  The caller closes the recorder; one that reads milestones, which are recorded,
+    or verdicts passes the `lockstep` of the scene.
     """
     lockstep = lockstep or Lockstep(scene, loops=loops, judged=recorder is not None)
     last = steps_for(scene, time)

@@ -7,9 +7,8 @@ nothing is locked.
 
 import os
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from difflib import get_close_matches
 from itertools import chain, count
 from os.path import lexists
 from pathlib import Path
@@ -17,7 +16,7 @@ from typing import IO, Any, BinaryIO, NamedTuple
 
 import platformdirs
 
-from recordings.errors import DiskError, RecordingError, printable
+from recordings.errors import DiskError, RecordingError
 from recordings.files import is_stream
 
 SUFFIX = ".mcap"
@@ -74,30 +73,6 @@ def listing(where: Path | None = None) -> list[Item]:
     return sorted(items, key=lambda item: (item.modified, item.path.name), reverse=True)
 
 
-def resolve(name: str) -> Path:
-    """Return the recording of this name: a file, `latest`, one of the library, or a bundled one.
-
-    Raises RecordingError, a sentence, if there is none.
-    """
-    where = folder()
-    for path in (Path(name), GOLDEN / (name + SUFFIX), where / name, where / (name + SUFFIX)):
-        if path.exists() and not path.is_dir():
-            return path
-    items = listing(where)
-    if name == "latest":
-        if items:
-            return items[0].path
-        why = f"no recordings in {printable(str(where))} yet; start pendu-tui to make one."
-        raise RecordingError(why)
-    golden = golden_names()
-    names = ["latest", *golden, *(item.path.name for item in items)]
-    close = get_close_matches(name, names, n=1)
-    advice = f"choose a file, or one of latest, {', '.join(golden)}."
-    if close:
-        advice = f"did you mean {printable(close[0])}?"
-    raise RecordingError(f"there is no recording {printable(name)!r}: {advice}")
-
-
 def golden_names() -> list[str]:
     """Return the names of the bundled recordings."""
     return sorted(path.stem for path in GOLDEN.glob("*" + SUFFIX))
@@ -107,18 +82,6 @@ def leftovers(where: Path | None = None, being_made: bool = False) -> list[Path]
     """Return the unfinished recordings that no lab is writing any more, or those being made."""
     unfinished = _files(where or folder(), SUFFIX + PART)
     return [path for path in unfinished if in_use(path) == being_made]
-
-
-def prune(items: Iterable[Item]) -> list[Item]:
-    """Delete recordings with their marks, except those in use; return what was deleted."""
-    deleted = []
-    for item in items:
-        with suppress(OSError):
-            if not in_use(item.path):
-                item.path.unlink()
-                deleted.append(item)
-                item.path.with_name(item.path.name + MARKS).unlink(missing_ok=True)
-    return deleted
 
 
 def _files(where: Path, suffix: str) -> list[Path]:

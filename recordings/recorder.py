@@ -35,7 +35,6 @@ from recordings.library import free_path, hold, part_of
 
 FLUSH_EVERY = 0.7  # s of the recording clock; with a slow frame's delay kill -9 loses less than 1 s
 MAX_CHUNK = 1 << 17  # bytes of messages; the only limit in headless runs
-MAX_CLOCK = 1e10  # s; log_time has 64 bits of nanoseconds
 
 WallClock = Callable[[], int]
 """ns since 1970."""
@@ -221,11 +220,7 @@ class Recorder:
             self._channels[name] = number
 
     def _add(self, messages: Sequence[tuple[str, bytes]], clock: float) -> None:
-        """Write the messages of one entry, all checked: a rejected one spoils its chunk."""
-        if not self._channels:
-            raise ValueError("a recording begins with a start")
-        if not 0 <= clock <= MAX_CLOCK:  # nor nan
-            raise ValueError(f"{clock} is not a reading of a recording clock")
+        """Write the messages of one entry."""
         self._log_time = max(self._log_time, CLOCK_OFFSET + round(clock * 1e9))
         self.seconds = max(self.seconds, clock)
         publish_time = self._log_time if self._wall is None else self._wall()
@@ -241,3 +236,31 @@ class Recorder:
         is_late = self._wall is not None and self.seconds >= self._flushed_at + FLUSH_EVERY
         if urgent or is_late or self._unflushed > MAX_CHUNK:
             self.flush()
+
+
+class LiveRecorder(Recorder):
+    """Records the lab, which goes on if its disk fails: raises nothing once it is there.
+
+    `failed` is a sentence on why the recording ended before the lab did, or None.
+    """
+
+    failed: str | None = None
+
+    def event(self, event: Event, clock: float) -> None:
+        self._try(lambda: super(LiveRecorder, self).event(event, clock))
+
+    def sample(self, sample: Sample, clock: float) -> None:
+        self._try(lambda: super(LiveRecorder, self).sample(sample, clock))
+
+    def close(self) -> None:
+        self._try(super().close)
+
+    def _try(self, write: Callable[[], None]) -> None:
+        if self.failed is None and not self._file.closed:
+            try:
+                write()
+            except NameTakenError:
+                pass  # at the end: it has another name then
+            except DiskError as error:
+                self.failed = str(error)
+                self.abandon()

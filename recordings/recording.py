@@ -87,9 +87,6 @@ class Recording:
         self._find_runs()
         self.runs = list(self._runs.values())
         self.length = _clock(self._places[-1].end)
-        self.models = tuple(dict.fromkeys(run.scene.model for run in self.runs))
-        methods = (method.key for run in self.runs for method in run.scene.cast)
-        self.methods = tuple(dict.fromkeys(methods))
 
     @classmethod
     def open(cls, path: Path, check: bool = False, progress: ShowProgress | None = None) -> Self:

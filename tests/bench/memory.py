@@ -18,8 +18,8 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 from engine.methods import METHODS
 from engine.methods.examine import load
 from engine.scenes import DEFAULT_SCENE
-from recordings.library import resolve
-from recordings.live_recorder import LiveRecorder
+from recordings.recorder import LiveRecorder
+from tui.cli.options import resolve
 from tui.playback.live import Live
 from tui.screens.app import PenduApp
 from tui.screens.launch import open_ghost

@@ -5,14 +5,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from engine.methods import USUAL_CAST, VELOCITY_VERLET
+from engine.methods import VELOCITY_VERLET
 from engine.run.lockstep import Lockstep, Sample
 from engine.run.stepping import Stepping
 from engine.scenes import Scene
 from recordings.events import Entry, Event, noticed
 from recordings.recorder import FLUSH_EVERY, Recorder
 
-METHOD_KEYS = tuple(method.key for method in USUAL_CAST)
 SCENE = Scene("test", theta=2.0, h=0.1)
 
 

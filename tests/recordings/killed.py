@@ -13,7 +13,7 @@ from pathlib import Path
 from engine.methods import GENERAL, USUAL_CAST
 from engine.methods.examine import load
 from engine.run.lockstep import Sample
-from recordings.live_recorder import LiveRecorder
+from recordings.recorder import LiveRecorder
 from tests.recordings.examples import SCENE
 from tui.playback.live import Live
 

@@ -15,7 +15,7 @@ from engine.models import MODELS
 from engine.run.judgement import Milestone, Verdict
 from engine.run.lockstep import Reading, Sample
 from engine.scenes import LIMITS, SCENES, Scene
-from recordings.arithmetic import FUNCTIONS, fingerprint
+from recordings.arithmetic import fingerprint
 from recordings.errors import MAX_TEXT, RecordingError, printable
 from recordings.events import Event, noticed
 from recordings.fields import EVENT_SCHEMA, EXTRA, sample_schema, values_of, without_extremes
@@ -275,7 +275,7 @@ def test_an_impossible_milestone_is_refused(wrong):
         decode_event(json.dumps(NOTICED | wrong).encode())
 
 
-@pytest.mark.parametrize("function", FUNCTIONS)
+@pytest.mark.parametrize("function", ["sin", "sqrt"])
 def test_a_fingerprint_is_the_same_each_time_and_differs_where_one_value_does(
     monkeypatch, function
 ):

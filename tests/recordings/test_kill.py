@@ -13,10 +13,10 @@ import pytest
 from recordings.events import remember
 from recordings.library import leftovers
 from recordings.recording import Recording
-from recordings.recovery import rescue
 from recordings.verification import verify
 from tests.recordings.killed import OWN
 from tests.tui.pty_lab import PtyLab
+from tui.screens.launch import recover_leftovers
 
 pytestmark = pytest.mark.slow
 
@@ -33,7 +33,7 @@ def last_sample(recording):
 
 
 def kill_one(folder, after):
-    """Start a lab, kill it so many seconds after its first sample, and return (loss, verification of the rescue)."""
+    """Start a lab, kill it so many seconds after its first sample, and return (loss, verification of what is recovered)."""
     folder.mkdir()
     log = folder / "log"
     command = [sys.executable, "-m", "tests.recordings.killed", str(folder / "a.mcap"), str(log)]
@@ -58,7 +58,7 @@ def kill_one(folder, after):
     loss = knew[-1][0] - lost[0] if lost else 0.0
     remember(OWN)
     assert verify(part).identical
-    rescue(part)
+    recover_leftovers(folder)
     return loss, verify(folder / "a.mcap")
 
 

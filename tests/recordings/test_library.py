@@ -14,11 +14,11 @@ from recordings.library import (
     leftovers,
     listing,
     new_path,
-    prune,
-    resolve,
 )
 from recordings.recorder import Recorder
 from tests.recordings.examples import start, tiny
+from tui.cli.options import resolve
+from tui.commands.files.recordings import delete
 from tui.playback.marks import Mark, Marks
 
 NOON = time.struct_time((2026, 11, 20, 12, 0, 0, 4, 324, 0))
@@ -109,14 +109,14 @@ def test_pruning_skips_a_recording_that_is_already_gone(folder):
     fill(folder, gone=1)
     items = listing()
     items[0].path.unlink()
-    assert prune(items) == []
+    assert not delete(items[0])
 
 
 def test_marks_go_with_their_recording(folder):
     (path,) = fill(folder, a=1)
     Marks(path).add(Mark(0.5, 1, 3))
     assert len(list(folder.iterdir())) == 2
-    assert [item.path for item in prune(listing())] == [path]
+    assert [item.path for item in listing() if delete(item)] == [path]
     assert not list(folder.iterdir())
 
 
@@ -130,7 +130,7 @@ def test_a_recording_that_cannot_be_deleted_does_not_stop_the_others(folder, mon
         unlink(path, missing_ok)
 
     monkeypatch.setattr(Path, "unlink", refuse)
-    assert [item.path for item in prune(listing())] == [other]
+    assert [item.path for item in listing() if delete(item)] == [other]
     assert list(folder.iterdir()) == [stubborn]
 
 

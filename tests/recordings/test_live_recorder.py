@@ -10,7 +10,7 @@ import pytest
 from engine.run.lockstep import Lockstep
 from recordings.errors import DiskError
 from recordings.events import Event
-from recordings.live_recorder import LiveRecorder
+from recordings.recorder import LiveRecorder
 from recordings.recording import Recording
 from recordings.verification import verify
 from tests.recordings.examples import SCENE, start

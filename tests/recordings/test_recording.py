@@ -10,7 +10,7 @@ from recordings.headless import simulate
 from recordings.recorder import Recorder
 from recordings.recording import Recording
 from tests.recordings import hostile
-from tests.recordings.examples import METHOD_KEYS, SCENE, record, start, two_runs
+from tests.recordings.examples import SCENE, record, start, two_runs
 
 
 @pytest.fixture(scope="module")
@@ -64,7 +64,6 @@ def test_the_facts_of_a_recording_are_known_at_opening(recording):
     assert recording.reason is None
     assert recording.length == 4.0
     assert recording.samples == 10
-    assert recording.methods == METHOD_KEYS
     assert recording.bytes == recording.path.stat().st_size
 
 

@@ -5,11 +5,10 @@ import pytest
 from engine.run.lockstep import Lockstep, Sample
 from recordings.errors import DiskError, RecordingError
 from recordings.events import Event
-from recordings.library import leftovers
 from recordings.reader import read_contents
 from recordings.recorder import Recorder
 from recordings.recording import Recording
-from recordings.recovery import recover, rescue
+from recordings.recovery import recover
 from recordings.verification import verify
 from tests.recordings.examples import SCENE, record, start, two_runs
 
@@ -51,8 +50,12 @@ def samples(path):
 def test_a_whole_recording_is_copied(tmp_path, out):
     path = record(tmp_path / "a.mcap", two_runs())
     recovery = recover(path, out)
-    assert (recovery.samples_kept, recovery.entries_lost, recovery.damaged) == (10, 0, False)
-    assert recovery.reason is None
+    assert (recovery["samples_kept"], recovery["entries_lost"], recovery["damaged"]) == (
+        10,
+        0,
+        False,
+    )
+    assert recovery["reason"] is None
     with Recording.open(path) as was, Recording.open(out) as now:
         assert list(now.entries()) == list(was.entries())
 
@@ -64,8 +67,8 @@ def test_an_unfinished_recording_is_finished_and_not_called_damaged(tmp_path, ou
             write(value, clock)
         recorder.flush()
         recovery = recover(recorder.part, out)
-    assert (recovery.samples_kept, recovery.damaged) == (10, False)
-    assert recovery.reason == "its end is missing or damaged"
+    assert (recovery["samples_kept"], recovery["damaged"]) == (10, False)
+    assert recovery["reason"] == "its end is missing or damaged"
     assert verify(out).complete
     assert verify(out).identical
 
@@ -75,9 +78,12 @@ def test_lost_chunks_cost_their_samples_and_the_extremes_of_the_next_one(tmp_pat
     whole = samples(path)
     recovery = recover(spoil(path, 3, 6), out)
     kept = samples(out)
-    assert recovery.damaged
-    assert (recovery.samples_kept, recovery.entries_lost) == (len(kept), len(whole) - len(kept))
-    assert recovery.entries_lost > 0
+    assert recovery["damaged"]
+    assert (recovery["samples_kept"], recovery["entries_lost"]) == (
+        len(kept),
+        len(whole) - len(kept),
+    )
+    assert recovery["entries_lost"] > 0
     after_gaps = [sample for sample in kept if sample not in whole]
     assert len(after_gaps) == 2
     for sample in after_gaps:
@@ -100,32 +106,3 @@ def test_a_recording_is_not_recovered_onto_itself_or_over_another(tmp_path, out)
     with pytest.raises(DiskError, match="already exists"):
         recover(path, out)
     assert out.read_text() == "precious"
-
-
-def leftover(tmp_path, spoiled=()):
-    path = spoil(ten_seconds(tmp_path / "lab.mcap"), *spoiled)
-    return path.rename(tmp_path / "lab.mcap.part")
-
-
-def test_a_leftover_becomes_a_recording(tmp_path):
-    part = leftover(tmp_path)
-    assert leftovers(tmp_path) == [part]
-    assert "was recovered" in rescue(part)
-    assert verify(tmp_path / "lab.mcap").identical
-    assert [path.name for path in tmp_path.iterdir()] == ["lab.mcap"]
-
-
-def test_a_damaged_leftover_is_kept_beside_its_recording(tmp_path):
-    sentence = rescue(leftover(tmp_path, [4]))
-    assert "are lost" in sentence
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["lab.mcap", "lab.mcap.part.damaged"]
-
-
-@pytest.mark.parametrize(
-    ("content", "left"), [(b"", []), (b"nonsense", ["lab.mcap.part.unreadable"])]
-)
-def test_a_leftover_without_a_recording_is_removed_or_put_aside(tmp_path, content, left):
-    part = tmp_path / "lab.mcap.part"
-    part.write_bytes(content)
-    assert rescue(part)
-    assert [path.name for path in tmp_path.iterdir()] == left

@@ -149,9 +149,8 @@ def test_an_impossible_recording_is_refused_in_a_sentence(tmp_path, entries, why
 
 def of_another_machine(monkeypatch):
     """From here on this machine's sin has another fingerprint."""
-    other = arithmetic_here()._replace(sin="another")
-    monkeypatch.setattr("recordings.arithmetic.arithmetic_here", lambda: other)
-    monkeypatch.setattr("recordings.format.arithmetic_here", lambda: other)
+    here = arithmetic_here()._replace(sin="another")
+    monkeypatch.setattr("recordings.arithmetic.fingerprint", lambda name: getattr(here, name))
 
 
 def foreign_loops(monkeypatch, every):

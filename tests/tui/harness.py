@@ -11,7 +11,7 @@ from textual.pilot import Pilot
 from engine.run.lockstep import Sample
 from engine.run.stepping import Stepping
 from engine.scenes import DEFAULT_SCENE, SCENES, Scene
-from recordings.live_recorder import LiveRecorder
+from recordings.recorder import LiveRecorder
 from recordings.recording import Recording
 from tui.drawing.cells import CellWidget
 from tui.playback.live import Live

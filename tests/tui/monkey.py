@@ -17,7 +17,7 @@ from textual.geometry import Size
 from engine.accuracy.study import ladder
 from engine.scenes import DEFAULT_SCENE, Scene
 from recordings.library import new_path
-from recordings.live_recorder import LiveRecorder
+from recordings.recorder import LiveRecorder
 from recordings.recording import Recording
 from tests.tui.harness import Theatre
 from tests.tui.pty_lab import PtyLab

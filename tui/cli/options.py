@@ -5,6 +5,7 @@ import difflib
 import math
 import re
 from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
 from typing import Any, NoReturn
 
 from tui.cli.errors import UserError
@@ -71,8 +72,33 @@ def add_recording(
     help: str = "a file, latest, or a name such as drift",
     **settings: Any,
 ) -> None:
-    """Add an argument for `recordings.library.resolve`."""
+    """Add an argument for `resolve`."""
     add_file(parser, name, metavar=metavar, help=help, **settings)
+
+
+def resolve(name: str) -> Path:
+    """Return the recording of this name: a file, `latest`, one of the library, or a bundled one.
+
+    Raises RecordingError, a sentence, if there is none.
+    """
+    from recordings import library
+    from recordings.errors import RecordingError, printable
+
+    folder = library.folder()
+    file = name + library.SUFFIX
+    for path in (Path(name), library.GOLDEN / file, folder / name, folder / file):
+        if path.exists() and not path.is_dir():
+            return path
+    items = library.listing(folder)
+    if name == "latest":
+        if items:
+            return items[0].path
+        why = f"no recordings in {printable(str(folder))} yet; start pendu-tui to make one."
+        raise RecordingError(why)
+    bundled = ["latest", *library.golden_names()]
+    advice = did_you_mean(name, [*bundled, *(item.path.name for item in items)])
+    advice = printable(advice) or f": choose a file, or one of {', '.join(bundled)}."
+    raise RecordingError(f"there is no recording {printable(name)!r}{advice}")
 
 
 def angle(text: str) -> float:

@@ -21,7 +21,7 @@ from tui.playback.source import RecordingStatus, Source
 from tui.playback.state import RunState
 
 if TYPE_CHECKING:
-    from recordings.live_recorder import LiveRecorder
+    from recordings.recorder import LiveRecorder
     from tui.playback.ghost import Ghost
 
 FRAME_BUDGET = 0.020  # s of each frame for the simulation; the rest of 33 ms is for drawing

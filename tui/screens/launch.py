@@ -66,7 +66,7 @@ def start_recording(live: "Live", path: Path | None, or_next: bool) -> None:
         return
     from recordings.errors import NameTakenError
     from recordings.library import free_path
-    from recordings.live_recorder import LiveRecorder  # brings mcap
+    from recordings.recorder import LiveRecorder  # brings mcap
 
     while live.recorder is None:
         try:
@@ -187,23 +187,58 @@ def open_lab(live: "Live", options: argparse.Namespace, with_tour: bool = False)
 
 def recover_leftovers(folder: Path) -> list[str]:
     """Recover a folder's unfinished recordings; return a sentence on each, errors included."""
-    from recordings.errors import printable
     from recordings.library import leftovers
 
     sentences = []
     for part in leftovers(folder):
-        from recordings.recovery import rescue  # mcap: only if there is something to do
+        from recordings.errors import printable  # it and mcap: only if there is something to do
 
-        name = printable(str(part))
         try:
-            with progress(f"recovering {printable(part.name)}") as show:
-                sentences.append(rescue(part, show))
+            sentences.append(_recover(part))
         except FileNotFoundError:
             pass  # another lab was quicker
         except OSError as error:
+            name = printable(str(part))
             why = error.strerror or error
             sentences.append(f"The unfinished recording {name} cannot be recovered now: {why}.")
     return sentences
+
+
+def _recover(leftover: Path) -> str:
+    """Make a recording of a leftover, and return a sentence about it.
+
+    The leftover is removed once all of it is in the recording, or if it was empty; otherwise it is
+    renamed, so that it is not found again.  Raises OSError if the disk fails.
+    """
+    from recordings.errors import NameTakenError, RecordingError, printable
+    from recordings.files import publish
+    from recordings.library import PART, alone_with, free_path
+    from recordings.recovery import recover
+
+    def put_aside() -> str:
+        kept = leftover.rename(free_path(leftover.with_name(f"{leftover.name}.damaged")))
+        return f" The original is kept as {printable(str(kept))}."
+
+    with alone_with(leftover):
+        if leftover.stat().st_size == 0:
+            leftover.unlink()
+            return f"An unfinished recording was empty: {printable(str(leftover))}."
+        name = leftover.with_name(leftover.name.removesuffix(PART))
+        try:
+            with progress(f"recovering {printable(leftover.name)}") as show:
+                found = recover(leftover, free_path(name), show)
+        except RecordingError as error:
+            return f"An unfinished recording cannot be recovered: {error}{put_aside()}"
+        lost = ""
+        if found["damaged"]:
+            lost = f" {found['entries_lost']} samples and events are lost.{put_aside()}"
+        else:
+            leftover.unlink()
+        saved = Path(found["out"])
+        with suppress(NameTakenError):
+            publish(saved, name)
+            saved = name
+        return f"An unfinished recording was recovered: {printable(str(saved))}.{lost}"
 
 
 def print_sentences(source: Any, write: Callable[..., None]) -> int:

@@ -5,7 +5,7 @@ import pytest
 from engine.scenes import DEFAULT_SCENE
 from recordings.errors import DiskError
 from recordings.library import listing
-from recordings.live_recorder import LiveRecorder
+from recordings.recorder import LiveRecorder
 from recordings.verification import verify
 from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PtyLab

@@ -3,7 +3,8 @@
 from dataclasses import replace
 from pathlib import Path
 
-from recordings.library import GOLDEN, resolve
+from recordings.library import GOLDEN
+from tui.cli.options import resolve
 from tui.playback.marks import Mark, Marks
 
 MARK = Mark(1.0, 1, 20, "here")

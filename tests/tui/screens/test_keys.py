@@ -4,7 +4,7 @@ import pytest
 
 from engine.methods import USUAL_CAST
 from engine.scenes import DEFAULT_SCENE, SCENES
-from recordings.live_recorder import LiveRecorder
+from recordings.recorder import LiveRecorder
 from recordings.verification import verify
 from tests.tui.harness import lab, on_stage, uncomputed
 from tui.playback.live import Live

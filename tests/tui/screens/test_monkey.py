@@ -9,8 +9,7 @@ from pathlib import Path
 import pytest
 
 from engine.scenes import DEFAULT_SCENE
-from recordings.library import resolve
-from recordings.live_recorder import LiveRecorder
+from recordings.recorder import LiveRecorder
 from recordings.recording import Recording
 from recordings.verification import verify
 from tests.tui.harness import on_stage
@@ -27,6 +26,7 @@ from tests.tui.monkey import (
     wild_stage,
 )
 from tests.tui.pty_lab import PtyLab
+from tui.cli.options import resolve
 from tui.playback.live import Live
 from tui.playback.marks import Marks
 from tui.playback.replay import Replay

@@ -8,7 +8,7 @@ from textual.command import CommandList
 from engine.methods import METHODS, VELOCITY_VERLET
 from engine.scenes import SCENES
 from recordings.library import GOLDEN
-from recordings.live_recorder import LiveRecorder
+from recordings.recorder import LiveRecorder
 from tests.tui.harness import Theatre, lab, on_stage
 from tui.drawing.palette import PALETTES
 from tui.playback.live import Live

@@ -1,5 +1,6 @@
 from pathlib import Path
 
+from recordings.reader import read_contents
 from recordings.recording import Recording
 from recordings.verification import verify
 from tests.tui.harness import Lab
@@ -30,6 +31,18 @@ def test_a_leftover_becomes_a_complete_recording_and_is_reported(tmp_path):
     with Recording.open(whole) as recording:
         assert recording.length > 2  # at most the last second is lost
     assert recover_leftovers(tmp_path) == []
+
+
+def test_a_damaged_leftover_is_kept_beside_its_recording(tmp_path):
+    part = left_unfinished(tmp_path / "one.mcap")
+    data = bytearray(part.read_bytes())
+    with part.open("rb") as stream:
+        data[read_contents(stream).places[1].offset + 80] ^= 0xFF
+    part.write_bytes(data)
+    (tmp_path / "empty.mcap.part").touch()
+    assert len(recover_leftovers(tmp_path)) == 2
+    assert {path.name for path in tmp_path.iterdir()} == {"one.mcap", "one.mcap.part.damaged"}
+    assert verify(tmp_path / "one.mcap").identical
 
 
 def test_what_cannot_be_recovered_is_kept_and_reported_once(tmp_path):

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 from engine.scenes import DEFAULT_SCENE, SCENES
-from recordings.library import resolve
 from tests.tui.command_line import pendu
 from tests.tui.conftest import SNAPSHOTS, text_of
 from tests.tui.harness import player
+from tui.cli.options import resolve
 from tui.screens.still import normalised, still
 from tui.terminal.options import TerminalOptions
 

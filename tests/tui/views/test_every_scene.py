@@ -6,8 +6,8 @@ import pytest
 
 from engine.methods import USUAL_CAST
 from engine.scenes import SCENES
-from recordings.library import resolve
 from tests.tui.harness import key_of, lab, player, uncomputed
+from tui.cli.options import resolve
 from tui.views import VIEWS
 from tui.views.accuracy.pane import AccuracyPane
 from tui.views.phase.pane import SectionPane

@@ -12,7 +12,7 @@ from engine.methods import METHODS
 from engine.run.stepping import Stepping
 from engine.scenes import LIMITS, SCENES
 from recordings.library import GOLDEN
-from recordings.live_recorder import LiveRecorder
+from recordings.recorder import LiveRecorder
 from recordings.recording import Recording
 from tests.tui.command_line import own_method
 from tui.cli.dispatch import command_of

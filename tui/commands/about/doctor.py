@@ -65,7 +65,7 @@ def _checks() -> Iterator[Check]:
     yield encoding(sys.stdout.encoding)
     yield colour(os.environ)
     yield folder(library.folder())
-    yield sine(library.resolve("drift"))
+    yield sine(library.GOLDEN / "drift.mcap")
     yield Check("python", f"{platform.python_version()}, {platform.system()} {platform.machine()}")
     yield Check("versions", ", ".join(f"{package} {version(package)}" for package in PACKAGES))
     yield numba()

@@ -6,7 +6,7 @@ from typing import Any
 
 from recordings.errors import printable
 from tui.cli.errors import Exit
-from tui.cli.options import add_recording
+from tui.cli.options import add_recording, resolve
 from tui.cli.output import warn
 from tui.cli.report import Column, Report, Table, add_report_options, form_of
 
@@ -27,7 +27,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     from recordings.diff import compare
-    from recordings.library import resolve
     from recordings.recording import Recording
 
     with Recording.open(resolve(options.a)) as a, Recording.open(resolve(options.b)) as b:

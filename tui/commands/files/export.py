@@ -1,7 +1,7 @@
 """Write a recording as CSV or Parquet, one row per sample and method."""
 
 import argparse
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from itertools import islice
 from operator import attrgetter
 from pathlib import Path
@@ -11,7 +11,7 @@ from recordings.errors import printable
 from tui.cli.errors import Exit, UserError
 from tui.cli.files import text_file, whole_file
 from tui.cli.install import install_advice
-from tui.cli.options import add_file, add_recording
+from tui.cli.options import add_file, add_recording, resolve
 from tui.cli.output import progress, warn
 from tui.cli.report import write_csv
 from tui.words.numbers import file_size
@@ -43,14 +43,13 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from recordings import library
     from recordings.recording import Recording
 
     if options.format == "parquet" and options.output is None:
         raise UserError("Parquet is no text: name a file with -o.")
-    path = library.resolve(options.file)
+    path = resolve(options.file)
     with Recording.open(path) as recording, progress(printable(path.name)) as show:
-        columns = columns_of(recording.models)
+        columns = columns_of({run.scene.model: None for run in recording.runs})
         rows = _rows(recording, show)
         if options.format == "parquet":
             _write_parquet(options.output, options.force, columns, rows)
@@ -66,7 +65,7 @@ def run(options: argparse.Namespace) -> int:
     return Exit.FINE
 
 
-def columns_of(models: Sequence[str]) -> tuple[str, ...]:
+def columns_of(models: Iterable[str]) -> tuple[str, ...]:
     """Return the columns, names with units; energies are per unit m·L²."""
     from recordings.fields import EXTRA, MOMENT, READING
 
@@ -79,7 +78,7 @@ def _rows(recording: "Recording", show: Callable[[int, int], None]) -> Rows:
     """Yield a row for each method of each sample."""
     from recordings.fields import EXTRA, READING
 
-    extra = dict.fromkeys(field.name for model in recording.models for field in EXTRA[model])
+    extra = dict.fromkeys(field.name for run in recording.runs for field in EXTRA[run.scene.model])
     scalars_of = attrgetter(*(field.name for field in READING))
     for count, (clock, sample) in enumerate(recording.samples_between(), 1):
         methods = recording.methods_of(sample.run)

@@ -4,14 +4,14 @@ import argparse
 import re
 import sys
 import time
-from dataclasses import asdict
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from recordings.errors import RecordingError, printable
 from tui.cli.errors import Exit, UserError
 from tui.cli.files import check_free
-from tui.cli.options import add_file, add_recording, count
+from tui.cli.options import add_file, add_recording, count, resolve
 from tui.cli.output import progress
 from tui.cli.report import Column, Report, Table, add_report_options, form_of
 from tui.words.numbers import counted, file_size, seconds
@@ -137,7 +137,6 @@ def _facts(item: "Item") -> dict[str, Any]:
 
 
 def _show(options: argparse.Namespace) -> Report:
-    from recordings.library import resolve
     from recordings.recording import Recording
 
     path = resolve(options.file)
@@ -158,16 +157,17 @@ def _contents(recording: "Recording") -> Report:
         }
         for run in recording.runs
     ]
+    cast = dict.fromkeys(method.key for run in recording.runs for method in run.scene.cast)
     health = recording.reason or "complete"
     facts = {
         "file": str(recording.path),
         "health": f"damaged: {health}" if recording.damaged else health,
         "length": seconds(recording.length),
         "size": f"{file_size(recording.bytes)}, {counted(recording.samples, 'sample')}",
-        "methods": ", ".join(recording.methods),
+        "methods": ", ".join(cast),
     }
     more = len(runs) - MAX_RUNS_SHOWN
-    names = ("complete", "damaged", "reason", "methods", "samples", "bytes")
+    names = ("complete", "damaged", "reason", "samples", "bytes")
     return Report(
         name="recordings-show",
         columns=(Column("", "name"), Column("", "value")),
@@ -176,6 +176,7 @@ def _contents(recording: "Recording") -> Report:
             "file": str(recording.path),
             "runs": runs,
             "seconds": recording.length,
+            "methods": list(cast),
             **{name: getattr(recording, name) for name in names},
         },
         notes=[
@@ -202,7 +203,6 @@ RUN_COLUMNS = (
 
 
 def _recover(options: argparse.Namespace) -> Report:
-    from recordings.library import resolve
     from recordings.recovery import recover
 
     if options.output is None:
@@ -210,15 +210,15 @@ def _recover(options: argparse.Namespace) -> Report:
     path = resolve(options.file)
     check_free(options.output, options.force)
     with progress(printable(path.name)) as show:
-        recovery = recover(path, options.output, show, options.force)
-    notes = [f"{printable(recovery.out)}: {counted(recovery.samples_kept, 'sample')} saved."]
-    if recovery.reason:
-        notes.append(f"Problem: {recovery.reason}.")
-    if recovery.entries_lost:
-        notes.append(f"Lost: {recovery.entries_lost} samples and events.")
-    if recovery.runs_lost:
-        notes.append(f"Runs not saved because their start is missing: {recovery.runs_lost}.")
-    return Report(name="recordings-recover", fields=asdict(recovery), notes=notes)
+        found = recover(path, options.output, show, options.force)
+    notes = [f"{printable(found['out'])}: {counted(found['samples_kept'], 'sample')} saved."]
+    if found["reason"]:
+        notes.append(f"Problem: {found['reason']}.")
+    if found["entries_lost"]:
+        notes.append(f"Lost: {found['entries_lost']} samples and events.")
+    if found["runs_lost"]:
+        notes.append(f"Runs not saved because their start is missing: {found['runs_lost']}.")
+    return Report(name="recordings-recover", fields=found, notes=notes)
 
 
 def _prune(options: argparse.Namespace) -> Report:
@@ -231,7 +231,7 @@ def _prune(options: argparse.Namespace) -> Report:
     doomed = to_prune(library.listing(), options.keep, options.size)
     if doomed and not options.yes and not _confirmed(doomed):
         doomed = []
-    deleted = library.prune(doomed)
+    deleted = list(filter(delete, doomed))
     freed = file_size(sum(item.bytes for item in deleted))
     notes = [f"deleted {counted(len(deleted), 'recording')}, {freed}"]
     if len(deleted) < len(doomed):
@@ -248,6 +248,21 @@ def to_prune(newest_first: "list[Item]", keep: int | None, size: int | None) -> 
         if (keep is not None and place >= keep) or (size is not None and total > size):
             return newest_first[place:]
     return []
+
+
+def delete(item: "Item") -> bool:
+    """Delete a recording with its marks, unless it is in use; return whether it was deleted."""
+    from recordings import library
+
+    try:
+        if library.in_use(item.path):
+            return False
+        item.path.unlink()
+    except OSError:
+        return False
+    with suppress(OSError):
+        item.path.with_name(item.path.name + library.MARKS).unlink()
+    return True
 
 
 def _confirmed(doomed: "list[Item]") -> bool:

@@ -10,7 +10,7 @@ from recordings.errors import RecordingError, printable
 from recordings.library import PART
 from tui.cli.cast import add_cast_options, cast_of, own_methods
 from tui.cli.errors import Exit
-from tui.cli.options import add_recording, count
+from tui.cli.options import add_recording, count, resolve
 from tui.cli.output import progress, warn
 from tui.cli.report import Report, add_report_options, form_of
 from tui.words.numbers import counted
@@ -75,7 +75,7 @@ def _files(name: str) -> Iterator[tuple[Path, RecordingError | None]]:
     if name == "golden" and not path.exists():
         path = library.GOLDEN
     try:
-        files = sorted(path.rglob("*.mcap")) if path.is_dir() else [library.resolve(name)]
+        files = sorted(path.rglob("*.mcap")) if path.is_dir() else [resolve(name)]
     except RecordingError as error:
         yield path, error
         return

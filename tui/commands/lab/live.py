@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from engine.scenes import Scene
 from tui.cli.errors import UserError
-from tui.cli.options import add_file, add_recording, positive
+from tui.cli.options import add_file, add_recording, positive, resolve
 from tui.cli.scene import add_scene_options, scene_of
 from tui.terminal.options import add_terminal_options
 
@@ -68,8 +68,6 @@ def run(options: argparse.Namespace) -> int:
 
     ghost = None
     if options.ghost is not None:
-        from recordings.library import resolve
-
         ghost = launch.open_ghost(resolve(options.ghost))
     scene = scene_of(options, None if ghost is None else ghost.scene)
     if ghost is not None and ghost.scene.model != scene.model:

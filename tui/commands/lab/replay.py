@@ -6,7 +6,7 @@ from functools import partial
 from engine.methods import METHODS
 from tui.cli.cast import add_cast_options, cast_of, own_methods
 from tui.cli.errors import UserError
-from tui.cli.options import add_recording, number, positive
+from tui.cli.options import add_recording, number, positive, resolve
 from tui.terminal.options import add_terminal_options
 
 EXAMPLES = """\
@@ -41,7 +41,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     from recordings.events import remember
-    from recordings.library import resolve
     from tui.screens import launch
 
     path = resolve(options.file)

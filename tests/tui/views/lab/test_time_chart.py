@@ -8,7 +8,7 @@ from textual.events import MouseScrollUp
 
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES
-from recordings.live_recorder import LiveRecorder
+from recordings.recorder import LiveRecorder
 from recordings.recording import Recording
 from tests.tui.harness import FPS, lab, player, recorded
 from tests.tui.playback.test_so_far import run
