@@ -79,7 +79,8 @@ def cost_at(line: Sequence[Point], kind: ErrorKind, cost: Cost, target: float) -
         return None
     if at == 0 or not (cheap := cost_of(line[at - 1], cost)) or not line[at].error(kind):
         return dear
-    above, below = line[at - 1].error(kind), line[at].error(kind)
+    above = line[at - 1].error(kind)
+    below = line[at].error(kind)
     if not (math.isfinite(above) and above > target):
         return dear
     share = math.log(above / target) / math.log(above / below)

@@ -14,11 +14,13 @@ from engine.phase_space.section import orbit
 from engine.scenes import Scene
 
 # of the motion that are followed, unless the error becomes too large before; for a fit
-PERIODS, FEWEST = 100, 10
+PERIODS = 100
+FEWEST = 10
 MOST_STEPS = 100_000
 LARGEST = 0.4  # rad; larger errors no longer grow freely, for they begin to wrap
 # largest departure of ln error from the line, and of its slope from a whole number
-STRAIGHT, WHOLE = 0.05, 0.15
+STRAIGHT = 0.05
+WHOLE = 0.15
 _LOOKS = 30  # in each period
 
 
@@ -51,10 +53,12 @@ def duration(scene: Scene) -> float | None:
 
 def growth(scene: Scene, method: Method) -> Growth:
     """Largest theta error in each of at most PERIODS periods, and the fitted power of t."""
-    exact, time = scene.exact(), duration(scene)
+    exact = scene.exact()
+    time = duration(scene)
     if time is None or exact.period is None:
         return Growth(method, [], [], None)
-    steps, width = round(time / scene.h), exact.period / scene.h
+    steps = round(time / scene.h)
+    width = exact.period / scene.h
     theta, _ = orbit(method, scene.equations, scene.h, (scene.theta, scene.omega), steps)
     errors: list[float] = []
     for number in range(1, PERIODS + 1):
@@ -81,7 +85,8 @@ def _power(times: Sequence[float], errors: Sequence[float]) -> float | None:
     first = len(errors) * 3 // 10
     if len(errors) < FEWEST or min(errors) <= 0:
         return None
-    x, y = np.log(times[first:]), np.log(errors[first:])
+    x = np.log(times[first:])
+    y = np.log(errors[first:])
     slope, start = np.polyfit(x, y, 1)
     is_power = np.abs(y - slope * x - start).max() < STRAIGHT and abs(slope - round(slope)) < WHOLE
     return float(slope) if is_power else None

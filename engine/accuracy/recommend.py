@@ -133,7 +133,8 @@ def _spend(study: Study, method: Method, kind: ErrorKind, budget: int) -> Attemp
 
 def _affordable(study: Study, method: Method, budget: int) -> int:
     """The most steps for this many evaluations; 0 where that leaves no usable h."""
-    smallest, largest = REFINED * Z_LIMITS[0] / study.scene.w0, Z_LIMITS[1] / study.scene.w0
+    smallest = REFINED * Z_LIMITS[0] / study.scene.w0
+    largest = Z_LIMITS[1] / study.scene.w0
     steps = min(
         (budget - method.first_same_as_last) // method.force_evaluations, int(study.time / smallest)
     )
@@ -144,13 +145,16 @@ def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most
     """Multiply the steps until the target is reached, then halve the gap, then confirm."""
     most_steps = _affordable(study, method, most)
     fastest = max(study.scene.w0, abs(study.scene.omega))  # rad/s
-    too_few, steps = 0, min(most_steps, math.ceil(study.time * fastest))
+    too_few = 0
+    steps = min(most_steps, math.ceil(study.time * fastest))
     if not steps:
         return Attempt(method, None, _no_h(most))
-    best, in_vain = None, 0
+    best = None
+    in_vain = 0
     while (point := study.run(method, steps)).error(kind) > target:
         if best is None or point.error(kind) < best.error(kind):
-            best, in_vain = point, 0
+            best = point
+            in_vain = 0
         else:
             in_vain += point.flaw(kind) == "rounding"
         if in_vain == IN_VAIN or (in_vain and steps == most_steps):
@@ -164,13 +168,21 @@ def _cheapest(study: Study, method: Method, kind: ErrorKind, target: float, most
             if needed * steps > PREDICTED * most_steps and point.error(kind) < FITTED_BELOW:
                 return Attempt(method, best, _about(method.evaluations(round(needed * steps))))
             factor = min(max(needed, 1.1), factor)
-        too_few, steps = steps, min(most_steps, math.ceil(steps * factor))
+        too_few = steps
+        steps = min(most_steps, math.ceil(steps * factor))
     while steps - too_few > max(1, TOLERANCE * steps):
         middle = max(too_few + 1, math.isqrt(too_few * steps))
         if study.run(method, middle).error(kind) <= target:
             steps = middle
         else:
             too_few = middle
+    return _confirmed(study, method, kind, target, steps, most_steps)
+
+
+def _confirmed(
+    study: Study, method: Method, kind: ErrorKind, target: float, steps: int, most_steps: int
+) -> Attempt:
+    """Compare more often, and with slightly more steps, and take more steps where that fails."""
     for _ in range(CONFIRMING_RUNS):
         point = study.run(method, steps, CONFIRMING_COMPARISONS)
         refined = study.run(method, math.ceil(steps * REFINED), CONFIRMING_COMPARISONS)

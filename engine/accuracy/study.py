@@ -210,7 +210,8 @@ class Study:
 
 def timed(point: Point, scene: Scene, clock: Clock, loops: LoopsOf = PlainLoops) -> Point:
     """The same point with its seconds: the same steps again, without comparisons and energies."""
-    travel, start = loops(point.method, scene.equations).travel, (scene.theta, scene.omega)
+    travel = loops(point.method, scene.equations).travel
+    start = (scene.theta, scene.omega)
     travel(start, point.h, 1)  # may have to be compiled
     runs = max(1, TIMED_STEPS // point.steps)
     seconds, spread = shortest(lambda: travel(start, point.h, point.steps), runs, clock)

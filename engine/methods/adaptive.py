@@ -29,7 +29,8 @@ def halving(phases: Phases, tolerance: float, richardson: bool = False) -> Phase
     def step(force: Force, phase: Phase, h: float, halvings: int) -> Phase:
         whole = next(phases(force, phase, h))
         halves = next(phases(force, next(phases(force, phase, h / 2)), h / 2))
-        theta, omega = halves[0] - whole[0], halves[1] - whole[1]
+        theta = halves[0] - whole[0]
+        omega = halves[1] - whole[1]
         if halvings and math.hypot(theta, omega) > tolerance:
             return step(force, step(force, phase, h / 2, halvings - 1), h / 2, halvings - 1)
         return (halves[0] + theta / 3, halves[1] + omega / 3) if richardson else halves

@@ -77,7 +77,8 @@ def _path(phases: Phases, start: Phase) -> list[Phase]:
 
 def _examine_arrays(phases: Phases, path: list[Phase], who: str) -> bool:
     """Whether arrays give the numbers that floats give."""
-    start, h = tuple(np.full(3, value) for value in START), np.full(3, H)
+    start = tuple(np.full(3, value) for value in START)
+    h = np.full(3, H)
     given = [each.copy() for each in (*start, h)]
     found: list[Any] = []
     copies: list[Any] = []
@@ -103,7 +104,8 @@ def _examine_complexes(phases: Phases, path: list[Phase], who: str) -> bool:
             start = START[0] + nudge * along[0], START[1] + nudge * along[1]
             return np.array(after(phases, force, start, H, STEPS))
 
-        displaced, slope = ends(1e-100j), (ends(1e-6) - ends(-1e-6)) / 2e-6
+        displaced = ends(1e-100j)
+        slope = (ends(1e-6) - ends(-1e-6)) / 2e-6
         if not np.allclose(displaced.real, path[-1], rtol=SAME, atol=SAME):
             return False
         if not np.allclose(displaced.imag / 1e-100, slope, rtol=1e-4, atol=1e-4):

@@ -138,7 +138,8 @@ def learned_map(model: Model, phase: Phase, h: float) -> Iterator[Phase]:
             feature = math.tanh(a * theta + b / w0 * omega + c)
             drift += to_theta * feature
             kick += to_omega * feature
-        theta, omega = theta + tau * drift, omega + w0 * tau * kick
+        theta = theta + tau * drift
+        omega = omega + w0 * tau * kick
         yield theta, omega
 
 
@@ -161,7 +162,8 @@ def learned_symplectic_map(model: Model, phase: Phase, h: float) -> Iterator[Pha
     """
     w0 = model.w0
     tau = w0 * h
-    push, carry = _module(KICK), _module(DRIFT)
+    push = _module(KICK)
+    carry = _module(DRIFT)
     theta, omega = phase
     kick = push(theta)
     while True:

@@ -20,7 +20,8 @@ PENDULUM = Pendulum(9.81)
 START = (1.0, 0.3)
 LARGE_H = 0.2  # s: at small steps a high order hides a change of area, or a miss of the start
 # z is looked at up to here, in steps of 1/2048: two thirds of the narrowest gap, BM6's
-WIDEST_Z, RUNGS = 16, 2048
+WIDEST_Z = 16
+RUNGS = 2048
 NO_LIMIT_BELOW = 0.1  # z up to which some unstable methods grow by less than rounding
 ROUNDING = 1e-12
 LINEAR_ROUNDING = 3e-13  # of a linear step; a limit moves by up to a thousand times as much
@@ -63,7 +64,8 @@ def order(phases: Phases, start: Phase = START) -> float | None:
 
     Later, what a method loses in energy adds a power of its own, and RK4 reads 5 to 6.6.
     """
-    exact, force = PENDULUM.exact(*start), PENDULUM.force()
+    exact = PENDULUM.exact(*start)
+    force = PENDULUM.force()
     half = (exact.period or 1.0) / 2
     found: list[tuple[float, float]] = []
     for power in range(2, 25):
@@ -85,7 +87,8 @@ def order(phases: Phases, start: Phase = START) -> float | None:
 
 def evaluations(phases: Phases, steps: int = 50) -> tuple[float, int]:
     """Force evaluations of a step, on average, and how many more a run has at its start."""
-    count, sine = 0, PENDULUM.force()
+    count = 0
+    sine = PENDULUM.force()
 
     def counted(theta: Any) -> Any:
         nonlocal count
@@ -103,7 +106,8 @@ def evaluations(phases: Phases, steps: int = 50) -> tuple[float, int]:
 
 def determinant(phases: Phases, phase: Phase, h: float) -> float:
     """Return area after a step over area before, from the complex-step derivative of the step."""
-    tiny, force = 1e-100, PENDULUM.force(cmath.sin)
+    tiny = 1e-100
+    force = PENDULUM.force(cmath.sin)
     theta, omega = phase
     a, c = after(phases, force, (theta + 1j * tiny, complex(omega)), h, 1)
     b, d = after(phases, force, (complex(theta), omega + 1j * tiny), h, 1)

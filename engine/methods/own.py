@@ -147,11 +147,7 @@ def _guarded(function: Callable[..., Any], name: str, source: str, file: str) ->
                 UserCode.is_running = True
                 UserCode.steps += 1
                 if following is None:
-                    following = function(force, phase, h)
-                    if not hasattr(following, "__next__"):
-                        raise OwnMethodError(
-                            f"{where}: {name} returns {_short(following)}; {_FORM}."
-                        )
+                    following = _iterator(function(force, phase, h), f"{where}: {name}")
                 found = next(following)
             except StopIteration:
                 break
@@ -174,8 +170,15 @@ def _guarded(function: Callable[..., Any], name: str, source: str, file: str) ->
                 yield _phase(found, phase, f"{where}: {name}")
         raise OwnMethodError(f"{where}: {name} ends while the run goes on; {_FORM}.")
 
-    phases.__doc__, phases.__name__ = function.__doc__, name
+    phases.__doc__ = function.__doc__
+    phases.__name__ = name
     return phases
+
+
+def _iterator(returned: Any, who: str) -> Iterator[Any]:
+    if not hasattr(returned, "__next__"):
+        raise OwnMethodError(f"{who} returns {_short(returned)}; {_FORM}.")
+    return returned  # type: ignore[no-any-return]
 
 
 _FORM = "write `while True:` with the formulas and `yield theta, omega`"

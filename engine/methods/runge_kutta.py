@@ -15,7 +15,8 @@ def rk4(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
     and gains some near upright.  Hairer, Lubich & Wanner (2006), II.1.1.
     """
     theta, omega = phase
-    half, sixth = h / 2, h / 6
+    half = h / 2
+    sixth = h / 6
     while True:
         a1 = force(theta)
         omega2 = omega + half * a1

@@ -17,7 +17,8 @@ def splitting(kicks: tuple[float, ...], drifts: tuple[float, ...]) -> Phases:
     There is one kick more than there are drifts, and both add up to 1.  The last force of a step is
     the next one's first.  Hairer, Lubich & Wanner (2006), II.5.
     """
-    first, following = kicks[0], kicks[1:]
+    first = kicks[0]
+    following = kicks[1:]
 
     def kicks_and_drifts(force: Force, phase: Phase, h: float) -> Iterator[Phase]:
         """Kicks of omega and drifts of theta in turn."""

@@ -38,7 +38,8 @@ def exact_pendulum(
     with localcontext(Context(prec=100)):
         k_squared = _k_squared(theta, omega, w0_squared)
         d = 1 - k_squared
-        k, k_prime = float(k_squared.sqrt()), float(abs(d).sqrt())
+        k = float(k_squared.sqrt())
+        k_prime = float(abs(d).sqrt())
     if k == 0:
         return ExactMotion(compile(lambda t: State(theta, omega)), "equilibrium")
     if d > 0:
@@ -64,9 +65,11 @@ def _k_squared(theta: float, omega: float, w0_squared: float) -> Decimal:
 
 def _half_angle(start: _Start) -> tuple[float, float, float]:
     """Return sin and cos of half the start angle in (-pi, pi), and the turns taken off [rad]."""
-    s, c = math.sin(start.theta / 2), math.cos(start.theta / 2)
+    s = math.sin(start.theta / 2)
+    c = math.cos(start.theta / 2)
     if c < 0:
-        s, c = -s, -c
+        s = -s
+        c = -c
     turns = round((start.theta - 2 * math.atan2(s, c)) / math.tau)
     return s, c, turns * math.tau
 
@@ -87,7 +90,8 @@ def _libration(start: _Start, k: float, k_prime: float, compile: Compile) -> Exa
         half_periods = round(u / (2 * quarter))
         sn, cn = sn_cn(u - half_periods * 2 * quarter)
         if half_periods % 2:
-            sn, cn = -sn, -cn
+            sn = -sn
+            cn = -cn
         dn = math.hypot(k_prime, k * cn)
         return State(turns + 2 * math.atan2(k * sn, dn), 2 * w0 * k * cn)
 
@@ -144,14 +148,21 @@ def _carlson_rf(x: float, y: float, z: float) -> float:
     """
     while True:
         mean = (x + y + z) / 3
-        dx, dy, dz = 1 - x / mean, 1 - y / mean, 1 - z / mean
+        dx = 1 - x / mean
+        dy = 1 - y / mean
+        dz = 1 - z / mean
         # the series below errs by the sixth power of this
         if max(abs(dx), abs(dy), abs(dz)) < 2e-3:
             break
-        root_x, root_y, root_z = math.sqrt(x), math.sqrt(y), math.sqrt(z)
+        root_x = math.sqrt(x)
+        root_y = math.sqrt(y)
+        root_z = math.sqrt(z)
         shift = root_x * root_y + root_y * root_z + root_z * root_x
-        x, y, z = (x + shift) / 4, (y + shift) / 4, (z + shift) / 4
-    e2, e3 = dx * dy - dz * dz, dx * dy * dz
+        x = (x + shift) / 4
+        y = (y + shift) / 4
+        z = (z + shift) / 4
+    e2 = dx * dy - dz * dz
+    e3 = dx * dy * dz
     return (1 - e2 / 10 + e3 / 14 + e2 * e2 / 24 - 3 * e2 * e3 / 44) / math.sqrt(mean)
 
 
@@ -161,7 +172,8 @@ def _jacobi(k_prime: float) -> tuple[float, Callable[[float], tuple[float, float
     By the arithmetic-geometric mean: Bulirsch's sncndn.
     """
     means: list[tuple[float, float]] = []
-    a, b = 1.0, k_prime
+    a = 1.0
+    b = k_prime
     while True:
         means.append((a, b))
         a, b, gap = (a + b) / 2, math.sqrt(a * b), abs(a - b)
@@ -174,7 +186,8 @@ def _jacobi(k_prime: float) -> tuple[float, Callable[[float], tuple[float, float
             return u, 1.0
         sine = math.sin(a * u)
         cotangent = math.cos(a * u) / sine
-        c, dn = a * cotangent, 1.0
+        c = a * cotangent
+        dn = 1.0
         for arithmetic, geometric in ordered:
             cotangent *= c
             c *= dn

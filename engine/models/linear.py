@@ -43,7 +43,8 @@ class LinearOscillator(Model):
         w0 = self.w0
 
         def at(t: float) -> State:
-            c, s = math.cos(w0 * t), math.sin(w0 * t)
+            c = math.cos(w0 * t)
+            s = math.sin(w0 * t)
             return State(theta * c + omega / w0 * s, omega * c - theta * w0 * s)
 
         rests = theta == 0 == omega

@@ -85,5 +85,6 @@ def separatrix_margin(
     The product of two numbers of which one is exact near the separatrix, where 1 - E/E_separatrix
     itself would cancel.
     """
-    c, v = cos(theta / 2), omega / (2 * w0)
+    c = cos(theta / 2)
+    v = omega / (2 * w0)
     return (c - v) * (c + v)

@@ -54,7 +54,8 @@ class Reference:
         phase = self._kept[begin]
         last, there = self._last
         if begin * way <= last * way <= steps * way:
-            begin, phase = last, there
+            begin = last
+            phase = there
         try:
             for n in range(begin + way, steps + way, way):
                 phase = self._step(phase, way * self._h)

@@ -146,7 +146,8 @@ class Spring(Model):
 
     def parts(self, sin: Sine = math.sin) -> SpringParts:
         """Return the spring's force, gravity's, and z = b (|b| + c k)/((1 + c k) |b|)."""
-        k, gravity = self.stiffness, -1j * self.w0_squared
+        k = self.stiffness
+        gravity = -1j * self.w0_squared
 
         def fast(z: Any) -> Any:
             return -k * (1 - 1 / abs(z)) * z
@@ -166,7 +167,8 @@ class Spring(Model):
 
     def energy(self, sin: Sine = math.sin) -> Energy:
         """|w|²/2 + w0² (y + 1) + k/2 (|z| - 1)² [s⁻²]."""
-        k, gravity = self.stiffness, self.w0_squared
+        k = self.stiffness
+        gravity = self.w0_squared
 
         def total_energy(phase: Phase) -> Any:
             z, w = phase
@@ -187,7 +189,8 @@ class Spring(Model):
         z, w = phase
         length = abs(z) or 1.0
         along = z / length
-        radial, across = (w * along.conjugate()).real, (w * along.conjugate()).imag
+        radial = (w * along.conjugate()).real
+        across = (w * along.conjugate()).imag
         held = 1 + (-self.w0_squared * along.imag + across * across / length) / self.stiffness
         return radial * radial / 2 + self.stiffness / 2 * (length - held) * (length - held)  # type: ignore[no-any-return]
 

@@ -65,19 +65,23 @@ class Neighbourhood:
                     self._carry(carried, n * part, stepping.h / part)
 
     def _carry(self, carried: _Carried, steps: int, h: float) -> None:
-        method, model = carried.method, self._model
+        method = carried.method
+        model = self._model
         phases = method.on(model)(carried.phase, h)
         rings = method.on(model, np.sin)(carried.ring, h)
         try:
             for _ in range(steps):
                 theta, omega = carried.phase
                 determinant = jacobian(method, model, theta, omega, h).determinant
-                phase, ring = next(phases), next(rings)
+                phase = next(phases)
+                ring = next(rings)
                 log_area = carried.log_area + math.log(abs(determinant))
                 if not (all(map(math.isfinite, (*phase, log_area))) and np.isfinite(ring).all()):
                     carried.lost = True
                     return
-                carried.phase, carried.ring, carried.log_area = phase, ring, log_area
+                carried.phase = phase
+                carried.ring = ring
+                carried.log_area = log_area
         except OVERFLOW:  # also the logarithm of a determinant 0
             carried.lost = True
 
@@ -115,7 +119,8 @@ class Neighbours:
             or known != self._taken
         ):
             self._ring = Neighbourhood(scene, self.radius)
-            self._begun, self.step = (scene, run), 0
+            self._begun = (scene, run)
+            self.step = 0
         target = min(step, self.step + most)
         while self.step < target:
             stop = min([target, *(change.step for change in changes if change.step > self.step)])

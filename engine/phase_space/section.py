@@ -35,7 +35,8 @@ def spread(count: int, theta: tuple[float, float], omega: tuple[float, float]) -
     """
     n = np.arange(1.0, count + 1)
     # 1/p and 1/p², where p³ = p + 1
-    across, up = n * 0.7548776662466927 % 1, n * 0.5698402909980532 % 1
+    across = n * 0.7548776662466927 % 1
+    up = n * 0.5698402909980532 % 1
     return theta[0] + (theta[1] - theta[0]) * across, omega[0] + (omega[1] - omega[0]) * up
 
 
@@ -97,7 +98,8 @@ class OrbitKind:
 def kind_of(method: Method, model: Model, h: float, points: Points) -> OrbitKind:
     """The kind of an orbit; `points` are those of `orbit`."""
     theta, omega = points
-    steps, start = len(theta) - 1, (float(theta[0]), float(omega[0]))
+    steps = len(theta) - 1
+    start = (float(theta[0]), float(omega[0]))
     moves = bool(np.ptp(theta) or np.ptp(omega))
     lap = np.floor(theta / math.tau + 0.5)
     spins = model.turns and bool(np.ptp(lap))
@@ -151,7 +153,8 @@ def rotation_number(theta: Floats, omega: Floats, w0: float, spins: bool = False
     half = len(turns) // 2
     if half < 2:
         return None
-    rotation, change = _average(turns), _average(turns[:half]) - _average(turns[half:])
+    rotation = _average(turns)
+    change = _average(turns[:half]) - _average(turns[half:])
     return rotation if abs(change) <= SETTLED * abs(rotation) else None
 
 
@@ -188,16 +191,19 @@ def nearest_fraction(rotation: float) -> Fraction:
 
 def _is_island(points: Points, w0: float, rotation: float, fraction: Fraction, spins: bool) -> bool:
     """Whether the points of every q-th step wind around a point of their own."""
-    q, steps = fraction.denominator, len(points[0]) - 1
+    q = fraction.denominator
+    steps = len(points[0]) - 1
     # a tenth of a turn in all
     if q > LARGEST or fraction.numerator == 0 or abs(abs(rotation) - fraction) > 0.1 / steps:
         return False
-    theta, omega = points[0][::q], points[1][::q] / w0
+    theta = points[0][::q]
+    omega = points[1][::q] / w0
     if spins:
         theta = theta - math.copysign(math.tau * fraction.numerator, rotation) * np.arange(
             len(theta)
         )
-    x, y = theta - theta.mean(), omega - omega.mean()
+    x = theta - theta.mean()
+    y = omega - omega.mean()
     angle = np.unwrap(np.arctan2(y, x))
     # not rounding that winds
     return bool(np.hypot(x, y).max() > 1e-9 and abs(angle[-1] - angle[0]) >= math.tau)

@@ -58,8 +58,10 @@ def _compiled(method: Method, model: Model) -> CompiledLoops | None:
     # never called by Python: compiles twice as fast
     inner = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)
     phases = inner(compilable(method.phases))
-    force, energy = inner(model.force()), inner(model.energy())
-    travel, advance = inner(_travel), inner(loops.advance)
+    force = inner(model.force())
+    energy = inner(model.energy())
+    travel = inner(_travel)
+    advance = inner(loops.advance)
 
     def travelling(phase: Phase, h: float, n: int) -> Any:
         return travel(phases(force, phase, h), phase, n)

@@ -72,7 +72,8 @@ def compiled(method: Method, model: Pendulum) -> Watch:
     # Functions that Python never calls compile twice as fast without wrappers.
     inner = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)
     phases = numba.njit(compilable(method.phases))
-    force, energy = inner(model.force(np.sin)), model.energy
+    force = inner(model.force(np.sin))
+    energy = model.energy
     look = numba.njit(_looking(inner(energy(np.sin))))
 
     # The loop over phases is Python's: in compiled code Numba 0.68 never frees what a generator
@@ -101,7 +102,8 @@ def _looking(energy: Callable[[Phase], Any]) -> Callable[..., int]:
         outside = 0
         for i in range(theta.size):
             off[i] = energy((theta[i], omega[i])) - start[i]
-            size, wide = abs(off[i]), abs(theta[i])
+            size = abs(off[i])
+            wide = abs(theta[i])
             worst[i] = max(size, worst[i])
             width[i] = max(wide, width[i])
             outside += (wide > top[i]) | (size > band[i])

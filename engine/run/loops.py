@@ -36,7 +36,10 @@ def advance(
 
     `phase` is the one before.
     """
-    done, value, low, high = 0, math.nan, math.inf, -math.inf
+    done = 0
+    value = math.nan
+    low = math.inf
+    high = -math.inf
     for following in phases:
         now = energy(following)
         if not now < limit:  # catches nan, too
@@ -58,7 +61,8 @@ def _advance_all(phases: Iterator[Phase], energy: Energy, n: int, limit: float) 
 
     Raises OverflowError if one does not.
     """
-    low, high = math.inf, -math.inf
+    low = math.inf
+    high = -math.inf
     for phase in islice(phases, n):
         now = energy(phase)
         if low <= now and now <= high:
@@ -140,16 +144,21 @@ def advance_with_errors(
             reference.error(low),
             reference.error(high),
         )
-    energy, error, low, high = math.nan, math.nan, math.inf, -math.inf
+    energy = math.nan
+    error = math.nan
+    low = math.inf
+    high = -math.inf
     for k in range(n):
         done, following, now, _, _ = advance(phase, h, 1, limit)
         if not done:
             return Errors(k, phase, energy, error, low, high)
-        phase, energy = following, now
+        phase = following
+        energy = now
         if watch is not None:
             watch(phase)
         error = reference.error(energy, begin[0] + (begin[1] + k + 1) * h)
-        low, high = min(low, error), max(high, error)
+        low = min(low, error)
+        high = max(high, error)
     return Errors(n, phase, energy, error, low, high)
 
 

@@ -90,7 +90,8 @@ class RewindableRun:
     def step_at(self, x: float) -> int:
         """The last step that is not after x."""
         at = max(bisect_right(self._x, x), 1)
-        last, begin = self.changes[at - 1], self._x[at - 1]
+        last = self.changes[at - 1]
+        begin = self._x[at - 1]
         # x is a sum of floats, and the step must not lag because of that
         step = last.step + int((x - begin) / abs(last.stepping.h) + 1e-6)
         return min(step, self.changes[at].step) if at < len(self.changes) else step

@@ -27,11 +27,15 @@ def parting(method: Method, theta: Any, omega: Any, z: Any, steps: int) -> Any:
     ln(K/2): Chirikov, Phys. Rep. 52 (1979) 263.
     """
     phases = method.on(Pendulum(1.0), np.sin)
-    along, across, total = 1.0 + 0.0 * theta, 0.0 * theta, 0.0 * theta
+    along = 1.0 + 0.0 * theta
+    across = 0.0 * theta
+    total = 0.0 * theta
     for _ in range(steps):
         (theta, omega), (along, across) = tangent_map(phases, (theta, omega), (along, across), z)
         growth = np.hypot(along, across)
-        along, across, total = along / growth, across / growth, total + np.log(growth)
+        along = along / growth
+        across = across / growth
+        total = total + np.log(growth)
     return total
 
 

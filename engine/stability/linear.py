@@ -19,7 +19,8 @@ def amplification(method: Method, z: float) -> float:
     meet and rounding shows as its square root, 1e-8.
     """
     a, b, c, d = at_bottom(method, z)
-    mean, spread = (a + d) / 2, cmath.sqrt((a - d) ** 2 / 4 + b * c)
+    mean = (a + d) / 2
+    spread = cmath.sqrt((a - d) ** 2 / 4 + b * c)
     return max(abs(mean + spread), abs(mean - spread))
 
 
@@ -46,5 +47,6 @@ def wobble(method: Method, z: float) -> Wobble:
     skew = (a - d) ** 2 / 4 + b * c
     if skew >= 0:
         return Wobble(0.0, 1.0, 1.0)
-    mean, spread = (b - c) / 2, math.hypot((b + c) / 2, (a - d) / 2)
+    mean = (b - c) / 2
+    spread = math.hypot((b + c) / 2, (a - d) / 2)
     return Wobble(-c / (mean + spread), -c / (mean - spread), math.sqrt(b * c / skew))

@@ -51,6 +51,16 @@ def is_lost(cells: Cells) -> NDArray[np.bool_]:
     return ~np.isin(cells["fate"], (*HELD, UNKNOWN))
 
 
+def _bounds(method: Method, theta: Floats, z: Floats, start: Floats) -> tuple[Floats, ...]:
+    """Return how far a held swing's energy may rise and fall, and theta's largest value [rad]."""
+    distinct, where = np.unique(z, return_inverse=True)
+    wobbles = np.array([wobble(method, value) for value in distinct.tolist()]).T
+    lowest, highest, widest = wobbles[:, where]
+    up = ((1 + BAND) * highest - 1) * start
+    down = (1 - (1 - BAND) * lowest) * start
+    return up, down, widest * theta
+
+
 @np.errstate(all="ignore")  # a swing that is lost may go on to infinity
 def outcomes(method: Method, theta: Floats, z: Floats, steps: int, fast: bool = False) -> Cells:
     """What becomes of each of many swings within `steps` steps; `fast`: compiled by Numba.
@@ -60,17 +70,13 @@ def outcomes(method: Method, theta: Floats, z: Floats, steps: int, fast: bool = 
     """
     model = Pendulum(1.0)
     watch = (compiled if fast else plain)(method, model)
-    distinct, where = np.unique(z, return_inverse=True)
-    lowest, highest, widest = np.array([wobble(method, value) for value in distinct.tolist()]).T[
-        :, where
-    ]
-    reach = widest * theta
-    h, phase = z, (theta, np.zeros(len(theta)))
+    h = z
+    rest = np.zeros(len(theta))
+    phase = (theta, rest)
     start: Floats = model.energy(np.sin)(phase)
-    up, down = ((1 + BAND) * highest - 1) * start, (1 - (1 - BAND) * lowest) * start
+    up, down, reach = _bounds(method, theta, z, start)
     band = np.full(len(theta), math.inf) if method.symplectic else np.minimum(up, down)
-    top = np.full(len(theta), math.pi)
-    watched = Watched(start, band, top, np.zeros(len(theta)), np.zeros(len(theta)), theta.copy())
+    watched = Watched(start, band, rest + math.pi, rest.copy(), rest.copy(), theta.copy())
     index: NDArray[Any] = np.arange(len(theta))
     cells = np.zeros(len(theta), CELL)
     cells["steps"] = steps
@@ -78,7 +84,8 @@ def outcomes(method: Method, theta: Floats, z: Floats, steps: int, fast: bool = 
     while begun < steps and len(index):
         parked = np.zeros(len(index), np.bool_)
         for done, phase in watch(phase, h, watched, steps - begun):  # noqa: B020
-            over, above = np.abs(phase[0]) > watched.top, watched.off > up
+            over = np.abs(phase[0]) > watched.top
+            above = watched.off > up
             lost = over if method.symplectic else over | above | (watched.off < -down)
             gone = index[lost]
             cells["steps"][gone] = begun + done - 1
@@ -89,20 +96,24 @@ def outcomes(method: Method, theta: Floats, z: Floats, steps: int, fast: bool = 
                 limit[lost] = math.inf
             if np.count_nonzero(parked) > PARKED * len(parked):
                 break
-        begun, kept = begun + done, ~parked
+        begun = begun + done
+        kept = ~parked
         index, h, up, down = (each[kept] for each in (index, h, up, down))
-        phase, watched = (
-            (phase[0][kept], phase[1][kept]),
-            Watched(*(each[kept] for each in watched)),
-        )
+        phase = (phase[0][kept], phase[1][kept])
+        watched = Watched(*(each[kept] for each in watched))
     cells["error"][index] = watched.worst / watched.start
     if method.symplectic and len(index):
         wobbling = index[(watched.width > WOBBLE * reach[index]) | (z[index] > method.linear_limit)]
         if len(wobbling):
-            beyond = z[wobbling] > method.linear_limit
-            chaotic = is_chaotic(method, theta[wobbling], z[wobbling], min(steps, CHAOS_STEPS))
-            cells["fate"][wobbling] = np.where(chaotic, CHAOTIC, np.where(beyond, CAUGHT, WOBBLES))
+            cells["fate"][wobbling] = _unsteady(method, theta[wobbling], z[wobbling], steps)
     return cells
+
+
+def _unsteady(method: Method, theta: Floats, z: NDArray[Any], steps: int) -> NDArray[Any]:
+    """Return the fates of held swings that grow too wide or pass the linear limit."""
+    chaotic = is_chaotic(method, theta, z, min(steps, CHAOS_STEPS))
+    steady = np.where(z > method.linear_limit, CAUGHT, WOBBLES)
+    return np.where(chaotic, CHAOTIC, steady)
 
 
 @dataclass(frozen=True, slots=True)

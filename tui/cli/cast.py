@@ -124,7 +124,9 @@ def own_method_at(text: str, others: Sequence[Method]) -> "OwnMethod":
     match = re.fullmatch(r"(?P<file>[^,]+):(?P<key>[^,:]+)(,letter=(?P<letter>[^,]*))?", text)
     if match is None:
         raise UserError(f"--method: {text!r} is not FILE.py:FUNCTION or FILE.py:FUNCTION,letter=m.")
-    file, key, letter = match["file"], match["key"], match["letter"]
+    file = match["file"]
+    key = match["key"]
+    letter = match["letter"]
     if not (key.isidentifier() and key.isascii() and len(key) <= MAX_NAME):
         raise UserError(
             f"--method: {key!r} cannot be a method's name; use a function's with at most "

@@ -68,7 +68,8 @@ def log_axis(low: float, high: float, rows: int) -> Axis:
     size, step = next(
         (size, step) for size, step in _LADDER if round(high / size) - round(low / size) < rows
     )
-    bottom, top = (round(high / size) + 0.5 - rows) * size, (round(high / size) + 0.5) * size
+    bottom = (round(high / size) + 0.5 - rows) * size
+    top = (round(high / size) + 0.5) * size
     inside: list[float] = [
         number * step for number in range(math.ceil(bottom / step), math.floor(top / step) + 1)
     ]
@@ -79,7 +80,8 @@ def log_axis(low: float, high: float, rows: int) -> Axis:
 
 def log_x_axis(low: float, high: float, columns: int) -> Axis:
     """A horizontal axis of log10, with at most one label in 8 columns."""
-    first, last = math.floor(low), max(math.ceil(high), math.floor(low) + 1)
+    first = math.floor(low)
+    last = max(math.ceil(high), math.floor(low) + 1)
     step = math.ceil((last - first) * 8 / columns)
     return Axis(
         first, last, {power: _power(power) for power in range(first, last + 1) if power % step == 0}
@@ -97,7 +99,8 @@ def linear_axis(low: float, high: float, rows: int) -> Axis:
     """
     least = max(1e-4 * max(abs(low), abs(high)), 1e-16)
     if high - low < least:
-        low, high = low - least, high + least
+        low = low - least
+        high = high + least
     power = math.floor(math.log10(high - low)) - 1
     steps = [part * 10.0**power for part in (1, 2, 5, 10, 20, 50, 100)]
 
@@ -107,7 +110,8 @@ def linear_axis(low: float, high: float, rows: int) -> Axis:
 
     step = next((step for step in steps if rows_apart(step) >= 2), None)
     step = step or next(step for step in steps if rows_apart(step) >= 1)
-    top, row = math.ceil(high / step - 1e-9), step / rows_apart(step)
+    top = math.ceil(high / step - 1e-9)
+    row = step / rows_apart(step)
     bottom = top * step - (rows - 0.5) * row
     numbers = range(math.ceil(bottom / step), top + 1)
     return Axis(
@@ -151,7 +155,8 @@ _TIMES = (
 
 def log_time_axis(start: float, end: float, columns: int, note: str = "") -> Axis:
     """Return an axis of log10 of seconds, labelled in s, min, h or d every 8 columns or more."""
-    low, high = math.log10(start), math.log10(end)
+    low = math.log10(start)
+    high = math.log10(end)
     labels: dict[float, str] = {}
     for seconds, text in _TIMES:
         place = math.log10(seconds)
@@ -247,7 +252,8 @@ def per_column(
 
     x ascends.  Returns (columns, series); nan where no row falls into a column.
     """
-    lows, highs = np.full((columns, low.shape[1]), np.nan), np.full((columns, low.shape[1]), np.nan)
+    lows = np.full((columns, low.shape[1]), np.nan)
+    highs = np.full((columns, low.shape[1]), np.nan)
     # A row on an edge belongs to the right-hand column, however the edge is rounded.
     edges = np.searchsorted(
         x, np.linspace(start, end, columns + 1) - 1e-9 * (end - start) / columns

@@ -55,12 +55,16 @@ class Canvas:
 
     def points(self, points: Iterable[tuple[float, float]], ink: int) -> None:
         """Set the dots at (x, y)."""
-        columns, width, height = self.columns, self.width, self.height
-        bits, inks = self._bits, self._inks
+        columns = self.columns
+        width = self.width
+        height = self.height
+        bits = self._bits
+        inks = self._inks
         colour = ink - NOBODY
         for x, y in points:
             if 0 <= x < width and 0 <= y < height:
-                i, j = int(x), int(y)
+                i = int(x)
+                j = int(y)
                 cell = (j >> 2) * columns + (i >> 1)
                 bits[cell] |= _BITS[(j & 3) << 1 | i & 1]
                 inks[cell] = colour

@@ -17,7 +17,8 @@ from tui.drawing.palette import FRAME, NOBODY, TEXT
 from tui.drawing.picture import Picture
 from tui.drawing.time_chart import ROOM, too_small
 
-MIN_COLUMNS, MIN_ROWS = 20, 7
+MIN_COLUMNS = 20
+MIN_ROWS = 7
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +66,8 @@ class LogLog:
             across = np.linspace(self.x_axis.low, self.x_axis.high, self.columns)
             x, y = across, np.interp(across, x, y, left=np.nan, right=np.nan)
             inside = (y >= self.y_axis.low) & (y <= self.y_axis.high)
-            x, y = x[inside], y[inside]
+            x = x[inside]
+            y = y[inside]
         return (self.columns * self.x_axis.share(x)).tolist(), (
             self.rows * self.y_axis.share(y)
         ).tolist()
@@ -118,7 +120,8 @@ def _plot(
     """Let plotext draw the curves and the axes on a canvas, between its first and its last row."""
     import plotext  # 0.1 s, so only with the first chart
 
-    width, height = canvas.columns, canvas.rows - 2
+    width = canvas.columns
+    height = canvas.rows - 2
 
     def pixel(ink: int) -> "plotext.pixel":
         return plotext.pixel(foreground=(ink - NOBODY, 0, 0))

@@ -9,7 +9,13 @@ from typing import NamedTuple
 
 from engine.methods import Cast, Method
 
-EXACT, FRAME, TEXT, WARN, QUIET, GOOD, NOBODY = -1, -2, -3, -4, -5, -6, -7
+EXACT = -1
+FRAME = -2
+TEXT = -3
+WARN = -4
+QUIET = -5
+GOOD = -6
+NOBODY = -7
 """Inks that are not methods': exact motion, lines and borders, text, warnings, text that matters
 less, what is as it should be, blanks.  FRAME is too faint for words.
 """

@@ -30,7 +30,8 @@ from tui.drawing.picture import Picture
 from tui.playback.rows import Window
 from tui.playback.shown import LARGEST, Shown
 
-MIN_COLUMNS, MIN_ROWS = 20, 5
+MIN_COLUMNS = 20
+MIN_ROWS = 5
 ROOM = 4  # columns for the letters at the right end
 LABEL = 5  # columns of a label of decades
 FLOOR = 1e-17  # below the resolution of doubles; zeros are drawn here
@@ -272,12 +273,14 @@ class _Plot:
         """Draw the curves, and the letter of each at its end, or where it goes if it leaves."""
         limit = math.log10(LARGEST) if log else LARGEST
         for place, ink in enumerate(run.inks):
-            lowest, highest = low[:, place], high[:, place]
+            lowest = low[:, place]
+            highest = high[:, place]
             beyond = (highest > limit) | (lowest < -LARGEST)
             leaves = beyond & ~np.roll(beyond, 1)
             leaves[0] = beyond[0]
             gone = beyond & ~leaves
-            lowest, highest = np.where(gone, np.nan, lowest), np.where(gone, np.nan, highest)
+            lowest = np.where(gone, np.nan, lowest)
+            highest = np.where(gone, np.nan, highest)
             bottom = self.rows * self.y_axis.share(lowest)
             top = self.rows * self.y_axis.share(highest)
             x, y = _outline(bottom, top)
@@ -313,7 +316,8 @@ class _Plot:
 
 def _last_value(run: _Curves, place: int) -> float:
     """Return the last value of a method, of the larger magnitude where there are two."""
-    low, high = float(run.low[-1, place]), float(run.high[-1, place])
+    low = float(run.low[-1, place])
+    high = float(run.high[-1, place])
     return low if abs(low) > abs(high) else high
 
 
@@ -403,10 +407,12 @@ def _outline(low: Floats, high: Floats) -> tuple[Floats, Floats]:
     What lies on the way between two points at the same height is left out.
     """
     known = np.flatnonzero(~np.isnan(low))
-    low, high = low[known], high[known]
+    low = low[known]
+    high = high[known]
     falling = np.diff(low + high, prepend=0.0) < 0
     heights = np.stack([np.where(falling, high, low), np.where(falling, low, high)], axis=1).ravel()
     distinct = np.stack([np.full(len(low), True), low != high], axis=1).ravel()
-    x, y = np.repeat(known, 2)[distinct], heights[distinct]
+    x = np.repeat(known, 2)[distinct]
+    y = heights[distinct]
     bends = np.concatenate([[True], (y[1:-1] != y[:-2]) | (y[1:-1] != y[2:]), [True]])[: len(y)]
     return x[bends], y[bends]

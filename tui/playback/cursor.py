@@ -66,7 +66,8 @@ class ReplayCursor:
             sample = self.recording.sample(at).value if at else None
             return sample.step if isinstance(sample, Sample) and sample.run == number else -1
 
-        begin, end = round(run.begin / NANOSECOND), round(run.end / NANOSECOND)
+        begin = round(run.begin / NANOSECOND)
+        end = round(run.end / NANOSECOND)
         return (begin + bisect_left(range(begin, end), step, key=step_at)) * NANOSECOND
 
     def step(self, n: int) -> None:

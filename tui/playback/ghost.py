@@ -33,7 +33,8 @@ class Ghost:
         self._history = ErrorHistory(run.scene, ROWS)
         # s; theta and length of each method in turn
         self._times, self._rods = array("d"), array("d")
-        exact, latest = run.scene.exact(), -math.inf
+        exact = run.scene.exact()
+        latest = -math.inf
         for _, value in recording.samples_between(run.begin, run.end):
             if value.run > run.number or len(self._times) == MAX_SAMPLES:
                 break
@@ -64,7 +65,8 @@ class Ghost:
         """The pendulums by method key at a time [s]; failed ones and finished runs are missing."""
         if not self._times or not 0 <= t <= self._times[-1] + abs(self.scene.h):
             return {}
-        count, at = 2 * len(self.scene.cast), bisect_right(self._times, t + ROUNDING) - 1
+        count = 2 * len(self.scene.cast)
+        at = bisect_right(self._times, t + ROUNDING) - 1
         row = self._rods[count * at : count * (at + 1)]
         rods = {
             method.key: Rod(*row[2 * place : 2 * place + 2])

@@ -93,7 +93,8 @@ class Live(Source):
     def events(self) -> Sequence[Event]:
         if not self._run.in_past:
             return self._events
-        run, step = self._run.run, self._run.step
+        run = self._run.run
+        step = self._run.step
         return [event for event in self._events if event.run != run or event.step <= step]
 
     @property
@@ -168,7 +169,9 @@ class Live(Source):
 
     def seek_event(self, direction: int) -> None:
         """Go to the previous event of this run, or to the next one that has been."""
-        run, here, end = self._run.run, self._run.step, self._run.furthest
+        run = self._run.run
+        here = self._run.step
+        end = self._run.furthest
         kept = ("start", "set_h", "mark", "noticed")
         steps = {event.step for event in self._events if event.run == run and event.kind in kept}
         before = max((step for step in steps if step < here), default=0)

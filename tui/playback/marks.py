@@ -64,11 +64,14 @@ class Marks:
 
 def mark_event(recording: "Recording", mark: Mark) -> Event:
     """Return a mark as an event, at the simulated time of its step."""
-    t, h, since = 0.0, 0.0, 0
+    t = 0.0
+    h = 0.0
+    since = 0
     run = recording.run_of(mark.run)
     for _, event in run.events if run else ():
         if event.kind in ("start", "set_h") and event.step <= mark.step:
-            t, since = event.t, event.step
+            t = event.t
+            since = event.step
             h = event.scene.h if event.scene else event.h or 0.0
     return Event("mark", mark.run, mark.step, t + (mark.step - since) * h, text=mark.text)
 
@@ -88,8 +91,10 @@ def _read(path: Path) -> list[Mark]:
 
 
 def _mark(fields: dict[str, Any]) -> Mark:
-    clock, text = float(fields["clock"]), fields["text"]
-    run, step = int(fields["run"]), int(fields["step"])
+    clock = float(fields["clock"])
+    text = fields["text"]
+    run = int(fields["run"])
+    step = int(fields["step"])
     if not math.isfinite(clock) or max(abs(run), abs(step)) >= MAX_INTEGER:
         raise ValueError("a mark needs a time, a run and a step")
     return Mark(clock, run, step, None if text is None else printable(str(text)))

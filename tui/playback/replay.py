@@ -132,7 +132,8 @@ class Replay(Source):
     def pause(self, paused: bool) -> None:
         """Pause or go on; from the end, go on from the start."""
         self.playhead = self.playhead._replace(paused=paused)
-        position, backwards = self.playhead.position, self.playhead.speed < 0
+        position = self.playhead.position
+        backwards = self.playhead.speed < 0
         if not paused and position == (0.0 if backwards else self.length):
             self.seek(self.length if backwards else 0.0)
 

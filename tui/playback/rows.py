@@ -152,9 +152,11 @@ class Rows:
     def times_before(self, number: int) -> tuple[int, float, float]:
         """Return step, x and t of the last row before a number > 0."""
         if number > self._first:
-            block, at = self._recent, (number - 1) % self._capacity
+            block = self._recent
+            at = (number - 1) % self._capacity
         else:
-            block, at = self._whole, (number - 1) // self._width
+            block = self._whole
+            at = (number - 1) // self._width
         x, t = block.times[at].tolist()
         return int(block.steps[at]), x, t
 

@@ -10,7 +10,8 @@ from textual.filter import LineFilter
 from tui.terminal.options import CharacterSet
 
 # the dots of a cell, in Unicode's order
-_UPPER, _LOWER = 0x01 | 0x08 | 0x02 | 0x10, 0x04 | 0x20 | 0x40 | 0x80
+_UPPER = 0x01 | 0x08 | 0x02 | 0x10
+_LOWER = 0x04 | 0x20 | 0x40 | 0x80
 
 
 def _braille(blank_upper_lower_both: str) -> dict[int, str]:

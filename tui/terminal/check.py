@@ -69,7 +69,8 @@ def background() -> Literal["light", "dark"] | None:
         return None
     if not (sys.__stdin__.isatty() and sys.__stderr__.isatty()):
         return None
-    keyboard, screen = sys.__stdin__.fileno(), sys.__stderr__.fileno()
+    keyboard = sys.__stdin__.fileno()
+    screen = sys.__stderr__.fileno()
     before = termios.tcgetattr(keyboard)
     try:
         tty.setcbreak(keyboard, termios.TCSANOW)

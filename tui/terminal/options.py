@@ -12,7 +12,9 @@ CharacterSet = Literal["braille", "half", "ascii"]
 """What pictures are drawn with; with ASCII, all lines and words are ASCII, too."""
 
 CHARACTER_SETS: tuple[CharacterSet, ...] = get_args(CharacterSet)
-FPS, CALM_FPS, MOST_FPS = 30, 10, 60
+FPS = 30
+CALM_FPS = 10
+MOST_FPS = 60
 SMALLEST = (60, 16)  # columns and rows of the smallest terminal on which the lab fits
 LARGEST = (400, 200)
 

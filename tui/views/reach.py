@@ -106,5 +106,6 @@ def amplitude(model: Model, theta: float, omega: float) -> float:
 @lru_cache(maxsize=8)
 def _margins(model: Model, theta: float, omega: float) -> list[float]:
     """The energy error with which a pendulum from a start comes to rest at each of REACHES."""
-    energy, reference = model.energy(), model.reference(theta, omega)
+    energy = model.energy()
+    reference = model.reference(theta, omega)
     return [reference.error(energy(model.rest_phase(angle))) for angle in REACHES]

@@ -15,7 +15,9 @@ def description(source: Source, only: Cast | None = None) -> list[str]:
 
 
 def _run(source: Source) -> list[str]:
-    scene, playhead, sample = source.scene, source.playhead, source.sample
+    scene = source.scene
+    playhead = source.playhead
+    sample = source.sample
     kind = "The lab" if source.kind == "LIVE" else "The replay"
     speed = "in real time" if playhead.speed == 1 else f"at {playhead.speed:.4g} times real time"
     state = "is paused" if playhead.paused else f"runs {speed} and is"
@@ -45,7 +47,8 @@ def step_text(source: Source) -> str:
 
 def method_sentence(source: Source, index: int) -> str:
     """Return how a method failed or went over the top, else its verdict or error so far."""
-    method, reading = source.scene.cast[index], source.sample.readings[index]
+    method = source.scene.cast[index]
+    reading = source.sample.readings[index]
     if milestone := endings(source).get(index):
         conserved = source.scene.equations.energy_error.conserved
         judgement = source.judgements[index]

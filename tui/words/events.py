@@ -59,7 +59,8 @@ def numbered(lines: Sequence[EventLine]) -> list[str]:
 
 
 def _inputs(source: Source) -> Iterator[EventLine]:
-    marks, backwards = 0, False
+    marks = 0
+    backwards = False
     for event in [*source.events, *source.later_marks]:
         where = event.run, event.step, event.t
         if event.kind == "mark":

@@ -54,7 +54,8 @@ def seconds(value: float) -> str:
     """Return a time or a duration: "12.34 s", "3 min 05 s", "1 h 02 min", "3 d 04 h"."""
     if not math.isfinite(value):
         return "-"
-    sign, size = "-" if round(value, 2) < 0 else "", abs(value)
+    sign = "-" if round(value, 2) < 0 else ""
+    size = abs(value)
     if round(size, 2) < 60:
         return f"{sign}{size:.2f} s"
     if round(size) < 3600:
@@ -87,7 +88,8 @@ def file_size(count: int) -> str:
     if count < 1000:
         return f"{count} B"
     power = next((power for power in (1, 2, 3) if round(count / 1000**power) < 1000), 4)
-    value, unit = count / 1000**power, ("kB", "MB", "GB", "TB")[power - 1]
+    value = count / 1000**power
+    unit = ("kB", "MB", "GB", "TB")[power - 1]
     return f"{value:.1f} {unit}" if round(value, 1) < 10 else f"{value:.0f} {unit}"
 
 

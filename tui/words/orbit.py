@@ -83,7 +83,8 @@ def sentence(method: Method, kind: OrbitKind) -> str:
 
 def period_sentence(source: Source) -> str:
     """Return how long each method's swing takes, beside the exact one; empty if unknown."""
-    scene, exact = source.scene, source.exact.period
+    scene = source.scene
+    exact = source.exact.period
     if exact is None or scene.why_not_mapped:
         return ""
     start = scene.theta, scene.omega

@@ -57,35 +57,19 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         help="a table of times and energies; - for stdin",
     )
     add = parser.add_argument
-    for name, what in (
-        ("--time", "of times"),
-        ("--energy", "of total energies, or several joined by +"),
-    ):
-        add(
-            name,
-            metavar="COLUMN",
-            required=True,
-            help=f"the column {what}, by name or number from 1",
-        )
+    times = "the column of times, by name or number from 1"
+    add("--time", metavar="COLUMN", required=True, help=times)
+    energies = "the column of total energies, or several joined by +"
+    add("--energy", metavar="COLUMN", required=True, help=energies)
     add("--table", metavar="N", type=count, help="judge table N (default: the last one)")
-    add(
-        "--from",
-        metavar="T",
-        dest="start",
-        type=float,
-        default=-LATEST,
-        help="judge from time T on",
-    )
-    add(
-        "--scale",
-        default="first",
-        help="errors are relative to first, std, kinetic:COLUMN, or a number",
-    )
+    start = "judge from time T on"
+    add("--from", metavar="T", dest="start", type=float, default=-LATEST, help=start)
+    scale = "errors are relative to first, std, kinetic:COLUMN, or a number"
+    add("--scale", default="first", help=scale)
     add("--atoms", metavar="N", type=count, help="give the trend per ns and atom")
     add("--temperature", metavar="K", type=positive, help="give it in kT, too")
-    add(
-        "--steps", metavar="H,H", help="the step sizes of the files: how do the errors follow them?"
-    )
+    steps = "the step sizes of the files: how do the errors follow them?"
+    add("--steps", metavar="H,H", help=steps)
     names = (*FIELDS, "verdict")
     meaning = f"exit 1 if the expression is true; fields: {', '.join(names)}"
     add_check_options(parser, names, meaning)

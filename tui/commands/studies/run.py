@@ -207,6 +207,7 @@ def _warn_of_size(steps: int, every: int) -> None:
     size = steps / every * SAMPLE_BYTES
     if size > LARGE:
         enough = math.ceil(steps * SAMPLE_BYTES / LARGE)
-        about, large = file_size(round(size)), file_size(round(LARGE))
+        about = file_size(round(size))
+        large = file_size(round(LARGE))
         advice = f"--sample-every {enough} would reduce it to {large}"
         warn(f"the recording will be about {about}; {advice}.")

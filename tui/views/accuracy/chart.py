@@ -127,7 +127,8 @@ def growth_chart(found: Sequence[Growth], cast: Cast, width: int, height: int) -
     lines: list[Series] = []
     slopes: dict[int, Series] = {}
     for growth in found:
-        times, errors = growth.times, growth.errors
+        times = growth.times
+        errors = growth.errors
         at = {round(len(times) ** (n / MARKED)) - 1 for n in range(MARKED + 1)} if times else ()
         letters = [(times[n], errors[n]) for n in sorted(at)]
         x, y = zip(*letters, strict=True) if letters else ((), ())

@@ -29,7 +29,8 @@ from tui.words.accuracy import front_words, growth_lines, point_words
 
 MIN_WORDS, MAX_WORDS, ROOMY = 2, 4, 18  # lines of words; as many as that in so many rows
 MAX_STEPS = 2_000_000  # of a run for the mark at the present h: some seconds
-HERE, CURSOR = "@", "O"
+HERE = "@"
+CURSOR = "O"
 COST: Cost = "evaluations"
 LEGEND = f"{HERE} current h  x useless  ~ rounding  dotted:"
 
@@ -150,7 +151,8 @@ class AccuracyPane(Chooser[Point]):
         study = self.study
         if self.over_time:
             shown = [each for each in self.growths if each.method.key not in self.shown.hidden]
-            self._chart, self.placed = growth_chart(shown, self.cast, width, height), []
+            self._chart = growth_chart(shown, self.cast, width, height)
+            self.placed = []
             return
         methods = [(place, self.cast[place]) for place in self.places]
         points = [point for _, method in methods for point in study.of(method)]

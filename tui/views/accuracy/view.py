@@ -20,13 +20,16 @@ class AccuracyView(StudyView[AccuracyPane]):
         self._grown: object = None  # what the errors over time are for
 
     def compute_missing(self, source: Source) -> None:
-        pane, scene, own = self.pane, source.scene, source.stepping.own
+        pane = self.pane
+        scene = source.scene
+        own = source.stepping.own
         if not scene.general:
             return
         every = with_all_methods(scene) if pane.all else scene
         start = (scene.theta, scene.omega, scene.equations, every.cast, pane.all)
         if start != self._start:
-            self._start, self._grown = start, None
+            self._start = start
+            self._grown = None
             self.workers.cancel_node(self)
             pane.begin(AccuracyPoints(*usual(scene, pane.all)))
             self._begin_work("ladder", measured, every, pane.study.time, pane.study.steps)
@@ -38,7 +41,8 @@ class AccuracyView(StudyView[AccuracyPane]):
             if wanted := [steps for steps in sorted(set(here) - known) if 1 < steps <= MAX_STEPS]:
                 self._begin_work("here", measured, scene, study.time, wanted)
         if pane.over_time and self._grown != (start, own):
-            self._grown, pane.growths = (start, own), []
+            self._grown = (start, own)
+            pane.growths = []
             self._begin_work("growth", growths, scene, own)
 
     def _begin_work(

@@ -183,8 +183,11 @@ def since_change(source: Source, sample: Sample) -> tuple[list[float], list[floa
 
 def table(source: Source, sample: Sample, shown: Shown, width: int) -> list[Row]:
     """The table's rows, its head first; each method's own step size where they differ."""
-    cast, judgements, h = source.scene.cast, source.judgements, source.stepping.own
-    model, exact = source.scene.equations, source.exact.at(sample.t)
+    cast = source.scene.cast
+    judgements = source.judgements
+    h = source.stepping.own
+    model = source.scene.equations
+    exact = source.exact.at(sample.t)
     every = COLUMNS[len(set(h)) == 1 :]
     every = (*every[:-1], *extra_columns(model), every[-1])
     room = max(

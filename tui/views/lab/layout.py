@@ -39,7 +39,8 @@ def places(columns: int, rows: int, methods: int, overlay: bool = False) -> Plac
     grid = _grid(columns, rows - events, methods) if has_grid else None
     if grid is not None:
         across, side = grid
-        pendulums, whole = _tiles(side, rows - events, methods, across), None
+        pendulums = _tiles(side, rows - events, methods, across)
+        whole = None
         bottom = rows - events
     else:
         side = (
@@ -48,7 +49,8 @@ def places(columns: int, rows: int, methods: int, overlay: bool = False) -> Plac
             else min(max(28, columns * 2 // 5), columns - CHART, 2 * rows + 2)
         )
         bottom = min(rows - events, side // 2 + 2) if events else rows
-        pendulums, whole = (), Region(0, 0, side, bottom)
+        pendulums = ()
+        whole = Region(0, 0, side, bottom)
     listed = Region(0, bottom, side, rows - bottom) if events else None
     if columns < NARROW:
         return Places(pendulums, whole, listed)
@@ -67,13 +69,16 @@ def places(columns: int, rows: int, methods: int, overlay: bool = False) -> Plac
 
 def _grid(columns: int, rows: int, methods: int) -> tuple[int, int] | None:
     """Return how many pendulums stand side by side, and their columns; None if none fit."""
-    best, found = 0, None
+    best = 0
+    found = None
     for across in range(1, min(methods, 3) + 1):
         side = min(max(PANE.width * across, columns * 2 // 5), columns - CHART)
-        width, height = side // across, rows // -(-methods // across)
+        width = side // across
+        height = rows // -(-methods // across)
         least = min(width, 2 * height)  # a cell is twice as high as wide
         if width >= PANE.width and height >= PANE.height and least > best:
-            best, found = least, (across, side)
+            best = least
+            found = (across, side)
     return found
 
 
@@ -82,7 +87,8 @@ def _tiles(columns: int, rows: int, count: int, across: int) -> tuple[Region, ..
     down = -(-count // across)
     tiles: list[Region] = []
     for line in range(down):
-        top, low = rows * line // down, rows * (line + 1) // down
+        top = rows * line // down
+        low = rows * (line + 1) // down
         here = min(across, count - line * across)
         lefts = [columns * at // here for at in range(here + 1)]
         tiles += [Region(left, top, end - left, low - top) for left, end in pairwise(lefts)]

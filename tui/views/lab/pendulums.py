@@ -24,7 +24,8 @@ from tui.views.view import Pane
 
 TOP = 4  # dots between the edge and a pivot at the top
 # rods of a spring, over that at rest: what there is room for, and what is drawn
-STRETCHED, LONGEST = 1.1, 4.0
+STRETCHED = 1.1
+LONGEST = 4.0
 GRAB = 3  # columns that the pointer moves before it is no click
 THROW = 0.1  # s of the pointer's way that decide its speed
 MAGNIFIED = 0.8  # rad, to which small swings are enlarged
@@ -49,7 +50,8 @@ def pendulum_picture(columns: int, rows: int, bobs: Sequence[Bob], reach: float 
     The pivot is in the middle, or at the top if they stay within a `reach` [rad] of a quarter turn.
     """
     canvas = Canvas(columns, rows)
-    x0, y0 = canvas.width / 2, canvas.height / 2
+    x0 = canvas.width / 2
+    y0 = canvas.height / 2
     room = min(x0, y0)
     if reach <= pi / 2:
         y0 = float(TOP)
@@ -66,9 +68,11 @@ def pendulum_picture(columns: int, rows: int, bobs: Sequence[Bob], reach: float 
             faint(bob.ink),
         )
     for bob in bobs:
-        right, down = sin(bob.theta), cos(bob.theta)
+        right = sin(bob.theta)
+        down = cos(bob.theta)
         rod = length * min(bob.length, LONGEST)
-        x, y = x0 + rod * right, y0 + rod * down
+        x = x0 + rod * right
+        y = y0 + rod * down
         canvas.line(x0, y0, x, y, bob.ink, dotted=bob.ghost or bob.diverged)
         if bob.diverged:
             size = bob_radius + 1
@@ -76,7 +80,8 @@ def pendulum_picture(columns: int, rows: int, bobs: Sequence[Bob], reach: float 
             canvas.line(x - size, y + size, x + size, y - size, bob.ink)
         else:
             canvas.disc(x, y, bob_radius, bob.ink, hollow=bob.ghost)
-        column, row = int(x + (bob_radius + 2) * right) // 2, int(y + (bob_radius + 3) * down) // 4
+        column = int(x + (bob_radius + 2) * right) // 2
+        row = int(y + (bob_radius + 3) * down) // 4
         beside = (*range(column, column + len(bobs)), *range(column - 1, column - len(bobs), -1))
         canvas.label(
             next((at for at in beside if canvas.is_free(at, row)), column), row, bob.letter, bob.ink
@@ -236,7 +241,8 @@ def _ghosts(source: Source, t: float, places: Sequence[int]) -> list[Bob]:
 
 def _exact(source: Source, t: float) -> list[Bob]:
     """The exact motion at a time [s], where it is known."""
-    scene, model = source.scene, source.scene.equations
+    scene = source.scene
+    model = source.scene.equations
     length = model.exact_length(scene.theta, scene.omega, t)
     theta = source.exact.at(t).theta
     return [Bob(theta, EXACT, ghost=True, length=length)] if isfinite(theta) else []

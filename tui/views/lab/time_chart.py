@@ -130,7 +130,8 @@ class TimeChart(Pane):
     def _charted(self, source: Source, sample: Sample, look: Shown) -> "TimePlot":
         from tui.drawing.time_chart import Marks, time_chart
 
-        until, back = sample.t, look.seconds
+        until = sample.t
+        back = look.seconds
         if look.stretch is None:
             window = source.history.window(back)
         else:
@@ -189,7 +190,8 @@ class TimeChart(Pane):
 
     def zoom(self, factor: float, shift: float = 0.0) -> None:
         """Zoom by `factor` about the pointer, or `shift` later, down to MIN_ROWS."""
-        source, plot = self.source, self.plot
+        source = self.source
+        plot = self.plot
         if source is None or plot is None or plot.values is None:
             return
         stretch = self._look(source).stretch

@@ -73,7 +73,8 @@ def phase_picture(
     for point in points:
         if point.trail is not None:
             theta, omega = point.trail
-            x, y = viewport.x(theta), viewport.y(omega)
+            x = viewport.x(theta)
+            y = viewport.y(omega)
             canvas.scatter(x, y, faint(point.ink))
             if len(x) <= SPARSE:  # and single dots would be lost among the curves
                 for down, right in ((0, 1), (1, 0), (1, 1)):
@@ -107,23 +108,27 @@ def draw_fence(canvas: Canvas, viewport: Viewport, line: Line) -> None:
 
 def draw_crosshair(canvas: Canvas, viewport: Viewport, state: State) -> None:
     """Draw dotted lines through a state, from edge to edge."""
-    x, y = float(viewport.x(state.theta)), float(viewport.y(state.omega))
+    x = float(viewport.x(state.theta))
+    y = float(viewport.y(state.omega))
     canvas.line(0, y, canvas.width, y, TEXT, dotted=True)
     canvas.line(x, 0, x, canvas.height, TEXT, dotted=True)
 
 
 def on_screen(viewport: Viewport, theta: Floats, omega: Floats) -> list[tuple[float, float]]:
     """Return points of a line in dots, with a break where it leaves one edge for the other."""
-    x, y = viewport.x(theta), viewport.y(omega)
+    x = viewport.x(theta)
+    y = viewport.y(omega)
     if viewport.wrap:
         across = np.flatnonzero(np.abs(np.diff(x)) > np.pi / viewport.theta_per_dot) + 1
-        x, y = np.insert(x, across, np.nan), np.insert(y, across, np.nan)
+        x = np.insert(x, across, np.nan)
+        y = np.insert(y, across, np.nan)
     return list(zip(x.tolist(), y.tolist(), strict=True))
 
 
 def draw_point(canvas: Canvas, viewport: Viewport, point: PhasePoint) -> None:
     """Draw a disc, and its letter in the first free cell around it or at the edge nearest to it."""
-    x, y = float(viewport.x(point.theta)), float(viewport.y(point.omega))
+    x = float(viewport.x(point.theta))
+    y = float(viewport.y(point.omega))
     canvas.disc(x, y, 1.6, point.ink, hollow=point.ink == EXACT)
     if not (math.isfinite(x) and math.isfinite(y)):
         return

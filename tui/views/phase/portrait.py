@@ -77,14 +77,17 @@ def write_words(canvas: Canvas, words: Sequence[Word]) -> None:
 
 def axes(viewport: Viewport) -> list[Word]:
     """Return numbers along the left edge (rad/s) and the lower one (pi or rad)."""
-    columns, bottom = viewport.columns, viewport.rows - 1
-    low, high = viewport.omega_at(4.0 * bottom), viewport.omega_at(0.0)
+    columns = viewport.columns
+    bottom = viewport.rows - 1
+    low = viewport.omega_at(4.0 * bottom)
+    high = viewport.omega_at(0.0)
     words: list[Word] = [
         (0, math.floor(viewport.y(omega) / 4), label[:columns], TEXT)
         for omega, label in number_ticks(low, high, max(bottom // 3, 1))
     ]
     # pi may be at the very edge
-    left, right = viewport.theta_at(0.0), viewport.theta_at(2.0 * columns + 1)
+    left = viewport.theta_at(0.0)
+    right = viewport.theta_at(2.0 * columns + 1)
     for theta, label in theta_ticks(left, right, min(columns // 9 + 1, 8), viewport.wrap):
         middle = math.floor((theta - left) / viewport.theta_per_dot / 2)
         begin = max(min(middle - len(label) // 2, columns - len(label)) - 1, 0)
@@ -105,7 +108,8 @@ def _bands(levels: NDArray[np.float64]) -> NDArray[np.int64]:
 def _border(values: NDArray[Any], heavy: bool = False) -> NDArray[np.bool_]:
     """Return dots that differ from the one to the right or below; heavy: also those beyond."""
     border = np.zeros(values.shape, np.bool_)
-    right, below = values[:, 1:] != values[:, :-1], values[1:] != values[:-1]
+    right = values[:, 1:] != values[:, :-1]
+    below = values[1:] != values[:-1]
     border[:, :-1] |= right
     border[:-1] |= below
     if heavy:
@@ -149,5 +153,6 @@ def _names(levels: Any, omega: Any) -> list[Word]:
 
 def _whole_cells(dots: NDArray[np.bool_]) -> Cells:
     """Return the cells all of whose dots are in a region."""
-    rows, columns = dots.shape[0] // 4, dots.shape[1] // 2
+    rows = dots.shape[0] // 4
+    columns = dots.shape[1] // 2
     return np.array(dots.reshape(rows, 4, columns, 2).all(axis=(1, 3)))

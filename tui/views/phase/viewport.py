@@ -116,8 +116,10 @@ class Viewport(NamedTuple):
 
     def stepped(self, start: State, right: float, up: float) -> State:
         """Return the state so many dots from another, or from the middle if that is hidden."""
-        x, y = float(self.x(start.theta)), float(self.y(start.omega))
-        width, height = 2 * self.columns, 4 * self.rows
+        x = float(self.x(start.theta))
+        y = float(self.y(start.omega))
+        width = 2 * self.columns
+        height = 4 * self.rows
         if not (0 <= x < width and 0 <= y < height):
             x, y = self.middle
         return self.at(min(max(x + right, 0), width - 1), min(max(y - up, 0), height - 1))

@@ -132,7 +132,8 @@ class StabilityPane(Chooser[tuple[int, int]]):
         if self.source is None or not self.places or (aim := self.aim(self.index)) is None:
             return ""
         z, theta = aim
-        cells, w0 = self.cells[:, self.index, theta], self.source.scene.w0
+        cells = self.cells[:, self.index, theta]
+        w0 = self.source.scene.w0
         return verdict(self.cast[self.index], self.grid.theta[theta], self.grid.z, cells, z, w0)
 
     def action_move(self, right: int, up: int) -> None:

@@ -78,7 +78,8 @@ def panel(
 
     `here` is a (z, theta) to mark.  With w0 [1/s] the axis shows h instead of z.
     """
-    method, width = grid.methods[index], columns - MARGIN
+    method = grid.methods[index]
+    width = columns - MARGIN
     signs = {
         _place(grid, z, theta, width, rows): sign for z, theta, sign in theory(method, grid, rows)
     }
@@ -225,10 +226,8 @@ def _theta_of_row(grid: Grid, row: int, rows: int) -> float:
 
 def place_at(grid: Grid, row: int, column: int, rows: int, columns: int) -> tuple[int, int]:
     """Return the indices (z, theta) of the map's cell nearest to a character's middle."""
-    z, theta = (
-        int((column + 0.5) / columns * len(grid.z)),
-        int((rows - row - 0.5) / rows * len(grid.theta)),
-    )
+    z = int((column + 0.5) / columns * len(grid.z))
+    theta = int((rows - row - 0.5) / rows * len(grid.theta))
     return min(max(z, 0), len(grid.z) - 1), min(max(theta, 0), len(grid.theta) - 1)
 
 

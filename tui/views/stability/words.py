@@ -38,7 +38,8 @@ def verdict(method: Method, theta: float, zs: Floats, cells: Cells, at: int, w0:
     place = f"{method.label} at h {zs[at] / w0:.3g} s, {math.degrees(theta):.3g} deg:"
     if cell["fate"] == UNKNOWN:
         return f"{place} not computed yet"
-    holds, fate = not is_lost(cell), said(cell)
+    holds = not is_lost(cell)
+    fate = said(cell)
     other = np.flatnonzero(np.isin(cells["fate"], HELD) != holds)
     if not len(other):
         cliff = "; held at every h on this map" if holds else "; lost at every h on this map"

@@ -34,15 +34,13 @@ Computed = tuple[Grid, Cells]
 
 def report(scene: Scene, steps: int, computed: Sequence[Computed], *, is_whole: bool) -> Report:
     """Return the report of a table's grid and a map's: neither for the linear oscillator."""
-    rows = (
-        [row for row in table(scene, *computed[0]) if row.failure or is_whole or len(computed) > 1]
-        if computed
-        else []
-    )
+    rows: list[Row] = []
+    notes: list[Any] = [LINEAR]
+    if computed:
+        complete = is_whole or len(computed) > 1
+        rows = [row for row in table(scene, *computed[0]) if row.failure or complete]
+        notes = [*_words(scene), Table(_columns(scene, steps), rows)]
     pendulum = [_row_fields(row) for row in rows]
-    notes: list[Any] = (
-        [*_words(scene), Table(_columns(scene, steps), rows)] if computed else [LINEAR]
-    )
     maps = computed[1:]
     for grid, cells in maps:
         notes += ["", *_picture(grid, cells)]
@@ -65,16 +63,16 @@ def report(scene: Scene, steps: int, computed: Sequence[Computed], *, is_whole: 
             "steps": steps,
             "band": BAND,
             "linear": [finite(row) for row in linear],
-            "pendulum": [
-                fields
-                | {"at_scene": None if row.here["fate"] == UNKNOWN else _cell_fields(row.here)}
-                for fields, row in zip(pendulum, rows, strict=True)
-            ],
+            "pendulum": [_row_fields(row) | {"at_scene": _at_scene(row)} for row in rows],
             "map": _map_fields(*maps[0]) if maps else None,
             "interrupted": not is_whole,
         },
         records=_swings(*maps[0]) if maps else pendulum,
     )
+
+
+def _at_scene(row: Row) -> dict[str, Any] | None:
+    return None if row.here["fate"] == UNKNOWN else _cell_fields(row.here)
 
 
 def _linear_fields(scene: Scene, method: Method) -> dict[str, Any]:
