@@ -185,7 +185,7 @@ def judge(times: "ArrayLike", energies: "ArrayLike", scale: float | str = "std")
         raise ValueError(
             f"times must increase, and times[{place}] is not later than the one before."
         )
-    found = Judge().read(t, e, absolute=scale != "std")
+    found = Judge.read(t, e, absolute=scale != "std")
     e = e[found.first :]
     size = _size(e, scale)
     slope = found.slope

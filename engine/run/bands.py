@@ -10,7 +10,7 @@ import copy
 import math
 from collections.abc import Sequence
 from itertools import pairwise
-from statistics import fmean, median, stdev
+from statistics import median
 from typing import NamedTuple, Self
 
 MAX_BINS = 64
@@ -133,15 +133,8 @@ def hull(bins: Sequence[Bin]) -> tuple[float, float]:
     return min(each.low for each in bins), max(each.high for each in bins)
 
 
-def rising(bins: Sequence[Bin]) -> float:
-    """Return the share of moves upwards from bin to bin: 0.5 for a random walk, 1 or 0 for steady growth or loss."""
+def one_way(bins: Sequence[Bin]) -> float:
+    """Return the share of moves from bin to bin that go the commoner way: 0.5 to 1."""
     moves = [b.middle - a.middle for a, b in pairwise(bins)]
-    return sum((move > 0) + (move == 0) / 2 for move in moves) / len(moves)
-
-
-def steady(bins: Sequence[Bin]) -> bool:
-    """Return whether the moves from bin to bin agree, five times better than those of a random walk."""
-    moves = [b.middle - a.middle for a, b in pairwise(bins)]
-    if len(moves) < 2 or not all(map(math.isfinite, moves)):
-        return False
-    return abs(fmean(moves)) * math.sqrt(len(moves)) > 5 * stdev(moves)
+    rising = sum((move > 0) + (move == 0) / 2 for move in moves) / len(moves)
+    return max(rising, 1 - rising)

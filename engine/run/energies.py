@@ -56,7 +56,6 @@ def judged(times: Any, energies: Any, absolute: bool = True) -> Judgement:
         slope=judgement.slope and judgement.slope * scale,
         uncertainty=judgement.uncertainty and judgement.uncertainty * scale,
         fluctuation=judgement.fluctuation and judgement.fluctuation * unit,
-        significant=judgement.verdict in ("grows", "loses"),
         transient=float(at[0] - times[0]),
         first=first,
     )

@@ -29,15 +29,12 @@ DEFINITIONS: dict[Verdict, str] = {
 QUIET = 0.25
 FENCED = 0.9  # z: below, invariant curves fence orbits in; the last breaks at 0.9857: Greene (1979)
 MIN_STEPS_A_TURN = 4  # Nyquist for the error, which turns twice as often: fewer beat with it
-NEAR_TOP = 11.0  # w0·period: longer swings come within 30° of upright, where fences break first
-CONSERVED = 0.045  # z² E: half of what the modified energy of order 4 moves by in a regular orbit
-ELLIPSE = 0.15  # the ellipse of swings below SMALL moves by theta²/4, half of it the other way
-SMALL = 0.7  # rad
 GONE = 1e6  # an error from which no force brings a bob back, where there is no way over the top
+NEAR_TOP = 11.0  # w0·period: longer swings come within 30° of upright, where fences break first
 # Rounding:
-WALK = 8.0  # standard deviations of a random walk of roundings: it gets there once in 10^14 runs
+WALK = 32.0  # roundings: eight standard deviations of a random walk of sixteen a step
 REFERENCE = 1e-9  # of ln(E/E_true): ten times the error of the true motion
-ABOVE_ROUNDING = 1e3  # times the rounding of theta: a thousandth of the energy's root is left
+ABOVE = 1e3  # times the rounding of theta: a thousandth of the energy's root is left
 ROUNDING = 1e-12  # of an energy: a million roundings, or a random walk of 1e7
 AT_REST = -1 + 1e-9  # an error: nothing is left to lose
 # Risk of error: none wrong in 3 300 runs of a million steps.
@@ -45,6 +42,9 @@ LOOKS = 8  # a period: Nyquist for the second harmonic of the error, twice over
 MIN_PERIODS = 8  # for a theorem to be applied: the orbit has then shown its band
 MIN_BINS = 4  # for a line with two degrees of freedom
 MIN_BIN_STEPS = 16  # beyond z = 0.4 a swing has fewer, and their extremes miss those of the band
+ONE_WAY = 0.9  # of the moves from bin to bin
+NO_WAY = 0.75  # of the moves: so many of 31 go one way in 1 of 300 random walks
+STEADY = 5.0  # standard deviations: 5 to 10 of 100 random walks have a steeper line
 STRAIGHT_BINS = 24  # of which a random walk goes 9 in 10 the same way once in 60 000
 LONG = 4096  # steps that show regularity: chaos separates by e^15 with a Lyapunov number of 0.004
 APART = 15.0  # ln of separation beyond that of regular neighbours: chaos
@@ -105,7 +105,6 @@ class Judgement(NamedTuple):
     verdict: Verdict = "too early"
     slope: float | None = None  # mean change of the relative energy error per unit of time [1/s]
     uncertainty: float | None = None  # standard deviation of the slope
-    significant: bool = False  # the slope differs from 0 by the test of Student's t
     periods: float = 0.0  # how many periods the verdict rests on
     lyapunov: float | None = None  # 1/s; only where the verdict rests on it
     progress: Progress | None = None  # only while it is too early
@@ -119,14 +118,6 @@ class Judgement(NamedTuple):
     def __str__(self) -> str:
         """Return the verdict, with the progress to it if it is too early for one."""
         return f"{self.verdict}: {self.progress}" if self.progress else self.verdict
-
-    @property
-    def trend(self) -> float | None:
-        """The slope where it is significant and goes the verdict's way; what stays in a band, or wanders, has none."""
-        if self.slope is None or not self.significant:
-            return None
-        ways = {"grows": self.slope > 0, "loses": self.slope < 0, "too early": True}
-        return self.slope if ways.get(self.verdict) else None
 
 
 MilestoneKind = Literal["over the top", "failed", "verdict", "errors cross"]

@@ -18,13 +18,12 @@ class Judges:
     again and again.
     """
 
-    def __init__(self, cast: Cast, model: Model, period: float, scale: float) -> None:
-        """`period` [s] is the exact motion's, or 2 pi/w0 if it has none; energy errors are relative to `scale`."""
+    def __init__(self, cast: Cast, model: Model, period: float) -> None:
+        """`period` [s] is the exact motion's, or 2 pi/w0 if it has none."""
         self.milestones: list[Milestone] = []
         self._cast = cast
         self._model = model
         self._period = period
-        self._scale = scale
         self._judges: list[Judge] = []
         # methods that leave, and bounded ones that they were below
         self._below: set[tuple[int, int]] = set()
@@ -50,9 +49,7 @@ class Judges:
         self._passed = set()
         self._judges = []
         for method, h, point in zip(self._cast, steps, points, strict=True):
-            judge = Judge(
-                h=h, period=self._period, method=method, model=self._model, scale=self._scale
-            )
+            judge = Judge(h=h, period=self._period, method=method, model=self._model)
             self._judges.append(judge)
             if point is None:
                 judge.fail(0)
@@ -69,7 +66,7 @@ class Judges:
             now = judge.judgement
             if now.verdict != before:
                 verdict = Milestone("verdict", self._cast[index], step, t, point.error, now.verdict)
-                self.milestones.append(verdict._replace(trend=now.trend, lyapunov=now.lyapunov))
+                self.milestones.append(verdict._replace(trend=now.slope, lyapunov=now.lyapunov))
         for index, other in self._crossings():
             if point := points[index]:
                 crossing = Milestone("errors cross", self._cast[index], step, t, point.error)

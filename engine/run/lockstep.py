@@ -123,7 +123,7 @@ class Lockstep:
         self._period = exact.period or math.tau / model.w0
         self._judges: Judges | None = None
         if judged:
-            self._judges = Judges(scene.cast, model, self._period, self._reference.scale)
+            self._judges = Judges(scene.cast, model, self._period)
         swings = model.turns and exact.regime == "libration"
         self._bottom = math.tau * round(scene.theta / math.tau) if judged and swings else None
         self._restart()

@@ -74,14 +74,3 @@ class Stretching:
             self._along = theta / length, omega / length
             self.log += math.log(length)
             self.steps += steps
-
-
-def conserved_ellipse(method: Method, z: float) -> tuple[float, float, float] | None:
-    """What a symplectic step keeps of small swings: -c theta² + (a - d) theta omega + b omega², in units where w0 = 1.
-
-    ((a, b), (c, d)) is the step's Jacobian at the bottom.  None where that is no ellipse.
-    """
-    if not method.symplectic:
-        return None
-    a, b, c, d = at_bottom(method, z)
-    return (-c, a - d, b) if (a - d) ** 2 / 4 + b * c < 0 else None

@@ -240,7 +240,7 @@ def main(trials: int) -> None:
                 scale = 10.0 ** random.integers(-3, 3)
                 energies = np.round((zero + series.energies) * scale, 8)
                 kept = np.isfinite(energies)
-                verdict = Judge().read(times[kept], energies[kept]).verdict
+                verdict = Judge.read(times[kept], energies[kept]).verdict
                 found = kinds[series.kind]
                 found[verdict] += 1
                 early = verdict == "too early"

@@ -76,7 +76,7 @@ def of_cells(every: int) -> tuple[dict[str, Counter[str]], list[tuple[object, ..
         energies = 1 + np.array(errors)
         for name, which in samplings(len(energies), random).items():
             times = which * stride * scene.h
-            verdict = Judge().read(times, energies[which], failed=ended).verdict
+            verdict = Judge.read(times, energies[which], failed=ended).verdict
             table[f"{name} {letter}"][verdict] += 1
             if verdict not in CELLS[letter] | {"too early"}:
                 wrong.append((name, method.key, start, z, letter, verdict))

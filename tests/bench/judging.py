@@ -50,7 +50,7 @@ def agreement(seconds: float) -> dict[str, Any]:
             )
             times = np.array([abs(sample.t) for sample in samples[: len(energies)]])
             failed = len(energies) < len(samples)
-            alone = Judge().read(times, energies, failed=failed).verdict
+            alone = Judge.read(times, energies, failed=failed).verdict
             cells += 1
             if alone != judgement.verdict:
                 where = (scene.name, method.key, judgement.verdict, alone)
@@ -98,7 +98,7 @@ def early_trends() -> dict[str, int]:
                 lockstep = Lockstep(scene, judged=True)
                 lockstep.advance(round(seconds / scene.h))
                 runs += len(cast)
-                shown += sum(judgement.trend is not None for judgement in lockstep.judgements)
+                shown += sum(judgement.slope is not None for judgement in lockstep.judgements)
     return {"runs": runs, "shown": shown}
 
 

@@ -84,7 +84,6 @@ class Replay(Source):
                 periods=swings,
                 lyapunov=each.lyapunov,
                 slope=each.trend,
-                significant=each.trend is not None,
             )
             for each in self.milestones
             if each.kind == "verdict" and each.step > since

@@ -250,7 +250,7 @@ def drift(source: Source, index: int) -> Insight | None:
     loses = judgement.verdict == "loses"
     if conserved and loses and -error > MAX_RATE_LOSS:
         return Insight("lost", (method,), {"share": -error})
-    slope = {"grows": 1, "loses": -1}.get(judgement.verdict, 0) * (judgement.trend or 0)
+    slope = {"grows": 1, "loses": -1}.get(judgement.verdict, 0) * (judgement.slope or 0)
     if slope <= 0:
         return None
     if judgement.growth and judgement.verdict == "grows":

@@ -50,7 +50,7 @@ MAKES = {
 @pytest.mark.parametrize("name", MAKES)
 def test_the_verdict_is_the_truth(name):
     energies, truth = MAKES[name]
-    assert Judge().read(T, 1000 + energies).verdict == truth
+    assert Judge.read(T, 1000 + energies).verdict == truth
 
 
 @pytest.mark.parametrize(
@@ -58,12 +58,12 @@ def test_the_verdict_is_the_truth(name):
 )
 def test_the_verdict_does_not_depend_on_units_or_on_the_origin_of_time(name):
     energies, truth = MAKES[name]
-    assert Judge().read(1e-12 * T - 3e-9, -1e-20 * (1e4 - energies)).verdict == truth
+    assert Judge.read(1e-12 * T - 3e-9, -1e-20 * (1e4 - energies)).verdict == truth
 
 
 def test_uneven_sampling_changes_no_trend():
     times = np.sort(np.random.default_rng(6).uniform(0, 1, 3000)) ** 2
-    found = Judge().read(times, 1000 + np.sin(100 * times) - 20 * times)
+    found = Judge.read(times, 1000 + np.sin(100 * times) - 20 * times)
     assert found.verdict == "loses"
     assert found.slope == pytest.approx(-20, rel=0.05)
 
@@ -71,7 +71,7 @@ def test_uneven_sampling_changes_no_trend():
 @pytest.mark.parametrize("ratio", [1 / 200, 1 / 50, 1 / 20])
 def test_a_true_slope_is_within_its_uncertainties_as_often_as_they_promise(ratio):
     found = [
-        Judge().read(T[::4], 1000 + correlated(ratio, seed, 500) + 0.01 * T[::4])
+        Judge.read(T[::4], 1000 + correlated(ratio, seed, 500) + 0.01 * T[::4])
         for seed in range(40)
     ]
     sigmas = np.array([(each.slope - 0.01) / each.uncertainty for each in found])
@@ -82,30 +82,30 @@ def test_a_true_slope_is_within_its_uncertainties_as_often_as_they_promise(ratio
 def test_a_walk_neither_grows_nor_is_bounded():
     random = np.random.default_rng(3)
     walks = [np.cumsum(random.standard_normal(1000)) for _ in range(40)]
-    verdicts = [Judge().read(T[:1000], 1e4 + walk).verdict for walk in walks]
+    verdicts = [Judge.read(T[:1000], 1e4 + walk).verdict for walk in walks]
     assert sum(verdict in ("too early", "wanders") for verdict in verdicts) >= 36
     assert "wanders" in verdicts
 
 
 def test_an_initial_transient_is_left_out():
-    found = Judge().read(T, 1000 + 0.01 * NOISE - 5 * np.exp(-T))
+    found = Judge.read(T, 1000 + 0.01 * NOISE - 5 * np.exp(-T))
     assert found.verdict == "bounded"
     assert 2 < found.transient < 10
     assert found.first == np.searchsorted(T, found.transient)
 
 
 def test_few_samples_and_few_independent_ones_are_too_early():
-    few = Judge().read(T[: MIN_SAMPLES - 1], 1000 + NOISE[: MIN_SAMPLES - 1])
+    few = Judge.read(T[: MIN_SAMPLES - 1], 1000 + NOISE[: MIN_SAMPLES - 1])
     assert few.progress == (MIN_SAMPLES - 1, MIN_SAMPLES, "samples")
-    found = Judge().read(T, 1000 + correlated(1 / 5))
+    found = Judge.read(T, 1000 + correlated(1 / 5))
     assert found.verdict == "too early"
     assert found.progress.have < found.progress.need == 2 * MIN_INDEPENDENT
 
 
 def test_energies_that_end_in_nan_have_failed():
-    assert Judge().read(T, NOISE, failed=True).verdict == "failed"
+    assert Judge.read(T, NOISE, failed=True).verdict == "failed"
 
 
 def test_what_multiplies_is_judged_in_its_logarithm():
-    assert Judge().read(T, np.exp(T)).verdict == "grows"
-    assert Judge().read(T, np.exp(-T / 5)).verdict == "loses"
+    assert Judge.read(T, np.exp(T)).verdict == "grows"
+    assert Judge.read(T, np.exp(-T / 5)).verdict == "loses"

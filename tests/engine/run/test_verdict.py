@@ -11,7 +11,7 @@ from engine.models.pendulum import Pendulum
 from engine.run import compiled
 from engine.run.bands import Bands, line
 from engine.run.judge import Judge
-from engine.run.judgement import Judgement, LookPoint
+from engine.run.judgement import LookPoint
 from engine.run.lockstep import Lockstep
 from engine.run.loops import PlainLoops
 from engine.run.stepping import Stepping
@@ -177,24 +177,6 @@ def test_a_verdict_is_taken_back_when_the_error_comes_back() -> None:
     away, back = [k * 1e-3 for k in range(640)], [1e-2 * math.sin(k / 3) for k in range(4000)]
     assert judged(away).judgement.verdict == "grows"
     assert judged(away + back).judgement.verdict != "grows"
-
-
-@pytest.mark.parametrize(
-    ("verdict", "significant", "shown"),
-    [
-        ("loses", True, True),
-        ("too early", True, True),
-        ("grows", True, False),
-        ("loses", False, False),
-        ("bounded", True, False),
-        ("caught", True, False),
-        ("wanders", True, False),
-    ],
-)
-def test_a_judgement_has_a_trend_only_if_its_slope_is_significant(
-    verdict, significant: bool, shown: bool
-) -> None:
-    assert (Judgement(verdict, -1e-3, 1e-4, significant).trend is not None) == shown
 
 
 def test_a_failed_method_gets_the_verdict_failed() -> None:

@@ -76,7 +76,7 @@ COLUMNS = (
         5,
         ("per s", 8),
         ("trend per s", 11),
-        lambda line, width: scientific(line.judgement.trend, width),
+        lambda line, width: scientific(line.judgement.slope, width),
     ),
     Column(
         8,

@@ -39,9 +39,7 @@ def judged(
     times = np.asarray(table.columns[0])
     energies = np.asarray(table.columns[1])
     # a deviation does not depend on the zero of energy, and then nor does the verdict
-    found = Judge().read(
-        times, energies, failed=table.failed_at is not None, absolute=scale != "std"
-    )
+    found = Judge.read(times, energies, failed=table.failed_at is not None, absolute=scale != "std")
     rest = energies[found.first :]
     size = _size(table, rest, scale)
     with np.errstate(over="ignore"):

@@ -83,7 +83,7 @@ def columns_of(scene: Scene, lockstep: "Lockstep | None" = None) -> list[Column]
     trends = []
     if lockstep is not None:
         judgements = dict(zip(labels, lockstep.judgements, strict=True))
-        trends.append(Column("per second", lambda row: judgements[row["method"]].trend, "+.1e"))
+        trends.append(Column("per second", lambda row: judgements[row["method"]].slope, "+.1e"))
     return [
         Column("method", lambda row: labels[row["method"]]),
         Column("verdict", verdict_of),
