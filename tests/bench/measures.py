@@ -19,13 +19,13 @@ MAX_COLUMNS = 100
 MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
-    "characters": 1_090_459,
-    "characters_of_engine": 327_323,
+    "characters": 1_084_100,
+    "characters_of_engine": 321_100,
     "characters_of_recordings": 79_879,
-    "characters_of_tui": 683_257,
-    "characters_of_tests": 1_007_043,
+    "characters_of_tui": 683_200,
+    "characters_of_tests": 1_006_500,
     "files": 219,
-    "long_lines": 30,
+    "long_lines": 23,
     "parallel_assignments": 27,
     "conditional_expressions_per_1000_lines": 26,
     "long_functions": 0,
