@@ -177,7 +177,7 @@ class Recorder:
             wanted = self.path
             self.path = free_path(wanted)
             publish(self.part, self.path)
-            why = f"a file of this name appeared meanwhile; the recording is saved as {self.path.name}"
+            why = f"its name was taken meanwhile; the recording is saved as {self.path.name}"
             raise NameTakenError(why, wanted) from error
 
     def abandon(self, delete: bool = False) -> None:

@@ -18,9 +18,9 @@ def recover(
 ) -> dict[str, Any]:
     """Write what is intact of `path` to `out`, which appears only when it is whole.
 
-    Returns what was kept, what was lost and why: `damaged`, if more was wrong than that the
-    recording was not finished; `entries_lost`, samples and events as far as the numbers of the
-    others show; `runs_lost`, whose start was lost.  Raises RecordingError if nothing can be saved, DiskError if `out` cannot be written.
+    Returns what was kept, lost and wrong: `damaged`, if more than that it was not finished;
+    `entries_lost`, as far as the numbers of the others show; `runs_lost`, whose start was lost.
+    Raises RecordingError if nothing can be saved, DiskError if `out` cannot be written.
     """
     if out.exists() and path.exists() and out.samefile(path):
         raise DiskError("is the recording to recover; choose another name", out)

@@ -194,51 +194,49 @@ def recover_leftovers(folder: Path) -> list[str]:
         from recordings.errors import printable  # it and mcap: only if there is something to do
 
         try:
-            sentences.append(_recover(part))
+            sentence = _recover(part)
         except FileNotFoundError:
-            pass  # another lab was quicker
+            continue  # another lab was quicker
         except OSError as error:
-            name = printable(str(part))
             why = error.strerror or error
-            sentences.append(f"The unfinished recording {name} cannot be recovered now: {why}.")
+            sentence = f"The unfinished recording {part} cannot be recovered now: {why}."
+        sentences.append(printable(sentence, limit=1000))
     return sentences
 
 
 def _recover(leftover: Path) -> str:
     """Make a recording of a leftover, and return a sentence about it.
 
-    The leftover is removed once all of it is in the recording, or if it was empty; otherwise it is
-    renamed, so that it is not found again.  Raises OSError if the disk fails.
+    Unless all of it is in the recording, it is kept under a name that is not found again.
     """
-    from recordings.errors import NameTakenError, RecordingError, printable
+    from recordings.errors import NameTakenError, RecordingError
     from recordings.files import publish
     from recordings.library import PART, alone_with, free_path
     from recordings.recovery import recover
 
-    def put_aside() -> str:
-        kept = leftover.rename(free_path(leftover.with_name(f"{leftover.name}.damaged")))
-        return f" The original is kept as {printable(str(kept))}."
-
     with alone_with(leftover):
-        if leftover.stat().st_size == 0:
-            leftover.unlink()
-            return f"An unfinished recording was empty: {printable(str(leftover))}."
         name = leftover.with_name(leftover.name.removesuffix(PART))
+        aside = free_path(leftover.with_name(f"{leftover.name}.damaged"))
+        if not leftover.stat().st_size:
+            leftover.unlink()
+            return f"An unfinished recording was empty: {leftover}."
         try:
-            with progress(f"recovering {printable(leftover.name)}") as show:
+            with progress(f"recovering {leftover.name!r}") as show:
                 found = recover(leftover, free_path(name), show)
         except RecordingError as error:
-            return f"An unfinished recording cannot be recovered: {error}{put_aside()}"
+            leftover.rename(aside)
+            return f"No recording can be recovered: {error} The original is kept as {aside}."
         lost = ""
         if found["damaged"]:
-            lost = f" {found['entries_lost']} samples and events are lost.{put_aside()}"
+            leftover.rename(aside)
+            lost = f" {found['entries_lost']} samples and events are lost; see also {aside}."
         else:
             leftover.unlink()
         saved = Path(found["out"])
         with suppress(NameTakenError):
             publish(saved, name)
             saved = name
-        return f"An unfinished recording was recovered: {printable(str(saved))}.{lost}"
+        return f"An unfinished recording was recovered: {saved}.{lost}"
 
 
 def print_sentences(source: Any, write: Callable[..., None]) -> int:

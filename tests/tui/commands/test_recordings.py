@@ -5,13 +5,11 @@ import os
 import pytest
 from mcap.writer import Writer
 
-from recordings.library import Item
 from recordings.recorder import Recorder
 from recordings.recording import Recording
 from recordings.verification import verify
 from tests.recordings.examples import record, two_runs
 from tests.tui.command_line import pendu
-from tui.commands.files.recordings import size, to_prune
 
 
 @pytest.fixture
@@ -121,12 +119,6 @@ def test_prune_keeps_the_newest(library):
     assert names(library) == ["b.mcap", "c.mcap"]
 
 
-def test_prune_keeps_what_fits(library):
-    size = (library / "c.mcap").stat().st_size
-    assert pendu("recordings", "prune", "--size", 2 * size, "--yes").code == 0
-    assert names(library) == ["b.mcap", "c.mcap"]
-
-
 def test_prune_deletes_nothing_without_a_yes(library):
     outcome = pendu("recordings", "prune", "--keep", 1)
     assert outcome.refused(2, "--yes")
@@ -159,25 +151,11 @@ def test_prune_touches_no_file_in_use(library):
         ("prune",),
         ("--keep", "1"),
         ("prune", "--keep", "0"),
-        ("prune", "--size", "lots"),
-        ("prune", "--size", "-1"),
     ],
 )
 def test_prune_without_a_measure_deletes_nothing(library, arguments):
     assert pendu("recordings", *arguments, "--yes").refused(2)
     assert len(names(library)) == 3
-
-
-def test_a_large_recording_does_not_make_room_for_older_ones(library):
-    items = [Item(library / name, size, 0.0) for name, size in (("a", 1), ("b", 99), ("c", 1))]
-    assert to_prune(items, None, 50) == items[1:]
-
-
-@pytest.mark.parametrize(
-    ("text", "bytes_"), [("2000", 2000), ("500MB", 5e8), ("1.5 GB", 1.5e9), ("3k", 3000)]
-)
-def test_sizes_are_read_with_their_units(text, bytes_):
-    assert size(text) == bytes_
 
 
 @pytest.mark.parametrize("name", ["info", "recover"])

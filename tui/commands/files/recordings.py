@@ -1,7 +1,6 @@
 """List the recordings, show what is in one, recover a damaged one, or delete old ones."""
 
 import argparse
-import re
 import sys
 import time
 from contextlib import suppress
@@ -27,8 +26,7 @@ examples:
   pendu-tui recordings
   pendu-tui recordings show latest
   pendu-tui recordings recover swing.mcap.part -o saved.mcap
-  pendu-tui recordings prune --keep 20
-  pendu-tui recordings prune --size 500MB --yes
+  pendu-tui recordings prune --keep 20 --yes
 """
 
 
@@ -50,19 +48,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--force", action="store_true", help="overwrite OUT")
     group = parser.add_argument_group("prune")
     group.add_argument("--keep", metavar="N", type=count, help="keep the N newest")
-    group.add_argument(
-        "--size", metavar="SIZE", type=size, help="keep the newest up to SIZE in total, e.g. 500MB"
-    )
     group.add_argument("--yes", action="store_true", help="delete without asking")
-
-
-def size(text: str) -> int:
-    """Return a size in bytes from `500MB`, `1.5 GB` or `2000000`."""
-    match = re.fullmatch(r"(\d{1,9}(?:\.\d{1,9})?) ?([kMGT]?)B?", text)
-    if not match:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a size; use for example 500MB or 2GB")
-    power = "kMGT".index(match[2]) + 1 if match[2] else 0
-    return int(float(match[1]) * 1000**power)
 
 
 OPTIONS = {
@@ -70,7 +56,6 @@ OPTIONS = {
     "output": ("recover",),
     "force": ("recover",),
     "keep": ("prune",),
-    "size": ("prune",),
     "yes": ("prune",),
 }
 """Option -> the verbs that it belongs to."""
@@ -224,11 +209,9 @@ def _recover(options: argparse.Namespace) -> Report:
 def _prune(options: argparse.Namespace) -> Report:
     from recordings import library
 
-    if options.keep is None and options.size is None:
-        raise UserError(
-            "specify what to keep: --keep 20 for the newest 20, or --size 500MB for what fits."
-        )
-    doomed = to_prune(library.listing(), options.keep, options.size)
+    if options.keep is None:
+        raise UserError("specify how many to keep: --keep 20 for the newest 20.")
+    doomed = library.listing()[options.keep :]
     if doomed and not options.yes and not _confirmed(doomed):
         doomed = []
     deleted = list(filter(delete, doomed))
@@ -240,29 +223,15 @@ def _prune(options: argparse.Namespace) -> Report:
     return Report(name="recordings-prune", fields=fields, notes=notes)
 
 
-def to_prune(newest_first: "list[Item]", keep: int | None, size: int | None) -> "list[Item]":
-    """Return what to delete so that the `keep` newest and at most `size` bytes are left."""
-    total = 0
-    for place, item in enumerate(newest_first):
-        total += item.bytes
-        if (keep is not None and place >= keep) or (size is not None and total > size):
-            return newest_first[place:]
-    return []
-
-
 def delete(item: "Item") -> bool:
     """Delete a recording with its marks, unless it is in use; return whether it was deleted."""
     from recordings import library
 
-    try:
-        if library.in_use(item.path):
-            return False
-        item.path.unlink()
-    except OSError:
-        return False
     with suppress(OSError):
-        item.path.with_name(item.path.name + library.MARKS).unlink()
-    return True
+        if not library.in_use(item.path):
+            item.path.unlink()
+            item.path.with_name(item.path.name + library.MARKS).unlink(missing_ok=True)
+    return not item.path.exists()
 
 
 def _confirmed(doomed: "list[Item]") -> bool:
