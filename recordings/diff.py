@@ -20,17 +20,15 @@ def compare(a: Recording, b: Recording) -> dict[str, Any]:
     Returns `done`: what was done differently; `first`: the first number that differs; how many
     samples are at equal times, or in one only; `errors`: the largest at equal times, by method.
     """
-    samples, only_in_a, only_in_b = 0, 0, 0
+    samples = 0
+    only_in = {"a": 0, "b": 0}
     first: dict[str, Any] | None = None
     errors: dict[str, dict[str, float]] = {}
     both = merge(_timed(a, "a"), _timed(b, "b"), key=itemgetter(0))
     for _, group in groupby(both, itemgetter(0)):
         at_once = {side: sample for _, side, sample in group}
-        if "b" not in at_once:
-            only_in_a += 1
-            continue
-        if "a" not in at_once:
-            only_in_b += 1
+        if len(at_once) == 1:
+            only_in[min(at_once)] += 1
             continue
         one, other = at_once["a"], at_once["b"]
         samples += 1
@@ -46,7 +44,7 @@ def compare(a: Recording, b: Recording) -> dict[str, Any]:
                     first = {"run": one.run, "t": one.t, "step_a": one.step, "step_b": other.step}
                     first |= {"method": method, "field": name, "a": p, "b": q}
     found: dict[str, Any] = {"done": list(_done(a, b)), "first": first}
-    found |= {"only_in_a": only_in_a, "only_in_b": only_in_b}
+    found |= {f"only_in_{side}": count for side, count in only_in.items()}
     return {"identical": not any(found.values()), **found, "samples": samples, "errors": errors}
 
 

@@ -107,9 +107,8 @@ def check_present(scene: Scene, only: Iterable[str] | None = None) -> None:
     for method in scene.cast:
         if method.phases is _no_phases and (only is None or method.key in only):
             raise RecordingError(
-                f"it cannot be verified without the method {method.key}, a user's own; give it with"
-                f" --method FILE.py:{method.key}, its file as it was"
-                f" (SHA-256 {method.reference.partition('@')[2][:12]}…)"
+                f"it needs the user's own method {method.key}; give its file as it was (SHA-256"
+                f" {method.reference.partition('@')[2][:12]}…) with --method FILE.py:{method.key}"
             )
 
 

@@ -102,13 +102,9 @@ def decode_event(data: bytes) -> Event:
         raise RecordingError(f"run {run} cannot have been recorded: {error}") from error
 
 
-_dumps_text = json.JSONEncoder(separators=(",", ":"), allow_nan=False).encode
-
-
 def _dumps(fields: dict[str, Any]) -> bytes:
-    return _dumps_text(
-        {name: value for name, value in fields.items() if value is not None}
-    ).encode()
+    known = {name: value for name, value in fields.items() if value is not None}
+    return json.dumps(known, separators=(",", ":"), allow_nan=False).encode()
 
 
 def _loads(data: bytes, fields: Sequence[Field]) -> dict[str, Any]:
@@ -147,14 +143,8 @@ def _milestone(fields: dict[str, Any]) -> Milestone:
     verdict = fields["verdict"]
     if kind not in get_args(MilestoneKind) or verdict not in VERDICTS:
         raise RecordingError(f"unknown milestone {kind!r}, {verdict!r}")
-    return Milestone(
-        kind=kind,
-        method=method_named(fields["method"]),
-        step=fields["step"],
-        t=fields["t"],
-        energy_error=fields["energy_error"],
-        verdict=verdict,
-        other=method_named(fields["other"]) if kind == "errors cross" else None,
-        trend=fields.get("trend"),
-        lyapunov=fields.get("lyapunov"),
-    )
+    given = {name: fields[name] for name in Milestone._fields if name in fields}
+    given |= {"kind": kind, "method": method_named(fields["method"])}
+    if kind == "errors cross":
+        given["other"] = method_named(fields["other"])
+    return Milestone(**given)

@@ -1,8 +1,7 @@
 """Library: the folder of recordings, their names and locks.
 
-A writer holds an exclusive lock on a recording, a reader a shared one.  A lock ends with its
-process, so a leftover differs from a recording in progress.  Only POSIX has such locks; elsewhere
-nothing is locked.
+A writer locks a recording exclusively, readers share it.  A lock ends with its process, so a
+leftover differs from a recording in progress.  Only POSIX has such locks.
 """
 
 import os

@@ -1,9 +1,8 @@
 """Reader: the intact chunks of an MCAP file, past any damage.
 
-mcap takes chunks apart.  A chunk is the unit that is intact or lost: its checksum covers all that
-is in it.  A finished file ends with a summary of where its chunks are.  Without one, or if the
-file's checksum is wrong, a search finds the intact chunks.  Sizes are bounded before anything is
-decompressed: all work stays in proportion to the file's bytes.
+mcap takes chunks apart.  A chunk is intact or lost: its checksum covers all that is in it.  A
+finished file ends with a summary of where its chunks are.  Without one, or if the file's checksum
+is wrong, a search finds the intact chunks.  All work stays in proportion to the file's bytes.
 """
 
 import struct

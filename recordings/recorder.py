@@ -36,8 +36,7 @@ from recordings.library import free_path, hold, part_of
 FLUSH_EVERY = 0.7  # s of the recording clock; with a slow frame's delay kill -9 loses less than 1 s
 MAX_CHUNK = 1 << 17  # bytes of messages; the only limit in headless runs
 
-WallClock = Callable[[], int]
-"""ns since 1970."""
+WallClock = Callable[[], int]  # ns since 1970
 
 
 class _ChunkIndices:

@@ -6,7 +6,7 @@ Chunks are kept or dropped as they are; no number is repaired, guessed or change
 from pathlib import Path
 from typing import Any
 
-from recordings.errors import DiskError, RecordingError, printable
+from recordings.errors import RecordingError, printable
 from recordings.events import Event
 from recordings.reader import ShowProgress
 from recordings.recorder import Recorder
@@ -22,8 +22,6 @@ def recover(
     `entries_lost`, as far as the numbers of the others show; `runs_lost`, whose start was lost.
     Raises RecordingError if nothing can be saved, DiskError if `out` cannot be written.
     """
-    if out.exists() and path.exists() and out.samefile(path):
-        raise DiskError("is the recording to recover; choose another name", out)
     with Recording.open(path, check=True, progress=progress) as recording:
         recorder = Recorder(out, None, overwrite)
         try:

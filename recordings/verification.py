@@ -6,7 +6,6 @@ carries any difference.
 import math
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
-from fractions import Fraction
 from itertools import groupby, takewhile
 from operator import attrgetter
 from pathlib import Path
@@ -43,14 +42,6 @@ class Difference:
     recorded: float | None
     computed: float | None
 
-    @property
-    def ulps(self) -> int | None:
-        """Their distance in units of the last place; None if one is missing."""
-        if self.recorded is None or self.computed is None:
-            return None
-        ulp = Fraction(math.ulp(self.computed))
-        return round(abs(Fraction(self.recorded) - Fraction(self.computed)) / ulp)
-
 
 @dataclass(slots=True)
 class Verification:
@@ -76,8 +67,8 @@ def verify(
     """Verify a recording up to where it is first damaged; `only`: compare the methods of these
     keys.
 
-    Raises RecordingError if it is not a recording, is inconsistent, has no samples, or claims more
-    than `max_steps` steps: the number is in the file's hands.
+    Raises RecordingError if there are no samples to compare, or more than `max_steps` steps to
+    simulate: the number is in the file's hands.
     """
     result = Verification(path)
     with Recording.open(path, check=True, progress=progress) as recording, named(path):

@@ -100,7 +100,7 @@ def test_without_its_start_a_run_is_lost(tmp_path, out):
 
 def test_a_recording_is_not_recovered_onto_itself_or_over_another(tmp_path, out):
     path = ten_seconds(tmp_path / "a.mcap")
-    with pytest.raises(DiskError, match="is the recording to recover"):
+    with pytest.raises(DiskError, match="already exists"):
         recover(path, path)
     out.write_text("precious")
     with pytest.raises(DiskError, match="already exists"):

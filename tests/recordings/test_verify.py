@@ -83,7 +83,6 @@ def test_one_unit_in_the_last_place_is_found_and_reported_in_detail(tmp_path, fi
         == ["explicit_euler", "symplectic_euler", "velocity_verlet", "rk4"][method]
     )
     assert (difference.field, difference.recorded, difference.computed) == (field, wrong, right)
-    assert difference.ulps == 1
 
 
 def test_a_wrong_time_is_found(tmp_path):
@@ -114,7 +113,6 @@ def test_a_wrong_time_of_divergence_is_found(tmp_path):
         0.5,
         None,
     )
-    assert difference.ulps is None
 
 
 def test_a_missing_change_of_h_is_found(tmp_path):

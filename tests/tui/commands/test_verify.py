@@ -61,7 +61,7 @@ def test_a_difference_of_one_bit_is_exit_1_and_located(tmp_path):
     outcome = pendu("verify", path)
     assert outcome.code == 1
     assert outcome.out.startswith("different ")
-    for word in (str(path), "run 1, step 6", "velocity_verlet", "omega", "0x1.", "1 ulps apart"):
+    for word in (str(path), "run 1, step 6", "velocity_verlet", "omega", "0x1."):
         assert word in outcome.out
     (told,) = pendu("verify", path, "--json").json["files"]
     difference = told["first_difference"]
@@ -70,7 +70,6 @@ def test_a_difference_of_one_bit_is_exit_1_and_located(tmp_path):
         6,
         "velocity_verlet",
     )
-    assert difference["ulps"] == 1
 
 
 def test_a_folder_means_all_recordings_below_it(tmp_path):

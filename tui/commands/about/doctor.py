@@ -65,7 +65,6 @@ def _checks() -> Iterator[Check]:
     yield encoding(sys.stdout.encoding)
     yield colour(os.environ)
     yield folder(library.folder())
-    yield sine(library.GOLDEN / "drift.mcap")
     yield Check("python", f"{platform.python_version()}, {platform.system()} {platform.machine()}")
     yield Check("versions", ", ".join(f"{package} {version(package)}" for package in PACKAGES))
     yield numba()
@@ -127,19 +126,6 @@ def folder(path: Path) -> Check:
         "disk space is low: pendu-tui recordings prune --keep 20 frees some" if free < ROOMY else ""
     )
     return Check("recordings", f"{path}, {file_size(free)} free", advice)
-
-
-def sine(golden: Path) -> Check:
-    """Compare this machine's sin() with that of the bundled recordings."""
-    from recordings.arithmetic import fingerprint
-    from recordings.recording import Recording
-
-    with Recording.open(golden) as recording:
-        same = recording.runs[0].arithmetic.sin == fingerprint("sin")
-    advice = (
-        "" if same else "different libm: recordings made elsewhere verify within a tolerance only"
-    )
-    return Check("sin", fingerprint("sin"), advice)
 
 
 def numba() -> Check:

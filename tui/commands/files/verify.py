@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from recordings.errors import RecordingError, printable
 from recordings.library import PART
@@ -14,9 +14,6 @@ from tui.cli.options import add_recording, count, resolve
 from tui.cli.output import progress, warn
 from tui.cli.report import Report, add_report_options, form_of
 from tui.words.numbers import counted
-
-if TYPE_CHECKING:
-    from recordings.verification import Difference
 
 EXAMPLES = """\
 examples:
@@ -104,14 +101,10 @@ def _row(path: Path, refusal: RecordingError | None, options: argparse.Namespace
     return {
         **asdict(result),
         "file": str(result.file),
-        "first_difference": first and _difference_fields(first),
+        "first_difference": first and asdict(first),
         "passes": passes,
         "error": refusal and str(refusal),
     }
-
-
-def _difference_fields(difference: "Difference") -> dict[str, Any]:
-    return asdict(difference) | {"ulps": difference.ulps}
 
 
 def _sentence(row: dict[str, Any]) -> str:
@@ -146,6 +139,4 @@ def _where(first: dict[str, Any]) -> str:
         value = first[name]
         number = "nothing" if value is None else f"{value!r} ({value.hex()})"
         lines.append(f"    {name} {number}")
-    if first["ulps"] is not None:
-        lines.append(f"    {first['ulps']} ulps apart")
     return "\n".join(lines)
