@@ -27,8 +27,8 @@ def simulate(
     """Run a scene for `time` [s]; record and yield its samples, of which the last is the result.
 
     Samples are `sample_every` steps apart, or 1/30 s rounded to whole steps; always the first and
-    the last step.  The caller closes the recorder; one that reads milestones, which are recorded,
-    or verdicts passes the `lockstep` of the scene.
+    the last step.  A caller that reads milestones or verdicts passes the `lockstep` of the scene,
+    and one that records closes the recorder.
     """
     lockstep = lockstep or Lockstep(scene, loops=loops, judged=recorder is not None)
     last = steps_for(scene, time)

@@ -92,7 +92,7 @@ def _files(where: Path, suffix: str) -> list[Path]:
 
 def hold(file: IO[Any], shared: bool = False) -> None:
     """Lock an open file until it is closed, where the file system has locks."""
-    # writers block (others only probe a new file); readers go on without the lock
+    # a writer waits for probes; readers go on without the lock
     with suppress(OSError):
         _lock(file, shared, wait=not shared)
 

@@ -22,7 +22,7 @@ from recordings.errors import RecordingError
 from recordings.format import EVENTS, FORMAT_VERSION
 
 MAGIC = b"\x89MCAP0\r\n"
-MAX_RECORD = 1 << 22  # bytes of a chunk, and of what it decompresses to; a recorder's have 200 kB
+MAX_RECORD = 1 << 22  # bytes of a chunk and its contents; a recorder's have 200 kB
 MAX_EXPANSION = 128  # times its compressed size with its head; a recorder's reach 69
 MAX_SUMMARY = 1 << 26  # bytes; four days
 _RECORD = struct.Struct("<BQ")  # opcode, length of what follows

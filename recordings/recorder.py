@@ -58,9 +58,9 @@ class _ChunkIndices:
 class Recorder:
     """Writes one recording, which begins with a start.
 
-    Clocks are in seconds since the recording began, pauses excluded.  Headless recordings have no
-    `wall` clock: nothing in them depends on when or where they were made, so the same run gives the
-    same bytes.  A failing disk raises DiskError; after that, only `abandon` is of use.
+    Clocks are in seconds since the recording began, pauses excluded.  A headless recording has no
+    `wall` clock, so that the same run gives the same bytes.  A failing disk raises DiskError; after
+    that, only `abandon` is of use.
     """
 
     def __init__(

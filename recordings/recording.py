@@ -3,6 +3,7 @@
 An unfinished or damaged file opens with what is intact in it.
 """
 
+import sys
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -137,23 +138,23 @@ class Recording:
 
     def next(self, place: SamplePlace) -> SamplePlace | None:
         """Return the next sample; None after the last."""
-        first = place.entry + 1
-        for chunk in range(place.chunk, len(self._places)):
-            entries = self._decode(chunk)
-            for index in range(first, len(entries)):
-                if isinstance(entries[index].value, Sample):
-                    return SamplePlace(chunk, index)
-            first = 0
-        return None
+        return self._sample_from(place, 1)
 
     def previous(self, place: SamplePlace) -> SamplePlace | None:
         """Return the sample before; None before the first."""
-        for chunk in range(place.chunk, -1, -1):
+        return self._sample_from(place, -1)
+
+    def _sample_from(self, place: SamplePlace, direction: int) -> SamplePlace | None:
+        chunk, entry = place
+        while 0 <= chunk < len(self._places):
             entries = self._decode(chunk)
-            end = place.entry if chunk == place.chunk else len(entries)
-            for index in reversed(range(end)):
-                if isinstance(entries[index].value, Sample):
-                    return SamplePlace(chunk, index)
+            entry = min(entry, len(entries)) + direction
+            while 0 <= entry < len(entries):
+                if isinstance(entries[entry].value, Sample):
+                    return SamplePlace(chunk, entry)
+                entry += direction
+            chunk += direction
+            entry = -1 if direction > 0 else sys.maxsize
         return None
 
     def entries(self, start: float = 0.0, end: float = inf) -> Iterator[Entry]:

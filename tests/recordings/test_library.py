@@ -105,13 +105,6 @@ def test_a_recording_in_progress_is_not_a_leftover(folder):
         assert leftovers() == [folder / "killed.mcap.part"]
 
 
-def test_pruning_skips_a_recording_that_is_already_gone(folder):
-    fill(folder, gone=1)
-    items = listing()
-    items[0].path.unlink()
-    assert not delete(items[0])
-
-
 def test_marks_go_with_their_recording(folder):
     (path,) = fill(folder, a=1)
     Marks(path).add(Mark(0.5, 1, 3))

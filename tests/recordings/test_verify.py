@@ -125,10 +125,6 @@ def test_a_missing_change_of_h_is_found(tmp_path):
     [
         (two_runs()[:1], "it has no samples"),
         (
-            [*two_runs()[:4], Entry(1.0, two_runs()[3].value._replace(run=7, step=9))],
-            "a run has no start",
-        ),
-        (
             [*two_runs()[:4], Entry(1.0, Event("set_h", 1, 2, 0.2, h=0.2)), *two_runs()[4:5]],
             "not in order",
         ),
