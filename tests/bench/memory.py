@@ -1,7 +1,7 @@
 """An hour in the lab with everything on, by a clock that is moved by hand: what memory it takes.  Prints one JSON object.
 
 Six methods, one of them the user's own, a ghost and a recording.  Every frame is simulated and
-recorded; once in ten seconds one is drawn, by turns in each view, and once a minute h changes.
+recorded; once a second one is drawn, by turns in each view, and once a minute h changes.
 """
 
 import asyncio
@@ -65,8 +65,8 @@ async def measure(folder: Path) -> dict[int, float]:
                 live.tick(now)
             if second % 10 == 0:
                 await pilot.press(next(views))
-                stage.show_now()
-                await pilot.pause()
+            stage.show_now()
+            await pilot.pause()
             if second % 60 == 0:
                 await pilot.press("plus" if second % 120 else "minus")
             if second % 600 == 0:

@@ -1,4 +1,4 @@
-"""Reports of `run`, `accuracy`, `stability` and judged `energies`; they load NumPy, Rich.
+"""Reports of `run`, `accuracy`, `stability`, its `section` and judged `energies`.
 
 `figures` draws them for paper and slide.
 """
