@@ -1,6 +1,6 @@
 """A pytest plugin: the functions of another processor.
 
-pytest -p tests.tui.last_bits; it must come before anything that imports math's functions.
+pytest -p tests.tui.last_bits; it must come before all that imports from math.
 """
 
 import math
