@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import pytest
 
-from engine.run.lockstep import Lockstep
 from recordings.headless import simulate, steps_for
 from recordings.recorder import Recorder
 from recordings.recording import Recording
@@ -14,27 +13,18 @@ from recordings.verification import verify
 from tests.recordings.examples import SCENE, with_changes
 
 
-def test_samples_are_a_thirtieth_of_a_second_apart_with_the_first_and_the_last():
-    steps = [sample.step for sample in simulate(replace(SCENE, h=0.004), 0.1)]
-    assert steps == [0, 8, 16, 24, 25]  # 1/30 s are 8.3 steps
-
-
-def test_samples_are_as_far_apart_as_asked_with_the_first_and_the_last():
-    assert [sample.step for sample in simulate(SCENE, 2.0, sample_every=6)] == [0, 6, 12, 18, 20]
-    assert steps_for(SCENE, 2.0) == 20
-
-
-def test_no_step_is_sampled_more_often_than_it_is_taken():
-    assert [sample.step for sample in simulate(SCENE, 0.5)] == [0, 1, 2, 3, 4, 5]
-
-
-def test_the_last_sample_is_the_result():
-    lockstep = Lockstep(SCENE)
-    lockstep.advance(70)
-    *_, last = simulate(SCENE, 7.0, sample_every=9)
-    assert [reading.theta for reading in last.readings] == [
-        reading.theta for reading in lockstep.sample().readings
-    ]
+@pytest.mark.parametrize(
+    ("h", "time", "every", "steps"),
+    [
+        (0.1, 2.0, 6, [0, 6, 12, 18, 20]),
+        (0.1, 0.3, None, [0, 1, 2, 3]),
+        (0.004, 0.1, None, [0, 8, 16, 24, 25]),  # 1/30 s are 8.3 steps
+    ],
+)
+def test_samples_have_their_cadence_and_include_the_first_and_the_last(h, time, every, steps):
+    scene = replace(SCENE, h=h)
+    assert [sample.step for sample in simulate(scene, time, sample_every=every)] == steps
+    assert steps_for(scene, time) == steps[-1]
 
 
 def test_the_recording_clock_goes_forward_while_simulated_time_runs_backwards(tmp_path):

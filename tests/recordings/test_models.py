@@ -14,7 +14,7 @@ from recordings.diff import compare
 from recordings.errors import RecordingError
 from recordings.events import Entry
 from recordings.fields import EXTRA
-from recordings.format import decode_event, decode_reading, encode_event, encode_readings
+from recordings.format import decode_event, encode_event
 from recordings.headless import simulate
 from recordings.recorder import Recorder
 from recordings.recording import Recording
@@ -108,14 +108,6 @@ def test_a_start_has_the_parameters_of_its_model_and_no_others(scene):
     for wrong in ({name: -1.0}, {"friction": 0.1, "stiffness": 9.0}, {name: None}):
         with pytest.raises(RecordingError):
             decode_event(json.dumps(fields | wrong).encode())
-
-
-@pytest.mark.parametrize("name", SPRING_FIELDS)
-def test_a_reading_in_the_plane_without_its_whole_phase_is_refused(name):
-    fields = json.loads(encode_readings(next(simulate(SPRING, 1.0)))[0])
-    del fields[name]
-    with pytest.raises(RecordingError, match=name):
-        decode_reading(json.dumps(fields).encode(), "spring")
 
 
 def test_other_parameters_are_a_difference_of_the_scenes(tmp_path):

@@ -80,11 +80,6 @@ def test_runs_have_their_scene_times_and_steps(recording):
     assert (second.number, second.begin, second.end, second.steps) == (2, 2.75, 4.0, 16)
 
 
-def test_events_come_with_their_time(recording):
-    events = [(clock, event._replace(arithmetic=None)) for clock, event in recording.events]
-    assert events == [entry for entry in expected() if isinstance(entry.value, Event)]
-
-
 def test_stepping_reaches_every_sample_in_both_directions(recording):
     forth = list(places(recording))
     samples = [recording.sample(place) for place in forth]

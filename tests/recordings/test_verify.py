@@ -104,17 +104,6 @@ def test_minus_zero_differs_from_zero(tmp_path):
     assert (difference.field, difference.recorded) == ("omega", 0.0)
 
 
-def test_a_wrong_time_of_divergence_is_found(tmp_path):
-    difference = verify(
-        record(tmp_path / "a.mcap", altered(two_runs(), 3, 1, diverged_at=0.5))
-    ).first_difference
-    assert (difference.field, difference.recorded, difference.computed) == (
-        "diverged_at",
-        0.5,
-        None,
-    )
-
-
 def test_a_missing_change_of_h_is_found(tmp_path):
     entries = [entry for entry in two_runs() if getattr(entry.value, "kind", "") != "set_h"]
     assert not verify(record(tmp_path / "a.mcap", entries)).identical
