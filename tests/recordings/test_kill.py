@@ -16,7 +16,7 @@ from recordings.recording import Recording
 from recordings.verification import verify
 from tests.recordings.killed import OWN
 from tests.tui.pty_lab import PtyLab
-from tui.screens.launch import recover_leftovers
+from tui.screens.launch import recover_leftover
 
 pytestmark = pytest.mark.slow
 
@@ -58,7 +58,7 @@ def kill_one(folder, after):
     loss = knew[-1][0] - lost[0] if lost else 0.0
     remember(OWN)
     assert verify(part).identical
-    recover_leftovers(folder)
+    recover_leftover(part)
     return loss, verify(folder / "a.mcap")
 
 

@@ -194,7 +194,7 @@ def recover_leftovers(folder: Path) -> list[str]:
         from recordings.errors import printable  # it and mcap: only if there is something to do
 
         try:
-            sentence = _recover(part)
+            sentence = recover_leftover(part)
         except FileNotFoundError:
             continue  # another lab was quicker
         except OSError as error:
@@ -204,7 +204,7 @@ def recover_leftovers(folder: Path) -> list[str]:
     return sentences
 
 
-def _recover(leftover: Path) -> str:
+def recover_leftover(leftover: Path) -> str:
     """Make a recording of a leftover, and return a sentence about it.
 
     Unless all of it is in the recording, it is kept under a name that is not found again.
