@@ -25,13 +25,14 @@ def main() -> None:
         subprocess.Popen([sys.executable, "-c", "while True: pass"])
         for _ in range(int((sys.argv + ["0"] * 2)[2]))
     ]
-    with TemporaryDirectory() as folder, ThreadPoolExecutor(AT_ONCE) as pool:
-        folders = (Path(folder) / str(i) for i in range(kills))
-        outcomes = list(
-            pool.map(kill_one, folders, [chance.uniform(0.0, 5.0) for _ in range(kills)])
-        )
-    for hog in hogs:
-        hog.kill()
+    moments = [chance.uniform(0.0, 5.0) for _ in range(kills)]
+    try:
+        with TemporaryDirectory() as folder, ThreadPoolExecutor(AT_ONCE) as pool:
+            folders = (Path(folder) / str(i) for i in range(kills))
+            outcomes = list(pool.map(kill_one, folders, moments))
+    finally:
+        for hog in hogs:
+            hog.kill()
     losses = [loss for loss, _ in outcomes]
     print(
         json.dumps(
