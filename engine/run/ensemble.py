@@ -1,8 +1,7 @@
 """Many swings at once: a method's phases on arrays, in NumPy or compiled by Numba.
 
-Both are made from the same generator, but the last bits of Numba's sine need not be NumPy's: a
-picture made with Numba is the same however it is cut and whoever computes it, but perhaps not the
-same as without Numba.
+The last bits of Numba's sine need not be NumPy's: a picture made with Numba is the same however it
+is cut and whoever computes it, but perhaps not as without Numba.
 """
 
 from collections.abc import Callable, Iterator
@@ -16,6 +15,7 @@ from numpy.typing import NDArray
 
 from engine.methods import Method
 from engine.methods.method import compilable
+from engine.methods.own import OwnMethod
 from engine.models import Pendulum
 from engine.models.model import Phase
 
@@ -67,9 +67,11 @@ def plain(method: Method, model: Pendulum) -> Watch:
 
 @cache
 def compiled(method: Method, model: Pendulum) -> Watch:
-    """Return the loop compiled, which takes a second.  Raises ImportError without Numba."""
+    """Return the loop, compiled unless it is a user's.  Raises ImportError without Numba."""
+    if isinstance(method, OwnMethod):
+        return plain(method, model)
     numba: Any = import_module("numba")
-    # Functions that Python never calls compile twice as fast without wrappers.
+    # What Python never calls compiles twice as fast without wrappers.
     inner = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True)
     phases = numba.njit(compilable(method.phases))
     force = inner(model.force(np.sin))

@@ -1,4 +1,4 @@
-"""A pytest plugin: the functions of another processor.
+"""A pytest plugin: another processor.
 
 pytest -p tests.tui.last_bits; it must come before all that imports from math.
 """

@@ -62,7 +62,7 @@ _watch = _Watch()
 
 @contextmanager
 def limited_calls() -> Iterator[None]:
-    """Let a shell end the program where a user's call in C keeps Python from doing so."""
+    """Let a shell end the program where a call in C keeps Python from it."""
     if not hasattr(signal, "SIGALRM"):
         yield
         return

@@ -106,6 +106,7 @@ def test_it_is_never_compiled_for_it_may_hold_anything() -> None:
     pytest.importorskip("numba")
     mine, model = loaded(VERLET), Pendulum(9.81)
     assert isinstance(compiled(mine, model), PlainLoops)
+    assert len(Grid(np.array([0.5]), np.array([0.3]), 9, (mine,), fast=True).cells())
 
 
 WRONG = {
