@@ -112,4 +112,6 @@ class SignalThread(Thread):
     def _end(self) -> None:
         """Finish the recording, and set the terminal as a shell expects it."""
         self._close()
-        os.system(f"stty sane 2>/dev/null && printf '{PLAIN_SCREEN}' >&2")
+        os.system(
+            f"stty icrnl ixon echo icanon iexten isig 2>/dev/null && printf '{PLAIN_SCREEN}' >&2"
+        )
