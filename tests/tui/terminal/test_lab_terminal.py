@@ -134,7 +134,7 @@ def test_a_call_in_c_that_never_returns_ends_the_lab_with_a_sentence(tmp_path, l
     with lab_with_mine(library) as session:
         session.wait_for("REC 1 s")
         (tmp_path / "endless").touch()
-        assert session.end() == -signal.SIGKILL
+        assert session.end(60.0) == -signal.SIGKILL
     assert b"1049l" in session.output
     assert b"the next lab recovers" in session.output
 
