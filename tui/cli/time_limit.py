@@ -15,7 +15,7 @@ from types import FrameType
 from engine.methods.own import OwnMethodError, TooLongError, UserCode
 
 MAX_STEP_TIME = 3.0  # s
-MAX_CALL_TIME = 5.0  # s of the processor for a call in C, which no handler interrupts
+MAX_CALL_TIME = 5.0  # s of the processor for a call in C that nothing interrupts
 LOOK_INTERVAL = 0.2  # s
 PLAIN_SCREEN = "\x1b[<u\x1b[?1000;1003;1004;1006;2004l\x1b[?7;25h\x1b[?1049l"
 """Ends the alternate screen and all reports."""
@@ -66,7 +66,7 @@ def limited_calls() -> Iterator[None]:
     if not hasattr(signal, "SIGALRM"):
         yield
         return
-    import subprocess  # slow
+    import subprocess
 
     with subprocess.Popen(["sh", "-c", _END_STUCK], stdin=subprocess.PIPE) as shell:
         assert shell.stdin
