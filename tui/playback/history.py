@@ -48,6 +48,7 @@ class ErrorHistory:
         self._waiting: list[_Taken] = []
         self._rows: Rows | None = None
         self._returned: Sample | None = None
+        self._trails: tuple[_Taken | None, int, NDArray] | None = None  # type: ignore[type-arg]
 
     def add(
         self,
@@ -185,11 +186,13 @@ class ErrorHistory:
         """
         import numpy as np
 
-        rows = self.rows.trails(self._until, length)
-        current = self._current()
-        if current is None:
-            return rows
-        return np.concatenate([rows, np.array(current.states)[None]])[-length:]
+        if self._trails is None or self._trails[:2] != (self._now, length):
+            rows = self.rows.trails(self._until, length)
+            current = self._current()
+            if current is not None:
+                rows = np.concatenate([rows, np.array(current.states)[None]])[-length:]
+            self._trails = self._now, length, rows
+        return self._trails[2]
 
     def thetas(self, index: int, length: int) -> list[float]:
         """Return theta [rad] of a method at the last `length` samples, oldest first."""

@@ -35,6 +35,7 @@ class Live(Source):
     kind = "LIVE"
     _run: RewindableRun
     _so_far: RunSoFar
+    _left: "Ghost | None"  # the run before the restart with another step
 
     def __init__(
         self,
@@ -80,7 +81,7 @@ class Live(Source):
 
     @property
     def ghost(self) -> "Ghost | None":
-        ghost = self.laid_under
+        ghost = self._left or self.laid_under
         return ghost if ghost is not None and ghost.scene.model == self.scene.model else None
 
     @property
@@ -195,11 +196,11 @@ class Live(Source):
 
     @property
     def run_state(self) -> RunState:
-        return RunState(self._run, self._so_far)
+        return RunState(self._run, self._so_far, self._left)
 
     def return_to(self, state: RunState) -> None:
         """Go on with an earlier run where it was left: as one more run, which shares its past."""
-        self._run, self._so_far = state
+        self._run, self._so_far, self._left = state
         self._runs += 1
         self._run.branch(self._runs)
         self.playhead = self.playhead.moved_to(self._run.x)
@@ -218,6 +219,7 @@ class Live(Source):
 
     def _enter(self, run: RewindableRun, so_far: RunSoFar | None = None) -> None:
         self.failure = None
+        self._left = None
         self._run, self._so_far = run, copy(so_far) if so_far else RunSoFar(run.scene, run.changes)
         self._so_far.changes = run.changes
         self.playhead = self.playhead.moved_to(run.x)
@@ -225,8 +227,15 @@ class Live(Source):
         self._take_sample()
 
     def restart(self) -> None:
-        """Begin again, with the step size in force."""
-        self.start(self.scene.altered(h=self.stepping.smallest))
+        """Begin again with the step in force, and lay a run that began with another one under it."""
+        before = self._so_far
+        number = self._run.run
+        self.start(before.scene.altered(h=self.stepping.smallest))
+        if self.scene != before.scene:
+            from tui.playback.ghost import Ghost  # with NumPy
+
+            steps = [change.stepping.h for change in before.changes]
+            self._left = Ghost(f"run {number}", before.scene, before.history, steps)
 
     def set_stepping(self, stepping: Stepping) -> None:
         """Step like this from here on.

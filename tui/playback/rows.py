@@ -199,6 +199,12 @@ class Rows:
         """
         return self._states[self._slots(max(until - length, self._first), until)]
 
+    def thetas(self) -> tuple[Floats, Floats]:
+        """Return x [s] of the recent rows, and theta [rad] of every method, nan once it has failed."""
+        slots = self._slots(self._first, self.count)
+        failed = ~np.isfinite(self._recent.high[slots, 0])
+        return self._recent.times[slots, 0], np.where(failed, np.nan, self._states[slots, :-1, 0])
+
     def _slots(self, begin: int, end: int) -> NDArray[np.intp]:
         return np.arange(begin, max(begin, end)) % self._capacity
 

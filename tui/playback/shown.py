@@ -3,11 +3,10 @@
 from typing import NamedTuple
 
 from engine.methods import Cast
-from engine.scenes import SCENES, Line, Scene, Shot
+from engine.scenes import QUANTITIES, SCENES, Line, Scene, Shot
 
 Quantity = str
 """One of QUANTITIES, or a variable of the model outside its state."""
-QUANTITIES: tuple[Quantity, ...] = ("energy_error", "theta_error", "shadow_error", "energy")
 
 WINDOWS: tuple[float | None, ...] = (None, 20.0, 60.0, 300.0, 1800.0, 5.0)
 """How much of the past the chart shows [s]; None: the whole run."""
@@ -95,7 +94,8 @@ class Shown(NamedTuple):
         """Leave the zoom, or take the next window."""
         if self.stretch is not None:
             return self._replace(stretch=None)
-        return self._replace(seconds=WINDOWS[(WINDOWS.index(self.seconds) + 1) % len(WINDOWS)])
+        known = [*WINDOWS, *({self.seconds} - {*WINDOWS})]  # a shot has any number
+        return self._replace(seconds=known[(known.index(self.seconds) + 1) % len(known)])
 
     def zoomed(self, stretch: Stretch | None) -> "Shown":
         """Show this part of the run in the chart, or all of it."""

@@ -6,7 +6,7 @@ import os
 import shlex
 import sys
 from asyncio import CancelledError
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
@@ -18,6 +18,7 @@ from tui.cli.output import progress, warn
 
 # Textual is imported only where there is a screen, NumPy and mcap only when they are needed
 if TYPE_CHECKING:
+    from engine.scenes import Scene
     from recordings.recording import Recording
     from tui.playback.ghost import Ghost
     from tui.playback.live import Live
@@ -111,7 +112,7 @@ def open_ghost(path: Path) -> "Ghost":
     from tui.playback.ghost import Ghost
 
     with open_recording(path) as recording:
-        return Ghost(recording)
+        return Ghost.recorded(recording)
 
 
 def replay_screen(replay: "Replay", no_record: bool) -> "ReplayScreen":
@@ -168,8 +169,13 @@ def _sentence(error: BaseException) -> UserError:
         )
 
 
-def open_lab(live: "Live", options: argparse.Namespace, with_tour: bool = False) -> int:
-    """Record and show a lab, or print it as sentences; returns the exit code."""
+def open_lab(
+    live: "Live",
+    options: argparse.Namespace,
+    with_tour: bool = False,
+    lecture: "Mapping[str, Scene] | None" = None,
+) -> int:
+    """Record and show a lab, perhaps of a `lecture`, or print it as sentences; return the exit code."""
     path = None if options.no_record else recording_path(options.record)
     notices = [] if path is None else recover_leftovers(path.parent)
     for notice in notices:
@@ -182,6 +188,7 @@ def open_lab(live: "Live", options: argparse.Namespace, with_tour: bool = False)
         return print_sentences(live, print_tour if with_tour else print_run)
     screen = live_screen(live, path, notices, or_next)
     screen.begins_with_tour = with_tour
+    screen.lecture = lecture or screen.lecture
     return show(screen, options)
 
 

@@ -42,7 +42,7 @@ GLOSSARY = {
     "place and its key",
     "×": "in the chart: one error passes another, and stays above it",
     "dotted": "the exact motion",
-    "dim": "a recording under the lab: pendu-tui live --ghost FILE",
+    "dim": "the run before r, or a recording laid under the lab (--ghost FILE)",
 }
 HEADS = {
     **dict.fromkeys(("theta", "omega"), GLOSSARY["theta, omega"]),

@@ -29,6 +29,7 @@ SENTENCES = {
     "at rest": "Nothing moves: the pendulum started at rest in equilibrium.",
     "returned": "Back at t = 0. Missed the start by {misses} rad.",
     "watch": "{text}",
+    "new step": "h is {h:.4g} s now; r starts again with it, the old run dimmed under the new one.",
     "failed": "{0} failed at {t:.4g} s: its energy error is no longer finite.",
     "over the top": "{0} went over the top at {t:.3g} s.",
     "over the top with": (
@@ -115,7 +116,7 @@ def insight(source: Source, hidden: Collection[str] = ()) -> Insight:
         return Insight("watch", values={"text": text})
     if returned is not None and abs(sample.t) < WATCH:
         return _returned(source.scene, returned)
-    if found := _news(source, FRESH * pace, hidden):
+    if found := _new_step(source, FRESH * pace) or _news(source, FRESH * pace, hidden):
         return found
     if abs(sample.t) < WATCH * pace and (watch := _watch(source, hidden)):
         return watch
@@ -131,6 +132,17 @@ def _moment(source: Source) -> str:
     if shot.moment is None or source.stepping.h != scene.h:
         return ""
     return shot.sentence if source.sample.step == round(shot.moment / scene.h) else ""
+
+
+def _new_step(source: Source, seconds: float) -> Insight | None:
+    """Return what to do after a change of h in the lab: a fair comparison starts at the start."""
+    if source.kind != "LIVE" or len(source.changes) < 2:
+        return None
+    before, last = source.changes[-2:]
+    h = last.stepping.h
+    if source.sample.step - last.step >= seconds / abs(h) or abs(before.stepping.h) == abs(h):
+        return None
+    return Insight("new step", values={"h": h})
 
 
 def _news(source: Source, seconds: float, hidden: Collection[str]) -> Insight | None:

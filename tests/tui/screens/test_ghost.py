@@ -34,7 +34,7 @@ def path(tmp_path):
 
 def ghost(path) -> Ghost:
     with Recording.open(path) as recording:
-        return Ghost(recording)
+        return Ghost.recorded(recording)
 
 
 def test_its_pendulums_are_where_a_lab_with_its_step_size_would_have_them(path):
@@ -42,7 +42,7 @@ def test_its_pendulums_are_where_a_lab_with_its_step_size_would_have_them(path):
     for t in (1.0, 2.5, 3.0, 7.0, 14.0):
         readings = after(OTHER_H, t).sample.readings
         for method, reading in zip(OTHER_H.cast, readings, strict=True):
-            assert found.rods(t)[method.key].theta == pytest.approx(
+            assert found.rods(t)[method.key] == pytest.approx(
                 reading.theta, abs=0.7
             )  # one step of 0.1 s
     assert found.rods(16.0) == found.rods(-1.0) == {}
@@ -84,6 +84,23 @@ async def test_it_is_faint_behind_the_same_methods_and_says_which_step_size_it_h
         assert "dim: swing, h 0.1 s" in str(chart.border_subtitle)
         theatre.stage.start(SCENES["stiff-slow"])
         assert theatre.source.ghost is None  # another model
+
+
+def test_a_restart_with_another_step_leaves_the_old_run_as_a_ghost_and_the_next_one_drops_it():
+    live = after(DEFAULT_SCENE, 4.0)
+    old = live.history.window()
+    live.set_stepping(live.stepping.next(up=True))
+    live.restart()
+    left = live.run_state
+    assert live.scene.h == 0.1
+    assert live.ghost.label(40) == "dim: run 1, h 0.05, 0.1 s"
+    assert live.ghost.window(3.0).high["energy_error"].max() == pytest.approx(
+        old.cut(0, 3.0).high["energy_error"].max()
+    )
+    live.restart()
+    assert live.ghost is None
+    live.return_to(left)
+    assert live.ghost is left.left
 
 
 def test_what_is_no_recording_is_refused_in_a_sentence(tmp_path):

@@ -231,12 +231,10 @@ def _magnified(bob: Bob, scale: float) -> Bob:
 
 def _ghosts(source: Source, t: float, places: Sequence[int]) -> list[Bob]:
     """Return the same methods of a ghost, fainter."""
-    rods = {} if source.ghost is None else source.ghost.rods(t)
+    thetas = {} if source.ghost is None else source.ghost.rods(t)
     cast = source.scene.cast
-    shown = [
-        (inks(cast)[place], rods[cast[place].key]) for place in places if cast[place].key in rods
-    ]
-    return [Bob(rod.theta, faint(ink), length=rod.length) for ink, rod in shown]
+    keys = [(inks(cast)[place], cast[place].key) for place in places]
+    return [Bob(thetas[key], faint(ink)) for ink, key in keys if key in thetas]
 
 
 def _exact(source: Source, t: float) -> list[Bob]:
