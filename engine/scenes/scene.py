@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple, get_args
 
 from engine.methods import USUAL_CAST, Cast
 from engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
@@ -24,6 +24,7 @@ UNITS = {
     "h": "s",
     **{name: parameter.unit for name, parameter in PARAMETERS.items()},
 }
+QUANTITIES = ("energy_error", "theta_error", "shadow_error", "energy")  # beside the models' own
 MOST_METHODS = 6  # of a cast: more cannot be told apart on a screen
 Z_LIMITS = (1e-9, 1e3)  # z = h·w0; the methods' own limits lie at 2 and 2√2
 
@@ -50,6 +51,9 @@ def _check_range(name: str, value: float, low: float, high: float) -> None:
         )
 
 
+View = Literal["lab", "phase", "accuracy", "stability"]
+
+
 class Line(NamedTuple):
     """A reference line: in the chart of its quantity, or on both sides of zero in phase space."""
 
@@ -62,7 +66,7 @@ class Line(NamedTuple):
 class Shot:
     """What of a run to look at first; it changes no number."""
 
-    view: str = "lab"
+    view: View = "lab"
     theta: float | None = None  # rad, from the middle of phase space to its edge; None: the motion
     quantity: str = "energy_error"  # of the chart
     log: bool = True
@@ -122,6 +126,28 @@ class Scene:
                     f"{method.label} is not for the model {self.model}; it is for "
                     f"{' and '.join(method.models)}."
                 )
+
+        self._check_shot()
+
+    def _check_shot(self) -> None:
+        """Raise SceneError where the shot shows what this scene does not have."""
+        shot = self.shot
+        own = (
+            (each.name for each in MODELS[self.model].quantities()) if self.model in MODELS else ()
+        )
+        keys = [method.key for method in self.cast]
+        choices = [
+            ("view", shot.view, get_args(View)),
+            ("quantity", shot.quantity, [*QUANTITIES, *own]),
+        ]
+        choices += [("front", key, keys) for key in shot.front]
+        for name, value, allowed in choices:
+            if value not in allowed:
+                raise SceneError(f"{name} is {value!r}, not one of {', '.join(allowed)}.")
+        for name in ("theta", "seconds", "moment"):
+            value = getattr(shot, name)
+            if value is not None and not 0 < value < math.inf:
+                raise SceneError(f"{name} of a shot is {value:g}; use a number above zero.")
 
     def _complete(self, given: Mapping[str, float]) -> dict[str, float]:
         """Return the parameters in the model's order, with defaults; as given if it is unknown."""

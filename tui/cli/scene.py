@@ -1,6 +1,7 @@
 """The options that describe a scene: its name, its numbers and its cast.
 
-A scene of the user's own is a TOML file with the fields that `scenes --json` prints.
+A scene of the user's own is a TOML file with the fields that `scenes --json` prints, and what
+differs in its shot; several scenes, each under [[scene]], are a lecture.
 """
 
 import argparse
@@ -8,14 +9,15 @@ import math
 import re
 import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
+from functools import cache
 from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from engine.methods import METHODS, Cast, Method
 from engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
-from engine.scenes import DEFAULT_SCENE, MOST_METHODS, SCENES, Scene, SceneError
+from engine.scenes import DEFAULT_SCENE, MOST_METHODS, SCENES, Line, Scene, SceneError, Shot
 from recordings.errors import printable
 from tui.cli.cast import add_cast_options, cast_of, find, own_method_at
 from tui.cli.errors import Exit, UserError
@@ -48,13 +50,38 @@ _HELP = {
     "h": ("S", "step size: 0.05 (in s) or 50ms"),
 }
 
-TEXTS = ("name", "watch", "model")
-NO_FIELDS = ("cast", "parameters", "often_said", "shot")
-FIELDS = (
-    *(field.name for field in fields(Scene) if field.name not in NO_FIELDS),
-    *PARAMETERS,
-    "methods",
-)
+_READERS = {**READERS, **dict.fromkeys(("seconds", "moment"), seconds), "speed": number}
+EXAMPLES = {
+    "name": '"swing"',
+    "theta": '"57deg"',
+    "omega": "2.0",
+    "length": "1.0",
+    "gravity": "9.81",
+    "h": "0.05",
+    "watch": '"Verlet keeps its energy."',
+    "model": '"damped"',
+    "speed": "4",
+    "methods": '["rk4", "velocity_verlet"]',
+    "shot": "",
+    **{
+        name: f"{scene.parameters[name]:g}"
+        for scene in SCENES.values()
+        for name in scene.parameters
+    },
+}
+"""The fields of a scene file, each with a value."""
+SHOT_EXAMPLES = {
+    "view": '"phase"',
+    "theta": '"40deg"',
+    "quantity": '"theta_error"',
+    "log": "false",
+    "seconds": "20",
+    "line": '{quantity = "energy_error", value = 0.01, name = "1 %"}',
+    "front": '["rk4"]',
+    "ring": "true",
+    "moment": "12.5",
+    "sentence": '"Here they part."',
+}
 MAX_BYTES = 100_000
 
 
@@ -107,8 +134,10 @@ class SceneList:
             yield self.base.altered(**dict(zip(axes, numbers, strict=True)))
 
 
-def scenes_of(options: argparse.Namespace, default: Scene | None = None) -> SceneList:
-    """Return the scenes that the options describe, with their cast.
+def scenes_of(
+    options: argparse.Namespace, default: Scene | None = None, lecture: bool = False
+) -> SceneList:
+    """Return the scenes that the options describe, with their cast; of a `lecture` the first.
 
     Without a name they change the `default`.  Raises UserError for an unknown name, SceneError for
     bad numbers, if only in some of the combinations, and OwnMethodError for a bad function.
@@ -124,22 +153,27 @@ def scenes_of(options: argparse.Namespace, default: Scene | None = None) -> Scen
             f"there are two scenes, {options.scene} and {options.scene_option}; leave one out."
         )
     name = options.scene or options.scene_option
-    scene = scene_named(name) if name else default or DEFAULT_SCENE
+    scene = scene_named(name, lecture) if name else default or DEFAULT_SCENE
     scenes = SceneList(scene.with_cast(cast_of(options, scene.cast, model=scene.model)), axes)
     scenes.corners()
     return scenes
 
 
-def scene_of(options: argparse.Namespace, default: Scene | None = None) -> Scene:
+def scene_of(
+    options: argparse.Namespace, default: Scene | None = None, lecture: bool = False
+) -> Scene:
     """Return the one scene of options without lists, as `scenes_of` does."""
-    (scene,) = scenes_of(options, default)
+    (scene,) = scenes_of(options, default, lecture)
     return scene
 
 
-def scene_named(name: str) -> Scene:
-    """Return a listed scene, or that of a file.  Raises UserError."""
+def scene_named(name: str, lecture: bool = False) -> Scene:
+    """Return a listed scene, or that of a file, the first of a `lecture`.  Raises UserError."""
     if name.endswith(".toml"):
-        return read_scene(Path(name))
+        first, *others = read_scenes(Path(name)).values()
+        if others and not lecture:
+            raise UserError(f"{name} is a lecture of {len(others) + 1} scenes; only the lab pages.")
+        return first
     if name not in SCENES:
         hint = did_you_mean(name, SCENES) or "; pendu-tui scenes lists them."
         raise UserError(f"there is no scene {name!r}{hint}")
@@ -179,53 +213,99 @@ def _read(path: Path) -> tuple[str, dict[str, Any]]:
         ) from None
 
 
-def read_scene(path: Path) -> Scene:
-    """Return the scene in a file.  Raises UserError with line and field."""
+@cache
+def read_scenes(path: Path) -> dict[str, Scene]:
+    """Return the scenes in a file by name: the one that it is, or its [[scene]] tables.
+
+    Fields before the tables are those of all.  Raises UserError with line and field.
+    """
     text, given = _read(path)
-    values: dict[str, Any] = {"name": path.stem}
-    for name, value in given.items():
+    tables = given.pop("scene", [{}])
+    if not isinstance(tables, list) or not all(isinstance(each, dict) for each in tables):
+        raise UserError(f"{path}: begin each scene with [[scene]].", Exit.INPUT_UNREADABLE)
+    heads = [match.end() for match in re.finditer(r"^\s*\[\[", text, re.MULTILINE)]
+    scenes: dict[str, Scene] = {}
+    for nth, table in enumerate(tables, 1):
+        place = _Place(path, text, heads[nth - 1] if nth <= len(heads) else 0)
+        name = f"{path.stem}-{nth}" if len(tables) > 1 else path.stem
+        scene = _scene(place, name, {**given, **table})
+        if scenes.setdefault(scene.name, scene) is not scene:
+            raise place.error(["name"], f"there are two scenes named {scene.name}.")
+    return scenes
+
+
+class _Place(NamedTuple):
+    """Where a scene begins."""
+
+    path: Path
+    text: str  # of the file
+    head: int  # character
+
+    def error(self, names: Sequence[str], why: object) -> UserError:
+        """Return an error with the line of the last of nested names."""
+        at = self.head
+        for name in names:
+            pattern = re.compile(rf"^\s*[\"'\[]*(\w+\.)*{re.escape(name)}\b", re.MULTILINE)
+            found = pattern.search(self.text, at)
+            at = found.end() if found else at
+        where = f", line {self.text[:at].count(chr(10)) + 1}" if names else ""
+        return UserError(f"{self.path}{where}: {why}", Exit.INPUT_UNREADABLE)
+
+
+def _scene(place: _Place, name: str, given: Mapping[str, Any]) -> Scene:
+    values: dict[str, Any] = {"name": name}
+    shot: dict[str, Any] = {}
+    table = given.get("shot", {})
+    if not isinstance(table, dict):
+        raise place.error(["shot"], "shot is not a table; begin it with [shot].")
+    fields = [([each], value) for each, value in given.items() if each != "shot"]
+    fields += [(["shot", each], value) for each, value in table.items()]
+    for names, value in fields:
         try:
-            if name == "methods":
-                values["cast"] = _methods(value, path.parent)
+            if names == ["methods"]:
+                values["cast"] = _methods(value, place.path.parent)
             else:
-                values[name] = _value(name, value)
+                (shot if len(names) > 1 else values)[names[-1]] = _value(names, value)
         except UserError as error:
-            raise UserError(
-                f"{path}, line {_line(text, name)}: {error}", Exit.INPUT_UNREADABLE
-            ) from None
+            raise place.error(names, error) from None
     model = values.get("model", DEFAULT_MODEL)
     casts = (scene.cast for scene in SCENES.values() if scene.model == model)
     suited = tuple(method for method in METHODS if model in method.models)
     values.setdefault("cast", next(casts, suited[:MOST_METHODS]))
-    parameters = {name: values.pop(name) for name in PARAMETERS if name in values}
+    parameters = {each: values.pop(each) for each in PARAMETERS if each in values}
     try:
-        return Scene(parameters=parameters, **values)
+        return Scene(parameters=parameters, shot=Shot(**shot), **values)
     except SceneError as error:
-        named = next(
-            (name for name in given if re.search(rf"\b{re.escape(name)}\b", str(error))), None
-        )
-        where = "" if named is None else f", line {_line(text, named)}"
-        raise UserError(f"{path}{where}: {error}", Exit.INPUT_UNREADABLE) from None
+        named = [each for each in given if re.search(rf"\b{re.escape(each)}\b", str(error))]
+        raise place.error(named[:1], error) from None
 
 
-def _value(name: str, value: Any) -> Any:
-    """Return a field's value, as a Scene takes it."""
-    if name not in FIELDS:
-        advice = did_you_mean(name, FIELDS) or f"; choose from {', '.join(FIELDS)}."
-        raise UserError(f"a scene has no field {printable(name, 40)}{advice}")
-    if name in TEXTS:
-        if not isinstance(value, str) or (name == "model" and value not in MODELS):
-            allowed = f"one of {', '.join(MODELS)}" if name == "model" else "a text"
-            raise UserError(f"{name} is not {allowed}.")
-        return printable(value, 200)
-    if isinstance(value, bool) or not isinstance(value, int | float | str):
-        usual = (scene.numbers.get(name) or getattr(scene, name, 0) for scene in SCENES.values())
-        example = next(filter(None, usual))
-        raise UserError(f"{name} is not a number; use for example {name} = {example:g}.")
+def _value(names: Sequence[str], value: Any) -> Any:
+    """Return the value of a field, as a Scene or a Shot takes it, if it is like its example."""
+    owner = "a shot" if len(names) > 1 else "a scene"
+    examples = SHOT_EXAMPLES if len(names) > 1 else EXAMPLES
+    name = names[-1]
+    if name not in examples:
+        advice = did_you_mean(name, examples) or f"; choose from {', '.join(examples)}."
+        raise UserError(f"{owner} has no field {printable(name, 40)}{advice}")
+    example = examples[name]
+    like = tomllib.loads(f"x = {example}")["x"]
     try:
-        return READERS.get(name, number)(str(value))
-    except argparse.ArgumentTypeError as error:
-        raise UserError(f"{name}: {error}.") from None
+        if name in _READERS:
+            return _READERS[name](str(value))
+        if isinstance(like, dict):
+            return Line(value["quantity"], float(value["value"]), printable(value["name"], 40))
+    except (argparse.ArgumentTypeError, LookupError, TypeError, ValueError) as error:
+        why = str(error).partition(";")[0]
+        raise UserError(f"{name}: {why}; use for example {name} = {example}.") from None
+    if type(value) is not type(like):
+        kind = {str: "a text", bool: "true or false"}.get(type(like), "a list")
+        raise UserError(f"{name} is not {kind}; use for example {name} = {example}.")
+    if name == "model" and value not in MODELS:
+        raise UserError(f"model is not one of {', '.join(MODELS)}.")
+    if isinstance(value, list):
+        return tuple(map(str, value))
+    return printable(value, 200) if isinstance(value, str) else value
 
 
 def _methods(value: Any, folder: Path) -> Cast:
@@ -242,16 +322,3 @@ def _methods(value: Any, folder: Path) -> Cast:
         found = own_method_at(f"{folder / key}", cast) if is_own else find(key, METHODS, "methods")
         cast.append(found)
     return tuple(cast)
-
-
-def _line(text: str, name: str) -> int:
-    """Return the line that a field is on, from 1."""
-    lines = text.splitlines()
-    return next(
-        (
-            n
-            for n, line in enumerate(lines, 1)
-            if re.match(rf"\s*[\"'\[]*{re.escape(name)}\b", line)
-        ),
-        1,
-    )

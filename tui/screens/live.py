@@ -1,6 +1,6 @@
 """LiveScreen: the lab, where the run can be changed."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import ClassVar
 
 from textual import work
@@ -40,7 +40,7 @@ class LiveScreen(SourceScreen):
         Binding("P,shift+p", "scenes", "choose a scene", show=False),
         Binding("i", "start_values", "Edit", tooltip="edit start values"),
         Binding("M,shift+m", "methods", "Methods", True, "M", tooltip="choose methods"),
-        Binding("r", "restart", "Restart", tooltip="restart"),
+        Binding("r", "restart", "Restart", tooltip="restart; dims the old run"),
         Binding("b", "reverse", "Back", tooltip="run back in time"),
         Binding("n", "equal_cost", "Equal cost", tooltip="equal cost for all"),
         Binding("T,shift+t", "tour", "Tour", True, "T", tooltip="tour: begin, leave, go on"),
@@ -49,6 +49,8 @@ class LiveScreen(SourceScreen):
     ]
 
     begins_with_tour = False
+    lecture: Mapping[str, Scene] = SCENES
+    """The scenes that p leads through, by name."""
     held: float | None = None
     """The angle [rad] at which the user holds the pendulums."""
     tour: TourGuide | None = None
@@ -163,14 +165,14 @@ class LiveScreen(SourceScreen):
         self.set_stepping(self.live.stepping.toggled())
 
     def action_next_scene(self) -> None:
-        names = list(SCENES)
-        name = self.live.scene.name
-        following = names.index(name) + 1 if name in SCENES else 0
+        names = list(self.lecture)
+        following = names.index(self.page) + 1 if self.page in names else 0
         self.action_start_scene(names[following % len(names)])
 
     def action_start_scene(self, name: str) -> None:
-        """Start a listed scene with its shot."""
-        scene = SCENES[name]
+        """Start a scene of the lecture, or a listed one, with its shot."""
+        scene = self.lecture.get(name) or SCENES[name]
+        self.page = name
         self.start(scene, scene.speed)
         self.shown = self.shown.through(scene)
         if scene.shot.view != self.view:
@@ -212,6 +214,7 @@ class LiveScreen(SourceScreen):
 
     def first_view(self, source: Source) -> str:
         """Return the view of the scene's shot."""
+        self.page = source.scene.name
         return source.scene.shot.view
 
     @property

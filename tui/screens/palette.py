@@ -14,6 +14,7 @@ from recordings import library
 from tui.drawing.palette import PALETTES
 from tui.screens.base import SourceScreen
 from tui.screens.help import bindings_of, key_text, purpose
+from tui.screens.live import LiveScreen
 
 MAX_WIDTH = 100  # columns of an entry
 EDGE = 8  # columns around it
@@ -32,8 +33,8 @@ def entries(screen: SourceScreen) -> Iterator[Entry]:
     """Yield what can be done on this screen."""
     for name in PALETTES:
         yield Entry(f"theme {name}", f"app.use_theme({name!r})")
-    if screen.source.kind == "LIVE":
-        for scene in SCENES.values():
+    if isinstance(screen, LiveScreen):
+        for scene in {**SCENES, **screen.lecture}.values():
             yield Entry(f"scene {scene.name}: {scene.watch}", f"start_scene({scene.name!r})")
     yield from key_entries(screen)
     for command in screen.commands():

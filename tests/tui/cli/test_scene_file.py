@@ -4,9 +4,14 @@ import math
 
 import pytest
 
-from engine.scenes import SCENES
+from engine.scenes import SCENES, Line, Shot
 from tests.tui.command_line import own_method, pendu
-from tui.cli.scene import read_scene
+from tui.cli.scene import read_scenes
+
+
+def read_scene(path):
+    (scene,) = read_scenes(path).values()
+    return scene
 
 
 def written(path, fields):
@@ -40,9 +45,21 @@ def test_without_methods_it_has_those_that_are_for_its_model(tmp_path, name):
         ("h = 0.1\n\nlength = 'long'", "line 3: length: 'long' is not a number"),
         ("h = -1", "line 1: h = -1 s is not a usable step"),
         ("h = 0.1\nspeed = 0", "line 2: speed = 0 is not usable"),
-        ("stiffness = [1]", "line 1: stiffness is not a number; use for example stiffness = 2500."),
+        (
+            "stiffness = [1]",
+            "line 1: stiffness: '[1]' is not a number; use for example stiffness = 2500.",
+        ),
         ("model = 'cubic'", "line 1: model is not one of pendulum"),
         ("theta = 1\nmethods = ['rk5']", "line 2: "),
+        ("h = 'fast'", "line 1: h: 'fast' is not a time; use for example h = 0.05."),
+        ("[shot]\nseconds = 9\nlog = 1", "line 3: log is not true or false; use for example log"),
+        ("theta = 1\n[shot]\ntheta = 'x'", "line 3: theta: 'x' is not an angle; use for example"),
+        ("h = 0.1\nshot = 1", "line 2: shot is not a table; begin it with [shot]."),
+        ("[shot]\nvew = 'phase'", "line 2: a shot has no field vew: did you mean view?"),
+        ("[shot]\nview = 'phse'", "view is 'phse', not one of lab, phase, accuracy, stability."),
+        ("[shot]\nfront = ['rk5']", "front is 'rk5', not one of explicit_euler"),
+        ("[[scene]]\nh = 0.1\n[[scene]]\ntheta = 1\nh = 'x'", "line 5: h: 'x' is not a time"),
+        ("[[scene]]\nname = 'a'\n[[scene]]\nname = 'a'", "line 4: there are two scenes named a"),
         ("theta = 1\nfriction = 0.1", "line 2: the model pendulum has no friction"),
         ("friction = 'x'", "line 1: friction: 'x' is not a number"),
         ("theta = '1 turn'", "line 1: theta: '1 turn' is not an angle"),
@@ -74,3 +91,41 @@ def test_methods_of_ones_own_lie_beside_the_file(tmp_path):
     path = tmp_path / "scene.toml"
     path.write_text('methods = ["rk4", "my methods.py:mine"]\n')
     assert [method.key for method in read_scene(path).cast] == ["rk4", "mine"]
+
+
+LECTURE = """
+[[scene]]
+name = "kept"
+theta = "120deg"
+methods = ["rk4", "velocity_verlet"]
+
+[[scene]]
+h = 0.1
+[scene.shot]
+view = "phase"
+theta = "40deg"
+seconds = "30s"
+line = {quantity = "energy_error", value = 0.01, name = "1 %"}
+front = ["rk4"]
+moment = 12.5
+sentence = "Here."
+"""
+
+
+def test_a_shot_names_what_differs_and_several_scenes_are_a_lecture(tmp_path):
+    (tmp_path / "course.toml").write_text(LECTURE, encoding="utf-8")
+    first, second = read_scenes(tmp_path / "course.toml").values()
+    assert (first.name, second.name) == ("kept", "course-2")
+    assert first.shot == Shot()
+    line = Line("energy_error", 0.01, "1 %")
+    assert second.shot == Shot(
+        view="phase",
+        theta=math.radians(40),
+        seconds=30.0,
+        line=line,
+        front=("rk4",),
+        moment=12.5,
+        sentence="Here.",
+    )
+    other = pendu("run", "--scene", str(tmp_path / "course.toml"), "--time", "1")
+    assert other.refused(2, "is a lecture of 2 scenes; only the lab pages.")

@@ -58,9 +58,9 @@ async def test_the_run_r_restarts_plus_and_minus_change_h_b_reverses_p_and_capit
         ) == (0.02, 0, 1.0)
         names = list(SCENES)
         await theatre.press("p")
-        assert theatre.source.scene == SCENES[names[0]]  # 0.02 made it a scene of its own
+        assert theatre.source.scene == SCENES[names[1]]  # although 0.02 made it a scene of its own
         await theatre.press("p")
-        assert theatre.source.scene == SCENES[names[1]]
+        assert theatre.source.scene == SCENES[names[2]]
         await theatre.press("P", "end", "enter")
         assert theatre.source.scene == SCENES[names[-1]]
         await theatre.press("P", "escape", "p")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from engine.scenes import Scene
 from tui.cli.errors import UserError
 from tui.cli.options import add_file, add_recording, positive, resolve
-from tui.cli.scene import add_scene_options, scene_of
+from tui.cli.scene import add_scene_options, read_scenes, scene_of
 from tui.terminal.options import add_terminal_options
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ def run(options: argparse.Namespace) -> int:
     ghost = None
     if options.ghost is not None:
         ghost = launch.open_ghost(resolve(options.ghost))
-    scene = scene_of(options, None if ghost is None else ghost.scene)
+    scene = scene_of(options, None if ghost is None else ghost.scene, lecture=True)
     if ghost is not None and ghost.scene.model != scene.model:
         raise UserError(
             f"--ghost: the recording is of the model {ghost.scene.model}, the scene of "
@@ -79,4 +79,6 @@ def run(options: argparse.Namespace) -> int:
     launch.check(options)
     live = lab_of(scene, options)
     live.laid_under = ghost
-    return launch.open_lab(live, options)
+    name = options.scene or options.scene_option or ""
+    lecture = read_scenes(Path(name)) if name.endswith(".toml") else {}
+    return launch.open_lab(live, options, lecture=lecture if len(lecture) > 1 else None)
