@@ -146,7 +146,7 @@ _STABILITY = (
         shot=Shot(
             view="phase",
             theta=math.pi,
-            line=Line("omega", math.pi / math.sqrt(1.1), "pi/h"),
+            line=Line("omega", 2 * math.pi / math.sqrt(1.1), "2 pi/h"),
             front=("symplectic_euler", "velocity_verlet"),
         ),
     ),

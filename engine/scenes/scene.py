@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
-from typing import Any, Literal, NamedTuple, get_args
+from typing import Any, NamedTuple
 
 from engine.methods import USUAL_CAST, Cast
 from engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
@@ -51,9 +51,6 @@ def _check_range(name: str, value: float, low: float, high: float) -> None:
         )
 
 
-View = Literal["lab", "phase", "accuracy", "stability"]
-
-
 class Line(NamedTuple):
     """A reference line: in the chart of its quantity, or on both sides of zero in phase space."""
 
@@ -66,7 +63,7 @@ class Line(NamedTuple):
 class Shot:
     """What of a run to look at first; it changes no number."""
 
-    view: View = "lab"
+    view: str = "lab"
     theta: float | None = None  # rad, from the middle of phase space to its edge; None: the motion
     quantity: str = "energy_error"  # of the chart
     log: bool = True
@@ -123,31 +120,9 @@ class Scene:
         for method in self.cast:
             if self.model in MODELS and self.model not in method.models:
                 raise SceneError(
-                    f"{method.label} is not for the model {self.model}; it is for "
+                    f"{method.label} is not for the model {self.model}; it is for scenes of "
                     f"{' and '.join(method.models)}."
                 )
-
-        self._check_shot()
-
-    def _check_shot(self) -> None:
-        """Raise SceneError where the shot shows what this scene does not have."""
-        shot = self.shot
-        own = (
-            (each.name for each in MODELS[self.model].quantities()) if self.model in MODELS else ()
-        )
-        keys = [method.key for method in self.cast]
-        choices = [
-            ("view", shot.view, get_args(View)),
-            ("quantity", shot.quantity, [*QUANTITIES, *own]),
-        ]
-        choices += [("front", key, keys) for key in shot.front]
-        for name, value, allowed in choices:
-            if value not in allowed:
-                raise SceneError(f"{name} is {value!r}, not one of {', '.join(allowed)}.")
-        for name in ("theta", "seconds", "moment"):
-            value = getattr(shot, name)
-            if value is not None and not 0 < value < math.inf:
-                raise SceneError(f"{name} of a shot is {value:g}; use a number above zero.")
 
     def _complete(self, given: Mapping[str, float]) -> dict[str, float]:
         """Return the parameters in the model's order, with defaults; as given if it is unknown."""
@@ -157,7 +132,7 @@ class Scene:
         for name, value in given.items():
             if name not in own and value:
                 raise SceneError(
-                    f"the model {self.model} has no {name}; leave it out, or use a model that has."
+                    f"the model {self.model} has no {name}; leave it out, or take a scene that has."
                 )
         return {name: given.get(name, default) for name, default in own.items()}
 

@@ -24,7 +24,6 @@ from tests.tui.monkey import (
     play_on_stage,
     small_studies,
     wild_presses,
-    wild_replay,
     wild_stage,
 )
 from tui.screens.app import PenduApp
@@ -35,7 +34,6 @@ SITTING, BATCH = 500, 5  # events
 async def play(scene: Scene, library: Path, events: int, seed: int) -> bool:
     """Play in a lab of a scene; returns whether it still runs then."""
     async with on_stage(wild_stage(library, scene), SIZE) as theatre:
-        theatre.app.open_replay = wild_replay(library, lambda: theatre.now)
         theatre.app.error_console.quiet = True
         try:
             async with asyncio.timeout(600):

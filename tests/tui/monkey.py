@@ -3,7 +3,6 @@
 import asyncio
 import itertools
 import random
-import shutil
 import string
 from collections.abc import AsyncIterator, Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
@@ -18,14 +17,10 @@ from engine.accuracy.study import ladder
 from engine.scenes import DEFAULT_SCENE, Scene
 from recordings.library import new_path
 from recordings.recorder import LiveRecorder
-from recordings.recording import Recording
 from tests.tui.harness import Theatre
 from tests.tui.pty_lab import PtyLab
 from tui.playback.live import Live
-from tui.playback.marks import Marks
-from tui.playback.replay import Replay
 from tui.screens.live import LiveScreen
-from tui.screens.replay import ReplayScreen
 
 SIZE = 120, 40
 LARGEST = 300, 90
@@ -210,17 +205,6 @@ def wild_stage(
 
     def make(clock: Callable[[], float]) -> LiveScreen:
         return _recorded(Live(scene, clock=_looks()), library, clock)
-
-    return make
-
-
-def wild_replay(library: Path, clock: Callable[[], float]) -> Callable[[Path], ReplayScreen]:
-    """Makes the screen for a recording that the palette offers; going live from it is recorded, too."""
-
-    def make(path: Path) -> ReplayScreen:
-        copied = Path(shutil.copy(path, library.parent))  # marks are kept beside it
-        replay = Replay(Recording.open(copied), Marks(copied), clock=_looks())
-        return ReplayScreen(replay, lambda live: _recorded(live, library, clock), clock)
 
     return make
 

@@ -121,6 +121,8 @@ def _listed(methods: Sequence[Method]) -> str:
 
 def own_method_at(text: str, others: Sequence[Method]) -> "OwnMethod":
     """Return the method of FILE.py:FUNCTION[,letter=m]."""
+    if text.endswith(".py"):
+        text += f":{Path(text).stem}"  # or an error that lists the functions
     match = re.fullmatch(r"(?P<file>[^,]+):(?P<key>[^,:]+)(,letter=(?P<letter>[^,]*))?", text)
     if match is None:
         raise UserError(f"--method: {text!r} is not FILE.py:FUNCTION or FILE.py:FUNCTION,letter=m.")

@@ -17,7 +17,16 @@ from typing import Any, NamedTuple
 
 from engine.methods import METHODS, Cast, Method
 from engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
-from engine.scenes import DEFAULT_SCENE, MOST_METHODS, SCENES, Line, Scene, SceneError, Shot
+from engine.scenes import (
+    DEFAULT_SCENE,
+    MOST_METHODS,
+    QUANTITIES,
+    SCENES,
+    Line,
+    Scene,
+    SceneError,
+    Shot,
+)
 from recordings.errors import printable
 from tui.cli.cast import add_cast_options, cast_of, find, own_method_at
 from tui.cli.errors import Exit, UserError
@@ -51,6 +60,7 @@ _HELP = {
 }
 
 _READERS = {**READERS, **dict.fromkeys(("seconds", "moment"), seconds), "speed": number}
+VIEWS = ("lab", "phase", "stability", "accuracy")
 EXAMPLES = {
     "name": '"swing"',
     "theta": '"57deg"',
@@ -274,10 +284,24 @@ def _scene(place: _Place, name: str, given: Mapping[str, Any]) -> Scene:
     values.setdefault("cast", next(casts, suited[:MOST_METHODS]))
     parameters = {each: values.pop(each) for each in PARAMETERS if each in values}
     try:
-        return Scene(parameters=parameters, shot=Shot(**shot), **values)
+        scene = Scene(parameters=parameters, shot=Shot(**shot), **values)
+        _check_shot(scene)
+        return scene
     except SceneError as error:
         named = [each for each in given if re.search(rf"\b{re.escape(each)}\b", str(error))]
         raise place.error(named[:1], error) from None
+
+
+def _check_shot(scene: Scene) -> None:
+    """Raise SceneError where the shot shows what the scene does not have."""
+    shot = scene.shot
+    quantities = (*QUANTITIES, *(each.name for each in MODELS[scene.model].quantities()))
+    checked = {shot.view: VIEWS, shot.quantity: quantities}
+    keys = tuple(method.key for method in scene.cast)
+    checked |= dict.fromkeys(shot.front, keys)
+    for value, allowed in checked.items():
+        if value not in allowed:
+            raise SceneError(f"a shot has no {value!r}; choose from {', '.join(allowed)}.")
 
 
 def _value(names: Sequence[str], value: Any) -> Any:

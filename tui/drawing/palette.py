@@ -110,6 +110,17 @@ PALETTES = {
     ),
 }
 
+SIGNS = {
+    "bounded": "=",
+    "grows": "+",
+    "loses": "-",
+    "caught": "=",
+    "wanders": "~",
+    "chaotic": "!",
+    "failed": "!",
+}
+"""Before a verdict, so that its colour is not alone."""
+
 
 def palette(theme: str) -> Palette:
     """The palette of this name; for other themes, the one that suits the name best."""

@@ -70,9 +70,9 @@ class TimePlot:
         )
 
     def zoomed(
-        self, whole: Window, factor: float, column: int | None = None, shift: float = 0.0
+        self, whole: Window, factor: float, column: int | None = None
     ) -> tuple[float, float] | None:
-        """Return the ends [s] of a stretch `factor` times as long, or `shift` lengths later.
+        """Return the ends [s] of a stretch `factor` times as long.
 
         What is in the column, or in the middle, stays there.  None where it would be the whole run.
         """
@@ -87,7 +87,7 @@ class TimePlot:
             if self.log_time
             else time_span(whole.x, None, 1)
         )
-        begin = min(max(fixed - at * length + shift * length, low), max(high - length, low))
+        begin = min(max(fixed - at * length, low), max(high - length, low))
         end = min(begin + length, high)
         if begin == low and end == high:
             return None

@@ -33,7 +33,7 @@ class Ghost:
 
     @classmethod
     def recorded(cls, recording: "Recording") -> "Ghost":
-        """The longest run of a recording, up to where its time turns or to its MAX_ROWS-th sample."""
+        """The longest run of a recording, up to where time turns or to its MAX_ROWS-th sample."""
         run = max(recording.runs, key=lambda run: abs(run.t))
         history = ErrorHistory(run.scene, MAX_ROWS)
         exact = run.scene.exact()
@@ -57,7 +57,7 @@ class Ghost:
         return text if len(text) <= room else f"dim: {self._step}"
 
     def rods(self, t: float) -> dict[str, float]:
-        """The angles [rad] at a simulated time [s] by method key, but for those that have ended or failed by then."""
+        """Return the angles [rad] at a simulated time [s] by method key, without those that failed."""
         row = int(np.searchsorted(self._x, t + ROUNDING, "right")) - 1
         if not self.scene.equations.rigid or row < 0 or t > self._x[-1] + abs(self.scene.h):
             return {}

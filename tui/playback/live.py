@@ -103,9 +103,7 @@ class Live(Source):
         recorder = self.recorder
         if recorder is None:
             return None
-        return RecordingStatus(
-            recorder.path.name, recorder.seconds, recorder.bytes, recorder.failed
-        )
+        return RecordingStatus(recorder.path.name, recorder.seconds, recorder.failed)
 
     def record(self, recorder: "LiveRecorder") -> None:
         """Record from here on."""

@@ -112,7 +112,7 @@ class Replay(Source):
 
     @property
     def recording_status(self) -> RecordingStatus:
-        return RecordingStatus(self.recording.path.name, self.length, self.recording.bytes)
+        return RecordingStatus(self.recording.path.name, self.length)
 
     def tick(self, now: float) -> Sample:
         """Follow the clock to `now`: stop at the ends, or go round in the loop."""

@@ -38,8 +38,6 @@ class Shown(NamedTuple):
 
     hidden: frozenset[str] = frozenset()  # keys of methods
     exact: bool = False  # the exact motion, dotted
-    overlay: bool = False  # all pendulums on one pivot
-    trails: bool = True
     quantity: Quantity = "energy_error"  # of the chart
     log: bool = True
     seconds: float | None = None  # of the chart, one of WINDOWS

@@ -24,7 +24,6 @@ class RecordingStatus(NamedTuple):
 
     name: str
     seconds: float  # of the recording clock
-    bytes: int
     failed: str | None = None  # why nothing is recorded right now, in a sentence
 
 

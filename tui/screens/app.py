@@ -2,7 +2,7 @@
 
 import asyncio
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from traceback import walk_tb
 from typing import ClassVar
@@ -52,15 +52,12 @@ class PenduApp(App[Exit | BaseException]):
     def __init__(
         self,
         screen: SourceScreen,
-        open_replay: Callable[[Path], SourceScreen] | None = None,
         terminal: TerminalOptions = USUAL,
     ) -> None:
-        """`open_replay` makes a recording's screen; it may raise an error with a sentence."""
         if not os.environ.get("NO_COLOR", "?"):
             del os.environ["NO_COLOR"]  # no-color.org: empty means nothing
         # else Textual greys
         super().__init__(ansi_color=True if "NO_COLOR" in os.environ else None)
-        self.open_replay = open_replay
         for name, colours in PALETTES.items():
             self.register_theme(_theme(name, colours))
         self.theme = terminal.theme
@@ -153,9 +150,7 @@ class PenduApp(App[Exit | BaseException]):
         from tui.screens.palette import LabCommands
 
         if self.screen is self.source_screen:
-            self.push_screen(
-                Commands([LabCommands], placeholder="scene, theme, key, recording, method …")
-            )
+            self.push_screen(Commands([LabCommands], placeholder="scene, theme, key …"))
 
     def action_use_theme(self, name: str) -> None:
         self.theme = name

@@ -5,7 +5,6 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, ClassVar, cast
 
 from textual.app import ComposeResult, SystemCommand
@@ -18,7 +17,6 @@ from textual.screen import Screen
 from textual.timer import Timer
 from textual.widget import Widget
 
-from engine.methods import method_of
 from engine.methods.own import OwnMethodError
 from engine.run.lockstep import Sample
 from engine.scenes import MOST_METHODS
@@ -39,7 +37,6 @@ from tui.terminal.check import is_writing
 from tui.views import VIEWS, create, following
 from tui.views.messages import Asked, MethodChosen, Zoomed
 from tui.views.view import Box, Pane, View
-from tui.words.cards import method_card
 from tui.words.command_line import command, reproduces
 from tui.words.describe import description
 from tui.words.events import event_lines, numbered
@@ -83,7 +80,6 @@ class SourceScreen(Screen[None]):
             for n in range(1, MOST_METHODS + 1)
         ),
         Binding(f"{MOST_METHODS + 1}", f"show({MOST_METHODS})", "the exact motion", show=False),
-        Binding("t", "switch('trails')", "trails", show=False),
         Binding("e", "quantity", "chart: next quantity", show=False),
         Binding("y", "switch('log')", "chart: log or linear", show=False),
         Binding("w", "window", "chart: last 20 s, 60 s, …", show=False),
@@ -185,7 +181,7 @@ class SourceScreen(Screen[None]):
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Keep the visitor of a browser from this computer's files and shell."""
-        if self.app.is_web and action in ("screenshot", "replay"):
+        if self.app.is_web and action == "screenshot":
             return False
         return super().check_action(action, parameters)
 
@@ -411,13 +407,6 @@ class SourceScreen(Screen[None]):
         """Yield what the command palette offers beside the keys."""
         if not self.app.is_web:  # it may name a file
             yield SystemCommand("copy the command for this moment", "", self.action_copy_command)
-        yield SystemCommand("normal speed (1×)", "", lambda: self.action_set_speed(1.0))
-        yield SystemCommand(
-            "all pendulums on one pivot, or one pane each",
-            "",
-            lambda: self.action_switch("overlay"),
-        )
-        yield from self._view_in_front.commands()
 
     def show_text(self, title: str, *paragraphs: str) -> None:
         """Lay a text over the screen."""
@@ -449,9 +438,6 @@ class SourceScreen(Screen[None]):
             period = str(error)
         self.show_text("In words", *description(self.source), period, view)
 
-    def action_card(self, key: str) -> None:
-        self.show_text("Method", method_card(method_of(key)))
-
     def action_screenshot(self) -> None:
         """Save the screen next to the recordings."""
         try:
@@ -470,17 +456,6 @@ class SourceScreen(Screen[None]):
         if not reproduces(self.source):
             rest = " (start values only; later changes of h are in the recording)"
         self.notify(f"Copied: {text}{rest}", markup=False, timeout=15)
-
-    def action_replay(self, path: str) -> None:
-        """Finish what is on the screen and replay a recording."""
-        assert self.host.open_replay is not None
-        try:
-            other = self.host.open_replay(Path(path))
-        except Exception as error:
-            self.notify(str(explained(error)), severity="warning", markup=False)
-            return
-        self.end()
-        self.app.push_screen(other)
 
     def action_quit(self) -> None:
         self.app.exit()

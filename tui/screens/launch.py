@@ -140,9 +140,7 @@ def show(screen: "SourceScreen", options: argparse.Namespace) -> int:
         theme = fitting_theme(os.environ)
         options.theme = theme if theme == "ansi" else background() or theme
     terminal = terminal_options_of(options, os.environ, sys.__stderr__.encoding)
-    app = PenduApp(
-        screen, lambda path: replay_screen(open_replay(path), options.no_record), terminal
-    )
+    app = PenduApp(screen, terminal)
     result: Exit | BaseException | None = None
     try:
         with suppress(CancelledError):  # of a dialog that closes while Textual 8.2 does
@@ -175,7 +173,7 @@ def open_lab(
     with_tour: bool = False,
     lecture: "Mapping[str, Scene] | None" = None,
 ) -> int:
-    """Record and show a lab, perhaps of a `lecture`, or print it as sentences; return the exit code."""
+    """Record and show a lab, or print it as sentences; return the exit code."""
     path = None if options.no_record else recording_path(options.record)
     notices = [] if path is None else recover_leftovers(path.parent)
     for notice in notices:

@@ -8,9 +8,7 @@ from rich.cells import cell_len
 from rich.markup import escape
 from textual.command import DiscoveryHit, Hit, Hits, Provider
 
-from engine.methods import METHODS
 from engine.scenes import SCENES
-from recordings import library
 from tui.drawing.palette import PALETTES
 from tui.screens.base import SourceScreen
 from tui.screens.help import bindings_of, key_text, purpose
@@ -39,12 +37,6 @@ def entries(screen: SourceScreen) -> Iterator[Entry]:
     yield from key_entries(screen)
     for command in screen.commands():
         yield Entry(command.title, command.callback)
-    if screen.host.open_replay is not None and not screen.app.is_web:
-        for folder in (None, library.GOLDEN):
-            for item in library.listing(folder):
-                yield Entry(f"replay {item.path.stem}", f"replay({str(item.path)!r})")
-    for method in METHODS:
-        yield Entry(f"method {method.label}", f"card({method.key!r})")
 
 
 def key_entries(screen: SourceScreen) -> Iterator[Entry]:

@@ -34,7 +34,6 @@ class ReplayScreen(SourceScreen):
         Binding("pageup", "part(-0.1)", "back 10 %", False, "pgup", group=_TENTHS),
         Binding("pagedown", "part(0.1)", "forward 10 %", False, "pgdn", group=_TENTHS),
         Binding("b", "reverse", "Back", tooltip="play back in time"),
-        Binding("L,shift+l", "loop", "play again and again", False, "L"),
         Binding("f", "live", "Live", tooltip="continue live from here"),
         Binding("plus,equals_sign,minus,p,P,shift+p,i,M,shift+m,r,n,T,shift+t", "change"),
     ]
@@ -79,11 +78,6 @@ class ReplayScreen(SourceScreen):
 
     def action_reverse(self) -> None:
         self.replay.set_speed(-self.replay.playhead.speed)
-        self.show_now()
-
-    def action_loop(self) -> None:
-        """Play the recording again and again, or once."""
-        self.replay.looping = not self.replay.looping
         self.show_now()
 
     async def action_live(self) -> None:

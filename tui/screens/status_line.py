@@ -13,7 +13,7 @@ from tui.drawing.palette import QUIET, TEXT, WARN
 from tui.drawing.picture import Picture, Row
 from tui.playback.source import Source
 from tui.views.view import Pane
-from tui.words.numbers import factor, file_size, seconds, start, two_digits
+from tui.words.numbers import factor, seconds, start, two_digits
 
 SLOW = 1.0  # s of the clock from step to step: without a word, the lab would seem to stand still
 BADGE = -10
@@ -63,12 +63,8 @@ def segments(source: Source) -> Iterator[Segment]:
     yield from _time(source)
     yield from _stepping(source)
     scene = source.scene
-    if scene.watch:
-        yield Segment(6, f"scene {scene.name}", QUIET)
-        yield Segment(4, start(scene.theta, scene.omega))
-    else:
-        yield Segment(3, f"{scene.name} scene", QUIET)
-        yield Segment(6, start(scene.theta, scene.omega))
+    yield Segment(6 if scene.watch else 3, f"scene {scene.name}", QUIET)
+    yield Segment(5, start(scene.theta, scene.omega))
     yield from _recording(source)
 
 
@@ -111,7 +107,6 @@ def _recording(source: Source) -> Iterator[Segment]:
         if source.kind == "LIVE":
             yield Segment(8, f"REC {coarse(status.seconds)}")
         yield Segment(1, printable(status.name), QUIET)
-        yield Segment(2, file_size(status.bytes), QUIET)
 
 
 def fit(parts: list[Segment], width: int) -> list[Segment]:

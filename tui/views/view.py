@@ -1,11 +1,11 @@
 """View and Pane: what the screen shows between the status line and the key line."""
 
-from collections.abc import Callable, Coroutine, Iterable
+from collections.abc import Callable, Coroutine
 from textwrap import wrap
 from typing import Any, ClassVar, Generic, TypeVar
 
 from textual import events
-from textual.app import ComposeResult, SystemCommand
+from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Container
 from textual.content import Content
@@ -85,8 +85,8 @@ class View(Box):
         for pane in self.query(Pane):
             pane.draw()
 
-    def zoom(self, factor: float, shift: float = 0.0) -> None:
-        """Zoom by `factor`, or move by `shift`, in views that have a chart of time."""
+    def zoom(self, factor: float) -> None:
+        """Zoom by `factor`, in views that have a chart of time."""
 
     def compute(
         self, work: Callable[[], Coroutine[None, None, None]], group: str = "default"
@@ -101,10 +101,6 @@ class View(Box):
                 raise error
             for pane in self.query(Pane):
                 pane.border_subtitle = Content(str(error))
-
-    def commands(self) -> Iterable[SystemCommand]:
-        """Return what the command palette offers here beside the keys."""
-        return ()
 
 
 class Pane(CellWidget):

@@ -7,8 +7,9 @@ from collections.abc import Mapping
 from engine.methods import Method
 from engine.models import MODELS
 from engine.models.model import EnergyError
-from engine.run.judgement import DEFINITIONS, Verdict
+from engine.run.judgement import DEFINITIONS
 from engine.scenes import SCENES, UNITS, Scene
+from tui.drawing.palette import SIGNS
 from tui.words.motion import motion_text
 from tui.words.numbers import counted, z_text
 
@@ -16,15 +17,6 @@ WIDTH = 72  # characters; of 80 columns, frame and scroll bar take the rest
 HEAD = 14
 
 
-SIGNS: dict[Verdict, str] = {
-    "bounded": "=",
-    "grows": "+",
-    "loses": "-",
-    "caught": "=",
-    "wanders": "~",
-    "chaotic": "!",
-    "too early": "",
-}
 GLOSSARY = {
     "h": "the step size [s]: methods know the pendulum only at times 0, h, 2h, ...",
     "z": "h w0, the step in units of the swing; w0 = sqrt(g/L). Methods become unstable beyond a z "
@@ -35,9 +27,11 @@ GLOSSARY = {
     "largest": "the largest |dE/E0| since the start, or since the last change of h",
     "trend per s": "the mean change of dE/E0 per second; a bounded error can be larger than one "
     "that grows",
+    "theta error": "the distance from the exact angle [rad]; after a change of h, since then",
+    "evals/step": "force evaluations a step: what the method costs",
     "E/Es": "the energy over that of the separatrix: below 1 it swings (libration), above it turns "
     "(rotation)",
-    **{f"{sign} {verdict}".strip(): DEFINITIONS[verdict] for verdict, sign in SIGNS.items()},
+    **{f"{SIGNS.get(word, '')} {word}".strip(): DEFINITIONS[word] for word in DEFINITIONS},
     "colours": "each method keeps its own, and its letter, wherever it is shown; its digit is its "
     "place and its key",
     "×": "in the chart: one error passes another, and stays above it",
@@ -48,11 +42,7 @@ HEADS = {
     **dict.fromkeys(("theta", "omega"), GLOSSARY["theta, omega"]),
     "per s": GLOSSARY["trend per s"],
     "verdict": "what the energy error does in the long run; ? explains each word",
-    **dict.fromkeys(
-        ("th.err", "theta error"),
-        "the distance from the exact angle [rad]; after a change of h, what it has added since",
-    ),
-    "evals/step": "force evaluations a step: what the method costs",
+    "th.err": GLOSSARY["theta error"],
     **{
         head: each.about
         for model in MODELS.values()

@@ -27,7 +27,7 @@ UNCHANGED = 0.05  # relative change of the energy that is not worth a number
 
 SENTENCES = {
     "at rest": "Nothing moves: the pendulum started at rest in equilibrium.",
-    "returned": "Back at t = 0. Missed the start by {misses} rad.",
+    "returned": "Back at t = 0. Missed the start, in angle and speed, by {misses} rad.",
     "watch": "{text}",
     "new step": "h is {h:.4g} s now; r starts again with it, the old run dimmed under the new one.",
     "failed": "{0} failed at {t:.4g} s: its energy error is no longer finite.",
@@ -46,13 +46,13 @@ SENTENCES = {
     "wanders at": "{0} wanders in chaos: nearby starts separate tenfold every {seconds:about}.",
     "caught": "{0} has settled at an energy error of about {error:+.3g}.",
     "lost": "{0} has lost {share:percent} of its energy.",
-    "gains": "{0} gains {rate:two} of {unit} per s.",
+    "gains": "{0} gains {rate:share} of {unit} per s.",
     "multiplies": "{0}'s energy grows tenfold every {seconds:about}.",
-    "loses": "{0} loses {rate:two} of {unit} per s.",
-    "will pass": "{0} loses {rate:two} of E0 per s; its error will pass {1}'s in {seconds:about}.",
-    "exceeds": "{0} {gains} {rate:two} of {unit} per s; its error is {ratio:two} × {1}'s maximum.",
-    "so far alone": "{0}'s largest energy error so far is {most:.2g}.",
-    "so far": "Energy errors so far: {least:.2g} ({0}) to {most:.2g} ({1}).",
+    "loses": "{0} loses {rate:share} of {unit} per s.",
+    "will pass": "{0} loses {rate:share} of E0 per s; its error will pass {1}'s in {seconds:about}.",
+    "exceeds": "{0} {gains} {rate:share} of {unit} per s; its error is {ratio:two} × {1}'s maximum.",
+    "so far alone": "{0}'s largest energy error so far is {most:share}.",
+    "so far": "Energy errors so far: {least:share} ({0}) to {most:share} ({1}).",
 }
 
 
@@ -69,7 +69,7 @@ class Insight(NamedTuple):
 
 
 class _Words(string.Formatter):
-    """Knows the formats `about`, `two` and `percent` besides Python's own."""
+    """Knows the formats `about`, `two`, `share` and `percent` besides Python's own."""
 
     def format_field(self, value: Any, format_spec: str) -> str:
         match format_spec:
@@ -77,6 +77,8 @@ class _Words(string.Formatter):
                 return about(value)
             case "two":
                 return two_digits(value)
+            case "share":
+                return f"{100 * value:.2g} %" if 1e-6 <= value < 1 else two_digits(value)
             case "percent":
                 return "all" if value > 1 - 1e-6 else f"{100 * value:.4g} %"
         return str(super().format_field(value, format_spec))

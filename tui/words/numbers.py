@@ -36,13 +36,13 @@ def scientific(value: float | None, width: int, digits: int = 1, sign: str = "+"
 
 
 def angle(theta: float, width: int, decimals: int) -> str:
-    """An angle [rad]; beyond a turn, if there is room, in turns: "-5 turns +0.89"."""
+    """An angle [rad]; beyond a turn as turns and, if there is room, the rest: "-5 turns +0.89"."""
     turns = round(theta / math.tau) if math.isfinite(theta) else 0
-    rest = theta - turns * math.tau
-    text = f"{turns:+d} turn{'s' * (abs(turns) != 1)} {rest:+.2f}"
-    if abs(theta) > math.tau and len(text) <= width:
-        return text.rjust(width)
-    return decimal(theta, width, max(decimals, 1))
+    text = f"{turns:+d} turn{'s' * (abs(turns) != 1)}"
+    rest = f" {theta - turns * math.tau:+.2f}"
+    if abs(theta) <= math.tau or len(text) > width:
+        return decimal(theta, width, max(decimals, 1))
+    return (text + rest if len(text + rest) <= width else text).rjust(width)
 
 
 def start(theta: float, omega: float) -> str:

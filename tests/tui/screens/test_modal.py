@@ -11,12 +11,9 @@ from textual.screen import Screen
 from textual.widgets import Input, OptionList
 from textual.widgets._toast import Toast
 
-from engine.scenes import DEFAULT_SCENE
-from tests.tui.harness import lab, on_stage
-from tui.playback.live import Live
+from tests.tui.harness import lab
 from tui.screens.dialogs.modal import Commands
 from tui.screens.dialogs.text import TextScreen
-from tui.screens.live import LiveScreen
 from tui.screens.palette import LabCommands
 
 
@@ -89,21 +86,6 @@ async def test_a_palette_that_is_closed_while_it_searches_ends_quietly(monkeypat
                 await theatre.pilot.pause(0.01)
         await theatre.press("escape")
         assert theatre.app.screen is theatre.stage
-
-
-async def test_the_palette_shows_names_as_they_are(tmp_path, monkeypatch):
-    folder = tmp_path / "a["
-    folder.mkdir()
-    (folder / "b]x.mcap").write_bytes(b"")  # with its folder as an end of something in markup
-    monkeypatch.setenv("PENDU_RECORDINGS", str(folder))
-    async with on_stage(lambda clock: LiveScreen(Live(DEFAULT_SCENE), clock), (120, 40)) as theatre:
-        theatre.app.open_replay = lambda path: None
-        await theatre.press("ctrl+p", "b", "]", "x")
-        options = theatre.app.screen.query_one(OptionList)
-        async with asyncio.timeout(20):
-            while options.option_count != 1:
-                await theatre.pilot.pause(0.01)
-        assert "replay b]x" in str(options.get_option_at_index(0).prompt)
 
 
 @pytest.mark.parametrize("opening", ["question_mark", "i", "ctrl+p"])

@@ -22,7 +22,6 @@ from tests.tui.monkey import (
     presses,
     small_studies,
     wild_presses,
-    wild_replay,
     wild_stage,
 )
 from tests.tui.pty_lab import PtyLab
@@ -86,7 +85,6 @@ async def test_dialogs_the_palette_pasted_garbage_and_all_sizes_do_no_harm_eithe
 ):
     monkeypatch.setattr(PenduApp, "exit", lambda self: None)  # it finds `quit`, too
     async with on_stage(wild_stage(library), SIZE) as theatre:
-        theatre.app.open_replay = wild_replay(library, lambda: theatre.now)
         await play_on_stage(theatre, wild_presses(WILD, SEED), SEED)
         assert theatre.app.is_running
         theatre.source.close()

@@ -161,17 +161,13 @@ async def test_keys_that_would_change_a_lab_say_once_that_a_recording_stays_as_i
         assert (
             told.message == "A recording cannot be changed: f continues it live, and then it can."
         )
-        await theatre.press("m", "t", "b", "comma")  # the replay has its own
+        await theatre.press("m", "b", "comma")  # the replay has its own
         assert (
             len([each for each in theatre.app._notifications if each.message == told.message]) == 1
         )
 
 
-async def test_a_loop_is_set_and_left_and_a_mark_becomes_a_tick(path):
+async def test_a_mark_becomes_a_tick(path):
     async with player(path) as theatre:
-        await theatre.press("L")
-        assert theatre.source.looping
-        assert "loop" in theatre.text(SeekBar)
-        await theatre.press("L", "right", "m")
-        assert not theatre.source.looping
+        await theatre.press("right", "m")
         assert 1 in theatre.source.ticks

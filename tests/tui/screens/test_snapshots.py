@@ -84,10 +84,6 @@ async def test_sizes_between_have_phase_space_and_events(text_snapshot, size):
     text_snapshot(f"lab-{size[0]}x{size[1]}", await still(DEFAULT_SCENE, SECONDS, size))
 
 
-async def test_all_pendulums_on_one_pivot_which_is_at_the_top_where_none_goes_beyond(text_snapshot):
-    text_snapshot("lab-overlay", await still(DEFAULT_SCENE, SECONDS, (120, 40), keys=["1", "O"]))
-
-
 async def test_on_a_narrow_terminal_there_is_one_pane_and_the_table(text_snapshot):
     text_snapshot("lab-60x16", await still(DEFAULT_SCENE, SECONDS, (60, 16)))
 

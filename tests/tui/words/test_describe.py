@@ -25,7 +25,7 @@ def test_the_default_scene_after_twenty_seconds():
         "Explicit Euler went over the top at 7.15 s with 5.1 times its initial energy.",
         "Symplectic Euler stays bounded: its largest energy error is 0.079.",
         "Velocity Verlet stays bounded: its largest energy error is 0.0057.",
-        "RK4 loses 3.0e-06 of E0 per s; its error will pass Verlet's in 31 min.",
+        "RK4 loses 0.0003 % of E0 per s; its error will pass Verlet's in 31 min.",
         "Not recording.",
     ]
 
@@ -82,5 +82,5 @@ async def test_d_opens_the_description_and_closes_it():
 def test_a_recording_under_the_lab_is_said():
     live = after(SCENES["drift"], 1)
     with Recording.open(GOLDEN / "drift.mcap") as recording:
-        live.laid_under = Ghost(recording)
+        live.laid_under = Ghost.recorded(recording)
     assert "Under it, dim: drift, h 0.05 s." in description(live)

@@ -36,7 +36,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--max-steps",
         metavar="N",
         type=count,
-        help="simulate at most N steps of each recording (a million, or 100 per sample)",
+        help="simulate at most N steps of each recording",
     )
     add_report_options(parser)
 

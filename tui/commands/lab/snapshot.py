@@ -33,8 +33,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--output",
         metavar="FILE.svg",
         type=picture,
-        required=True,
-        help="the image to write",
+        help="the image to write (default: SCENE.svg)",
     )
     parser.add_argument("--force", action="store_true", help="overwrite FILE.svg")
 
@@ -46,9 +45,12 @@ def run(options: argparse.Namespace) -> int:
     from tui.screens.still import portable, still
 
     display = terminal_options_of(options, os.environ, "utf-8")
-    with whole_file(options.output, options.force) as file:
+    path = options.output or Path(f"{scene.name}.svg")
+    with whole_file(path, options.force) as file:
         svg = asyncio.run(still(scene, options.time, options.size, display))
         file.write_text(portable(svg), encoding="utf-8")
+    if options.output is None:
+        print(f"saved {path}")
     return Exit.FINE
 
 

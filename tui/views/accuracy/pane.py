@@ -32,7 +32,7 @@ MAX_STEPS = 2_000_000  # of a run for the mark at the present h: some seconds
 HERE = "@"
 CURSOR = "O"
 COST: Cost = "evaluations"
-LEGEND = f"{HERE} current h  x useless  ~ rounding  dotted:"
+LEGEND = f"{HERE} current h  x no digit right  ~ limited by rounding  dotted:"
 
 
 @dataclass
@@ -142,6 +142,8 @@ class AccuracyPane(Chooser[Point]):
         if self._charted != self._state:
             self._charted = self._state
             words = MAX_WORDS if self.room.height >= ROOMY else MIN_WORDS
+            if self.all and words == MAX_WORDS:
+                words += 2  # for the letters of all methods
             self._draw_chart(self.room.width, max(self.room.height - words, 1))
         self._write_titles()
         return Picture([*self._chart.rows, *self.words(*self._sentences(aim))][: self.room.height])
@@ -172,7 +174,7 @@ class AccuracyPane(Chooser[Point]):
             self.write_titles("Theta error over time, at each method's h", "dotted: slopes t, t²")
             return
         orders = sorted({method.order for method in self.cast})
-        left = f", {self.missing} points left" if self.missing else ""
+        left = f", computing, {self.missing} points left" if self.missing else ""
         title = f"Accuracy (F4) over {self.study.time:g} s: {self.kind} error{left}"
         self.write_titles(title, f"{LEGEND} {', '.join(raised('h', order) for order in orders)}")
 
@@ -185,6 +187,8 @@ class AccuracyPane(Chooser[Point]):
         if not self.missing:
             points = [point for method in self.cast for point in study.of(method)]
             cheapest = [front_words(front(points, self.kind, COST), COST)]
+        if self.all:
+            cheapest.append(", ".join(f"{each.letter} {each.label}" for each in self.cast))
         if aim is not None:
             return [point_words(aim, self.kind, self._note), *cheapest]
         if self.index >= len(study.here):

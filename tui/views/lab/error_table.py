@@ -2,20 +2,16 @@
 
 from collections.abc import Callable, Sequence
 from itertools import accumulate
-from typing import ClassVar, NamedTuple
+from typing import NamedTuple
 
-from rich.style import Style
 from textual import events
-from textual.binding import Binding, BindingType
-from textual.geometry import Offset
-from textual.widgets import Tooltip
 
 from engine.methods import Method
 from engine.models.model import Model, State
 from engine.run.judgement import Judgement
 from engine.run.lockstep import Reading, Sample
 from engine.run.stepping import change_before
-from tui.drawing.palette import GOOD, QUIET, TEXT, WARN, inks, mark
+from tui.drawing.palette import GOOD, QUIET, SIGNS, TEXT, WARN, inks, mark
 from tui.drawing.picture import Picture, Row
 from tui.playback.shown import Shown
 from tui.playback.source import Source
@@ -50,9 +46,9 @@ COLUMNS = (
     Column(9, ("h", 6), ("h [s]", 8), lambda line, width: f"{line.h:.4g}"[:width].rjust(width)),
     Column(
         4,
-        ("theta", 6),
-        ("theta [rad]", 14),
-        lambda line, width: angle(line.reading.theta, width, max(width - 9, 3)),
+        ("theta", 11),
+        ("theta [rad]", 18),
+        lambda line, width: angle(line.reading.theta, width, min(width - 8, 5)),
     ),
     Column(
         2,
@@ -126,18 +122,6 @@ def theta_error(line: TableLine) -> float:
     """Return by how much a method is off the exact angle, or further off than when h changed."""
     error = line.model.theta_error(line.reading.theta, line.exact.theta)
     return abs(error - line.theta_before)
-
-
-SIGNS = {
-    "bounded": "=",
-    "grows": "+",
-    "loses": "-",
-    "caught": "=",
-    "chaotic": "!",
-    "wanders": "~",
-    "failed": "!",
-}
-"""Before a verdict, so that its colour is not alone."""
 
 
 def verdict_of(reading: Reading, judgement: Judgement) -> str:
@@ -224,20 +208,11 @@ def table(source: Source, sample: Sample, shown: Shown, width: int) -> list[Row]
     return rows
 
 
-class ErrorTable(Pane, can_focus=True):
-    """As many columns as fit.  The pointer on a head, or Tab, says what it means."""
-
-    BINDING_GROUP_TITLE = "Table"
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("tab", "head(1)", "what each column means", show=False),
-        Binding("shift+tab", "head(-1)"),
-        Binding("escape", "leave"),
-    ]
-    FOCUS_ON_CLICK = False  # that shows a method
+class ErrorTable(Pane):
+    """As many columns as fit.  The pointer on a head says what it means."""
 
     _rows_shown = 0
     _head: Sequence[str] = ()
-    _chosen: int | None = None  # of the heads
 
     def picture(self, source: Source, sample: Sample) -> Picture:
         rows = table(source, sample, self.shown, self.room.width)
@@ -245,47 +220,7 @@ class ErrorTable(Pane, can_focus=True):
             self._rows_shown = len(rows)
             self.styles.height = len(rows)  # hidden methods leave no gap
         self._head = [text for text, _ in rows[0]]
-        if self._chosen is not None:
-            at = min(self._chosen, len(self._head) - 1)  # a narrower table has fewer
-            gap = len(text := self._head[at]) - len(text.lstrip())
-            chosen = (text[:gap], QUIET), (text[gap:], Style(reverse=True))
-            rows[0] = [*rows[0][:at], *chosen, *rows[0][at + 1 :]]
         return Picture(rows)
-
-    def on_focus(self) -> None:
-        self._choose(1)
-
-    def on_blur(self) -> None:
-        self._choose(None)
-
-    def action_head(self, direction: int) -> None:
-        """Go to the next head that has a meaning; beyond the last to the next pane."""
-        at = min(self._chosen or 0, len(self._head) - 1) + direction  # a narrower table has fewer
-        if 0 < at < len(self._head):
-            self._choose(at)
-        elif direction > 0:
-            self.screen.focus_next()
-            if self.has_focus:
-                self._choose(1)
-        else:
-            self.screen.focus_previous()
-
-    def action_leave(self) -> None:
-        self.screen.set_focus(None)
-
-    def _choose(self, at: int | None) -> None:
-        """Say what a head means where its tooltip is said, or nothing."""
-        from tui.words.cards import head_text
-
-        self._chosen = at
-        self.draw()
-        for tooltip in self.screen.query(Tooltip):
-            if at is not None and at < len(self._head):
-                tooltip.absolute_offset = self.region.offset + Offset(
-                    sum(map(len, self._head[: at + 1])), 0
-                )
-                tooltip.update(head_text(self._head[at].strip()) or "")
-            tooltip.display = at is not None
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
         """Say what the head of the column under the pointer means."""

@@ -49,12 +49,11 @@ class EventList(Pane):
         return self._words
 
     def _fitted(self, text: str, line: EventLine) -> str:
-        """A milestone's text; where it is too long, methods go by their letters."""
-        if line.method is None or len(text) <= self.room.width:
-            return text
-        for method in self.cast:
+        """A text; where it is too long, methods go by their letters, or it ends in …."""
+        width = self.room.width
+        for method in self.cast if line.method and len(text) > width else ():
             text = text.replace(short_name(method), method.letter)
-        return text
+        return text if len(text) <= width else f"{text[: width - 1]}…"
 
     def on_click(self, event: events.Click) -> None:
         """Go to an event, or list them all."""

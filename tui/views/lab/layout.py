@@ -29,13 +29,13 @@ class Places(NamedTuple):
     phase: Region | None = None
 
 
-def places(columns: int, rows: int, methods: int, overlay: bool = False) -> Places:
+def places(columns: int, rows: int, methods: int) -> Places:
     """Place pendulums and events to the left, charts and phase space to the right.
 
-    Each method has a pane of its own where there is room, unless an `overlay` is wanted.
+    Each method has a pane of its own where there is room.
     """
     events = max(EVENTS, -(-rows // 5)) if rows >= TWO_ROWS else 0
-    has_grid = not overlay and columns >= NARROW
+    has_grid = columns >= NARROW
     grid = _grid(columns, rows - events, methods) if has_grid else None
     if grid is not None:
         across, side = grid

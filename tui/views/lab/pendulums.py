@@ -5,8 +5,9 @@ is exactly in the middle, since explicit Euler goes over the top; where no metho
 top and the rods are longer.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from math import atan2, cos, isfinite, pi, remainder, sin, tau
+from operator import itemgetter
 from typing import NamedTuple
 
 from textual import events
@@ -15,7 +16,7 @@ from textual.geometry import Offset
 from engine.run.lockstep import Sample
 from engine.scenes import SceneError
 from tui.drawing.canvas import Canvas
-from tui.drawing.palette import EXACT, FRAME, faint, inks, mark
+from tui.drawing.palette import EXACT, FRAME, faint, inks
 from tui.drawing.picture import Picture
 from tui.playback.source import Source
 from tui.views.messages import Asked, Held, MethodChosen, SceneChosen
@@ -30,6 +31,9 @@ GRAB = 3  # columns that the pointer moves before it is no click
 THROW = 0.1  # s of the pointer's way that decide its speed
 MAGNIFIED = 0.8  # rad, to which small swings are enlarged
 TRAIL = 15  # samples, half a second at 30 frames a second
+
+
+_Letter = tuple[int, int, str, int]  # row, column, letter, ink
 
 
 class Bob(NamedTuple):
@@ -67,6 +71,7 @@ def pendulum_picture(columns: int, rows: int, bobs: Sequence[Bob], reach: float 
             [(x0 + length * sin(theta), y0 + length * cos(theta)) for theta in bob.trail],
             faint(bob.ink),
         )
+    letters: list[_Letter] = []
     for bob in bobs:
         right = sin(bob.theta)
         down = cos(bob.theta)
@@ -80,14 +85,29 @@ def pendulum_picture(columns: int, rows: int, bobs: Sequence[Bob], reach: float 
             canvas.line(x - size, y + size, x + size, y - size, bob.ink)
         else:
             canvas.disc(x, y, bob_radius, bob.ink, hollow=bob.ghost)
-        column = int(x + (bob_radius + 2) * right) // 2
-        row = int(y + (bob_radius + 3) * down) // 4
-        beside = (*range(column, column + len(bobs)), *range(column - 1, column - len(bobs), -1))
-        canvas.label(
-            next((at for at in beside if canvas.is_free(at, row)), column), row, bob.letter, bob.ink
-        )
+        if bob.letter:
+            column = int(x + (bob_radius + 2) * right) // 2
+            letters.append((int(y + (bob_radius + 3) * down) // 4, column, bob.letter, bob.ink))
+    for row, column, letter, ink in _fanned(letters, columns):
+        canvas.label(column, row, letter, ink)
     canvas.points([(x0 - 1, y0 - 1), (x0, y0 - 1), (x0 - 1, y0), (x0, y0)], FRAME)
     return canvas.picture()
+
+
+def _fanned(letters: Sequence[_Letter], columns: int) -> Iterator[_Letter]:
+    """Yield letters, those that would touch with a blank between them, about where they were."""
+    groups: list[list[_Letter]] = []
+    for each in sorted(letters, key=itemgetter(0, 1)):
+        row, column = each[:2]
+        if groups and groups[-1][-1][0] == row and column - groups[-1][-1][1] < 2:
+            groups[-1].append(each)
+        else:
+            groups.append([each])
+    for group in groups:
+        first = (group[0][1] + group[-1][1]) // 2 - len(group) + 1
+        first = max(min(first, columns - 2 * len(group) + 1), 0)
+        for place, (row, _, letter, ink) in enumerate(group):
+            yield row, first + 2 * place, letter, ink
 
 
 class Pendulum(Pane):
@@ -178,14 +198,14 @@ class Pendulum(Pane):
         places = self.places if place is None else [place]
         title = "Pendulums"
         if place is not None:
-            title = f"{mark(place, self.cast[place])} {self.cast[place].label}"
+            title = self.cast[place].label
         scale = self._scale(source, sample, places)
         if scale > 1:
             title += f", angles ×{scale}"
         self.write_titles(title, self._below(source, "dotted: exact" if place is None else ""))
-        bobs = _exact(source, sample.t) if self.shown.exact or place is None else []
-        bobs += _ghosts(source, sample.t, places)
+        bobs = _ghosts(source, sample.t, places)
         bobs += [self._bob(source, sample, each) for each in places]
+        bobs += _exact(source, sample.t) if self.shown.exact or place is None else []
         if scale > 1:
             bobs = [_magnified(bob, scale) for bob in bobs]
             return pendulum_picture(*self.room, bobs, MAGNIFIED)
@@ -214,11 +234,10 @@ class Pendulum(Pane):
     def _bob(self, source: Source, sample: Sample, place: int) -> Bob:
         model = source.scene.equations
         reading = sample.readings[place]
-        has_trail = self.shown.trails and model.rigid  # other rods have had many lengths
         return Bob(
             reading.theta,
             inks(self.cast)[place],
-            trail=source.history.thetas(place, TRAIL) if has_trail else (),
+            trail=source.history.thetas(place, TRAIL) if model.rigid else (),
             length=model.length(reading.extra),
             letter=self.cast[place].letter if self._place is None else "",
             diverged=reading.diverged_at is not None,

@@ -30,7 +30,6 @@ NAMES: dict[Quantity, tuple[str, str]] = {
 """A quantity, and its magnitude for logarithmic charts; models add their own quantities."""
 READING = "reading what came before …"
 HELP = "e: quantity, w: window, z: zoom, y: log"
-HELP_ZOOMED = "z: zoom, w: back, ctrl+p: earlier, later"
 MIN_ROWS = 8  # of the history in a stretch; an hour ago they are seconds apart
 
 
@@ -160,7 +159,7 @@ class TimeChart(Pane):
             return source.ghost.label(room)
         if not source.knows_past:
             return READING
-        return HELP if look.stretch is None else HELP_ZOOMED
+        return HELP
 
     def on_click(self) -> None:
         self.post_message(Asked("quantity"))
@@ -188,17 +187,14 @@ class TimeChart(Pane):
         offset = event.get_content_offset(self)
         self._pointer = None if offset is None else offset.x
 
-    def zoom(self, factor: float, shift: float = 0.0) -> None:
-        """Zoom by `factor` about the pointer, or `shift` later, down to MIN_ROWS."""
+    def zoom(self, factor: float) -> None:
+        """Zoom by `factor` about the pointer, down to MIN_ROWS."""
         source = self.source
         plot = self.plot
         if source is None or plot is None or plot.values is None:
             return
         stretch = self._look(source).stretch
-        if shift and stretch is None:
-            return
-        column = None if shift else self._pointer
-        ends = plot.zoomed(source.history.window(), factor, column, shift)
+        ends = plot.zoomed(source.history.window(), factor, self._pointer)
         if ends is None:
             if stretch is not None:
                 self.post_message(Zoomed(None))

@@ -1,8 +1,6 @@
 """LabView: the pendulums, the chart of their errors, phase space, the events, and the table."""
 
-from collections.abc import Iterable
-
-from textual.app import ComposeResult, SystemCommand
+from textual.app import ComposeResult
 from textual.geometry import Region, Size
 from textual.widget import Widget
 
@@ -49,18 +47,13 @@ class LabView(View):
         yield Stage(self, *moving, *still)
         yield self.at_5_hz(ErrorTable())
 
-    def zoom(self, factor: float, shift: float = 0.0) -> None:
-        (self.second_chart if self.second_chart.is_pointed_at else self.chart).zoom(factor, shift)
-
-    def commands(self) -> Iterable[SystemCommand]:
-        yield SystemCommand("chart: zoom out", "", lambda: self.zoom(2.0))
-        yield SystemCommand("chart: earlier, once it is zoomed", "", lambda: self.zoom(1.0, -0.25))
-        yield SystemCommand("chart: later", "", lambda: self.zoom(1.0, 0.25))
+    def zoom(self, factor: float) -> None:
+        (self.second_chart if self.second_chart.is_pointed_at else self.chart).zoom(factor)
 
     def regions(self, size: Size) -> dict[Widget, Region]:
         """Place the panes on a stage of this size; hidden methods leave their room to others."""
         shown = self.shown.places(self.source.scene.cast) if self.source is not None else []
-        found = places(size.width, size.height, len(shown), self.shown.overlay)
+        found = places(size.width, size.height, len(shown))
         self.phase.can_focus = found.phase is not None  # Tab is not to lead where nobody sees it
         regions: dict[Widget, Region] = {
             self.pendulums[place]: region
@@ -89,7 +82,7 @@ class LabView(View):
     def _arrange(self) -> None:
         """Have Textual arrange the stage again, where that would change anything."""
         shown = self.shown.places(self.source.scene.cast) if self.source is not None else []
-        if (shown, self.shown.overlay) != self._arranged_for and self.is_mounted:
-            self._arranged_for = shown, self.shown.overlay
+        if shown != self._arranged_for and self.is_mounted:
+            self._arranged_for = shown
             # of one pane: Textual forgets what it knows of what is around it
             self.overlay.refresh(layout=True)

@@ -44,11 +44,11 @@ def method_points(
     """Return the points that are shown of a sample, the exact one first."""
     exact = source.exact.at(sample.t)
     points = [PhasePoint(*exact, EXACT, "x")] if shown.exact and math.isfinite(exact.theta) else []
-    trails = source.history.trails(TRAIL) if shown.trails else None
+    trails = source.history.trails(TRAIL)
     cast = source.scene.cast
     for place in shown.places(cast):
         reading = sample.readings[place]
-        trail = None if trails is None else (trails[:, place, 0], trails[:, place, 1])
+        trail = trails[:, place, 0], trails[:, place, 1]
         around = None if ring is None else ring.rings[place]
         points.append(
             PhasePoint(

@@ -29,7 +29,7 @@ class Viewport(NamedTuple):
     def portrait(
         cls, columns: int, rows: int, scene: Scene, theta: float = math.pi, omega: float = 0.0
     ) -> "Viewport":
-        """Return -theta to theta [rad], with the orbit that comes to rest there, and +-omega.
+        """Return -theta to theta [rad], with the orbit that comes to rest there, and beyond +-omega.
 
         At pi it holds all three regimes: it reaches beyond the fastest of the separatrix and of the
         scene's orbit, by a power of 1.3, so that another start seldom changes it.
@@ -44,7 +44,7 @@ class Viewport(NamedTuple):
             theta=0.0,
             omega=0.0,
             theta_per_dot=theta / (columns - 0.5),  # half a dot, or rounding loses points at pi
-            omega_per_dot=max(fastest, 1.1 * omega) / max(2 * rows - 2, 2),
+            omega_per_dot=max(fastest, 1.5 * omega) / max(2 * rows - 2, 2),
             wrap=scene.equations.turns,
         )
 

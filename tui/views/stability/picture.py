@@ -19,6 +19,7 @@ from engine.methods.verlet import VELOCITY_VERLET
 from engine.stability.chaos import GREENE_Z
 from engine.stability.grid import Grid
 from engine.stability.outcomes import HELD, UNKNOWN, Cells
+from tui.drawing.axes import number_ticks
 from tui.drawing.palette import NOBODY, Palette, ink_of, inks, mark, mixed
 from tui.drawing.picture import Ink, Picture, Row
 
@@ -101,9 +102,9 @@ def panel(
                 assert isinstance(lower, Style)
                 lines[row][column] = sign, lower + Style(color=palette.text, reverse=sign == HERE)
     panel: list[Row] = [title(index, method, columns, palette)]
+    degrees = _degrees(grid, width, rows)
     for row, line in enumerate(lines):
-        degrees = f"{math.degrees(_theta_of_row(grid, row, rows)):3.0f} "
-        label = degrees if row in (0, rows // 2, rows - 1) else " " * MARGIN
+        label = f"{degrees[row]:3} " if row in degrees else " " * MARGIN
         panel.append([(label, NOBODY), *_joined(line)])
     return [*panel, [(" " * MARGIN + _axis(grid, width, w0), NOBODY)]]
 
@@ -137,12 +138,25 @@ def _joined(line: Sequence[Cell]) -> Iterator[Cell]:
         yield text * len(list(cells)), ink
 
 
+def _degrees(grid: Grid, width: int, rows: int) -> dict[int, int]:
+    """Return the round amplitudes [°] on the axis, by their row."""
+    step = 45 if rows >= 6 else 90
+    places = {
+        each: _place(grid, grid.z[0], math.radians(each), width, rows)
+        for each in range(0, 180, step)
+    }
+    return {place[0]: each for each, place in places.items() if place}
+
+
 def _axis(grid: Grid, width: int, w0: float | None) -> str:
+    """Return round numbers below their columns, the symbol behind the last."""
     symbol, scale = ("z", 1.0) if w0 is None else ("h", w0)
-    first, middle, last = (
-        f"{value / scale:.3g}" for value in (grid.z[0], np.median(grid.z), grid.z[-1])
-    )
-    return first + f"{symbol} {middle}".center(width)[len(first) : width - len(last)] + last
+    line = ""
+    for value, text in number_ticks(grid.z[0] / scale, grid.z[-1] / scale, max(width // 10, 2)):
+        place = _place(grid, value * scale, float(grid.theta[0]), width, 1)
+        if place is not None and len(line) <= place[1] <= width - len(text) - 2:
+            line = line.ljust(place[1]) + text
+    return f"{line} {symbol}".ljust(width)
 
 
 def title(place: int, method: Method, columns: int, palette: Palette | None, note: str = "") -> Row:

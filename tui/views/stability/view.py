@@ -41,5 +41,5 @@ class StabilityView(StudyView[StabilityPane]):
         async for piece in computed(pieces, pane.grid, PASSES):
             pane.fill(piece.z, piece.method, piece.cells)
             pane.complete = piece.done == 1 and piece.steps == PASSES[-1]
-            state = "" if pane.complete else f", {int(10 * piece.done) / 10:.0%}"
+            state = "" if pane.complete else f", computing {int(10 * piece.done) * 10} %"
             pane.title = f"Stability (F5), {piece.steps} steps: h [s], amplitude [°]{state}"

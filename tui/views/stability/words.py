@@ -35,7 +35,7 @@ def verdict(method: Method, theta: float, zs: Floats, cells: Cells, at: int, w0:
     `cells` go along zs.
     """
     cell = cells[at]
-    place = f"{method.label} at h {zs[at] / w0:.3g} s, {math.degrees(theta):.3g} deg:"
+    place = f"{method.label} at h {zs[at] / w0:.3g} s, {math.degrees(theta):.3g}°:"
     if cell["fate"] == UNKNOWN:
         return f"{place} not computed yet"
     holds = not is_lost(cell)

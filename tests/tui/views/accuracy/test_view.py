@@ -70,7 +70,10 @@ async def test_the_points_fill_in_and_are_the_engines():
         assert "energy error, the largest of all steps" in pane.text
         assert all(pane.text.count(letter) for letter in "esvr")
         assert pane.border_title == "Accuracy (F4) over 5 s: energy error"
-        assert pane.border_subtitle == "@ current h  x useless  ~ rounding  dotted: h, h², h⁴"
+        assert (
+            pane.border_subtitle
+            == "@ current h  x no digit right  ~ limited by rounding  dotted: h, h², h⁴"
+        )
         assert set(MARKS.values()) | {HERE} == {"@", "x", "~"}
 
 

@@ -24,10 +24,10 @@ def regions(found: Places) -> list[Region]:
     return [*found.pendulums, *(region for region in others if region is not None)]
 
 
-@given(st.integers(1, 400), st.integers(1, 150), st.integers(0, 6), st.booleans())
-@example(columns=78, rows=9, methods=1, overlay=False)
-def test_panes_cover_the_stage_and_never_each_other(columns, rows, methods, overlay):
-    found = regions(places(columns, rows, methods, overlay))
+@given(st.integers(1, 400), st.integers(1, 150), st.integers(0, 6))
+@example(columns=78, rows=9, methods=1)
+def test_panes_cover_the_stage_and_never_each_other(columns, rows, methods):
+    found = regions(places(columns, rows, methods))
     assert sum(region.area for region in found) == columns * rows
     assert not any(one.intersection(other) for one, other in combinations(found, 2))
     assert all(Region(0, 0, columns, rows).contains_region(region) for region in found)
@@ -68,7 +68,3 @@ def test_each_method_has_a_pane_where_there_is_room_else_they_share_one(name, me
 def test_where_there_is_much_room_there_is_a_second_chart():
     found = places(*BODIES["200x60"], methods=4)
     assert [found.chart.height, found.second_chart.height, found.phase.height] == [17, 17, 18]
-
-
-def test_an_overlay_that_is_wanted_replaces_the_panes():
-    assert places(*BODIES["120x40"], methods=4, overlay=True).pendulums == ()

@@ -29,7 +29,7 @@ def test_a_pendulum_at_one_radian_that_came_from_the_other_side():
 
 def test_four_that_coincide_show_their_letters_side_by_side():
     assert picture(16, 8, *(Bob(-2.0, index, letter="esvr"[index]) for index in range(4))).text == (
-        "\n\n esvr\n  ⠈⠋⠑⠒⠤⣀⡀\n       ⠈⠁\n\n\n"
+        "\n\ne s⣤v r\n  ⠈⠋⠑⠒⠤⣀⡀\n       ⠈⠁\n\n\n"
     )
 
 

@@ -37,9 +37,9 @@ LADDER = cells(
 @pytest.mark.parametrize(
     ("at", "sentence"),
     [
-        (1, "RK4 at h 0.5 s, 90 deg: held, energy error 2.0e-02; lost at h 1 s"),
-        (3, "RK4 at h 1 s, 90 deg: lost at step 41, over the top; held at h 0.75 s"),
-        (4, "RK4 at h 1.25 s, 90 deg: lost at step 4, grows; held at h 0.75 s"),
+        (1, "RK4 at h 0.5 s, 90°: held, energy error 2.0e-02; lost at h 1 s"),
+        (3, "RK4 at h 1 s, 90°: lost at step 41, over the top; held at h 0.75 s"),
+        (4, "RK4 at h 1.25 s, 90°: lost at step 4, grows; held at h 0.75 s"),
     ],
 )
 def test_a_verdict_says_what_happens_and_where_the_nearest_cliff_is(at: int, sentence: str):
