@@ -77,7 +77,7 @@ _STABILITY = (
         "euler-caught",
         h=0.1,
         speed=60.0,
-        watch="Explicit Euler does not gain for ever: half a turn a step holds it near 110 E0.",
+        watch="Explicit Euler's gain ends: half a turn a step holds it near 110 E0.",
         shot=Shot(theta=math.pi, line=Line("energy_error", 110.0, "110 E0")),
     ),
     Scene(
@@ -142,7 +142,7 @@ _STABILITY = (
         length=_UNIT_W0,
         h=math.sqrt(1.1),
         speed=2048.0,
-        watch="K = z² = 1.1: no fence is left, |omega| passes 2 pi/h within a million steps.",
+        watch="K = z² = 1.1: no fence is left, |omega| passes 2 pi/h.",
         shot=Shot(
             view="phase",
             theta=math.pi,
@@ -210,7 +210,7 @@ _STIFFNESS = (
         h=0.05,
         cast=_SPRING,
         speed=0.25,
-        watch="h·omega = 2.5, beyond Verlet's limit of 2: in a quarter second its bob is gone.",
+        watch="h·omega = 2.5, beyond Verlet's limit of 2: in 1/4 s its bob is gone.",
     ),
     Scene(
         "stiff-resonance",

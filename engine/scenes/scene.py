@@ -24,7 +24,7 @@ UNITS = {
     "h": "s",
     **{name: parameter.unit for name, parameter in PARAMETERS.items()},
 }
-QUANTITIES = ("energy_error", "theta_error", "shadow_error", "energy")  # beside the models' own
+QUANTITIES = ("energy_error", "theta_error", "shadow_error", "energy")
 MOST_METHODS = 6  # of a cast: more cannot be told apart on a screen
 Z_LIMITS = (1e-9, 1e3)  # z = h·w0; the methods' own limits lie at 2 and 2√2
 
@@ -120,7 +120,7 @@ class Scene:
         for method in self.cast:
             if self.model in MODELS and self.model not in method.models:
                 raise SceneError(
-                    f"{method.label} is not for the model {self.model}; it is for scenes of "
+                    f"{method.label} is not for the model {self.model}; it is for "
                     f"{' and '.join(method.models)}."
                 )
 
@@ -131,9 +131,7 @@ class Scene:
         own = {each.name: each.default for each in MODELS[self.model].parameters}
         for name, value in given.items():
             if name not in own and value:
-                raise SceneError(
-                    f"the model {self.model} has no {name}; leave it out, or take a scene that has."
-                )
+                raise SceneError(f"the model {self.model} has no {name}; take a scene that has.")
         return {name: given.get(name, default) for name, default in own.items()}
 
     @property

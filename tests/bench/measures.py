@@ -19,10 +19,10 @@ MAX_COLUMNS = 100
 MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
-    "characters": 1_080_800,
+    "characters": 1_082_800,
     "characters_of_engine": 321_100,
     "characters_of_recordings": 78_700,
-    "characters_of_tui": 681_100,
+    "characters_of_tui": 683_100,
     "characters_of_tests": 1_005_200,
     "files": 219,
     "long_lines": 23,

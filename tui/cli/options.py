@@ -146,7 +146,7 @@ def seconds(text: str) -> float:
 def number(text: str) -> float:
     """Return any number, `0.05` or `5%`; the caller checks its range."""
     try:
-        return float(text[:-1]) / 100 if text.endswith("%") else float(text)
+        return float(re.sub("%$", "e-2", text))
     except ValueError:
         raise argparse.ArgumentTypeError(
             f"{text!r} is not a number; use for example 0.05 or 1e-3"

@@ -1,7 +1,7 @@
 """The options that describe a scene: its name, its numbers and its cast.
 
 A scene of the user's own is a TOML file with the fields that `scenes --json` prints, and what
-differs in its shot; several scenes, each under [[scene]], are a lecture.
+differs in its shot; scenes under [[scene]] are a lecture.
 """
 
 import argparse
@@ -232,11 +232,12 @@ def read_scenes(path: Path) -> dict[str, Scene]:
     text, given = _read(path)
     tables = given.pop("scene", [{}])
     if not isinstance(tables, list) or not all(isinstance(each, dict) for each in tables):
-        raise UserError(f"{path}: begin each scene with [[scene]].", Exit.INPUT_UNREADABLE)
+        raise UserError(f"{path}: begin each with [[scene]].", Exit.INPUT_UNREADABLE)
     heads = [match.end() for match in re.finditer(r"^\s*\[\[", text, re.MULTILINE)]
+    heads += [0] * len(tables)
     scenes: dict[str, Scene] = {}
     for nth, table in enumerate(tables, 1):
-        place = _Place(path, text, heads[nth - 1] if nth <= len(heads) else 0)
+        place = _Place(path, text, heads[nth - 1])
         name = f"{path.stem}-{nth}" if len(tables) > 1 else path.stem
         scene = _scene(place, name, {**given, **table})
         if scenes.setdefault(scene.name, scene) is not scene:
@@ -257,7 +258,8 @@ class _Place(NamedTuple):
         for name in names:
             pattern = re.compile(rf"^\s*[\"'\[]*(\w+\.)*{re.escape(name)}\b", re.MULTILINE)
             found = pattern.search(self.text, at)
-            at = found.end() if found else at
+            if found:
+                at = found.end()
         where = f", line {self.text[:at].count(chr(10)) + 1}" if names else ""
         return UserError(f"{self.path}{where}: {why}", Exit.INPUT_UNREADABLE)
 
@@ -306,8 +308,7 @@ def _check_shot(scene: Scene) -> None:
 
 def _value(names: Sequence[str], value: Any) -> Any:
     """Return the value of a field, as a Scene or a Shot takes it, if it is like its example."""
-    owner = "a shot" if len(names) > 1 else "a scene"
-    examples = SHOT_EXAMPLES if len(names) > 1 else EXAMPLES
+    owner, examples = (("a scene", EXAMPLES), ("a shot", SHOT_EXAMPLES))[len(names) - 1]
     name = names[-1]
     if name not in examples:
         advice = did_you_mean(name, examples) or f"; choose from {', '.join(examples)}."

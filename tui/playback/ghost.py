@@ -18,7 +18,7 @@ ROUNDING = 1e-9  # s
 
 
 class Ghost:
-    """A run, up to where it ended."""
+    """A run that ended."""
 
     def __init__(self, name: str, scene: Scene, history: ErrorHistory, steps: Sequence[float]):
         """`steps` are the sizes of its steps [s], in order."""
@@ -33,7 +33,7 @@ class Ghost:
 
     @classmethod
     def recorded(cls, recording: "Recording") -> "Ghost":
-        """The longest run of a recording, up to where time turns or to its MAX_ROWS-th sample."""
+        """The longest run of a recording, until time turns or MAX_ROWS are read."""
         run = max(recording.runs, key=lambda run: abs(run.t))
         history = ErrorHistory(run.scene, MAX_ROWS)
         exact = run.scene.exact()
@@ -52,12 +52,12 @@ class Ghost:
         return cls(recording.path.stem, run.scene, history, [run.scene.h])
 
     def label(self, room: int) -> str:
-        """What it is, in so many columns: "dim: swing, h 0.1 s"."""
+        """What it is: "dim: swing, h 0.1 s"."""
         text = f"dim: {self._name}, {self._step}"
         return text if len(text) <= room else f"dim: {self._step}"
 
     def rods(self, t: float) -> dict[str, float]:
-        """Return the angles [rad] at a simulated time [s] by method key, without those that failed."""
+        """Return the angles [rad] at a time [s] by method key, without those that failed."""
         row = int(np.searchsorted(self._x, t + ROUNDING, "right")) - 1
         if not self.scene.equations.rigid or row < 0 or t > self._x[-1] + abs(self.scene.h):
             return {}

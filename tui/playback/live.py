@@ -225,7 +225,7 @@ class Live(Source):
         self._take_sample()
 
     def restart(self) -> None:
-        """Begin again with the step in force, and lay a run that began with another one under it."""
+        """Begin again with the step in force, over a run that began with another one."""
         before = self._so_far
         number = self._run.run
         self.start(before.scene.altered(h=self.stepping.smallest))

@@ -200,7 +200,7 @@ class Rows:
         return self._states[self._slots(max(until - length, self._first), until)]
 
     def thetas(self) -> tuple[Floats, Floats]:
-        """Return x [s] of the recent rows, and theta [rad] of every method, nan once it has failed."""
+        """Return x [s] and theta [rad] of the recent rows, nan once a method has failed."""
         slots = self._slots(self._first, self.count)
         failed = ~np.isfinite(self._recent.high[slots, 0])
         return self._recent.times[slots, 0], np.where(failed, np.nan, self._states[slots, :-1, 0])

@@ -29,7 +29,7 @@ SENTENCES = {
     "at rest": "Nothing moves: the pendulum started at rest in equilibrium.",
     "returned": "Back at t = 0. Missed the start, in angle and speed, by {misses} rad.",
     "watch": "{text}",
-    "new step": "h is {h:.4g} s now; r starts again with it, the old run dimmed under the new one.",
+    "new step": "h is {h:.4g} s now; r starts again with it, the old run dimmed below.",
     "failed": "{0} failed at {t:.4g} s: its energy error is no longer finite.",
     "over the top": "{0} went over the top at {t:.3g} s.",
     "over the top with": (
@@ -49,8 +49,12 @@ SENTENCES = {
     "gains": "{0} gains {rate:share} of {unit} per s.",
     "multiplies": "{0}'s energy grows tenfold every {seconds:about}.",
     "loses": "{0} loses {rate:share} of {unit} per s.",
-    "will pass": "{0} loses {rate:share} of E0 per s; its error will pass {1}'s in {seconds:about}.",
-    "exceeds": "{0} {gains} {rate:share} of {unit} per s; its error is {ratio:two} × {1}'s maximum.",
+    "will pass": (
+        "{0} loses {rate:share} of E0 per s; its error will pass {1}'s in {seconds:about}."
+    ),
+    "exceeds": (
+        "{0} {gains} {rate:share} of {unit} per s; its error is {ratio:two} × {1}'s maximum."
+    ),
     "so far alone": "{0}'s largest energy error so far is {most:share}.",
     "so far": "Energy errors so far: {least:share} ({0}) to {most:share} ({1}).",
 }
@@ -78,7 +82,7 @@ class _Words(string.Formatter):
             case "two":
                 return two_digits(value)
             case "share":
-                return f"{100 * value:.2g} %" if 1e-6 <= value < 1 else two_digits(value)
+                return f"{two_digits(100 * value)} %" if 1e-6 <= value < 10 else two_digits(value)
             case "percent":
                 return "all" if value > 1 - 1e-6 else f"{100 * value:.4g} %"
         return str(super().format_field(value, format_spec))

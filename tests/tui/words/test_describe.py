@@ -25,7 +25,7 @@ def test_the_default_scene_after_twenty_seconds():
         "Explicit Euler went over the top at 7.15 s with 5.1 times its initial energy.",
         "Symplectic Euler stays bounded: its largest energy error is 0.079.",
         "Velocity Verlet stays bounded: its largest energy error is 0.0057.",
-        "RK4 loses 0.0003 % of E0 per s; its error will pass Verlet's in 31 min.",
+        "RK4 loses 0.00030 % of E0 per s; its error will pass Verlet's in 31 min.",
         "Not recording.",
     ]
 

@@ -29,7 +29,7 @@ class Viewport(NamedTuple):
     def portrait(
         cls, columns: int, rows: int, scene: Scene, theta: float = math.pi, omega: float = 0.0
     ) -> "Viewport":
-        """Return -theta to theta [rad], with the orbit that comes to rest there, and beyond +-omega.
+        """Return -theta to theta [rad], with the orbit that comes to rest there, and +-omega.
 
         At pi it holds all three regimes: it reaches beyond the fastest of the separatrix and of the
         scene's orbit, by a power of 1.3, so that another start seldom changes it.
