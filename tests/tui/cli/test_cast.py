@@ -135,7 +135,7 @@ def test_a_method_of_ones_own_stands_where_methods_names_it_or_last(mine):
 @pytest.mark.parametrize(
     ("text", "code", "words"),
     [
-        ("mine.py", 2, "is not FILE.py:FUNCTION"),
+        ("mine.py", 2, "mine.py has no function 'mine'; it has kick_drift"),
         ("mine.py:kick_drift,x", 2, "is not FILE.py:FUNCTION"),
         ("mine.py:kick_drift,letter=xy", 2, "'xy' is not a letter"),
         ("mine.py:kick_drift,letter=r", 2, "r is the letter of rk4"),

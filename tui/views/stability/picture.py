@@ -140,7 +140,7 @@ def _joined(line: Sequence[Cell]) -> Iterator[Cell]:
 
 def _degrees(grid: Grid, width: int, rows: int) -> dict[int, int]:
     """Return the round amplitudes [°] on the axis, by their row."""
-    step = 45 if rows >= 6 else 90
+    step = 45 if rows >= 5 else 90
     places = {
         each: _place(grid, grid.z[0], math.radians(each), width, rows)
         for each in range(0, 180, step)
@@ -152,7 +152,7 @@ def _axis(grid: Grid, width: int, w0: float | None) -> str:
     """Return round numbers below their columns, the symbol behind the last."""
     symbol, scale = ("z", 1.0) if w0 is None else ("h", w0)
     line = ""
-    for value, text in number_ticks(grid.z[0] / scale, grid.z[-1] / scale, max(width // 10, 2)):
+    for value, text in number_ticks(grid.z[0] / scale, grid.z[-1] / scale, max(width // 6, 2)):
         place = _place(grid, value * scale, float(grid.theta[0]), width, 1)
         if place is not None and len(line) <= place[1] <= width - len(text) - 2:
             line = line.ljust(place[1]) + text

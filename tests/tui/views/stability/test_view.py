@@ -44,7 +44,7 @@ async def test_the_map_fills_in_and_is_the_engines(monkeypatch: pytest.MonkeyPat
             "1 e Explicit Euler  grows",
             "2 s Symplectic Euler  held",
             "4 r RK4  held",
-            "0.5 h",
+            "0.8 h",
         ):
             assert line in pane.text
 
@@ -103,7 +103,7 @@ async def test_the_axis_is_that_of_the_scenes_pendulum(monkeypatch: pytest.Monke
         assert "4 h" not in pane.text
         live.start(Scene(length=4 * 9.81))  # w0 = 1/2, so h = 2 z
         await until(pilot, lambda: "4 h" in pane.text)
-        assert "0.5 h" not in pane.text
+        assert "0.8 h" not in pane.text
 
 
 async def test_hidden_methods_leave_their_panels_to_the_others(monkeypatch: pytest.MonkeyPatch):
