@@ -141,7 +141,7 @@ def _moment(source: Source) -> str:
 
 
 def _new_step(source: Source, seconds: float) -> Insight | None:
-    """Return what to do after a change of h in the lab: a fair comparison starts at the start."""
+    """Return what r does after a change of h in the lab."""
     if source.kind != "LIVE" or len(source.changes) < 2:
         return None
     before, last = source.changes[-2:]

@@ -95,7 +95,7 @@ def pendulum_picture(columns: int, rows: int, bobs: Sequence[Bob], reach: float 
 
 
 def _fanned(letters: Sequence[_Letter], columns: int) -> Iterator[_Letter]:
-    """Yield letters, those that would touch with a blank between them, about where they were."""
+    """Yield letters with a blank between those that would touch."""
     groups: list[list[_Letter]] = []
     for each in sorted(letters, key=itemgetter(0, 1)):
         row, column = each[:2]

@@ -139,7 +139,7 @@ def _joined(line: Sequence[Cell]) -> Iterator[Cell]:
 
 
 def _degrees(grid: Grid, width: int, rows: int) -> dict[int, int]:
-    """Return the round amplitudes [°] on the axis, by their row."""
+    """Return round amplitudes [°] by their row."""
     step = 45 if rows >= 5 else 90
     places = {
         each: _place(grid, grid.z[0], math.radians(each), width, rows)
