@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from engine.run.judgement import DEFINITIONS
+from engine.run.judgement import DEFINITIONS, FALSE_ALARMS
 from engine.run.lockstep import Lockstep
 from engine.run.stepping import Stepping
 from engine.scenes import DEFAULT_SCENE
@@ -330,3 +330,6 @@ def test_with_time_reversed_verlet_comes_back_and_symplectic_euler_does_not():
 def test_verdicts_have_the_definitions_of_the_help():
     for verdict, text in DEFINITIONS.items():
         assert f"| `{verdict}` | {text} |" in README
+    page = (ROOT / ".github" / "docs" / "judge.md").read_text(encoding="utf-8")
+    for verdict, rate in FALSE_ALARMS.items():
+        assert f"{rate} % of `{verdict}`" in page

@@ -38,8 +38,6 @@ class Bands:
     def __init__(self, width: int) -> None:
         """`width`: the steps of a bin, at first."""
         self.bins: list[Bin] = []
-        self.low = math.inf  # of the whole run
-        self.high = -math.inf
         self._width = float(width)
         self._cut = 0
         self._low = math.inf  # of the open bin
@@ -55,8 +53,6 @@ class Bands:
         """Take in the extremes since the previous call and the number at this step; return whether a bin is full."""
         self._low = min(self._low, low)
         self._high = max(self._high, high)
-        self.low = min(self.low, low)
-        self.high = max(self.high, high)
         if step - self._cut < self._width:
             return False
         self.bins.append(Bin((self._cut + step) / 2, self._low, self._high))
@@ -69,11 +65,6 @@ class Bands:
             ]
             self._width = 2 * step / MAX_BINS
         return True
-
-    @property
-    def width(self) -> float:
-        """The width of a typical bin's band."""
-        return median(each.width for each in self.bins)
 
     def recent(self, share: float) -> list[Bin]:
         """Return the last part of the bins."""
@@ -126,6 +117,11 @@ def sigmas(ratio: float, freedom: int) -> float:
         return 0.0
     tail = math.sqrt(freedom * math.log1p(ratio * ratio / freedom))
     return (8 * freedom + 1) / (8 * freedom + 3) * tail
+
+
+def typical_width(bins: Sequence[Bin]) -> float:
+    """Return the width of a typical bin's band."""
+    return median(each.width for each in bins)
 
 
 def hull(bins: Sequence[Bin]) -> tuple[float, float]:

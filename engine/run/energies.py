@@ -110,7 +110,7 @@ def _judge(times: Any, energies: Any, floor: float) -> Judgement:
             judgement = Judgement("wanders")
     return judgement._replace(
         slope=stories.line.amplitude,
-        uncertainty=stories.line.deviation,
+        uncertainty=math.hypot(stories.line.deviation, stories.incomplete),
         independent=stories.independent,
         fluctuation=float(np.std(stories.rest)),
     )
@@ -175,7 +175,7 @@ class _Stories:
         clear = not curved or self.settled.likelihood - self.moving.likelihood < -limits.CLEAR
         sure = line > limits.LINE_OF_FEW or self.moving.sigmas > limits.CURVE_OF_FEW
         trend = sure or (not walk_like and self.moving.sigmas > limits.TREND)
-        if trend and line > limits.STEEP and clear:
+        if trend and clear:
             if abs(self.line.amplitude) < max(2 * self.floor, self.incomplete):
                 return Judgement("bounded")
             return Judgement("grows" if self.line.amplitude > 0 else "loses")

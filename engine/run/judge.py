@@ -15,13 +15,12 @@ A record of energies alone, of any program, is read at once: `engine.run.energie
 
 import copy
 import math
-from statistics import median
 from typing import Any, Self
 
 from engine.methods import Method
 from engine.models.model import Model
 from engine.run import judgement as limits
-from engine.run.bands import MAX_BINS, Bands, Bin, hull, line, one_way
+from engine.run.bands import MAX_BINS, Bands, Bin, hull, line, one_way, typical_width
 from engine.run.judgement import Judgement, LookPoint, Progress, Verdict
 from engine.run.tangent import Stretching, at_bottom
 
@@ -171,7 +170,7 @@ class Judge:
         uncertainty = trend.uncertainty / self._h * size
         if not (certain and shift > self._floor and math.isfinite(slope + uncertainty)):
             return Judgement()
-        growth = trend.slope / self._h if size > 2 else None
+        growth = trend.slope / self._h if size > 2 else None  # beyond E0
         return Judgement(slope=slope, uncertainty=uncertainty, growth=growth)
 
     def _fold(self, error: float) -> float:
@@ -199,7 +198,7 @@ class Judge:
         if settled := self._settled(gap, high - low):
             return settled
         # a band that is centred elsewhere than on the start has not come back
-        away = gap > -(high - low) / 4
+        away = gap > -limits.BACK * (high - low)
         if known in ("caught", "wanders") or (known in ("grows", "loses") and away):
             return known
         if self._leaves(low, high):
@@ -214,7 +213,7 @@ class Judge:
         gap = max(low, -high)
         low = self._fold(low)
         high = self._fold(high)
-        if gap < self._floor or max(low, -high) < (high - low) / 2:
+        if gap < self._floor or max(low, -high) < limits.AWAY * (high - low):
             return False
         bins = self._energy.bins
         straight = len(bins) >= limits.STRAIGHT_BINS and one_way(bins) >= limits.ONE_WAY
@@ -231,8 +230,8 @@ class Judge:
         if not (early or self._steps >= self._many) or line(half).sigmas > limits.STEADY:
             return None
         low, high = hull(half)
-        bands = (high - low) / max(median(each.width for each in half), self._floor)
-        left = known not in ("too early", "bounded") or gap > max(width / 4, self._floor)
+        bands = (high - low) / max(typical_width(half), self._floor)
+        left = known not in ("too early", "bounded") or gap > max(limits.AWAY * width, self._floor)
         if left and bands < limits.ONE_BAND:
             return "caught"
         longer = self._steps >= max(self._many, 4 * limits.LONG)
@@ -245,7 +244,7 @@ class Judge:
         """Whether the error stays in its band for HORIZON periods by its slope."""
         trend = line(self._energy.bins)
         reach = (abs(trend.slope) + limits.SIGMAS * trend.uncertainty) * self._steps
-        width = max(self._energy.width, self._floor)
+        width = max(typical_width(self._energy.bins), self._floor)
         return reach < width / 2 * min(1, self._periods / limits.HORIZON)
 
 
@@ -297,7 +296,7 @@ class _Orbit:
         Regular ones separate in proportion to time, and by 1/k'² or so in the first swing past
         upright.
         """
-        growth = math.log1p(peak) / 2
+        growth = math.log1p(peak) / 2  # the energy goes as the square of the orbit
         regular = math.log(max(self.steps, 1)) + self._far / 2
         return self._neighbours.log - growth > regular + limits.APART
 

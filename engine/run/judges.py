@@ -26,8 +26,8 @@ class Judges:
         self._period = period
         self._judges: list[Judge] = []
         # methods that leave, and bounded ones that they were below
-        self._below: set[tuple[int, int]] = set()
-        self._passed: set[tuple[int, int]] = set()  # once is enough
+        # whether a method that leaves is still below a bounded one that it was below
+        self._below: dict[tuple[int, int], bool] = {}
 
     @property
     def judgements(self) -> list[Judgement]:
@@ -40,13 +40,11 @@ class Judges:
         other.milestones = self.milestones.copy()
         other._judges = [judge.copy() for judge in self._judges]
         other._below = self._below.copy()
-        other._passed = self._passed.copy()
         return other
 
     def restart(self, steps: Sequence[float], points: Sequence[LookPoint | None]) -> None:
         """Judge anew from these look points on, each method with its own step size [s]."""
-        self._below = set()
-        self._passed = set()
+        self._below = {}
         self._judges = []
         for method, h, point in zip(self._cast, steps, points, strict=True):
             judge = Judge(h=h, period=self._period, method=method, model=self._model)
@@ -89,22 +87,16 @@ class Judges:
 
     def _crossings(self) -> list[tuple[int, int]]:
         """Return the pairs (passing, passed) that are new since the last look."""
-        peaks = [(judge.judgement.verdict, judge.peak) for judge in self._judges]
-        bounded = [
-            (other, peak) for other, (verdict, peak) in enumerate(peaks) if verdict == "bounded"
-        ]
-        leaving = [
-            (index, peak)
-            for index, (verdict, peak) in enumerate(peaks)
-            if verdict in ("grows", "loses")
-        ]
-        ahead = {
-            (index, other): mine - peak
-            for index, mine in leaving
-            for other, peak in bounded
-            if peak > ROUNDING
-        }
-        passed = sorted(pair for pair in self._below - self._passed if ahead.get(pair, 0.0) > 0)
-        self._below |= {pair for pair, distance in ahead.items() if distance <= 0}
-        self._passed.update(passed)
-        return passed
+        found = []
+        for index, leaving in enumerate(self._judges):
+            for other, bounded in enumerate(self._judges):
+                if leaving.judgement.verdict not in ("grows", "loses"):
+                    continue
+                if bounded.judgement.verdict != "bounded" or bounded.peak <= ROUNDING:
+                    continue
+                if leaving.peak <= bounded.peak:
+                    self._below.setdefault((index, other), True)
+                elif self._below.get((index, other)):
+                    self._below[index, other] = False  # once is enough
+                    found.append((index, other))
+        return found

@@ -250,17 +250,15 @@ def test_trends_have_the_units_of_the_heads():
 def test_with_a_scale_of_std_nothing_depends_on_the_zero_of_the_energies():
     found = [
         judge(
-            "t,E\n" + "".join(f"{t},{energy + zero:.9f}\n" for t, energy in ROWS),
-            "--scale",
-            "std",
-            "--json",
-        ).json
+            "t,E\n" + "".join(f"{t},{energy + t / 9 + zero:.9f}\n" for t, energy in ROWS),
+            *("--scale", "std", "--json", "--fail-if", "trend > 0.05 and verdict == grows"),
+        )
         for zero in (-100, 0, 1e5)
     ]
-    assert {each["verdict"] for each in found} == {"bounded"}
-    assert [each["max_energy_error"] for each in found] == pytest.approx(
-        [found[0]["max_energy_error"]] * 3
-    )
+    assert {(each.code, each.json["verdict"]) for each in found} == {(1, "grows")}
+    for name in ("trend", "uncertainty", "max_energy_error"):
+        values = [each.json[name] for each in found]
+        assert values == pytest.approx([values[0]] * 3, rel=1e-6)
 
 
 def test_scales():

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, BinaryIO
 
-from engine.run.judgement import DEFINITIONS
+from engine.run.judgement import DEFINITIONS, FALSE_ALARMS
 from recordings.errors import printable
 from tui.cli.columns import LATEST, REASONS, Table, read_table
 from tui.cli.errors import Exit, UserError
@@ -29,9 +29,11 @@ examples:
   pendu-tui judge a.csv b.csv --steps 1,2 --time t --energy E --fail-if 'fluctuation_order < 1.8'
   ./game --headless | pendu-tui judge - --time 1 --energy 4 --fail-if 'max_energy_error > 1e-2'
 
-verdicts:
+verdicts, and how many of 100 are wrong on series made with a known truth:
 """ + "\n".join(
-    f"  {verdict}: {text}" for verdict, text in DEFINITIONS.items() if verdict != "chaotic"
+    f"  {verdict}: {text}" + (f" ({FALSE_ALARMS[verdict]})" if verdict in FALSE_ALARMS else "")
+    for verdict, text in DEFINITIONS.items()
+    if verdict != "chaotic"
 )
 
 FIELDS = (
