@@ -1,9 +1,8 @@
-"""Bands: how low and how high a wobbling number goes, over parts of a run.  From a stream, in constant memory.
+"""Bands: how low and how high a wobbling number goes, over parts of a run, in constant memory.
 
-Within a swing the energy error of every method wobbles by more than it moves from swing to swing.
-So the stream is cut into bins of a swing or more, and of a bin only its band is kept: lowest,
-highest.  The middle of a band hardly wobbles, wherever the swing was cut.  When there are 64 bins
-they merge pairwise.
+The energy error of every method wobbles by more within a swing than it moves from swing to swing.
+So the stream is cut into bins of a swing or more, and of a bin only its band is kept.  The middle
+of a band hardly wobbles, wherever the swing was cut.  When there are 64 bins they merge pairwise.
 """
 
 import copy
@@ -50,7 +49,7 @@ class Bands:
         return other
 
     def add(self, step: int, low: float, high: float, now: float) -> bool:
-        """Take in the extremes since the previous call and the number at this step; return whether a bin is full."""
+        """Take in the extremes since the last call and the number now; return whether a bin is full."""
         self._low = min(self._low, low)
         self._high = max(self._high, high)
         if step - self._cut < self._width:

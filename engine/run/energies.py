@@ -1,14 +1,12 @@
 """The record of any program: a verdict from times and energies alone.
 
-The record is cut into up to 64 blocks, and their means are held against a few descriptions: a
-level, a line, a curve that still moves, a curve or a step that has settled, all in correlated noise
-(engine.run.noise).
+The means of up to 64 blocks are held against a few descriptions in correlated noise
+(engine.run.noise): a level, a line, a curve that still moves, a curve or a step that has settled.
 
 In this order: a start outside the band of the rest is left out, and so is an approach that is over
 early; what moves by no more than its last digit is `bounded`; what settles after a change of level
-is `caught`; a trend `grows` or `loses`; no trend, in a record of enough independent samples, is
-`bounded`; what has moved further than noise about a level does, or fluctuates more and more,
-`wanders`.
+is `caught`; a trend `grows` or `loses`; no trend in enough independent samples is `bounded`; what
+looks like a random walk, or fluctuates more and more, `wanders`.
 """
 
 import math
@@ -179,10 +177,11 @@ class _Stories:
             if abs(self.line.amplitude) < max(2 * self.floor, self.incomplete):
                 return Judgement("bounded")
             return Judgement("grows" if self.line.amplitude > 0 else "loses")
-        still = line < limits.STILL and not self.has_settled and self.settled.sigmas < limits.CHANGE
-        if still and not walk_like:
+        level = not self.has_settled and self.settled.sigmas < limits.CHANGE
+        if level and line < limits.STILL and not walk_like:
             return Judgement("bounded")
-        if still and self.level.walks > limits.WALKS and math.isinf(self.cycles):
+        walks = self.level.walks > limits.CLEAR and math.isinf(self.cycles)
+        if level and line < limits.TREND and walks:
             return Judgement("wanders")
         if self.cycles < limits.MIN_CYCLES:
             return _too_early(self.cycles, limits.MIN_CYCLES, "cycles of its slowest wave")

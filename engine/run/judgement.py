@@ -23,11 +23,11 @@ DEFINITIONS: dict[Verdict, str] = {
 """One definition of each verdict, for the help, the README and every judge."""
 
 FALSE_ALARMS: dict[Verdict, float] = {
-    "bounded": 0.7,
-    "grows": 1.9,
-    "loses": 1.0,
-    "caught": 1.4,
-    "wanders": 2.8,
+    "bounded": 1.2,
+    "grows": 1.1,
+    "loses": 0.3,
+    "caught": 0.0,
+    "wanders": 4.4,
 }
 """How many of 100 such verdicts on energies alone are wrong, by tests/bench/foreign.py."""
 
@@ -61,10 +61,8 @@ TOGETHER = 5.0  # ln of separation beyond proportion to time: still regular
 LYAPUNOV_STEPS = 100_000  # neighbours are followed for so long: tenths of a second in plain Python
 SIGMAS = 3.0  # of Student's t for a slope: one false trend in 370
 HORIZON = 500  # periods for which a bounded error is to stay in its band
-AWAY = (
-    0.5  # of a band's width: what is so far from the start has left it, by far more than it wobbles
-)
-BACK = 0.25  # of its width: a band so deep over its start has come back; between, the verdict stays
+AWAY = 0.5  # of its width: a band so far from the start has left it
+BACK = 0.25  # of its width: a band that reaches so far beyond the start has come back
 ONE_BAND = 2.0  # typical bins are as wide as the half of a run that lies in one band
 NO_BAND = 4.5  # of one that does not; random walks of 32 bins are wider
 
@@ -72,14 +70,13 @@ NO_BAND = 4.5  # of one that does not; random walks of 32 bins are wider
 # tests/bench/foreign.py measures the errors in other noises.
 MIN_SAMPLES = 64  # 32 blocks: a line, three waves and a noise leave 20 degrees of freedom
 MIN_INDEPENDENT = 15  # correlation times: uncertainties were tested down to here
-STILL = 2.6  # standard deviations: a level exceeds them in 1 of 100 records
+STILL = 2.0  # standard deviations: a level exceeds them in 1 or 2 of 100 records
 TREND = 3.3  # standard deviations: a level exceeds them in 1 of 1000 records
 CHANGE = 5.0  # standard deviations of a change of level: the best of 200 in white noise has 3.3
 LINE_OF_FEW = 7.0  # standard deviations, where independent samples are few: 2 in 100 random walks
 CURVE_OF_FEW = 12.0  # have a steeper line, or a clearer curve
 SETTLED = math.log(100)  # of a likelihood ratio: wrong in 1 of 100 where both are as common
-CLEAR = math.log(10)  # of a likelihood ratio, between curves of as many parameters
-WALKS = 3.5  # of a likelihood ratio: noise with a correlation time of T/5 exceeds it in 1 of 100
+CLEAR = math.log(10)  # of a likelihood ratio: of two curves, or of a walk and a level
 WAVE = 12.0  # of a likelihood ratio: a wave in a random walk gains up to 10
 MIN_CYCLES = 4.0  # of a slow wave that is called bounded: thirds of the record look alike
 TRANSIENT = 0.1  # of the record: a start that is over so early belongs to the preparation

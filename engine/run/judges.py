@@ -25,7 +25,6 @@ class Judges:
         self._model = model
         self._period = period
         self._judges: list[Judge] = []
-        # methods that leave, and bounded ones that they were below
         # whether a method that leaves is still below a bounded one that it was below
         self._below: dict[tuple[int, int], bool] = {}
 

@@ -2,9 +2,9 @@
 
 The cosine transform of stationary noise has independent terms, whose variances are the spectrum
 (Whittle, J. R. Stat. Soc. B 15 (1953) 125).  The noise may have any correlation time, from none to
-that of a random walk, may ring at any frequency, and may have white noise on top.  Likelihoods are
-averaged over a grid of such spectra (restricted maximum likelihood: Harville, J. Am. Stat. Assoc.
-72 (1977) 320), so the uncertainty of a slope holds for correlated values, too.
+that of a random walk, and white noise on top.  Likelihoods are averaged over a grid of such spectra
+(restricted maximum likelihood: Harville, J. Am. Stat. Assoc. 72 (1977) 320), so the uncertainty of
+a slope holds for correlated values, too.
 """
 
 import math
@@ -14,11 +14,9 @@ import numpy as np
 
 from engine.run import judgement as limits
 
-# correlation times, of the record: the first looks like a walk, those from the third on like a level
-TIMES = 1 / np.array([0.5, 2, 7, 14, 28, 64])
-RINGING = 1 / np.array([3, 10, 30])  # decay times of what rings
+# correlation times, of the record: the first looks like a walk, the others like a level
+TIMES = 1 / np.array([0.5, 5, 10, 20, 40, 80])
 WHITE = np.array([0.0, 1, 10, 100, 1000])  # variance of white noise, in that of the kicks
-RINGING_WHITE = np.array([0.0, 0.1, 1.0])
 MAX_WAVES = 3
 
 
@@ -50,18 +48,9 @@ class Noises:
         for time in TIMES:
             kicked = 1 / np.abs(1 - math.exp(-1 / (time * count)) * turns) ** 2
             spectra += [kicked + share for share in WHITE]
-        times = np.concatenate([[0.0], np.repeat(TIMES, len(WHITE))])
-        for time in RINGING:
-            for cycles in np.arange(1.0, count / 2):
-                pole = np.exp(-1 / (time * count) + 2j * np.pi * cycles / count)
-                ringing = 1 / np.abs((1 - pole * turns) * (1 - pole.conjugate() * turns)) ** 2
-                spectra += [ringing / ringing.mean() + share for share in RINGING_WHITE]
-        rings = len(spectra) - len(times)
-        self._times = np.concatenate([times, np.full(rings, TIMES[2])])
+        self._times = np.concatenate([[0.0], np.repeat(TIMES, len(WHITE))])
         self._weights = 1 / np.array(spectra)
-        # what rings and what does not are as likely, however many there are of each
-        priors = np.log(np.repeat([len(times), rings], [len(times), rings]))
-        self._log_determinants = 2 * priors - np.log(self._weights).sum(axis=1)
+        self._log_determinants = -np.log(self._weights).sum(axis=1)
         # means of values that are rounded apart err by a tenth of what one value does
         self._rounding = count * rounding**2 / 12 / 100
 
@@ -80,7 +69,7 @@ class Noises:
         freedom = len(columns) - len(regressors)
         restricted = -(self._log_determinants + design + freedom * np.log(squares)) / 2
         walk = restricted[self._times == TIMES[0]].max()
-        level = restricted[self._times <= TIMES[2]].max()
+        level = restricted[self._times <= TIMES[1]].max()
         fit = Fit(likelihood=float(whole.max()), walks=float(walk - level))
         if not regressors:
             return fit
