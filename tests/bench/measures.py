@@ -19,17 +19,17 @@ MAX_COLUMNS = 100
 MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
-    "characters": 1_082_800,
-    "characters_of_engine": 321_100,
+    "characters": 1_082_000,
+    "characters_of_engine": 320_200,
     "characters_of_recordings": 78_700,
     "characters_of_tui": 683_100,
-    "characters_of_tests": 1_005_200,
+    "characters_of_tests": 998_700,
     "files": 219,
-    "long_lines": 23,
-    "parallel_assignments": 27,
+    "long_lines": 19,
+    "parallel_assignments": 25,
     "conditional_expressions_per_1000_lines": 26,
     "long_functions": 0,
-    "numeric_constants": 314,
+    "numeric_constants": 313,
 }
 """What each measure may be at the most.  Lower a ceiling whenever its measure has fallen; never raise one."""
 

@@ -10,7 +10,7 @@ from tui.cli.columns import REASONS, Table
 from tui.cli.errors import UserError
 from tui.words.numbers import counted
 
-MAX_ERROR = 1e300  # larger ones are not finite, and JSON has no word for them
+MAX_ERROR = 1e300  # JSON has no infinity
 NANOSECONDS = {"fs": 1e-6, "ps": 1e-3, "ns": 1.0, "us": 1e3, "µs": 1e3, "ms": 1e6, "s": 1e9}
 BOLTZMANN = {  # in the unit a kelvin; the 2019 SI
     "ev": 8.617333262e-5,
@@ -38,7 +38,7 @@ def judged(
 
     times = np.asarray(table.columns[0])
     energies = np.asarray(table.columns[1])
-    # a deviation does not depend on the zero of energy, and then nor does the verdict
+    # a deviation has no zero of energy
     found = Judge.read(times, energies, failed=table.failed_at is not None, absolute=scale != "std")
     rest = energies[found.first :]
     size = _size(table, rest, scale)
