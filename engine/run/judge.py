@@ -48,8 +48,7 @@ class Judge:
         self._energy = Bands(self._width)
         self._relative = model.energy_error.conserved  # and not ln(E/E_true)
         self._epsilon = method.epsilon
-        rounding = limits.ABOVE * method.epsilon * model.w0
-        self._rest = -math.inf if self._relative else rounding**2  # least energy judged [s⁻²]
+        self._least = (limits.ABOVE * method.epsilon * model.w0) ** 2  # s⁻², with friction
         fastest = min(period, math.tau / model.w0) if model.turns else math.inf
         self._returns = method.symplectic or fastest < limits.MIN_STEPS_A_TURN * self._h
         self._escapes = not model.turns  # nothing brings an orbit back
@@ -80,7 +79,7 @@ class Judge:
         if self._first is None or self._last is None:
             self._first = self._last = point
             return
-        if point.energy < self._rest:
+        if not self._relative and self._is_rounding(point):
             return
         if self._orbit:
             self._orbit.look(self._last, point)
@@ -121,6 +120,10 @@ class Judge:
         """How far roundings may have carried the error by now."""
         walk = limits.WALK * self._epsilon * math.sqrt(self._steps)
         return walk if self._relative else max(walk, limits.REFERENCE)
+
+    def _is_rounding(self, point: LookPoint) -> bool:
+        """Return whether a damped energy, or the true one, is hardly above what rounding leaves."""
+        return min(point.energy, point.energy * math.exp(-point.error)) < self._least
 
     def _judge(self) -> None:
         verdict = self._by_orbit(self._orbit) if self._orbit else self._by_bands()

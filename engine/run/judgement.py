@@ -43,7 +43,7 @@ NEAR_TOP = 11.0  # w0·period: longer swings come within 30° of upright, where 
 # Rounding:
 WALK = 32.0  # roundings: eight standard deviations of a random walk of sixteen a step
 REFERENCE = 1e-9  # of ln(E/E_true): ten times the error of the true motion
-ABOVE = 1e3  # times the rounding of theta: a thousandth of the energy's root is left
+ABOVE = 1e5  # times the rounding of theta: 1e-5 of a damped amplitude is rounding then
 ROUNDING = 1e-12  # of an energy: a million roundings, or a random walk of 1e7
 AT_REST = -1 + 1e-9  # an error: nothing is left to lose
 # Risk of error: none wrong in 3 300 runs of a million steps.

@@ -173,6 +173,15 @@ def test_before_four_swings_it_is_too_early_and_there_is_no_slope() -> None:
     assert judgement.progress.have < judgement.progress.need
 
 
+def test_a_damped_energy_is_judged_only_where_it_is_above_rounding() -> None:
+    """From 115 s on the energy of all but explicit Euler is below that of 1e-12 rad."""
+    scene = SCENES["damped"].altered(theta=2.0, omega=9.0, friction=0.5)
+    lockstep = Lockstep(scene, loops=LOOPS, judged=True)
+    lockstep.advance(round(160 / scene.h))
+    euler, lagged, *others = [each.verdict for each in lockstep.judgements]
+    assert (euler, lagged, {*others}) == ("grows", "loses", {"too early"})
+
+
 def test_a_verdict_is_taken_back_when_the_error_comes_back() -> None:
     away, back = [k * 1e-3 for k in range(640)], [1e-2 * math.sin(k / 3) for k in range(4000)]
     assert judged(away).judgement.verdict == "grows"
