@@ -223,10 +223,7 @@ class Judge:
         return not self._returns or (gap >= 1 and straight)
 
     def _settled(self, gap: float, width: float) -> Verdict | None:
-        """Return `caught` where the second half lies in one band, and the last quarter left.
-
-        `wanders` where it lies in none, and neither rises nor falls.
-        """
+        """Return `caught` if the second half lies in a band elsewhere, `wanders` if in none."""
         half = self._energy.recent(0.5)
         known = self.judgement.verdict
         early = known in ("grows", "loses") and len(half) >= MAX_BINS / 4

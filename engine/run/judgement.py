@@ -109,7 +109,7 @@ class Progress(NamedTuple):
 
 
 class Judgement(NamedTuple):
-    """The verdict on an energy error up to a look point, and its slope as far as there is evidence for one."""
+    """A verdict on energies so far, and their slope if there is evidence for one."""
 
     verdict: Verdict = "too early"
     slope: float | None = None  # mean change of the relative energy error per unit of time [1/s]

@@ -14,8 +14,7 @@ class Judges:
     """One judge a method, since the last change of the stepping, and the milestones of the whole run.
 
     Errors cross where the largest error so far of a method that gains or loses energy passes that
-    of a bounded one, for good.  Two that are bounded, or two that are not, may pass each other
-    again and again.
+    of a bounded one: for good, as it does not with other pairs.
     """
 
     def __init__(self, cast: Cast, model: Model, period: float) -> None:

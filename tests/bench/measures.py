@@ -25,7 +25,7 @@ CEILINGS = {
     "characters_of_tui": 683_100,
     "characters_of_tests": 998_700,
     "files": 219,
-    "long_lines": 19,
+    "long_lines": 18,
     "parallel_assignments": 25,
     "conditional_expressions_per_1000_lines": 26,
     "long_functions": 0,

@@ -102,10 +102,6 @@ def test_few_samples_and_few_independent_ones_are_too_early():
     assert found.progress.have < found.progress.need == 2 * MIN_INDEPENDENT
 
 
-def test_energies_that_end_in_nan_have_failed():
-    assert Judge.read(T, NOISE, failed=True).verdict == "failed"
-
-
 def test_what_multiplies_is_judged_in_its_logarithm():
     assert Judge.read(T, np.exp(T)).verdict == "grows"
     assert Judge.read(T, np.exp(-T / 5)).verdict == "loses"
