@@ -74,10 +74,11 @@ EXAMPLES = {
     "methods": '["rk4", "velocity_verlet"]',
     "shot": "",
     **{
-        name: f"{scene.parameters[name]:g}"
-        for scene in SCENES.values()
-        for name in scene.parameters
+        parameter.name: f"{parameter.default:g}"
+        for model in MODELS.values()
+        for parameter in model.parameters
     },
+    **{name: f"{value:g}" for scene in SCENES.values() for name, value in scene.parameters.items()},
 }
 """The fields of a scene file, each with a value."""
 SHOT_EXAMPLES = {
