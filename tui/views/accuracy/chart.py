@@ -29,11 +29,6 @@ BESIDE = 0.2  # of a method's errors: where the dotted line of its order runs
 MARKED = 12  # points of an error over time that get a letter
 
 
-def raised(base: str, power: int) -> str:
-    """Return a letter to a power."""
-    return base + "".join("⁰¹²³⁴⁵⁶⁷⁸⁹"[int(digit)] for digit in str(power) if power != 1)
-
-
 def accuracy_chart(
     series: Sequence[Series], kind: ErrorKind, cost: Cost, width: int, height: int
 ) -> Picture:
@@ -92,7 +87,7 @@ def accuracy_series(
         ours = [point for point in points if point.method == method]
         ink = ink_of(method, cast)
         if method.order not in slopes:
-            slopes |= _slope(ours, kind, cost, points)
+            slopes |= _slope(ours, kind, cost)
         joined = [[point] for point in ours] if len(ours) < whole else [ours]
         lines += [series(ink, some, method.letter) for some in joined]
         flaws += flawed(ours, ink)
@@ -107,19 +102,17 @@ def accuracy_series(
     return [*slopes.values(), *lines, *flaws, *marked]
 
 
-def _slope(
-    ours: Sequence[Point], kind: ErrorKind, cost: Cost, points: Sequence[Point]
-) -> dict[int, Series]:
-    """Return a line per order, with its slope, below the methods' errors; none without points."""
+def _slope(ours: Sequence[Point], kind: ErrorKind, cost: Cost) -> dict[int, Series]:
+    """Return the slope of a method's order, below its points that show it; none without points."""
     order = ours[0].method.order
     valid = [p for p in ours if not p.flaw(kind) and p.error(kind) and cost_of(p, cost)]
     if not valid:
         return {}
     anchor = valid[len(valid) // 2]
-    costs = [cost_of(point, cost) for point in points]
+    costs = [cost_of(point, cost) for point in valid]
     ends = [min(costs), max(costs)]
     errors = [BESIDE * anchor.error(kind) * (end / cost_of(anchor, cost)) ** -order for end in ends]
-    return {order: Series(FRAME, raised("h", order), ends, errors, dotted=True)}
+    return {order: Series(FRAME, f"slope {order}", ends, errors, dotted=True)}
 
 
 def growth_chart(found: Sequence[Growth], cast: Cast, width: int, height: int) -> Picture:
@@ -130,14 +123,14 @@ def growth_chart(found: Sequence[Growth], cast: Cast, width: int, height: int) -
         times = growth.times
         errors = growth.errors
         at = {round(len(times) ** (n / MARKED)) - 1 for n in range(MARKED + 1)} if times else ()
-        letters = [(times[n], errors[n]) for n in sorted(at)]
-        x, y = zip(*letters, strict=True) if letters else ((), ())
+        x = [times[n] for n in at]
+        y = [errors[n] for n in at]
         lines.append(Series(ink_of(growth.method, cast), growth.method.letter, x, y))
         if growth.power is not None:
             power = round(growth.power)
             ends = [times[0], times[-1]]
             slope = [BESIDE * errors[-1] * (t / times[-1]) ** power for t in ends]
-            slopes.setdefault(power, Series(FRAME, raised("t", power), ends, slope, dotted=True))
+            slopes.setdefault(power, Series(FRAME, f"slope {power}", ends, slope, dotted=True))
     label = "theta error [rad], the largest of each period"
     return loglog_chart(
         [*slopes.values(), *lines], width, height, x_label="time [s]", y_label=label

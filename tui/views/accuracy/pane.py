@@ -21,7 +21,6 @@ from tui.views.accuracy.chart import (
     growth_chart,
     nearest,
     placed,
-    raised,
 )
 from tui.views.messages import StepSizeChosen
 from tui.views.view import Chooser
@@ -32,7 +31,7 @@ MAX_STEPS = 2_000_000  # of a run for the mark at the present h: some seconds
 HERE = "@"
 CURSOR = "O"
 COST: Cost = "evaluations"
-LEGEND = f"{HERE} current h  x no digit right  ~ limited by rounding  dotted:"
+LEGEND = f"{HERE} current h  x no digit right  ~ limited by rounding"
 
 
 @dataclass
@@ -171,12 +170,11 @@ class AccuracyPane(Chooser[Point]):
     def _write_titles(self) -> None:
         """Write above what is charted, and below what its marks are."""
         if self.over_time:
-            self.write_titles("Theta error over time, at each method's h", "dotted: slopes t, t²")
+            self.write_titles("Theta error over time, at each method's h", "")
             return
-        orders = sorted({method.order for method in self.cast})
         left = f", computing, {self.missing} points left" if self.missing else ""
         title = f"Accuracy (F4) over {self.study.time:g} s: {self.kind} error{left}"
-        self.write_titles(title, f"{LEGEND} {', '.join(raised('h', order) for order in orders)}")
+        self.write_titles(title, LEGEND)
 
     def _sentences(self, aim: Point | None) -> list[str]:
         """Return the words on a point and the cheapest methods, or on how errors grow."""
@@ -191,12 +189,10 @@ class AccuracyPane(Chooser[Point]):
             cheapest.append(", ".join(f"{each.letter} {each.label}" for each in self.cast))
         if aim is not None:
             return [point_words(aim, self.kind, self._note), *cheapest]
+        why = "the current h is not on this chart: it is too large or too small"
         if self.index >= len(study.here):
-            hidden = (
-                f"{self.cast[self.index].label} is not shown; the arrows choose one of its points"
-            )
-            return [hidden, *cheapest]
-        return ["the current h is not on this chart: it is too large or too small", *cheapest]
+            why = f"{self.cast[self.index].label} is not shown; the arrows choose one of its points"
+        return [why, *cheapest]
 
     @property
     def _note(self) -> str:
