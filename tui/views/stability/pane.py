@@ -15,7 +15,7 @@ from tui.views.stability.words import note, verdict
 from tui.views.view import Chooser
 
 WORDS = 2  # lines
-ROOMY = 28  # rows from which on there is room for all of the legend
+LEGEND_SHARE = 7  # rows of the pane for each line of the legend
 
 
 class StabilityPane(Chooser[tuple[int, int]]):
@@ -66,9 +66,9 @@ class StabilityPane(Chooser[tuple[int, int]]):
             return self.cursor or self.pointer
         if (here := self.here(index)) is None or here[0] > self.grid.z[-1]:
             return None
-        return int(abs(self.grid.z - here[0]).argmin()), int(
-            abs(self.grid.theta - here[1]).argmin()
-        )
+        z = abs(self.grid.z - here[0]).argmin()
+        theta = abs(self.grid.theta - here[1]).argmin()
+        return int(z), int(theta)
 
     @property
     def _state(self) -> object:
@@ -120,7 +120,7 @@ class StabilityPane(Chooser[tuple[int, int]]):
     def _legend(self) -> list[Row]:
         # as if the frame were part of it
         lines = legend(self.grid.steps, self._colours, self.room.width + 2)
-        return lines if self.room.height >= ROOMY else lines[:1]
+        return lines[: max(self.room.height // LEGEND_SHARE, 1)]
 
     def _note(self, index: int) -> str:
         if (aim := self.aim(index)) is None:

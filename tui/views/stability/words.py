@@ -22,11 +22,8 @@ def note(cell: Any) -> str:
         return "…"
     if cell["fate"] == CHAOTIC:
         return said(cell)
-    return (
-        f"{said(cell)}, step {cell['steps'] + 1}"
-        if is_lost(cell)
-        else f"{said(cell)}, {cell['error']:.0e}"
-    )
+    found = f"step {cell['steps'] + 1}" if is_lost(cell) else f"{cell['error']:.0e}"
+    return f"{said(cell)}, {found}"
 
 
 def verdict(method: Method, theta: float, zs: Floats, cells: Cells, at: int, w0: float) -> str:
@@ -41,11 +38,10 @@ def verdict(method: Method, theta: float, zs: Floats, cells: Cells, at: int, w0:
     holds = not is_lost(cell)
     fate = said(cell)
     other = np.flatnonzero(np.isin(cells["fate"], HELD) != holds)
-    if not len(other):
-        cliff = "; held at every h on this map" if holds else "; lost at every h on this map"
-    else:
-        nearest = zs[other[np.abs(other - at).argmin()]] / w0
-        cliff = f"; lost at h {nearest:.3g} s" if holds else f"; held at h {nearest:.3g} s"
+    here, there = ("held", "lost") if holds else ("lost", "held")
+    cliff = f"; {here} at every h on this map"
+    if len(other):
+        cliff = f"; {there} at h {zs[other[np.abs(other - at).argmin()]] / w0:.3g} s"
     if holds:
         return f"{place} {fate}, energy error {cell['error']:.1e}{cliff}"
     if cell["fate"] == CHAOTIC:
