@@ -259,7 +259,8 @@ class _Plot:
             if self.x_axis.low < value < self.x_axis.high:
                 at = 2 * (self.left + self.columns * float(self.x_axis.share(value)))
                 canvas.line(at, 0, at, 4 * self.rows, FRAME, dotted=True)
-                canvas.label(int(at) // 2 + 1, self.rows - 1, text, QUIET)
+                begin = min(int(at) // 2 + 1, canvas.columns - len(text))
+                canvas.label(begin, self.rows - 1, text, QUIET)
         if marks.line is not None:
             value, text = marks.line
             level = math.log10(abs(value)) if log else value

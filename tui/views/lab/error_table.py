@@ -77,8 +77,8 @@ COLUMNS = (
     Column(
         8,
         ("verdict", 9),
-        ("verdict", 9),
-        lambda line, width: verdict_of(line.reading, line.judgement).rjust(width),
+        ("verdict", 13),
+        lambda line, width: verdict_of(line.reading, line.judgement, width).rjust(width),
     ),
     Column(
         3,
@@ -124,10 +124,14 @@ def theta_error(line: TableLine) -> float:
     return abs(error - line.theta_before)
 
 
-def verdict_of(reading: Reading, judgement: Judgement) -> str:
-    """Return the verdict with its sign, as in "+ grows"; "failed" for a diverged method."""
-    word = "failed" if reading.diverged_at is not None else judgement.verdict
-    return f"{SIGNS.get(word, '')} {word}".strip()
+def verdict_of(reading: Reading, judgement: Judgement, room: int) -> str:
+    """Return a verdict: "+ grows", or "too early 4/8" where there is room."""
+    if reading.diverged_at is not None:
+        judgement = Judgement("failed")
+    sign = SIGNS.get(judgement.verdict, "")
+    far = "{}/{}".format(*judgement.progress or ("", ""))
+    text = f"{sign} {judgement.verdict} {far}".strip(" /")
+    return text if len(text) <= room else judgement.verdict
 
 
 def verdict_ink(text: str) -> int:
@@ -156,11 +160,9 @@ def since_change(source: Source, sample: Sample) -> tuple[list[float], list[floa
     """
     readings = sample.readings
     change = change_before(source.changes, sample.step)
-    largest = [reading.max_energy_error for reading in readings]
-    if change.step == 0:
-        return largest, [0.0] * len(readings), "method"
-    found = source.history.since(change.step)
-    if found is None:  # a replay that has not read so far
+    found = source.history.since(change.step) if change.step else None
+    if found is None:  # or in a replay that has not read so far
+        largest = [reading.max_energy_error for reading in readings]
         return largest, [0.0] * len(readings), "method"
     return *found, f"since h {change.stepping.h:.4g} s"
 
