@@ -101,6 +101,12 @@ def resolve(name: str) -> Path:
     raise RecordingError(f"there is no recording {printable(name)!r}{advice}")
 
 
+def _example(text: str, examples: str) -> str:
+    """Return what to write: a point for a comma, or an example."""
+    comma = re.fullmatch(r"[-+]?\d*,\d+\D*", text)
+    return f"write {text.replace(',', '.')}" if comma else f"use for example {examples}"
+
+
 def angle(text: str) -> float:
     """Return an angle [rad] from `2`, `2rad`, `115deg`, `115°`, `pi/2` or `-2pi/3`.
 
@@ -116,7 +122,7 @@ def angle(text: str) -> float:
             value = float(bare)
     except (ValueError, ZeroDivisionError):
         raise argparse.ArgumentTypeError(
-            f"{text!r} is not an angle; use for example 2 (radians), pi/2 or 115deg"
+            f"{text!r} is not an angle; {_example(text, '2 (radians), pi/2 or 115deg')}"
         ) from None
     return math.radians(value) if "deg" in text or "°" in text else value
 
@@ -138,7 +144,7 @@ def seconds(text: str) -> float:
         value = float(bare)
     except ValueError:
         raise argparse.ArgumentTypeError(
-            f"{text!r} is not a time; use for example 0.05 (seconds), 50ms or 1min"
+            f"{text!r} is not a time; {_example(text, '0.05 (seconds), 50ms or 1min')}"
         ) from None
     return value / 1000 if unit == "ms" else value * {"min": 60, "h": 3600}.get(unit, 1)
 
@@ -149,7 +155,7 @@ def number(text: str) -> float:
         return float(re.sub("%$", "e-2", text))
     except ValueError:
         raise argparse.ArgumentTypeError(
-            f"{text!r} is not a number; use for example 0.05 or 1e-3"
+            f"{text!r} is not a number; {_example(text, '0.05 or 1e-3')}"
         ) from None
 
 
@@ -158,6 +164,8 @@ def values(element: Callable[[str], float]) -> Callable[[str], list[float]]:
 
     def read(text: str) -> list[float]:
         match text.split(":"):
+            case [_] if re.fullmatch(r"[-+]?\d*,0\d+\D*", text):
+                element(text)  # no list: its error says what to write
             case [_]:
                 return sorted({element(part) for part in text.split(",")})
             case [first, last, many] if 2 <= (size := count(many)) <= MAX_VALUES:
