@@ -106,7 +106,9 @@ class TourGuide:
 def tour_rows(title: str, keys: str, text: tuple[str, ...], width: int, height: int) -> list[Row]:
     """Return the title and the sentences, each on lines of its own, the last of them in full."""
     room = max(width - len(title) - 4, 0)
-    heads = [(f" {title} ", TITLE), ("  ", TEXT), (keys[:room], EXACT)]
+    while len(keys) > room:
+        keys = keys.rpartition("  ")[0]
+    heads = [(f" {title} ", TITLE), ("  ", TEXT), (keys, EXACT)]
     wrapped = [textwrap.wrap(sentence, max(width - 2, 2)) for sentence in text]
     lines = [(line, EXACT) for sentence in wrapped[:-1] for line in sentence]
     lines += [(line, TEXT) for line in wrapped[-1]]

@@ -104,8 +104,8 @@ STEPS = (
         answers=("To a sixteenth.", "To a thirty-second."),
         right=1,
         truth=(
-            "A thirty-second: its loss of energy goes with the fifth power of h. Explicit Euler "
-            "still goes over the top, only later."
+            "Its loss of energy goes with the fifth power of h. Explicit Euler still goes over "
+            "the top, only later."
         ),
     ),
     TourStep(
@@ -120,8 +120,8 @@ STEPS = (
         answers=("Yes, it would stay below.", "It would only buy time."),
         right=1,
         truth=(
-            "It buys time: with h = 0.05 s the errors cross after half an hour. Verlet's stays "
-            "bounded, RK4's grows with each swing."
+            "With h = 0.05 s the errors cross after half an hour. Verlet's stays bounded, RK4's "
+            "grows with each swing."
         ),
     ),
     TourStep(
@@ -165,8 +165,8 @@ STEPS = (
         answers=("Where it stays, no orbit spirals out.", "Nothing, it is a coincidence."),
         right=0,
         truth=(
-            "Where area stays, orbits cannot spiral out or in. Explicit Euler's step multiplies "
-            "it by 1 + z² cos(theta), RK4's by a little less than 1."
+            "Explicit Euler's step multiplies area by 1 + z² cos(theta), RK4's by a little less "
+            "than 1."
         ),
     ),
     TourStep(
