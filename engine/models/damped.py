@@ -54,7 +54,7 @@ class DampedPendulum(Pendulum):
         name="ln(E/E_true)",
         about="the logarithm of the energy over that of the exact motion, which loses energy, too",
     )
-    caption: ClassVar[str] = "curves of equal energy, which friction makes it cross inwards"
+    caption: ClassVar[str] = "curves of equal energy; damped motion crosses them inwards"
     without_force: ClassVar[str] = (
         "Maps and studies are for a pendulum that keeps its energy; friction takes it."
     )

@@ -111,7 +111,13 @@ _STABILITY = (
         h=2.80,
         speed=8.0,
         watch="Just below z = 2√2: RK4 loses half its energy in 4 steps, the others go over.",
-        shot=Shot(log=False, seconds=60.0, front=("rk4",)),
+        shot=Shot(
+            log=False,
+            seconds=60.0,
+            front=("rk4",),
+            moment=22.4,
+            sentence="After 4 steps half of RK4's energy was gone, after 8 almost three quarters.",
+        ),
     ),
     Scene(
         "rk4-limit-above",
