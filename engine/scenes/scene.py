@@ -33,10 +33,10 @@ class SceneError(ValueError):
     """A scene that cannot be run; its text is a sentence for the user."""
 
 
-def check_h(h: float, w0: float) -> None:
-    """Raise SceneError unless |h| is a step that this pendulum can be given."""
+def check_h(h: float, w0: float, forwards: bool = False) -> None:
+    """Raise SceneError unless |h|, or h itself, is a step that this pendulum can be given."""
     low, high = Z_LIMITS
-    if not math.isfinite(h) or not low <= abs(h) * w0 <= high:
+    if not low <= (h if forwards else abs(h)) * w0 <= high:  # also refuses nan
         raise SceneError(
             f"h = {h:g} s is not a usable step; use {low / w0:.2g} to {high / w0:.2g} s, for "
             f"example {0.15 / w0:.1g}."
@@ -107,22 +107,15 @@ class Scene:
                 each.min,
                 min(each.max, each.max_over_w0 * self.w0),
             )
-        if self.h <= 0:
-            raise SceneError(
-                f"h = {self.h:g} s is not a usable step; use a positive one, for example "
-                f"{0.15 / self.w0:.1g}."
-            )
-        check_h(self.h, self.w0)
+        check_h(self.h, self.w0, forwards=True)
         if not 0 < self.speed < math.inf:
             raise SceneError(
                 f"speed = {self.speed:g} is not usable; use a number above zero, 1 for real time."
             )
         for method in self.cast:
             if self.model in MODELS and self.model not in method.models:
-                raise SceneError(
-                    f"{method.label} is not for the model {self.model}; it is for "
-                    f"{' and '.join(method.models)}."
-                )
+                why = f"{method.label} is not for the model {self.model}"
+                raise SceneError(f"{why}; it is for {' and '.join(method.models)}.")
 
     def _complete(self, given: Mapping[str, float]) -> dict[str, float]:
         """Return the parameters in the model's order, with defaults; as given if it is unknown."""
@@ -180,20 +173,16 @@ class Scene:
         """Why studies and maps do not apply to this scene, as a sentence; "" if they do."""
         if why := self.equations.without_force:
             return why
-        special = [method.label for method in self.cast if not method.general]
-        return (
-            f"Maps and studies are for methods that take any force, not for {', '.join(special)}."
-            if special
-            else ""
-        )
+        names = ", ".join(method.label for method in self.cast if not method.general)
+        return names and f"Maps and studies are for methods that take any force, not for {names}."
 
     @property
     def why_no_ring(self) -> str:
         """Why the cast cannot carry a ring of neighbouring starts, as a sentence; "" if it can."""
         if why := self.equations.without_ring:
             return why
-        special = [method.label for method in self.cast if not method.any_numbers]
-        return f"No ring with {', '.join(special)} in the cast." if special else ""
+        names = ", ".join(method.label for method in self.cast if not method.any_numbers)
+        return names and f"No ring with {names} in the cast."
 
     def fields(self) -> dict[str, Any]:
         """All fields that determine the run, with its name, as JSON shows them."""
@@ -212,11 +201,9 @@ class Scene:
         if others:
             fields["parameters"] = {**fields.get("parameters", self.parameters), **others}
         other = replace(self, **fields)
-        return (
-            self
-            if other == self
-            else replace(other, name="custom", watch="", often_said="", shot=Shot())
-        )
+        if other == self:
+            return self
+        return replace(other, name="custom", watch="", often_said="", shot=Shot())
 
     def with_cast(self, cast: Cast) -> "Scene":
         """This scene with other methods; it keeps `watch` if it keeps all methods that show it."""
