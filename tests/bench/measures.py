@@ -19,8 +19,8 @@ MAX_COLUMNS = 100
 MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
-    "characters": 1_082_000,
-    "characters_of_engine": 320_200,
+    "characters": 1_081_900,
+    "characters_of_engine": 320_100,
     "characters_of_recordings": 78_700,
     "characters_of_tui": 683_100,
     "characters_of_tests": 998_700,

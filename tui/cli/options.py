@@ -165,7 +165,7 @@ def values(element: Callable[[str], float]) -> Callable[[str], list[float]]:
     def read(text: str) -> list[float]:
         match text.split(":"):
             case [_] if re.fullmatch(r"[-+]?\d*,0\d+\D*", text):
-                element(text)  # no list: its error says what to write
+                element(text)  # raises: no list
             case [_]:
                 return sorted({element(part) for part in text.split(",")})
             case [first, last, many] if 2 <= (size := count(many)) <= MAX_VALUES:

@@ -104,7 +104,7 @@ class TourGuide:
 
 
 def tour_rows(title: str, keys: str, text: tuple[str, ...], width: int, height: int) -> list[Row]:
-    """Return the title and the sentences, each on lines of its own, the last of them in full."""
+    """Return the title and the sentences, the last of them in full."""
     room = max(width - len(title) - 4, 0)
     while len(keys) > room:
         keys = keys.rpartition("  ")[0]

@@ -103,7 +103,7 @@ def accuracy_series(
 
 
 def _slope(ours: Sequence[Point], kind: ErrorKind, cost: Cost) -> dict[int, Series]:
-    """Return the slope of a method's order, below its points that show it; none without points."""
+    """Return the slope of a method's order below its valid points, if any."""
     order = ours[0].method.order
     valid = [p for p in ours if not p.flaw(kind) and p.error(kind) and cost_of(p, cost)]
     if not valid:

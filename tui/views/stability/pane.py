@@ -15,7 +15,7 @@ from tui.views.stability.words import note, verdict
 from tui.views.view import Chooser
 
 WORDS = 2  # lines
-LEGEND_SHARE = 7  # rows of the pane for each line of the legend
+LEGEND_SHARE = 7  # rows of the pane for a line of it
 
 
 class StabilityPane(Chooser[tuple[int, int]]):

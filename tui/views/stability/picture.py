@@ -160,7 +160,7 @@ def _axis(grid: Grid, width: int, w0: float | None) -> str:
 
 
 def title(place: int, method: Method, columns: int, palette: Palette | None, note: str = "") -> Row:
-    """Return the line above a panel: the method and a note, or the note alone if room is short."""
+    """Return the line above a panel: the method and a note."""
     mine = f"{'':{MARGIN}}{mark(place, method)} "
     text = f"{mine}{method.label} {note}"
     if len(text) > columns:
