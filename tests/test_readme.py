@@ -192,6 +192,7 @@ def test_where_a_project_hides_a_package_of_ours_the_command_line_works(project,
     assert "1 passed" in project(block_with("python", "import subprocess"))
 
 
+@pytest.mark.slow
 def test_the_library_does_what_the_readme_shows(capsys):
     exec(block_with("python", "from engine import"), names := {})
     assert capsys.readouterr().out.startswith("bounded, trend ")

@@ -4,6 +4,6 @@ from tests.recordings.damage import campaign
 
 
 def test_damage_costs_what_is_hit_and_never_yields_a_wrong_number():
-    done = campaign(cuts=29, flips=150, others=40, holes=40)
+    done = campaign(cuts=15, flips=60, others=15, holes=15)
     assert done["unnoticed"] == 0
     assert done["chunks_lost"] > 0  # or nothing was tested

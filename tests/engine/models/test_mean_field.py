@@ -64,7 +64,7 @@ def test_the_energy_is_the_pendulums_and_the_expectation_of_the_levels(phase: Ph
     assert MODEL.energy()(phase) == pytest.approx(expected, abs=1e-13)
 
 
-@settings(max_examples=15)
+@settings(max_examples=5)
 @given(phase=phases, h=st.floats(-0.5, 0.5))
 def test_a_kick_is_the_exact_flow_at_fixed_theta(phase: Phase, h: float) -> None:
     theta, omega, *bloch = phase

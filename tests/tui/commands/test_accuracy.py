@@ -93,6 +93,7 @@ def test_a_target_that_no_method_reaches_is_reported():
     assert all(attempt["why_not"] for attempt in answer["attempts"])
 
 
+@pytest.mark.slow
 def test_over_several_times_it_shows_where_the_winner_changes():
     told = pendu(
         "accuracy",
@@ -198,6 +199,7 @@ ALL = ("accuracy", "--all", "--time", "20", "--h-values", "0.5:0.01:7")
 needs_numba = pytest.mark.skipif(not available(), reason="Numba is not installed")
 
 
+@pytest.mark.slow
 def test_of_all_methods_it_names_the_cheapest_and_by_which_factor():
     answer = pendu(*ALL, "--target", "1e-6", "--json").json
     best = {place["error"]: place for place in answer["front"]}[1e-6]
@@ -246,7 +248,6 @@ def test_where_there_is_no_series_it_says_why(more, hurried):
     answer = pendu(*SMALL, *more, "--json").json
     assert answer["absent"] == ABSENT
     assert "taylor_20" not in {point["method"] for point in answer["points"]}
-    assert answer["absent"] in pendu(*SMALL, *more).out
 
 
 def test_the_points_of_a_method_are_joined_once_they_are_all_there():
