@@ -153,7 +153,7 @@ WRONG = {
     "a comparison": (euler("theta = theta if theta > 0 else theta"), "line 7: `theta = theta if theta > 0"),
     "a modulus, which no derivative passes": (euler("theta = abs(theta)"), "other numbers for complex numbers"),
     "no Python": ("def mine(:", "line 1: invalid syntax."),
-    "a zero byte": ("\0", "line 1: source code string cannot contain null bytes."),
+    "a zero byte": ("\0", "source code string cannot contain null bytes."),
     "an exception when loaded": ("x = 1\ny = x / 0", "line 2: `y = x / 0` raises ZeroDivisionError"),
     "an import of nothing": ("import nothing_of_this_name", "raises ModuleNotFoundError"),
     "another name": ("def other(force, phase, h): yield phase", "has no function 'mine'; it has other."),

@@ -31,6 +31,7 @@ def course(method, scene: Scene, steps: int) -> list[str]:
     return [verdict for verdict, *_ in verdicts(method, scene, LOOPS, steps)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("part", range(6))
 def test_no_verdict_is_wrong_or_flickers(part: int) -> None:
     for method, start, z, letter in SAMPLED[part::6]:

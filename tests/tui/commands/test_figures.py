@@ -17,6 +17,7 @@ COMMANDS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", COMMANDS)
 def test_the_same_input_gives_the_same_figure_of_the_width_of_a_column(name, tmp_path):
     pytest.importorskip("matplotlib")

@@ -39,6 +39,7 @@ async def to_the_question(theatre: Theatre) -> None:
     await theatre.pilot.pause()
 
 
+@pytest.mark.slow
 async def test_it_is_walked_from_the_first_shot_to_the_last():
     async with lab(SCENES["spin"], (80, 24)) as theatre:
         await theatre.press("T")

@@ -105,7 +105,7 @@ def test_a_replay_ends_at_its_end():
 
 def test_sentences_are_whole_and_plain():
     for scene in SCENES.values():
-        for text in said(lab(scene), 30):
+        for text in said(lab(scene), 12):
             assert text.endswith(".")
             assert "\n" not in text
             assert "\x1b" not in text
