@@ -223,7 +223,7 @@ def test_over_seconds_all_there_is_includes_the_series_and_the_floor():
     assert floor["seconds"] > 0
     advice = answer["recommendation"]
     tried = {attempt["method"]: attempt for attempt in answer["recommendation"]["attempts"]}
-    assert advice["method"] not in ("taylor_20", "closed_form")  # which no user could choose
+    assert advice["method"] not in ("taylor_20", "closed_form")
     assert advice["seconds"] == min(
         attempt["seconds"] for attempt in tried.values() if not attempt["why_not"]
     )
