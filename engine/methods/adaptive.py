@@ -53,8 +53,8 @@ def _halving(*, richardson: bool, ends: str, **fields: Any) -> Method:
         reference="Press et al., Numerical Recipes, 2nd edition (1992), 16.2",
         used=None,
         note="Its force evaluations are those of a minute of scene halving, on average, and equal "
-        "cost goes by them; "
-        "a step that is not divided takes six, and of this order it is as long as none is.",
+        "cost goes by them; a step that is not divided takes six, and of this order it is as long "
+        "as none is.",
         models=("pendulum", "linear"),
         any_numbers=False,
         varies=True,

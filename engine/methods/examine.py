@@ -49,8 +49,7 @@ def _examine(phases: Phases, who: str) -> None:
     if after(phases, force, middle, H, STEPS - STEPS // 2) != path[-1]:
         raise OwnMethodError(
             f"{who} keeps more than theta and omega from step to step: {STEPS} steps differ from "
-            "two times"
-            f" {STEPS // 2}; a run is cut anywhere, so start from theta and omega alone."
+            f"two times {STEPS // 2}; a run is cut anywhere, so start from theta and omega alone."
         )
     if not evaluations(phases)[0] > 0:
         raise OwnMethodError(f"{who} never evaluates the force.")

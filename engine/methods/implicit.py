@@ -93,9 +93,8 @@ BACKWARD_EULER = Method(
     reference="Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), I.1.2",
     used="stiff and differential-algebraic equations: PETSc, TSBEULER [petsc.org, TSBEULER]",
     note="The mirror of explicit Euler: it loses energy at every h. Newton's iteration, to 1e-12 "
-    "rad, takes two "
-    "evaluations each time, on a usual swing three times; beyond z = 1 there may be several "
-    "solutions.",
+    "rad, takes two evaluations each time, on a usual swing three times; beyond z = 1 there may be "
+    "several solutions.",
 )
 
 IMPLICIT_MIDPOINT = Method(
@@ -116,9 +115,8 @@ IMPLICIT_MIDPOINT = Method(
     used="Markov chain Monte Carlo: BlackJAX, implicit_midpoint [blackjax-devs.github.io, "
     "blackjax.mcmc.integrators]",
     note="It keeps the energy of small swings exactly, at any h, with a phase that is wrong where "
-    "h is long. Newton's "
-    "iteration, to 1e-12 rad, takes two evaluations each time; a spring is solved in closed form, "
-    "counted as one.",
+    "h is long. Newton's iteration, to 1e-12 rad, takes two evaluations each time; a spring is "
+    "solved in closed form, counted as one.",
     modified_energy=implicit_midpoint_modified_energy,
     models=("pendulum", "linear", "spring"),
 )

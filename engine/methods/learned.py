@@ -116,8 +116,7 @@ RK4_LEARNED_HAMILTONIAN = _learned(
     learned_hamiltonian,
     "RK4 on the slopes of H = a sum of 60 tanh(a theta + b omega + c), fitted to 600 measurements",
     "Its field is as inexact as the learned field, yet it conserves its H: the true energy is off "
-    "by 1.2 % from 1 rad, "
-    "0.3 % from 2 rad, 12 % from 0.2 rad.",
+    "by 1.2 % from 1 rad, 0.3 % from 2 rad, 12 % from 0.2 rad.",
     "learned dynamics that conserve: DiffEqFlux, HamiltonianNN [docs.sciml.ai, Hamiltonian Neural "
     "Network]",
 )
@@ -189,8 +188,8 @@ LEARNED_MAP = Method(
     reference="Jin, Zhang, Zhu, Tang & Karniadakis, Neural Networks 132 (2020) 166",
     used=None,
     note="It keeps no structure: within 100 s at w0 h = 0.1 the true energy is off by 35 % from 1 "
-    "rad, 61 % from "
-    "1.5, ninefold from 0.2. Of this order in what was learned; counted are evaluations of that.",
+    "rad, 61 % from 1.5, ninefold from 0.2. Of this order in what was learned; counted are "
+    "evaluations of that.",
     models=("pendulum",),
 )
 
@@ -211,9 +210,8 @@ LEARNED_SYMPLECTIC_MAP = Method(
     reference="Jin, Zhang, Zhu, Tang & Karniadakis, Neural Networks 132 (2020) 166",
     used=None,
     note="It keeps area, so it conserves an energy of its own: within 100 s at w0 h = 0.1 the true "
-    "one is off by 0.6 % "
-    "from 1 rad, 0.4 % from 1.5, 3 % from 0.2. Of this order in what was learned; counted are "
-    "evaluations of that.",
+    "one is off by 0.6 % from 1 rad, 0.4 % from 1.5, 3 % from 0.2. Of this order in what was "
+    "learned; counted are evaluations of that.",
     models=("pendulum",),
 )
 

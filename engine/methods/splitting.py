@@ -81,8 +81,7 @@ FOREST_RUTH = Method(
     used="orbits in galaxies: gala, Ruth4Integrator [gala.adrian.pw, Ruth4Integrator]",
     note="A warning: its middle step goes backwards, by 1.7 h. Its limit is the smallest of the "
     "symplectic methods, and at 20 evaluations a second its energy error is hardly less than "
-    "Verlet's. Three "
-    "evaluations, not five, and energy is not exact.",
+    "Verlet's. Three evaluations, not five, and energy is not exact.",
 )
 
 BLANES_MOAN_4 = Method(
@@ -109,9 +108,8 @@ BLANES_MOAN_4 = Method(
     used="spaceflight among many bodies: Principia [github.com, mockingbirdnest/Principia, "
     "integrators/methods.hpp]",
     note="To follow a swing from 2 rad for 100 s to 1e-3 (1e-6) rad takes 2800 (7800) evaluations, "
-    "RK4 15 600 "
-    "(59 000). Yoshida 6 and, left out here, PEFRL, Suzuki, Kahan-Li 6 and 8 take 3700 (13 000) or "
-    "more.",
+    "RK4 15 600 (59 000). Yoshida 6 and, left out here, PEFRL, Suzuki, Kahan-Li 6 and 8 take 3700 "
+    "(13 000) or more.",
 )
 
 BLANES_MOAN_6 = Method(
@@ -143,8 +141,7 @@ BLANES_MOAN_6 = Method(
         ),
     ),
     formula="12 kicks and 11 drifts in turn: .041, .123, .198, .291, -.040, -.127, .075, -.246, "
-    "-.012, .357, .237, "
-    ".205 and the same backwards, times h",
+    "-.012, .357, .237, .205 and the same backwards, times h",
     order=6,
     force_evaluations=11,
     first_same_as_last=True,
@@ -156,9 +153,8 @@ BLANES_MOAN_6 = Method(
     used="spaceflight among many bodies: Principia [github.com, mockingbirdnest/Principia, "
     "integrators/methods.hpp]",
     note="Of order 6 only where the force depends on the position alone. To follow a swing from 2 "
-    "rad for 100 s to "
-    "1e-9 rad takes 26 400 evaluations, BM4 36 000, RK4 182 000; of those left out, Kahan and Li's "
-    "of order 8 30 600.",
+    "rad for 100 s to 1e-9 rad takes 26 400 evaluations, BM4 36 000, RK4 182 000; of those left "
+    "out, Kahan and Li's of order 8 30 600.",
 )
 
 _YOSHIDA = (0.78451361047755726, 0.23557321335935813, -1.1776799841788710)
@@ -179,8 +175,7 @@ YOSHIDA_6 = Method(
     other_names=("Yoshida 6A",),
     reference="Yoshida, Phys. Lett. A 150 (1990) 262, solution A",
     used="Hamiltonian systems: OrdinaryDiffEq.jl, Yoshida6 [docs.sciml.ai, Dynamical, Hamiltonian, "
-    "and 2nd Order ODE "
-    "Solvers]",
+    "and 2nd Order ODE Solvers]",
     note="Here for its name: BM6 needs fewer evaluations at every accuracy.",
 )
 

@@ -181,8 +181,7 @@ _STRUCTURE = (
         speed=2.0,
         watch="Explicit Euler gains energy against friction, and spins; the others slow down.",
         often_said="RK4 is to be preferred where energy is lost. True from an accuracy of 0.1 % "
-        "on; "
-        "at 1 % conformal Verlet costs half.",
+        "on; at 1 % conformal Verlet costs half.",
     ),
     Scene(
         "halving",

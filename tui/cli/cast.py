@@ -41,8 +41,7 @@ def add_cast_options(parser: argparse._ActionsContainer, default: str = "the sce
         action="append",
         default=[],
         help="add your own method: a generator function (force, phase, h) as in the README; the "
-        "file is run as any"
-        " Python program of yours, with your rights (repeatable)",
+        "file is run as any Python program of yours, with your rights (repeatable)",
     )
 
 

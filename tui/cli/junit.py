@@ -35,8 +35,8 @@ def conclude(options: argparse.Namespace, suite: str, checks: Sequence[Check]) -
         first = failed[0]
         where = f" in {len(failed)} of {len(checks)} runs, first at {first.name}"
         warn(
-            f"the check failed{where if len(checks) > 1 else ''}:"
-            f" {options.fail_if} ({first.failure})"
+            f"the check failed{where if len(checks) > 1 else ''}: {options.fail_if} "
+            f"({first.failure})"
         )
     if options.junit:
         write_junit(options.junit, suite, checks)

@@ -52,8 +52,8 @@ def add_worker_options(parser: argparse.ArgumentParser) -> None:
     where.add_argument(
         "--executor",
         metavar="MODULE:CALLABLE",
-        help="in the concurrent.futures.Executor that a callable returns,"
-        " such as mpi4py.futures:MPIPoolExecutor",
+        help="in the concurrent.futures.Executor that a callable returns, such as "
+        "mpi4py.futures:MPIPoolExecutor",
     )
 
 

@@ -54,8 +54,7 @@ def recording_path(file: Path | None) -> Path:
     if not path.parent.is_dir() or not os.access(path.parent, os.W_OK | os.X_OK):
         raise UserError(
             f"{path.parent} is not writable: choose another folder with --record or "
-            "PENDU_RECORDINGS,"
-            " or turn recording off with --no-record.",
+            "PENDU_RECORDINGS, or turn recording off with --no-record.",
             Exit.DISK,
         )
     return path

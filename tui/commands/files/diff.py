@@ -41,8 +41,8 @@ def run(options: argparse.Namespace) -> int:
 def _report(found: dict[str, Any]) -> Report:
     title = "{samples} samples at equal times; {only_in_a} only in A, {only_in_b} only in B"
     place = (
-        "first in {field} of {method} at run {run}, t = {t:g} s,"
-        " step {step_a} of A and {step_b} of B: {a!r} and {b!r}"
+        "first in {field} of {method} at run {run}, t = {t:g} s, step {step_a} of A and {step_b} "
+        "of B: {a!r} and {b!r}"
     )
     done = [Column(head, itemgetter(n)) for n, head in enumerate(("done differently", "A", "B"))]
     return Report(

@@ -73,8 +73,7 @@ def run(options: argparse.Namespace) -> int:
     if ghost is not None and ghost.scene.model != scene.model:
         raise UserError(
             f"--ghost: the recording is of the model {ghost.scene.model}, the scene of "
-            f"{scene.model};"
-            " leave out --scene, or choose one of that model."
+            f"{scene.model}; leave out --scene, or choose one of that model."
         )
     launch.check(options)
     live = lab_of(scene, options)
