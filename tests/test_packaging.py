@@ -40,8 +40,8 @@ def test_everything_that_lies_beside_the_code_is_in_the_wheel(wheel):
 def test_the_licence_is_in_the_metadata_and_its_text_in_the_wheel(wheel):
     metadata = wheel.read(f"{DIST_INFO}/METADATA").decode()
     assert "License-Expression: MIT" in metadata
-    assert "License-File: tui/LICENSE.txt" in metadata
-    assert b"WITHOUT WARRANTY" in wheel.read(f"{DIST_INFO}/licenses/tui/LICENSE.txt")
+    assert "License-File: .github/LICENSE.txt" in metadata
+    assert b"WITHOUT WARRANTY" in wheel.read(f"{DIST_INFO}/licenses/.github/LICENSE.txt")
 
 
 def test_users_get_ranges_and_the_snapshots_get_exact_versions():

@@ -72,7 +72,7 @@ def test_every_command_that_is_mentioned_exists_with_its_options(command):
         return
     name, words = split(words)
     parser, _ = command_of(name)
-    parser.parse_args(words + ["."] * (name == "verify"))
+    assert parser.parse_args(words + ["."] * (name == "verify"))
 
 
 def ran(*command: str | Path, folder: Path, **environment: str) -> subprocess.CompletedProcess:

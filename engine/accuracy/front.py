@@ -37,7 +37,7 @@ def cost_of(point: Point, cost: Cost) -> float:
 
 
 def front(points: Iterable[Point], kind: ErrorKind, cost: Cost) -> list[Cheapest]:
-    """Return the cheapest method for each power of ten of the error, the largest first.
+    """Return the cheapest method at errors of 0.1, 0.01 and so on, the largest error first.
 
     Costs are interpolated between a method's points, log over log.  An error is left out where the
     coarsest run of a method is that accurate already, since a coarser one may be cheaper.

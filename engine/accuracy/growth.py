@@ -1,7 +1,7 @@
 """How fast the error in theta grows with time, and which power of t it follows, if any.
 
-A symplectic method's phase error grows as t, that of a method whose energy drifts as t²: Hairer,
-Lubich & Wanner, Geometric Numerical Integration (2006), X.3.
+The phase error of a symplectic method grows as t; that of a method whose energy drifts, as t².
+Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), X.3.
 """
 
 from collections.abc import Iterator, Sequence
@@ -13,14 +13,12 @@ from engine.methods import Method
 from engine.phase_space.section import orbit
 from engine.scenes import Scene
 
-# of the motion that are followed, unless the error becomes too large before; for a fit
-PERIODS = 100
-FEWEST = 10
+PERIODS = 100  # followed at most; fewer if the error becomes too large
+FEWEST = 10  # periods for a fit
 MOST_STEPS = 100_000
 LARGEST = 0.4  # rad; larger errors no longer grow freely, for they begin to wrap
-# largest departure of ln error from the line, and of its slope from a whole number
-STRAIGHT = 0.05
-WHOLE = 0.15
+STRAIGHT = 0.05  # largest deviation of ln(error) from the fitted line
+WHOLE = 0.15  # largest deviation of the fitted power from an integer
 _LOOKS = 30  # in each period
 
 
@@ -52,7 +50,7 @@ def duration(scene: Scene) -> float | None:
 
 
 def growth(scene: Scene, method: Method) -> Growth:
-    """Largest theta error in each of at most PERIODS periods, and the fitted power of t."""
+    """Return the largest theta error of each of at most PERIODS periods, and a power of t."""
     exact = scene.exact()
     time = duration(scene)
     if time is None or exact.period is None:
@@ -75,7 +73,7 @@ def growth(scene: Scene, method: Method) -> Growth:
 
 
 def growths(scene: Scene, own: Sequence[float]) -> Iterator[Growth]:
-    """Return how each method's error grows [s] at its own h; picklable, for another process."""
+    """Yield how each method's error grows at its own h [s]; for another process."""
     return (
         growth(scene.altered(h=abs(h)), method) for method, h in zip(scene.cast, own, strict=True)
     )

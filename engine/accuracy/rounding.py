@@ -13,7 +13,7 @@ MARGIN = 2  # errors above the floor are then due to the method, but for a fract
 
 
 def rounding_floor(scene: Scene, time: float) -> tuple[float, float]:
-    """Rounding errors of energy (relative) and theta [rad] after a step; n leave sqrt(n) times.
+    """Return the rounding error of energy (relative) and theta [rad] per square root of steps.
 
     A step changes the energy by a relative epsilon, at random (Brouwer, Astron. J. 46 (1937) 149);
     by more where theta has grown by many turns and its last digit is coarse.  Theta follows the

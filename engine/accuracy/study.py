@@ -120,7 +120,7 @@ class Study:
         self._width = min(math.pi, max(map(abs, self.thetas)))
 
     def run(self, method: Method, steps: int, comparisons: int = COMPARISONS) -> Point:
-        """Take this many steps and compare at least `comparisons` of them with the exact swing.
+        """Take this many steps; compare `comparisons` or more, and the last, with the truth.
 
         An error counts as rounding if it lies below the rounding floor, and if runs with a half and
         a quarter of the steps do not have errors larger by half of what the method's order

@@ -1,7 +1,7 @@
 """The exact motion in closed form, from any start; the reference of every error in theta.
 
-Notation as in the books: k² = sin²(theta0/2) + omega0²/(4 w0²), D = 1 - k².  D > 0 is libration, D
-< 0 rotation, D = 0 the separatrix.  Everything near the separatrix hangs on D, whose two terms
+Notation as in the books: k² = sin²(theta0/2) + omega0²/(4 w0²), D = 1 - k².  D > 0 is libration,
+D < 0 rotation, D = 0 the separatrix.  Near the separatrix everything depends on D, whose two terms
 cancel there, so it is computed once in 100 digits.  F by Carlson's R_F, K by the
 arithmetic-geometric mean from k', sn and cn by Bulirsch from k', the argument reduced modulo 2K:
 library routines that take m = k² instead lose every digit where 1 - m < 1e-10.

@@ -154,10 +154,7 @@ class Model(ABC):
     # of its phase portrait, if the motion does not follow curves of equal energy
     caption: ClassVar[str] = ""
     without_force: ClassVar[str] = ""
-    """Return why studies and maps do not apply to the model, or an empty string.
-
-    They are made for one angle and a force that conserves the energy.
-    """
+    """Why studies and maps, made for one angle and a conservative force, do not apply; or ""."""
     without_ring: ClassVar[str] = ""
     """Why a ring of neighbouring starts does not apply; "": it does."""
 

@@ -18,8 +18,8 @@ from engine.scenes import Scene, check_h
 class Reading(NamedTuple):
     """One method at one step; a diverged one stays at its last finite numbers.
 
-    Energies are per unit m·L² [s⁻²]; energy errors are relative, (E - E0)/E0, or to 2 w0² where E0
-    = 0, or with friction ln(E/E_true).
+    Energies are per unit m·L² [s⁻²]; energy errors are relative, (E - E0)/E0, or to 2 w0² where
+    E0 = 0, or with friction ln(E/E_true).
     """
 
     theta: float  # rad, unwrapped

@@ -35,8 +35,8 @@ class Wobble(NamedTuple):
 def wobble(method: Method, z: float) -> Wobble:
     """Return the energy's range and the largest amplitude of a linear swing from rest.
 
-    A symplectic step keeps a quadratic form, not the energy: the swing stays on the ellipse -c
-    theta² + (a - d) theta omega + b omega² = -c theta0², where ((a, b), (c, d)) is its Jacobian at
+    A symplectic step keeps a quadratic form, not the energy: the swing stays on the ellipse
+    -c theta² + (a - d) theta omega + b omega² = -c theta0², where ((a, b), (c, d)) is its Jacobian at
     w0 = 1.  The half axes, squared, are the extremes of the energy: (1 - z²/4, 1) for velocity
     Verlet, for symplectic Euler (1/(1 + z/2), 1/(1 - z/2)).  Explicit Euler and RK4 do not wobble:
     (1, 1).  The reach of the ellipse is 1 for velocity Verlet, 1/sqrt(1 - z²/4) for symplectic

@@ -19,7 +19,7 @@ from decimal import Decimal
 from functools import partial
 from typing import Any
 
-from engine.methods import USUAL_CAST, Cast
+from engine.methods import USUAL_CAST, Cast, matching
 from engine.run.judgement import VERDICTS, Progress
 from recordings.fields import EXTRA_NAMES, NUMBERS, OPTIONAL
 from tui.cli.cast import find
@@ -107,6 +107,8 @@ def _gate(node: ast.expr, source: str, fields: Sequence[str], cast: Cast) -> Gat
     if key in ("any", "all"):
         gates = [partial(_found, method.key, field, compare, limit) for method in cast]
         return partial(_all if key == "all" else _any, gates)
+    if key and not matching(key, cast) and matching(key):
+        raise UserError(f"--fail-if: {key} is not in this run; add it with --methods.")
     method = find(key, cast, "--fail-if").key if key else ""
     return partial(_found, method, field, compare, limit)
 

@@ -52,7 +52,7 @@ def print_lines(*lines: str) -> None:
 
 
 def console(piped_width: int | None = None) -> "Console":
-    """Return where to draw: as wide as the terminal, or as the options ask."""
+    """Return where to draw: as wide as the terminal, or `piped_width` where there is none."""
     from rich.console import Console
 
     return Console(

@@ -141,7 +141,7 @@ class ReplayCursor:
 
 
 def pieces(start: float, end: float) -> list[tuple[float, float]]:
-    """Return what to read of [start, end]: the last DENSE seconds, and samples of the rest."""
+    """Return what to read of [start, end]: the last DENSE seconds, and short pieces before."""
     middle = max(start, end - DENSE)
     count = min(MAX_PIECES, math.ceil(middle - start))
     edges = [start + (middle - start) * n / count for n in range(count + 1)] if count else []

@@ -43,7 +43,7 @@ class LiveScreen(SourceScreen):
         Binding("r", "restart", "Restart", tooltip="restart; dims the old run"),
         Binding("b", "reverse", "Back", tooltip="run back in time"),
         Binding("n", "equal_cost", "Equal cost", tooltip="equal cost for all"),
-        Binding("T,shift+t", "tour", "Tour", True, "T", tooltip="tour: begin, leave, go on"),
+        Binding("T,shift+t", "tour", "Tour", True, "T", tooltip="tour: begin, leave, resume"),
         Binding("enter", "tour_forward"),  # the tour's panel names these two
         Binding("backspace", "tour_back"),
     ]

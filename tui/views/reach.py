@@ -11,7 +11,7 @@ from engine.scenes import Scene
 from tui.playback.source import Source
 
 REACHES = (0.5, 1.2, math.pi / 2)
-"""Steps [rad] of the reach: few, so that the scale hardly ever changes."""
+"""Reaches [rad]: few, so that the scale hardly ever changes."""
 
 
 def reach(scene: Scene, stepping: Stepping, sample: Sample, shown: Sequence[int]) -> float:

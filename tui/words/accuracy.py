@@ -40,7 +40,7 @@ def point_words(point: Point, kind: ErrorKind, note: str) -> str:
 def front_words(found: Sequence[Cheapest], cost: Cost, without: Sequence[Cheapest] = ()) -> str:
     """Return the cheapest method in each range of errors; `without`: without Taylor's series."""
     if not found:
-        return "No power of ten lies between the errors of the coarsest and the finest runs to compare."
+        return "No power of ten lies between the errors of the coarsest and finest runs."
     words = f"Cheapest in {COSTS[cost]}: {_spans(found)}"
     if any(one.method is TAYLOR_20 for one in found) and without:
         words += f"; without Numba, in force evaluations: {_spans(without)}"

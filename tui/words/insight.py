@@ -27,7 +27,7 @@ UNCHANGED = 0.05  # relative change of the energy that is not worth a number
 
 SENTENCES = {
     "at rest": "Nothing moves: the pendulum started at rest in equilibrium.",
-    "returned": "Back at t = 0. Missed the start, in angle and speed, by {misses} rad.",
+    "returned": "Back at t = 0; angle and speed off by {misses} rad.",
     "watch": "{text}",
     "new step": "h is {h:.4g} s now; r starts again with it, the old run dimmed below.",
     "failed": "{0} failed at {t:.4g} s: its energy error is no longer finite.",
@@ -121,7 +121,7 @@ def insight(source: Source, hidden: Collection[str] = ()) -> Insight:
     if text := _moment(source):
         return Insight("watch", values={"text": text})
     if returned is not None and abs(sample.t) < WATCH:
-        return _returned(source.scene, returned)
+        return _returned(source.scene, returned, hidden)
     if found := _new_step(source, FRESH * pace) or _news(source, FRESH * pace, hidden):
         return found
     if abs(sample.t) < WATCH * pace and (watch := _watch(source, hidden)):
@@ -337,13 +337,15 @@ def _so_far(source: Source, hidden: Collection[str] = ()) -> Insight:
     return Insight("so far", (cast[nearest], cast[furthest]), {"least": least, "most": most})
 
 
-def _returned(scene: Scene, sample: Sample) -> Insight:
+def _returned(scene: Scene, sample: Sample, hidden: Collection[str] = ()) -> Insight:
     """Return each method's distance from the start: sqrt(dtheta² + (domega/w0)²) [rad]."""
     misses = []
     for method, reading in zip(scene.cast, sample.readings, strict=True):
+        if method.key in hidden:
+            continue
         speed = (reading.omega - scene.omega) / scene.w0
         miss = math.hypot(reading.theta - scene.theta, speed)
-        text = "failed" if reading.diverged_at is not None else f"{miss:.2g}"
+        text = "failed" if reading.diverged_at is not None else f"{miss:.1g}"
         misses.append(f"{method.letter} {text}")
     return Insight("returned", scene.cast, {"misses": ", ".join(misses)})
 

@@ -170,7 +170,7 @@ def test_a_wrong_method_gets_one_sentence_that_says_where(wrong: str) -> None:
 
 @given(st.text(max_size=40), st.sampled_from(["{}", "def mine(force, phase, h):\n    yield {}"]))
 def test_whatever_the_text_is_there_is_a_sentence(text: str, around: str) -> None:
-    refusal(around.replace("{}", text))
+    assert refusal(around.replace("{}", text)).isprintable()
 
 
 def test_whatever_a_wrong_method_shows_of_itself_the_sentence_is_short() -> None:

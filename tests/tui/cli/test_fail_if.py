@@ -130,6 +130,7 @@ def test_a_verdict_is_compared_with_one_of_its_words(word: str, quote: str) -> N
         ("rk4.verdict > loses", "verdicts have no order: compare them with == or !=."),
         ("rk4.energy > loses", "'loses' is not a finite number; use for example 0.05 or 1e-2."),
         ("rk4.energy > '1'", "'1' is not a finite number; use for example 0.05 or 1e-2."),
+        ("forest_ruth.energy > 1", "forest_ruth is not in this run; add it with --methods."),
         (
             "velocity_verlt.energy > 1",
             "there is no method 'velocity_verlt': did you mean velocity_verlet?",

@@ -134,6 +134,9 @@ def test_one_table_is_judged_and_named():
     assert judge(LOG, "--json", time="Step", energy="TotEng").json["first_energy"] == 100
     outcome = judge(LOG, time="Step", energy="TotEng")
     assert "300 samples from 0 to 29.9, table 2 of 2; skipped: 1 row without numbers" in outcome.out
+    for skipped, code in ((0, 1), (1, 0)):
+        gate = f"skipped > {skipped} or samples < 300"
+        assert judge(LOG, "--fail-if", gate, time="Step", energy="TotEng").code == code
     answer = judge(LOG, "--json", "--table", 1, time="Step", energy="TotEng").json
     assert (answer["table"], answer["tables"], answer["samples"]) == (1, 2, 200)
     assert judge(LOG, "--table", 3, time="Step", energy="TotEng").refused(

@@ -258,7 +258,7 @@ def test_ten_seconds_there_and_back_show_which_methods_are_reversible(scene):
     missed = dict(each.split() for each in found.values["misses"].split(", "))
     assert float(missed["v"]) < 1e-12  # reversible but for rounding, 1e-16 a step
     assert 1e-9 < float(missed["r"]) < 1e-2  # h⁵
-    assert float(missed["s"]) > 1e-3  # not reversible, whatever the books say
+    assert float(missed["s"]) >= 1e-3  # not reversible, whatever the books say
     assert float(missed["e"]) > 1e-2
 
 

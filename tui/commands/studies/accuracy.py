@@ -44,7 +44,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add("--all", action="store_true", help=every)
     some = "simulated time in s; if several, the last is charted (ten small swings)"
     add("--time", metavar="S[,S...]", type=times, help=some)
-    ladder = "N step sizes in s, logarithmically spaced (12 with z = h·w0 from 0.6 to 0.0015)"
+    ladder = "N step sizes from A to B in s, log spaced (12, z = h·w0 from 0.6 to 0.0015)"
     add("--h-values", metavar="A:B:N", type=h_values, help=ladder)
     kinds = "largest angle error [rad], largest energy error, last angle error (%(default)s)"
     add("--error", choices=("theta", "energy", "final"), default="theta", help=kinds)
@@ -218,7 +218,7 @@ def _advice(
 def _ladder(
     scene: Scene, time: float, given: tuple[float, float, int] | None, all: bool
 ) -> list[int]:
-    """Return the numbers of steps to measure, from the most accurate methods' coarsest on."""
+    """Return the numbers of steps to measure: the usual ones, those of --all, or as given."""
     from engine.accuracy.study import ALL_LADDER, Z_LADDER, ladder
 
     z_max, z_min, rungs = ALL_LADDER if all else Z_LADDER

@@ -43,6 +43,8 @@ FIELDS = (
     "fluctuation",
     "energy_per_ns_per_atom",
     "kt_per_ns_per_atom",
+    "samples",
+    "skipped",
     "independent_samples",
     "fluctuation_order",
     "drift_order",
@@ -97,11 +99,15 @@ def run(options: argparse.Namespace) -> int:
         notes=[f"{name:<13} {text}" for name, text in lines],
         fields={"steps": steps, "files": results, **shared} if steps else results[0],
     ).show(form_of(options))
-    found = [text for fields in results if gate and (text := gate({"": fields | shared}))]
+    found = []
+    if gate is not None:
+        for fields in results:
+            skipped = sum(fields["skipped"].values())  # rows, for whatever reason
+            found.append(gate({"": fields | shared | {"skipped": skipped}}))
     check = Check(
         f"{options.energy}: {options.fail_if or 'no check'}",
         "; ".join(map(" ".join, lines)),
-        "; ".join(dict.fromkeys(found)) or None,
+        "; ".join(dict.fromkeys(filter(None, found))) or None,
     )
     code = conclude(options, f"pendu-tui judge {' '.join(options.files)}", [check])
     failed = any(fields["verdict"] == "failed" for fields in results)

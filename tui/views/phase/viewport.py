@@ -1,8 +1,8 @@
 """Viewport: which part of phase space a rectangle of character cells shows.
 
-Dots as on the canvas: 2×4 a cell, x to the right, y downwards, dot (i, j) covers [i, i+1) × [j,
-j+1). The viewport's middle is the centre of its middle cell, so that theta = 0 and omega = 0 can be
-clicked.
+Dots as on the canvas: 2×4 a cell, x to the right, y downwards, dot (i, j) covers [i, i+1) ×
+[j, j+1).  The viewport's middle is the centre of its middle cell, so that theta = 0 and omega = 0
+can be clicked.
 """
 
 import math
