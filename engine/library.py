@@ -32,8 +32,8 @@ def _public(method: Method) -> Method:
 
     def refuse(*_: Any) -> NoReturn:
         raise ValueError(
-            f"{method.label} is made for the scenes of the lab, not for any force and arrays;"
-            " use a method of METHODS with general=True."
+            f"{method.label} is made for the scenes of the lab, not for any force and arrays; use "
+            "a method of METHODS with general=True."
         )
 
     return method if method.general else replace(method, phases=refuse)

@@ -107,8 +107,8 @@ def check_present(scene: Scene, only: Iterable[str] | None = None) -> None:
     for method in scene.cast:
         if method.phases is _no_phases and (only is None or method.key in only):
             raise RecordingError(
-                f"it needs the user's own method {method.key}; give its file as it was (SHA-256"
-                f" {method.reference.partition('@')[2][:12]}…) with --method FILE.py:{method.key}"
+                f"it needs the user's own method {method.key}; give its file as it was (SHA-256 "
+                f"{method.reference.partition('@')[2][:12]}…) with --method FILE.py:{method.key}"
             )
 
 

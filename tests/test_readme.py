@@ -50,12 +50,6 @@ def test_the_test_command_is_the_one_of_ci():
     )
 
 
-def test_the_install_commands_are_one_line_each():
-    assert "`python3 -m venv .venv && .venv/bin/pip install . && .venv/bin/pendu-tui`" in README
-    assert "`uv venv --allow-existing && uv pip install . && .venv/bin/pendu-tui`" in README
-    assert "`uv venv --allow-existing && uv pip install '.[test]' && .venv/bin/pytest`" in README
-
-
 @pytest.mark.parametrize(("page", "target"), LINKS)
 def test_what_is_linked_is_there(page, target):
     assert target.is_file()

@@ -77,10 +77,7 @@ def _advance_all(phases: Iterator[Phase], energy: Energy, n: int, limit: float) 
 
 
 class PlainLoops:
-    """The loops in Python.
-
-    A call that continues the previous one continues its generator.
-    """
+    """The loops in Python.  A call that continues the previous one continues its generator."""
 
     def __init__(self, method: Method, model: Model) -> None:
         self._phases = method.on(model)

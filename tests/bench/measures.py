@@ -19,11 +19,11 @@ MAX_COLUMNS = 100
 MAX_FUNCTION_LINES = 40  # without the docstring
 
 CEILINGS = {
-    "characters": 1_081_900,
-    "characters_of_engine": 320_100,
-    "characters_of_recordings": 78_700,
-    "characters_of_tui": 683_100,
-    "characters_of_tests": 998_700,
+    "characters": 1_081_701,
+    "characters_of_engine": 319_939,
+    "characters_of_recordings": 78_685,
+    "characters_of_tui": 683_077,
+    "characters_of_tests": 998_516,
     "files": 219,
     "long_lines": 18,
     "parallel_assignments": 25,

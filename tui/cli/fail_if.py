@@ -170,8 +170,8 @@ def _no_comparison(text: str, fields: Sequence[str]) -> UserError:
     form = "FIELD" if fields else "METHOD.FIELD"
     example = f"{fields[0]} > 1e-2" if fields else _EXAMPLE
     return _refusal(
-        f"{_quoted(text)} is not a comparison; write {form} > NUMBER, for example {example!r};"
-        " comparisons are joined by and, or and parentheses."
+        f"{_quoted(text)} is not a comparison; write {form} > NUMBER, for example {example!r}; "
+        "comparisons are joined by and, or and parentheses."
     )
 
 

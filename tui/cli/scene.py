@@ -73,11 +73,7 @@ EXAMPLES = {
     "speed": "4",
     "methods": '["rk4", "velocity_verlet"]',
     "shot": "",
-    **{
-        parameter.name: f"{parameter.default:g}"
-        for model in MODELS.values()
-        for parameter in model.parameters
-    },
+    **{name: f"{parameter.default:g}" for name, parameter in PARAMETERS.items()},
     **{name: f"{value:g}" for scene in SCENES.values() for name, value in scene.parameters.items()},
 }
 """The fields of a scene file, each with a value."""
@@ -192,10 +188,7 @@ def scene_named(name: str, lecture: bool = False) -> Scene:
 
 
 def general_scene_of(options: argparse.Namespace) -> Scene:
-    """Return the scene of the options, if it can be mapped and charted.
-
-    Raises UserError.
-    """
+    """Return the scene of the options, if it can be mapped and charted.  Raises UserError."""
     scene = scene_of(options)
     if why := scene.why_not_mapped:
         raise UserError(why)

@@ -160,8 +160,8 @@ def _sentence(error: BaseException) -> UserError:
     except BaseException:
         code, line = [(frame.f_code, line) for frame, line in walk_tb(error.__traceback__)][-1]
         return UserError(
-            f"an error in this program ended the lab: {type(error).__name__}: {error}"
-            f" ({Path(code.co_filename).name}:{line}); please report it.",
+            f"an error in this program ended the lab: {type(error).__name__}: {error} "
+            f"({Path(code.co_filename).name}:{line}); please report it.",
             Exit.CHECK_FAILED,
         )
 

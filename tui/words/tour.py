@@ -92,8 +92,7 @@ STEPS = (
         speed=2.0,
         shot=Shot(theta=math.pi),
         watch=(
-            "The first scene with half the step, at twice the speed, until Verlet has its "
-            "verdict."
+            "The first scene with half the step, at twice the speed, until Verlet has its verdict."
         ),
         moment=17.6,
         happened=(
@@ -104,8 +103,8 @@ STEPS = (
         answers=("To a sixteenth.", "To a thirty-second."),
         right=1,
         truth=(
-            "Its loss of energy goes with the fifth power of h. Explicit Euler still goes over "
-            "the top, only later."
+            "Its loss of energy goes with the fifth power of h. Explicit Euler still goes over the "
+            "top, only later."
         ),
     ),
     TourStep(
@@ -130,13 +129,13 @@ STEPS = (
         speed=1.5,
         shot=Shot(theta=math.pi),
         watch=(
-            "When Explicit Euler goes over the top, time turns round: the same steps with -h, "
-            "back to 0."
+            "When Explicit Euler goes over the top, time turns round: the same steps with -h, back "
+            "to 0."
         ),
         moment=7.15,
         happened=(
-            "Back at t = 0, only Verlet is back at its start, to the last digits. Symplectic "
-            "Euler misses it visibly."
+            "Back at t = 0, only Verlet is back at its start, to the last digits. Symplectic Euler "
+            "misses it visibly."
         ),
         question="Verlet made errors on the way there. Why does it come home?",
         answers=("It is the most accurate here.", "Its step is symmetric."),
@@ -180,8 +179,8 @@ STEPS = (
         ),
         moment=20.2,
         happened=(
-            "In ten steps Verlet's swing grew from 0.1 to almost 0.5 rad. For a linear spring "
-            "that would never end."
+            "In ten steps Verlet's swing grew from 0.1 to almost 0.5 rad. For a linear spring that "
+            "would never end."
         ),
         question="Does it go over the top here?",
         answers=("Yes.", "No."),

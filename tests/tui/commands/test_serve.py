@@ -126,6 +126,15 @@ async def no_labs_left(request):
         await request.getfixturevalue("server").until_labs(0)
 
 
+async def has_ended(lab: int) -> bool:
+    """Wait until a process is gone, or a zombie."""
+    status = Path(f"/proc/{lab}/status")
+    async with asyncio.timeout(PATIENCE):
+        while status.exists() and "State:\tZ" not in status.read_text():
+            await asyncio.sleep(0.1)
+    return True
+
+
 def files(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.rglob("*") if path.is_file())
 
@@ -308,12 +317,7 @@ async def test_a_signal_ends_the_server_and_its_labs(number):
             server.process.send_signal(number)
             assert await tab.closed()
             assert await asyncio.to_thread(server.process.wait, PATIENCE) == 0
-    async with asyncio.timeout(PATIENCE):
-        while (
-            Path(f"/proc/{lab}").exists()
-            and "State:\tZ" not in Path(f"/proc/{lab}/status").read_text()
-        ):
-            await asyncio.sleep(0.1)
+    assert await has_ended(lab)
 
 
 async def test_a_lab_ends_when_its_server_was_killed():
@@ -324,12 +328,7 @@ async def test_a_lab_ends_when_its_server_was_killed():
             await tab.shows("paused")
             (lab,) = server.labs
             server.process.kill()
-            async with asyncio.timeout(PATIENCE):
-                while (
-                    Path(f"/proc/{lab}").exists()
-                    and "State:\tZ" not in Path(f"/proc/{lab}/status").read_text()
-                ):
-                    await asyncio.sleep(0.1)
+            assert await has_ended(lab)
 
 
 def test_only_another_address_says_what_is_exposed():

@@ -133,8 +133,8 @@ def _check_options(options: argparse.Namespace) -> None:
         )
     if options.cost == "seconds" and (options.workers > 1 or options.dask or options.executor):
         raise UserError(
-            "seconds are measured in this process, where others would disturb them;"
-            " use workers with --cost evaluations."
+            "seconds are measured in this process, where others would disturb them; use workers "
+            "with --cost evaluations."
         )
     if options.safety < 1:
         raise UserError(f"--safety {options.safety:g} is less than 1; use 2, for example.")

@@ -71,8 +71,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
     names = (f"{method.key}.{field}" for method in METHODS for field in (*FIELDS, "verdict"))
     meaning = (
-        "exit 1 if it is true, e.g. rk4.max_energy_error > 1e-3 or any.verdict == grows"
-        " (fields: see --json)"
+        "exit 1 if it is true, e.g. rk4.max_energy_error > 1e-3 or any.verdict == grows (fields: "
+        "see --json)"
     )
     add_check_options(parser, names, meaning)
     add("--no-compiled", action="store_true", help="do not use Numba (same results)")

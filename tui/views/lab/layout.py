@@ -19,9 +19,7 @@ THREE_ROWS = 45  # rows from which on there are two charts
 class Places(NamedTuple):
     """The region of each pane, None where it is not shown."""
 
-    pendulums: tuple[
-        Region, ...
-    ] = ()  # of the methods that are shown, in order; none if they share one
+    pendulums: tuple[Region, ...] = ()  # of the methods shown, in order; none if they share one
     overlay: Region | None = None  # of all pendulums on one pivot
     events: Region | None = None
     chart: Region | None = None
@@ -35,8 +33,7 @@ def places(columns: int, rows: int, methods: int) -> Places:
     Each method has a pane of its own where there is room.
     """
     events = max(EVENTS, -(-rows // 5)) if rows >= TWO_ROWS else 0
-    has_grid = columns >= NARROW
-    grid = _grid(columns, rows - events, methods) if has_grid else None
+    grid = _grid(columns, rows - events, methods) if columns >= NARROW else None
     if grid is not None:
         across, side = grid
         pendulums = _tiles(side, rows - events, methods, across)

@@ -117,8 +117,8 @@ def _per_atom(
     energy_unit = fields["energy_unit"]
     if time_unit not in NANOSECONDS:
         raise UserError(
-            "--atoms needs the unit of the times in the head of the column, such as Time (ps);"
-            f" units: {', '.join(NANOSECONDS)}."
+            "--atoms needs the unit of the times in the head of the column, such as Time (ps); "
+            f"units: {', '.join(NANOSECONDS)}."
         )
     slope = fields["absolute_trend"]
     each = None if slope is None else slope / NANOSECONDS[time_unit] / atoms
@@ -127,8 +127,8 @@ def _per_atom(
         return found
     if energy_unit.casefold() not in BOLTZMANN:
         raise UserError(
-            "--temperature needs the unit of the energies in the head of the column,"
-            f" such as E (eV); units: {', '.join(BOLTZMANN)}."
+            "--temperature needs the unit of the energies in the head of the column, such as E "
+            f"(eV); units: {', '.join(BOLTZMANN)}."
         )
     kt = BOLTZMANN[energy_unit.casefold()] * temperature
     return found | {
