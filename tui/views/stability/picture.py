@@ -160,9 +160,9 @@ def _axis(grid: Grid, width: int, w0: float | None) -> str:
 
 
 def title(place: int, method: Method, columns: int, palette: Palette | None, note: str = "") -> Row:
-    """Return the line above a panel: the method and a note."""
+    """Return the line above a panel."""
     mine = f"{'':{MARGIN}}{mark(place, method)} "
-    text = f"{mine}{method.label} {note}"
+    text = f"{mine}{method.label}: {note}".rstrip(": ")
     if len(text) > columns:
         text = mine + note
     return [(text[:columns].ljust(columns), Style(bold=True) if palette else NOBODY)]
