@@ -1,28 +1,16 @@
-"""Damage recordings in every way, and see what every reader makes of it: one JSON object.
+"""Cut, flip bits in and punch holes into recordings: every reader notices or reads what was there."""
 
-python tests/bench/damage.py [cuts|flips|holes ...]
-"""
-
-import json
-import sys
-import time
+from typing import Any
 
 from tests.recordings.damage import campaign
 
+LIMITS = {"unnoticed": 0}
 
-def main() -> None:
-    """Run these parts of the campaign, or all, and print."""
-    parts = sys.argv[1:] or ["cuts", "flips", "holes"]
-    began = time.perf_counter()
-    done = campaign(
-        cuts=int("cuts" in parts),
-        flips=20_000 * ("flips" in parts),
-        others=2_000 * ("flips" in parts),
-        holes=1_000 * ("holes" in parts),
+
+def measure(share: float) -> dict[str, Any]:
+    return campaign(
+        cuts=round(1 / share),
+        flips=round(20_000 * share),
+        others=round(2_000 * share),
+        holes=round(1_000 * share),
     )
-    seconds = round(time.perf_counter() - began, 1)
-    print(json.dumps({"benchmark": "damage", **done, "seconds": seconds}))
-
-
-if __name__ == "__main__":
-    main()

@@ -1,54 +1,26 @@
-"""Kill labs while they record, at random moments, and see what is left: one JSON object.
+"""Kill labs while they record, at random moments: how much is lost."""
 
-python tests/bench/kill.py [NUMBER OF KILLS [PROCESSES THAT HOG THE PROCESSOR]]
-"""
-
-import json
 import random
-import subprocess
-import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 from tests.recordings.test_kill import kill_one
 
-KILLS = 300
+LIMITS = {"largest_loss_seconds": 1.0, "not_verified": 0}
 AT_ONCE = 8
 
 
-def main() -> None:
-    """Kill, rescue, verify and print."""
-    kills = int(sys.argv[1]) if len(sys.argv) > 1 else KILLS
-    chance = random.Random()
-    hogs = [
-        subprocess.Popen([sys.executable, "-c", "while True: pass"])
-        for _ in range(int((sys.argv + ["0"] * 2)[2]))
-    ]
-    moments = [chance.uniform(0.0, 5.0) for _ in range(kills)]
-    try:
-        with TemporaryDirectory() as folder, ThreadPoolExecutor(AT_ONCE) as pool:
-            folders = (Path(folder) / str(i) for i in range(kills))
-            outcomes = list(pool.map(kill_one, folders, moments))
-    finally:
-        for hog in hogs:
-            hog.kill()
-    losses = [loss for loss, _ in outcomes]
-    print(
-        json.dumps(
-            {
-                "benchmark": "kill",
-                "kills": kills,
-                "hogs": len(hogs),
-                "verified": sum(
-                    verification.identical and verification.complete for _, verification in outcomes
-                ),
-                "largest_loss_seconds": round(max(losses), 3),
-                "smallest_loss_seconds": round(min(losses), 3),
-            }
-        )
-    )
-
-
-if __name__ == "__main__":
-    main()
+def measure(share: float) -> dict[str, Any]:
+    kills = round(300 * share)
+    moments = [random.uniform(0.0, 5.0) for _ in range(kills)]
+    with TemporaryDirectory() as folder, ThreadPoolExecutor(AT_ONCE) as pool:
+        folders = [Path(folder) / str(number) for number in range(kills)]
+        outcomes = list(pool.map(kill_one, folders, moments))
+    verified = [result for _, result in outcomes if result.identical and result.complete]
+    return {
+        "kills": kills,
+        "not_verified": kills - len(verified),
+        "largest_loss_seconds": round(max(loss for loss, _ in outcomes), 3),
+    }

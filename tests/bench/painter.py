@@ -1,19 +1,17 @@
-"""Textual alone: an app that paints what the lab painted, from strips made beforehand, and does nothing else.
+"""Textual alone: an app that paints what the lab painted, from strips made beforehand.
 
-python tests/bench/painter.py COLUMNS ROWS [KEY]   films the lab without a terminal, after a key, and shows the film
-python tests/bench/painter.py                      an empty app
+python -m tests.bench.painter COLUMNS ROWS [KEY]   film the lab, after a key, and show the film
+python -m tests.bench.painter                      an empty app
 
-A film is what every pane of the lab looks like in each frame, borders included, and which of its rows change.
-Here each pane is one widget straight on the screen: there is no cheaper way to paint as much with Textual.
+A film is what every pane of the lab looks like in each frame, borders included, and which of its
+rows change.  Here each pane is one widget straight on the screen: there is no cheaper way to paint
+as much with Textual.
 """
 
 import asyncio
 import gc
 import sys
-from pathlib import Path
 from typing import Any, ClassVar, NamedTuple
-
-sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from textual.app import App, ComposeResult
 from textual.geometry import Region
@@ -21,8 +19,10 @@ from textual.strip import Strip
 from textual.widget import Widget
 from textual.widgets import Static
 
-FPS, BEGIN, SECONDS, H = 30, 5, 10, 0.01  # more than one step a frame, so that every frame moves
-TOLD = ("h 0.02 s", "h 0.01 s")
+FPS = 30
+BEGIN = 5  # s of the lab before the film
+SECONDS = 10
+H = 0.01  # more than one step a frame, so that every frame moves
 
 
 class Pane(NamedTuple):
@@ -33,14 +33,15 @@ class Pane(NamedTuple):
 
 
 async def film(size: tuple[int, int], key: str | None) -> list[Pane]:
-    """What the lab shows in the seconds in which it is watched."""
+    """Return what the lab shows."""
     from engine.scenes import DEFAULT_SCENE
     from tui.playback.live import Live
     from tui.screens.app import PenduApp
     from tui.screens.live import LiveScreen
     from tui.screens.still import settled
 
-    now, panes = 0.0, {}
+    now = 0.0
+    panes: dict[Widget, Pane] = {}
     stage = LiveScreen(Live(DEFAULT_SCENE.altered(h=H), clock=lambda: 0.0), clock=lambda: now)
     app = PenduApp(stage)
     async with app.run_test(size=size) as pilot:
@@ -69,76 +70,62 @@ class Painting(Widget):
 
     def __init__(self, pane: Pane) -> None:
         super().__init__()
-        self.strips = pane.frames[0]
+        self._frames = pane.frames
+        self._frame = 0
         self.styles.position = "absolute"
         self.styles.offset = pane.region.offset
         self.styles.width, self.styles.height = pane.region.size
 
     def render_line(self, y: int) -> Strip:
-        """A row as it was made."""
-        return self.strips[y]
+        return self._frames[self._frame][y]
+
+    def show(self, frame: int) -> None:
+        before = self._frames[self._frame]
+        self._frame = frame
+        pairs = enumerate(zip(before, self._frames[frame], strict=True))
+        if changed := [Region(0, y, self.size.width, 1) for y, (old, new) in pairs if old != new]:
+            self.refresh(*changed)
 
 
 class Painter(App[None]):
-    """Shows the film to and fro, with r from its start.  + and - change a word at once, as in the lab."""
+    """Shows the film to and fro, with r from its start.  + and - change a word, as in the lab."""
 
     ALLOW_SELECT = False
-    CSS = "Screen { overflow: hidden; } #told { dock: bottom; height: 1; width: 10; }"
-    BINDINGS: ClassVar[Any] = [("+", "tell(0)"), ("-", "tell(1)"), ("r", "rewind"), ("q", "quit")]
+    CSS = "Screen { overflow: hidden; } #word { dock: bottom; height: 1; width: 10; }"
+    BINDINGS: ClassVar[Any] = [
+        *(("+", "word('h 0.02 s')"), ("-", "word('h 0.01 s')")),
+        *(("r", "rewind"), ("q", "quit")),
+    ]
 
     def __init__(self, panes: list[Pane]) -> None:
         super().__init__()
-        self._panes = panes
         self._paintings = [Painting(pane) for pane in panes]
-        self._changes = [
-            [
-                [
-                    Region(0, y, pane.region.width, 1)
-                    for y, pair in enumerate(zip(*two, strict=True))
-                    if pair[0] != pair[1]
-                ]
-                for two in zip(pane.frames, pane.frames[1:], strict=False)
-            ]
-            for pane in panes
-        ]
-        self._at, self._step = 0, 1
+        there = range(len(panes[0].frames))
+        self._order = [*there, *there[-2:0:-1]]
+        self._shown = 0
 
     def compose(self) -> ComposeResult:
-        """Create the panes."""
         yield from self._paintings
-        yield Static("", id="told")
+        yield Static("", id="word")
 
     def on_mount(self) -> None:
-        """Begin after the first paint, as the lab does."""
-        self.call_after_refresh(self._begin)
+        self.call_after_refresh(self._begin)  # as the lab does
 
     def _begin(self) -> None:
         gc.collect()
         gc.freeze()
-        self.set_interval(1 / FPS, self.frame)
+        self.set_interval(1 / FPS, self._next)
 
-    def frame(self) -> None:
-        """Show the next frame."""
-        if not 0 <= self._at + self._step < len(self._panes[0].frames):
-            self._step = -self._step
-        before, self._at = self._at, self._at + self._step
-        for painting, pane, changes in zip(
-            self._paintings, self._panes, self._changes, strict=True
-        ):
-            if regions := changes[min(before, self._at)]:
-                painting.strips = pane.frames[self._at]
-                painting.refresh(*regions)
+    def _next(self) -> None:
+        self._shown = (self._shown + 1) % len(self._order)
+        for painting in self._paintings:
+            painting.show(self._order[self._shown])
 
     def action_rewind(self) -> None:
-        """Begin anew."""
-        self._at, self._step = 0, 1
-        for painting, pane in zip(self._paintings, self._panes, strict=True):
-            painting.strips = pane.frames[0]
-            painting.refresh()
+        self._shown = -1
 
-    def action_tell(self, number: int) -> None:
-        """Show what a key changes."""
-        self.query_one("#told", Static).update(TOLD[number])
+    def action_word(self, word: str) -> None:
+        self.query_one("#word", Static).update(word)
 
 
 class Empty(App[None]):
@@ -147,17 +134,13 @@ class Empty(App[None]):
     BINDINGS: ClassVar[Any] = [("q", "quit")]
 
     def compose(self) -> ComposeResult:
-        """One word."""
         yield Static("empty")
 
 
-def main(columns: str = "", rows: str = "", key: str | None = None) -> None:
-    """Show a film, or nothing."""
-    if columns:
-        Painter(asyncio.run(film((int(columns), int(rows)), key))).run()
+if __name__ == "__main__":
+    if sys.argv[1:]:
+        columns, rows, *key = sys.argv[1:]
+        size = (int(columns), int(rows))
+        Painter(asyncio.run(film(size, key[0] if key else None))).run()
     else:
         Empty().run()
-
-
-if __name__ == "__main__":
-    main(*sys.argv[1:])

@@ -1,33 +1,19 @@
-"""Stop, continue and end labs at random moments, close their terminals: one JSON object.
+"""Stop, continue and end labs at random moments, and close their terminals."""
 
-python tests/bench/signals.py [--continues N] [--stops N] [--ends N] [--closed N]
-"""
-
-import argparse
-import json
 import random
 import signal
-import sys
 from collections import Counter
 from pathlib import Path
 from tempfile import TemporaryDirectory
-
-sys.path.insert(0, str(Path(__file__).parents[2]))
+from typing import Any
 
 from recordings.verification import verify
 from tests.tui.pty_lab import PtyLab
 
+LIMITS = dict.fromkeys(("dead", "still_there", "late", "unfinished", "not_verified"), 0)
 MAX_END_TIME = 10.0  # s from a signal to the end
 ENDS = (signal.SIGHUP, signal.SIGTERM, signal.SIGINT)
 STOPS = (signal.SIGSTOP, signal.SIGTSTP)
-
-
-def storm(lab: PtyLab, count: int, chance: random.Random, *kinds: tuple[int, ...]) -> None:
-    """Send one signal of each kind, so many times, at random moments."""
-    for _ in range(count):
-        for kind in kinds:
-            lab.signal(chance.choice(kind))
-            lab.run(chance.uniform(0.0, 0.04))
 
 
 def is_alive(lab: PtyLab) -> bool:
@@ -45,18 +31,22 @@ def is_alive(lab: PtyLab) -> bool:
 
 
 def survives(count: int, *kinds: tuple[int, ...]) -> Counter[str]:
-    """Return what becomes of a lab in a storm of signals."""
+    """Return what becomes of a lab in a storm of signals, at random moments."""
+    chance = random.Random(1)
     with TemporaryDirectory() as folder, PtyLab(PENDU_RECORDINGS=folder) as lab:
         lab.wait_for("REC ")
-        storm(lab, count, random.Random(1), *kinds)
+        for _ in range(count):
+            for kind in kinds:
+                lab.signal(chance.choice(kind))
+                lab.run(chance.uniform(0.0, 0.04))
         lab.run(2.0)
         alive = is_alive(lab)
         lab.type("q")
-        return Counter(signals=count, alive=alive) + result(lab, Path(folder))
+        return Counter(alive=alive) + result(lab, Path(folder))
 
 
 def ends(chance: random.Random, *, closed: bool) -> Counter[str]:
-    """Return what becomes of a lab whose terminal is closed, or which is asked to end, perhaps while it is stopped."""
+    """Return what becomes of a lab that is asked to end, or loses its terminal, perhaps stopped."""
     with TemporaryDirectory() as folder, PtyLab(PENDU_RECORDINGS=folder) as lab:
         lab.wait_for("REC ")
         lab.run(chance.uniform(0.0, 3.0))
@@ -72,7 +62,7 @@ def ends(chance: random.Random, *, closed: bool) -> Counter[str]:
 
 
 def result(lab: PtyLab, folder: Path) -> Counter[str]:
-    """Wait for the end; returns counts of what is left."""
+    """Wait for the end and count what is left."""
     began = lab.now
     try:
         code = lab.end(60.0)
@@ -91,26 +81,20 @@ def result(lab: PtyLab, folder: Path) -> Counter[str]:
     )
 
 
-def main() -> None:
-    """Send, look, and print."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--continues", type=int, default=2000)
-    parser.add_argument("--stops", type=int, default=200)
-    parser.add_argument("--ends", type=int, default=60)
-    parser.add_argument("--closed", type=int, default=100)
-    options = parser.parse_args()
+def measure(share: float) -> dict[str, Any]:
     chance = random.Random(2)
-    cont = (signal.SIGCONT,)
-    report = {
-        "continues": survives(options.continues, cont),
-        "stops": survives(options.stops, STOPS, cont),
-        "ends": sum((ends(chance, closed=False) for _ in range(options.ends)), Counter()),
-        "closed": sum((ends(chance, closed=True) for _ in range(options.closed)), Counter()),
+    storms = [survives(round(2000 * share), (signal.SIGCONT,))]
+    storms.append(survives(round(200 * share), STOPS, (signal.SIGCONT,)))
+    asked = sum((ends(chance, closed=False) for _ in range(round(60 * share))), Counter())
+    closed = sum((ends(chance, closed=True) for _ in range(round(100 * share))), Counter())
+    total = sum([*storms, asked, closed], Counter())
+    return {
+        "storms": [dict(counts) for counts in storms],
+        "asked_to_end": dict(asked),
+        "closed": dict(closed),
+        "dead": len(storms) - total["alive"],
+        "still_there": total["still_there"],
+        "late": total["late"],
+        "unfinished": total["unfinished"],
+        "not_verified": total["recordings"] - total["verified"],
     }
-    print(
-        json.dumps({"bench": "signals", **{name: dict(counts) for name, counts in report.items()}})
-    )
-
-
-if __name__ == "__main__":
-    main()

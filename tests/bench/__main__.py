@@ -1,0 +1,53 @@
+"""Measure what the project promises: one JSON object with each figure beside its limit.
+
+python -m tests.bench                     # everything; takes hours
+python -m tests.bench kill signals        # some benches
+python -m tests.bench monkey --share 0.1  # a tenth of the attempts
+
+A bench is a module with `measure(share)`, which returns figures, and LIMITS, the most that some of
+them may be.  Exit code 1: a figure is above its limit.
+"""
+
+import argparse
+import json
+import sys
+import time
+from concurrent.futures import ProcessPoolExecutor
+from importlib import import_module
+from multiprocessing import get_context
+from typing import Any
+
+BENCHES = (
+    *("command_lines", "damage", "hostile", "kill", "memory", "monkey", "peers", "recording"),
+    *("signals", "yardstick"),
+)
+
+
+def report(name: str, share: float) -> tuple[dict[str, Any], bool]:
+    """Return the figures of a bench beside their limits, and whether all keep them."""
+    bench = import_module(f"tests.bench.{name}")
+    began = time.monotonic()
+    figures = bench.measure(share)
+    seconds = round(time.monotonic() - began, 1)
+    limits = {key: {"found": figures[key], "limit": limit} for key, limit in bench.LIMITS.items()}
+    passes = all(figures[key] <= limit for key, limit in bench.LIMITS.items())
+    return {**figures, **limits, "seconds": seconds}, passes
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0], prog="tests.bench")
+    parser.add_argument("benches", nargs="*", help=f"of {', '.join(BENCHES)}")
+    parser.add_argument("--share", type=float, default=1.0, help="of the attempts (default: 1)")
+    options = parser.parse_args()
+    reports = {}
+    exit_code = 0
+    for name in options.benches or BENCHES:
+        with ProcessPoolExecutor(1, get_context("fork")) as pool:  # for its memory
+            reports[name], passes = pool.submit(report, name, options.share).result()
+        exit_code |= not passes
+    print(json.dumps(reports, indent=1))
+    return exit_code
+
+
+if __name__ == "__main__":
+    sys.exit(main())
