@@ -1,47 +1,28 @@
 """Columns of another program's tables: text of any form, JSON lines, Amber's mdout, an .npz.
 
-Lines are read one by one, so a table may stand between other text.  A table begins with a header
+Lines are read one by one, so a table may stand between other text.  A table begins below a header
 that has the wanted names, or where the time starts again; one of the tables is returned.
 """
 
+import csv
 import io
+import json
 import re
 from array import array
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
-from itertools import chain
-from typing import Any, BinaryIO, cast
+from itertools import chain, islice, takewhile
+from typing import Any, NamedTuple
 
-from tui.cli.heads import (
-    MAX_LINES_BEFORE,
-    MAX_NAME,
-    MAX_NAMES,
-    Head,
-    Records,
-    Row,
-    delimiter_of,
-    fields_of,
-    missing,
-    number_of,
-    places_of,
-    row_of,
-    unit_of,
-    unreadable,
-)
-from tui.cli.objects import is_mdout, of_arrays, of_objects, pairs, parsed
+from recordings.errors import printable
+from tui.cli.errors import Exit, UserError
+from tui.cli.options import did_you_mean
 
-MAX_LINE = 1 << 20  # bytes
-MAX_RECORDS = 20_000_000  # of the input, which may never end; half a minute, 320 MB
-MAX_PAGE = 64  # rows below a header that comes again on each page, as NAMD's; fewer are no table
 LATEST = 1e300  # a time; squares and differences of later ones overflow
-
-_LEGEND = re.compile(r'@\s*(?:s(\d{1,3})\s+legend|([xy])axis\s+label)\s+"([^"]*)"')
-_BINARY = {
-    b"\x1f\x8b": "a gzip file; unpack it first",
-    b"\xff\xfe": "text in UTF-16; save it as UTF-8",
-    b"\xfe\xff": "text in UTF-16; save it as UTF-8",
-    b"\x89MCAP": "a recording; pendu-tui export makes a table of it",
-}
+MAX_LINE = 1 << 20  # bytes
+MAX_LINES_BEFORE = 100_000  # a row
+MAX_RECORDS = 20_000_000  # of the input, which may never end; half a minute, 320 MB
 REASONS = {
     "without_numbers": "without numbers",
     "time_not_later": "whose time is not later",
@@ -51,42 +32,71 @@ REASONS = {
 }
 """Why a row is not used: in JSON, and for people."""
 
+_BINARY = {
+    b"\x1f\x8b": "a gzip file; unpack it first",
+    b"\xff\xfe": "text in UTF-16; save it as UTF-8",
+    b"\xfe\xff": "text in UTF-16; save it as UTF-8",
+    b"\x89MCAP": "a recording; pendu-tui export makes a table of it",
+}
+_LEGEND = re.compile(r'@\s*(?:s(\d{1,3})\s+legend|([xy])axis\s+label)\s+"([^"]*)"')
+_PAIR = re.compile(r"([A-Za-z][\w()/-]{,20}(?: [\w()/-]{1,20})?)\s*=\s*([-+.\w*]+)")
+_NO_ROW = "no row has a number in each column; columns count from 1."
+_UNIT = re.compile(r"(?:[(\[]([^()\[\]]*)[)\]]|/([^\W\d_]+))$")
+
+
+class Head(NamedTuple):
+    """The wanted columns of a table: the fields that add up to each, and its unit."""
+
+    places: tuple[tuple[int, ...], ...]
+    units: tuple[str, ...]
+
+    @classmethod
+    def of(cls, names: Sequence[str], wanted: Sequence[str]) -> "Head | None":
+        """Return the head of columns with these names, if all that are wanted are there.
+
+        A column is found by its number, its name, or its name but for case and unit.
+        """
+        last_first = [*enumerate(names)][::-1]
+        known = {_plain(name): place for place, name in last_first}
+        known |= {name.strip(): place for place, name in last_first}
+        known |= {str(place + 1): place for place, _ in last_first}
+        known.pop("", None)
+        groups: list[tuple[int, ...]] = []
+        for name in wanted:
+            for parts in ([name], name.split("+")):
+                keys = [key.strip() if key.strip() in known else _plain(key) for key in parts]
+                if all(key in known for key in keys):
+                    groups.append(tuple(known[key] for key in keys))
+                    break
+            else:
+                return None
+        return cls(tuple(groups), tuple(_split(names[group[0]])[1] for group in groups))
+
+
+Record = Head | list[Any]  # or a row: a number for each place, None for a text or a gap
+
 
 @dataclass
 class Table:
     """One table: columns of finite numbers, of which the first increases."""
 
-    units: tuple[str, ...]
-    columns: Sequence[Any]  # array.array while it is read, then NumPy's
+    head: Head
+    columns: list[Any]  # an array for each place while it is read, then one for each column
     number: int = 0
     count: int = 0  # tables in the input
     skipped: dict[str, int] = field(default_factory=lambda: dict.fromkeys(REASONS, 0))
     failed_at: float | None = None  # the time from which on numbers are nan or inf, to the end
-    first: float | None = None  # usable time
 
-    @classmethod
-    def of(cls, head: Head) -> "Table":
-        """Return an empty table."""
-        return cls(head.units, [array("d") for _ in head.places])
-
-    def is_over(self, time: float) -> bool:
-        """Return whether a row of this time begins another table.
-
-        A step back to a later time than the first is a restart from a checkpoint: the same table.
-        """
-        return self.first is not None and -LATEST < time <= self.first
-
-    def add(self, row: Sequence[float]) -> None:
-        if self.first is None and abs(row[0]) < LATEST:
-            self.first = row[0]
-        for column, value in zip(self.columns, row, strict=True):
-            column.append(value)
+    @property
+    def units(self) -> tuple[str, ...]:
+        return self.head.units
 
     def finish(self, start: float) -> None:
-        """Leave out what cannot be used, and count it."""
+        """Add up columns, leave out what cannot be used, and count it."""
         import numpy as np
 
-        columns = [np.asarray(column) for column in self.columns]
+        parts = map(np.asarray, self.columns)
+        columns: list[Any] = [sum(islice(parts, len(group))) for group in self.head.places]
         times = np.where(np.abs(columns[0]) < LATEST, columns[0], -np.inf)
         before = np.maximum.accumulate(np.concatenate([[-np.inf], times[:-1]]))
         finite = np.all([np.isfinite(column) for column in columns[1:]], axis=0)
@@ -102,12 +112,16 @@ class Table:
         lost = np.flatnonzero(~finite & left)
         self.skipped["energy_not_finite"] = len(lost)
         lost = lost[lost > good[-1]] if len(good) else lost
-        self.failed_at = float(times[lost[0]]) if len(lost) else None
+        if len(lost):
+            self.failed_at = float(times[lost[0]])
         self.columns = [column[good] for column in columns]
 
 
 def read_table(
-    stream: BinaryIO, wanted: Sequence[str], number: int | None = None, start: float = -LATEST
+    stream: io.BufferedReader,
+    wanted: Sequence[str],
+    number: int | None = None,
+    start: float = -LATEST,
 ) -> Table:
     """Return a table of the wanted columns, times first: the last one, or that of this number.
 
@@ -116,191 +130,270 @@ def read_table(
     """
     found: Table | None = None
     count = 0
-    rows = 0
     for count, table in enumerate(_tables(_records(stream, wanted)), 1):
-        rows += len(table.columns[0])
         if number in (None, count):
             found = table
             found.number = count
     if found is None and count:
-        raise unreadable(f"there is no table {number}; the input has {count}.")
+        raise _unreadable(f"there is no table {number}; the input has {count}.")
     if found is None:
-        raise unreadable("no row has a number in each column; columns count from 1.")
-    if rows == count > 1:
-        raise unreadable("its time goes back in every row; name the column of times with --time.")
+        raise _unreadable(_NO_ROW)
     found.count = count
     found.finish(start)
     return found
 
 
-def _tables(records: Records) -> Iterator[Table]:
-    """Yield each table once it is read, if it has a usable time."""
-    table = Table((), [])
-    head = Head((), ())
+def _tables(records: Iterable[Record]) -> Iterator[Table]:
+    """Yield each table once it is read, if it has a usable time.
+
+    A step back to a later time than the first is a restart from a checkpoint: the same table.  So
+    is a header that comes again on each page, as NAMD's.
+    """
+    table = Table(Head((), ()), [])
+    first: float | None = None  # usable time
     on_page = 0  # rows since the head
     for number, record in enumerate(records):
-        if number >= MAX_RECORDS:
-            raise unreadable(f"more than {MAX_RECORDS:,} rows; leave some out.")
-        if isinstance(record, Head):
-            if record != head or not 0 < on_page < MAX_PAGE:
-                if table.first is not None:
-                    yield table
-                table = Table.of(record)
-            head = record
-            on_page = 0
-        elif None in record:
+        if number > MAX_RECORDS:
+            raise _unreadable(f"more than {MAX_RECORDS:,} rows; leave some out.")
+        if number > MAX_LINES_BEFORE and not table.columns:
+            raise _unreadable(f"{number:,} lines without a row of these columns; is this a table?")
+        if None in record:
             table.skipped["without_numbers"] += 1
+            continue
+        head = table.head
+        if isinstance(record, Head):
+            head = record
+            begins = head != table.head or on_page >= 64
+            on_page = 0
         else:
+            begins = first is not None and -LATEST < record[0] <= first
             on_page += 1
-            row = cast(Sequence[float], record)
-            if table.is_over(row[0]):
+        if begins:
+            if first is not None:
                 yield table
-                table = Table.of(head)
-            table.add(row)
-    if table.first is not None:
+            first = None
+            table = Table(head, [array("d") for group in head.places for _ in group])
+        if isinstance(record, list):
+            if first is None and abs(record[0]) < LATEST:
+                first = record[0]
+            for column, value in zip(table.columns, record, strict=True):
+                column.append(value)
+    if first is not None:
         yield table
 
 
-def _records(stream: BinaryIO, wanted: Sequence[str]) -> Records:
-    """Return heads and rows of any input."""
-    head = stream.peek(4096) if isinstance(stream, io.BufferedReader) else b""
-    if head.startswith(b"PK\x03\x04"):
-        return of_arrays(stream, wanted)
-    kind = next((text for start, text in _BINARY.items() if head.startswith(start)), None)
-    if kind or b"\0" in head:
-        raise unreadable(f"this is {kind or 'no text'}.")
-    if head.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"{"):
-        return of_objects(parsed(_lines(stream)), wanted)
-    return _Text(wanted).records(_lines(stream))
+def _records(stream: io.BufferedReader, wanted: Sequence[str]) -> Iterator[Record]:
+    """Yield the heads and rows of any input."""
+    start = stream.peek(4096)
+    if not start:
+        raise _unreadable("the input is empty; nothing to judge.")
+    if start.startswith(b"PK\x03\x04"):
+        return _of_arrays(stream, wanted)
+    for magic, kind in _BINARY.items():
+        if start.startswith(magic):
+            raise _unreadable(f"this is {kind}.")
+    if b"\0" in start:
+        raise _unreadable("this is no text.")
+    lines = _lines(stream)
+    if start.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"{"):
+        return _of_objects(map(_parsed, filter(str.strip, lines)), wanted)
+    return _Text(wanted).records(lines)
 
 
-def _lines(stream: BinaryIO) -> Iterator[str]:
-    """Yield the lines of a stream."""
-    encoding = "utf-8-sig"
-    while line := stream.readline(MAX_LINE + 1):
-        if len(line) > MAX_LINE:
-            raise unreadable("a line is longer than 1 MB; is this a table?")
-        yield line.decode(encoding, errors="replace")
-        encoding = "utf-8"
-    if encoding == "utf-8-sig":
-        raise unreadable("the input is empty; nothing to judge.")
+def _lines(stream: io.BufferedReader) -> Iterator[str]:
+    text = io.TextIOWrapper(stream, encoding="utf-8-sig", errors="replace")
+    while line := text.readline(MAX_LINE):
+        if len(line) == MAX_LINE:
+            raise _unreadable("a line is longer than 1 MB; is this a table?")
+        yield line
 
 
 class _Text:
-    """The table in lines of text: a header may have a # in front, units may follow it."""
+    """The table in lines of text: a header may have a # in front."""
 
     def __init__(self, wanted: Sequence[str]) -> None:
         self._wanted = wanted
+        self._is_named = not all(part.isdecimal() for each in wanted for part in each.split("+"))
         self._legend: dict[int, str] = {}  # names of columns as GROMACS writes them
-        self._names: list[str] = []  # of the header, or of the longest line before it
-        self._head: Head | None = None
-        self._has_rows = False
+        self._headers: list[list[str]] = []  # the names of a header, in each way to split it
+        self._above: list[str] = []  # other words above a row: where they return, a table begins
+        self._names: list[str] = []  # to choose from
+        self._places: list[int] = []  # of the rows; none before the first
         self._delimiter: str | None = None
-        self._is_numbered = True  # no header has the names
         self._width = 0  # fields of a row
-        self._singles: list[int] = []  # the places, if no columns are to be added
-        self._above: list[str] = []  # the first row: where it comes again, a table begins
 
-    def records(self, lines: Iterator[str]) -> Records:
-        """Yield heads and rows."""
-        for number, line in enumerate(lines):
-            row = self._plain_row(line) if self._has_rows else None
-            if row:
+    def records(self, lines: Iterator[str]) -> Iterator[Record]:
+        for line in lines:
+            if row := self._plain_row(line):
                 yield row
-            elif is_mdout(line):
-                yield from of_objects(pairs(chain([line], lines)), self._wanted, "kcal/mol")
+            elif line.lstrip().startswith("NSTEP ="):
+                yield from _of_objects(_mdout(chain([line], lines)), self._wanted, "kcal/mol")
                 return
+            elif match := _LEGEND.match(line):
+                number, axis, name = match.groups()
+                self._legend[{"x": 0, "y": -1}[axis] if axis else int(number) + 1] = name
             else:
                 yield from self._other(line)
-            if number > MAX_LINES_BEFORE and not self._has_rows:
-                raise unreadable(
-                    f"{number:,} lines without a row of these columns; is this a table?"
-                )
-        if self._head is None:
-            raise missing(self._wanted, list(self._legend.values()) or self._names)
+        if not self._width:
+            raise _missing(self._wanted, [*self._legend.values()] or self._names or self._above)
 
-    def _plain_row(self, line: str) -> Row | None:
+    def _plain_row(self, line: str) -> list[float] | None:
         """Return a row like the one before it."""
-        assert self._head is not None
-        fields = (
-            line.split(self._delimiter) if '"' not in line else fields_of(line, self._delimiter)
-        )
-        if len(fields) != self._width:
+        fields = line.split(self._delimiter)
+        if len(fields) != self._width or '"' in line:
             return None
         try:
-            if self._singles:
-                return [float(fields[place]) for place in self._singles]
-            return [sum([float(fields[place]) for place in group]) for group in self._head.places]
+            return [float(fields[place]) for place in self._places]
         except ValueError:
             return None
 
-    def _other(self, line: str) -> Records:
+    def _other(self, line: str) -> Iterator[Record]:
         """Yield what any other line means."""
-        if match := _LEGEND.match(line[: 2 * MAX_NAME]):
-            number, axis, name = match.groups()
-            self._legend[{"x": 0, "y": -1}[axis] if axis else int(number) + 1] = name
-            return
-        is_comment = line.lstrip()[:1] in ("#", "@")
+        is_comment = line.lstrip().startswith(("#", "@"))
         text = line.lstrip("#@ \t") if is_comment else line
-        delimiter = delimiter_of(text)
-        fields = fields_of(text, delimiter)
-        if sum(number_of(each) is not None for each in fields) < 2:
-            self._read_header(text, fields, is_comment)
-        elif not is_comment:
-            yield from self._begin(fields, delimiter)
-        if self._has_rows and self._head and text.strip() and not is_comment:
-            yield row_of(fields if len(fields) == self._width else [], self._head.places)
-
-    def _begin(self, fields: list[str], delimiter: str | None) -> Records:
-        """Yield the head of the table whose first row this is, if it is one."""
-        if self._is_numbered:
-            is_other = len(fields) != self._width and None not in map(number_of, fields)
-            head = None
-            if is_other or not self._has_rows:
-                head = self._head_of_legend(len(fields))
-            begins = head is not None and None not in row_of(fields, head.places)
-        else:
-            head = self._head
-            begins = head is not None and not self._has_rows
-        if begins and head:
-            self._head = head
+        bare = re.sub(r'"[^"]*"', "", text)
+        delimiter = next((sign for sign in "\t;," if sign in bare), None)
+        fields = _fields(text, delimiter or " ")
+        numbers = [_number(each) for each in fields]
+        if len(numbers) - numbers.count(None) < 2:
+            self._read_words(text, fields, is_comment)
+        elif not is_comment and (head := self._head_at(numbers)):
+            self._places = list(chain(*head.places))
             self._delimiter = delimiter
             self._width = len(fields)
-            is_sum = any(len(group) > 1 for group in head.places)
-            self._singles = [] if is_sum else [group[0] for group in head.places]
-            self._has_rows = True
             yield head
-        elif self._head is None and len(fields) == len(self._above):
-            self._names = self._above
+        if not self._width:
+            yield [None]
+        elif self._places and text.strip() and not is_comment:
+            is_row = len(numbers) == self._width
+            yield [numbers[place] for place in self._places] if is_row else [None]
 
-    def _read_header(self, text: str, fields: list[str], is_comment: bool) -> None:
-        """Look for the names of columns in a line, or for the units below them."""
-        if len(fields) > 1 and not is_comment:
-            if self._has_rows and fields == self._above:
-                self._has_rows = False
-            elif not self._has_rows:
-                self._above = fields
+    def _read_words(self, text: str, fields: list[str], is_comment: bool) -> None:
+        """Look for a header in a line without numbers."""
         ways = [fields, re.split(r"\s{2,}", text.strip())]  # names may hold single blanks
-        for names in ways:
-            if places := places_of(names[:MAX_NAMES], self._wanted, named=True):
-                self._head = Head(places, tuple(unit_of(names[group[0]]) for group in places))
-                self._is_numbered = False
-                self._names = names
-                self._has_rows = False
-                return
-        if self._head is None:
-            if not self._names and not is_comment:
-                self._names = fields[:MAX_NAMES]
-        elif len(fields) == len(self._names) and not self._has_rows and not any(self._head.units):
-            units = tuple(fields[group[0]].strip("()[]")[:20] for group in self._head.places)
-            self._head = self._head._replace(units=units)
+        headers = [names for names in ways if self._is_named and Head.of(names, self._wanted)]
+        if headers:
+            self._headers = headers
+            self._names = headers[0]
+        if headers or fields == self._above != []:
+            self._places = []
+        elif not self._places and not is_comment and len(fields) > 1:
+            self._above = fields
 
-    def _head_of_legend(self, width: int) -> Head | None:
-        """Return the head of a table without a header, by legend or by numbers."""
-        names = [self._legend.get(place, "") for place in range(width)]
-        places = places_of(names, self._wanted)
-        if places is None:
+    def _head_at(self, numbers: Sequence[float | None]) -> Head | None:
+        """Return the head of the table whose first row this is, if it is one."""
+        width = len(numbers)
+        if self._places and (self._headers or None in numbers or width == self._width):
             return None
-        units = [unit_of(names[group[0]]) for group in places]
-        shared = unit_of(self._legend.get(-1, ""))
-        return Head(places, (units[0], *(unit or shared for unit in units[1:])))
+        if not self._names and width == len(self._above):
+            self._names = self._above
+        names = [self._legend.get(place, "") for place in range(width)]
+        if self._headers:
+            names = next((each for each in self._headers if len(each) == width), self._headers[0])
+        head = Head.of(names, self._wanted)
+        if head is None or max(chain(*head.places)) >= width:
+            return None
+        if not self._headers and None in [numbers[place] for place in chain(*head.places)]:
+            return None
+        shared = _split(self._legend.get(-1, ""))[1]
+        return Head(head.places, (head.units[0], *(unit or shared for unit in head.units[1:])))
+
+
+def _fields(line: str, delimiter: str) -> list[str]:
+    """Return the fields of a line, without quotes."""
+    try:
+        (fields,) = csv.reader([line.strip(" \r\n")], delimiter=delimiter, skipinitialspace=True)
+    except csv.Error:
+        return []
+    return [text.strip() for text in fields]
+
+
+def _number(text: str) -> float | None:
+    """Return the number in a field, also with a decimal comma or with Fortran's D."""
+    try:
+        return float(text.replace(",", ".").replace("D", "e").replace("d", "e"))
+    except ValueError:
+        return None
+
+
+def _of_objects(
+    objects: Iterable[dict[str, Any]], wanted: Sequence[str], unit: str = ""
+) -> Iterator[Record]:
+    """Yield a head and the rows of objects with names; `unit` is that of energies without one."""
+    names: list[str] = []
+    rest = iter(objects)
+    for first in rest:
+        if head := Head.of(list(first), wanted):
+            keys = [list(first)[place] for place in chain(*head.places)]
+            yield Head(head.places, tuple(each or unit for each in head.units))
+            for item in chain([first], rest):
+                yield [_number(str(item.get(key))) for key in keys]
+            return
+        names = list(first) or names
+        yield [None]
+    raise _missing(wanted, names)
+
+
+def _parsed(line: str) -> dict[str, Any]:
+    """Return the object of a line of JSON; an empty one for a line that is none."""
+    with suppress(ValueError, RecursionError):
+        item = json.loads(line)
+        if isinstance(item, dict):
+            return item
+    return {}
+
+
+def _mdout(lines: Iterable[str]) -> Iterator[dict[str, Any]]:
+    """Yield the records of Amber's mdout, `NSTEP = 10  TIME(PS) = 0.02 …`, up to its averages."""
+    text = "".join(takewhile(lambda line: "A V E R A G E S" not in line, lines))
+    for record in text.split("NSTEP")[1:]:
+        yield dict(_PAIR.findall(f"NSTEP{record}"))
+
+
+def _of_arrays(stream: io.BufferedReader, wanted: Sequence[str]) -> Iterator[Record]:
+    """Yield the head and the rows of the arrays in an .npz."""
+    import numpy as np
+
+    names: list[str] = []
+    try:
+        source = stream if stream.seekable() else io.BytesIO(stream.read())
+        with np.load(source, allow_pickle=False) as arrays:
+            names += arrays
+            if head := Head.of(names, wanted):
+                found = [np.ravel(arrays[names[place]]) for place in chain(*head.places)]
+                columns = [column.astype(float).tolist() for column in found]
+    except Exception as error:  # whatever a broken archive leads to
+        raise _unreadable(f"this .npz cannot be read: {printable(str(error), 100)}.") from None
+    if head is None:
+        raise _missing(wanted, names)
+    yield head
+    yield from map(list, zip(*columns, strict=False))
+
+
+def _plain(name: str) -> str:
+    return _split(name)[0].casefold()
+
+
+def _split(name: str) -> tuple[str, str]:
+    """Return the parts of a name with a unit, `Time (ps)`, `time [ps]` or `t/ps`."""
+    name = name.strip()
+    match = _UNIT.search(name, 1)
+    if match is None:
+        return name, ""
+    return name[: match.start()].rstrip(), (match[1] or match[2] or "").strip()
+
+
+def _missing(wanted: Sequence[str], names: Sequence[str]) -> UserError:
+    """Return the error that names do not have a wanted column."""
+    lost = [each for each in wanted if not each.isdecimal() and Head.of(names, [each]) is None]
+    if not lost:
+        return _unreadable(_NO_ROW)
+    present = [printable(name, 40) for name in names[:20] if name]
+    advice = did_you_mean(lost[0], present) or f"; choose from {', '.join(present)}."
+    if not present:
+        advice = "; give columns by number, from 1."
+    return UserError(f"there is no column {printable(lost[0], 40)!r}{advice}")
+
+
+def _unreadable(sentence: str) -> UserError:
+    return UserError(sentence, Exit.INPUT_UNREADABLE)

@@ -118,6 +118,7 @@ np.savez(NPZ, time=np.arange(3.0), E=np.full(3, 1.5))
             [-17 + n / 8 for n in range(9)],
         ),
         (CP2K, ("step nr.", "Kin.+Pot."), ("", "a.u."), list(range(9)), [-17.0] * 9),
+        (CP2K, ("Time", "Pot."), ("fs", "a.u."), [n / 2 for n in range(9)], [-17.5] * 9),
         (LINES, ("t", "E"), ("", ""), [0, 1, 2], [1.5] * 3),
         (MDOUT, ("TIME(PS)", "Etot"), ("PS", "kcal/mol"), [0, 1, 2], [-5606.5] * 3),
         (MDOUT, ("time", "EKtot+EPtot"), ("PS", "kcal/mol"), [0, 1, 2], [-5606.5] * 3),

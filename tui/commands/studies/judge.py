@@ -8,7 +8,8 @@ import argparse
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any, BinaryIO
+from io import BufferedReader
+from typing import Any
 
 from engine.run.judgement import DEFINITIONS, FALSE_ALARMS
 from recordings.errors import printable
@@ -180,7 +181,7 @@ def _check(table: Table) -> None:
 
 
 @contextmanager
-def _input(name: str) -> Iterator[BinaryIO]:
+def _input(name: str) -> Iterator[BufferedReader]:
     """The bytes of a file or of stdin.  Raises UserError if it cannot be read."""
     source = 0 if name == "-" else name
     try:
