@@ -1,7 +1,7 @@
 """The methods, one family a file, and the list that everything else derives from.
 
 `method` says what a method is: a generator function (force, phase, h) -> phases, written as in the
-book, with only + and * on the phase and never `+=`, which would change arrays in place.  It
+book, with only + - * / on the phase and never `+=`, which would change arrays in place.  It
 therefore runs unchanged on floats, NumPy arrays, complex numbers, mpmath numbers and under Numba.
 The families: `euler`, `verlet`, `runge_kutta`, `splitting`, which builds methods from coefficients,
 and `implicit`, which solves an equation in each step. Others are not as general, and there for one

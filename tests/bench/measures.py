@@ -30,7 +30,7 @@ CEILINGS = {
     "long_functions": 0,
     "numeric_constants": 313,
 }
-"""Lower a ceiling whenever its measure has fallen; never raise one."""
+"""Lower a ceiling when its measure falls; raise one only with the reason in the commit."""
 
 
 def is_parallel_assignment(node: ast.AST) -> bool:

@@ -47,6 +47,19 @@ def test_a_recording_of_several_runs_and_changes_of_h_verifies(tmp_path):
     assert verification.first_difference is None
 
 
+def test_a_value_that_an_older_version_did_not_record_is_not_compared(tmp_path):
+    lockstep = Lockstep(SCENES["mean-field"])
+    lockstep.advance(10)
+    sample = lockstep.sample()
+    older = [each._replace(max_invariant_error=None) for each in sample.readings]
+    assert tuple(older) != sample.readings
+    entries = [
+        Entry(0.0, start(scene=SCENES["mean-field"])),
+        Entry(0.1, sample._replace(readings=tuple(older))),
+    ]
+    assert verify(record(tmp_path / "a.mcap", entries)).identical
+
+
 @settings(max_examples=40)
 @given(
     scene=st.sampled_from(sorted(SCENES)),

@@ -40,8 +40,8 @@ def add_cast_options(parser: argparse._ActionsContainer, default: str = "the sce
         metavar="FILE.py:FUNCTION[,letter=m]",
         action="append",
         default=[],
-        help="add your own method: a generator function (force, phase, h) as in the README; the "
-        "file is run as any Python program of yours, with your rights (repeatable)",
+        help="add your own method: a generator function (force, phase, h), see "
+        ".github/docs/methods.md; the file runs with your rights (repeatable)",
     )
 
 

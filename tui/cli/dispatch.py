@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 GROUPS = {
     "lab": {
-        "live": "the lab: four pendulums, their errors, a recording",
+        "live": "the lab: methods side by side, their errors, a recording",
         "tour": "a tour of the lab: eight short steps, each with a question",
         "replay": "play a recording on the same screen",
         "snapshot": "save the lab as an SVG image",

@@ -1,4 +1,4 @@
-"""The lab: four pendulums, their errors over time, and a recording."""
+"""The lab: methods side by side, their errors over time, and a recording."""
 
 import argparse
 from pathlib import Path
