@@ -1,6 +1,5 @@
 """Verify: simulate a recording's runs again from their events, and compare every sample bit for
-bit; where this machine's sin differs from the recording's, within TOLERANCE, beyond which chaos
-carries any difference.
+bit; where this machine's sin differs, within TOLERANCE, beyond which chaos carries any difference.
 """
 
 import math
@@ -64,8 +63,7 @@ def verify(
     max_steps: int | None = None,
     only: Only = None,
 ) -> Verification:
-    """Verify a recording up to where it is first damaged; `only`: compare the methods of these
-    keys.
+    """Verify a recording up to its first damage; `only`: compare the methods of these keys.
 
     Raises RecordingError if it has no samples, or more than `max_steps` steps.
     """
