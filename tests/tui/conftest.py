@@ -42,8 +42,7 @@ async def computed_here(
 @pytest.fixture(autouse=True)
 def _views_compute_here(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     if request.node.get_closest_marker("other_process") is None:
-        for view in ("accuracy", "phase", "stability"):
-            monkeypatch.setattr(f"tui.views.{view}.view.computed", computed_here)
+        monkeypatch.setattr("tui.views.background.computed", computed_here)
 
 
 @pytest.fixture

@@ -182,10 +182,9 @@ def small_studies(library: Path) -> Iterator[None]:
     with ExitStack() as stack:
         stack.enter_context(patch.dict("os.environ", PENDU_RECORDINGS=str(library)))
         for name, value in (
-            ("accuracy.view.computed", computed_here),
-            ("stability.view.computed", computed_here),
-            ("accuracy.view.usual", lambda scene, all: (5.0, few)),
-            ("stability.view.PASSES", (2, 6)),
+            ("background.computed", computed_here),
+            ("accuracy.pane.usual", lambda scene, all: (5.0, few)),
+            ("stability.pane.PASSES", (2, 6)),
         ):
             stack.enter_context(patch(f"tui.views.{name}", value))
         yield

@@ -35,8 +35,7 @@ from tui.screens.status_line import StatusLine
 from tui.screens.too_small import TooSmall
 from tui.terminal.check import is_writing
 from tui.views import VIEWS, create, following
-from tui.views.messages import Asked, MethodChosen, Zoomed
-from tui.views.view import Box, Pane, View
+from tui.views.view import Box, Pane, View, Zoomed
 from tui.words.command_line import command, reproduces
 from tui.words.describe import description
 from tui.words.events import event_lines, numbered
@@ -322,11 +321,12 @@ class SourceScreen(Screen[None]):
         changes: dict[str, Any] = {name: not getattr(self.shown, name)}
         self.change_shown(self.shown._replace(**changes))
 
-    def on_method_chosen(self, message: MethodChosen) -> None:
+    def action_show_alone(self, place: int) -> None:
+        """Show a method of the cast alone or, if it is, all of them again."""
         cast = self.source.scene.cast
-        self.change_shown(self.shown.alone(message.place, cast))
-        if self.shown.places(cast) == [message.place]:
-            label = cast[message.place].label
+        self.change_shown(self.shown.alone(place, cast))
+        if self.shown.places(cast) == [place]:
+            label = cast[place].label
             self.notify(f"{label} alone. Click it again, or u, to see all.", timeout=4)
 
     def action_quantity(self) -> None:
@@ -382,9 +382,6 @@ class SourceScreen(Screen[None]):
             self.notify(undone(before, self.state), timeout=3, markup=False)
 
     # Views and dialogs
-
-    def on_asked(self, message: Asked) -> None:
-        self.call_next(self.run_action, message.action)
 
     def action_view(self, name: str = "") -> None:
         """Show a view, or the next one."""

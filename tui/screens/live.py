@@ -15,7 +15,7 @@ from tui.playback.source import Source
 from tui.playback.state import State
 from tui.screens.base import SourceScreen
 from tui.screens.tour import TourGuide
-from tui.views.messages import Held, SceneChosen, StepSizeChosen
+from tui.views.view import Held, SceneChosen, StepSizeChosen
 from tui.words.insight import return_text
 
 _STEP = Binding.Group("larger, smaller step h")

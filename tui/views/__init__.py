@@ -1,9 +1,4 @@
-"""The views, each in a folder with its panes: `lab`, `phase`, `accuracy`, `stability`.
-
-A screen binds its Source and Samples to a View, and the View to its Panes, both of which `view`
-defines.  Panes draw, and post `messages` that ask the lab for another start or step size.
-`background` computes in another process for F4 and F5; `reach` frames the motion.
-"""
+"""The views, each in a module of its own: a View with Panes that draw the screen's source."""
 
 from importlib import import_module
 from typing import TYPE_CHECKING, NamedTuple
@@ -23,20 +18,20 @@ class ViewEntry(NamedTuple):
 VIEWS: dict[str, ViewEntry] = {
     "lab": ViewEntry("Lab", "tui.views.lab.view", "LabView"),
     "phase": ViewEntry("Phase space", "tui.views.phase.view", "PhaseView"),
-    "accuracy": ViewEntry("Accuracy", "tui.views.accuracy.view", "AccuracyView"),
-    "stability": ViewEntry("Stability", "tui.views.stability.view", "StabilityView"),
+    "accuracy": ViewEntry("Accuracy", "tui.views.accuracy.pane", "AccuracyView"),
+    "stability": ViewEntry("Stability", "tui.views.stability.pane", "StabilityView"),
 }
 """In the order of the key v."""
 
 
 def create(name: str) -> "View":
-    """The view of this name."""
+    """Return a new view of this name."""
     entry = VIEWS[name]
     widget: type[View] = getattr(import_module(entry.module), entry.widget)
     return widget(id=name)
 
 
 def following(name: str) -> str:
-    """The view after this one."""
+    """Return the name of the view after this one."""
     names = list(VIEWS)
     return names[(names.index(name) + 1) % len(names)]

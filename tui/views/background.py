@@ -1,7 +1,4 @@
-"""Long computations in a process of their own, result by result.
-
-A thread would take the interpreter from the lab for milliseconds at a time.
-"""
+"""Long computations in a process of their own: a thread would keep the interpreter from the lab."""
 
 import asyncio
 import multiprocessing
@@ -12,26 +9,20 @@ from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import redirect_stderr
 from multiprocessing.connection import Connection
 from threading import Thread
-from typing import TypeVar
+from typing import Any
 
 from tui.cli.time_limit import limited_steps
 
-Item = TypeVar("Item")
-
-DONE = "done"
-
 
 async def computed(
-    function: Callable[..., Iterator[Item]], *arguments: object
-) -> AsyncIterator[Item]:
+    function: Callable[..., Iterator[Any]], *arguments: object
+) -> AsyncIterator[Any]:
     """Yield what function(*arguments) yields, as another process computes it.
 
     The function must be importable, and all values picklable.  The process is killed when this task
     is cancelled, and ends when this process does, even if that is killed.
     """
-    os.environ["PYTHONSAFEPATH"] = (
-        "1"  # or the process would import modules from the current folder
-    )
+    os.environ["PYTHONSAFEPATH"] = "1"  # no module of the current folder is imported
     context = multiprocessing.get_context("spawn")
     results, sending = context.Pipe(duplex=False)
     process = context.Process(target=_send_all, args=(sending, function, arguments), daemon=True)
@@ -39,7 +30,7 @@ async def computed(
         process.start()
     sending.close()
     try:
-        while (result := await asyncio.to_thread(results.recv)) != DONE:
+        while (result := await asyncio.to_thread(results.recv)) is not None:
             if isinstance(result, Exception):
                 raise result
             yield result
@@ -51,9 +42,9 @@ async def computed(
 
 
 def _send_all(
-    results: Connection, function: Callable[..., Iterator[Item]], arguments: tuple[object, ...]
+    results: Connection, function: Callable[..., Iterator[Any]], arguments: tuple[object, ...]
 ) -> None:
-    """Compute and send; the main function of the other process."""
+    """Compute and send, None at the end; the main function of the other process."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # nothing is to be written across the screen
     os.nice(10)  # the lab comes first
@@ -62,7 +53,7 @@ def _send_all(
         with limited_steps():
             for item in function(*arguments):
                 results.send(item)
-        results.send(DONE)
+        results.send(None)
     except Exception as error:
         results.send(error)
 

@@ -1,4 +1,4 @@
-"""How far the pendulums of a run may swing: what stays below the pivot is drawn larger."""
+"""How far the pendulums of a run can swing, which decides how large they are drawn."""
 
 import math
 from collections.abc import Sequence
@@ -8,10 +8,10 @@ from engine.models.model import Model
 from engine.run.lockstep import Sample
 from engine.run.stepping import Stepping
 from engine.scenes import Scene
-from tui.playback.source import Source
 
 REACHES = (0.5, 1.2, math.pi / 2)
 """Reaches [rad]: few, so that the scale hardly ever changes."""
+WIDER = 1.3  # the frame over the amplitude of the motion that it shows
 
 
 def reach(scene: Scene, stepping: Stepping, sample: Sample, shown: Sequence[int]) -> float:
@@ -20,39 +20,14 @@ def reach(scene: Scene, stepping: Stepping, sample: Sample, shown: Sequence[int]
     A method that is unstable at its h gets all the room at once.  Largest errors only grow during a
     run, so the picture never jumps back and forth.
     """
-    fastest = scene.equations.fastest
-    each = [(scene.cast[place], stepping.own[place], sample.readings[place]) for place in shown]
-    if any(now.diverged_at is not None for _, _, now in each):
-        return math.pi
-    limits = [(abs(h) * fastest, method.linear_limit) for method, h, _ in each]
-    if any(limit is not None and z > limit for z, limit in limits):
-        return math.pi
-    largest = max([0.0, *(now.max_energy_error for _, _, now in each)])
-    margins = _margins(scene.equations, scene.theta, scene.omega)
-    return next(
-        (angle for angle, margin in zip(REACHES, margins, strict=True) if margin > largest), math.pi
-    )
-
-
-class Reach:
-    """The reach of a sample, worked out once for all the panes that show it."""
-
-    def __init__(self) -> None:
-        self.is_held = False  # by the pointer, which needs the room above the pivot, too
-        self._of: object = None
-        self._angle = math.pi
-
-    def of(self, source: Source, sample: Sample, shown: Sequence[int]) -> float:
-        if self.is_held:
+    largest = 0.0
+    for place in shown:
+        reading = sample.readings[place]
+        if reading.diverged_at is not None or _is_unstable(scene, stepping, place):
             return math.pi
-        key = sample, source.scene, source.stepping, shown
-        if key != self._of:
-            self._of, self._angle = key, reach(source.scene, source.stepping, sample, shown)
-        return self._angle
-
-
-WIDER = 1.3  # the frame over the amplitude of the motion that it shows
-_MOST = 0.8 * math.pi  # rad; a wider frame is all of phase space
+        largest = max(largest, reading.max_energy_error)
+    start = scene.equations, scene.theta, scene.omega
+    return next((angle for angle in REACHES if _error_at_rest(*start, angle) > largest), math.pi)
 
 
 def frame(scene: Scene, stepping: Stepping, sample: Sample, shown: Sequence[int]) -> float:
@@ -61,30 +36,26 @@ def frame(scene: Scene, stepping: Stepping, sample: Sample, shown: Sequence[int]
     It is WIDER than the exact motion's amplitude by a power, so that it hardly ever changes; pi
     where that is large.  Methods stay that are stable at their step and have not gone over the top.
     """
+    start = scene.equations, scene.theta, scene.omega
+    half = WIDER * amplitude(*start)
+    if half < 1e-9 or not scene.equations.turns:
+        return math.pi
     largest = 0.0
     for place in shown:
         reading = sample.readings[place]
-        limit = scene.cast[place].linear_limit
-        z = abs(stepping.own[place]) * scene.equations.fastest
-        is_stable = limit is None or z <= limit
-        if is_stable and reading.diverged_at is None and abs(reading.theta) < math.pi:
+        stays = reading.diverged_at is None and abs(reading.theta) < math.pi
+        if stays and not _is_unstable(scene, stepping, place):
             largest = max(largest, reading.max_energy_error)
-    angles = _frames(scene.equations, scene.theta, scene.omega)
-    return next((angle for angle, margin in angles if margin > largest), math.pi)
+    while half < 0.8 * math.pi:  # a wider frame is all of phase space
+        if _error_at_rest(*start, half) > largest:
+            return half
+        half *= WIDER
+    return math.pi
 
 
-@lru_cache(maxsize=8)
-def _frames(model: Model, theta: float, omega: float) -> list[tuple[float, float]]:
-    """Return frames [rad], and the energy errors with which a pendulum comes to rest at each."""
-    size = amplitude(model, theta, omega)
-    if size < 1e-9 or not model.turns:
-        return []
-    reference = model.reference(theta, omega)
-    energy = model.energy()
-    angles = []
-    while (size := WIDER * size) < _MOST:
-        angles.append((size, reference.error(energy(model.rest_phase(size)))))
-    return angles
+def _is_unstable(scene: Scene, stepping: Stepping, place: int) -> bool:
+    limit = scene.cast[place].linear_limit
+    return limit is not None and abs(stepping.own[place]) * scene.equations.fastest > limit
 
 
 @lru_cache(maxsize=8)
@@ -103,9 +74,7 @@ def amplitude(model: Model, theta: float, omega: float) -> float:
     return high
 
 
-@lru_cache(maxsize=8)
-def _margins(model: Model, theta: float, omega: float) -> list[float]:
-    """The energy error with which a pendulum from a start comes to rest at each of REACHES."""
-    energy = model.energy()
-    reference = model.reference(theta, omega)
-    return [reference.error(energy(model.rest_phase(angle))) for angle in REACHES]
+@lru_cache(maxsize=64)
+def _error_at_rest(model: Model, theta: float, omega: float, angle: float) -> float:
+    """Return the energy error with which a pendulum from a start comes to rest at an angle."""
+    return model.reference(theta, omega).error(model.energy()(model.rest_phase(angle)))

@@ -1,29 +1,61 @@
 """View and Pane: what the screen shows between the status line and the key line."""
 
-from collections.abc import Callable, Coroutine
+import asyncio
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from textwrap import wrap
-from typing import Any, ClassVar, Generic, TypeVar
+from typing import Any, ClassVar, Generic, TypeVar, cast
 
 from textual import events
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Container
 from textual.content import Content
+from textual.message import Message
 from textual.reactive import var
 from textual.worker import Worker, WorkerState
 
 from engine.methods import Cast
 from engine.methods.own import OwnMethodError
 from engine.run.lockstep import Sample
+from engine.run.stepping import Stepping
+from engine.scenes import Scene, SceneError
 from tui.drawing.cells import CellWidget
 from tui.drawing.palette import TEXT
 from tui.drawing.picture import Picture, Row
-from tui.playback.shown import Shown
+from tui.playback.shown import Shown, Stretch
 from tui.playback.source import Source
 
 Place = TypeVar("Place")
+UNBOUND = cast(Source, None)  # the screen binds its own before anything is drawn
 
-DESCRIBED_FIRST = "velocity_verlet"
+
+@dataclass
+class SceneChosen(Message):
+    """The user wants a run of this scene."""
+
+    scene: Scene
+
+
+@dataclass
+class StepSizeChosen(Message):
+    """The user wants to continue with this step size."""
+
+    stepping: Stepping
+
+
+@dataclass
+class Held(Message):
+    """The user holds the pendulums at an angle [rad], or no longer."""
+
+    theta: float | None
+
+
+@dataclass
+class Zoomed(Message):
+    """The user wants to see this part of the run in the chart, or all of it."""
+
+    stretch: Stretch | None
 
 
 class Box(Container):
@@ -38,80 +70,64 @@ class View(Box):
     Samples come directly: data_bind would take longer than drawing.
     """
 
-    source: var[Source | None] = var(None)
+    source: var[Source] = var(UNBOUND)
     shown: var[Shown] = var(Shown())
 
     def __init__(self, id: str | None = None) -> None:
         super().__init__(id=id)
-        self._every_frame: list[Pane] = []
-        self._at_5_hz: list[Pane] = []
+        self._panes: list[Pane] = []
         self._sample: Sample | None = None
         self._is_painted = False
 
-    def every_frame(self, pane: "Pane") -> "Pane":
-        """Register a pane that moves."""
-        self._every_frame.append(pane)
-        return pane.data_bind(View.source, View.shown)
-
-    def at_5_hz(self, pane: "Pane") -> "Pane":
-        """Register a pane that people read."""
-        self._at_5_hz.append(pane)
+    def bound(self, pane: "Pane") -> "Pane":
+        """Register a pane of this view."""
+        self._panes.append(pane)
         return pane.data_bind(View.source, View.shown)
 
     def on_mount(self) -> None:
-        self._follow_in(*self._every_frame, *self._at_5_hz)
+        self._follow()
         self.call_after_refresh(self._after_first_paint)
 
     def _after_first_paint(self) -> None:
         self._is_painted = True
-        self._follow_in(*self._every_frame, *self._at_5_hz)
+        self._follow()
 
     def follow(self, sample: Sample, read: bool = True) -> None:
-        """Show a sample in the panes that move and, if it is time to `read`, in the others.
+        """Show a sample in the panes that move and, if it is time to `read`, in all of them.
 
-        The latter may show the same sample again, for what else has changed.
+        It may be the same sample again, for what else has changed.
         """
         has_moved = sample != self._sample
         self._sample = sample
-        self._follow_in(*(self._every_frame if has_moved else ()), *(self._at_5_hz if read else ()))
+        if read or has_moved:
+            self._follow(read)
 
-    def _follow_in(self, *panes: "Pane") -> None:
-        for pane in panes:
-            if self._sample is not None and (self._is_painted or not pane.NEEDS_NUMPY):
+    def _follow(self, read: bool = True) -> None:
+        for pane in self._panes:
+            is_due = (read or pane.MOVES) and (self._is_painted or not pane.NEEDS_NUMPY)
+            if is_due and self._sample is not None:
                 pane.follow(self._sample)
 
     def wake(self) -> None:
         """Draw what is on screen again: the view was hidden."""
-        for pane in self.query(Pane):
+        for pane in self._panes:
             pane.draw()
 
     def zoom(self, factor: float) -> None:
         """Zoom by `factor`, in views that have a chart of time."""
 
-    def compute(
-        self, work: Callable[[], Coroutine[None, None, None]], group: str = "default"
-    ) -> Worker[None]:
-        """Run this in place of the group's earlier work; the function starts the work."""
-        return self.run_worker(work, group=group, exclusive=True, exit_on_error=False)
-
-    def on_worker_state_changed(self, event: Worker.StateChanged) -> None:
-        """Show a user's method error in the panes; any other error ends the program."""
-        if (error := event.worker.error) is not None and event.state is WorkerState.ERROR:
-            if not isinstance(error, OwnMethodError):
-                raise error
-            for pane in self.query(Pane):
-                pane.border_subtitle = Content(str(error))
-
 
 class Pane(CellWidget):
     """Draws a source at one sample; redraws when the source or what is shown changes."""
 
+    MOVES: ClassVar[bool] = False
+    """Whether it follows every frame, and not only five a second."""
     NEEDS_NUMPY: ClassVar[bool] = False
     """Whether to draw after the first paint: importing NumPy takes as long as the rest."""
 
-    source: var[Source | None] = var(None)
-    sample: Sample | None = None
+    source: var[Source] = var(UNBOUND)
     shown: var[Shown] = var(Shown())
+    sample: Sample | None = None
     _titles = ("", "")
 
     def follow(self, sample: Sample) -> None:
@@ -128,7 +144,7 @@ class Pane(CellWidget):
     @property
     def cast(self) -> Cast:
         """The methods of the run on screen."""
-        return self.source.scene.cast if self.source is not None else ()
+        return self.source.scene.cast
 
     @property
     def places(self) -> list[int]:
@@ -138,9 +154,9 @@ class Pane(CellWidget):
     @property
     def is_live(self) -> bool:
         """Whether the source is the lab, where runs can be started, and not a recording."""
-        return self.source is not None and self.source.kind == "LIVE"
+        return self.source.kind == "LIVE"
 
-    def write_titles(self, above: str, below: str) -> None:
+    def write_titles(self, above: str, below: str = "") -> None:
         """Write on the border.  A new title has Textual paint all of the pane."""
         if (above, below) != self._titles:
             self._titles = above, below
@@ -148,16 +164,53 @@ class Pane(CellWidget):
             self.border_subtitle = Content(below)
 
     def draw(self) -> None:
-        source = self.source
         sample = self.sample
-        if source is None or sample is None or not self.drawable:
+        if sample is None or not self.drawable:
             return
-        if sample.run == source.sample.run:  # else another has begun, maybe with other methods
-            self.show(self.picture(source, sample))
+        if sample.run == self.source.sample.run:  # else another has begun, maybe with other methods
+            self.show(self.picture(self.source, sample))
 
     def picture(self, source: Source, sample: Sample) -> Picture:
         """Return the sample as a picture of `room`; called when there is any."""
         raise NotImplementedError
+
+    def start_at(self, theta: float, omega: float, h: float | None = None) -> None:
+        """Ask for a run from here [rad, rad/s], usually with the step size in force."""
+        h = h or self.source.stepping.smallest
+        try:
+            scene = self.source.scene.altered(theta=theta, omega=omega, h=h)
+        except SceneError as error:  # far out, omega may be beyond a scene's limits
+            self.notify(str(error), severity="warning")
+        else:
+            self.post_message(SceneChosen(scene))
+
+    def compute(
+        self, function: Callable[..., Iterator[Any]], *arguments: object, group: str = "default"
+    ) -> Worker[None]:
+        """Have another process compute, in place of the group's earlier work; `add` its results."""
+        from tui.views.background import computed  # not needed for the first paint
+
+        async def work() -> None:
+            await asyncio.sleep(0.1)  # the next turn of a wheel may ask for something else
+            async for result in computed(function, *arguments):
+                self.add(result)
+
+        return self.run_worker(work, group=group, exclusive=True, exit_on_error=False)
+
+    def add(self, result: Any) -> None:
+        """Take in a result of `compute`, which is drawn with one of the next samples."""
+        raise NotImplementedError
+
+    @property
+    def is_computing(self) -> bool:
+        return any(worker.node is self and not worker.is_finished for worker in self.workers)
+
+    def on_worker_state_changed(self, event: Worker.StateChanged) -> None:
+        """Show a user's method error; any other error ends the program."""
+        if (error := event.worker.error) is not None and event.state is WorkerState.ERROR:
+            if not isinstance(error, OwnMethodError):
+                raise error
+            self.border_subtitle = Content(str(error))
 
 
 class Chooser(Pane, Generic[Place], can_focus=True):
@@ -180,19 +233,14 @@ class Chooser(Pane, Generic[Place], can_focus=True):
         super().__init__()
         self.cursor: Place | None = None
         self.pointer: Place | None = None  # what is under it
-        self._described = DESCRIBED_FIRST  # key of a method
+        self.described = "velocity_verlet"  # key of a method
 
     @property
     def index(self) -> int:
         """The index of the described method, one of those shown if there are any."""
         shown = self.places or range(len(self.cast))
-        return next(
-            (place for place in shown if self.cast[place].key == self._described),
-            shown[0] if shown else 0,
-        )
-
-    def describe(self, place: int) -> None:
-        self._described = self.cast[place].key
+        described = (place for place in shown if self.cast[place].key == self.described)
+        return next(described, shown[0])
 
     def words(self, *texts: str) -> list[Row]:
         """Return wrapped lines of text."""
@@ -223,7 +271,8 @@ class Chooser(Pane, Generic[Place], can_focus=True):
 
     def action_method(self, down: int) -> None:
         if shown := self.places:
-            self.describe(shown[(shown.index(self.index) + down) % len(shown)])
+            place = shown[(shown.index(self.index) + down) % len(shown)]
+            self.described = self.cast[place].key
             self.draw()
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
@@ -241,27 +290,17 @@ class Chooser(Pane, Generic[Place], can_focus=True):
             self.choose(under)
 
 
-AnyChooser = TypeVar("AnyChooser", bound=Chooser[Any])
+class StudyView(View):
+    """A view whose first pane has the keys."""
 
+    PANE: ClassVar[type[Chooser[Any]]]
 
-class StudyView(View, Generic[AnyChooser]):
-    """A view around a chooser, whose content another process computes while it is shown."""
-
-    def __init__(self, pane: AnyChooser, id: str | None = None) -> None:
-        super().__init__(id=id)
-        self.pane = pane
+    def __init__(self, id: str | None = None) -> None:
+        super().__init__(id)
+        self.pane: Any = self.PANE()
 
     def compose(self) -> ComposeResult:
-        yield self.at_5_hz(self.pane)
+        yield self.bound(self.pane)
 
     def on_show(self) -> None:
         self.pane.focus()
-
-    def follow(self, sample: Sample, read: bool = True) -> None:
-        if read and self.display and self.source is not None:
-            self.compute_missing(self.source)
-        super().follow(sample, read)
-
-    def compute_missing(self, source: Source) -> None:
-        """Compute what is missing for the run on screen."""
-        raise NotImplementedError

@@ -18,7 +18,7 @@ from tui.views.lab.error_table import ErrorTable
 from tui.views.lab.event_list import EventList
 from tui.views.lab.time_chart import TimeChart
 from tui.views.lab.view import LabView
-from tui.views.phase.pane import SectionPane
+from tui.views.phase.view import SectionPane
 
 
 async def test_time_space_pauses_and_goes_on_full_stop_and_comma_step():
@@ -266,8 +266,7 @@ async def test_a_lab_that_was_paused_stays_so_after_a_dialog():
 
 @pytest.mark.parametrize("view", [None, "f3", "f4", "f5"])
 async def test_the_help_begins_with_the_keys_of_the_view_in_front(view, monkeypatch):
-    monkeypatch.setattr("tui.views.accuracy.view.computed", uncomputed)
-    monkeypatch.setattr("tui.views.stability.view.computed", uncomputed)
+    monkeypatch.setattr("tui.views.background.computed", uncomputed)
     async with lab() as theatre:
         await theatre.press(*([view] if view else []), "question_mark")
         await theatre.pilot.pause()

@@ -49,9 +49,8 @@ def stored_studies(monkeypatch, request):
         for item in studies[task]:
             yield item
 
-    monkeypatch.setattr("tui.views.stability.view.PASSES", PASSES)
-    for view in ("accuracy", "stability"):
-        monkeypatch.setattr(f"tui.views.{view}.view.computed", computed)
+    monkeypatch.setattr("tui.views.stability.pane.PASSES", PASSES)
+    monkeypatch.setattr("tui.views.background.computed", computed)
     yield
     if is_update:
         STUDIES.write_bytes(zlib.compress(pickle.dumps(studies, protocol=4), 9))

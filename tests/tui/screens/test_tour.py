@@ -19,7 +19,7 @@ SIZES = [(80, 24), (120, 40), (200, 60)]
 @pytest.fixture(autouse=True)
 def _few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of the stability map: they take no time."""
-    monkeypatch.setattr("tui.views.stability.view.PASSES", (20, 300))
+    monkeypatch.setattr("tui.views.stability.pane.PASSES", (20, 300))
 
 
 def words(text: str) -> str:

@@ -10,7 +10,7 @@ from tests.tui.harness import key_of, lab, player, uncomputed
 from tui.cli.options import resolve
 from tui.views import VIEWS
 from tui.views.accuracy.pane import AccuracyPane
-from tui.views.phase.pane import SectionPane
+from tui.views.phase.view import SectionPane
 from tui.views.stability.pane import StabilityPane
 from tui.views.view import Chooser, Pane
 
@@ -25,8 +25,7 @@ def words(theatre):
 async def test_every_scene_has_words_without_nan_in_every_view_before_anything_is_computed(
     view, monkeypatch
 ):
-    for each in ("accuracy", "phase", "stability"):
-        monkeypatch.setattr(f"tui.views.{each}.view.computed", uncomputed)
+    monkeypatch.setattr("tui.views.background.computed", uncomputed)
     async with lab() as theatre:
         await theatre.press(key_of(view))
         for scene in SCENES.values():

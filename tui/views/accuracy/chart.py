@@ -13,8 +13,8 @@ from tui.drawing.palette import EXACT, FRAME, TEXT, ink_of
 from tui.drawing.picture import Picture
 from tui.words.accuracy import COSTS
 
-Placed = list[tuple[tuple[int, int], Point]]
-"""Points by column and row of the chart."""
+Placed = list[tuple[int, int, Point]]
+"""Column and row of the chart, and the point there."""
 
 MARKS: dict[Flaw, str] = {"lost": "x", "diverged": "x", "rounding": "~"}
 """Of points that do not show how the error depends on h."""
@@ -24,9 +24,7 @@ ERROR_LABELS: dict[ErrorKind, str] = {
     "energy": "energy error, the largest of all steps, relative",
     "final": "theta error at the end [rad]",
 }
-REACH = 6  # columns, or half as many rows, within which the pointer finds a point
 BESIDE = 0.2  # of a method's errors: where the dotted line of its order runs
-MARKED = 12  # points of an error over time that get a letter
 
 
 def accuracy_chart(
@@ -44,17 +42,17 @@ def placed(
         return []
     axes = LogLog.fitting(series, width, height)
     drawn = [point for point in points if 0 < point.error(kind) < math.inf]
-    return [(axes.cell(point.force_evaluations, point.error(kind)), point) for point in drawn]
+    return [(*axes.cell(point.force_evaluations, point.error(kind)), point) for point in drawn]
 
 
-def nearest(cells: Placed, x: int, y: int) -> Point | None:
-    """Return the point nearest to a cell, if there is one within REACH."""
-
-    def distance(cell: tuple[int, int]) -> int:
-        return (cell[0] - x) ** 2 + (2 * (cell[1] - y)) ** 2
-
-    near = [(distance(cell), point) for cell, point in cells if distance(cell) <= REACH**2]
-    return min(near, key=lambda each: each[0], default=(0, None))[1]
+def nearest(places: Placed, x: int, y: int) -> Point | None:
+    """Return the point nearest to a cell, if there is one within 6 columns or 3 rows."""
+    near = [
+        (distance, at)
+        for at, (column, row, _) in enumerate(places)
+        if (distance := math.hypot(column - x, 2 * (row - y))) <= 6
+    ]
+    return places[min(near)[1]][2] if near else None
 
 
 def accuracy_series(
@@ -73,13 +71,12 @@ def accuracy_series(
     reference lines are Taylor's series and, upright, what the closed form takes.
     """
 
-    def series(ink: int, some: Sequence[Point], mark: str) -> Series:
+    def series(ink: int, mark: str, *some: Point) -> Series:
         return Series(ink, mark, [cost_of(p, cost) for p in some], [p.error(kind) for p in some])
 
-    def flawed(some: Sequence[Point], ink: int) -> list[Series]:
-        return [series(ink, [p], MARKS[flaw]) for p in some if (flaw := p.flaw(kind))]
+    def flawed(ink: int, some: Sequence[Point]) -> list[Series]:
+        return [series(ink, MARKS[flaw], p) for p in some if (flaw := p.flaw(kind))]
 
-    taylor = references.taylor if references else ()
     lines: list[Series] = []
     flaws: list[Series] = []
     slopes: dict[int, Series] = {}  # one for all methods of an order
@@ -89,25 +86,26 @@ def accuracy_series(
         if method.order not in slopes:
             slopes |= _slope(ours, kind, cost)
         joined = [[point] for point in ours] if len(ours) < whole else [ours]
-        lines += [series(ink, some, method.letter) for some in joined]
-        flaws += flawed(ours, ink)
+        lines += [series(ink, method.letter, *some) for some in joined]
+        flaws += flawed(ink, ours)
     if references:
-        lines += [series(TEXT, taylor, TAYLOR_20.letter)] if taylor else []
-        every: list[Point] = [*points, *taylor]
-        errors = [error for p in every if (error := p.error(kind)) and math.isfinite(error)]
+        taylor = references.taylor
+        if taylor:
+            lines.append(series(TEXT, TAYLOR_20.letter, *taylor))
+        flaws += flawed(TEXT, taylor)
+        errors = [error for p in (*points, *taylor) if 0 < (error := p.error(kind)) < math.inf]
         ends = [min(errors), max(errors)] if errors else []
-        flaws += flawed(taylor, TEXT)
         flaws.append(Series(EXACT, "c", [references.closed_form] * len(ends), ends))
-    marked = [series(ink_of(point.method, cast), [point], mark) for mark, point in marks]
+    marked = [series(ink_of(point.method, cast), mark, point) for mark, point in marks]
     return [*slopes.values(), *lines, *flaws, *marked]
 
 
 def _slope(ours: Sequence[Point], kind: ErrorKind, cost: Cost) -> dict[int, Series]:
     """Return the slope of a method's order below its valid points, if any."""
-    order = ours[0].method.order
     valid = [p for p in ours if not p.flaw(kind) and p.error(kind) and cost_of(p, cost)]
     if not valid:
         return {}
+    order = ours[0].method.order
     anchor = valid[len(valid) // 2]
     costs = [cost_of(point, cost) for point in valid]
     ends = [min(costs), max(costs)]
@@ -122,7 +120,8 @@ def growth_chart(found: Sequence[Growth], cast: Cast, width: int, height: int) -
     for growth in found:
         times = growth.times
         errors = growth.errors
-        at = {round(len(times) ** (n / MARKED)) - 1 for n in range(MARKED + 1)} if times else ()
+        # about 12 points, evenly spaced in the logarithm
+        at = {round(len(times) ** (n / 12)) - 1 for n in range(13)} if times else ()
         x = [times[n] for n in at]
         y = [errors[n] for n in at]
         lines.append(Series(ink_of(growth.method, cast), growth.method.letter, x, y))

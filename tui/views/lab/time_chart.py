@@ -14,8 +14,7 @@ from engine.run.stepping import SteppingChange
 from tui.drawing.picture import Picture
 from tui.playback.shown import Quantity, Shown, Stretch
 from tui.playback.source import Source
-from tui.views.messages import Asked, Zoomed
-from tui.views.view import Pane
+from tui.views.view import Pane, Zoomed
 from tui.words.numbers import about, seconds
 
 if TYPE_CHECKING:
@@ -28,69 +27,64 @@ NAMES: dict[Quantity, tuple[str, str]] = {
     "energy": ("energy per m L² [1/s²]", "energy [1/s²]"),
 }
 """A quantity, and its magnitude for logarithmic charts; models add their own quantities."""
-READING = "reading what came before …"
-HELP = "e: quantity, w: window, z: zoom, y: log"
-MIN_ROWS = 8  # of the history in a stretch; an hour ago they are seconds apart
 
 
 def modified_energy_of(cast: Cast) -> str:
-    """For which methods the chart of the modified energy has a line, unless it has one for all."""
-    known = [method.letter for method in cast if method.modified_energy]
-    return (
-        ""
-        if len(known) == len(cast)
-        else f"shadow energy is known for {' and '.join(known) or 'none'} only"
-    )
+    """Return for which methods the modified energy is known, unless it is for all."""
+    letters = [method.letter for method in cast if method.modified_energy]
+    if len(letters) == len(cast):
+        return ""
+    return f"shadow energy is known for {' and '.join(letters) or 'none'} only"
 
 
-def names(quantity: Quantity, model: Model) -> tuple[str, str]:
-    """Return the name of a quantity, and that of its magnitude."""
+def _names(quantity: Quantity, model: Model) -> tuple[str, str]:
     if quantity == "energy_error" and not model.energy_error.conserved:
         return model.energy_error.name, f"|{model.energy_error.name}|"
-    labels = {variable.name: variable.label for variable in model.variables}
-    return NAMES[quantity] if quantity in NAMES else (labels[quantity], labels[quantity])
+    labels = {variable.name: (variable.label, variable.label) for variable in model.variables}
+    return (NAMES | labels)[quantity]
 
 
 def title(shown: Shown, exact: ExactMotion, model: Model) -> str:
     """Return what the chart shows, and for how long back."""
-    name, magnitude = names(shown.quantity, model)
-    span = "all" if shown.seconds is None else about(shown.seconds)
+    name, magnitude = _names(shown.quantity, model)
+    cycle = ""
     if shown.stretch is not None:
-        span = span_text(shown.stretch.begin, shown.stretch.end)
-    if not shown.log:
-        return f"{name}, {span}"
-    each = {"libration": " per half swing", "rotation": " per turn"}.get(exact.regime, "")
-    each = each if exact.period and shown.stretch is None else ""
-    return f"max {magnitude}{each}, {span}"
+        span = _span(shown.stretch.begin, shown.stretch.end)
+    else:
+        span = "all" if shown.seconds is None else about(shown.seconds)
+        if exact.period:
+            cycles = {"libration": " per half swing", "rotation": " per turn"}
+            cycle = cycles.get(exact.regime, "")
+    return f"max {magnitude}{cycle}, {span}" if shown.log else f"{name}, {span}"
 
 
-def span_text(begin: float, end: float) -> str:
-    """A stretch of time, with as many decimals as tell its ends apart: "31.2 to 33.0 s"."""
-    before, after = (
-        max(1 - math.floor(math.log10(span)), 0)
-        for span in (min(begin or end, end - begin), end - begin)
-    )
-    return f"{begin:.{before}f} to {end:.{after}f} s"
+def _span(begin: float, end: float) -> str:
+    """Return a stretch with as many decimals as tell its ends apart: "31.2 to 33.0 s"."""
+
+    def decimals(size: float) -> int:
+        return max(1 - math.floor(math.log10(size)), 0)
+
+    first = decimals(min(begin or end, end - begin))
+    return f"{begin:.{first}f} to {end:.{decimals(end - begin)}f} s"
 
 
-def read_out(reading: "Reading", letters: Sequence[str], room: int) -> str:
-    """All methods at a moment, as far as they fit: "12.35 s: e 3.3e+00 s 7.9e-02 v 5.7e-03"."""
-    numbers = [f"{value:.1e}" for value in reading.values]
+def _read_out(reading: "Reading", letters: Sequence[str], room: int) -> str:
+    """Return methods at a moment, as far as they fit: "12.35 s: e 3.3e+00 s 7.9e-02"."""
     text = f"{seconds(reading.t)}:"
-    for letter, number in zip(letters, numbers, strict=True):
-        part = f" {letter} {number}"
-        if not number.startswith("nan") and len(text) + len(part) <= room:
+    for letter, value in zip(letters, reading.values, strict=True):
+        part = f" {letter} {value:.1e}"
+        if not math.isnan(value) and len(text) + len(part) <= room:
             text += part
     return text
 
 
-def step_changes(changes: Sequence[SteppingChange]) -> list[tuple[float, str]]:
-    """Return each change of the step after the start: x [s] and "h 0.1"."""
+def _step_changes(changes: Sequence[SteppingChange]) -> list[tuple[float, str]]:
+    """Return each change of the step after the start: elapsed time [s] and "h 0.1"."""
     marks: list[tuple[float, str]] = []
-    x = 0.0
+    elapsed = 0.0
     for before, change in pairwise(changes):
-        x += abs(change.t - before.t)
-        marks.append((x, f"h {change.stepping.h:.4g}"))
+        elapsed += abs(change.t - before.t)
+        marks.append((elapsed, f"h {change.stepping.h:.4g}"))
     return marks
 
 
@@ -105,25 +99,22 @@ class TimeChart(Pane):
         self._ahead = ahead
         self.plot: TimePlot | None = None
         self._plotted: object = None
-        self._pointer: int | None = None  # the column under it
+        self.pointer: int | None = None  # the column under it
 
     @property
-    def is_pointed_at(self) -> bool:
-        return self._pointer is not None
-
-    def _look(self, source: Source) -> Shown:
-        """Return what to show of the source here."""
-        shown = self.shown.of(source.sample.run)
-        return shown._replace(quantity=shown.quantity_ahead(self._ahead, source.scene))
+    def _look(self) -> Shown:
+        """What to show of the source here."""
+        shown = self.shown.of(self.source.sample.run)
+        return shown._replace(quantity=shown.quantity_ahead(self._ahead, self.source.scene))
 
     def picture(self, source: Source, sample: Sample) -> Picture:
-        look = self._look(source)
+        look = self._look
         plotted = (sample, look, self.room, source.ghost, source.history, source.knows_past)
         if self.plot is None or plotted != self._plotted:  # the run may be paused
             self._plotted = plotted
             self.plot = self._charted(source, sample, look)
         above = title(look, source.exact, source.scene.equations)
-        self.write_titles(above, self._below(source, look, self.room.width - 6))
+        self.write_titles(above, self._below(self.plot, source, look))
         return self.plot.picture
 
     def _charted(self, source: Source, sample: Sample, look: Shown) -> "TimePlot":
@@ -137,66 +128,63 @@ class TimeChart(Pane):
             window = source.history.between(look.stretch.begin, look.stretch.end)
             until = min(until, look.stretch.end)
             back = until - look.stretch.begin
-        ghost = source.ghost
-        behind = None if ghost is None else (ghost.window(until, back), ghost.scene.cast)
-        line = look.line if look.line and look.line.quantity == look.quantity else None
-        reference = None if line is None else (line.value, line.name)
-        marks = Marks(behind, step_changes(source.changes), reference)
+        ghost = None
+        if source.ghost is not None:
+            ghost = source.ghost.window(until, back), source.ghost.scene.cast
+        line = None
+        if look.line and look.line.quantity == look.quantity:
+            line = look.line.value, look.line.name
+        marks = Marks(ghost, _step_changes(source.changes), line)
         return time_chart(window, self.cast, look, *self.room, marks)
 
-    def _below(self, source: Source, look: Shown, room: int) -> str:
+    def _below(self, plot: "TimePlot", source: Source, look: Shown) -> str:
         """Return what is under the pointer, or how to change the chart."""
-        plot = self.plot
-        if (
-            plot is not None
-            and self._pointer is not None
-            and (reading := plot.at(self._pointer)) is not None
-        ):
-            return read_out(reading, [self.cast[place].letter for place in plot.places], room)
+        room = self.room.width - 6
+        if self.pointer is not None and (reading := plot.at(self.pointer)) is not None:
+            return _read_out(reading, [self.cast[place].letter for place in plot.places], room)
         if look.quantity == "shadow_error" and (known := modified_energy_of(self.cast)):
             return known
         if source.ghost is not None:
             return source.ghost.label(room)
         if not source.knows_past:
-            return READING
-        return HELP
+            return "reading what came before …"
+        return "e: quantity, w: window, z: zoom, y: log"
 
-    def on_click(self) -> None:
-        self.post_message(Asked("quantity"))
+    async def on_click(self) -> None:
+        await self.run_action("screen.quantity")
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
         self._point(event)
         self.draw()
 
     def on_leave(self) -> None:
-        self._pointer = None
+        self.pointer = None
         self.draw()
 
     def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
-        self._wheel(event, 0.7)
+        self._point(event)
+        self.zoom(0.7)
+        event.stop()
 
     def on_mouse_scroll_down(self, event: events.MouseScrollDown) -> None:
-        self._wheel(event, 1 / 0.7)
-
-    def _wheel(self, event: events.MouseEvent, factor: float) -> None:
         self._point(event)
-        self.zoom(factor)
+        self.zoom(1 / 0.7)
         event.stop()
 
     def _point(self, event: events.MouseEvent) -> None:
         offset = event.get_content_offset(self)
-        self._pointer = None if offset is None else offset.x
+        self.pointer = None if offset is None else offset.x
 
     def zoom(self, factor: float) -> None:
-        """Zoom by `factor` about the pointer, down to MIN_ROWS."""
-        source = self.source
+        """Zoom by `factor` about the pointer, down to 8 rows of the history."""
         plot = self.plot
-        if source is None or plot is None or plot.values is None:
+        if plot is None or plot.values is None:
             return
-        stretch = self._look(source).stretch
-        ends = plot.zoomed(source.history.window(), factor, self._pointer)
+        history = self.source.history
+        ends = plot.zoomed(history.window(), factor, self.pointer)
         if ends is None:
-            if stretch is not None:
+            if self._look.stretch is not None:
                 self.post_message(Zoomed(None))
-        elif factor >= 1 or len(source.history.between(*ends).x) >= MIN_ROWS:
-            self.post_message(Zoomed(Stretch(source.sample.run, *ends, plot.log_time)))
+        elif factor >= 1 or len(history.between(*ends).x) >= 8:
+            run = self.source.sample.run
+            self.post_message(Zoomed(Stretch(run, *ends, plot.log_time)))

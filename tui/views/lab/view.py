@@ -1,20 +1,109 @@
 """LabView: the pendulums, the chart of their errors, phase space, the events, and the table."""
 
+from collections.abc import Callable
+from itertools import pairwise
+
 from textual.app import ComposeResult
-from textual.geometry import Region, Size
+from textual.geometry import NULL_OFFSET, NULL_SPACING, Region, Size
+from textual.layout import ArrangeResult, Layout, WidgetPlacement
 from textual.widget import Widget
 
 from engine.run.lockstep import Sample
 from engine.scenes import MOST_METHODS
-from tui.playback.source import Source
 from tui.views.lab.error_table import ErrorTable
 from tui.views.lab.event_list import EventList
-from tui.views.lab.layout import CellLayout, places
 from tui.views.lab.pendulums import Pendulum
 from tui.views.lab.time_chart import TimeChart
 from tui.views.phase.pane import PhasePane
-from tui.views.reach import Reach
-from tui.views.view import Box, View
+from tui.views.view import Box, Pane, View
+
+CHART = 52  # columns at least: a title fits above it
+NARROW = 28 + CHART  # columns below which there is no chart
+PANE = Size(26, 9)  # of one pendulum at least: the names of the usual cast fit above it
+TWO_ROWS = 20  # rows from which on there are events, and phase space below the chart
+THREE_ROWS = 45  # rows from which on there are two charts
+
+
+def places(columns: int, rows: int, methods: int) -> tuple[list[Region], dict[str, Region]]:
+    """Return the regions of the methods' own pendulums, and of other panes by their names.
+
+    Pendulums and events are to the left, charts and phase space to the right.  Pendulums share an
+    overlay where there is no room for each.
+    """
+    events = max(5, -(-rows // 5)) if rows >= TWO_ROWS else 0
+    bottom = rows - events
+    tiles: list[Region] = []
+    others: dict[str, Region] = {}
+    side = columns
+    across = 0
+    if columns >= NARROW:
+        across, side = _grid(columns, bottom, methods)
+    if across:
+        tiles = _tiles(side, bottom, methods, across)
+    else:
+        if columns >= NARROW:
+            side = min(max(28, columns * 2 // 5), columns - CHART, 2 * rows + 2)
+        if events:
+            bottom = min(bottom, side // 2 + 2)
+        others["overlay"] = Region(0, 0, side, bottom)
+    if events:
+        others["events"] = Region(0, bottom, side, rows - bottom)
+    if columns >= NARROW:
+        stack = ["chart"]
+        if rows >= THREE_ROWS:
+            stack.append("second_chart")
+        if events:
+            stack.append("phase")
+        edges = [rows * part // len(stack) for part in range(len(stack) + 1)]
+        for name, (top, low) in zip(stack, pairwise(edges), strict=True):
+            others[name] = Region(side, top, columns - side, low - top)
+    return tiles, others
+
+
+def _grid(columns: int, rows: int, methods: int) -> tuple[int, int]:
+    """Return how many pendulums stand side by side, and their columns; 0 if none fit."""
+    best = 0
+    grid = (0, columns)
+    for across in range(1, min(methods, 3) + 1):
+        side = min(max(PANE.width * across, columns * 2 // 5), columns - CHART)
+        width = side // across
+        height = rows // -(-methods // across)
+        least = min(width, 2 * height)  # a cell is twice as high as wide
+        if width >= PANE.width and height >= PANE.height and least > best:
+            best = least
+            grid = (across, side)
+    return grid
+
+
+def _tiles(columns: int, rows: int, count: int, across: int) -> list[Region]:
+    """Return regions line by line; the last line's ones share its width."""
+    down = -(-count // across)
+    tiles: list[Region] = []
+    for line in range(down):
+        top = rows * line // down
+        low = rows * (line + 1) // down
+        here = min(across, count - line * across)
+        lefts = [columns * at // here for at in range(here + 1)]
+        tiles += [Region(left, top, end - left, low - top) for left, end in pairwise(lefts)]
+    return tiles
+
+
+class CellLayout(Layout):
+    """Places widgets where a function of the size puts them; unplaced ones are hidden."""
+
+    name = "cells"
+
+    def __init__(self, regions: Callable[[Size], dict[Widget, Region]]) -> None:
+        self._regions = regions
+
+    def arrange(
+        self, parent: Widget, children: list[Widget], size: Size, greedy: bool = True
+    ) -> ArrangeResult:
+        return [
+            WidgetPlacement(region, NULL_OFFSET, NULL_SPACING, widget)
+            for widget, region in self._regions(size).items()
+            if region and widget in children
+        ]
 
 
 class Stage(Box):
@@ -35,43 +124,40 @@ class LabView(View):
     def __init__(self, id: str | None = None) -> None:
         super().__init__(id)
         self._arranged_for: object = None
-        reach = Reach()
-        self.pendulums = [Pendulum(reach, place) for place in range(MOST_METHODS)]
-        self.overlay = Pendulum(reach, id="overlay")
-        self.chart, self.second_chart, self.phase = TimeChart(), TimeChart(ahead=1), PhasePane()
-        self.events = EventList()
+        drag: list[tuple[float, float]] = []
+        self.pendulums = [Pendulum(drag, place) for place in range(MOST_METHODS)]
+        self._others: dict[str, Pane] = {
+            "overlay": Pendulum(drag),
+            "phase": PhasePane(),
+            "events": EventList(),
+            "chart": TimeChart(),
+            "second_chart": TimeChart(ahead=1),
+        }
 
     def compose(self) -> ComposeResult:
-        moving = [self.every_frame(pane) for pane in (*self.pendulums, self.overlay, self.phase)]
-        still = [self.at_5_hz(pane) for pane in (self.events, self.chart, self.second_chart)]
-        yield Stage(self, *moving, *still)
-        yield self.at_5_hz(ErrorTable())
+        yield Stage(self, *map(self.bound, [*self.pendulums, *self._others.values()]))
+        yield self.bound(ErrorTable())
 
     def zoom(self, factor: float) -> None:
-        (self.second_chart if self.second_chart.is_pointed_at else self.chart).zoom(factor)
+        charts = list(self.query(TimeChart))
+        next((each for each in charts if each.pointer is not None), charts[0]).zoom(factor)
+
+    @property
+    def _places(self) -> list[int]:
+        return self.shown.places(self.source.scene.cast)
 
     def regions(self, size: Size) -> dict[Widget, Region]:
         """Place the panes on a stage of this size; hidden methods leave their room to others."""
-        shown = self.shown.places(self.source.scene.cast) if self.source is not None else []
-        found = places(size.width, size.height, len(shown))
-        self.phase.can_focus = found.phase is not None  # Tab is not to lead where nobody sees it
-        regions: dict[Widget, Region] = {
-            self.pendulums[place]: region
-            for place, region in zip(shown, found.pendulums, strict=False)
-        }
-        others: dict[Widget, Region | None] = {
-            self.overlay: found.overlay,
-            self.events: found.events,
-            self.chart: found.chart,
-            self.second_chart: found.second_chart,
-            self.phase: found.phase,
-        }
-        return regions | {pane: region for pane, region in others.items() if region is not None}
+        tiles, others = places(size.width, size.height, len(self._places))
+        self._others["phase"].can_focus = "phase" in others  # Tab leads to what one sees only
+        shown = [self.pendulums[place] for place in self._places]
+        regions: dict[Widget, Region] = dict(zip(shown, tiles, strict=False))
+        return regions | {self._others[name]: region for name, region in others.items()}
 
     def watch_shown(self) -> None:
         self._arrange()
 
-    def watch_source(self, source: Source | None) -> None:
+    def watch_source(self) -> None:
         self._arrange()
 
     def follow(self, sample: Sample, read: bool = True) -> None:
@@ -81,8 +167,7 @@ class LabView(View):
 
     def _arrange(self) -> None:
         """Have Textual arrange the stage again, where that would change anything."""
-        shown = self.shown.places(self.source.scene.cast) if self.source is not None else []
-        if shown != self._arranged_for and self.is_mounted:
-            self._arranged_for = shown
+        if self.is_mounted and self._places != self._arranged_for:
+            self._arranged_for = self._places
             # of one pane: Textual forgets what it knows of what is around it
-            self.overlay.refresh(layout=True)
+            self._others["overlay"].refresh(layout=True)

@@ -42,29 +42,29 @@ def place_text(model: Model, state: State, width: int) -> str:
 def fact_rows(source: Source, shown: Shown, neighbours: Neighbours | None, width: int) -> list[Row]:
     """Return a line about the ring, the heads, and each method's row, in the columns that fit."""
     scene = source.scene
+    model = scene.equations
     exact = source.exact.at(source.sample.t)
+    ring = None
+    if neighbours is not None and not scene.why_no_ring:
+        ring = neighbours.ring_of(scene, source.sample.run)
     fit = max((width - NAME) // CELL, 0)
-    heads = ("ln area ratio", "area/area0", "theta error", scene.equations.energy_error.symbol)[
-        :fit
-    ]
+
+    def cells(*texts: str) -> str:
+        return "".join(text.rjust(CELL) for text in texts[:fit])
+
+    heads = cells("ln area ratio", "area/area0", "theta error", model.energy_error.symbol)
     rows: list[Row] = [
         [(_ring_text(source, neighbours)[:width], TEXT)],
-        [(" " * NAME + "".join(head.rjust(CELL) for head in heads), QUIET)],
+        [(" " * NAME + heads, QUIET)],
     ]
-    ring = (
-        None
-        if neighbours is None or scene.why_no_ring
-        else neighbours.ring_of(scene, source.sample.run)
-    )
     for place in shown.places(scene.cast):
+        method = scene.cast[place]
         reading = source.sample.readings[place]
-        off = scene.equations.theta_error(reading.theta, exact.theta)
-        area = ("-", "-") if ring is None else area_text(ring.area_ratios[place])
-        cells = (*area, scientific(off, CELL, 3), scientific(reading.energy_error, CELL, 3))[:fit]
-        name = f" {mark(place, scene.cast[place])} {scene.cast[place].label}".ljust(NAME)
-        rows.append(
-            [(name, inks(scene.cast)[place]), ("".join(cell.rjust(CELL) for cell in cells), TEXT)]
-        )
+        area = area_text(ring.area_ratios[place]) if ring else ("-", "-")
+        off = scientific(model.theta_error(reading.theta, exact.theta), CELL, 3)
+        numbers = cells(*area, off, scientific(reading.energy_error, CELL, 3))
+        name = f" {mark(place, method)} {method.label}".ljust(NAME)
+        rows.append([(name, inks(scene.cast)[place]), (numbers, TEXT)])
     return rows
 
 
@@ -76,23 +76,22 @@ def _ring_text(source: Source, neighbours: Neighbours | None) -> str:
     step = neighbours.step if neighbours.ring_of(source.scene, source.sample.run) else 0
     change = change_before(source.changes, step)
     left = source.scene.equations.area_share(change.t + (step - change.step) * change.stepping.h)
+    radius = f"radius {neighbours.radius:g} rad"
     if left != 1:
-        return (
-            f" Ring, radius {neighbours.radius:g} rad: the true motion leaves {left:.9f} of its "
-            "area"
-        )
+        return f" Ring, {radius}: the true motion leaves {left:.9f} of its area"
     behind = source.sample.step - step
-    text = f" Ring of neighbouring starts, radius {neighbours.radius:g} rad"
-    return f"{text}: {behind} steps behind" if behind else f"{text} (g: another)"
+    state = f": {behind} steps behind" if behind else " (g: another)"
+    return f" Ring of neighbouring starts, {radius}{state}"
 
 
 def area_text(ratio: float) -> tuple[str, str]:
     """Return ln of an area ratio, and the ratio as a text that differs from 1: "1 + 2.2e-16"."""
     if not 0 < ratio < math.inf:
         return "-", "> 1e308" if ratio else "< 1e-308"
-    logarithm = scientific(math.log(ratio), 10, 3)
     if ratio == 1:
-        return logarithm, "1"
-    if abs(ratio - 1) < 1e-6:
-        return logarithm, f"1 {'+' if ratio > 1 else '-'} {abs(ratio - 1):.1e}"
-    return logarithm, f"{ratio:.9f}" if 1e-3 <= ratio < 1e3 else f"{ratio:.3e}"
+        text = "1"
+    elif abs(ratio - 1) < 1e-6:
+        text = f"1 {'+' if ratio > 1 else '-'} {abs(ratio - 1):.1e}"
+    else:
+        text = f"{ratio:.9f}" if 1e-3 <= ratio < 1e3 else f"{ratio:.3e}"
+    return scientific(math.log(ratio), 10, 3), text

@@ -1,38 +1,28 @@
-"""Phase space with the methods in it, or one method's map, and a start to choose."""
+"""Phase space with the methods in it, and a start to choose."""
 
 import math
-from functools import lru_cache
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, ClassVar
 
 from textual import events
 from textual.binding import Binding, BindingType
 from textual.reactive import var
 
-from engine.methods import Method
 from engine.methods.own import OwnMethodError
-from engine.models.model import Model, State
+from engine.models.model import State
 from engine.run.lockstep import Sample
-from engine.scenes import SceneError
 from tui.cli.time_limit import limited
-from tui.drawing.palette import TEXT, inks
 from tui.drawing.picture import Picture
 from tui.playback.live import has_own
 from tui.playback.source import Source
-from tui.views.messages import Asked, SceneChosen
 from tui.views.phase.viewport import Viewport
 from tui.views.reach import amplitude, frame
 from tui.views.view import Chooser
 
 if TYPE_CHECKING:  # what brings NumPy can wait for the first paint
     from engine.phase_space.area import Neighbourhood, Neighbours
-    from engine.phase_space.section import OrbitKind, Points
-    from tui.views.phase.section import Section
 
-TITLE = "Phase space (F3): theta [rad], omega [rad/s]"
 DOTS = 4  # that an arrow moves the crosshair
 RING = 0.1  # of the amplitude: large enough to be seen, and it stays a ring for a while
-RING_STEPS = 100  # a frame, for a ring that has to catch up; they cost 5 ms
-ORBIT_STEPS = 2000  # some ms
 
 
 class PhasePane(Chooser[State]):
@@ -44,20 +34,18 @@ class PhasePane(Chooser[State]):
         Binding("z", "zoom(0.5)", "Zoom", tooltip="zoom in at the crosshair"),
         Binding("g", "radius", "Ring", tooltip="ring of neighbours, radii"),
     ]
-
+    MOVES = True
     NEEDS_NUMPY = True
 
     radius: var[float | None] = var(None)
     """Of the ring of neighbours, over the amplitude or 1 rad; None: no ring but that of a shot."""
 
-    def __init__(self, radius: float | None = None) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self.set_reactive(PhasePane.radius, radius)
         self.neighbours: Neighbours | None = None
         self.ring: Neighbourhood | None = None
         self.aiming = False  # the pointer is about to choose a start
         self.zoomed: Viewport | None = None  # None: the whole portrait
-        self._catching_up = False
 
     @property
     def settled(self) -> bool:
@@ -78,23 +66,17 @@ class PhasePane(Chooser[State]):
 
     @property
     def viewport(self) -> Viewport:
-        assert self.source is not None
-        if self.zoomed is None:
-            line = self.shown.line
-            fence = abs(line.value) if line and line.quantity == "omega" else 0.0
-            return Viewport.portrait(*self.cells, self.source.scene, self._half_width, fence)
-        self.zoomed = self.zoomed.resized(*self.cells)
-        return self.zoomed
-
-    @property
-    def _half_width(self) -> float:
-        """What is shown of theta [rad], to both sides."""
-        source = self.source
-        if source is None or self.sample is None or self.shown.overview:
-            return math.pi
-        if self.shown.theta is not None:
-            return self.shown.theta
-        return frame(source.scene, source.stepping, self.sample, self.places)
+        if self.zoomed is not None:
+            self.zoomed = self.zoomed.resized(*self.cells)
+            return self.zoomed
+        scene = self.source.scene
+        half = math.pi
+        if self.sample is not None and not self.shown.overview:
+            stepping = self.source.stepping
+            half = self.shown.theta or frame(scene, stepping, self.sample, self.places)
+        line = self.shown.line
+        fence = abs(line.value) if line and line.quantity == "omega" else 0.0
+        return Viewport.portrait(*self.cells, scene, half, fence)
 
     @property
     def aim(self) -> State | None:
@@ -106,7 +88,8 @@ class PhasePane(Chooser[State]):
         from tui.views.phase.picture import method_points, phase_picture
         from tui.views.phase.portrait import Portrait
 
-        self.write_titles(TITLE, f"{'click: start, ' if self.is_live else ''}wheel: zoom")
+        below = "click: start, wheel: zoom" if self.is_live else "wheel: zoom"
+        self.write_titles("Phase space (F3): theta [rad], omega [rad/s]", below)
         self._carry_ring(source, sample)
         portrait = Portrait.of(self.viewport, source.scene.equations)
         orbit = self.pointer if self.aiming else self.cursor
@@ -115,54 +98,39 @@ class PhasePane(Chooser[State]):
         return Picture((*plot.rows, caption(source, self.aim, self.room.width)))
 
     def _carry_ring(self, source: Source, sample: Sample) -> None:
-        """Let the ring keep up; where it has not, go on without waiting for the next sample."""
+        """Let the ring keep up, by so many steps a frame as cost 5 ms."""
+        scene = source.scene
         share = self.radius or (RING if self.shown.ring else None)
-        if share is None or source.scene.why_no_ring:
+        if share is None or scene.why_no_ring:
             self.neighbours = self.ring = None
             return
-        scene = source.scene
-        radius = share * min(amplitude(scene.equations, scene.theta, scene.omega), 1.0)
         from engine.phase_space.area import Neighbours
 
+        radius = share * min(amplitude(scene.equations, scene.theta, scene.omega), 1.0)
         if self.neighbours is None or self.neighbours.radius != radius:
             self.neighbours = Neighbours(radius)
-        steps = 1 if has_own(source.scene) else RING_STEPS
+        steps = 1 if has_own(scene) else 100
         try:
             with limited("the ring"):
                 self.ring = self.neighbours.follow(
-                    source.scene, sample.run, sample.step, source.changes, steps
+                    scene, sample.run, sample.step, source.changes, steps
                 )
         except OwnMethodError as error:
             self.radius = self.neighbours = self.ring = None
             self.notify(str(error), severity="warning", markup=False)
-            return
-        if self.neighbours.step < sample.step and not self._catching_up:
-            self._catching_up = True
-            self.set_timer(1 / 30, self._catch_up)
-
-    def _catch_up(self) -> None:
-        self._catching_up = False
-        self.draw()
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         cancels = self.aiming or self.zoomed is not None
         return (action == "cancel" and cancels) or super().check_action(action, parameters)
 
     def action_move(self, right: int, up: int) -> None:
-        if self.source is not None and self.drawable:
+        if self.drawable:
             here = self.aim or State(self.source.scene.theta, self.source.scene.omega)
             self.cursor = self.viewport.stepped(here, DOTS * right, DOTS * up)
             self.draw()
 
     def choose(self, place: State) -> None:
-        """Ask for a run from here with the step size in force."""
-        assert self.source is not None
-        try:
-            scene = self.source.scene.altered(**place._asdict(), h=self.source.stepping.smallest)
-        except SceneError as error:  # far out, omega may be beyond a scene's limits
-            self.notify(str(error), severity="warning")
-        else:
-            self.post_message(SceneChosen(scene))
+        self.start_at(*place)
         self.draw()
 
     def action_cancel(self) -> None:
@@ -194,11 +162,11 @@ class PhasePane(Chooser[State]):
         cell = self._cell(event)
         return cell and self.viewport.at_cell(*cell)
 
-    def on_mouse_down(self, event: events.MouseDown) -> None:
+    async def on_mouse_down(self, event: events.MouseDown) -> None:
         """Show the orbit through the pointer until it is released."""
         if self._cell(event) is None:
             if event.y == 0:
-                self.post_message(Asked("view('phase')"))
+                await self.run_action("screen.view('phase')")
             return
         self.focus(scroll_visible=False)
         if self.is_live:
@@ -237,84 +205,3 @@ class PhasePane(Chooser[State]):
         x, y = event.get_content_offset_capture(self)
         columns, rows = self.cells
         return (x, y) if x in range(columns) and y in range(rows) else None
-
-
-class Wanted(NamedTuple):
-    """What a section depends on."""
-
-    method: Method
-    model: Model
-    h: float  # s
-    viewport: Viewport
-
-
-class SectionPane(PhasePane):
-    """The portrait or, after x, the section of the method that is described."""
-
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("x", "section", "Map", tooltip="a method's own map")
-    ]
-
-    shows_section: var[bool] = var(False)
-
-    def __init__(self, radius: float | None = None) -> None:
-        super().__init__(radius)
-        self.wanted: Wanted | None = None
-        self.share = 0.0  # of the section that is there
-        self._section: Section | None = None
-
-    @property
-    def settled(self) -> bool:
-        return self.share == 1 if self.drawable and self.shows_section else super().settled
-
-    def watch_shows_section(self) -> None:
-        self.wanted = self._section = None
-        self.draw()
-
-    def picture(self, source: Source, sample: Sample) -> Picture:
-        if self.shows_section and (why := source.scene.why_not_mapped):
-            self.notify(why, severity="warning")
-            self.shows_section = False
-        return self._map(source) if self.shows_section else super().picture(source, sample)
-
-    def _map(self, source: Source) -> Picture:
-        """Return the section, and a line about the orbit aimed at, or that of the start."""
-        from tui.views.phase.section import Section
-        from tui.words.orbit import sentence
-
-        method = self.cast[self.index]
-        h = abs(source.stepping.own[self.index])
-        model = source.scene.equations
-        wanted = Wanted(method, model, h, self.viewport)
-        if wanted != self.wanted or self._section is None:
-            self.wanted = wanted
-            self.share = 0.0
-            self._section = Section(wanted.viewport, model, method, inks(self.cast)[self.index])
-        done = "" if self.share == 1 else f", computing {int(10 * self.share) / 10:.0%}"
-        title = f"Own map of {method.label}: h {h:g} s, z {h * model.w0:.4g}{done}"
-        self.write_titles(title, "wheel: zoom, tab: next method, x: back")
-        start = self.cursor or State(source.scene.theta, source.scene.omega)
-        points, _ = followed(method, model, h, start)
-        plot = self._section.picture(points, start, self.cursor)
-        _, kind = followed(method, model, h, self.aim or start)
-        where = f"{self.aim.theta:g}, {self.aim.omega:g}" if self.aim else "start"
-        return Picture.stacked(plot, Picture.of_line(f"{where}: {sentence(method, kind)}", TEXT))
-
-    def fill(self, wanted: Wanted, points: "Points", share: float) -> None:
-        """Add some orbits to a section, unless another one is wanted by now."""
-        if wanted == self.wanted and self._section is not None:
-            self._section.add(points)
-            self.share = share
-            self.draw()
-
-    def action_section(self) -> None:
-        self.shows_section = not self.shows_section
-
-
-@lru_cache(maxsize=64)
-def followed(method: Method, model: Model, h: float, start: State) -> "tuple[Points, OrbitKind]":
-    """Return the orbit of a start, and its kind."""
-    from engine.phase_space.section import kind_of, orbit
-
-    points = orbit(method, model, h, start, ORBIT_STEPS)
-    return points, kind_of(method, model, h, points)

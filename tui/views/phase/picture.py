@@ -1,4 +1,4 @@
-"""Points in phase space, with trails and rings, on the theoretical portrait."""
+"""Points in phase space, with trails and rings, on the theoretical portrait; a method's own map."""
 
 import math
 from collections.abc import Sequence
@@ -7,24 +7,26 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.models.model import State
+from engine.methods import Method
+from engine.models.model import Model, State
 from engine.phase_space.area import Neighbourhood
+from engine.phase_space.section import Points, spread
 from engine.run.lockstep import Sample
 from engine.scenes import Line
 from tui.drawing.canvas import Canvas
-from tui.drawing.palette import EXACT, TEXT, faint, inks
+from tui.drawing.palette import EXACT, FRAME, TEXT, faint, inks
 from tui.drawing.picture import Picture
 from tui.playback.shown import Shown
 from tui.playback.source import Source
-from tui.views.phase.portrait import Portrait, write_words
+from tui.views.phase.portrait import Portrait, axes, write_words
 from tui.views.phase.viewport import Viewport
 
-TRAIL = 300  # samples, ten seconds at 30 frames a second
-SPARSE = 60  # samples
+SPARSE = 60  # samples of a trail, whose single dots would be lost among the curves
+BLOCK = (0, 0), (1, 0), (0, 1), (1, 1)  # dots to the right and down
+GAP = 2  # dots between orbits of a section
 # columns, rows from a point to its letter
 BESIDE = (2, 0), (-2, 0), (0, -1), (0, 1), (2, -1), (-2, 1)
 Floats = NDArray[np.float64]
-Track = tuple[Floats, Floats]  # theta [rad], omega [rad/s]
 
 
 class PhasePoint(NamedTuple):
@@ -34,8 +36,8 @@ class PhasePoint(NamedTuple):
     omega: float  # rad/s
     ink: int
     letter: str
-    trail: Track | None = None
-    ring: Track | None = None
+    trail: Points | None = None
+    ring: Points | None = None
 
 
 def method_points(
@@ -44,15 +46,18 @@ def method_points(
     """Return the points that are shown of a sample, the exact one first."""
     exact = source.exact.at(sample.t)
     points = [PhasePoint(*exact, EXACT, "x")] if shown.exact and math.isfinite(exact.theta) else []
-    trails = source.history.trails(TRAIL)
+    trails = source.history.trails(300)  # ten seconds
     cast = source.scene.cast
     for place in shown.places(cast):
         reading = sample.readings[place]
-        trail = trails[:, place, 0], trails[:, place, 1]
-        around = None if ring is None else ring.rings[place]
         points.append(
             PhasePoint(
-                reading.theta, reading.omega, inks(cast)[place], cast[place].letter, trail, around
+                reading.theta,
+                reading.omega,
+                inks(cast)[place],
+                cast[place].letter,
+                trail=(trails[:, place, 0], trails[:, place, 1]),
+                ring=ring.rings[place] if ring else None,
             )
         )
     return points
@@ -72,49 +77,44 @@ def phase_picture(
     canvas = portrait.ground.copy()
     for point in points:
         if point.trail is not None:
-            theta, omega = point.trail
-            x = viewport.x(theta)
-            y = viewport.y(omega)
-            canvas.scatter(x, y, faint(point.ink))
-            if len(x) <= SPARSE:  # and single dots would be lost among the curves
-                for down, right in ((0, 1), (1, 0), (1, 1)):
-                    canvas.scatter(x + right, y + down, faint(point.ink))
+            thick = BLOCK if len(point.trail[0]) <= SPARSE else BLOCK[:1]
+            _scatter(canvas, viewport, point.trail, faint(point.ink), thick)
     if line is not None and line.quantity == "omega":
-        draw_fence(canvas, viewport, line)
+        for omega, name in ((line.value, line.name), (-line.value, f"-{line.name}")):
+            y = float(viewport.y(omega))
+            canvas.line(0, y, canvas.width, y, EXACT, dotted=True)
+            canvas.label(1, int(y) // 4, name, EXACT)
     if crosshair is not None:
-        draw_crosshair(canvas, viewport, crosshair)
+        _draw_crosshair(canvas, viewport, crosshair)
     if orbit is not None:
         canvas.scatter(*portrait.orbit(*orbit), EXACT)
     for point in points:
         if point.ring is not None:
-            theta, omega = point.ring
-            canvas.path(
-                on_screen(viewport, np.append(theta, theta[0]), np.append(omega, omega[0])),
-                point.ink,
-            )
+            closed = [np.append(each, each[0]) for each in point.ring]
+            canvas.path(_on_screen(viewport, *closed), point.ink)
     for point in points:
-        draw_point(canvas, viewport, point)
+        _draw_point(canvas, viewport, point)
     write_words(canvas, portrait.words)
     return canvas.picture()
 
 
-def draw_fence(canvas: Canvas, viewport: Viewport, line: Line) -> None:
-    """Draw dotted lines at an omega to both sides of zero, with their name."""
-    for omega, name in ((line.value, line.name), (-line.value, f"-{line.name}")):
-        y = float(viewport.y(omega))
-        canvas.line(0, y, canvas.width, y, EXACT, dotted=True)
-        canvas.label(1, int(y) // 4, name, EXACT)
+def _scatter(
+    canvas: Canvas, viewport: Viewport, points: Points, ink: int, dots: Sequence[tuple[int, int]]
+) -> None:
+    x = viewport.x(points[0])
+    y = viewport.y(points[1])
+    for right, down in dots:
+        canvas.scatter(np.floor(x) + right, np.floor(y) + down, ink)
 
 
-def draw_crosshair(canvas: Canvas, viewport: Viewport, state: State) -> None:
-    """Draw dotted lines through a state, from edge to edge."""
+def _draw_crosshair(canvas: Canvas, viewport: Viewport, state: State) -> None:
     x = float(viewport.x(state.theta))
     y = float(viewport.y(state.omega))
     canvas.line(0, y, canvas.width, y, TEXT, dotted=True)
     canvas.line(x, 0, x, canvas.height, TEXT, dotted=True)
 
 
-def on_screen(viewport: Viewport, theta: Floats, omega: Floats) -> list[tuple[float, float]]:
+def _on_screen(viewport: Viewport, theta: Floats, omega: Floats) -> list[tuple[float, float]]:
     """Return points of a line in dots, with a break where it leaves one edge for the other."""
     x = viewport.x(theta)
     y = viewport.y(omega)
@@ -125,7 +125,7 @@ def on_screen(viewport: Viewport, theta: Floats, omega: Floats) -> list[tuple[fl
     return list(zip(x.tolist(), y.tolist(), strict=True))
 
 
-def draw_point(canvas: Canvas, viewport: Viewport, point: PhasePoint) -> None:
+def _draw_point(canvas: Canvas, viewport: Viewport, point: PhasePoint) -> None:
     """Draw a disc, and its letter in the first free cell around it or at the edge nearest to it."""
     x = float(viewport.x(point.theta))
     y = float(viewport.y(point.omega))
@@ -139,3 +139,53 @@ def draw_point(canvas: Canvas, viewport: Viewport, point: PhasePoint) -> None:
         if canvas.is_free(column + right, row + down):
             canvas.label(column + right, row + down, point.letter, point.ink)
             return
+
+
+def starts(viewport: Viewport, count: int) -> Points:
+    """Return so many starts all over a viewport."""
+    across = viewport.theta_at(0.0), viewport.theta_at(2.0 * viewport.columns)
+    return spread(count, across, (viewport.omega_at(4.0 * viewport.rows), viewport.omega_at(0.0)))
+
+
+class Section:
+    """Orbits of one method on one viewport, with the separatrix of the true pendulum underneath."""
+
+    def __init__(self, viewport: Viewport, model: Model, method: Method, ink: int) -> None:
+        self._viewport = viewport
+        self._method = method
+        self._ink = ink
+        self._ground = Canvas(viewport.columns, viewport.rows)
+        self._ground.scatter(*Portrait.of(viewport, model).separatrix, FRAME)
+        size = self._ground.height + 2 * GAP, self._ground.width + 2 * GAP
+        self._near = np.zeros(size, np.bool_)
+
+    @np.errstate(all="ignore")  # a method may be farther out than dots can be counted
+    def add(self, points: Points) -> None:
+        """Draw those orbits, a column each, that leave a gap to those before."""
+        x = np.floor(self._viewport.x(points[0]))
+        y = np.floor(self._viewport.y(points[1]))
+        inside = (x >= 0) & (x < self._ground.width) & (y >= 0) & (y < self._ground.height)
+        most = 0.6 if self._method.symplectic else 0.3  # of its dots in a gap of others'
+        for each in range(x.shape[1]):
+            at = inside[:, each]
+            i, j = np.unique(np.stack([x[at, each], y[at, each]]).astype(np.intp), axis=1)
+            if len(i) and self._near[j + GAP, i + GAP].mean() <= most:
+                self._ground.scatter(i, j, faint(self._ink))
+                for right in range(2 * GAP + 1):
+                    for down in range(2 * GAP + 1):
+                        self._near[j + down, i + right] = True
+
+    @np.errstate(all="ignore")
+    def picture(self, orbit: Points, start: State, crosshair: State | None = None) -> Picture:
+        """Return the drawing with one orbit in thick dots, or a joined spiral, and its start."""
+        canvas = self._ground.copy()
+        viewport = self._viewport
+        if self._method.symplectic:
+            _scatter(canvas, viewport, orbit, self._ink, BLOCK[:3])
+        else:  # of 300 steps
+            canvas.path(_on_screen(viewport, orbit[0][:300], orbit[1][:300]), self._ink)
+        if crosshair is not None:
+            _draw_crosshair(canvas, viewport, crosshair)
+        _draw_point(canvas, viewport, PhasePoint(*start, self._ink, self._method.letter))
+        write_words(canvas, axes(viewport))
+        return canvas.picture()

@@ -16,9 +16,8 @@ from tui.drawing.palette import EXACT, FAINT, FRAME, QUIET, TEXT
 from tui.views.phase.viewport import Viewport
 
 Dots = tuple[NDArray[np.intp], NDArray[np.intp]]  # x, y
-Cells = NDArray[np.bool_]  # (rows, columns)
+Mask = NDArray[np.bool_]  # (dots down, dots right), or (rows, columns)
 Word = tuple[int, int, str, int]  # column, row, text, ink
-CURVES = 8  # about so many energies are in view
 LABEL = 4  # columns of the numbers along the left edge
 
 
@@ -32,7 +31,7 @@ class Portrait:
     curves: Dots
     separatrix: Dots
     ground: Canvas  # with both
-    words: tuple[Word, ...]
+    words: Sequence[Word]
 
     @classmethod
     @lru_cache(maxsize=2)  # for the lab's pane and the view's
@@ -41,15 +40,15 @@ class Portrait:
         theta = viewport.theta_at(np.arange(2 * viewport.columns) + 0.5)
         omega = viewport.omega_at(np.arange(4 * viewport.rows) + 0.5)[:, None]
         levels = model.level(theta, omega, np.cos)
-        curves = _border(_bands(levels))
-        separatrix = _border((levels < 0) & model.has_separatrix, heavy=True)
+        curves = _dots(_border(_bands(levels)))
+        separatrix = _dots(_border((levels < 0) & model.has_separatrix, heavy=True))
         words = axes(viewport)
         if model.has_separatrix:
             words += _names(levels, omega)
         ground = Canvas(viewport.columns, viewport.rows)
-        ground.scatter(*_dots(curves), FRAME)
-        ground.scatter(*_dots(separatrix), TEXT)
-        return cls(viewport, model, levels, _dots(curves), _dots(separatrix), ground, tuple(words))
+        ground.scatter(*curves, FRAME)
+        ground.scatter(*separatrix, TEXT)
+        return cls(viewport, model, levels, curves, separatrix, ground, words)
 
     def orbit(self, theta: float, omega: float) -> Dots:
         """Return the exact orbit through a state, where orbits are curves of equal energy."""
@@ -68,7 +67,7 @@ def write_words(canvas: Canvas, words: Sequence[Word]) -> None:
     """Write words unless they cover part of a point, ring or orbit; blanks cover no trail."""
     for column, row, text, ink in words:
         below = [canvas.ink_at(at, row) for at in range(column, column + len(text))]
-        if any(EXACT <= one < FAINT for one in below):
+        if any(EXACT <= each < FAINT for each in below):
             continue
         for at, character in enumerate(text):
             if character != " " or below[at] < EXACT:
@@ -98,14 +97,13 @@ def axes(viewport: Viewport) -> list[Word]:
 
 def _bands(levels: NDArray[np.float64]) -> NDArray[np.int64]:
     """Return each dot's energy band: evenly spaced in amplitude, beyond the top in omega."""
-    spacing = np.where(
-        levels > 0, np.arcsin(np.sqrt(np.clip(levels, 0, 1))), -np.sqrt(np.maximum(-levels, 0))
-    )
-    step = nice(float(np.ptp(spacing)) / CURVES or 1.0)
+    inside = np.arcsin(np.sqrt(np.clip(levels, 0, 1)))
+    spacing = np.where(levels > 0, inside, -np.sqrt(np.maximum(-levels, 0)))
+    step = nice(float(np.ptp(spacing)) / 8 or 1.0)  # about eight curves
     return np.floor(spacing / step).astype(np.int64)
 
 
-def _border(values: NDArray[Any], heavy: bool = False) -> NDArray[np.bool_]:
+def _border(values: NDArray[Any], heavy: bool = False) -> Mask:
     """Return dots that differ from the one to the right or below; heavy: also those beyond."""
     border = np.zeros(values.shape, np.bool_)
     right = values[:, 1:] != values[:, :-1]
@@ -118,7 +116,7 @@ def _border(values: NDArray[Any], heavy: bool = False) -> NDArray[np.bool_]:
     return border
 
 
-def _dots(mask: NDArray[np.bool_]) -> Dots:
+def _dots(mask: Mask) -> Dots:
     y, x = np.nonzero(mask)
     return x, y
 
@@ -127,19 +125,18 @@ def _names(levels: Any, omega: Any) -> list[Word]:
     """Name the regimes in view at their middles, and the separatrix where there is room."""
     spins = levels < 0
     words: list[Word] = []
-    for name, region in (
-        ("libration", ~spins),
-        ("rotation", spins & (omega > 0)),
-        ("rotation", spins & (omega < 0)),
-    ):
+    regions = (
+        (" libration ", ~spins),
+        (" rotation ", spins & (omega > 0)),
+        (" rotation ", spins & (omega < 0)),
+    )
+    for text, region in regions:
         inside = _whole_cells(region)
-        text = f" {name} "
-        column = round(float(np.nonzero(inside)[1].mean())) - len(text) // 2 if inside.any() else 0
-        rows = [
-            row
-            for row, cells in enumerate(inside[:-1])
-            if cells[column : column + len(text)].sum() == len(text)
-        ]
+        if not inside.any():
+            continue
+        column = round(float(np.nonzero(inside)[1].mean())) - len(text) // 2
+        free = inside[:-1, max(column, 0) : column + len(text)].sum(axis=1) == len(text)
+        rows = np.flatnonzero(free).tolist()
         if rows and column > LABEL:
             words.append((column, rows[len(rows) // 2], text, QUIET))
     beside = ~(_whole_cells(spins) | _whole_cells(~spins))
@@ -151,8 +148,7 @@ def _names(levels: Any, omega: Any) -> list[Word]:
     return words
 
 
-def _whole_cells(dots: NDArray[np.bool_]) -> Cells:
+def _whole_cells(dots: Mask) -> Mask:
     """Return the cells all of whose dots are in a region."""
-    rows = dots.shape[0] // 4
-    columns = dots.shape[1] // 2
-    return np.array(dots.reshape(rows, 4, columns, 2).all(axis=(1, 3)))
+    rows, columns = dots.shape
+    return np.array(dots.reshape(rows // 4, 4, columns // 2, 2).all(axis=(1, 3)))

@@ -1,27 +1,114 @@
 """PhaseView: phase space over the whole screen, with a table of what the methods do to area."""
 
-import asyncio
-from functools import partial
+from functools import lru_cache
+from typing import ClassVar, NamedTuple
 
 from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.reactive import var
 
+from engine.methods import Method
+from engine.models.model import Model, State
+from engine.phase_space.section import OrbitKind, Points, kind_of, orbit, pieces
 from engine.run.lockstep import Sample
+from tui.drawing.palette import TEXT, inks
 from tui.drawing.picture import Picture
 from tui.playback.source import Source
-from tui.views.background import computed
 from tui.views.phase.facts import fact_rows
-from tui.views.phase.pane import ORBIT_STEPS, SectionPane, Wanted
+from tui.views.phase.pane import PhasePane
+from tui.views.phase.picture import Section, starts
+from tui.views.phase.viewport import Viewport
 from tui.views.view import Pane, StudyView
+from tui.words.orbit import sentence
 
 MIN_ROWS = 18  # of the screen, with the table
 STARTS = 300  # of a section
-DELAY = 0.1  # s that a picture has to stand before its section is computed: a wheel turns on and on
+ORBIT_STEPS = 2000  # some ms
+
+
+class SectionKey(NamedTuple):
+    """What a section depends on."""
+
+    method: Method
+    model: Model
+    h: float  # s
+    viewport: Viewport
+
+
+class SectionPane(PhasePane):
+    """The portrait or, after x, the section of the method that is described."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("x", "section", "Map", tooltip="a method's own map")
+    ]
+
+    shows_section: var[bool] = var(False)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._drawn_for: SectionKey | None = None
+        self._section: Section | None = None
+        self._orbits = 0  # of the section
+
+    @property
+    def settled(self) -> bool:
+        if self.drawable and self.shows_section:
+            return self._orbits == STARTS
+        return super().settled
+
+    def watch_shows_section(self) -> None:
+        if not self.shows_section:
+            self._drawn_for = None
+            self.workers.cancel_node(self)
+        self.draw()
+
+    def picture(self, source: Source, sample: Sample) -> Picture:
+        if self.shows_section and (why := source.scene.why_not_mapped):
+            self.notify(why, severity="warning")
+            self.shows_section = False
+        return self._map(source) if self.shows_section else super().picture(source, sample)
+
+    def _map(self, source: Source) -> Picture:
+        """Return the section, and a line about the orbit aimed at, or that of the start."""
+        method = self.cast[self.index]
+        h = abs(source.stepping.own[self.index])
+        model = source.scene.equations
+        viewport = self.viewport
+        key = SectionKey(method, model, h, viewport)
+        if key != self._drawn_for or self._section is None:
+            self._drawn_for = key
+            self._section = Section(viewport, model, method, inks(self.cast)[self.index])
+            self._orbits = 0
+            self.compute(pieces, method, model, h, starts(viewport, STARTS), ORBIT_STEPS)
+        done = ""
+        if self._orbits < STARTS:
+            done = f", computing {10 * self._orbits // STARTS / 10:.0%}"
+        title = f"Own map of {method.label}: h {h:g} s, z {h * model.w0:.4g}{done}"
+        self.write_titles(title, "wheel: zoom, tab: next method, x: back")
+        start = self.cursor or State(source.scene.theta, source.scene.omega)
+        plot = self._section.picture(_orbit(method, model, h, start)[0], start, self.cursor)
+        _, kind = _orbit(method, model, h, self.aim or start)
+        where = f"{self.aim.theta:g}, {self.aim.omega:g}" if self.aim else "start"
+        return Picture.stacked(plot, Picture.of_line(f"{where}: {sentence(method, kind)}", TEXT))
+
+    def add(self, result: Points) -> None:
+        assert self._section is not None
+        self._section.add(result)
+        self._orbits += result[0].shape[1]
+        self.draw()
+
+    def action_section(self) -> None:
+        self.shows_section = not self.shows_section
+
+
+@lru_cache(maxsize=64)
+def _orbit(method: Method, model: Model, h: float, start: State) -> tuple[Points, OrbitKind]:
+    points = orbit(method, model, h, start, ORBIT_STEPS)
+    return points, kind_of(method, model, h, points)
 
 
 class Facts(Pane):
     """The table below: what each method made of the ring."""
-
-    NEEDS_NUMPY = True
 
     def __init__(self, pane: SectionPane) -> None:
         super().__init__(id="facts")
@@ -33,45 +120,24 @@ class Facts(Pane):
         return Picture(rows)
 
 
-class PhaseView(StudyView[SectionPane]):
+class PhaseView(StudyView):
     """The portrait or a section, and the table below it."""
 
-    def __init__(self, id: str | None = None) -> None:
-        super().__init__(SectionPane(), id)
-        self._computed: Wanted | None = None
+    PANE = SectionPane
 
     def compose(self) -> ComposeResult:
-        yield self.every_frame(self.pane)
-        yield self.at_5_hz(Facts(self.pane))
+        yield from super().compose()
+        yield self.bound(Facts(self.pane))
 
     def on_resize(self) -> None:
         self._make_room()
+
+    def follow(self, sample: Sample, read: bool = True) -> None:
+        if read:
+            self._make_room()
+        super().follow(sample, read)
 
     def _make_room(self) -> None:
         """Leave all of the view to a map, and to a portrait where there is little room."""
         has_room = self.size.height >= MIN_ROWS
         self.query_one(Facts).display = has_room and not self.pane.shows_section
-
-    def compute_missing(self, source: Source) -> None:
-        """Compute the section that is wanted, and nothing else any more."""
-        self._make_room()
-        if self.pane.shows_section:
-            self.pane.draw()  # another h brings no other sample
-        wanted = self.pane.wanted
-        if wanted != self._computed:
-            self._computed = wanted
-            self.workers.cancel_node(self)
-            if wanted is not None:
-                self.compute(partial(self._fill, wanted))
-
-    async def _fill(self, wanted: Wanted) -> None:
-        await asyncio.sleep(DELAY)
-        from engine.phase_space.section import pieces
-        from tui.views.phase.section import starts
-
-        method, model, h, viewport = wanted
-        done = 0
-        begun = starts(viewport, STARTS)
-        async for piece in computed(pieces, method, model, h, begun, ORBIT_STEPS):
-            done += piece[0].shape[1]
-            self.pane.fill(wanted, piece, done / STARTS)

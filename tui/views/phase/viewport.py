@@ -15,7 +15,7 @@ MIN_SPAN, MAX_SPAN = 1e-3, 200 * math.pi  # rad of theta from the left edge to t
 
 
 class Viewport(NamedTuple):
-    """A stretch of phase space on `columns` × `rows` cells."""
+    """A stretch of phase space on `columns` × `rows` cells; its functions take arrays, too."""
 
     columns: int
     rows: int
@@ -54,23 +54,23 @@ class Viewport(NamedTuple):
         return 2 * (self.columns // 2) + 1, 4 * (self.rows // 2) + 2
 
     def x(self, theta: Any) -> Any:
-        """Return where an angle is [dots]; numbers or arrays."""
+        """Return where an angle is [dots]."""
+        import numpy as np  # not needed for the first paint
+
         x = self.middle[0] + (theta - self.theta) / self.theta_per_dot
         if self.wrap:
             turn = math.tau / self.theta_per_dot
-            x = x - turn * _rounded((x - self.columns) / turn)
+            x = x - turn * np.round((x - self.columns) / turn)
         return x
 
     def y(self, omega: Any) -> Any:
-        """Return where an angular velocity is [dots]; numbers or arrays."""
+        """Return where an angular velocity is [dots]."""
         return self.middle[1] - (omega - self.omega) / self.omega_per_dot
 
     def theta_at(self, x: Any) -> Any:
-        """Return the angle at x [dots]; numbers or arrays."""
         return self.theta + (x - self.middle[0]) * self.theta_per_dot
 
     def omega_at(self, y: Any) -> Any:
-        """Return the angular velocity at y [dots]; numbers or arrays."""
         return self.omega - (y - self.middle[1]) * self.omega_per_dot
 
     def at(self, x: float, y: float) -> State:
@@ -78,19 +78,21 @@ class Viewport(NamedTuple):
 
         No angle is rounder than a multiple of pi, so the equilibria can be reached.
         """
-        theta = self.theta_at(x)
-        if self.wrap and abs(theta) > math.pi:
-            theta = math.remainder(theta, math.tau)
-        upright_or_down = math.pi * round(theta / math.pi)
-        if abs(theta - upright_or_down) <= self.theta_per_dot / 2:
-            theta = upright_or_down
-        else:
-            theta = roundest(theta, self.theta_per_dot / 2)
-        return State(theta, roundest(self.omega_at(y), self.omega_per_dot / 2))
+        theta = self._turned(self.theta_at(x))
+        omega = roundest(self.omega_at(y), self.omega_per_dot / 2)
+        equilibrium = math.pi * round(theta / math.pi)
+        if abs(theta - equilibrium) <= self.theta_per_dot / 2:
+            return State(equilibrium, omega)
+        return State(roundest(theta, self.theta_per_dot / 2), omega)
 
     def at_cell(self, column: int, row: int) -> State:
         """Return the roundest state within half a dot of a cell's centre."""
         return self.at(2 * column + 1, 4 * row + 2)
+
+    def _turned(self, theta: float) -> float:
+        if self.wrap and abs(theta) > math.pi:
+            return math.remainder(theta, math.tau)
+        return theta
 
     @property
     def theta_span(self) -> float:
@@ -109,10 +111,10 @@ class Viewport(NamedTuple):
 
     def panned(self, right: float, down: float) -> "Viewport":
         """Move what is shown by so many dots."""
-        theta = self.theta - right * self.theta_per_dot
-        if self.wrap and abs(theta) > math.pi:
-            theta = math.remainder(theta, math.tau)
-        return self._replace(theta=theta, omega=self.omega + down * self.omega_per_dot)
+        return self._replace(
+            theta=self._turned(self.theta - right * self.theta_per_dot),
+            omega=self.omega + down * self.omega_per_dot,
+        )
 
     def stepped(self, start: State, right: float, up: float) -> State:
         """Return the state so many dots from another, or from the middle if that is hidden."""
@@ -132,13 +134,6 @@ class Viewport(NamedTuple):
             theta_per_dot=self.theta_per_dot * self.columns / columns,
             omega_per_dot=self.omega_per_dot * self.rows / rows,
         )
-
-
-def _rounded(value: Any) -> Any:
-    """Round a number or an array; what is not finite stays as it is."""
-    if hasattr(value, "round"):
-        return value.round()
-    return round(value) if math.isfinite(value) else value
 
 
 def roundest(value: float, tolerance: float) -> float:

@@ -1,105 +1,158 @@
 """StabilityPane: a panel of the stability map per method, to choose h and amplitude from."""
 
+import math
+from typing import Any
+
+import numpy as np
 from textual import events
 
+from engine.methods import Cast
 from engine.run.lockstep import Sample
-from engine.stability.grid import Grid
-from engine.stability.outcomes import Cells
+from engine.stability.grid import Grid, Piece, pieces
+from engine.stability.outcomes import CHAOTIC, FATES, HELD, UNKNOWN, Cells, is_lost
 from engine.stability.study import amplitude
 from tui.drawing.palette import TEXT, Palette, palette
 from tui.drawing.picture import Picture, Row
 from tui.playback.source import Source
-from tui.views.messages import SceneChosen
 from tui.views.stability.picture import MARGIN, legend, panel, place_at, side_by_side, title
-from tui.views.stability.words import note, verdict
-from tui.views.view import Chooser
+from tui.views.view import Chooser, StudyView
 
-WORDS = 2  # lines
-LEGEND_SHARE = 7  # rows of the pane for a line of it
+PASSES = (300, 10_000)
+"""Steps of each swing: a first map at once, then the final one."""
+
+
+def _grid(cast: Cast) -> Grid:
+    theta = (np.arange(48) + 0.5) * math.pi / 48
+    return Grid(theta, (np.arange(80) + 0.5) * 3 / 80, PASSES[-1], cast)
+
+
+def _outcome(cell: Any) -> str:
+    fate = FATES[cell["fate"]]
+    return {"holds": "held", "holds, wobbling": "held, larger wobble"}.get(fate, fate)
+
+
+def note(cell: Any) -> str:
+    """Return the outcome of a swing in a few words."""
+    if cell["fate"] == UNKNOWN:
+        return "…"
+    if cell["fate"] == CHAOTIC:
+        return _outcome(cell)
+    detail = f"step {cell['steps'] + 1}" if is_lost(cell) else f"{cell['error']:.0e}"
+    return f"{_outcome(cell)}, {detail}"
+
+
+def verdict(grid: Grid, cells: Cells, index: int, place: tuple[int, int], w0: float) -> str:
+    """Return the outcome of a method at a place, and the nearest h with another outcome."""
+    z, theta = place
+    row = cells[:, index, theta]
+    cell = row[z]
+    degrees = math.degrees(grid.theta[theta])
+    where = f"{grid.methods[index].label} at h {grid.z[z] / w0:.3g} s, {degrees:.3g}°:"
+    if cell["fate"] == UNKNOWN:
+        return f"{where} not computed yet"
+    holds = not is_lost(cell)
+    outcome = _outcome(cell)
+    if holds:
+        outcome += f", energy error {cell['error']:.1e}"
+    elif cell["fate"] != CHAOTIC:
+        outcome = f"lost at step {cell['steps'] + 1}, {outcome}"
+    other = np.flatnonzero(np.isin(row["fate"], HELD) != holds)
+    if not len(other):
+        return f"{where} {outcome}; {'held' if holds else 'lost'} at every h on this map"
+    nearest = grid.z[other[np.abs(other - z).argmin()]]
+    return f"{where} {outcome}; {'lost' if holds else 'held'} at h {nearest / w0:.3g} s"
 
 
 class StabilityPane(Chooser[tuple[int, int]]):
     """Draws what is known of the map.  A click, or enter at the cursor, starts a run at rest.
 
-    Places on the map are indices of z and theta.
+    Places on the map are indices of z and theta.  The map depends only on z and amplitude: another
+    scene moves the mark and the axis.
     """
 
     BINDING_GROUP_TITLE = "Stability"
     HELP = "A click starts with that h and amplitude."
 
-    def __init__(self, grid: Grid) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self.begin(grid)
+        self._begin(())
 
-    def begin(self, grid: Grid) -> None:
-        """Show another map, none of which has been computed."""
-        self.grid = grid
-        self.cells: Cells = grid.unknown()
-        self.pieces = 0  # of the map that have been computed
-        self.complete = False
-        self.title = ""
+    def _begin(self, cast: Cast) -> None:
+        self.grid = _grid(cast)
+        self.cells: Cells = self.grid.unknown()
+        self._pieces = 0  # of the map that have been computed
+        self._title = ""
         self.cursor = self.pointer = None
         self._panels: list[list[Row]] = []
-        self._drawn: object = None
+        self._drawn: object = None  # what the panels are for
 
     @property
     def settled(self) -> bool:
-        """Whether the map is complete, and shown if there is room."""
-        if self.source is not None and not self.source.scene.general:
+        """Whether the map is complete and drawn."""
+        if not self.source.scene.general:
             return True
-        return self.complete and not (self.drawable and self._drawn != self._state)
+        return self._pieces > 0 and not self.is_computing and self._drawn == self._state
 
-    def fill(self, z: slice, method: int, cells: Cells) -> None:
-        """Take in a piece of the map; it is drawn with one of the next samples."""
-        self.cells[z, method] = cells
-        self.pieces += 1
+    def add(self, result: Piece) -> None:
+        self.cells[result.z, result.method] = result.cells
+        self._pieces += 1
+        # in tenths, as each new title repaints the pane
+        state = f", computing {int(10 * result.done) * 10} %"
+        if result.done == 1 and result.steps == PASSES[-1]:
+            state = ""
+        self._title = f"Stability (F5), {result.steps} steps: h [s], amplitude [°]{state}"
 
     def here(self, index: int) -> tuple[float, float] | None:
-        """The (z, amplitude) of a method on screen, if it swings."""
-        if self.source is None or (theta := amplitude(self.source.scene)) is None:
+        """Return the (z, amplitude) of a method on screen, if it swings."""
+        theta = amplitude(self.source.scene)
+        if theta is None:
             return None
         return abs(self.source.stepping.own[index]) * self.source.scene.w0, theta
 
     def aim(self, index: int) -> tuple[int, int] | None:
-        """The described place of a method: at the cursor, at the pointer, or nearest to here."""
+        """Return the described place of a method: at the cursor, the pointer, or nearest to here."""
         if self.cursor or self.pointer:
             return self.cursor or self.pointer
         if (here := self.here(index)) is None or here[0] > self.grid.z[-1]:
             return None
-        z = abs(self.grid.z - here[0]).argmin()
-        theta = abs(self.grid.theta - here[1]).argmin()
-        return int(z), int(theta)
+        z, theta = here
+        return int(abs(self.grid.z - z).argmin()), int(abs(self.grid.theta - theta).argmin())
 
     @property
     def _state(self) -> object:
         """What the panels depend on."""
-        if self.source is None:
-            return None
         run = self.source.scene, self.source.stepping.own
-        return run, self.pieces, self.shown, self.app.theme, self.room, self.cursor, self.index
+        return run, self._pieces, self.shown, self.app.theme, self.room, self.cursor
 
     def picture(self, source: Source, sample: Sample) -> Picture:
         if why := source.scene.why_not_mapped:
-            self.write_titles("Stability (F5)", "")
+            self.write_titles("Stability (F5)")
             return Picture(self.words(why))
-        self.write_titles(self.title, "")
-        columns, rows = self.panel_size()
-        if columns <= 2 * MARGIN or self.grid.methods != self.cast:
+        if self.cast != self.grid.methods:
+            self._begin(self.cast)
+            self.compute(pieces, self.grid, PASSES)
+        self.write_titles(self._title)
+        columns, rows = self._panel_size
+        if columns <= 2 * MARGIN:
             return Picture()
         if self._drawn != self._state:
             self._drawn = self._state
             self._panels = [self._panel(index, columns, rows) for index in self.places]
-        panels = [
-            [title(index, self.cast[index], columns, self._colours, self._note(index)), *lines[1:]]
-            for index, lines in zip(self.places, self._panels, strict=True)
-        ]
+        panels = []
+        for index, (_, *lines) in zip(self.places, self._panels, strict=True):
+            aim = self.aim(index)
+            text = note(self.cells[aim[0], index, aim[1]]) if aim else ""
+            head = title(index, self.cast[index], columns, self._colours, text)
+            panels.append([head, *lines])
+        words = ""
+        if self.places and (aim := self.aim(self.index)):
+            words = verdict(self.grid, self.cells, self.index, aim, source.scene.w0)
         blank: Row = [("", TEXT)]
-        below = [*self.words(self._verdict()), blank, blank][:WORDS]
-        return Picture([*side_by_side(panels, 2), *below, *self._legend()])
+        below = [*self.words(words), blank, blank][:2]
+        return Picture([*side_by_side(panels, 2), *below, *self._legend])
 
     def _panel(self, index: int, columns: int, rows: int) -> list[Row]:
         """Return a method's panel, with a mark at the cursor or at the present h."""
-        assert self.source is not None
         here = self.here(index)
         if self.cursor is not None:
             here = self.grid.z[self.cursor[0]], self.grid.theta[self.cursor[1]]
@@ -110,58 +163,48 @@ class StabilityPane(Chooser[tuple[int, int]]):
     def _colours(self) -> Palette | None:
         return None if self.app.no_color or self.app.native_ansi_color else palette(self.app.theme)
 
-    def panel_size(self) -> tuple[int, int]:
+    @property
+    def _panel_size(self) -> tuple[int, int]:
         """Columns of a panel and rows of its map, two panels side by side above the words."""
         lines = -(-len(self.places) // 2) or 1
-        return (self.room.width - 2) // 2, max(
-            1, (self.room.height - WORDS - len(self._legend())) // lines - 2
-        )
+        rows = (self.room.height - 2 - len(self._legend)) // lines - 2
+        return (self.room.width - 2) // 2, max(1, rows)
 
+    @property
     def _legend(self) -> list[Row]:
-        # as if the frame were part of it
+        # over the frame's columns, too
         lines = legend(self.grid.steps, self._colours, self.room.width + 2)
-        return lines[: max(self.room.height // LEGEND_SHARE, 1)]
-
-    def _note(self, index: int) -> str:
-        if (aim := self.aim(index)) is None:
-            return ""
-        z, theta = aim
-        return note(self.cells[z, index, theta])
-
-    def _verdict(self) -> str:
-        if self.source is None or not self.places or (aim := self.aim(self.index)) is None:
-            return ""
-        z, theta = aim
-        cells = self.cells[:, self.index, theta]
-        w0 = self.source.scene.w0
-        return verdict(self.cast[self.index], self.grid.theta[theta], self.grid.z, cells, z, w0)
+        return lines[: max(self.room.height // 7, 1)]
 
     def action_move(self, right: int, up: int) -> None:
-        if self.grid.methods != self.cast:
+        if self.cast != self.grid.methods:
             return
         z, theta = self.aim(self.index) or (0, 0)
-        last_z = len(self.grid.z) - 1
-        last_theta = len(self.grid.theta) - 1
-        self.cursor = min(max(z + right, 0), last_z), min(max(theta + up, 0), last_theta)
+        z = min(max(z + right, 0), len(self.grid.z) - 1)
+        self.cursor = z, min(max(theta + up, 0), len(self.grid.theta) - 1)
         self.draw()
 
     def choose(self, place: tuple[int, int]) -> None:
-        assert self.source is not None
-        scene = self.source.scene
         z, theta = place
-        h = float(self.grid.z[z]) / scene.w0
-        start = scene.altered(theta=float(self.grid.theta[theta]), omega=0.0, h=h)
-        self.post_message(SceneChosen(start))
+        h = float(self.grid.z[z]) / self.source.scene.w0
+        self.start_at(float(self.grid.theta[theta]), 0.0, h)
 
     def place_under(self, event: events.MouseEvent) -> tuple[int, int] | None:
         """Return the place under the pointer; its method is the one described from now on."""
-        columns, rows = self.panel_size()
+        columns, rows = self._panel_size
         x, y = event.get_content_offset_capture(self)
         across, column = divmod(x, columns + 2)
         down, row = divmod(y, rows + 2)
         inside = across in (0, 1) and MARGIN <= column < columns and 1 <= row <= rows
         number = 2 * down + across
-        if not inside or number not in range(len(self.places)) or self.grid.methods != self.cast:
+        is_mapped = inside and self.cast == self.grid.methods
+        if not is_mapped or number not in range(len(self.places)):
             return None
-        self.describe(self.places[number])
+        self.described = self.cast[self.places[number]].key
         return place_at(self.grid, row - 1, column - MARGIN, rows, columns - MARGIN)
+
+
+class StabilityView(StudyView):
+    """The map over the whole screen."""
+
+    PANE = StabilityPane

@@ -23,10 +23,8 @@ from tui.drawing.axes import number_ticks
 from tui.drawing.palette import NOBODY, Palette, ink_of, inks, mark, mixed
 from tui.drawing.picture import Ink, Picture, Row
 
-EXACT_ENOUGH = 1e-12  # energy errors below it are drawn alike
 LIMIT, THRESHOLD, CATCHING, HERE, LOST = "│", "┊", "•", "@", "╱"
 _WITHOUT_COLOUR = {LIMIT: "|", THRESHOLD: ":", CATCHING: "o", HERE: HERE}
-EXAMPLE = ink_of(VELOCITY_VERLET, ())  # whose shades the legend shows
 MARGIN = 4  # for the labels of the amplitudes
 SHADES = 16  # from lost at once to lost at the end, and again from there to held exactly
 
@@ -37,13 +35,12 @@ Cell = tuple[str, Ink]
 def scores(cells: Cells, steps: int) -> Scores:
     """Return a score per swing: -1 unknown; 0 to 1 lost, later; 1 to 2 held, more accurately.
 
-    Both parts are logarithmic, in steps survived and in the largest energy error.
+    Both parts are logarithmic, in steps survived and in the largest energy error, down to 1e-12.
     """
     survived = np.log1p(cells["steps"]) / math.log1p(steps)
-    digits = np.log10(np.clip(cells["error"], EXACT_ENOUGH, 1)) / math.log10(EXACT_ENOUGH)
-    return np.select(
-        [cells["fate"] == UNKNOWN, np.isin(cells["fate"], HELD)], [-1.0, 1 + digits], survived
-    )
+    digits = -np.log10(np.clip(cells["error"], 1e-12, 1)) / 12
+    is_held = np.isin(cells["fate"], HELD)
+    return np.select([cells["fate"] == UNKNOWN, is_held], [-1.0, 1 + digits], survived)
 
 
 def picture(grid: Grid, cells: Cells, columns: int, palette: Palette | None) -> Picture:
@@ -81,36 +78,32 @@ def panel(
     """
     method = grid.methods[index]
     width = columns - MARGIN
-    signs = {
-        _place(grid, z, theta, width, rows): sign for z, theta, sign in theory(method, grid, rows)
-    }
-    if here:
-        signs[_place(grid, here[0], here[1], width, rows)] = HERE
     values = scores(cells[:, index], grid.steps)
     if palette is None:
-        lines = _in_characters(worst(values, width, rows), grid.steps)
-        ink: Ink = NOBODY
+        drawn = worst(values, width, rows).tolist()
+        lines: list[list[Cell]] = [
+            [(character(value, grid.steps), NOBODY) for value in line] for line in drawn
+        ]
     else:
         lines = _in_colours(worst(values, width, 2 * rows), inks(grid.methods)[index], palette)
-    for place, sign in signs.items():
-        if place is not None:
+    signs = list(theory(method, grid, rows))
+    if here:
+        signs.append((*here, HERE))
+    for z, theta, sign in signs:
+        if place := _place(grid, z, theta, width, rows):
             row, column = place
-            if palette is None:
-                lines[row][column] = _WITHOUT_COLOUR[sign], ink
+            ink = lines[row][column][1]
+            if palette and isinstance(ink, Style):
+                ink += Style(color=palette.text, reverse=sign == HERE)
             else:
-                lower = lines[row][column][1]
-                assert isinstance(lower, Style)
-                lines[row][column] = sign, lower + Style(color=palette.text, reverse=sign == HERE)
-    panel: list[Row] = [title(index, method, columns, palette)]
+                sign = _WITHOUT_COLOUR[sign]
+            lines[row][column] = sign, ink
     degrees = _degrees(grid, width, rows)
-    for row, line in enumerate(lines):
-        label = f"{degrees[row]:3} " if row in degrees else " " * MARGIN
-        panel.append([(label, NOBODY), *_joined(line)])
-    return [*panel, [(" " * MARGIN + _axis(grid, width, w0), NOBODY)]]
-
-
-def _in_characters(values: Scores, steps: int) -> list[list[Cell]]:
-    return [[(character(value, steps), NOBODY) for value in line] for line in values.tolist()]
+    map_rows = [
+        [(f"{degrees.get(row, ''):>3} ", NOBODY), *_joined(line)] for row, line in enumerate(lines)
+    ]
+    axis = " " * MARGIN + _axis(grid, width, w0)
+    return [title(index, method, columns, palette), *map_rows, [(axis, NOBODY)]]
 
 
 def _in_colours(values: Scores, ink: int, palette: Palette) -> list[list[Cell]]:
@@ -140,12 +133,11 @@ def _joined(line: Sequence[Cell]) -> Iterator[Cell]:
 
 def _degrees(grid: Grid, width: int, rows: int) -> dict[int, int]:
     """Return round amplitudes [°] by their row."""
-    step = 45 if rows >= 5 else 90
-    places = {
-        each: _place(grid, grid.z[0], math.radians(each), width, rows)
-        for each in range(0, 180, step)
-    }
-    return {place[0]: each for each, place in places.items() if place}
+    degrees = {}
+    for each in range(0, 180, 45 if rows >= 5 else 90):
+        if place := _place(grid, grid.z[0], math.radians(each), width, rows):
+            degrees[place[0]] = each
+    return degrees
 
 
 def _axis(grid: Grid, width: int, w0: float | None) -> str:
@@ -169,14 +161,15 @@ def title(place: int, method: Method, columns: int, palette: Palette | None, not
 
 
 def theory(method: Method, grid: Grid, rows: int) -> Iterator[tuple[float, float, str]]:
-    """Return theory's (z, theta): the linear limit, Greene's threshold, the catching orbit.
+    """Yield theory's (z, theta): the linear limit, Greene's threshold, the catching orbit.
 
     Greene's threshold is that of the standard map, which symplectic Euler is, and velocity Verlet
     half a kick earlier. Velocity Verlet's catching orbit jumps between q and -q, z² sin q = 4 q,
     and is stable where 0 < z² cos q < 4.
     """
-    for row in range(rows):
-        theta = _theta_of_row(grid, row, rows)
+    count = len(grid.theta)
+    middles = (np.arange(rows)[::-1] + 0.5) / rows * count - 0.5
+    for theta in np.interp(middles, np.arange(count), grid.theta).tolist():
         if method in (SYMPLECTIC_EULER, VELOCITY_VERLET):
             yield GREENE_Z, theta, THRESHOLD
         if method == VELOCITY_VERLET and theta < math.pi / 2:
@@ -186,13 +179,11 @@ def theory(method: Method, grid: Grid, rows: int) -> Iterator[tuple[float, float
 
 
 def worst(values: Scores, columns: int, rows: int) -> Scores:
-    """The lowest of the values (z, theta) under each pixel (row from the top, column)."""
-
-    def starts(count: int, parts: int) -> list[int]:
-        return [part * count // parts for part in range(parts)]
-
-    across = np.minimum.reduceat(values, starts(values.shape[0], columns), axis=0)
-    return np.minimum.reduceat(across, starts(values.shape[1], rows), axis=1).T[::-1]
+    """Return the lowest of the values (z, theta) under each pixel (row from the top, column)."""
+    lefts = np.arange(columns) * len(values) // columns
+    bottoms = np.arange(rows) * values.shape[1] // rows
+    across = np.minimum.reduceat(values, lefts, axis=0)
+    return np.minimum.reduceat(across, bottoms, axis=1).T[::-1]
 
 
 def colour(score: float, ink: int, palette: Palette) -> str:
@@ -211,42 +202,41 @@ def character(score: float, steps: int) -> str:
     if score < 1:
         survived = round(math.expm1(score * math.log1p(steps)))
         return "." if survived < 10 else str(len(str(survived)) - 1)
-    return "#" if score > 1 + 4 / 12 else "+" if score > 1 + 1 / 12 else "-"
+    digits = 12 * (score - 1)
+    if digits > 4:
+        return "#"
+    return "+" if digits > 1 else "-"
 
 
 def legend(steps: int, palette: Palette | None, columns: int = 80) -> list[Row]:
     """Explain colours, characters and lines."""
-    signs = (LIMIT, THRESHOLD, CATCHING)
-    limit, threshold, catching = signs if palette else map(_WITHOUT_COLOUR.__getitem__, signs)
     held: list[Cell] = [("held: error <1e-4 #  <0.1 +  above -   ", NOBODY)]
     lost: list[Cell] = [("lost: at step <10 .  <100 1  <1000 2", NOBODY)]
+    signs = _WITHOUT_COLOUR
     if palette is not None:
-        scale = [0.999 * part / 7 for part in range(8)]
-        bright = [("█", Style(color=colour(1 + each, EXAMPLE, palette))) for each in scale]
-        dark = [
-            (LOST, _style(palette.background, colour(each, EXAMPLE, palette))) for each in scale
-        ]
+        signs = {sign: sign for sign in signs}
+        ink = ink_of(VELOCITY_VERLET, ())
+        shades = [0.999 * part / 7 for part in range(8)]
+        bright = [("█", Style(color=colour(1 + each, ink, palette))) for each in shades]
+        dark = [(LOST, _style(palette.background, colour(each, ink, palette))) for each in shades]
         held = [("held, energy error 1 ", NOBODY), *bright, (" 1e-12   ", NOBODY)]
         lost = [("lost at step 1 ", NOBODY), *dark, (f" {steps}", NOBODY)]
-    lines: list[Cell] = [(f"{limit} linear limit   {threshold} global chaos above   ", NOBODY)]
-    orbit: list[Cell] = [(f"{catching} stable 2-cycle   y: amplitude [°]", NOBODY)]
+    lines: list[Cell] = [
+        (f"{signs[LIMIT]} linear limit   {signs[THRESHOLD]} global chaos above   ", NOBODY)
+    ]
+    orbit: list[Cell] = [(f"{signs[CATCHING]} stable 2-cycle   y: amplitude [°]", NOBODY)]
     return [held + lost, lines + orbit] if columns >= 80 else [held, lost, lines, orbit]
-
-
-def _theta_of_row(grid: Grid, row: int, rows: int) -> float:
-    index = (rows - row - 0.5) / rows * len(grid.theta) - 0.5
-    return float(np.interp(index, np.arange(len(grid.theta)), grid.theta))
 
 
 def place_at(grid: Grid, row: int, column: int, rows: int, columns: int) -> tuple[int, int]:
     """Return the indices (z, theta) of the map's cell nearest to a character's middle."""
     z = int((column + 0.5) / columns * len(grid.z))
     theta = int((rows - row - 0.5) / rows * len(grid.theta))
-    return min(max(z, 0), len(grid.z) - 1), min(max(theta, 0), len(grid.theta) - 1)
+    return z, theta
 
 
 def _place(grid: Grid, z: float, theta: float, columns: int, rows: int) -> tuple[int, int] | None:
-    """(row, column) of the character over (z, theta); None outside the map."""
+    """Return (row, column) of the character over (z, theta); None outside the map."""
     if not (grid.z[0] <= z <= grid.z[-1] and grid.theta[0] <= theta <= grid.theta[-1]):
         return None
     across = (np.interp(z, grid.z, np.arange(len(grid.z))) + 0.5) / len(grid.z)

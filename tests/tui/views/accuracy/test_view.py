@@ -25,7 +25,7 @@ VERLET = 2
 
 @pytest.fixture(autouse=True)
 def _few_points(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tui.views.accuracy.view.usual", lambda scene, all: (5.0, RUNGS))
+    monkeypatch.setattr("tui.views.accuracy.pane.usual", lambda scene, all: (5.0, RUNGS))
 
 
 def words(pane: AccuracyPane) -> str:
@@ -40,7 +40,7 @@ def said(pane: AccuracyPane) -> str:
 
 def is_complete(pane: AccuracyPane) -> bool:
     """It has the points of the other process and those of the current step, and its chart shows them."""
-    return pane.settled and all(pane.study.at_present(*place) for place in enumerate(USUAL_CAST))
+    return pane.settled and all(pane.present(place) for place in range(len(USUAL_CAST)))
 
 
 async def complete(pilot: Pilot[object], pane: AccuracyPane) -> None:
@@ -62,7 +62,7 @@ async def accuracy_view(
 async def test_the_points_fill_in_and_are_the_engines():
     async with accuracy_view() as (_, pane, _live):
         for point in Study(SCENES["drift"], 5.0).points(RUNGS):
-            found = pane.study.points[point.method.key, point.steps]
+            found = pane.points[point.method.key, point.steps]
             assert (found.theta_error, found.energy_error) == (
                 point.theta_error,
                 point.energy_error,
@@ -99,7 +99,7 @@ async def test_enter_uses_the_h_of_the_cursors_point_and_u_takes_it_back():
         await complete(pilot, pane)
         assert live.stepping.h == point.h != 0.05
         assert live.sample.run == run  # h changes, the run goes on
-        assert pane.study.here[VERLET] == point.steps
+        assert pane.here[VERLET] == point.steps
         assert pane.cursor is None
         await pilot.press("u")
         assert live.stepping.h == 0.05
@@ -109,23 +109,23 @@ async def test_at_equal_cost_every_method_is_at_its_own_h():
     async with accuracy_view() as (pilot, pane, live):
         await pilot.press("n")
         await complete(pilot, pane)
-        assert pane.study.here == (100, 100, 100, 25)
+        assert pane.here == [100, 100, 100, 25]
         await pilot.press("left", "left", "enter")
         assert live.stepping.h == pytest.approx(4 * 5.0 / RUNGS[0])
 
 
 async def test_another_h_moves_the_mark_and_another_start_the_points():
     async with accuracy_view() as (pilot, pane, live):
-        before = dict(pane.study.points)
+        before = dict(pane.points)
         await pilot.press("plus")
         await complete(pilot, pane)
-        assert pane.study.here == (50,) * 4
-        assert before.items() <= pane.study.points.items()
+        assert pane.here == [50] * 4
+        assert before.items() <= pane.points.items()
         live.start(SCENES["large-swing"])
-        await until(pilot, lambda: not before.items() & pane.study.points.items())
+        await until(pilot, lambda: not before.items() & pane.points.items())
         await complete(pilot, pane)
         assert (
-            pane.study.points["velocity_verlet", RUNGS[0]].theta_error
+            pane.points["velocity_verlet", RUNGS[0]].theta_error
             == Study(SCENES["large-swing"], 5.0).run(USUAL_CAST[VERLET], RUNGS[0]).theta_error
         )
 
@@ -143,7 +143,7 @@ async def test_the_charts_quantity_chooses_the_error_and_hidden_methods_are_not_
 
 async def test_it_says_which_method_is_the_cheapest_at_each_accuracy():
     async with accuracy_view() as (_, pane, _live):
-        points = [point for (_, steps), point in pane.study.points.items() if steps in RUNGS]
+        points = [point for (_, steps), point in pane.points.items() if steps in RUNGS]
         found = front(points, "energy", "evaluations")
         assert {one.method.key for one in found} == {"velocity_verlet", "rk4"}
         assert words(pane).endswith(front_words(found, "evaluations"))
@@ -151,8 +151,8 @@ async def test_it_says_which_method_is_the_cheapest_at_each_accuracy():
 
 async def test_the_pointer_reads_a_point_out_and_a_click_uses_its_h():
     async with accuracy_view() as (pilot, pane, live):
-        point = pane.study.points["rk4", RUNGS[2]]
-        ((column, row),) = (cell for cell, placed in pane.placed if placed is point)
+        point = pane.points["rk4", RUNGS[2]]
+        ((column, row),) = (place[:2] for place in pane.placed if place[2] is point)
         assert pane.text.splitlines()[row][column] == "r"
         at = (column + 1, row + 1)  # the frame
         await pilot.hover(pane, (at[0] + 1, at[1]))

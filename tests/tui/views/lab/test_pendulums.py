@@ -124,7 +124,7 @@ async def test_a_thrown_bob_has_the_speed_of_the_pointer():
         await theatre.run(1)
         theatre.source.set_speed(2.0)
         pane = theatre.stage.query(Pendulum).first()
-        pane._start([(0.0, 0.0), (1.0, 0.5), (1.05, 0.6)], 1.06)
+        pane.throw([(0.0, 0.0), (1.0, 0.5), (1.05, 0.6)], 1.06)
         await theatre.pilot.pause()
         assert theatre.source.scene.theta == 0.6
         assert theatre.source.scene.omega == 1.0  # 2 rad in a second of the clock, at 2×

@@ -13,9 +13,9 @@ from engine.phase_space.area import Neighbours
 from engine.scenes import SCENES, Scene
 from tui.playback.live import Live
 from tui.playback.shown import Shown
-from tui.views.messages import SceneChosen
 from tui.views.phase.pane import DOTS, PhasePane
 from tui.views.phase.viewport import MIN_SPAN
+from tui.views.view import SceneChosen
 
 DRIFT = SCENES["drift"]
 

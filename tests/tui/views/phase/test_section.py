@@ -12,8 +12,8 @@ from engine.scenes import SCENES, Scene
 from tests.tui import drawn
 from tests.tui.harness import Theatre, lab, until
 from tui.drawing.palette import FRAME, faint
-from tui.views.phase.pane import SectionPane
-from tui.views.phase.section import Section, starts
+from tui.views.phase.picture import Section, starts
+from tui.views.phase.view import SectionPane
 from tui.views.phase.viewport import Viewport
 
 SCENE = Scene(theta=1.25, h=0.348011)  # at the 1:6 resonance of velocity Verlet

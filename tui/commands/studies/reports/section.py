@@ -34,7 +34,7 @@ from tui.commands.studies.reports import figures
 from tui.drawing.palette import PALETTES, ink_of
 from tui.terminal.character_sets import CharacterSetFilter
 from tui.terminal.options import terminal_options_of
-from tui.views.phase.section import Section, starts
+from tui.views.phase.picture import Section, starts
 from tui.views.phase.viewport import Viewport
 from tui.words.orbit import HEADS, cells, fraction, sentence
 
