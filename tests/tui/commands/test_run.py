@@ -1,3 +1,6 @@
+"""`pendu-tui run`: one scene, or every combination of a list, kept as they come, and resumed."""
+
+import csv
 import math
 import os
 import signal
@@ -14,19 +17,25 @@ from engine.run.lockstep import Lockstep
 from engine.run.loops import count_evaluations
 from engine.scenes import DEFAULT_SCENE, SCENES
 from recordings.fields import EXTRA_NAMES
+from recordings.library import hold
 from recordings.recording import Recording
 from recordings.verification import verify
 from tests.tui.command_line import pendu
 from tests.tui.pty_lab import PENDU
 from tui.cli.fail_if import FIELDS
-from tui.commands.studies.run import SAMPLE_BYTES
+from tui.commands.studies.lists import partial_of
 from tui.words.numbers import about, file_size
+
+
+def rows_of(*arguments: object) -> dict[str, dict]:
+    """The numbers of each method."""
+    return {row["method"]: row for row in pendu("run", *arguments, "--json").json["methods"]}
 
 
 def test_json_has_the_fields_of_the_design_and_the_numbers_of_the_engine():
     answer = pendu("run", "--time", 10, "--json").json
     assert answer.keys() == {"schema", "scene", "time", "steps", "wall_seconds", "methods"}
-    assert (answer["schema"], answer["time"], answer["steps"]) == ("pendu.run/1", 10.0, 200)
+    assert (answer["time"], answer["steps"]) == (10.0, 200)
     lockstep = Lockstep(DEFAULT_SCENE)
     lockstep.advance(200)
     plain = set(FIELDS) - {"log_energy_error", "max_invariant_error", *EXTRA_NAMES}
@@ -34,35 +43,31 @@ def test_json_has_the_fields_of_the_design_and_the_numbers_of_the_engine():
         answer["methods"], USUAL_CAST, lockstep.sample().readings, strict=True
     ):
         assert told.keys() == {"method", "verdict", "progress", *plain}
-        assert told["method"] == method.key
-        assert (told["theta"], told["max_energy_error"]) == (
-            reading.theta,
-            reading.max_energy_error,
-        )
+        assert (told["method"], told["theta"]) == (method.key, reading.theta)
+        assert told["max_energy_error"] == reading.max_energy_error
 
 
 def test_a_chaotic_method_has_its_lyapunov_number():
-    chaos = ("run", "--theta", "0.3", "--h", "0.654514", "--time", 200)
-    symplectic = pendu(*chaos, "--json").json["methods"][1]
+    chaos = ("--theta", "0.3", "--h", "0.654514", "--time", 200)
+    symplectic = rows_of(*chaos)["symplectic_euler"]
     assert symplectic["verdict"] == "chaotic"
     assert 0.01 < symplectic["lyapunov_per_second"] * 0.654514 < 2
     seconds = about(math.log(10) / symplectic["lyapunov_per_second"])
-    assert (
-        f"Symplectic Euler is chaotic: nearby starts separate tenfold every {seconds}.\n"
-        in pendu(*chaos).out
-    )
+    words = f"Symplectic Euler is chaotic: nearby starts separate tenfold every {seconds}.\n"
+    assert words in pendu("run", *chaos).out
 
 
 def test_the_table_shows_which_method_gains_conserves_and_loses_energy():
-    lines = pendu("run", "--time", 60).out.splitlines()
-    for label, verdict in [
-        ("Explicit Euler", "grows"),
-        ("Symplectic Euler", "bounded"),
-        ("Velocity Verlet", "bounded"),
-        ("RK4", "loses"),
-    ]:
-        line = next(line for line in lines if line.startswith(label))
+    out = pendu("run", "--time", 60).out
+    for label, verdict in zip(
+        [method.label for method in USUAL_CAST],
+        ["grows", "bounded", "bounded", "loses"],
+        strict=True,
+    ):
+        line = next(line for line in out.splitlines() if line.startswith(label))
         assert verdict in line
+    assert "Explicit Euler went over the top at 7.15 s" in out
+    assert out.count("over the top") == 1
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -71,27 +76,17 @@ def test_every_scene_runs_and_its_json_has_no_nan(name):
 
 
 @pytest.mark.parametrize(
-    "start",
-    [
-        ("--omega", "1e8"),
-        ("--theta", "1e6rad"),
-        ("--h", "15.97"),
-        ("--theta", "1e-300"),
-        ("--theta", "0"),
-    ],
+    "start", ["--omega=1e8", "--theta=1e6rad", "--h=15.97", "--theta=1e-300", "--theta=0"]
 )
 def test_extreme_but_legal_starts_neither_crash_nor_print_nan(start):
-    assert pendu("run", *start, "--time", "500", "--json").code == 0
-    out = pendu("run", *start, "--time", "500").out
+    assert pendu("run", start, "--time", "500", "--json").code == 0
+    out = pendu("run", start, "--time", "500").out
     assert "nan" not in out.replace("nance", "")
     assert "inf" not in out
 
 
 def test_evaluations_that_vary_are_counted():
-    rows = {
-        row["method"]: row
-        for row in pendu("run", "--scene", "halving", "--time", "20", "--json").json["methods"]
-    }
+    rows = rows_of("--scene", "halving", "--time", "20")
     scene = SCENES["halving"]
     start = scene.theta, scene.omega
     for method in scene.cast:
@@ -101,29 +96,24 @@ def test_evaluations_that_vary_are_counted():
 
 
 def test_a_diverged_method_is_reported_with_its_time():
-    arguments = (
-        "run",
-        "--theta",
-        "1e-150",
-        "--time",
-        "2000",
-        "--methods",
-        "explicit_euler",
-    )  # so small that its growth overflows any relative error
-    euler = pendu(*arguments, "--json").json["methods"][0]
+    # so small that its growth overflows any relative error
+    tiny = ("--theta", "1e-150", "--time", 2000, "--methods", "explicit_euler")
+    euler = rows_of(*tiny)["explicit_euler"]
     assert euler["theta_error"] is None
     assert 0 < euler["diverged_at"] < 2000
     assert euler["force_evaluations"] == round(euler["diverged_at"] / DEFAULT_SCENE.h)
-    assert f"diverged at {euler['diverged_at']:g} s" in pendu(*arguments).out
+    assert f"diverged at {euler['diverged_at']:g} s" in pendu("run", *tiny).out
 
 
 def test_a_recording_has_the_same_bytes_each_time_and_verifies(tmp_path):
     one, two = tmp_path / "one.mcap", tmp_path / "two.mcap"
     for path in (one, two):
-        assert pendu("run", "--scene", "spin", "--time", 5, "--record", path).code == 0
+        told = pendu("run", "--scene", "spin", "--time", 5, "--record", path)
+        assert told.err == f"pendu-tui: recorded 5 s, {file_size(path.stat().st_size)}: {path}\n"
     assert one.read_bytes() == two.read_bytes()
-    assert verify(one).identical
-    assert verify(one).complete
+    result = verify(one)
+    assert result.identical
+    assert result.complete
 
 
 def test_samples_are_as_far_apart_as_asked(tmp_path):
@@ -139,123 +129,228 @@ def test_a_recording_is_not_overwritten_unless_by_force(tmp_path):
     assert path.read_bytes() == b"precious"
     assert pendu("run", "--time", 1, "--record", path, "--force").code == 0
     assert verify(path).identical
-
-
-def test_the_size_of_a_large_recording_is_known_before_it_is_made(tmp_path):
-    path, steps = tmp_path / "run.mcap", 4000
-    told = pendu("run", "--time", steps * DEFAULT_SCENE.h, "--record", path).err  # it is not large
-    assert told == f"pendu-tui: recorded 200 s, {file_size(path.stat().st_size)}: {path}\n"
-    assert steps * SAMPLE_BYTES == pytest.approx(path.stat().st_size, rel=0.1)
-
-
-@pytest.mark.parametrize("place", ["missing/run.mcap", "file/run.mcap"])
-def test_a_folder_that_cannot_be_written_is_one_sentence_and_exit_5(tmp_path, place):
-    (tmp_path / "file").touch()
-    assert pendu("run", "--time", 1, "--record", tmp_path / place).refused(5, str(tmp_path))
-    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+    missing = tmp_path / "missing" / "run.mcap"
+    assert pendu("run", "--time", 1, "--record", missing).refused(5, str(tmp_path))
 
 
 @pytest.mark.parametrize(
-    "arguments",
+    ("arguments", "words"),
     [
-        ("--h", "0"),
-        ("--theta", "abc"),
-        ("--scene", "drfit"),
-        ("--time", "0"),
-        ("--time", "nan"),
-        ("--time", "0.01"),
-        ("--time", "1e10"),
-        ("--sample-every", "0"),
-        ("--fail-if", "rk4.theta"),
-        ("--fail-if", "rk5.theta > 1"),
+        (("--h", "0"), "h"),
+        (("--theta", "abc"), "abc"),
+        (("--scene", "drfit"), "drift"),
+        (("--length", "-1"), "length"),
+        (("--time", "nan"), "above zero"),
+        (("--time", "0.01"), "shorter than one step"),
+        (("--time", "1e10"), "out of range"),
+        (("--sample-every", "0"), "count"),
+        (("--fail-if", "rk5.theta > 1"), "rk5"),
+        ((), "--time is missing"),
     ],
 )
-def test_bad_input_is_one_sentence_and_exit_2_and_nothing_is_written(tmp_path, arguments):
-    path = tmp_path / "run.mcap"
-    assert pendu("run", "--time", "1", "--record", path, *arguments).refused(2)
+def test_bad_input_is_one_sentence_and_exit_2_and_nothing_is_written(tmp_path, arguments, words):
+    assert pendu("run", "--record", tmp_path / "run.mcap", *arguments).refused(2, words)
     assert not list(tmp_path.iterdir())
 
 
 def test_a_gate_that_holds_is_exit_1_and_the_numbers_are_printed():
-    outcome = pendu(
-        "run", "--time", 10, "--fail-if", "explicit_euler.max_energy_error > 1", "--json"
-    )
+    expression = "explicit_euler.max_energy_error > 1"
+    outcome = pendu("run", "--time", 10, "--fail-if", expression, "--json")
     assert outcome.code == 1
-    assert outcome.err.startswith(
-        "pendu-tui: the check failed: explicit_euler.max_energy_error > 1 ("
-    )
+    assert outcome.err.startswith(f"pendu-tui: the check failed: {expression} (")
     assert outcome.err.endswith("is 5.54)\n")
     assert outcome.json["methods"][0]["max_energy_error"] > 1
 
 
-def test_a_gate_may_ask_for_the_verdict():
-    assert pendu("run", "--time", 100, "--fail-if", "rk4.verdict == loses").code == 1
-    assert pendu("run", "--time", 100, "--fail-if", "velocity_verlet.verdict != bounded").code == 0
-    assert pendu("run", "--time", 1, "--fail-if", "rk4.verdict == 'too early'").code == 1
+@pytest.mark.parametrize(
+    ("time", "expression", "code"),
+    [
+        (100, "rk4.verdict == loses", 1),
+        (100, "velocity_verlet.verdict != bounded", 0),
+        (1, "rk4.verdict == 'too early'", 1),
+    ],
+)
+def test_a_gate_may_ask_for_the_verdict(time, expression, code):
+    assert pendu("run", "--time", time, "--fail-if", expression).code == code
 
 
 @pytest.mark.skipif(not available(), reason="Numba is not installed")
 def test_compiled_and_plain_runs_print_the_same_numbers(monkeypatch):
     monkeypatch.setattr("engine.run.compiled.COMPILED_FROM", 1)
-    arguments = ("run", "--scene", "near-separatrix", "--time", 20, "--json")
-    compiled, plain = pendu(*arguments).json, pendu(*arguments, "--no-compiled").json
-    assert compiled["methods"] == plain["methods"]
+    arguments = ("--scene", "near-separatrix", "--time", 20)
+    assert rows_of(*arguments) == rows_of(*arguments, "--no-compiled")
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_run_that_is_stopped_finishes_its_recording(tmp_path, number):
     path = tmp_path / "run.mcap"
-    arguments = ["run", "--time", "1e7", "--no-compiled", "--record", str(path)]
-    process = subprocess.Popen(
-        [*PENDU, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    code, out, err = stopped(
+        *("--time", "1e7", "--no-compiled", "--record", str(path)),
+        number=number,
+        part=Path(f"{path}.part"),
+        bytes=100_000,
     )
-    part = Path(f"{path}.part")
-    deadline = time.monotonic() + 60  # s; a second is usual
-    while not (part.exists() and part.stat().st_size > 100_000) and time.monotonic() < deadline:
-        time.sleep(0.02)
-    os.kill(process.pid, number)
-    out, err = process.communicate(timeout=60)
-    assert process.returncode == 130
-    assert "--sample-every 320 would reduce it to 200 MB." in err
+    assert code == 130
     assert "pendu-tui: interrupted at t = " in err
     assert "RK4" in out  # what was done is told
     result = verify(path)
     assert result.complete
     assert result.identical
-    assert not part.exists()
+    assert [path] == list(tmp_path.iterdir())
 
 
-def test_a_method_that_went_over_the_top_is_named_with_its_time():
-    text = pendu("run", "--time", 10).out
-    assert "Explicit Euler went over the top at 7.15 s" in text
-    assert text.count("over the top") == 1
+def stopped(*arguments: str, number: int, part: Path, bytes: int) -> tuple[int, str, str]:
+    """Send a signal to a run once a file has so many bytes; return its code and what it printed."""
+    pipe = subprocess.PIPE
+    process = subprocess.Popen([*PENDU, "run", *arguments], stdout=pipe, stderr=pipe, text=True)
+    deadline = time.monotonic() + 60  # s; a second is usual
+    while not (part.exists() and part.stat().st_size >= bytes):
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+    time.sleep(0.5)
+    os.kill(process.pid, number)
+    out, err = process.communicate(timeout=60)
+    return process.returncode, out, err
 
 
 def test_a_bob_on_a_spring_has_the_energy_in_its_spring_and_nothing_else_has():
-    rows = {
-        row["method"]: row
-        for row in pendu("run", "--scene", "stiff-slow", "--time", "5", "--json").json["methods"]
-    }
+    rows = rows_of("--scene", "stiff-slow", "--time", "5")
     assert rows["imex_euler"]["spring_energy"] < 1e-4 < rows["rk4"]["spring_energy"] < 0.1
     assert rows["implicit_midpoint"]["spring_energy"] == pytest.approx(1, abs=0.1)
-    others = pendu("run", "--time", "1", "--json").json["methods"]
-    assert not {"spring_energy", "log_energy_error"} & set(others[0])
+    assert not {"spring_energy", "log_energy_error"} & rows_of("--time", "1")["rk4"].keys()
+    assert "z = h·omega_s = 1\n" in pendu("run", "--scene", "stiff-slow", "--time", "1").out
 
 
 def test_with_friction_errors_are_logarithms_of_the_ratio_to_the_true_energy():
-    rows = pendu("run", "--scene", "damped", "--time", "5", "--json").json["methods"]
-    assert rows[0]["log_energy_error"] > 0.3 > abs(rows[3]["log_energy_error"])
-    text = pendu("run", "--scene", "damped", "--time", "5").out
+    damped = ("--scene", "damped", "--time", "5")
+    errors = [row["log_energy_error"] for row in rows_of(*damped).values()]
+    assert errors[0] > 0.3 > abs(errors[3])
+    text = pendu("run", *damped).out
     assert "ln(E/E_true)" in text
     assert "energy error" not in text
 
 
-def test_the_step_of_a_stiff_scene_is_given_in_units_of_its_springs_frequency():
-    assert "z = h·omega_s = 1\n" in pendu("run", "--scene", "stiff-slow", "--time", "1").out
+LIST = ("run", "--theta", "30deg,pi/2", "--h", "50ms:0.1:2", "--time", 2, "--methods", "verlet,rk4")
 
 
-def test_other_mistakes_are_told_before_a_missing_time():
-    assert pendu("run").refused(2, "--time is missing")
-    assert pendu("run", "--fail-if", "rk5.verdict == grows").refused(2, "rk5")
-    assert pendu("run", "--length", "-1").refused(2, "length")
+@pytest.fixture
+def whole(tmp_path):
+    """The bytes of a file with all rows of the list."""
+    path = tmp_path / "whole.csv"
+    assert pendu(*LIST, "-o", path).code == 0
+    return path.read_bytes()
+
+
+@pytest.fixture
+def part(tmp_path):
+    """The rows of some.csv that are done."""
+    return partial_of(tmp_path / "some.csv")
+
+
+def resumed(part: Path, *more: object):
+    return pendu(*LIST, *more, "-o", part.with_suffix(""), "--resume")
+
+
+def test_every_combination_is_run_and_its_rows_are_those_of_a_single_run():
+    found = list(csv.DictReader(pendu(*LIST, "--csv").out.splitlines()))
+    starts = [(row["start_theta"], row["h"], row["method"]) for row in found]
+    assert len(set(starts)) == len(starts) == 2 * 2 * 2
+    alone = ("--theta", "90deg", "--h", 0.1, "--time", 2, "--methods", "rk4", "--csv")
+    (single,) = csv.DictReader(pendu("run", *alone).out.splitlines())
+    assert single.items() <= found[-1].items()
+
+
+def test_a_table_has_a_column_for_each_number_that_varies():
+    head, *lines = pendu(*LIST).out.splitlines()
+    assert head.split()[:3] == ["start_theta", "h", "method"]
+    assert len(lines) == 8
+
+
+def test_a_file_has_the_rows_of_stdout_and_nothing_else_is_left(whole, tmp_path):
+    assert whole.decode() == pendu(*LIST, "--csv").out
+    assert [each.name for each in tmp_path.iterdir()] == ["whole.csv"]
+
+
+@pytest.mark.parametrize("cut", [0, 40, 600, 1500])
+def test_what_was_interrupted_is_resumed_to_the_same_bytes(cut, whole, part):
+    part.write_bytes(whole[:cut])
+    assert pendu(*LIST, "-o", part.with_suffix("")).refused(5, "--resume", "--force")
+    assert resumed(part).code == 0
+    assert part.with_suffix("").read_bytes() == whole
+    assert not part.exists()
+
+
+@pytest.mark.parametrize(
+    "other", [("--time", 3), ("--h", "50ms:0.2:2"), ("--methods", "rk4"), ("--h", 0.05)]
+)
+def test_rows_of_other_arguments_are_not_resumed(other, whole, part):
+    part.write_bytes(whole)
+    assert resumed(part, *other).refused(2, "other arguments")
+    assert part.read_bytes() == whole
+
+
+def test_rows_that_other_code_computed_are_not_resumed(whole, part):
+    part.write_bytes(whole.replace(b"bounded", b"chaotic").replace(b"early", b"late"))
+    assert resumed(part).refused(2, "other numbers")
+
+
+def test_a_file_that_somebody_writes_is_left_alone(part):
+    with part.open("wb") as file:
+        hold(file)
+        assert resumed(part).refused(5, "another process")
+
+
+@pytest.mark.slow
+def test_ctrl_c_keeps_the_rows_that_are_done(part):
+    short = ("--h", "0.01:0.02:2000", "--time", "2", "-o", str(part.with_suffix("")))
+    code, _, err = stopped(*short, number=signal.SIGINT, part=part, bytes=2000)
+    assert code == 130
+    assert "--resume goes on" in err
+    assert part.read_bytes().endswith(b"\n")
+    part.unlink()
+    endless = ("--h", "0.05,0.1", "--time", "1e8", "--no-compiled", *short[4:])
+    code, _, err = stopped(*endless, number=signal.SIGINT, part=part, bytes=0)
+    assert (code, err) == (130, "pendu-tui: interrupted.\n")
+    assert not list(part.parent.iterdir())
+
+
+def test_the_gate_is_that_of_every_run(tmp_path):
+    path = tmp_path / "report.xml"
+    outcome = pendu(*LIST, "--fail-if", "rk4.max_energy_error > 1e-4", "--junit", path)
+    assert outcome.code == 1
+    assert "in 2 of 4 runs, first at theta 0.523599, h 0.1" in outcome.err
+    assert path.read_text().count("<failure") == 2
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--record", "x.mcap"), ("--record", "one run")),
+        (("--resume",), ("-o FILE.csv",)),
+        (("-o", "x.csv", "--resume", "--fail-if", "rk4.energy > 1"), ("leave out",)),
+        (("--length", "1,1e9"), ("length",)),
+        (("--h", "0.05,5"), ("--time 2", "5 s")),
+    ],
+)
+def test_what_a_list_cannot_do_is_one_sentence(arguments, words):
+    assert pendu(*LIST, *arguments).refused(2, *words)
+
+
+ENDLESS = """\
+def endless(force, phase, h):
+    theta, omega = phase
+    for step in range(100_000):
+        omega = omega + h * force(theta)
+        theta = theta + h * omega
+        yield theta, omega
+    while True: pass
+"""
+
+
+@pytest.mark.slow
+def test_a_step_that_does_not_end_ends_a_list_in_other_processes(tmp_path):
+    (tmp_path / "mine.py").write_text(ENDLESS)
+    own = ("--method", f"{tmp_path}/mine.py:endless", "--methods", "endless")
+    outcome = pendu("run", *own, "--h", "0.001,0.002", "--time", 200, "--csv", "--workers", 2)
+    assert outcome.refused(2, "line 7", "takes more than 3 s for a step")

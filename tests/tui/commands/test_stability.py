@@ -1,3 +1,5 @@
+"""`pendu-tui stability`: tables, maps, and with --section the portrait of a method's own map."""
+
 import csv
 import io
 import math
@@ -10,11 +12,11 @@ from engine.scenes import SCENES, Scene
 from engine.stability.grid import Grid
 from engine.stability.outcomes import FATES, UNKNOWN
 from engine.stability.study import amplitude
-from tests.tui.command_line import pendu
+from tests.tui.command_line import own_method, pendu
 from tui.cli.errors import Exit, UserError
 from tui.cli.workers import Workers
 
-SMALL = ("--steps", 300, "--z-values", "0.1:3:12", "--theta-values", "0.5,2")
+SMALL = ("stability", "--steps", 300, "--z-values", "0.1:3:12", "--theta-values", "0.5,2")
 KEYS = [method.key for method in USUAL_CAST]
 
 
@@ -28,98 +30,81 @@ def stops_after_5_z(monkeypatch: pytest.MonkeyPatch, error: BaseException) -> No
     monkeypatch.setattr(Workers, "map", map_)
 
 
+def line_of(out: str, *words: str) -> list[str]:
+    (line,) = (line for line in out.splitlines() if all(word in line for word in words))
+    return line.split()
+
+
 def test_the_tables_show_theory_next_to_measurement():
-    lines = pendu("stability", *SMALL).out.splitlines()
-    (linear,) = (line.split() for line in lines if line.startswith("RK4") and "°" not in line)
-    assert linear[1:3] == ["2.828427125", "2.828427125"]
-    (row,) = (
-        line.split()[2:]
-        for line in lines
-        if line.startswith("Velocity Verlet") and "28.65°" in line
-    )
+    out = pendu(*SMALL).out
+    assert line_of(out, "RK4", "2.82")[1:3] == ["2.828427125", "2.828427125"]
     # The scene's z = 0.1566 holds; the first rung beyond the limit is 2.209, 14.1 times that.
-    assert row == ["28.65°", "2.473", "2.209", "0.705", "over", "the", "top", "14.1"]
+    row = ["28.65°", "2.473", "2.209", "0.705", "over", "the", "top", "14.1"]
+    assert line_of(out, "Velocity Verlet", "28.65°")[2:] == row
 
 
 def test_the_limit_for_a_tenth_of_the_steps_shows_how_it_moves_with_them():
-    asked = ("stability", "--methods", "velocity_verlet,rk4", "--theta-values", "2")
-    long, short = (
-        pendu(*asked, "--steps", steps, "--json").json["pendulum"] for steps in (2000, 200)
-    )
-    assert [row["first_failure_z_early"] for row in long] == [
-        row["first_failure_z"] for row in short
-    ]
-    assert (
-        long[1]["first_failure_z"] < long[1]["first_failure_z_early"]
-    )  # RK4 loses more in more steps
+    asked = ("stability", "--methods", "velocity_verlet,rk4", "--theta-values", "2", "--json")
+    long, short = (pendu(*asked, "--steps", steps).json["pendulum"] for steps in (2000, 200))
+    early = [row["first_failure_z_early"] for row in long]
+    assert early == [row["first_failure_z"] for row in short]
+    assert long[1]["first_failure_z"] < early[1]  # RK4 loses more in more steps
 
 
 def test_a_swing_that_is_never_lost_has_null_and_a_hyphen():
-    few = ("--steps", 5, "--z-values", "0.01,0.02", "--theta-values", "1", "--h", "0.005")
-    assert {
-        row["first_failure_z"] for row in pendu("stability", *few, "--json").json["pendulum"]
-    } == {None}
-    assert pendu("stability", *few).out.splitlines()[-1].split()[2:] == [*"-----"]
+    few = ("stability", "--steps", 5, "--z-values", "0.01,0.02", "--theta-values", 1, "--h", 0.005)
+    rows = pendu(*few, "--json").json["pendulum"]
+    assert {row["first_failure_z"] for row in rows} == {None}
+    assert pendu(*few).out.splitlines()[-1].split()[2:] == [*"-----"]
 
 
-def test_the_map_as_json_repeats_the_engine():
-    grid = Grid(np.array([0.5, 2.0]), np.linspace(0.1, 3, 12), 300)
-    expected = grid.cells()
-    answer = pendu("stability", *SMALL, "--json", "--map").json["map"]
-    assert answer["theta"] == [0.5, 2.0]
-    assert answer["z"] == pytest.approx(grid.z.tolist(), rel=1e-15)
-    for index, told in enumerate(answer["methods"]):
-        assert told["method"] == KEYS[index]
-        assert told["steps_survived"] == expected["steps"][:, index].tolist()
-        assert [[FATES.index(fate) for fate in row] for row in told["fate"]] == expected["fate"][
-            :, index
-        ].tolist()
-
-
-@pytest.mark.parametrize("to_file", [False, True])
-def test_csv_has_a_line_for_each_amplitude_or_with_the_map_for_each_swing(to_file, tmp_path):
-    def rows(*more: str) -> list[dict[str, str]]:
-        file = tmp_path / f"rows{len(more)}.csv"
-        out = pendu("stability", *SMALL, *more, *(("-o", file) if to_file else ("--csv",))).out
-        return list(csv.DictReader(io.StringIO(file.read_text() if to_file else out)))
-
-    assert len(rows()) == 4 * 2
-    assert len(rows("--map")) == 4 * 12 * 2
-    assert {row["fate"] for row in rows("--map", "--force")} <= set(FATES)
-
-
-def test_the_map_is_drawn_in_characters_where_there_is_no_colour():
-    out = pendu("stability", *SMALL, "--map").out
-    assert "\x1b" not in out
-    assert all(title in out for title in ("1 e Explicit Euler", "3 v Velocity Verlet", "4 r RK4"))
-    assert "| linear limit" in out
-
-
-def test_a_map_in_a_file_is_the_map(tmp_path):
+def test_the_map_as_json_and_as_file_repeats_the_engine(tmp_path):
     file = tmp_path / "map.npz"
-    assert pendu("stability", *SMALL, "-o", file).code == 0
+    assert pendu(*SMALL, "-o", file).code == 0
     with np.load(file) as map_:
         assert map_["methods"].tolist() == KEYS
         assert map_["fates"].tolist() == list(FATES)
         expected = Grid(map_["theta"], map_["z"], int(map_["steps"])).cells()
         assert map_["cells"].tobytes() == expected.tobytes()
+        z = map_["z"].tolist()
     assert list(tmp_path.iterdir()) == [file]
+    answer = pendu(*SMALL, "--json", "--map").json["map"]
+    assert (answer["theta"], answer["z"]) == ([0.5, 2.0], z)
+    fates = np.array(FATES)[expected["fate"]]
+    for index, told in enumerate(answer["methods"]):
+        assert told["method"] == KEYS[index]
+        assert told["steps_survived"] == expected["steps"][:, index].tolist()
+        assert told["fate"] == fates[:, index].tolist()
+
+
+@pytest.mark.parametrize(("more", "lines"), [((), 4 * 2), (("--map",), 4 * 12 * 2)])
+def test_csv_has_a_line_for_each_amplitude_or_with_the_map_for_each_swing(more, lines, tmp_path):
+    out = pendu(*SMALL, *more, "--csv").out
+    assert len(list(csv.DictReader(io.StringIO(out)))) == lines
+    pendu(*SMALL, *more, "-o", tmp_path / "rows.csv")
+    assert (tmp_path / "rows.csv").read_text() == out
+
+
+def test_the_map_is_drawn_in_characters_where_there_is_no_colour():
+    out = pendu(*SMALL, "--map").out
+    assert "\x1b" not in out
+    titles = ("1 e Explicit Euler", "3 v Velocity Verlet", "4 r RK4", "| linear limit")
+    assert all(title in out for title in titles)
 
 
 def test_ctrl_c_keeps_the_part_of_a_map_that_is_done(monkeypatch, tmp_path):
     stops_after_5_z(monkeypatch, KeyboardInterrupt())
-    file = tmp_path / "map.npz"
-    outcome = pendu("stability", *SMALL, "-o", file)
+    outcome = pendu(*SMALL, "-o", tmp_path / "map.npz")
     assert outcome.code == 130
     assert "5 of 12 z" in outcome.err
-    with np.load(file) as map_:
-        assert (map_["cells"]["fate"][:5] != UNKNOWN).all()
-        assert (map_["cells"]["fate"][5:] == UNKNOWN).all()
+    with np.load(tmp_path / "map.npz") as map_:
+        known = (map_["cells"]["fate"] != UNKNOWN).all(axis=(1, 2))
+        assert known.tolist() == [True] * 5 + [False] * 7
 
 
 def test_lost_workers_end_with_exit_3_and_what_is_done_is_kept(monkeypatch):
     stops_after_5_z(monkeypatch, UserError("the workers are lost.", Exit.INPUT_UNREADABLE))
-    outcome = pendu("stability", *SMALL, "--json")
+    outcome = pendu(*SMALL, "--json")
     assert (outcome.code, outcome.json["interrupted"]) == (3, True)
     assert outcome.err == "pendu-tui: the workers are lost; 5 of 13 z are computed and kept.\n"
 
@@ -128,17 +113,16 @@ def test_lost_workers_end_with_exit_3_and_what_is_done_is_kept(monkeypatch):
     ("arguments", "words"),
     [
         (("--theta-values", "4"), ("amplitude 4", "3.14159")),
-        (("--theta-values", "abc"), ("abc", "angle")),
         (("--z-values", "nan"), ("z nan",)),
         (("--z-values", "3:1:10"), ("3:1:10", "FIRST:LAST:HOW_MANY")),
         (("--steps", "3000000000"), ("steps",)),
-        (("--json", "--csv"), ("not allowed",)),
         (("--workers", "2", "--dask", "tcp://x:1"), ("not allowed",)),
         (("--map", "--z-values", "0.1:3:3000", "--theta-values", "0.1:3:2000"), ("24008000",)),
-        (("--theta-values", "0.1:3:10001"), ("32523252",)),
+        (("--scene", "linear", "--map"), ("--map is about a pendulum",)),
         (("--section", "--csv"), (".svg",)),
-        (("-o", "map.txt"), ("--section",)),
-        (("--map", "--section"), ("not allowed",)),
+        (("--section", "--starts", "20000"), ("--starts 20000", "at most 10000")),
+        (("--section", "--steps", "200000"), ("--steps 200000", "at most 100000")),
+        (("-o", "map.jpg"), ("map.jpg", "map.svg")),
     ],
 )
 def test_impossible_values_are_refused_in_one_sentence(arguments, words):
@@ -146,30 +130,68 @@ def test_impossible_values_are_refused_in_one_sentence(arguments, words):
 
 
 def test_the_amplitude_of_a_scene_is_how_far_it_swings():
-    assert amplitude(Scene(theta=1.0)) == 1.0
-    assert amplitude(Scene(theta=-1.0)) == 1.0
+    assert amplitude(Scene(theta=1.0)) == amplitude(Scene(theta=-1.0)) == 1.0
     moving = Scene(theta=0.0, omega=2.0)  # omega²/2 = w0² (1 - cos amplitude)
     assert math.cos(amplitude(moving)) == pytest.approx(1 - 2 / moving.w0_squared, rel=1e-12)
-    assert amplitude(SCENES["spin"]) is None
-    assert amplitude(Scene(theta=0.0)) is None
+    assert amplitude(SCENES["spin"]) is amplitude(Scene(theta=0.0)) is None
 
 
 def test_of_the_linear_oscillator_there_are_the_lines_of_theory_and_a_sentence():
     out = pendu("stability", "--scene", "linear").out
     for method in USUAL_CAST:
-        (line,) = (line for line in out.splitlines() if line.startswith(method.label))
         limit = f"{method.linear_limit:.9f}" if method.linear_limit else "none"
-        assert line.split()[-3:-1] == [limit, limit]
+        assert line_of(out, method.label)[-3:-1] == [limit, limit]
     assert "°" not in out
     answer = pendu("stability", "--scene", "linear", "--json").json
     assert (answer["pendulum"], answer["map"]) == ([], None)
-    assert [row["limit_z"] for row in answer["linear"]] == pytest.approx(
-        [m.linear_limit for m in USUAL_CAST], abs=1e-9
-    )
 
 
 def test_a_start_that_is_no_amplitude_is_given_one():
     out = pendu("stability", "--theta", "200deg", "--methods", "verlet", "--steps", 20).out
     assert "200 deg swings as far as one from rest at 160 deg" in out
-    (row,) = (line.split() for line in out.splitlines() if " 160° " in line)
+    row = line_of(out, " 160° ")
     assert float(row[-1]) == pytest.approx(float(row[4]) / 0.1566, rel=2e-3)  # the margin
+
+
+def section(*arguments: object):
+    return pendu("stability", "--section", *arguments)
+
+
+ISLANDS = ("--theta", "1.25", "--h", "0.348011")  # at the 1:6 resonance of velocity Verlet
+
+
+def test_the_portrait_is_as_wide_as_the_terminal_and_the_table_has_the_orbits(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "90")
+    lines = section(*ISLANDS, "--starts", 40).out.splitlines()
+    end = next(number for number, line in enumerate(lines) if line.startswith("-pi"))
+    assert 80 < max(map(len, lines[1 : end + 1])) <= 90
+    rows = {line[:17].strip(): line[17:].split() for line in lines[end + 3 : -2]}
+    assert rows["Velocity Verlet"][:5] == ["islands", "1:6", "0.1666667", "6", "1:6"]
+    assert rows["RK4"][:2] == ["spirals", "inwards"]
+    assert rows["Explicit Euler"][:5] == ["spirals", "outwards", "-", "-", "-"]
+
+
+def test_json_has_the_rotation_numbers_and_lyapunov_numbers_of_the_start():
+    def verlet(*start: str) -> dict:
+        answer = section(*start, "--json").json
+        (row,) = (row for row in answer["orbits"] if row["method"] == "velocity_verlet")
+        return row | {"z": answer["z"]}
+
+    islands = verlet(*ISLANDS)
+    assert islands["rotation"] == pytest.approx(1 / 6, abs=1e-9)
+    assert (islands["fraction"], islands["island"], islands["chaotic"]) == ("1:6", True, False)
+    assert 0 < islands["lyapunov"] < 0.01
+    small = verlet("--theta", "1e-4", "--h", "0.2")
+    turn = 2 * math.asin(small["z"] / 2) / math.tau
+    assert small["rotation"] == pytest.approx(turn, abs=1e-6)
+    chaotic = verlet("--theta", "2.3", "--h", "0.351203")
+    assert (chaotic["rotation"], chaotic["fraction"], chaotic["chaotic"]) == (None, None, True)
+
+
+def test_one_may_draw_a_method_of_ones_own(tmp_path):
+    own = ("--method", own_method(tmp_path))
+    theirs, mine = section(*ISLANDS, *own, "--methods", "symplectic_euler", "--json").json["orbits"]
+    assert (theirs["method"], mine["method"]) == ("symplectic_euler", "mine")
+    assert {**mine, "method": ""} == {**theirs, "method": ""}  # the same formulas
+    few = ("--starts", 40, "--steps", 1000)
+    assert section(*few, *own, "--methods", "mine").out.startswith("Mine, h")

@@ -9,25 +9,21 @@ import argparse
 import csv
 import io
 import os
-import sys
 from collections.abc import Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import partial
 from itertools import islice
 from pathlib import Path
-from typing import IO, Any
+from typing import IO
 
 from engine.methods.own import OwnMethodError
-from engine.run import compiled, loops
-from engine.run.lockstep import Lockstep
 from engine.scenes import Scene
 from recordings.errors import printable, writing
-from recordings.files import check_target, is_stream
+from recordings.files import is_stream
 from recordings.files import publish as give_name
 from recordings.headless import simulate, steps_for
 from recordings.library import hold, in_use
-from tui.cli.errors import Exit, UserError
+from tui.cli.errors import Exit, UserError, explained
 from tui.cli.fail_if import Gate
 from tui.cli.junit import Check, conclude
 from tui.cli.output import progress, warn
@@ -35,11 +31,15 @@ from tui.cli.report import Column, Report, publish
 from tui.cli.scene import SceneList
 from tui.cli.time_limit import limited_steps
 from tui.cli.workers import workers_of
-from tui.commands.studies.reports.run import columns_of, known, rows_of
-
-MAX_BATCH = 100_000  # steps, a fifth of a second; Ctrl+C is noticed between batches
-
-Row = dict[str, Any]
+from tui.commands.studies.reports.run import (
+    MAX_BATCH,
+    Row,
+    columns_of,
+    for_csv,
+    for_json,
+    lockstep_of,
+    rows_of,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,15 +54,8 @@ class Task:
     @property
     def start(self) -> Row:
         """The fields that its rows begin with."""
-        numbers = {
-            f"start_{name}" if name in ("theta", "omega") else name: value
-            for name, value in self.scene.numbers.items()
-        }
+        numbers = {_column(name): value for name, value in self.scene.numbers.items()}
         return {"model": self.scene.model, **numbers, "time": self.time}
-
-    @property
-    def steps(self) -> int:
-        return steps_for(self.scene, self.time)
 
     def rows(self) -> list[Row]:
         """Run and return a row for each method."""
@@ -70,62 +63,42 @@ class Task:
         with limited_steps():  # in a worker, too
             for sample in simulate(self.scene, self.time, None, MAX_BATCH, lockstep=lockstep):
                 last = sample
-        return [self.start | row for row in rows_of(self.scene, last, lockstep, stopped=False)]
+        return [self.start | row for row in rows_of(self.scene, last, lockstep, is_whole=True)]
 
 
-def lockstep_of(scene: Scene, expected_steps: int, is_compiled: bool) -> Lockstep:
-    """Return the lockstep of a run, in machine code where that pays."""
-    tiered = partial(compiled.TieredLoops, expected_steps=expected_steps)
-    return Lockstep(scene, loops=tiered if is_compiled else loops.PlainLoops, judged=True)
+def _column(name: str) -> str:
+    return f"start_{name}" if name in ("theta", "omega") else name
 
 
+@dataclass(frozen=True, slots=True)
 class Tasks:
     """The runs of a list, in order."""
 
-    def __init__(self, scenes: SceneList, time: float, is_compiled: bool) -> None:
-        self.scenes = scenes
-        self.time = time
-        hs = scenes.axes.get("h", [scenes.base.h])
-        each = sum(steps_for(scenes.base.altered(h=h), time) for h in hs)
-        self.steps = each * (len(scenes) // len(hs))
-        models = [name for name in scenes.axes if name not in ("theta", "omega", "h")]
-        self._same = self.steps if not models else 0
-        self._is_compiled = is_compiled
+    scenes: SceneList
+    time: float  # s
+    is_compiled: bool
 
     def __len__(self) -> int:
         return len(self.scenes)
 
     def __iter__(self) -> Iterator[Task]:
+        steps = 0  # loops are compiled for one model
+        if self.scenes.axes.keys() <= {"theta", "omega", "h"}:
+            corners = self.scenes.corners()
+            total = sum(steps_for(scene, self.time) for scene in corners)
+            steps = total * len(self) // len(corners)
         for scene in self.scenes:
-            yield Task(scene, self.time, self._same, self._is_compiled)
+            yield Task(scene, self.time, steps, self.is_compiled)
 
 
-class Rows:
-    """Where the rows of a list go: a stream of CSV, or memory."""
-
-    def __init__(self, out: IO[bytes] | None = None) -> None:
-        self.kept: list[Row] = []  # without a stream
-        self.done = 0  # runs
-        self._out = out
-
-    def add(self, rows: Sequence[Row]) -> None:
-        """Take the rows of a run; in a stream, they can be read at once."""
-        if self._out is None:
-            self.kept += rows
-        else:
-            self._out.write(text_of(rows, with_head=not self.done))
-            self._out.flush()
-        self.done += 1
-
-
-def text_of(rows: Sequence[Row], with_head: bool) -> bytes:
+def _text_of(rows: Sequence[Row], with_head: bool) -> bytes:
     """Return rows as CSV; numbers read back the same, None is an empty field."""
     text = io.StringIO()
-    names = [name for name in rows[0] if name != "progress"]
-    writer = csv.DictWriter(text, names, lineterminator="\n", extrasaction="ignore")
+    records = for_csv(rows)
+    writer = csv.DictWriter(text, records[0], lineterminator="\n")
     if with_head:
         writer.writeheader()
-    writer.writerows(rows)
+    writer.writerows(records)
     return text.getvalue().encode()
 
 
@@ -134,27 +107,46 @@ def partial_of(path: Path) -> Path:
     return path.with_name(f"{path.name}.partial")
 
 
-@contextmanager
-def kept_rows(path: Path, tasks: Tasks, options: argparse.Namespace) -> Iterator[Rows]:
-    """Yield the rows of FILE.partial, which gets its name `path` once it has all of them.
+class Rows:
+    """The rows of the runs that are done, in memory or in a file."""
 
-    Raises DiskError if a name is taken, and UserError if what is to be resumed is not of these
-    tasks.
+    def __init__(self, file: IO[bytes] | None = None, done: int = 0) -> None:
+        self.kept: list[Row] = []
+        self.done = done  # runs
+        self._file = file
+
+    def add(self, rows: Sequence[Row]) -> None:
+        """Add the rows of a run; in a file, they can be read at once."""
+        if self._file is None:
+            self.kept += rows
+        else:
+            self._file.write(_text_of(rows, with_head=not self.done))
+            self._file.flush()
+        self.done += 1
+
+
+@contextmanager
+def _rows_of(tasks: Tasks, options: argparse.Namespace) -> Iterator[Rows]:
+    """Yield the rows, for CSV those of FILE.partial, which gets its name once it has all of them.
+
+    Raises UserError if the file is taken, or is to be resumed and not of these tasks.
     """
-    check_target(path, options.force)
+    path: Path | None = options.output
+    if path is None or path.suffix.lower() != ".csv" or is_stream(path):
+        yield Rows()
+        return
     part = partial_of(path)
-    if part.exists() and in_use(part):
+    is_there = part.exists()
+    if is_there and in_use(part):
         raise UserError(f"{printable(str(part))} is being written by another process.", Exit.DISK)
-    if part.exists() and not (options.resume or options.force):
+    if is_there and not (options.resume or options.force):
         raise UserError(
             f"{printable(str(part))} is there: --resume goes on with it, --force starts anew.",
             Exit.DISK,
         )
-    mode = "r+b" if part.exists() and options.resume else "w+b"
-    with writing(part), part.open(mode) as file:
+    with writing(part), part.open("r+b" if is_there and options.resume else "w+b") as file:
         hold(file)
-        rows = Rows(file)
-        rows.done = resumed(file, tasks)
+        rows = Rows(file, _resumed(file, tasks))
         yield rows
         if rows.done == len(tasks):
             os.fsync(file.fileno())
@@ -163,7 +155,7 @@ def kept_rows(path: Path, tasks: Tasks, options: argparse.Namespace) -> Iterator
             part.unlink()
 
 
-def resumed(file: IO[bytes], tasks: Tasks) -> int:
+def _resumed(file: IO[bytes], tasks: Tasks) -> int:
     """Return how many whole runs a file has, and cut it after them.
 
     Raises UserError if its rows are not of these tasks, or if the last run gives other numbers now.
@@ -175,19 +167,18 @@ def resumed(file: IO[bytes], tasks: Tasks) -> int:
     last: tuple[Task, bytes] | None = None
     for task in tasks:
         lines = [file.readline() for _ in task.scene.cast]
-        for method, line in zip(task.scene.cast, lines, strict=True):
-            begins = ",".join(str(value) for value in (*task.start.values(), method.key, ""))
-            if line.endswith(b"\n") and not line.startswith(begins.encode()):
-                raise UserError(f"{name} was begun with other arguments; {begins} is missing.")
         if not lines[-1].endswith(b"\n"):
             break
+        for method, line in zip(task.scene.cast, lines, strict=True):
+            begins = ",".join(map(str, (*task.start.values(), method.key, "")))
+            if not line.startswith(begins.encode()):
+                raise UserError(f"{name} was begun with other arguments; {begins} is missing.")
         end = file.tell()
         done += 1
         last = task, b"".join(lines)
-    else:
-        if file.readline():
-            raise UserError(f"{name} was begun with other arguments; it has more runs.")
-    if last is not None and text_of(last[0].rows(), with_head=True) != head + last[1]:
+    if done == len(tasks) and file.readline():
+        raise UserError(f"{name} was begun with other arguments; it has more runs.")
+    if last is not None and _text_of(last[0].rows(), with_head=True) != head + last[1]:
         raise UserError(
             f"the last run in {name} gives other numbers when it is repeated, so its method, this"
             " machine or pendu-tui has changed; start anew with --force."
@@ -197,68 +188,52 @@ def resumed(file: IO[bytes], tasks: Tasks) -> int:
     return done
 
 
-def run_list(scenes: SceneList, options: argparse.Namespace, gate: Gate | None) -> int:
+def run_list(scenes: SceneList, options: argparse.Namespace, gate: Gate | None) -> Exit:
     """Run every combination, and print or keep the rows."""
     tasks = Tasks(scenes, options.time, not options.no_compiled)
-    path: Path | None = options.output
-    into: AbstractContextManager[Rows] = nullcontext(Rows())
-    if path is not None and path.suffix.lower() == ".csv" and not is_stream(path):
-        into = kept_rows(path, tasks, options)
-    elif options.csv:
-        into = nullcontext(Rows(sys.stdout.buffer))
     checks: list[Check] = []
-    with into as rows:
-        ended = _fill(rows, tasks, options, gate, checks)
+    ended: UserError | None = None
+    with _rows_of(tasks, options) as rows:
+        rest = islice(tasks, rows.done, None)
+        try:
+            with workers_of(options) as workers, progress(f"{len(tasks):,} runs") as show:
+                for task, found in workers.map(_computed, rest):
+                    rows.add(found)
+                    show(rows.done, len(tasks))
+                    if gate:
+                        checks.append(_check(scenes, task, found, gate))
+        except (KeyboardInterrupt, UserError, OwnMethodError) as error:
+            ended = explained(error)
     if rows.kept:
         publish(_report(scenes, options.time, rows.kept, is_whole=ended is None), options)
-    if ended is not None:
-        if not rows.done:
-            raise ended
-        kept = f"{rows.done} of {len(tasks)} runs are done"
-        if path is not None and rows.done and not rows.kept:
-            kept += f" and kept in {printable(str(partial_of(path)))}; --resume goes on"
-        warn(f"{str(ended).rstrip('.')}: {kept}.")
-        return ended.code
-    return conclude(options, f"pendu-tui run, {len(tasks)} runs", checks)
-
-
-def _fill(
-    rows: Rows, tasks: Tasks, options: argparse.Namespace, gate: Gate | None, checks: list[Check]
-) -> UserError | None:
-    """Add the rows of all tasks that are not done; return why it ended early."""
-    rest = islice(tasks, rows.done, None)
-    steps = sum(each.steps for each in islice(tasks, rows.done))
-    names = list(tasks.scenes.axes)
-    try:
-        with workers_of(options) as workers, progress(f"{len(tasks):,} runs") as show:
-            for task, found in workers.map(_computed, rest):
-                rows.add(found)
-                if gate:
-                    where = ", ".join(f"{name} {task.scene.numbers[name]:g}" for name in names)
-                    verdicts = ", ".join(f"{row['method']} {row['verdict']}" for row in found)
-                    failure = gate({row["method"]: row for row in found})
-                    checks.append(Check(where, verdicts, failure or None))
-                steps += task.steps
-                show(steps, tasks.steps)
-    except KeyboardInterrupt:
-        return UserError("interrupted.", Exit.INTERRUPTED)
-    except (UserError, OwnMethodError) as error:
-        return UserError(str(error), getattr(error, "code", Exit.USAGE))
-    return None
+    if ended is None:
+        return conclude(options, f"pendu-tui run, {len(tasks)} runs", checks)
+    if not rows.done:
+        raise ended
+    kept = f"{rows.done} of {len(tasks)} runs are done"
+    if not rows.kept:
+        kept += f" and kept in {printable(str(partial_of(options.output)))}; --resume goes on"
+    warn(f"{str(ended).rstrip('.')}: {kept}.")
+    return ended.code
 
 
 def _computed(task: Task) -> tuple[Task, list[Row]]:
     return task, task.rows()
 
 
+def _check(scenes: SceneList, task: Task, rows: Sequence[Row], gate: Gate) -> Check:
+    where = ", ".join(f"{name} {task.scene.numbers[name]:g}" for name in scenes.axes)
+    verdicts = ", ".join(f"{row['method']} {row['verdict']}" for row in rows)
+    return Check(where, verdicts, gate({row["method"]: row for row in rows}) or None)
+
+
 def _report(scenes: SceneList, time: float, rows: Sequence[Row], is_whole: bool) -> Report:
     """Return the report of the runs that are done."""
-    varied = [name for name, axis in scenes.axes.items() if len(axis) > 1]
-    starts = [f"start_{name}" if name in ("theta", "omega") else name for name in varied]
+    starts = [_column(name) for name, axis in scenes.axes.items() if len(axis) > 1]
     return Report(
         name="runs",
         columns=[*(Column(name, name, ".6g") for name in starts), *columns_of(scenes.base)],
         rows=rows,
-        fields={"time": time, "runs": [known(row) for row in rows], "interrupted": not is_whole},
-        records=[{name: row[name] for name in row if name != "progress"} for row in rows],
+        fields={"time": time, "runs": for_json(rows), "interrupted": not is_whole},
+        records=for_csv(rows),
     )

@@ -1,10 +1,10 @@
 """Figures by Matplotlib, one column wide; the same input gives the same bytes."""
 
 import math
+from argparse import Namespace
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from importlib.util import find_spec
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from engine.methods import Cast
@@ -12,23 +12,26 @@ from engine.scenes import Scene
 from tui.cli.errors import UserError
 from tui.cli.files import check_free, whole_file
 from tui.cli.install import install_advice
-from tui.drawing.palette import PALETTES, inks
+from tui.drawing.palette import PALETTES, Palette, inks
 
 if TYPE_CHECKING:
+    from rich.text import Text
+
+    from engine.accuracy.study import Point
     from engine.phase_space.section import Points
     from engine.run.lockstep import Sample
     from engine.stability.grid import Grid
     from engine.stability.outcomes import Cells
-    from tui.commands.studies.reports.accuracy import Findings
+    from tui.drawing.picture import Picture
 
 SUFFIXES = (".svg", ".pdf", ".png")
 CM = 1 / 2.54  # inches
-WIDTH, HEIGHT = 8.5 * CM, 6.0 * CM  # a column of a journal
 MAX_PARTS = 400  # of a run; of each the largest error is drawn
 LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 2)))
-LOST = "#C8C8C8"
 STYLE = {
     "font.size": 7,
+    "axes.titlesize": 7,
+    "figure.labelsize": 7,
     "axes.linewidth": 0.5,
     "lines.linewidth": 0.9,
     "lines.markersize": 2.5,
@@ -43,30 +46,49 @@ STYLE = {
 NO_DATE = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {"Software": None}}
 
 
-def is_figure(path: Path | None) -> bool:
-    """Return whether a file is one for Matplotlib."""
-    return path is not None and path.suffix.lower() in SUFFIXES
+def lines_of(picture: "Picture", palette: Palette | None) -> "list[Text]":
+    """Return a picture for the terminal; without a palette only styles colour it."""
+    from rich.text import Text
+
+    lines = []
+    for row in picture.rows:
+        line = Text()
+        for text, ink in row:
+            if isinstance(ink, int):
+                line.append(text, palette and palette.colour(ink))
+            else:
+                line.append(text, ink)
+        line.rstrip()
+        lines.append(line)
+    return lines
 
 
-def check(path: Path, force: bool) -> None:
-    """Raise UserError if no figure can be made, DiskError if the name is taken."""
-    if find_spec("matplotlib") is None:
+def check_output(options: Namespace) -> bool:
+    """Return whether the output is to be a figure.
+
+    Raises DiskError if the name is taken, UserError if no figure can be made.
+    """
+    path = options.output
+    if path is None:
+        return False
+    check_free(path, options.force)
+    is_figure = path.suffix.lower() in SUFFIXES
+    if is_figure and find_spec("matplotlib") is None:
         advice = install_advice("matplotlib", "plot")
         raise UserError(f"{path.suffix} files need Matplotlib: {advice}.")
-    check_free(path, force)
+    return is_figure
 
 
 @contextmanager
-def _figure(path: Path, force: bool, height: float = HEIGHT) -> Iterator[Any]:
-    """Yield a Matplotlib figure, which is written to the file afterwards."""
-    check(path, force)
+def _figure(options: Namespace, height: float = 6.0) -> Iterator[Any]:
+    """Yield a Matplotlib figure of a height [cm], which is written to the output afterwards."""
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
-    suffix = path.suffix.lower()
+    suffix = options.output.suffix.lower()
     defaults = {key: value for key, value in mpl.rcParamsDefault.items() if "backend" not in key}
-    with mpl.rc_context({**defaults, **STYLE}), whole_file(path, force) as part:
-        figure = Figure((WIDTH, height))
+    with mpl.rc_context({**defaults, **STYLE}), whole_file(options.output, options.force) as part:
+        figure = Figure((8.5 * CM, height * CM))  # a column of a journal
         yield figure
         figure.savefig(part, format=suffix[1:], metadata=NO_DATE[suffix])
 
@@ -75,16 +97,12 @@ def _styles(cast: Cast) -> list[dict[str, Any]]:
     """Return colour, line style and label of each method; styles differ without colour, too."""
     palette = PALETTES["light"]
     return [
-        {
-            "color": palette.colour(ink),
-            "linestyle": LINES[place % len(LINES)],
-            "label": method.label,
-        }
-        for place, (method, ink) in enumerate(zip(cast, inks(cast), strict=True))
+        {"color": palette.colour(ink), "linestyle": LINES[n % len(LINES)], "label": method.label}
+        for n, (method, ink) in enumerate(zip(cast, inks(cast), strict=True))
     ]
 
 
-def draw_run(path: Path, force: bool, scene: Scene, samples: Sequence["Sample"]) -> None:
+def draw_run(options: Namespace, scene: Scene, samples: Sequence["Sample"]) -> None:
     """Draw the largest energy error in each half swing of a run, or in longer parts of it."""
     import numpy as np
 
@@ -93,39 +111,37 @@ def draw_run(path: Path, force: bool, scene: Scene, samples: Sequence["Sample"])
     swing = scene.exact().period or math.tau / scene.w0
     parts = max(1, min(MAX_PARTS, len(t), round(2 * t[-1] / swing)))
     first = np.linspace(0, len(t), parts + 1).astype(int)[:-1]
-    with _figure(path, force) as figure:
-        axes = figure.add_subplot(
-            xlabel="time / s", ylabel="largest |ΔE / E₀| of a half swing", yscale="log"
-        )
+    with _figure(options) as figure:
+        label = "largest |ΔE / E₀| of a half swing"
+        axes = figure.add_subplot(xlabel="time / s", ylabel=label, yscale="log")
         for row, style in zip(errors, _styles(scene.cast), strict=True):
             axes.plot(t[first], np.fmax.reduceat(np.abs(row), first), **style)
         axes.set_xlim(0, t[-1])
         figure.legend(loc="outside upper center", ncols=2)
 
 
-def draw_accuracy(path: Path, force: bool, found: "Findings") -> None:
+def draw_accuracy(options: Namespace, cast: Cast, points: Sequence["Point"]) -> None:
     """Draw error against cost, a line for each method; flawed points are left out."""
-    cast = found.scene.cast
+    from engine.accuracy.front import cost_of
+
     what = {"theta": "largest error of θ / rad", "final": "error of θ at the end / rad"}
-    cost = "force evaluations" if found.cost == "evaluations" else "time of computation / s"
-    with _figure(path, force) as figure:
-        axes = figure.add_subplot(xlabel=cost, ylabel=what.get(found.kind, "largest |ΔE / E₀|"))
+    costs = {"evaluations": "force evaluations", "seconds": "time of computation / s"}
+    with _figure(options) as figure:
+        label = what.get(options.error, "largest |ΔE / E₀|")
+        axes = figure.add_subplot(xlabel=costs[options.cost], ylabel=label)
         axes.set(xscale="log", yscale="log")
         for method, style in zip(cast, _styles(cast), strict=True):
-            points = sorted(
-                (
-                    point.force_evaluations if found.cost == "evaluations" else point.seconds or 0,
-                    point.error(found.kind),
-                )
-                for point in found.points
-                if point.method == method and point.flaw(found.kind) is None
+            line = sorted(
+                (cost_of(point, options.cost), point.error(options.error))
+                for point in points
+                if point.method == method and point.flaw(options.error) is None
             )
-            if points:
-                axes.plot(*zip(*points, strict=True), marker="o", **style)
+            if line:
+                axes.plot(*zip(*line, strict=True), marker="o", **style)
         figure.legend(loc="outside upper center", ncols=2)
 
 
-def draw_map(path: Path, force: bool, grid: "Grid", cells: "Cells") -> None:
+def draw_map(options: Namespace, grid: "Grid", cells: "Cells") -> None:
     """Draw where each method holds a swing, by z and amplitude, with its largest energy error."""
     import numpy as np
 
@@ -133,7 +149,8 @@ def draw_map(path: Path, force: bool, grid: "Grid", cells: "Cells") -> None:
 
     rows = math.ceil(len(grid.methods) / 2)
     extent = (0, grid.z[-1] + grid.z[0], 0, np.degrees(grid.theta[-1] + grid.theta[0]))
-    with _figure(path, force, height=(1 + 3.6 * rows) * CM) as figure:
+    look = {"origin": "lower", "aspect": "auto", "cmap": "viridis_r", "interpolation": "none"}
+    with _figure(options, height=1 + 3.6 * rows) as figure:
         panels = figure.subplots(rows, 2, sharex=True, sharey=True, squeeze=False).ravel()
         for panel in panels[len(grid.methods) :]:
             panel.set_axis_off()
@@ -141,38 +158,26 @@ def draw_map(path: Path, force: bool, grid: "Grid", cells: "Cells") -> None:
             panel = panels[place]
             errors = np.where(is_lost(cells[:, place]), np.nan, cells["error"][:, place])
             with np.errstate(all="ignore"):
-                shown = np.log10(errors).T
-            image = panel.imshow(
-                shown, origin="lower", aspect="auto", extent=extent, vmin=-6, vmax=0,
-                cmap="viridis_r", interpolation="none",
-            )  # fmt: skip
-            panel.set_facecolor(LOST)
-            panel.set_title(method.label, size=7)
+                digits = np.log10(errors).T
+            image = panel.imshow(digits, extent=extent, vmin=-6, vmax=0, **look)
+            panel.set(facecolor="#C8C8C8", title=method.label)
             if method.linear_limit and method.linear_limit < extent[1]:
                 panel.axvline(method.linear_limit, color="black", linestyle="--", linewidth=0.5)
-        figure.supxlabel("z = h ω₀   (grey: the swing is lost; dashed: linear limit)", size=7)
-        figure.supylabel("amplitude / °", size=7)
+        figure.supxlabel("z = h ω₀   (grey: the swing is lost; dashed: linear limit)")
+        figure.supylabel("amplitude / °")
         figure.colorbar(image, ax=list(panels), label="log₁₀ of the largest |ΔE / E₀|")
 
 
 def draw_section(
-    path: Path, force: bool, title: str, orbits: Sequence["Points"], edges: tuple[float, float]
+    options: Namespace, title: str, orbits: Sequence["Points"], edges: tuple[float, float]
 ) -> None:
     """Draw the orbits of a method's own map, a point for each step."""
     import numpy as np
 
-    with _figure(path, force) as figure:
+    look = {"color": "black", "rasterized": True, "markersize": 0.5, "mew": 0}
+    with _figure(options) as figure:
         axes = figure.add_subplot(xlabel="θ / rad", ylabel="ω / (rad/s)", title=title)
         axes.set(xlim=(-edges[0], edges[0]), ylim=(-edges[1], edges[1]))
-        axes.title.set_size(7)
         for theta, omega in orbits:
             wrapped = np.remainder(theta + math.pi, 2 * math.pi) - math.pi
-            axes.plot(
-                wrapped.ravel(),
-                omega.ravel(),
-                ".",
-                color="black",
-                rasterized=True,
-                markersize=0.5,
-                mew=0,
-            )
+            axes.plot(wrapped.ravel(), omega.ravel(), ".", **look)

@@ -1,35 +1,98 @@
-"""The report of the stability command: theory next to measurement, and the map, also as a file."""
+"""What the stability command computes, and its report: theory next to measurement, and the map."""
 
 import math
+from argparse import Namespace
 from collections.abc import Callable, Iterator, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-from rich.style import Style
-from rich.text import Text
 
 from engine.methods import Method
 from engine.methods.measure import linear_limit
 from engine.methods.own import OwnMethod
-from engine.scenes import Scene
+from engine.scenes import Z_LIMITS, Scene
 from engine.stability.grid import Grid
 from engine.stability.linear import amplification
 from engine.stability.outcomes import BAND, FATES, UNKNOWN, Cells
-from engine.stability.study import Row, amplitude, early_steps, table
+from engine.stability.study import Row, amplitude, early_steps, ladder_of, map_of, table
+from tui.cli.errors import UserError, explained
 from tui.cli.files import whole_file
-from tui.cli.output import console
+from tui.cli.output import console, progress
 from tui.cli.report import Column, Report, Table, finite
+from tui.cli.workers import workers_of
+from tui.commands.studies.reports.figures import lines_of
 from tui.drawing.palette import PALETTES
 from tui.views.stability.picture import picture
 
+MAX_SWINGS = 20_000_000  # of a grid: 320 MB in memory
 CELL_FIELDS = ("fate", "steps_survived", "max_energy_error")
 LINEAR = """\
 This scene is the linear oscillator itself: these limits hold at every amplitude.
 Swings are lost at other steps by a pendulum only: pendu-tui stability drift"""
 
-
 Computed = tuple[Grid, Cells]
+
+
+def grids_of(scene: Scene, options: Namespace, is_map: bool) -> list[Grid]:
+    """Return the grids of the table and the map, each if it is wanted.
+
+    Raises UserError for what is not about this scene, or out of range.
+    """
+    asked = {"--map": options.map, "--csv": options.csv, "-o": options.output}
+    asked |= {"--theta-values": options.theta_values, "--z-values": options.z_values}
+    given = next((name for name, value in asked.items() if value), None)
+    if given and not scene.equations.turns:
+        raise UserError(
+            f"{given} is about a pendulum, and limits of the linear oscillator hold everywhere; "
+            "leave it out."
+        )
+    _check("amplitude", options.theta_values or (), (0, math.pi))
+    _check("z", options.z_values or (), Z_LIMITS)
+    _check("number of steps", [options.steps], (0, 2**31))
+    grids = []
+    if scene.equations.turns and not is_map:
+        grids.append(ladder_of(scene, options.theta_values, options.z_values, options.steps))
+    if options.map or is_map:
+        grids.append(map_of(scene, options.theta_values, options.z_values, options.steps))
+    swings = max((math.prod(grid.shape) for grid in grids), default=0)
+    if swings > MAX_SWINGS:
+        raise UserError(f"{swings} swings are too many; use at most {MAX_SWINGS}.")
+    return grids
+
+
+def _check(what: str, numbers: Sequence[float], limits: tuple[float, float]) -> None:
+    low, high = limits
+    for value in numbers:
+        if not low < value < high:  # also refuses nan
+            raise UserError(
+                f"{what} {value:g} is out of range; it must lie between {low:g} and {high:g}."
+            )
+
+
+def compute(grids: Sequence[Grid], options: Namespace) -> tuple[list[Computed], UserError | None]:
+    """Return the grids with their cells, and why the last of them has unknown ones.
+
+    Raises UserError if all its cells are unknown.
+    """
+    computed = []
+    with workers_of(options) as workers:
+        for grid in grids:
+            cells = grid.unknown()
+            computed.append((grid, cells))
+            done = 0
+            try:
+                with progress("stability") as show:
+                    for strip in workers.map(Grid.cells, grid.strips()):
+                        cells[done : done + len(strip)] = strip
+                        done += len(strip)
+                        show(done, len(grid.z))
+            except (KeyboardInterrupt, UserError) as error:
+                if not done:
+                    raise
+                ended = explained(error)
+                kept = f"{done} of {len(grid.z)} z are computed and kept"
+                return computed, UserError(f"{str(ended).rstrip('.')}; {kept}.", ended.code)
+    return computed, None
 
 
 def report(scene: Scene, steps: int, computed: Sequence[Computed], *, is_whole: bool) -> Report:
@@ -41,10 +104,14 @@ def report(scene: Scene, steps: int, computed: Sequence[Computed], *, is_whole: 
         rows = [row for row in table(scene, *computed[0]) if row.failure or complete]
         notes = [*_words(scene), Table(_columns(scene, steps), rows)]
     pendulum = [_row_fields(row) for row in rows]
+    here = [None if row.here["fate"] == UNKNOWN else _cell_fields(row.here) for row in rows]
     maps = computed[1:]
     for grid, cells in maps:
-        notes += ["", *_picture(grid, cells)]
-    linear = [_linear_fields(scene, method) for method in scene.cast]
+        on = console()
+        is_coloured = on.color_system is not None and not on.no_color and "utf" in on.encoding
+        palette = PALETTES["dark"] if is_coloured else None
+        notes += ["", *lines_of(picture(grid, cells, max(40, on.width), palette), None)]
+    linear = [_linear(scene, method) for method in scene.cast]
     labels = {method.key: method.label for method in scene.cast}
     return Report(
         name="stability",
@@ -63,7 +130,7 @@ def report(scene: Scene, steps: int, computed: Sequence[Computed], *, is_whole: 
             "steps": steps,
             "band": BAND,
             "linear": [finite(row) for row in linear],
-            "pendulum": [_row_fields(row) | {"at_scene": _at_scene(row)} for row in rows],
+            "pendulum": [row | {"at_scene": at} for row, at in zip(pendulum, here, strict=True)],
             "map": _map_fields(*maps[0]) if maps else None,
             "interrupted": not is_whole,
         },
@@ -71,17 +138,10 @@ def report(scene: Scene, steps: int, computed: Sequence[Computed], *, is_whole: 
     )
 
 
-def _at_scene(row: Row) -> dict[str, Any] | None:
-    return None if row.here["fate"] == UNKNOWN else _cell_fields(row.here)
-
-
-def _linear_fields(scene: Scene, method: Method) -> dict[str, Any]:
-    return {
-        "method": method.key,
-        "limit_z": linear_limit(method.phases),
-        "theory_z": None if isinstance(method, OwnMethod) else method.linear_limit,
-        "amplification": amplification(method, scene.z),
-    }
+def _linear(scene: Scene, method: Method) -> dict[str, Any]:
+    theory = None if isinstance(method, OwnMethod) else method.linear_limit
+    fields = {"method": method.key, "limit_z": linear_limit(method.phases), "theory_z": theory}
+    return fields | {"amplification": amplification(method, scene.z)}
 
 
 def _limit(z: float | None) -> str | None:
@@ -93,14 +153,14 @@ def _limit(z: float | None) -> str | None:
 
 
 def _row_fields(row: Row) -> dict[str, Any]:
-    found = row.failure
+    failure = row.failure
     return {
         "method": row.method.key,
         "theta": row.theta,
-        "first_failure_z": found.z if found else None,
-        "reason": found.reason if found else None,
-        "steps_survived": found.steps if found else None,
-        "first_failure_z_early": row.early.z if row.early else None,
+        "first_failure_z": failure and failure.z,
+        "reason": failure and failure.reason,
+        "steps_survived": failure and failure.steps,
+        "first_failure_z_early": row.early and row.early.z,
     }
 
 
@@ -108,12 +168,8 @@ def _cell_fields(cells: Any) -> dict[str, Any]:
     """Return CELL_FIELDS of cells, each in their shape, and None where they are unknown."""
     known = cells["fate"] != UNKNOWN
     fates = np.array(FATES, object)[np.where(known, cells["fate"], 0)]
-    columns = (fates, cells["steps"], cells["error"])
-    nothing = np.array(None)
-    return {
-        name: np.where(known, column, nothing).tolist()
-        for name, column in zip(CELL_FIELDS, columns, strict=True)
-    }
+    columns = zip(CELL_FIELDS, (fates, cells["steps"], cells["error"]), strict=True)
+    return {name: np.where(known, column, np.array(None)).tolist() for name, column in columns}
 
 
 def _map_fields(grid: Grid, cells: Cells) -> dict[str, Any]:
@@ -128,13 +184,8 @@ def _swings(grid: Grid, cells: Cells) -> Iterator[dict[str, Any]]:
     for m, z, t in np.ndindex(len(grid.methods), len(grid.z), len(grid.theta)):
         cell = cells[z, m, t]
         if cell["fate"] != UNKNOWN:
-            place = {
-                "method": grid.methods[m].key,
-                "z": float(grid.z[z]),
-                "theta": float(grid.theta[t]),
-            }
-            steps, error, fate = cell.item()
-            yield place | dict(zip(CELL_FIELDS, (FATES[fate], steps, error), strict=True))
+            place = {"z": float(grid.z[z]), "theta": float(grid.theta[t])}
+            yield {"method": grid.methods[m].key, **place, **_cell_fields(cell)}
 
 
 def _words(scene: Scene) -> Iterator[str]:
@@ -161,9 +212,7 @@ def _columns(scene: Scene, steps: int) -> list[Column]:
     return [
         Column("method", lambda row: row.method.label),
         Column("from", lambda row: f"{math.degrees(row.theta):.4g}°", right=True),
-        Column(
-            f"in {early_steps(steps):,}", lambda row: row.early and f"{row.early.z:.4g}", right=True
-        ),
+        Column(f"in {early_steps(steps):,}", lambda row: row.early and row.early.z, ".4g"),
         of_failure(f"in {steps:,}", lambda failure: f"{failure.z:.4g}"),
         of_failure("h [s]", lambda failure: f"{failure.z / scene.w0:.3g}"),
         of_failure("failure", lambda failure: failure.reason),
@@ -171,18 +220,7 @@ def _columns(scene: Scene, steps: int) -> list[Column]:
     ]
 
 
-def _picture(grid: Grid, cells: Cells) -> list[Text]:
-    """Return the lines of the map, in colour where the terminal has colours."""
-    on = console()
-    plain = on.color_system is None or on.no_color or "utf" not in on.encoding
-    drawn = picture(grid, cells, max(40, on.width), None if plain else PALETTES["dark"])
-    return [
-        Text.assemble(*((text, ink if isinstance(ink, Style) else "") for text, ink in row))
-        for row in drawn.rows
-    ]
-
-
-def write_map(path: Path, force: bool, grid: Grid, cells: Cells) -> None:
+def write_map(options: Namespace, grid: Grid, cells: Cells) -> None:
     """Write a map to a file for numpy.load.
 
     Arrays `z`, `theta` [rad], `methods`, `steps`, `fates`, and `cells`, of axes (z, methods, theta)
@@ -190,14 +228,9 @@ def write_map(path: Path, force: bool, grid: Grid, cells: Cells) -> None:
     `fates`, or 255: unknown).
     """
     keys = [method.key for method in grid.methods]
-    with whole_file(path, force) as part, part.open("wb") as file:
-        np.savez_compressed(
-            file,
-            z=grid.z,
-            theta=grid.theta,
-            methods=keys,
-            steps=grid.steps,
-            fates=FATES,
-            cells=cells,
-        )
-    print(f"{path}: {len(grid.z)} z, {len(grid.methods)} methods, {len(grid.theta)} amplitudes.")
+    arrays: Any = {"z": grid.z, "theta": grid.theta, "methods": keys}
+    arrays |= {"steps": grid.steps, "fates": FATES, "cells": cells}
+    with whole_file(options.output, options.force) as part, part.open("wb") as file:
+        np.savez_compressed(file, **arrays)
+    shape = f"{len(grid.z)} z, {len(grid.methods)} methods, {len(grid.theta)} amplitudes"
+    print(f"{options.output}: {shape}.")
