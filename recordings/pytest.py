@@ -70,7 +70,7 @@ def energy_drift(request: pytest.FixtureRequest) -> EnergyDrift:
 
 
 def verify_recordings(folder: str | Path) -> Callable[[Any], None]:
-    """Return a test of each recording below a folder: `test_recordings = verify_recordings(FOLDER)`.
+    """Return a test of each recording below a folder, as `test_... = verify_recordings(FOLDER)`.
 
     It fails where a recording is damaged, where simulating it again gives another bit, and where
     there is none.

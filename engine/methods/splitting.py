@@ -24,7 +24,8 @@ def splitting(kicks: tuple[float, ...], drifts: tuple[float, ...]) -> Phases:
         """Kicks of omega and drifts of theta in turn."""
         theta, omega = phase
         opening = first * h
-        moves = [(drift * h, kick * h) for drift, kick in zip(drifts, following)]  # noqa: B905 (Numba knows no strict)
+        pairs = zip(drifts, following)  # noqa: B905 (Numba has no strict)
+        moves = [(drift * h, kick * h) for drift, kick in pairs]
         a = force(theta)
         while True:
             omega = omega + opening * a

@@ -192,7 +192,9 @@ class Spring(Model):
         radial = (w * along.conjugate()).real
         across = (w * along.conjugate()).imag
         held = 1 + (-self.w0_squared * along.imag + across * across / length) / self.stiffness
-        return radial * radial / 2 + self.stiffness / 2 * (length - held) * (length - held)  # type: ignore[no-any-return]
+        stretch = length - held
+        energy: float = radial * radial / 2 + self.stiffness / 2 * stretch * stretch
+        return energy
 
     def exact(self, theta: float, omega: float) -> ExactMotion:
         """The reference's angle and angular velocity; nan if the spring is too fast for it."""

@@ -36,12 +36,12 @@ def wobble(method: Method, z: float) -> Wobble:
     """Return the energy's range and the largest amplitude of a linear swing from rest.
 
     A symplectic step keeps a quadratic form, not the energy: the swing stays on the ellipse
-    -c theta² + (a - d) theta omega + b omega² = -c theta0², where ((a, b), (c, d)) is its Jacobian at
+    -c theta² + (a - d) theta omega + b omega² = -c theta0², with its Jacobian ((a, b), (c, d)) at
     w0 = 1.  The half axes, squared, are the extremes of the energy: (1 - z²/4, 1) for velocity
     Verlet, for symplectic Euler (1/(1 + z/2), 1/(1 - z/2)).  Explicit Euler and RK4 do not wobble:
     (1, 1).  The reach of the ellipse is 1 for velocity Verlet, 1/sqrt(1 - z²/4) for symplectic
-    Euler.  Beyond the limit of a symplectic step there is no ellipse, and (0, 1, 1) is what
-    velocity Verlet's has become there.
+    Euler.  Beyond the limit of a symplectic step there is no ellipse: (0, 1, 1), velocity
+    Verlet's at its limit.
     """
     a, b, c, d = at_bottom(method, z)
     skew = (a - d) ** 2 / 4 + b * c
