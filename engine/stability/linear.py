@@ -37,7 +37,7 @@ def wobble(method: Method, z: float) -> Wobble:
 
     A symplectic step keeps a quadratic form, not the energy: the swing stays on the ellipse
     -c theta² + (a - d) theta omega + b omega² = -c theta0², with its Jacobian ((a, b), (c, d)) at
-    w0 = 1.  The half axes, squared, are the extremes of the energy: (1 - z²/4, 1) for velocity
+    w0 = 1.  Its half axes, squared, are the energy's extremes: (1 - z²/4, 1) for velocity
     Verlet, for symplectic Euler (1/(1 + z/2), 1/(1 - z/2)).  Explicit Euler and RK4 do not wobble:
     (1, 1).  The reach of the ellipse is 1 for velocity Verlet, 1/sqrt(1 - z²/4) for symplectic
     Euler.  Beyond the limit of a symplectic step there is no ellipse: (0, 1, 1), velocity
