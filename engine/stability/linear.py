@@ -40,7 +40,7 @@ def wobble(method: Method, z: float) -> Wobble:
     w0 = 1.  Its half axes, squared, are the energy's extremes: (1 - z²/4, 1) for velocity
     Verlet, for symplectic Euler (1/(1 + z/2), 1/(1 - z/2)).  Explicit Euler and RK4 do not wobble:
     (1, 1).  The reach of the ellipse is 1 for velocity Verlet, 1/sqrt(1 - z²/4) for symplectic
-    Euler.  Beyond the limit of a symplectic step there is no ellipse: (0, 1, 1), velocity
+    Euler.  Beyond its limit a symplectic step has no ellipse: (0, 1, 1), velocity
     Verlet's at its limit.
     """
     a, b, c, d = at_bottom(method, z)
