@@ -13,7 +13,6 @@ from engine.scenes import DEFAULT_SCENE
 from recordings.events import Event
 from recordings.recorder import Recorder
 from recordings.recording import Recording
-from tui.playback.marks import Marks
 from tui.playback.replay import Replay
 
 LIMITS = {"open_seconds": 1.0, "seek_seconds_median": 0.01, "memory_mb": 100}
@@ -45,7 +44,7 @@ def record(path: Path, hours: float) -> float:
 
 def replay_frame(recording: Recording, begin: float) -> float:
     """Return the processor time of a frame [s] in ten seconds of a replay."""
-    replay = Replay(recording, Marks(recording.path), clock=time.perf_counter)
+    replay = Replay(recording, clock=time.perf_counter)
     replay.tick(0.0)
     replay.seek(begin)
     while not replay.fill():

@@ -19,7 +19,6 @@ from recordings.recovery import recover
 from recordings.verification import verify
 from tests.recordings.examples import record, tiny, two_runs
 from tests.tui.command_line import pendu
-from tui.playback.marks import Marks
 from tui.playback.replay import Replay
 
 
@@ -104,7 +103,7 @@ class Damaged:
             with Recording.open(self.path) as recording:
                 if recording.at(0.0) is None:
                     return True
-                replay = Replay(recording, Marks(self.path), clock=lambda: 0.0)
+                replay = Replay(recording, clock=lambda: 0.0)
                 for tenth in range(11):
                     replay.seek(recording.length * tenth / 10)
                     assert replay.sample in samples

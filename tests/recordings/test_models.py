@@ -23,7 +23,6 @@ from recordings.verification import verify
 from tests.recordings.examples import record, start, with_changes
 from tests.recordings.test_verify import of_another_machine
 from tests.tui.command_line import pendu
-from tui.playback.marks import Marks
 from tui.playback.replay import Replay
 
 SPECIAL = sorted(name for name, scene in SCENES.items() if not scene.general)
@@ -47,7 +46,7 @@ def test_a_run_is_recorded_verified_exported_and_replayed(tmp_path, name):
     with Recording.open(path, check=True) as recording:
         assert recording.runs[0].scene == scene
         assert [value for _, value in recording.entries() if isinstance(value, Sample)] == samples
-        replay = Replay(recording, Marks(path), clock=lambda: 0.0)
+        replay = Replay(recording, clock=lambda: 0.0)
         assert replay.scene == scene
         replay.seek(recording.length)
         assert replay.sample.readings == samples[-1].readings

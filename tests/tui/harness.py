@@ -15,7 +15,6 @@ from recordings.recorder import LiveRecorder
 from recordings.recording import Recording
 from tui.drawing.cells import CellWidget
 from tui.playback.live import Live
-from tui.playback.marks import Marks
 from tui.playback.replay import Replay
 from tui.playback.source import Source
 from tui.screens.app import PenduApp
@@ -162,7 +161,7 @@ def player(path: Path, size: tuple[int, int] = (120, 40)) -> Any:
     """A replay on screen; going live from it is not recorded."""
 
     def make(clock: Any) -> SourceScreen:
-        replay = Replay(Recording.open(path), Marks(path), clock=lambda: 0.0)
+        replay = Replay(Recording.open(path), clock=lambda: 0.0)
         return ReplayScreen(replay, lambda live: LiveScreen(live, clock), clock)
 
     return on_stage(make, size)

@@ -1,33 +1,35 @@
 """Ghost: an earlier run laid under the lab, at the lab's own simulated time."""
 
 import math
-from collections.abc import Sequence
+from itertools import islice
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from engine.scenes import Scene
-from tui.playback.history import ErrorHistory
+from tui.playback.history import History
 
 if TYPE_CHECKING:
     from recordings.recording import Recording
     from tui.playback.rows import Window
 
 MAX_ROWS = 1 << 14  # of a recording, 9 minutes of the usual samples, read in a second
-ROUNDING = 1e-9  # s
 
 
 class Ghost:
     """A run that ended."""
 
-    def __init__(self, name: str, scene: Scene, history: ErrorHistory, steps: Sequence[float]):
-        """`steps` are the sizes of its steps [s], in order."""
-        self.scene = scene
-        sizes = ", ".join(f"{abs(h):.4g}" for h in steps[:3])
-        self._step = f"h {sizes}{' …' * (len(steps) > 3)} s"
+    def __init__(self, name: str, history: History) -> None:
+        self.scene = history.scene
+        steps = [f"{abs(change.stepping.h):.4g}" for change in history.changes]
+        sizes = list(dict.fromkeys(steps))
+        more = ["…"] if len(sizes) > 3 else []
+        self._step = f"h {', '.join(sizes[:3] + more)} s"
         self._name = name
         self._window = history.window()
-        self._x, self._thetas = history.rows.thetas()
+        recent = history.rows.recent
+        failed = ~np.isfinite(recent["high"][:, 0])
+        self._x = recent["x"]
+        self._thetas = np.where(failed, math.nan, recent["states"][:, :-1, 0])
         self.widest = float(np.nanmax(abs(self._thetas), initial=0.0))
         """The largest angle that it comes to [rad]."""
 
@@ -35,21 +37,14 @@ class Ghost:
     def recorded(cls, recording: "Recording") -> "Ghost":
         """The longest run of a recording, until time turns or MAX_ROWS are read."""
         run = max(recording.runs, key=lambda run: abs(run.t))
-        history = ErrorHistory(run.scene, MAX_ROWS)
-        exact = run.scene.exact()
-        latest = -math.inf
-        rows = 0
-        for _, value in recording.samples_between(run.begin, run.end):
-            if value.run > run.number or rows == MAX_ROWS:
+        history = History.recorded(run, MAX_ROWS)
+        known = recording.samples_between(run.begin, run.end)
+        own = (sample for _, sample in known if sample.run == run.number)
+        for sample in islice(own, MAX_ROWS):
+            if history.step >= 0 and sample.t < history.sample.t:
                 break
-            if value.run < run.number or value.t == latest:
-                continue
-            if value.t < latest:
-                break
-            latest = value.t
-            rows += 1
-            history.add(value, exact.at(latest))
-        return cls(recording.path.stem, run.scene, history, [run.scene.h])
+            history.add(sample)
+        return cls(recording.path.stem, history)
 
     def label(self, room: int) -> str:
         """What it is: "dim: swing, h 0.1 s"."""
@@ -58,7 +53,7 @@ class Ghost:
 
     def rods(self, t: float) -> dict[str, float]:
         """Return the angles [rad] at a time [s] by method key, without those that failed."""
-        row = int(np.searchsorted(self._x, t + ROUNDING, "right")) - 1
+        row = int(np.searchsorted(self._x, t + 1e-9, "right")) - 1
         if not self.scene.equations.rigid or row < 0 or t > self._x[-1] + abs(self.scene.h):
             return {}
         pairs = zip(self.scene.cast, self._thetas[row].tolist(), strict=True)
@@ -66,6 +61,5 @@ class Ghost:
 
     def window(self, until: float, seconds: float | None = None) -> "Window":
         """Its errors up to a simulated time [s]: the last `seconds`, or all."""
-        return self._window.cut(
-            -math.inf if seconds is None else until - seconds - self._window.repeats, until
-        )
+        back = math.inf if seconds is None else seconds + self._window.repeats
+        return self._window.cut(until - back, until)

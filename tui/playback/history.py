@@ -1,4 +1,4 @@
-"""The past of a run: rows for a chart, trails for a portrait.
+"""History: a run up to a sample, with rows for charts and trails.
 
 A row is a sample at a fixed step of the run, so that neither depends on the frame rate.  The sample
 of a frame is the last point of both, and leaves with the frame.
@@ -6,196 +6,206 @@ of a frame is the last point of both, and leaves with the frame.
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Self
 
-from engine.models.model import State
 from engine.run.lockstep import Sample
+from engine.run.stepping import Stepping, SteppingChange, change_before
 from engine.scenes import Scene
+from tui.playback.shown import Quantity
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from tui.playback.rows import Row, Rows, Window  # NumPy can wait for the first paint
+    from recordings.recording import Run
+    from tui.playback.rows import Floats, Row, Rows, Window  # NumPy can wait for the first paint
 
 MAX_WAITING = 64  # rows that are shown without NumPy
-_UNKNOWN = State(math.nan, math.nan)
 
 
-class _Taken(NamedTuple):
-    sample: Sample
-    x: float  # s, simulated time run through
-    exact: State
-    modified: Sequence[float]
-
-
-class ErrorHistory:
+class History:
     """The past of one run, up to the last sample added."""
 
-    def __init__(self, scene: Scene, capacity: int = 4096) -> None:
-        exact = scene.exact()
-        model = scene.equations
-        self._reference = model.reference(scene.theta, scene.omega)
-        self._methods = len(scene.cast)
-        self._energy = [] if model.energy_error.conserved else ["energy"]
-        self._extra = [each.name for each in model.quantities()]
-        self._theta_error = model.theta_error
-        self._repeats = (exact.period or 0.0) / (2 if exact.regime == "libration" else 1)
+    sample: Sample
+
+    def __init__(
+        self, scene: Scene, changes: Sequence[SteppingChange], capacity: int = 4096
+    ) -> None:
+        """`changes` are those of the run, its start's first; a live run adds to them."""
+        self.scene = scene
+        self.exact = scene.exact()
+        self.changes = changes
+        self.returned: Sample | None = None
+        self._model = scene.equations
+        self._reference = self._model.reference(scene.theta, scene.omega)
+        self._extra = [each.name for each in self._model.quantities()]
+        self._repeats = (self.exact.period or 0.0) / (2 if self.exact.regime == "libration" else 1)
         self._capacity = capacity
-        self._run = 0
-        self._latest: tuple[int, float, float] | None = None  # step, x and t of the last row
-        self._now: _Taken | None = None
-        self._is_behind = False  # the sample lies before the last row
-        self._waiting: list[_Taken] = []
+        self._current: Row | None = None
+        self._last_row = -1  # its step
+        self._waiting: list[Row] = []
         self._rows: Rows | None = None
         self._returned: Sample | None = None
-        self._trails: tuple[_Taken | None, int, NDArray] | None = None  # type: ignore[type-arg]
+        self._modified_starts: dict[SteppingChange, list[float]] = {}
 
-    def add(
-        self,
-        sample: Sample,
-        exact: State | None = None,
-        modified: Sequence[float] | None = None,
-        is_row: bool = True,
-    ) -> None:
-        """Add a sample, the exact motion at its time, and the errors of the modified energies.
+    @classmethod
+    def recorded(cls, run: "Run", capacity: int = 4096) -> Self:
+        """Return an empty history of a recorded run."""
+        cast = run.scene.cast
+        changes = [SteppingChange(0, 0.0, Stepping(run.scene.h, cast=cast))]
+        for _, event in run.events:
+            if event.h is not None:
+                stepping = Stepping(event.h, event.equal_cost, cast)
+                changes.append(SteppingChange(event.step, event.t, stepping))
+        return cls(run.scene, changes, capacity)
+
+    @property
+    def step(self) -> int:
+        """The step of the sample; -1 before the first."""
+        return self._current[0] if self._current else -1
+
+    def add(self, sample: Sample, is_row: bool = True) -> None:
+        """Show a sample, and remember it if it is a row.
 
         An earlier one leaves the rows after it for the way forward.  One of another run takes back
         everything from its step on: that run goes on from this one's past.
         """
-        if sample.run != self._run and self._latest is not None:
+        if self._current and sample.run != self.sample.run:
             self._truncate(sample.step - 1)
-        self._run = sample.run
-        latest = self._latest
-        self._is_behind = latest is not None and sample.step < latest[0]
-        is_new = latest is None or sample.step > latest[0]
-        x = self._x(sample)
-        known = modified or [math.nan] * self._methods
-        self._now = _Taken(sample, x, exact or _UNKNOWN, known)
-        if latest and is_new:
-            length = (sample.t - latest[2]) / (sample.step - latest[0])
-            if abs(sample.t) < 1e-6 * abs(length):  # t is rounded
-                self._returned = sample
+        is_new = sample.step > self._last_row
+        row = self._row(sample, is_row and is_new)
+        h = change_before(self.changes, sample.step).stepping.h
+        if is_new and sample.step and abs(sample.t) < 1e-6 * abs(h):  # t is rounded
+            self._returned = sample
+        is_behind = self._returned is None or self._returned.step > sample.step
+        self.returned = None if is_behind else self._returned
+        self.sample = sample
+        self._current = row
         if is_row and is_new:
-            self._latest = sample.step, x, sample.t
-            self._waiting.append(self._now)
+            self._last_row = sample.step
+            self._waiting.append(row)
             if len(self._waiting) >= MAX_WAITING:
                 _ = self.rows
 
-    @property
-    def returned(self) -> Sample | None:
-        """The sample at which simulated time was back at 0."""
-        now = self._now
-        is_ahead = self._returned is None or now is None or self._returned.step > now.sample.step
-        return None if is_ahead else self._returned
+    def _row(self, sample: Sample, with_extremes: bool) -> "Row":
+        """Return a row; without extremes, of what is true at its end."""
+        readings = sample.readings
+        exact = self.exact.at(sample.t)
+        states = [(reading.theta, reading.omega) for reading in readings]
+        others = [[self._model.theta_error(theta, exact.theta) for theta, _ in states]]
+        others.append(self._modified_energy_errors(sample))
+        others += [[reading.extra[name] for reading in readings] for name in self._extra]
+        others.append([reading.energy for reading in readings])
+        low = high = [reading.energy_error for reading in readings]
+        if with_extremes:
+            low = [reading.energy_error_low for reading in readings]
+            high = [reading.energy_error_high for reading in readings]
+        x = self._x(sample.step, sample.t)
+        return sample.step, x, sample.t, [*states, exact], [low, *others], [high, *others]
 
-    def _x(self, sample: Sample) -> float:
-        before = self._latest
-        if self._is_behind:
-            number = self.rows.number_after(sample.step)
-            before = self.rows.times_before(number) if number else None
-        return abs(sample.t) if before is None else before[1] + abs(sample.t - before[2])
+    def _x(self, step: int, t: float) -> float:
+        """Return the simulated time run through [s] up to a step at t."""
+        x = turn = 0.0
+        for change in self.changes:
+            if change.step >= step:
+                break
+            x += abs(change.t - turn)
+            turn = change.t
+        return x + abs(t - turn)
+
+    def _modified_energy_errors(self, sample: Sample) -> list[float]:
+        """Return each modified energy's relative change since the stepping changed.
+
+        Another step size has another modified energy.  nan for a method without one, and where no
+        sample before this one has been added since the change.
+        """
+        change = change_before(self.changes, sample.step)
+        starts = self._modified_starts.get(change)
+        if starts is None and change.step <= self.step < sample.step:
+            starts = self._modified_energies(self.sample, change.stepping)
+            self._modified_starts[change] = starts
+        if starts is None:
+            return [math.nan] * len(sample.readings)
+        energies = self._modified_energies(sample, change.stepping)
+        scale = self._reference.scale
+        return [(now - start) / scale for now, start in zip(energies, starts, strict=True)]
+
+    def _modified_energies(self, sample: Sample, stepping: Stepping) -> list[float]:
+        energies = []
+        for method, reading, h in zip(self.scene.cast, sample.readings, stepping.own, strict=True):
+            energy = math.nan
+            if method.modified_energy and self._model.has_force:
+                energy = method.modified_energy(self._model, (reading.theta, reading.omega), h)
+            # it overflows where H does not
+            energies.append(energy if math.isfinite(energy) else math.nan)
+        return energies
+
+    def _truncate(self, step: int) -> None:
+        self.rows.truncate(step)
+        self._last_row = self.rows.last_step(self.rows.count)
+        if self._returned is not None and self._returned.step > step:
+            self._returned = None
+
+    @property
+    def _quantities(self) -> tuple[Quantity, ...]:
+        return "energy_error", "theta_error", "shadow_error", *self._extra, "energy"
 
     @property
     def rows(self) -> "Rows":
         if self._rows is None:
             from tui.playback.rows import Rows
 
-            others = [*self._energy, *self._extra]
-            self._rows = Rows(
-                self._repeats, self._reference[:2], others, self._methods, self._capacity
-            )
-        for taken in self._waiting:
-            self._rows.append(self._row(taken))
+            self._rows = Rows(len(self._quantities), len(self.scene.cast), self._capacity)
+        for row in self._waiting:
+            self._rows.append(row)
         self._waiting.clear()
         return self._rows
 
-    def _row(self, taken: _Taken, at_once: bool = False) -> "Row":
-        """Return a row; `at_once`: with what is true at its end only."""
-        from tui.playback.rows import Row
-
-        readings = taken.sample.readings
-        states = [State(reading.theta, reading.omega) for reading in readings]
-        others = [[self._theta_error(theta, taken.exact.theta) for theta, _ in states]]
-        others.append([*taken.modified])
-        if self._energy:
-            others.append([reading.energy for reading in readings])
-        others += [[reading.extra[name] for reading in readings] for name in self._extra]
-        now = [reading.energy_error for reading in readings]
-        low = now if at_once else [reading.energy_error_low for reading in readings]
-        high = now if at_once else [reading.energy_error_high for reading in readings]
-        times = (taken.x, taken.sample.t)
-        return Row(
-            taken.sample.step, times, [*states, taken.exact], [low, *others], [high, *others]
-        )
-
-    def _truncate(self, step: int) -> None:
-        rows = self.rows
-        rows.truncate(step)
-        self._latest = rows.times_before(rows.count) if rows.count else None
-        if self._returned is not None and self._returned.step > step:
-            self._returned = None
-
-    @property
-    def _until(self) -> int:
-        """The number of the first row after the sample."""
-        rows = self.rows
-        if not self._is_behind or self._now is None:
-            return rows.count
-        return rows.number_after(self._now.sample.step)
-
-    def _current(self) -> "Row | None":
-        """Return the sample as a row, unless it is one."""
-        until = self._until
-        now = self._now
-        if now is None or (until and self.rows.times_before(until)[0] == now.sample.step):
-            return None
-        return self._row(now, at_once=True)
-
     def window(self, seconds: float | None = None) -> "Window":
         """Return the last `seconds` of simulated time and half a swing before, or the whole run."""
-        start = -math.inf
-        if seconds is not None and self._now is not None:
-            start = self._now.x - seconds - self._repeats
-        return self.rows.window(self._until, self._current(), start)
+        from tui.playback.rows import Window
+
+        assert self._current is not None
+        records = self.rows.until(self._current)
+        if seconds is not None:
+            records = records[records["x"] >= self._current[1] - seconds - self._repeats]
+        low = self._named(records["low"])
+        high = self._named(records["high"])
+        return Window(records["x"], records["t"], low, high, self._repeats)
+
+    def _named(self, extremes: "Floats") -> dict[Quantity, "Floats"]:
+        named = {name: extremes[:, i] for i, name in enumerate(self._quantities)}
+        if self._model.energy_error.conserved:  # so that energies have extremes, too
+            start, scale, *_ = self._reference
+            named["energy"] = start + scale * named["energy_error"]
+        return named
 
     def between(self, begin: float, end: float) -> "Window":
         """Return what lies between two x [s], and half a swing before."""
         return self.window().cut(begin - self._repeats, end)
 
-    def since(self, step: int) -> tuple[list[float], list[float]] | None:
-        """Return the largest energy errors after a step, and the theta errors there."""
-        number = self.rows.number_after(step)
-        now = self._now
-        if now is None or not 0 < number <= self._until:
-            return None
-        x = self.rows.times_before(number)[1]
-        window = self.window()
-        before = int((window.x <= x).sum()) - 1
-        if before < 0:
-            return None
-        low = -window.low["energy_error"][before + 1 :]
-        high = window.high["energy_error"][before + 1 :]
-        errors = [abs(reading.energy_error) for reading in now.sample.readings]
-        largest = [max(each) for each in zip(errors, *low.tolist(), *high.tolist(), strict=True)]
-        return largest, window.high["theta_error"][before].tolist()
+    def since(self, change: SteppingChange) -> tuple[list[float], list[float]] | None:
+        """Return the largest energy errors since a change, and the theta errors there.
 
-    def trails(self, length: int) -> "NDArray":  # type: ignore[type-arg]
+        None if no sample up to there is known.
+        """
+        window = self.window()
+        count = int((window.x <= self._x(change.step, change.t)).sum())
+        if not count:
+            return None
+        low = -window.low["energy_error"][count:]
+        high = window.high["energy_error"][count:]
+        errors = [abs(reading.energy_error) for reading in self.sample.readings]
+        largest = [max(each) for each in zip(errors, *low.tolist(), *high.tolist(), strict=True)]
+        return largest, window.high["theta_error"][count - 1].tolist()
+
+    def trails(self, length: int) -> "Floats":
         """Return theta [rad] and omega [rad/s] of every method and the exact motion, oldest first.
 
         At the last `length` samples, (samples, methods + 1, 2).
         """
-        import numpy as np
-
-        if self._trails is None or self._trails[:2] != (self._now, length):
-            rows = self.rows.trails(self._until, length)
-            current = self._current()
-            if current is not None:
-                rows = np.concatenate([rows, np.array(current.states)[None]])[-length:]
-            self._trails = self._now, length, rows
-        return self._trails[2]
+        assert self._current is not None
+        return self.rows.trails(self._current, length)
 
     def thetas(self, index: int, length: int) -> list[float]:
         """Return theta [rad] of a method at the last `length` samples, oldest first."""
         if self._rows is None:
-            return [each.sample.readings[index].theta for each in self._waiting[-length:]]
+            return [states[index][0] for _, _, _, states, _, _ in self._waiting[-length:]]
         return self.trails(length)[:, index, 0].tolist()  # type: ignore[no-any-return]

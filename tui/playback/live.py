@@ -15,10 +15,8 @@ from engine.scenes import Scene
 from recordings.events import Event, EventKind, noticed
 from tui.cli.time_limit import limited
 from tui.playback.compiler import patient
-from tui.playback.playhead import Pace, Playhead
-from tui.playback.so_far import RunSoFar
-from tui.playback.source import RecordingStatus, Source
-from tui.playback.state import RunState
+from tui.playback.history import History
+from tui.playback.source import Pace, Playhead, RecordingStatus, RunState, Source
 
 if TYPE_CHECKING:
     from recordings.recorder import LiveRecorder
@@ -34,8 +32,7 @@ class Live(Source):
 
     kind = "LIVE"
     _run: RewindableRun
-    _so_far: RunSoFar
-    _left: "Ghost | None"  # the run before the restart with another step
+    _left: "Ghost | None" = None  # the run before the restart with another step
 
     def __init__(
         self,
@@ -43,11 +40,10 @@ class Live(Source):
         speed: float = 1.0,
         clock: Callable[[], float] = time.perf_counter,
         changes: Sequence[SteppingChange] = (),
-        so_far: RunSoFar | None = None,
+        history: History | None = None,
     ) -> None:
-        """Go on from a run known `so_far`, with the `changes` made on the way there."""
+        """Go on from a run of this history, with the `changes` made on the way there."""
         self.playhead = Playhead(speed=speed)
-        self.pace = Pace()
         self.recorder: LiveRecorder | None = None
         self.laid_under: Ghost | None = None
         self._events: list[Event] = []
@@ -58,14 +54,12 @@ class Live(Source):
         self._noticed_step = 0  # up to which the milestones of the run are events
         self._runs = 1
         run = RewindableRun(scene, 1, patient)
-        if so_far is not None:
+        if history is not None:
             with _limited(scene):
-                run.repeat(changes, so_far.sample.step)
-        self._enter(run, so_far)
-
-    @property
-    def so_far(self) -> RunSoFar:
-        return self._so_far
+                run.repeat(changes, history.step)
+            history = copy(history)
+            history.changes = run.changes
+        self._enter(run, history or History(scene, run.changes))
 
     @property
     def stepping(self) -> Stepping:
@@ -85,18 +79,16 @@ class Live(Source):
         return ghost if ghost is not None and ghost.scene.model == self.scene.model else None
 
     @property
-    def next_step(self) -> float | None:
-        return (self._run.x + abs(self.stepping.h) - self.playhead.position) / abs(
-            self.playhead.speed
-        )
+    def next_step(self) -> float:
+        ahead = self._run.x + abs(self.stepping.h) - self.playhead.position
+        return ahead / abs(self.playhead.speed)
 
     @property
     def events(self) -> Sequence[Event]:
-        if not self._run.in_past:
+        run = self._run
+        if not run.in_past:
             return self._events
-        run = self._run.run
-        step = self._run.step
-        return [event for event in self._events if event.run != run or event.step <= step]
+        return [event for event in self._events if event.run != run.run or event.step <= run.step]
 
     @property
     def recording_status(self) -> RecordingStatus | None:
@@ -105,17 +97,13 @@ class Live(Source):
             return None
         return RecordingStatus(recorder.path.name, recorder.seconds, recorder.failed)
 
-    def record(self, recorder: "LiveRecorder") -> None:
-        """Record from here on."""
-        self.recorder = recorder
-        for event in self._events:
-            recorder.event(event, self._recorded.position)
-        recorder.sample(self.sample, self._recorded.position)
+    # Time
 
     def tick(self, now: float) -> Sample:
         """Follow the clock as far as the frame's budget allows; the rest of the time is dropped."""
         before = self.playhead
-        self.playhead, self._recorded = before.at(now), self._recorded.at(now)
+        self.playhead = before.at(now)
+        self._recorded = self._recorded.at(now)
         if self.playhead.paused or before.seen is None:
             return self.sample
         began = self._clock()
@@ -129,35 +117,38 @@ class Live(Source):
         due = self.playhead.position - before.position
         if left > 0:
             self.playhead = self.playhead.moved_to(self._run.x)
-        self.pace = self.pace.after(
-            max(0.0, now - before.seen), due, self.playhead.position - before.position
-        )
+        done = self.playhead.position - before.position
+        self.pace = self.pace.after(max(0.0, now - before.seen), due, done)
         return self._take_sample(is_row=False)
 
     def _forward(self, steps: int) -> None:
-        """Go so many steps forward, or to the next row."""
-        spacing = self._row_steps
+        """Go so many steps forward, or to the next row, which depends on the run, not on frames."""
+        # a processor may be too slow for the speed
+        spacing = min(abs(self.playhead.speed / self.stepping.h) / ROW_RATE, 10_000)
+        spacing = max(1, round(spacing))
         with self._standing_still():
             self._run.forward(min(steps, spacing - self._run.step % spacing))
         if self._run.step % spacing == 0 and not self.failure:
             self._take_sample()
 
-    @property
-    def _row_steps(self) -> int:
-        """The steps from row to row: they depend on the run, not on the frames."""
-        steps = abs(self.playhead.speed / self.stepping.h) / ROW_RATE
-        return max(1, round(min(steps, 10_000)))  # a processor may be too slow for the speed
+    @contextmanager
+    def _standing_still(self) -> Iterator[None]:
+        """Pause where a user's method fails, as if the block had not been."""
+        try:
+            with _limited(self.scene, self._run):
+                yield
+        except OwnMethodError as error:
+            self.pause(True)
+            self.failure = str(error)
 
     def step(self, n: int) -> Sample:
         self.pause(True)
         target = self._run.step + n
-        while self._run.step < target:
+        while self._run.step < target and not self.failure:
             self._forward(target - self._run.step)
-            if self.failure:
-                break
         if n < 0:
             with self._standing_still():
-                self._run.back_to(max(0, self._run.step + n))
+                self._run.back_to(max(0, target))
         self.playhead = self.playhead.moved_to(self._run.x)
         return self._take_sample()
 
@@ -168,14 +159,29 @@ class Live(Source):
 
     def seek_event(self, direction: int) -> None:
         """Go to the previous event of this run, or to the next one that has been."""
-        run = self._run.run
-        here = self._run.step
-        end = self._run.furthest
+        run = self._run
         kept = ("start", "set_h", "mark", "noticed")
-        steps = {event.step for event in self._events if event.run == run and event.kind in kept}
-        before = max((step for step in steps if step < here), default=0)
-        after = min((step for step in steps if step > here), default=end)
-        self.step((after if direction > 0 else before) - here)
+        steps = {each.step for each in self._events if each.run == run.run and each.kind in kept}
+        if direction > 0:
+            target = min((step for step in steps if step > run.step), default=run.furthest)
+        else:
+            target = max((step for step in steps if step < run.step), default=0)
+        self.step(target - run.step)
+
+    def pause(self, paused: bool) -> None:
+        self.failure = None
+        if paused != self.playhead.paused:
+            self.playhead = self.playhead._replace(paused=paused)
+            self._recorded = self._recorded._replace(paused=paused)
+            self._note_here("pause" if paused else "resume")
+
+    def set_speed(self, speed: float) -> None:
+        if speed != self.playhead.speed:
+            self.playhead = self.playhead._replace(speed=speed)
+            self.pace = Pace()
+            self._note_here("speed", speed=speed)
+
+    # Changes of the run
 
     def start(self, scene: Scene) -> None:
         """Begin a new run.
@@ -188,52 +194,39 @@ class Live(Source):
         self._runs += 1
         with _limited(scene):
             run = RewindableRun(scene, self._runs, patient)
-        self._enter(run)
+        self.failure = None
+        self._left = None
+        self._enter(run, History(scene, run.changes))
         if stepping.equal_cost:
             self.set_stepping(stepping)
 
-    @property
-    def run_state(self) -> RunState:
-        return RunState(self._run, self._so_far, self._left)
-
-    def return_to(self, state: RunState) -> None:
-        """Go on with an earlier run where it was left: as one more run, which shares its past."""
-        self._run, self._so_far, self._left = state
-        self._runs += 1
-        self._run.branch(self._runs)
-        self.playhead = self.playhead.moved_to(self._run.x)
-        self._note_start()
-        self._take_sample()
-
-    @contextmanager
-    def _standing_still(self) -> Iterator[None]:
-        """Pause where a user's method fails, as if the block had not been."""
-        try:
-            with _limited(self.scene, self._run):
-                yield
-        except OwnMethodError as error:
-            self.pause(True)
-            self.failure = str(error)
-
-    def _enter(self, run: RewindableRun, so_far: RunSoFar | None = None) -> None:
-        self.failure = None
-        self._left = None
-        self._run, self._so_far = run, copy(so_far) if so_far else RunSoFar(run.scene, run.changes)
-        self._so_far.changes = run.changes
-        self.playhead = self.playhead.moved_to(run.x)
-        self._note_start()
-        self._take_sample()
-
     def restart(self) -> None:
         """Begin again with the step in force, over a run that began with another one."""
-        before = self._so_far
+        before = self.history
         number = self._run.run
         self.start(before.scene.altered(h=self.stepping.smallest))
         if self.scene != before.scene:
             from tui.playback.ghost import Ghost  # with NumPy
 
-            steps = [change.stepping.h for change in before.changes]
-            self._left = Ghost(f"run {number}", before.scene, before.history, steps)
+            self._left = Ghost(f"run {number}", before)
+
+    @property
+    def run_state(self) -> RunState:
+        return RunState(self._run, self.history, self._left)
+
+    def return_to(self, state: RunState) -> None:
+        """Go on with an earlier run where it was left: as one more run, which shares its past."""
+        self._left = state.left
+        self._runs += 1
+        state.run.branch(self._runs)
+        self._enter(state.run, state.history)
+
+    def _enter(self, run: RewindableRun, history: History) -> None:
+        self._run = run
+        self.history = history
+        self.playhead = self.playhead.moved_to(run.x)
+        self._note_start()
+        self._take_sample()
 
     def set_stepping(self, stepping: Stepping) -> None:
         """Step like this from here on.
@@ -249,18 +242,14 @@ class Live(Source):
             self._run.set_stepping(stepping)
         self._note_here("set_h", h=stepping.h, equal_cost=stepping.equal_cost)
 
-    def pause(self, paused: bool) -> None:
-        self.failure = None
-        if paused != self.playhead.paused:
-            self.playhead = self.playhead._replace(paused=paused)
-            self._recorded = self._recorded._replace(paused=paused)
-            self._note_here("pause" if paused else "resume")
+    # The recording
 
-    def set_speed(self, speed: float) -> None:
-        if speed != self.playhead.speed:
-            self.playhead = self.playhead._replace(speed=speed)
-            self.pace = Pace()
-            self._note_here("speed", speed=speed)
+    def record(self, recorder: "LiveRecorder") -> None:
+        """Record from here on."""
+        self.recorder = recorder
+        for event in self._events:
+            recorder.event(event, self._recorded.position)
+        recorder.sample(self.sample, self._recorded.position)
 
     def mark(self, text: str | None = None) -> None:
         if not self.is_marked:
@@ -274,7 +263,7 @@ class Live(Source):
 
     def _take_sample(self, is_row: bool = True) -> Sample:
         sample = self._run.sample(resets=is_row)
-        self._so_far.add(sample, is_row)
+        self.history.add(sample, is_row)
         if is_row and self.recorder is not None and sample.step >= self._run.furthest:
             self.recorder.sample(sample, self._due)
         self._note_milestones()
@@ -284,17 +273,16 @@ class Live(Source):
     def _due(self) -> float:
         """The recording clock [s] at which the step was due, not before what was recorded last."""
         late = (self.playhead.position - self._run.x) / abs(self.playhead.speed)
-        due = self._recorded.position - max(late, 0.0)
-        self._clocked = max(self._clocked, due)
+        self._clocked = max(self._clocked, self._recorded.position - max(late, 0.0))
         return self._clocked
 
     def _note_start(self) -> None:
         """The run's start; a branch also has its parent's changes of h and milestones."""
-        self._note(Event("start", self._run.run, 0, 0.0, scene=self.scene))
+        run = self._run.run
+        self._note(Event("start", run, 0, 0.0, scene=self._run.scene))
         for step, t, stepping in self._run.changes[1:]:
-            self._note(
-                Event("set_h", self._run.run, step, t, h=stepping.h, equal_cost=stepping.equal_cost)
-            )
+            change = Event("set_h", run, step, t, h=stepping.h, equal_cost=stepping.equal_cost)
+            self._note(change)
         self._noticed_step = -1
         self._note_milestones()
 

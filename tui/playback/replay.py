@@ -2,75 +2,61 @@
 
 import math
 import time
-from bisect import bisect_right
-from collections.abc import Callable, Sequence
-from functools import cache, partial
-from operator import attrgetter, itemgetter
+from bisect import bisect_left, bisect_right
+from collections.abc import Callable, Iterator, Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from engine.run.judgement import Judgement, Milestone
 from engine.run.lockstep import Sample
-from engine.run.stepping import Stepping, change_before
+from engine.run.stepping import Stepping, SteppingChange, change_before
 from recordings.events import Event, check_present
-from tui.playback.cursor import ReplayCursor
+from tui.playback.history import History
 from tui.playback.live import Live
-from tui.playback.marks import Mark, Marks, mark_event
-from tui.playback.playhead import Pace, Playhead
-from tui.playback.so_far import RunSoFar
-from tui.playback.source import RecordingStatus, Source
+from tui.playback.marks import Mark, Marks
+from tui.playback.source import Playhead, RecordingStatus, Source
 
 if TYPE_CHECKING:
-    from recordings.recording import Recording, Run
+    from recordings.recording import Recording, Run, SamplePlace
 
 FILL_BUDGET = 0.006  # s of each frame for reading the past
+MAX_FOLLOWED = 100  # samples; what lies further ahead is jumped to
+TAIL = 1.0  # s of the past that are there at once after a jump, for the trails
+DENSE = 60.0  # s of the past that are read completely; what lies before,
+MAX_PIECES = 300  # in pieces of a second, evenly spread
+NANOSECOND = 1e-9  # s; clocks in a file are rounded to it
 
 
 class Replay(Source):
     """A recording on screen.  The playhead is on the recording clock."""
 
     kind = "REPLAY"
+    run: "Run"
 
     def __init__(
-        self, recording: "Recording", marks: Marks, clock: Callable[[], float] = time.perf_counter
+        self, recording: "Recording", clock: Callable[[], float] = time.perf_counter
     ) -> None:
         self.recording = recording
         self.length = recording.length  # s
-        self.marks = marks
+        self.marks = Marks(recording.path)
         self.playhead = Playhead()
-        self.pace = Pace()
         self.looping = False  # plays the recording again and again
         self._closed = False
         self._clock = clock
-        self._cursor = ReplayCursor(recording)
-        self._events: list[Event] = []  # up to the playhead
-        self._milestones: tuple[int, list[Milestone]] = 0, []  # of the run of this number
-        self._ticks: list[float] = []  # s, for so many marks:
-        self._ticked_marks = -1
-        self._mark_event = cache(partial(mark_event, recording))
+        self._reading: Iterator[None] | None = None  # the past, while there is more of it
+        first = recording.at(0.0)
+        assert first is not None, "a recording without samples is refused before it gets here"
+        self._jump(first)
 
-    @property
-    def so_far(self) -> RunSoFar:
-        return self._cursor.so_far
-
-    @property
-    def run(self) -> "Run":
-        return self._cursor.run
+    # What is known at the playhead
 
     @property
     def events(self) -> Sequence[Event]:
-        """What was done up to the playhead."""
-        done = bisect_right(self.recording.events, self.playhead.position, key=itemgetter(0))
-        if done != len(self._events):
-            self._events = [event for _, event in self.recording.events[:done]]
-        return self._events
+        return [event for clock, event in self.recording.events if clock <= self.playhead.position]
 
     @property
     def milestones(self) -> Sequence[Milestone]:
-        """What the lab noticed in this run up to the sample."""
-        if self._milestones[0] != self.run.number:
-            self._milestones = self.run.number, self.run.milestones
-        known = self._milestones[1]
-        return known[: bisect_right(known, self.sample.step, key=attrgetter("step"))]
+        return [each for each in self.run.milestones if each.step <= self.sample.step]
 
     @property
     def judgements(self) -> Sequence[Judgement]:
@@ -79,62 +65,73 @@ class Replay(Source):
         period = self.exact.period or math.tau / self.scene.w0
         swings = (self.sample.step - since) * abs(self.stepping.h) / period
         given = {
-            each.method: Judgement(
-                verdict=each.verdict,
-                periods=swings,
-                lyapunov=each.lyapunov,
-                slope=each.trend,
-            )
+            each.method: Judgement(each.verdict, each.trend, periods=swings, lyapunov=each.lyapunov)
             for each in self.milestones
             if each.kind == "verdict" and each.step > since
         }
-        judged = zip(self.scene.cast, self.sample.readings, strict=True)
-        return [
-            Judgement("failed")
-            if reading.diverged_at is not None
-            else given.get(method, Judgement())
-            for method, reading in judged
-        ]
+        for method, reading in zip(self.scene.cast, self.sample.readings, strict=True):
+            if reading.diverged_at is not None:
+                given[method] = Judgement("failed")
+        return [given.get(method, Judgement()) for method in self.scene.cast]
 
     @property
     def later_marks(self) -> Sequence[Event]:
-        marks = list(self.marks)
-        done = bisect_right(marks, self.playhead.position, key=attrgetter("clock"))
-        return [self._mark_event(mark) for mark in marks[:done]]
+        return [self._event(mark) for mark in self.marks if mark.clock <= self.playhead.position]
+
+    def _event(self, mark: Mark) -> Event:
+        run = self.recording.run_of(mark.run) or self.run
+        before = change_before(History.recorded(run).changes, mark.step)
+        t = before.t + (mark.step - before.step) * before.stepping.h
+        return Event("mark", mark.run, mark.step, t, text=mark.text)
+
+    @property
+    def _past_changes(self) -> list[SteppingChange]:
+        """How the run steps, up to the sample and to the playhead."""
+        clocks = [clock for clock, event in self.run.events if event.h is not None]
+        count = 1 + bisect_right(clocks, self.playhead.position)
+        return [each for each in self.changes[:count] if each.step <= self.sample.step]
 
     @property
     def stepping(self) -> Stepping:
-        return self._cursor.changes(self.playhead.position)[-1].stepping
-
-    @property
-    def knows_past(self) -> bool:
-        return self._cursor.fill(lambda: False)
+        return self._past_changes[-1].stepping
 
     @property
     def recording_status(self) -> RecordingStatus:
         return RecordingStatus(self.recording.path.name, self.length)
 
+    @property
+    def ticks(self) -> list[float]:
+        """The clocks of events, milestones and marks [s]; not the stops."""
+        done = {clock for clock, event in self.recording.events if event.kind != "stop"}
+        return sorted(done.union(mark.clock for mark in self.marks))
+
+    # What can be done
+
     def tick(self, now: float) -> Sample:
         """Follow the clock to `now`: stop at the ends, or go round in the loop."""
         self.playhead = self.playhead.at(now)
-        if not self.playhead.paused and not self._closed:
+        if not self.playhead.paused:
             self._stay_inside()
-            self._cursor.go_to(self.playhead.position)
+            self._follow()
         self.fill()
         return self.sample
 
-    def fill(self) -> bool:
-        """Read more of the past; return whether all of it has been read."""
-        until = self._clock() + FILL_BUDGET
-        return self._closed or self._cursor.fill(lambda: self._clock() < until)
+    def _stay_inside(self) -> None:
+        position = self.playhead.position
+        if 0.0 <= position <= self.length:
+            return
+        start, end = (0.0, self.length) if self.playhead.speed > 0 else (self.length, 0.0)
+        if self.looping and self.length:
+            self.playhead = self.playhead.moved_to(start)
+        elif (self.playhead.speed < 0) == (position < 0.0):
+            self.playhead = self.playhead._replace(paused=True).moved_to(end)
 
     def pause(self, paused: bool) -> None:
         """Pause or go on; from the end, go on from the start."""
         self.playhead = self.playhead._replace(paused=paused)
-        position = self.playhead.position
-        backwards = self.playhead.speed < 0
-        if not paused and position == (0.0 if backwards else self.length):
-            self.seek(self.length if backwards else 0.0)
+        start, end = (0.0, self.length) if self.playhead.speed > 0 else (self.length, 0.0)
+        if not paused and self.playhead.position == end:
+            self.seek(start)
 
     def set_speed(self, speed: float) -> None:
         """Play `speed` seconds of the recording per second; negative plays backwards."""
@@ -142,43 +139,42 @@ class Replay(Source):
 
     def step(self, n: int) -> Sample:
         self.pause(True)
-        if not self._closed:
-            self._cursor.step(n)
-        self.playhead = self.playhead.moved_to(self._cursor.clock)
+        move = self.recording.next if n > 0 else self.recording.previous
+        for _ in range(abs(n)):
+            if not self._closed and (place := move(self._place)):
+                self._show(place)
+        clock, _ = self.recording.sample(self._place)
+        self.playhead = self.playhead.moved_to(clock)
         return self.sample
 
     def seek(self, position: float) -> None:
         """Go to a moment of the recording clock [s], or to the nearer end."""
-        if self._closed:
-            return
         self.playhead = self.playhead.moved_to(min(max(position, 0.0), self.length))
-        self._cursor.go_to(self.playhead.position)
+        self._follow()
 
     def go_to(self, run: int, step: int) -> bool:
         self.pause(True)
-        place = self._cursor.place(run, step)
-        if place is not None:
-            self.seek(place)
-        return place is not None
+        found = self.recording.run_of(run)
+        if found is None:
+            return False
+
+        def step_at(nanosecond: int) -> int:
+            place = self.recording.at(nanosecond * NANOSECOND)
+            sample = self.recording.sample(place).value if place else None
+            return sample.step if isinstance(sample, Sample) and sample.run == run else -1
+
+        begin = round(found.begin / NANOSECOND)
+        clocks = range(begin, round(found.end / NANOSECOND))
+        self.seek((begin + bisect_left(clocks, step, key=step_at)) * NANOSECOND)
+        return True
 
     def seek_event(self, direction: int) -> None:
         position = self.playhead.position
         if direction > 0:
-            self.seek(
-                min((tick for tick in self.ticks if tick > position + 1e-6), default=self.length)
-            )
+            later = (tick for tick in self.ticks if tick > position + 1e-6)
+            self.seek(min(later, default=self.length))
         else:
             self.seek(max((tick for tick in self.ticks if tick < position - 0.3), default=0.0))
-
-    @property
-    def ticks(self) -> list[float]:
-        """The clocks of events, milestones and marks [s]; not the stops."""
-        marks = [mark.clock for mark in self.marks]
-        if len(marks) != self._ticked_marks:
-            self._ticked_marks = len(marks)
-            done = {clock for clock, event in self.recording.events if event.kind != "stop"}
-            self._ticks = sorted({*done, *marks})
-        return self._ticks
 
     def mark(self, text: str | None = None) -> None:
         """Set a mark at the sample, unless it has one; it is saved beside the recording."""
@@ -191,22 +187,87 @@ class Replay(Source):
         Raises RecordingError if the run has a user's own method that was not given.
         """
         check_present(self.scene)
-        return Live(
-            self.scene, changes=self._cursor.changes(self.playhead.position)[1:], so_far=self.so_far
-        )
+        return Live(self.scene, changes=self._past_changes[1:], history=self.history)
 
     def close(self) -> None:
         """Close the file; a frame that was due already shows what was there."""
         self._closed = True
+        self._reading = None
         self.recording.close()
 
-    def _stay_inside(self) -> None:
-        position = self.playhead.position
-        if 0.0 <= position <= self.length:
+    # Samples of the file
+
+    def _follow(self) -> None:
+        """Show the last sample before the playhead, after those between where they are few."""
+        if self._closed:
             return
-        backwards = self.playhead.speed < 0
-        if self.looping and self.length:
-            self.playhead = self.playhead.moved_to(self.length if backwards else 0.0)
-        elif backwards == (position < 0.0):
-            end = 0.0 if backwards else self.length
-            self.playhead = self.playhead._replace(paused=True).moved_to(end)
+        target = self.recording.at(self.playhead.position + NANOSECOND) or self._place
+        for _ in range(MAX_FOLLOWED):
+            if self._place < target and (following := self.recording.next(self._place)):
+                self._show(following)
+        if self._place < target:
+            self._jump(target)
+        elif target < self._place:
+            self._show(target)
+
+    def _show(self, place: "SamplePlace") -> None:
+        """Show the sample at a place close to the last one."""
+        sample = self.recording.sample(place).value
+        assert isinstance(sample, Sample)
+        if sample.run == self.run.number:
+            self._place = place
+            self.history.add(sample)
+        else:
+            self._jump(place)
+
+    def _jump(self, place: "SamplePlace") -> None:
+        """Show the sample at a place: the trails at once, the rest over the next frames."""
+        self._place = place
+        clock, sample = self.recording.sample(place)
+        assert isinstance(sample, Sample)
+        run = self.recording.run_of(sample.run)
+        assert run is not None
+        self.run = run
+        self.history = History.recorded(run)
+        for _ in self._read(self.history, max(run.begin, clock - TAIL), clock, sample.step):
+            pass
+        self.history.add(sample)
+        self._reading = self._past()
+
+    @property
+    def knows_past(self) -> bool:
+        return self._reading is None
+
+    def fill(self) -> bool:
+        """Read more of the past; return whether all of it that will be read has been."""
+        until = self._clock() + FILL_BUDGET
+        while self._reading is not None and self._clock() < until:
+            if next(self._reading, self) is self:
+                self._reading = None
+        return self._reading is None
+
+    def _past(self) -> Iterator[None]:
+        """Read the past, and then the samples that have come since."""
+        history = History.recorded(self.run)
+        start = self.run.begin
+        while start < (end := self.recording.sample(self._place).clock):
+            for piece in pieces(start, end):
+                yield from self._read(history, *piece, self.sample.step)
+            start = end
+        history.add(self.sample)
+        self.history = history
+
+    def _read(self, history: History, start: float, end: float, last: int) -> Iterator[None]:
+        """Add the run's samples from a piece of the recording clock before step `last`."""
+        for _, sample in self.recording.samples_between(start, end):
+            if sample.run == self.run.number and history.step < sample.step < last:
+                history.add(sample)
+                yield
+
+
+def pieces(start: float, end: float) -> list[tuple[float, float]]:
+    """Return what to read of [start, end]: the last DENSE seconds, and short pieces before."""
+    middle = max(start, end - DENSE)
+    count = min(MAX_PIECES, math.ceil(middle - start))
+    edges = [start + (middle - start) * n / count for n in range(count + 1)] if count else []
+    return [(begin, min(begin + 1.0, until)) for begin, until in pairwise(edges)] + [(middle, end)]

@@ -23,10 +23,8 @@ from engine.scenes import MOST_METHODS
 from recordings import library
 from tui.cli.errors import explained
 from tui.cli.time_limit import limited
-from tui.playback.playhead import doubled
 from tui.playback.shown import Shown
-from tui.playback.source import Source
-from tui.playback.state import State
+from tui.playback.source import Source, State, doubled
 from tui.screens.help import help_text
 from tui.screens.host import Host
 from tui.screens.insight_line import InsightLine
@@ -39,7 +37,6 @@ from tui.views.view import Box, Pane, View, Zoomed
 from tui.words.command_line import command, reproduces
 from tui.words.describe import description
 from tui.words.events import event_lines, numbered
-from tui.words.undone import undone
 
 READ_RATE = 5  # updates a second of what people read
 STALL = 1.0  # s; a longer gap between frames is no simulated time: Ctrl+Z, sleep, a dead line
@@ -354,16 +351,7 @@ class SourceScreen(Screen[None]):
     def state(self) -> State:
         """What an undo would bring back."""
         source = self.source
-        sample = source.sample
-        return State(
-            scene=source.scene,
-            t=sample.t,
-            number=sample.run,
-            stepping=source.stepping,
-            speed=source.playhead.speed,
-            shown=self.shown,
-            run=source.run_state,
-        )
+        return State(source.stepping, source.playhead.speed, self.shown, source.run_state)
 
     def keep(self, state: State) -> None:
         """Keep a state for the next undo."""
@@ -376,10 +364,12 @@ class SourceScreen(Screen[None]):
 
     def action_undo(self) -> None:
         if self._undo:
-            before = self.state
             self.restore(self._undo.pop())
             self.show_now()
-            self.notify(undone(before, self.state), timeout=3, markup=False)
+            now = f"{self.source.scene.name}, h {self.source.stepping.h:.4g} s"
+            self.notify(
+                f"Undone: {now}, {self.source.playhead.speed:.4g}×", timeout=3, markup=False
+            )
 
     # Views and dialogs
 

@@ -100,10 +100,9 @@ def open_recording(path: Path) -> "Recording":
 
 def open_replay(path: Path) -> "Replay":
     """A recording to be replayed.  Raises UserError if there is nothing in it."""
-    from tui.playback.marks import Marks
     from tui.playback.replay import Replay
 
-    return Replay(open_recording(path), Marks(path))
+    return Replay(open_recording(path))
 
 
 def open_ghost(path: Path) -> "Ghost":

@@ -11,8 +11,7 @@ from engine.run.lockstep import Sample
 from engine.run.stepping import Stepping
 from engine.scenes import SCENES, Scene, SceneError
 from tui.playback.live import Live
-from tui.playback.source import Source
-from tui.playback.state import State
+from tui.playback.source import Source, State
 from tui.screens.base import SourceScreen
 from tui.screens.tour import TourGuide
 from tui.views.view import Held, SceneChosen, StepSizeChosen

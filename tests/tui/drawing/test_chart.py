@@ -26,7 +26,8 @@ def window(x, low, high=None, repeats=0.0, turned=False):
     """A window on one quantity, with a column for each method or the same for all."""
     x, low, high = (np.asarray(part, float) for part in (x, low, low if high is None else high))
     low, high = (np.tile(part[:, None], COUNT) if part.ndim == 1 else part for part in (low, high))
-    return Window(x, x, {"energy_error": low}, {"energy_error": high}, repeats, turned)
+    t = -x if turned else x
+    return Window(x, t, {"energy_error": low}, {"energy_error": high}, repeats)
 
 
 def looking(places=range(COUNT), **options):

@@ -1,8 +1,13 @@
 """A live source, driven by a clock that the test moves and watched by a recorder that keeps everything."""
 
+import math
+import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from engine.methods.examine import load
 from engine.run.lockstep import Lockstep, Sample
@@ -11,6 +16,9 @@ from engine.scenes import DEFAULT_SCENE, SCENES, SceneError
 from recordings.events import Event
 from tests.tui.harness import FPS, Lab
 from tui.playback.live import FRAME_BUDGET, Live
+from tui.playback.source import Pace, Playhead, doubled
+
+FRAMES = st.lists(st.floats(0, 5), min_size=1, max_size=50)  # s between looks at the clock
 
 
 class Keeper:
@@ -53,15 +61,56 @@ class Bench(Lab):
         self.work += self.second_per_look
         return self.work
 
-    @property
-    def kinds(self) -> list[str]:
-        return [event.kind for event in self.keeper.events]
+
+def states(sample: Sample) -> list[tuple[float, float]]:
+    return [(reading.theta, reading.omega) for reading in sample.readings]
+
+
+def simulated(scene, step, changes=()) -> list[tuple[float, float]]:
+    """The states at a step, simulated again without a lab."""
+    lockstep = Lockstep(scene)
+    for at, h in changes:
+        lockstep.advance(at - lockstep.step)
+        lockstep.set_stepping(Stepping(h))
+    lockstep.advance(step - lockstep.step)
+    return states(lockstep.sample())
+
+
+@given(FRAMES, st.floats(0.01, 100), st.booleans())
+def test_the_position_depends_on_the_time_that_passed_and_not_on_how_often_one_looked(
+    frames, speed, paused
+):
+    playhead, now = Playhead(speed=speed, paused=paused).at(10.0), 10.0
+    assert playhead.position == 0.0
+    for elapsed in frames:
+        now += elapsed
+        playhead = playhead.at(now)
+    # 50 additions and the clock's own rounding, each half a unit in the last place of at most 260 s
+    expected = 0.0 if paused else (now - 10.0) * speed
+    assert playhead.position == pytest.approx(expected, abs=260 * speed * 100 * 2**-53)
+    assert playhead.at(now - 9.0).position == playhead.position  # a clock set back
+
+
+def test_a_pace_is_the_share_of_what_was_due_that_was_done_and_forgets_within_seconds():
+    pace = Pace()
+    assert pace.share == 1.0
+    for _ in range(300):
+        pace = pace.after(1 / 30, due=1 / 30, done=1 / 60)
+    assert pace.share == pytest.approx(0.5)
+    for _ in range(5 * 30):
+        pace = pace.after(1 / 30, due=1 / 30, done=1 / 30)
+    assert pace.share == pytest.approx(1.0, abs=math.exp(-5))  # five time constants
+
+
+@given(st.integers(-40, 40))
+def test_speeds_stay_within_their_limits_and_double_exactly_within_them(times):
+    expected = 2.0 ** min(max(times, -10), 20)
+    assert doubled(1.0, times) == -doubled(-1.0, times) == expected
 
 
 @pytest.mark.parametrize("h", [0.05, 0.013, 1 / 30])
 def test_after_a_minute_simulated_and_running_time_differ_by_less_than_a_frame(h):
-    bench = Bench(DEFAULT_SCENE.altered(h=h))
-    sample = bench.run(60)
+    sample = Bench(DEFAULT_SCENE.altered(h=h)).run(60)
     assert abs(sample.t - 60) < max(1 / FPS, h)
 
 
@@ -69,12 +118,14 @@ def test_time_follows_the_clock_through_pauses_speeds_and_changes_of_h():
     bench = Bench()
     bench.run(2)
     bench.live.pause(True)
-    bench.run(5)
+    bench.run(60)
     bench.live.pause(False)
     bench.live.set_speed(4)
     bench.run(1)
     bench.live.set_stepping(Stepping(0.01))
     assert bench.run(1).t == pytest.approx(2 + 4 + 4, abs=0.05)  # one step of 0.05
+    # the recording clock stands while paused and does not care for speed
+    assert bench.keeper.seconds == pytest.approx(4.0, abs=1 / 30)  # from sample to sample
 
 
 @pytest.mark.parametrize("speed", [1, 8, 64])
@@ -83,12 +134,9 @@ def test_time_that_runs_back_to_its_start_is_sampled_there_and_goes_on(speed):
     turn = bench.run(3).t
     bench.live.set_stepping(Stepping(-0.011))
     end = bench.run(4)
-    returned = bench.live.history.returned
-    assert returned is not None
-    assert returned.t == pytest.approx(0.0, abs=1e-10)  # t_base + n·h, rounded
-    assert end.t == pytest.approx(
-        turn - 4 * speed, abs=0.011 + 1e-9
-    )  # nothing is dropped: less than a step behind
+    assert bench.live.history.returned.t == pytest.approx(0.0, abs=1e-10)  # t_base + n·h, rounded
+    # nothing is dropped: less than a step behind
+    assert end.t == pytest.approx(turn - 4 * speed, abs=0.011 + 1e-9)
 
 
 def test_time_that_the_processor_cannot_simulate_is_dropped_and_lowers_the_pace():
@@ -103,8 +151,7 @@ def test_time_that_the_processor_cannot_simulate_is_dropped_and_lowers_the_pace(
 
 def test_a_step_is_one_step_and_pauses():
     bench = Bench()
-    bench.run(1)
-    before = bench.live.sample.step
+    before = bench.run(1).step
     assert bench.live.step(1).step == before + 1
     assert bench.live.playhead.paused
     assert bench.live.step(-1).step == before
@@ -117,15 +164,10 @@ def test_after_a_step_back_the_run_goes_on_with_the_same_bits_and_nothing_is_rec
     bench.live.step(-25)
     bench.live.pause(False)
     sample = bench.run(4)
-    lockstep = Lockstep(DEFAULT_SCENE)
-    lockstep.advance(sample.step)
-    expected = lockstep.sample()
-    assert [reading.theta for reading in sample.readings] == [
-        reading.theta for reading in expected.readings
-    ]
-    steps = [sample.step for sample in bench.keeper.samples]
+    assert states(sample) == simulated(DEFAULT_SCENE, sample.step)
+    steps = [(sample.run, sample.step) for sample in bench.keeper.samples]
     assert steps == sorted(set(steps))
-    assert {sample.run for sample in bench.keeper.samples} == {1}
+    assert {run for run, _ in steps} == {1}
 
 
 def test_a_change_in_the_past_is_a_new_run_that_repeats_what_it_inherits():
@@ -133,30 +175,18 @@ def test_a_change_in_the_past_is_a_new_run_that_repeats_what_it_inherits():
     bench.run(1)
     bench.live.set_stepping(Stepping(0.1))
     bench.run(2)
-    bench.live.step(-5)
-    at = bench.live.sample.step
+    at = bench.live.step(-5).step
     bench.live.set_stepping(Stepping(0.02))
     bench.live.pause(False)
     bench.run(1)
-    second = [
-        event
-        for event in bench.keeper.events
-        if event.run == 2 and event.kind in ("start", "set_h")
-    ]
-    assert [(event.kind, event.step, event.h) for event in second] == [
-        ("start", 0, None),
-        ("set_h", 20, 0.1),
-        ("set_h", at, 0.02),
-    ]
+    second = [each for each in bench.keeper.events if each.run == 2]
     assert second[0].scene == DEFAULT_SCENE
+    inputs = [(each.kind, each.step, each.h) for each in second if each.kind in ("start", "set_h")]
+    assert inputs == [("start", 0, None), ("set_h", 20, 0.1), ("set_h", at, 0.02)]
     samples = [sample for sample in bench.keeper.samples if sample.run == 2]
     assert samples[0].step == at
-    lockstep = Lockstep(DEFAULT_SCENE, run=2)
-    for event in second[1:]:
-        lockstep.advance(event.step - lockstep.step)
-        lockstep.set_stepping(Stepping(event.h))
-    lockstep.advance(samples[-1].step - lockstep.step)
-    assert lockstep.sample().readings[3].theta == samples[-1].readings[3].theta
+    changes = [(20, 0.1), (at, 0.02)]
+    assert states(samples[-1]) == simulated(DEFAULT_SCENE, samples[-1].step, changes)
 
 
 def test_every_change_is_an_event_at_its_step_with_a_sample_there():
@@ -164,47 +194,34 @@ def test_every_change_is_an_event_at_its_step_with_a_sample_there():
     bench.run(1)
     bench.live.set_stepping(Stepping(-0.05))
     bench.live.mark("turned")
+    bench.live.mark("turned")  # a moment has one mark
     bench.live.pause(True)
     bench.live.pause(False)
     bench.live.set_speed(2)
     bench.live.start(SCENES["spin"])
-    assert bench.kinds == ["start", "set_h", "mark", "pause", "resume", "speed", "start"]
+    kinds = [event.kind for event in bench.keeper.events]
+    assert kinds == ["start", "set_h", "mark", "pause", "resume", "speed", "start"]
     steps = {(sample.run, sample.step) for sample in bench.keeper.samples}
     assert {(event.run, event.step) for event in bench.keeper.events} <= steps
 
 
-def test_the_recording_clock_stands_while_paused_and_does_not_care_for_speed():
-    bench = Bench()
-    bench.run(2)
-    bench.live.pause(True)
-    bench.run(60)
-    bench.live.pause(False)
-    bench.live.set_speed(100)
-    bench.run(1)
-    assert bench.keeper.seconds == pytest.approx(3.0, abs=1 / 30)  # from sample to sample
-
-
 def test_a_restart_keeps_the_step_size_but_not_its_sign():
-    bench = Bench()
-    bench.run(1)
-    bench.live.set_stepping(Stepping(-0.1))
-    bench.live.restart()
-    assert (bench.live.stepping.h, bench.live.sample.run, bench.live.sample.step) == (0.1, 2, 0)
+    live = Bench().live
+    live.set_stepping(Stepping(-0.1))
+    live.restart()
+    assert (live.stepping.h, live.sample.run, live.sample.step) == (0.1, 2, 0)
 
 
-def test_an_absurd_step_size_is_refused_and_changes_nothing():
+@pytest.mark.parametrize("h", [0.0, math.nan, 1e9])
+def test_an_absurd_step_size_is_refused_and_changes_nothing(h):
     bench = Bench()
     bench.run(1)
     bench.live.step(-3)
     events = len(bench.keeper.events)
-    for h in (0.0, float("nan"), 1e9):
-        with pytest.raises(SceneError):
-            bench.live.set_stepping(Stepping(h))
-    assert (bench.live.stepping.h, len(bench.keeper.events), bench.live.sample.run) == (
-        0.05,
-        events,
-        1,
-    )
+    with pytest.raises(SceneError):
+        bench.live.set_stepping(Stepping(h))
+    assert (bench.live.stepping.h, bench.live.sample.run) == (0.05, 1)
+    assert len(bench.keeper.events) == events
 
 
 def test_the_events_are_those_up_to_the_sample_in_the_past_too():
@@ -218,21 +235,13 @@ def test_the_events_are_those_up_to_the_sample_in_the_past_too():
     assert [event.kind for event in bench.live.events] == ["start", "set_h", "pause"]
 
 
-def test_a_recorder_that_comes_later_learns_how_the_run_began():
-    live = Live(SCENES["spin"])
-    keeper = Keeper()
+def test_a_recorder_that_comes_later_learns_how_the_run_began_and_is_closed():
+    live, keeper = Live(SCENES["spin"]), Keeper()
     live.record(keeper)
-    assert (keeper.events[0].kind, keeper.events[0].scene, keeper.samples[0].step) == (
-        "start",
-        SCENES["spin"],
-        0,
-    )
-
-
-def test_closing_finishes_the_recording():
-    bench = Bench()
-    bench.live.close()
-    assert bench.keeper.closed
+    (start,) = keeper.events
+    assert (start.kind, start.scene, keeper.samples[0].step) == ("start", SCENES["spin"], 0)
+    live.close()
+    assert keeper.closed
 
 
 FAILING = """
@@ -264,8 +273,7 @@ def test_where_a_users_method_fails_the_run_stands_still_and_can_go_on(failure, 
     own = load(FAILING.format(failure), "mine", "m", "mine.py")
     scene = DEFAULT_SCENE.with_cast((*DEFAULT_SCENE.cast, own))
     bench = Bench(scene)
-    bench.run(2)
-    here = bench.live.sample
+    here = bench.run(2)
     monkeypatch.setenv("FAIL", "")
     bench.live.step(-20)
     assert words in bench.live.failure
@@ -273,11 +281,8 @@ def test_where_a_users_method_fails_the_run_stands_still_and_can_go_on(failure, 
     monkeypatch.delenv("FAIL")
     bench.live.pause(False)
     assert bench.live.failure is None
-    bench.run(2)
-    whole = Lockstep(scene)
-    whole.advance(bench.live.sample.step)
-    for mine, other in zip(bench.live.sample.readings, whole.sample().readings, strict=True):
-        assert (mine.theta, mine.omega) == (other.theta, other.omega)
+    sample = bench.run(2)
+    assert states(sample) == simulated(scene, sample.step)
 
 
 @pytest.mark.parametrize("change", [{"omega": 1e8}, {"theta": 1e6}, {"length": 9.81, "h": 50.0}])
@@ -286,5 +291,43 @@ def test_extreme_starts_neither_crash_nor_read_anything_but_finite_numbers(chang
     bench.run(10)
     for sample in bench.keeper.samples:
         for reading in sample.readings:
-            assert abs(reading.energy_error) < float("inf")
-            assert abs(reading.theta) < float("inf")
+            assert math.isfinite(reading.energy_error)
+            assert math.isfinite(reading.theta)
+
+
+def calls(work: Callable[[], object]) -> int:
+    """How many functions were called."""
+    count = 0
+
+    def counted(_frame: object, event: str, _argument: object) -> None:
+        nonlocal count
+        count += event in ("call", "c_call")
+
+    sys.setprofile(counted)
+    try:
+        work()
+    finally:
+        sys.setprofile(None)
+    return count
+
+
+@pytest.mark.slow
+def test_a_frame_takes_as_much_after_eight_hours_as_after_one():
+    lab, taken = Lab(DEFAULT_SCENE), []
+
+    def frames() -> None:
+        for _ in range(512):  # whole rounds of merging old rows of the history
+            lab.run(1 / FPS)
+            lab.live.history.trails(300)
+        lab.live.history.window(20.0)
+        lab.live.history.window()
+        _ = lab.live.judgements, lab.live.milestones
+
+    for hours in (1, 8):
+        lab.live.set_speed(256 * FPS)
+        while lab.live.sample.t < hours * 3600:
+            lab.run(1 / FPS)
+        lab.live.set_speed(1.0)
+        frames()  # whose samples are close to each other again
+        taken.append(calls(frames))
+    assert taken[1] < 1.1 * taken[0]

@@ -9,13 +9,18 @@ import numpy as np
 import pytest
 
 from engine.run.lockstep import Sample
-from recordings.events import Entry
+from engine.run.stepping import Stepping
+from engine.scenes import SCENES
+from recordings.events import Entry, Event
+from recordings.library import GOLDEN
+from recordings.recorder import Recorder
 from recordings.recording import Recording
-from tests.tui.harness import FPS, Clocked, eventful, recorded
-from tui.playback.cursor import DENSE, MAX_PIECES, pieces
-from tui.playback.marks import Marks
-from tui.playback.replay import Replay
-from tui.words.events import event_lines
+from recordings.verification import verify
+from tests.tui.harness import FPS, Clocked, Lab, eventful, recorded
+from tests.tui.playback.test_live import states
+from tui.cli.options import resolve
+from tui.playback.marks import Mark, Marks
+from tui.playback.replay import DENSE, MAX_PIECES, Replay, pieces
 
 NANOSECOND = 1e-9  # what clocks in a file are rounded to
 LENGTH = 12.0  # s, of the eventful sitting
@@ -37,7 +42,7 @@ class Table(Clocked):
     def __init__(self, path: Path):
         self.recording = Recording.open(path)
         self.opened.append(self.recording)
-        self.replay = Replay(self.recording, Marks(path), clock=lambda: 0.0)
+        self.replay = Replay(self.recording, clock=lambda: 0.0)
         super().__init__(self.replay)
 
     @property
@@ -50,6 +55,10 @@ class Table(Clocked):
     def samples(self) -> list[Entry]:
         return [entry for entry in self.recording.entries() if isinstance(entry.value, Sample)]
 
+    @property
+    def verdicts(self) -> list[str]:
+        return [judgement.verdict for judgement in self.replay.judgements]
+
 
 @pytest.fixture(scope="module")
 def sitting(tmp_path_factory: pytest.TempPathFactory) -> Path:
@@ -61,15 +70,11 @@ def table(sitting: Path) -> Table:
     return Table(sitting)
 
 
-def test_it_begins_at_the_first_sample(table):
+def test_at_every_moment_it_shows_the_last_sample_that_was_recorded_before(table):
     assert table.replay.sample == table.samples[0].value
     assert table.replay.length == pytest.approx(LENGTH)
-
-
-def test_at_every_moment_it_shows_the_last_sample_that_was_recorded_before(table):
     for _ in range(60):
-        sample = table.run(0.2)
-        assert sample == table.due
+        assert table.run(0.2) == table.due
 
 
 def test_it_stops_at_the_end_and_from_there_goes_on_from_the_start(table):
@@ -93,20 +98,30 @@ def test_played_backwards_it_shows_the_same_samples_and_stops_at_the_start(table
     assert list(dict.fromkeys(runs)) == [3, 2, 1]
 
 
+@pytest.mark.parametrize(
+    ("speed", "start", "behind"), [(1.0, LENGTH - 0.5, 0.5), (-1.0, 0.5, LENGTH - 0.5)]
+)
+def test_a_loop_goes_round_both_ways(table, speed, start, behind):
+    table.replay.looping = True
+    table.replay.set_speed(speed)
+    table.replay.seek(start)
+    table.run(1)
+    assert table.replay.playhead.position == pytest.approx(behind, abs=0.1)
+    assert not table.replay.playhead.paused
+
+
 def test_steps_go_from_sample_to_sample_both_ways_and_not_over_the_ends(table):
-    replay = table.replay
-    forward = [replay.step(1) for _ in range(len(table.samples) + 2)]
-    assert forward[: len(table.samples) - 1] == [entry.value for entry in table.samples[1:]]
-    assert forward[-1] == table.samples[-1].value
-    backward = [replay.step(-1) for _ in range(len(table.samples) + 2)]
-    assert backward[: len(table.samples) - 1] == [entry.value for entry in table.samples[-2::-1]]
+    values = [entry.value for entry in table.samples]
+    forward = [table.replay.step(1) for _ in range(len(values) + 2)]
+    assert forward == [*values[1:], *values[-1:] * 3]
+    backward = [table.replay.step(-1) for _ in range(len(values) + 2)]
+    assert backward == [*values[-2::-1], *values[:1] * 3]
 
 
 @pytest.mark.parametrize("seconds", [-5.0, 0.0, 3.3, 9.0, LENGTH, 99.0])
-def test_a_seek_lands_where_playing_would_have_come_by(table, sitting, seconds):
+def test_a_seek_lands_where_playing_would_have_come_by(table, seconds):
     table.replay.seek(seconds)
-    inside = min(max(seconds, 0.0), table.replay.length)
-    assert table.replay.playhead.position == inside
+    assert table.replay.playhead.position == min(max(seconds, 0.0), table.replay.length)
     assert table.replay.sample == table.due
 
 
@@ -118,24 +133,32 @@ def test_after_a_jump_chart_and_trails_show_what_they_show_after_playing(sitting
         played.run(1 / FPS)
     jumped.replay.seek(origin)
     jumped.replay.seek(played.replay.playhead.position)
+    assert len(jumped.replay.history.trails(15)) > 9  # before the rest of the past
     jumped.replay.pause(True)
     jumped.run(0.1)
     assert jumped.replay.sample == played.replay.sample
-    for one, other in zip(
-        played.replay.history.trails(15)[:, 3].T,
-        jumped.replay.history.trails(15)[:, 3].T,
-        strict=True,
-    ):
-        np.testing.assert_array_equal(one, other)
-    one, other = played.replay.history.window(), jumped.replay.history.window()
-    np.testing.assert_array_equal(one.t, other.t)
-    np.testing.assert_array_equal(one.low["energy_error"], other.low["energy_error"])
-    assert jumped.replay.judgements == played.replay.judgements
+    assert jumped.verdicts == played.verdicts
+    one, other = played.replay.history, jumped.replay.history
+    np.testing.assert_array_equal(one.trails(15), other.trails(15))
+    np.testing.assert_array_equal(one.window().t, other.window().t)
+    for quantity in ("energy_error", "shadow_error"):
+        low, expected = (each.window().low[quantity] for each in (one, other))
+        np.testing.assert_array_equal(low, expected)
 
 
-def test_right_after_a_jump_the_trails_are_there_before_the_rest_of_the_past(table):
-    table.replay.seek(4.0)
-    assert len(table.replay.history.trails(15)[:, 0].T[0]) == 15
+def test_it_shows_the_past_that_the_lab_showed(tmp_path):
+    live = []
+
+    def change(lab):
+        lab.set_stepping(Stepping(0.1, not lab.stepping.equal_cost))
+
+    table = Table(recorded(tmp_path / "lab.mcap", live.append, 2.0, change, 2.0, change, 1.0))
+    table.replay.seek(table.replay.length)
+    table.run(0.1)
+    shown, was = table.replay.history.window(), live[0].history.window()
+    np.testing.assert_array_equal(shown.x, was.x)
+    for quantity in ("shadow_error", "energy_error"):
+        np.testing.assert_array_equal(shown.high[quantity], was.high[quantity])
 
 
 def test_stepping_back_takes_the_past_back(table):
@@ -143,8 +166,17 @@ def test_stepping_back_takes_the_past_back(table):
     table.run(0.1)
     table.replay.step(-30)
     table.run(0.1)
-    window = table.replay.history.window()
-    assert window.t[-1] == table.replay.sample.t
+    assert table.replay.history.window().t[-1] == table.replay.sample.t
+
+
+def test_a_long_past_is_read_in_pieces_of_which_the_last_minute_is_whole():
+    long = pieces(100.0, 30_000.0)
+    assert pieces(0.0, 30.0) == [(0.0, 30.0)]
+    assert long[-1] == (30_000.0 - DENSE, 30_000.0)
+    assert long[0] == (100.0, 101.0)
+    assert len(long) == MAX_PIECES + 1
+    whole = pieces(0.0, DENSE + 200)
+    assert all(end == begin for (_, end), (begin, _) in itertools.pairwise(whole))
 
 
 def test_the_step_size_is_the_one_in_force_at_the_moment(table):
@@ -166,25 +198,6 @@ def test_the_next_event_and_the_one_before_are_found(table):
         assert table.replay.playhead.position == place
 
 
-def test_the_next_event_may_be_a_milestone(tmp_path):
-    table = Table(recorded(tmp_path / "drift.mcap", 20.0))
-    listed = []
-    for _ in range(3):
-        table.replay.seek_event(1)
-        table.replay.pause(True)
-        table.run(1 / FPS)
-        listed.append(
-            [line.text for line in event_lines(table.replay)][sum(map(len, listed)) + 1 :]
-        )
-    assert listed == [
-        ["Explicit Euler over the top, 5.1 E0"],
-        ["Explicit Euler gains energy", "RK4 loses energy"],
-        ["Symplectic Euler stays bounded", "Verlet stays bounded"],
-    ]
-    table.replay.seek_event(1)
-    assert table.replay.playhead.position == table.replay.length
-
-
 def test_speed_counts_for_the_recording_clock(table):
     table.replay.set_speed(4.0)
     table.run(2)
@@ -196,72 +209,119 @@ def test_a_lab_that_goes_on_from_here_has_the_same_bits(table, seconds):
     table.replay.seek(seconds)
     live = table.replay.live()
     here = table.replay.sample
-    assert (live.sample.step, live.sample.t, live.stepping.h) == (
-        here.step,
-        here.t,
-        table.replay.stepping.h,
-    )
-    assert [(r.theta, r.omega) for r in live.sample.readings] == [
-        (r.theta, r.omega) for r in here.readings
-    ]
-    table.replay.step(1)
-    ahead = table.replay.sample
+    assert (live.sample.step, live.sample.t) == (here.step, here.t)
+    assert live.stepping.h == table.replay.stepping.h
+    assert states(live.sample) == states(here)
+    ahead = table.replay.step(1)
     if ahead.run == here.run:
-        live.step(ahead.step - here.step)
-        assert [(r.theta, r.omega) for r in live.sample.readings] == [
-            (r.theta, r.omega) for r in ahead.readings
-        ]
+        assert states(live.step(ahead.step - here.step)) == states(ahead)
 
 
 def test_a_lab_that_goes_on_from_here_knows_what_was_known(tmp_path):
     table = Table(recorded(tmp_path / "drift.mcap", 22.0))
-    table.replay.seek(18.0)
+    replay = table.replay
+    replay.seek(18.0)
     table.run(1 / FPS)
-    assert table.replay.fill()
-    milestones = list(table.replay.milestones)
-    times = table.replay.history.window().t
-    live = table.replay.live()
-    assert [judgement.verdict for judgement in live.judgements] == [
-        "grows",
-        "bounded",
-        "bounded",
-        "loses",
-    ]
-    assert list(live.milestones) == milestones
-    np.testing.assert_array_equal(live.history.window().t, times)
-    while table.replay.sample.step < table.samples[-1].value.step:
-        table.replay.step(1)
-        live.step(table.replay.sample.step - live.sample.step)
-    verdicts = [judgement.verdict for judgement in table.replay.judgements]
-    assert [judgement.verdict for judgement in live.judgements] == verdicts
+    assert replay.fill()
+    assert table.verdicts == ["grows", "bounded", "bounded", "loses"]
+    live = replay.live()
+    assert list(live.milestones) == list(replay.milestones)
+    np.testing.assert_array_equal(live.history.window().t, replay.history.window().t)
+    replay.step(len(table.samples))
+    live.step(replay.sample.step - live.sample.step)
+    assert [judgement.verdict for judgement in live.judgements] == table.verdicts
 
 
-def test_a_moment_has_one_mark(tmp_path):
-    path = recorded(
-        tmp_path / "marked.mcap", 2.0, lambda live: live.mark(), lambda live: live.mark(), 1.0
-    )
+@pytest.fixture
+def lab(tmp_path):
+    """A lab that ran for 24 s, and then from 10 s on for 8 s with another step size; its recording."""
+    lab = Lab(record=tmp_path / "lab.mcap")
+    lab.run(24.0)
+    live = lab.live
+    first = list(live.milestones)
+    live.step(200 - live.sample.step)
+    live.set_stepping(live.stepping._replace(h=0.02))
+    live.pause(False)
+    lab.run(8.0)
+    live.close()
+    return live, first, tmp_path / "lab.mcap"
+
+
+def test_it_shows_the_milestones_and_verdicts_of_the_lab_and_jumps_to_them(lab):
+    live, first, path = lab
     table = Table(path)
-    marks = [event for _, event in table.recording.events if event.kind == "mark"]
-    assert len(marks) == 1
-    table.replay.seek(2.0)
-    table.replay.mark()
-    assert list(table.replay.marks) == []
-    table.replay.seek(2.5)
-    table.replay.mark()
-    table.replay.mark()
-    assert len(list(table.replay.marks)) == 1
+    replay = table.replay
+    assert verify(path).identical
+    assert table.recording.runs[0].milestones == first
+    clocks = [clock for clock, event in table.recording.runs[0].events if event.milestone]
+    assert set(clocks) < set(replay.ticks)
+    for clock, milestone in zip(clocks, first, strict=True):
+        assert 0 <= clock - milestone.t <= 1.0  # s: a verdict is given at the next look
+    replay.seek(replay.length)
+    assert replay.run.number == 2
+    # also those of before the first sample of this run
+    assert list(replay.milestones) == list(live.milestones)
+    assert table.verdicts == [each.verdict for each in live.judgements]
+    replay.seek(23.9)
+    assert list(replay.milestones) == [each for each in first if each.step <= replay.sample.step]
+    assert "bounded" in table.verdicts
+    replay.seek(1.0)
+    assert list(replay.milestones) == []
+    assert set(table.verdicts) == {"too early"}
+
+
+def test_it_shows_the_verdicts_that_were_recorded_and_not_those_of_this_version(lab, tmp_path):
+    _, first, path = lab
+    said = next(each for each in first if each.verdict == "bounded")
+    with Recorder(tmp_path / "other.mcap", wall=None) as recorder:
+        for clock, value in itertools.takewhile(
+            lambda entry: entry.value.run == 1, Table(path).recording.entries()
+        ):
+            if isinstance(value, Event):
+                if value.milestone == said:
+                    value = value._replace(milestone=said._replace(verdict="wanders"))
+                recorder.event(value, clock)
+            else:
+                recorder.sample(value, clock)
+    assert verify(tmp_path / "other.mcap").identical
+    table = Table(tmp_path / "other.mcap")
+    table.replay.seek(table.replay.length)
+    assert table.verdicts[table.replay.scene.cast.index(said.method)] == "wanders"
+
+
+def test_errors_that_cross_are_recorded_and_a_stop_of_the_replay(tmp_path):
+    table = Table(recorded(tmp_path / "crossover.mcap", 40.0, scene=SCENES["crossover"]))
+    table.replay.seek(33.0)
+    assert "errors cross" not in {each.kind for each in table.replay.milestones}
+    table.replay.seek_event(1)
+    crossing = table.replay.milestones[-1]
+    assert (crossing.kind, crossing.step) == ("errors cross", 167)
+    assert table.replay.sample.step == 167
 
 
 def test_marks_are_kept_beside_the_recording_which_is_not_touched(tmp_path):
-    path = recorded(tmp_path / "marked.mcap", 3.0)
+    path = recorded(tmp_path / "marked.mcap", 2.0, lambda live: live.mark(), 1.0)
     before = path.read_bytes()
-    table = Table(path)
-    table.replay.seek(1.5)
-    table.replay.mark("look")
+    replay = Table(path).replay
+    replay.seek(2.0)
+    replay.mark()  # a moment has one mark
+    assert list(replay.marks) == []
+    replay.seek(1.5)
+    replay.mark("look")
+    replay.mark("look")
     assert path.read_bytes() == before
-    again = Table(path)
-    assert [(mark.clock, mark.text) for mark in again.replay.marks] == [(1.5, "look")]
-    assert 1.5 in again.replay.ticks
+    again = Table(path).replay
+    assert [(mark.clock, mark.text) for mark in again.marks] == [(1.5, "look")]
+    assert 1.5 in again.ticks
+
+
+def test_marks_of_a_bundled_recording_are_kept_apart_from_the_librarys(tmp_path, monkeypatch):
+    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path / "library"))
+    mark = Mark(1.0, 1, 20, "here")
+    Marks(resolve("drift")).add(mark)
+    Marks(tmp_path / "library" / "drift.mcap").add(Mark(1.0, 1, 20, "of another"))
+    assert list(Marks(resolve("drift"))) == [mark]
+    assert not list(GOLDEN.glob("*.json"))
 
 
 @pytest.mark.parametrize(
@@ -269,19 +329,8 @@ def test_marks_are_kept_beside_the_recording_which_is_not_touched(tmp_path):
     ["", "[]", "{}", '{"schema": "pendu.marks/1", "marks": [{"clock": "x"}]}', "[" * 9999],
 )
 def test_a_file_of_marks_that_is_not_ours_is_no_marks(tmp_path, content):
-    path = tmp_path / "a.mcap"
     (tmp_path / "a.mcap.marks.json").write_text(content)
-    assert list(Marks(path)) == []
-
-
-def test_a_long_past_is_read_in_pieces_of_which_the_last_minute_is_whole():
-    short, long = pieces(0.0, 30.0), pieces(100.0, 30_000.0)
-    assert short == [(0.0, 30.0)]
-    assert long[-1] == (30_000.0 - DENSE, 30_000.0)
-    assert long[0] == (100.0, 101.0)
-    assert len(long) == MAX_PIECES + 1
-    whole = pieces(0.0, DENSE + 200)
-    assert all(end == begin for (_, end), (begin, _) in itertools.pairwise(whole))
+    assert list(Marks(tmp_path / "a.mcap")) == []
 
 
 def test_a_closed_replay_stands_still(sitting):
@@ -292,15 +341,3 @@ def test_a_closed_replay_stands_still(sitting):
     table.replay.seek(5.0)
     assert table.replay.step(3) == here
     assert table.replay.fill()
-
-
-@pytest.mark.parametrize(
-    ("speed", "start", "behind"), [(1.0, LENGTH - 0.5, 0.5), (-1.0, 0.5, LENGTH - 0.5)]
-)
-def test_a_loop_goes_round_both_ways(table, speed, start, behind):
-    table.replay.looping = True
-    table.replay.set_speed(speed)
-    table.replay.seek(start)
-    table.run(1)
-    assert table.replay.playhead.position == pytest.approx(behind, abs=0.1)
-    assert not table.replay.playhead.paused

@@ -6,10 +6,8 @@ from engine.run.stepping import Stepping
 from engine.scenes import DEFAULT_SCENE, SCENES
 from tests.tui.harness import after, eventful
 from tui.playback.live import Live
-from tui.playback.marks import Marks
-from tui.playback.playhead import Pace, Playhead
 from tui.playback.replay import Replay
-from tui.playback.source import RecordingStatus
+from tui.playback.source import Pace, Playhead, RecordingStatus
 from tui.screens.insight_line import fitted
 from tui.screens.seek_bar import bar, facts
 from tui.screens.status_line import speed_text, status_row
@@ -60,7 +58,7 @@ def test_at_80_columns_it_says_which_run_it_is_at_which_step_and_whether_that_is
     live.set_stepping(Stepping(-0.2, equal_cost=True))
     live.set_speed(0.25)
     live.playhead = live.playhead.moved_to(0.0)
-    live.so_far.sample = live.sample._replace(t=725.0)
+    live.history.sample = live.sample._replace(t=725.0)
     assert text(status_row(live, 80)) == (
         " LIVE   backwards  1/4×  t 12 min 05 s  h -0.2 s equal cost  z 0.626  REC 1 min"
     )
@@ -113,7 +111,7 @@ def test_the_bar_shows_position_length_run_step_and_event(tmp_path):
     from recordings.recording import Recording
 
     path = eventful(tmp_path / "eventful.mcap")
-    replay = Replay(Recording.open(path), Marks(path), clock=lambda: 0.0)
+    replay = Replay(Recording.open(path), clock=lambda: 0.0)
     replay.seek(6.0)
     here = " 6.00 s of 12.00 s"
     assert facts(replay, 80) == f"{here}  run 2/3  step  50/200  event 4/5"

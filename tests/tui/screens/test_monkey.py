@@ -27,7 +27,6 @@ from tests.tui.monkey import (
 from tests.tui.pty_lab import PtyLab
 from tui.cli.options import resolve
 from tui.playback.live import Live
-from tui.playback.marks import Marks
 from tui.playback.replay import Replay
 from tui.screens.app import PenduApp
 from tui.screens.base import SourceScreen
@@ -70,7 +69,7 @@ async def test_random_keys_and_clicks_do_no_harm_and_the_recordings_verify(
         if command == "live":
             return LiveScreen(recorded(Live(DEFAULT_SCENE, clock=looks)), clock)
         path = Path(shutil.copy(resolve("drift"), tmp_path))  # marks are kept beside it
-        replay = Replay(Recording.open(path), Marks(path), clock=looks)
+        replay = Replay(Recording.open(path), clock=looks)
         return ReplayScreen(replay, lambda live: LiveScreen(recorded(live), clock), clock)
 
     async with on_stage(make, SIZE) as theatre:

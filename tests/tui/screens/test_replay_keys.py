@@ -11,7 +11,6 @@ from recordings.recording import Recording
 from tests.tui.harness import eventful, on_stage, player, recorded
 from tui.cli.errors import UserError
 from tui.playback.live import Live
-from tui.playback.marks import Marks
 from tui.playback.replay import Replay
 from tui.screens.live import LiveScreen
 from tui.screens.replay import ReplayScreen
@@ -120,7 +119,7 @@ async def test_the_lab_that_goes_on_knows_what_the_replay_knew_even_right_after_
             0.0, 0.003
         ).__next__  # so that a frame has time for some samples only
         return ReplayScreen(
-            Replay(Recording.open(path), Marks(path), slowly),
+            Replay(Recording.open(path), slowly),
             lambda live: LiveScreen(live, clock),
             clock,
         )
@@ -141,9 +140,7 @@ async def test_f_stays_in_the_replay_where_the_lab_could_not_record(path):
         raise UserError("/nowhere is not writable: choose another folder.")
 
     def make(clock: Callable[[], float]) -> ReplayScreen:
-        return ReplayScreen(
-            Replay(Recording.open(path), Marks(path), clock=lambda: 0.0), go_live, clock
-        )
+        return ReplayScreen(Replay(Recording.open(path), clock=lambda: 0.0), go_live, clock)
 
     async with on_stage(make, (120, 40)) as theatre:
         await theatre.press("right", "f")

@@ -19,7 +19,6 @@ from tui.cli.dispatch import command_of
 from tui.cli.scene import scene_of
 from tui.commands.lab.live import lab_of
 from tui.playback.live import Live
-from tui.playback.marks import Marks
 from tui.playback.replay import Replay
 from tui.words.command_line import command, reproduces
 
@@ -107,7 +106,7 @@ def test_after_a_change_of_step_size_the_command_points_into_the_recording(tmp_p
 
 def test_the_command_of_a_replay_starts_where_it_stands():
     path = GOLDEN / "drift.mcap"
-    replay = Replay(Recording.open(path), Marks(path))
+    replay = Replay(Recording.open(path))
     replay.seek(1.5)
     options = options_of(command(replay))
     assert (Path(options.file), options.start_at, options.paused) == (path, 1.5, True)

@@ -9,7 +9,6 @@ from engine.scenes import SCENES
 from recordings.recording import Recording
 from tests.tui.harness import after, recorded
 from tui.playback.live import Live
-from tui.playback.marks import Marks
 from tui.playback.replay import Replay
 from tui.screens.app import PenduApp
 from tui.screens.live import LiveScreen
@@ -88,7 +87,7 @@ def test_marks_next_to_a_recording_have_the_time_of_their_step(tmp_path):
     larger, backwards = (lambda live, h=h: live.set_stepping(Stepping(h)) for h in (0.1, -0.02))
     path = recorded(tmp_path / "run.mcap", 2.0, larger, 2.0, backwards, 1.0)
     with Recording.open(path) as recording:
-        replay = Replay(recording, Marks(path), clock=lambda: 0.0)
+        replay = Replay(recording, clock=lambda: 0.0)
         times = []
         for position in (1.0, 3.0, 4.5):
             replay.seek(position)

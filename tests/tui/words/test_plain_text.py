@@ -7,7 +7,6 @@ from engine.scenes import SCENES
 from recordings.library import GOLDEN
 from recordings.recording import Recording
 from tui.playback.live import Live
-from tui.playback.marks import Marks
 from tui.playback.replay import Replay
 from tui.playback.source import Source
 from tui.words.describe import description
@@ -96,7 +95,7 @@ def test_of_some_methods_nothing_is_said_of_the_others():
 def test_a_replay_ends_at_its_end():
     path = GOLDEN / "drift.mcap"
     with Recording.open(path) as recording:
-        replay = Replay(recording, Marks(path))
+        replay = Replay(recording)
         sentences = said(replay, 1000)
         assert sentences[0].startswith("The replay runs in real time")
         assert len(sentences) < recording.length + 30

@@ -106,7 +106,7 @@ def _since_change(source: Source, sample: Sample) -> tuple[list[float], list[flo
     Of the whole run, and zero, unless h has changed.
     """
     change = change_before(source.changes, sample.step)
-    if change.step and (errors := source.history.since(change.step)):
+    if change.step and (errors := source.history.since(change)):
         return *errors, f"since h {change.stepping.h:.4g} s"
     readings = sample.readings  # in a replay that has not read so far, too
     return [reading.max_energy_error for reading in readings], [0.0] * len(readings), "method"

@@ -85,7 +85,7 @@ def test_every_table_is_rectangular_and_fits():
 def test_hidden_methods_are_not_in_the_table_and_failed_ones_are_called_so():
     live = lab(1.0)
     readings = live.sample.readings
-    live.so_far.sample = live.sample._replace(
+    live.history.sample = live.sample._replace(
         readings=(*readings[:3], readings[3]._replace(diverged_at=0.8))
     )
     lines = rows(

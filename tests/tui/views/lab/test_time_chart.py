@@ -11,10 +11,9 @@ from engine.scenes import SCENES
 from recordings.recorder import LiveRecorder
 from recordings.recording import Recording
 from tests.tui.harness import FPS, lab, player, recorded
-from tests.tui.playback.test_so_far import run
+from tests.tui.playback.test_history import run
 from tui.drawing.time_chart import time_chart
 from tui.playback.live import Live
-from tui.playback.marks import Marks
 from tui.playback.replay import Replay
 from tui.playback.shown import WINDOWS, Shown, Stretch, quantities
 from tui.views.lab.time_chart import TimeChart, modified_energy_of, title
@@ -194,7 +193,7 @@ def test_a_replay_has_the_chart_of_the_lab(tmp_path):
     for fps in (3, 60):
         path = tmp_path / f"{fps}.mcap"
         lab_chart = charted(fps, WHOLE, path)
-        replay = Replay(Recording.open(path), Marks(path), clock=lambda: 0.0)
+        replay = Replay(Recording.open(path), clock=lambda: 0.0)
         for seconds in (5.0, replay.length):
             replay.seek(seconds)
             while not replay.fill():
