@@ -24,7 +24,7 @@ def splitting(kicks: tuple[float, ...], drifts: tuple[float, ...]) -> Phases:
         """Kicks of omega and drifts of theta in turn."""
         theta, omega = phase
         opening = first * h
-        pairs = zip(drifts, following)  # noqa: B905 (Numba has no strict)
+        pairs = zip(drifts, following)  # noqa: B905  Numba lacks it
         moves = [(drift * h, kick * h) for drift, kick in pairs]
         a = force(theta)
         while True:
