@@ -3,7 +3,6 @@
 import re
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
@@ -51,4 +50,4 @@ def test_matplotlib_is_loaded_for_figures_only():
         "import sys; from tui.cli.dispatch import main; main(['run', '--time', '1']);"
         "sys.exit('matplotlib' in sys.modules)"
     )
-    subprocess.run([sys.executable, "-c", program], cwd=Path.cwd(), check=True, capture_output=True)
+    subprocess.run([sys.executable, "-c", program], check=True, capture_output=True)

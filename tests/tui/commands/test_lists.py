@@ -1,3 +1,5 @@
+"""`pendu-tui scenes` and `pendu-tui methods`."""
+
 import math
 
 import pytest
@@ -9,19 +11,22 @@ from tests.tui.command_line import pendu
 from tui.commands.about.methods import MEASURED
 
 
-def test_scenes_lists_every_scene_with_what_to_watch():
+def test_scenes_are_listed_in_groups_with_what_to_watch():
     out = pendu("scenes").out
-    for scene in SCENES.values():
-        assert scene.name in out
-        assert scene.watch in out
+    names = [line.split("  ")[0].strip().casefold() for line in out.splitlines()]
+    for group, scenes in GROUPS.items():
+        at = names.index(group)
+        assert names[at + 1 : at + 1 + len(scenes)] == [scene.name for scene in scenes]
+        assert all(scene.watch in out for scene in scenes)
 
 
 def test_scenes_as_json_hold_everything_that_determines_a_run():
-    answer = pendu("scenes", "--json").json
-    assert answer["schema"] == "pendu.scenes/1"
-    assert answer["scenes"] == [
-        scene.fields() | {"speed": scene.speed} for scene in SCENES.values()
-    ]
+    fields = [scene.fields() | {"speed": scene.speed} for scene in SCENES.values()]
+    assert pendu("scenes", "--json").json["scenes"] == fields
+    (scene,) = pendu("scenes", "crossover", "--json").json["scenes"]
+    assert scene in fields
+    assert scene["watch"] in pendu("scenes", "crossover").out
+    assert pendu("scenes", "crosover").refused(2, "crossover")
 
 
 def test_methods_lists_every_method_its_claims_and_what_is_measured():
@@ -30,8 +35,8 @@ def test_methods_lists_every_method_its_claims_and_what_is_measured():
         (words,) = (line.split() for line in lines if line.startswith(f"{method.key} "))
         assert str(method.order) in words
         limit = method.linear_limit
-        text = {None: "-", 0.0: "none", math.inf: "any"}.get(limit) or f"{limit:.3f}"
-        assert words[-1] == text
+        texts = {None: "-", 0.0: "none", math.inf: "any"}
+        assert words[-1] == (texts.get(limit) or f"{limit:.3f}")
 
 
 def test_methods_that_are_named_are_listed_alone():
@@ -42,18 +47,8 @@ def test_methods_that_are_named_are_listed_alone():
     assert pendu("methods", "rk5").refused(2, "rk4")
 
 
-def test_a_scene_that_is_named_is_shown_with_its_numbers():
-    scene = SCENES["crossover"]
-    assert pendu("scenes", "crossover", "--json").json["scenes"] == [
-        scene.fields() | {"speed": scene.speed}
-    ]
-    assert scene.watch in pendu("scenes", "crossover").out
-    assert pendu("scenes", "crosover").refused(2, "crossover")
-
-
 def test_methods_as_json_repeat_the_engine_and_what_is_measured_agrees():
     answer = pendu("methods", "--json").json
-    assert answer["schema"] == "pendu.methods/1"
     assert answer["compiled"] == available()
     for told, method in zip(answer["methods"], METHODS, strict=True):
         for claim in ("key", "label", "order", "force_evaluations", "symplectic", "reversible"):
@@ -63,21 +58,9 @@ def test_methods_as_json_repeat_the_engine_and_what_is_measured_agrees():
         if not method.general:
             assert {told[name] for name in MEASURED} == {None}
             continue
-        assert told["measured_order"] == pytest.approx(
-            method.order, abs=0.1
-        )  # as the engine's own tests
+        # within the tolerances of the engine's own tests
+        assert told["measured_order"] == pytest.approx(method.order, abs=0.1)
         assert told["measured_symplectic"] == method.symplectic
         assert told["measured_reversible"] == method.reversible
         assert round(told["measured_force_evaluations"]) == method.force_evaluations
-        if limit is not None:
-            assert told["measured_linear_limit"] == pytest.approx(
-                limit, abs=1e-9
-            )  # of the bisection
-
-
-def test_scenes_are_listed_in_groups():
-    lines = pendu("scenes").out.splitlines()
-    names = [line.split("  ")[0].strip().casefold() for line in lines]
-    for group, scenes in GROUPS.items():
-        at = names.index(group)
-        assert names[at + 1 : at + 1 + len(scenes)] == [scene.name for scene in scenes]
+        assert told["measured_linear_limit"] == pytest.approx(limit, abs=1e-9)

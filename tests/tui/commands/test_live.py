@@ -1,4 +1,4 @@
-"""What `pendu-tui live` does before there is a screen, and beside it."""
+"""What `pendu-tui live` and `tour` do before there is a screen, and beside it."""
 
 import pytest
 
@@ -15,10 +15,8 @@ from tui.screens.launch import live_screen, say_goodbye
 
 def test_labs_that_are_opened_in_the_same_second_record_each_for_itself(tmp_path):
     """As tmux does with synchronised panes."""
-    with (
-        PtyLab(PENDU_RECORDINGS=str(tmp_path)) as one,
-        PtyLab(PENDU_RECORDINGS=str(tmp_path)) as other,
-    ):
+    library = {"PENDU_RECORDINGS": str(tmp_path)}
+    with PtyLab(**library) as one, PtyLab(**library) as other:
         while not all(b"REC " in session.output for session in (one, other)):
             one.read(0.1)
             other.read(0.1)
@@ -27,6 +25,18 @@ def test_labs_that_are_opened_in_the_same_second_record_each_for_itself(tmp_path
             assert session.end() == 0
     assert len(listing(tmp_path)) == 2
     assert all(verify(item.path).complete for item in listing(tmp_path))
+
+
+def test_the_tour_is_walked_with_enter_and_left_with_esc_and_need_not_be_recorded(tmp_path):
+    with PtyLab("tour", "--no-record", PENDU_RECORDINGS=str(tmp_path)) as session:
+        session.wait_for("Tour 1 of 8")
+        session.type("\r")
+        session.wait_for("five times its initial energy")
+        session.type("\x1b")
+        session.wait_for("T goes on with the tour")
+        session.type("q")
+        assert session.end() == 0
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("or_next", [True, False])
@@ -45,19 +55,14 @@ def test_a_name_that_was_taken_meanwhile_is_replaced_only_if_nobody_gave_it(tmp_
     other.close()
 
 
-def test_a_library_that_cannot_be_made_is_one_sentence_and_exit_5(tmp_path, monkeypatch):
-    (tmp_path / "file").touch()
-    monkeypatch.setenv("PENDU_RECORDINGS", str(tmp_path / "file" / "library"))
-    assert pendu("live", "--plain").refused(5, str(tmp_path / "file"))
-
-
-def test_a_file_that_is_there_is_not_recorded_over(tmp_path):
+def test_a_library_or_a_file_that_cannot_be_made_is_one_sentence_and_exit_5(tmp_path, monkeypatch):
     path = tmp_path / "mine.mcap"
     path.write_bytes(b"precious")
-    assert pendu("live", "--plain", "--record", path).refused(
-        5, "exists already", "choose another name"
-    )
+    taken = ("exists already", "choose another name")
+    assert pendu("live", "--plain", "--record", path).refused(5, *taken)
     assert path.read_bytes() == b"precious"
+    monkeypatch.setenv("PENDU_RECORDINGS", str(path / "library"))
+    assert pendu("live", "--plain").refused(5, str(path))
 
 
 def test_a_lab_whose_recording_stopped_exits_with_5(tmp_path, capsys):

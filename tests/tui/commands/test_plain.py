@@ -15,11 +15,10 @@ pytestmark = pytest.mark.slow
 
 
 def started(folder: Path, *arguments: str) -> "subprocess.Popen[str]":
-    environment = {**os.environ, "PENDU_RECORDINGS": str(folder), "TERM": "dumb"}
     return subprocess.Popen(
         [*PENDU, *arguments],
         cwd=ROOT,
-        env=environment,
+        env={**os.environ, "PENDU_RECORDINGS": str(folder), "TERM": "dumb"},
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -29,37 +28,47 @@ def started(folder: Path, *arguments: str) -> "subprocess.Popen[str]":
 
 def read_until(process: "subprocess.Popen[str]", words: str) -> list[str]:
     lines = []
-    assert process.stdout is not None
-    for line in process.stdout:
+    for line in process.stdout or ():
         lines.append(line)
         if words in line:
             return lines
     raise AssertionError(f"{words!r} was never said: {lines}")
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=["ctrl+c", "SIGTERM"])
-def test_ended_by_a_signal_the_recording_is_whole_and_that_is_fine(tmp_path, number):
-    with started(tmp_path, "--plain", "--speed", "8") as process:
-        lines = read_until(process, "Explicit Euler over the top")
+def recorded_whole(folder: Path) -> Path:
+    """The only recording of a folder, which verifies."""
+    (item,) = listing(folder)
+    report = verify(item.path)
+    assert (report.identical, report.complete) == (True, True)
+    return item.path
+
+
+@pytest.mark.parametrize(
+    ("number", "arguments", "first", "words"),
+    [
+        (signal.SIGINT, ("--speed", "8"), "The lab runs at 8 times", "Explicit Euler over the top"),
+        (signal.SIGTERM, ("--speed", "8"), "The lab runs at 8 times", "energy errors"),
+        (signal.SIGINT, ("tour",), "Tour 1 of 8: who gains. ", "Question: Nothing pushes"),
+    ],
+    ids=["ctrl+c", "SIGTERM", "tour"],
+)
+def test_ended_by_a_signal_the_recording_is_whole(tmp_path, number, arguments, first, words):
+    with started(tmp_path, *arguments, "--plain") as process:
+        lines = read_until(process, words)
         process.send_signal(number)
         out, err = process.communicate(timeout=30)
     assert (process.returncode, err) == (0, "")
-    assert lines[0].startswith("The lab runs at 8 times real time")
-    (item,) = listing(tmp_path)
-    assert f"saved {item.path}" in out
-    report = verify(item.path)
-    assert (report.identical, report.complete) == (True, True)
+    assert lines[0].startswith(first)
+    assert f"saved {recorded_whole(tmp_path)}" in out
 
 
 def test_when_nobody_reads_any_more_the_recording_is_whole_too(tmp_path):
     with started(tmp_path, "live", "--plain", "--speed", "8") as process:
         read_until(process, "energy errors")
-        assert process.stdout is not None
         process.stdout.close()
         process.wait(timeout=30)
     assert process.returncode == 141
-    (item,) = listing(tmp_path)
-    assert verify(item.path).complete
+    recorded_whole(tmp_path)
 
 
 def test_a_replay_is_printed_to_its_end_and_nothing_is_recorded(tmp_path):

@@ -13,7 +13,7 @@ import pyte
 import pytest
 
 from recordings.verification import verify
-from tests.tui.command_line import pendu
+from tests.tui.command_line import own_method, pendu
 from tests.tui.pty_lab import PENDU
 
 pytestmark = pytest.mark.slow
@@ -28,7 +28,7 @@ CTRL_Z = "\x1a"
 class Tab:
     """A terminal behind a websocket, as in a browser's tab."""
 
-    def __init__(self, socket, size=(100, 30)) -> None:
+    def __init__(self, socket, size) -> None:
         self.socket = socket
         self.screen = pyte.Screen(*size)
         self._stream = pyte.ByteStream(self.screen)
@@ -37,17 +37,16 @@ class Tab:
     def text(self) -> str:
         return "\n".join(line.rstrip() for line in self.screen.display)
 
-    async def until(self, right) -> str:
+    async def until(self, right) -> None:
         """Read until the screen is right."""
         async with asyncio.timeout(PATIENCE):
             while not right(self.text):
                 message = await self.socket.receive()
                 assert message.type == aiohttp.WSMsgType.BINARY, message
                 self._stream.feed(message.data)
-        return self.text
 
-    async def shows(self, *words: str) -> str:
-        return await self.until(lambda text: all(word in text for word in words))
+    async def shows(self, *words: str) -> None:
+        await self.until(lambda text: all(word in text for word in words))
 
     async def press(self, keys: str) -> None:
         await self.socket.send_json(["stdin", keys])
@@ -77,10 +76,9 @@ class Server:
     @property
     def labs(self) -> list[int]:
         """The processes that it has started."""
-        children = (
-            Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children").read_text().split()
-        )
-        return [int(child) for child in children]
+        pid = self.process.pid
+        children = Path(f"/proc/{pid}/task/{pid}/children").read_text()
+        return [int(child) for child in children.split()]
 
     async def until_labs(self, count: int) -> None:
         async with asyncio.timeout(PATIENCE):
@@ -126,56 +124,29 @@ async def no_labs_left(request):
         await request.getfixturevalue("server").until_labs(0)
 
 
-async def has_ended(lab: int) -> bool:
-    """Wait until a process is gone, or a zombie."""
-    status = Path(f"/proc/{lab}/status")
-    async with asyncio.timeout(PATIENCE):
-        while status.exists() and "State:\tZ" not in status.read_text():
-            await asyncio.sleep(0.1)
-    return True
-
-
 def files(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.rglob("*") if path.is_file())
 
 
-async def test_a_tab_shows_the_lab_in_its_size_and_takes_keys(server):
-    async with server.tab() as tab:
-        await tab.shows("LIVE", "scene drift", "not recorded", "RK4")
-        await tab.press("p")
-        await tab.until(lambda text: "scene drift" not in text)
-        await tab.press(" ")
-        await tab.shows("paused")
-
-
-async def test_a_tab_that_is_resized_gets_a_lab_that_fits(server):
-    async with server.tab() as tab:
-        await tab.shows("LIVE", "RK4")
-        tab.screen.resize(45, 140)
-        tab.screen.erase_in_display(2)
-        await tab.socket.send_json(["resize", {"width": 140, "height": 45}])
-        await tab.until(
-            lambda text: max(map(len, text.splitlines())) == 140 and "Phase space" in text
-        )
-
-
-async def test_a_closed_tab_ends_its_process_and_only_its(server):
+async def test_a_tab_shows_the_lab_in_its_size_takes_keys_and_ends_with_it(server, library):
     async with server.tab() as first:
         async with server.tab() as second:
             await asyncio.gather(first.shows("LIVE"), second.shows("LIVE"))
             await server.until_labs(2)
         await server.until_labs(1)
+        await first.shows("scene drift", "not recorded", "RK4")
+        first.screen.resize(45, 140)
+        first.screen.erase_in_display(2)
+        await first.socket.send_json(["resize", {"width": 140, "height": 45}])
+        await first.until(lambda text: max(map(len, text.splitlines())) == 140)
+        await first.shows("Phase space")
+        await first.press("s" + CTRL_Z)
         await first.press("p")
-        await first.until(lambda text: "scene drift" not in text)
+        await first.until(lambda text: "scene drift" not in text)  # it was not stopped
+        await first.press("q")
+        assert await first.closed()
     await server.until_labs(0)
-
-
-async def test_a_lab_that_is_quit_closes_its_tab(server):
-    async with server.tab() as tab:
-        await tab.shows("LIVE")
-        await tab.press("q")
-        assert await tab.closed()
-    await server.until_labs(0)
+    assert files(library) == []
 
 
 async def test_labs_beyond_the_limit_are_refused_until_one_is_closed():
@@ -192,22 +163,12 @@ async def test_labs_beyond_the_limit_are_refused_until_one_is_closed():
                     await asyncio.sleep(0.05)
 
 
-async def test_nothing_in_it_writes_or_reads_a_file_by_name(server, library):
-    async with server.tab() as tab:
-        await tab.shows("LIVE")
-        await tab.press("s" + CTRL_Z)
-        await tab.press("p")
-        await tab.until(lambda text: "scene drift" not in text)  # it was not stopped
-    assert files(library) == []
-
-
 async def test_recording_is_off_unless_asked_for_and_then_in_its_folder(tmp_path):
     folder = tmp_path / "recorded"
-    with serving(
-        "--record", str(folder), "--scene", "spin", PENDU_RECORDINGS=str(tmp_path / "library")
-    ) as server:
+    library = str(tmp_path / "library")
+    with serving("--record", str(folder), "--scene", "spin", PENDU_RECORDINGS=library) as server:
         async with server.tab() as one, server.tab() as other:
-            await asyncio.gather(one.shows("scene spin", "RK4"), other.shows("scene spin", "RK4"))
+            await asyncio.gather(*(tab.shows("scene spin", "RK4") for tab in (one, other)))
             await asyncio.sleep(1)
         await server.until_labs(0)
     assert len(files(tmp_path)) == len(files(folder)) == 2
@@ -215,13 +176,6 @@ async def test_recording_is_off_unless_asked_for_and_then_in_its_folder(tmp_path
         result = verify(folder / name)
         assert result.complete
         assert result.identical
-
-
-async def test_a_message_that_is_not_a_terminals_closes_the_tab(server):
-    async with server.tab() as tab:
-        await tab.shows("LIVE")
-        await tab.socket.send_str("no json")
-        assert await tab.closed()
 
 
 @pytest.mark.parametrize(
@@ -285,6 +239,10 @@ async def test_what_a_browser_makes_up_prints_nothing(tmp_path):
                 await tab.shows("LIVE")
                 await socket.send_str('["stdin", "\\ud800"]')
                 assert await tab.closed()
+            async with server.tab() as tab:
+                await tab.shows("LIVE")
+                await tab.socket.send_str("no json")
+                assert await tab.closed()
             for path in ("/static/" + "x" * 5000, "/download/x", "/ws?width=x", "/" + "y" * 9000):
                 with contextlib.suppress(aiohttp.ClientError):
                     async with session.get(server.address + path) as page:
@@ -295,40 +253,33 @@ async def test_what_a_browser_makes_up_prints_nothing(tmp_path):
 
 
 async def test_methods_of_ones_own_travel_in_a_file_that_only_the_user_can_read(tmp_path):
-    lines = ["def mine(force, phase, h):", "    theta, omega = phase", "    while True:"]
-    lines += ["        omega = omega + h * force(theta)", "        theta = theta + h * omega"]
-    source = "\n".join([*lines, "        yield theta, omega", *["# \N{FIRE}"] * 7000])
-    (tmp_path / "mine.py").write_text(source)
-    with serving("--method", f"{tmp_path / 'mine.py'}:mine", TMPDIR=str(tmp_path)) as server:
+    path, _, name = own_method(tmp_path).rpartition(":")
+    with Path(path).open("a") as source:
+        source.write("\n# \N{FIRE}" * 7000)
+    with serving("--method", f"{path}:{name}", TMPDIR=str(tmp_path)) as server:
         (settings,) = tmp_path.glob("pendu-*")
         assert settings.stat().st_mode & 0o777 == 0o600
         async with server.tab((120, 40)) as tab:
             await tab.shows("Mine")
-            assert "mine.py" not in Path(f"/proc/{server.labs[0]}/cmdline").read_text()
+            assert "my methods" not in Path(f"/proc/{server.labs[0]}/cmdline").read_text()
     assert not list(tmp_path.glob("pendu-*"))
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 async def test_a_signal_ends_the_server_and_its_labs(number):
-    with serving() as server:
-        async with server.tab() as tab:
-            await tab.shows("LIVE")
-            (lab,) = server.labs
-            server.process.send_signal(number)
-            assert await tab.closed()
-            assert await asyncio.to_thread(server.process.wait, PATIENCE) == 0
-    assert await has_ended(lab)
-
-
-async def test_a_lab_ends_when_its_server_was_killed():
     with serving() as server:
         async with server.tab() as tab:
             await tab.shows("LIVE")
             await tab.press(" ")
             await tab.shows("paused")
             (lab,) = server.labs
-            server.process.kill()
-            assert await has_ended(lab)
+            server.process.send_signal(number)
+            code = await asyncio.to_thread(server.process.wait, PATIENCE)
+            assert code == (-number if number == signal.SIGKILL else 0)
+            status = Path(f"/proc/{lab}/status")
+            async with asyncio.timeout(PATIENCE):
+                while status.exists() and "State:\tZ" not in status.read_text():
+                    await asyncio.sleep(0.1)
 
 
 def test_only_another_address_says_what_is_exposed():
@@ -347,7 +298,7 @@ def test_what_cannot_be_served_is_one_sentence(server, tmp_path, monkeypatch):
     taken = server.address.rpartition(":")[2]
     assert pendu("serve", "--port", taken).refused(2, "cannot listen", taken, "--port")
     assert pendu("serve", "--host", "no.such.host.invalid").refused(2, "cannot listen", "--host")
-    assert pendu("serve", "--port", "70000").refused(2, "70000")
+    assert pendu("serve", "--port", "70000").refused(2, "cannot listen", "0-65535")
     assert pendu("serve", "--at-most", "0").refused(2, "count")
     (tmp_path / "file").touch()
     assert pendu("serve", "--record", tmp_path / "file").refused(5, "exists")

@@ -9,7 +9,6 @@ from collections.abc import Iterator, Mapping
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from tempfile import TemporaryFile
-from typing import NamedTuple
 
 from tui.cli.errors import Exit, UserError
 from tui.cli.install import install_advice
@@ -23,16 +22,8 @@ examples:
   pendu-tui doctor --json | jq '.findings[] | select(.advice != "")'
 """
 
+NO_TERMINAL = "unknown: the output is a file or a pipe"
 PACKAGES = ("pendu-tui", "textual", "rich", "plotext", "numpy", "mcap")
-ROOMY = 1_000_000_000  # bytes free: a day of recordings
-
-
-class Check(NamedTuple):
-    """One property of the environment.  No advice: it is fine."""
-
-    what: str
-    found: str
-    advice: str = ""
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -40,64 +31,57 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    checks = [check._asdict() for check in _checks()]
-    columns = (
-        Column("", "what"),
-        Column("found", "found"),
-        Column("advice", lambda check: check["advice"] or "fine"),
-    )
-    publish(
-        Report(name="doctor", columns=columns, rows=checks, fields={"findings": checks}), options
-    )
+    rows = [dict(zip(("what", "found", "advice"), found, strict=True)) for found in _findings()]
+    advice = Column("advice", lambda row: row["advice"] or "fine")
+    columns = (Column("", "what"), Column("found", "found"), advice)
+    publish(Report(name="doctor", columns=columns, rows=rows, fields={"findings": rows}), options)
     return Exit.FINE
 
 
-def _checks() -> Iterator[Check]:
+def _findings() -> Iterator[tuple[str, str, str]]:
+    """Yield what was looked at, what was found, and advice unless that is fine."""
     from recordings import library
 
-    yield lab()
-    columns, rows = shutil.get_terminal_size()
-    yield (
-        size(columns, rows)
-        if sys.stdout.isatty()
-        else Check("size", "unknown: the output is a file or a pipe")
-    )
-    yield encoding(sys.stdout.encoding)
-    yield colour(os.environ)
-    yield folder(library.folder())
-    yield Check("python", f"{platform.python_version()}, {platform.system()} {platform.machine()}")
-    yield Check("versions", ", ".join(f"{package} {version(package)}" for package in PACKAGES))
-    yield numba()
+    yield "lab", *_lab()
+    is_terminal = sys.stdout.isatty()
+    yield "size", *(size(*shutil.get_terminal_size()) if is_terminal else (NO_TERMINAL, ""))
+    encoding = sys.stdout.encoding
+    to_utf8 = "braille needs UTF-8: set LANG=C.UTF-8, or PYTHONUTF8=1"
+    yield "encoding", encoding, "" if is_utf8(encoding) else to_utf8
+    yield "colours", *colour(os.environ)
+    yield "recordings", *folder(library.folder())
+    system = f"{platform.python_version()}, {platform.system()} {platform.machine()}"
+    yield "python", system, ""
+    yield "versions", ", ".join(f"{package} {version(package)}" for package in PACKAGES), ""
+    try:
+        yield "numba", version("numba"), ""
+    except PackageNotFoundError:
+        advice = f"speeds up long runs: {install_advice('numba', 'fast')}"
+        yield "numba", "not installed", advice
 
 
-def lab() -> Check:
+def _lab() -> tuple[str, str]:
     from tui.terminal.check import check_terminal
 
     try:
         check_terminal()
     except UserError as error:
-        return Check("lab", "cannot start here", str(error))
-    return Check("lab", "starts here")
+        return "cannot start here", str(error)
+    return "starts here", ""
 
 
-def size(columns: int, rows: int) -> Check:
+def size(columns: int, rows: int) -> tuple[str, str]:
+    """Return the terminal's size, and whether it is enough."""
     advice = ""
     if columns < SMALLEST[0] or rows < SMALLEST[1]:
         advice = f"too small: the lab needs {SMALLEST[0]}x{SMALLEST[1]}, better 80x24"
     elif columns < 120 or rows < 40:
         advice = "120x40 or larger shows all panes"
-    return Check("size", f"{columns}x{rows}", advice)
+    return f"{columns}x{rows}", advice
 
 
-def encoding(name: str) -> Check:
-    return Check(
-        "encoding",
-        name,
-        "" if is_utf8(name) else "braille needs UTF-8: set LANG=C.UTF-8, or PYTHONUTF8=1",
-    )
-
-
-def colour(environment: Mapping[str, str]) -> Check:
+def colour(environment: Mapping[str, str]) -> tuple[str, str]:
+    """Return what the environment says of colours, and how to get more."""
     number = colours(environment)
     found = str(number)
     advice = "if your terminal supports true colour, set COLORTERM=truecolor"
@@ -110,28 +94,15 @@ def colour(environment: Mapping[str, str]) -> Check:
     elif number > 256:
         found = "16 million"
         advice = ""
-    return Check("colours", f"TERM={environment.get('TERM', '')}, {found}", advice)
+    return f"TERM={environment.get('TERM', '')}, {found}", advice
 
 
-def folder(path: Path) -> Check:
+def folder(path: Path) -> tuple[str, str]:
     """Try to make a file in the folder or its nearest parent: permissions alone do not tell."""
     try:
         there = next(each for each in (path, *path.parents) if each.exists() or each.is_symlink())
         with TemporaryFile(dir=there):
-            free = shutil.disk_usage(there).free
+            return f"{path}, {file_size(shutil.disk_usage(there).free)} free", ""
     except OSError as error:
-        advice = f"cannot be written ({error.strerror}): set PENDU_RECORDINGS to a writable folder"
-        return Check("recordings", str(path), advice)
-    advice = (
-        "disk space is low: pendu-tui recordings prune --keep 20 frees some" if free < ROOMY else ""
-    )
-    return Check("recordings", f"{path}, {file_size(free)} free", advice)
-
-
-def numba() -> Check:
-    try:
-        return Check("numba", version("numba"))
-    except PackageNotFoundError:
-        return Check(
-            "numba", "not installed", f"speeds up long runs: {install_advice('numba', 'fast')}"
-        )
+        why = f"cannot be written ({error.strerror})"
+        return str(path), f"{why}: set PENDU_RECORDINGS to a writable folder"

@@ -8,7 +8,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from engine.methods import FAMILIES, METHODS, Cast, Method
+from engine.methods import FAMILIES, METHODS, Method
 from engine.scenes import DEFAULT_SCENE, MOST_METHODS
 from tui.cli.cast import KEYS, add_cast_options, cast_of
 from tui.cli.errors import Exit
@@ -25,18 +25,8 @@ examples:
 """
 
 CLAIMS = (
-    *(
-        "key",
-        "label",
-        "letter",
-        "formula",
-        "order",
-        "force_evaluations",
-        "symplectic",
-        "reversible",
-        "linear_limit",
-    ),
-    *("other_names", "reference", "used"),
+    *("key", "label", "letter", "formula", "order", "force_evaluations", "symplectic"),
+    *("reversible", "linear_limit", "other_names", "reference", "used"),
 )
 MEASURED = (
     *("measured_order", "measured_linear_limit", "measured_symplectic", "measured_reversible"),
@@ -47,63 +37,88 @@ found: the order of the theta error over one swing of scene drift.
 evals: force evaluations per step, in the average where they vary.
 z limit: of the linear oscillator, z = h·w0; for the pendulum see pendu-tui stability."""
 
+Row = dict[str, Any]
+
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "keys",
-        metavar="KEY",
-        nargs="*",
-        choices=Suggestions(KEYS),
-        help="the methods, as --methods",
-    )
+    keys = Suggestions(KEYS)
+    names = "the methods, as --methods"
+    parser.add_argument("keys", metavar="KEY", nargs="*", choices=keys, help=names)
     add_cast_options(parser, "all")
     add_report_options(parser)
 
 
 def run(options: argparse.Namespace) -> int:
+    from engine.accuracy.study import orders
     from engine.run.compiled import available
 
     if options.keys:
         options.methods = ",".join((*options.keys, *filter(None, [options.methods])))
-    methods = _measured(cast_of(options, METHODS, most=None))
+    cast = cast_of(options, METHODS, most=None)
+    general = tuple(method for method in cast if method.general)
+    measured = dict(orders(DEFAULT_SCENE.with_cast(general), math.inf))
+    rows = [_row(method, measured.get(method)) for method in cast]
     columns = (
         Column("method", "key"),
         Column("order", "order", "d"),
         Column("found", "measured_order", ".3f"),
-        Column("evals", lambda method: _known(method, "force_evaluations"), ".3g"),
-        Column("symplectic", lambda method: "yes" if _known(method, "symplectic") else "no"),
-        Column("reversible", lambda method: "yes" if _known(method, "reversible") else "no"),
+        Column("evals", lambda row: _known(row, "force_evaluations"), ".3g"),
+        Column("symplectic", lambda row: "yes" if _known(row, "symplectic") else "no"),
+        Column("reversible", lambda row: "yes" if _known(row, "reversible") else "no"),
         Column("z limit", _limit, right=True),
     )
-    notes = [NOTE, *(_about(method) for method in methods if options.keys)]
-    fields = {"methods": [finite(method) for method in methods], "compiled": available()}
     report = Report(
-        name="methods", columns=columns, rows=[*_by_family(methods)], notes=notes, fields=fields
+        name="methods",
+        columns=columns,
+        rows=list(_by_family(rows)),
+        notes=[NOTE, *(_about(row) for row in rows if options.keys)],
+        fields={"methods": [finite(row) for row in rows], "compiled": available()},
     )
     publish(report, options)
     return Exit.FINE
 
 
-def _by_family(methods: list[dict[str, Any]]) -> Iterator[Any]:
+def _row(method: Method, order: float | None) -> Row:
+    """Return what is claimed, nothing of a user's own method, and what is measured."""
+    from engine.methods import measure
+    from engine.methods.own import OwnMethod
+
+    claims = fields_of(method, *CLAIMS)
+    if isinstance(method, OwnMethod):
+        claims |= dict.fromkeys(set(CLAIMS) - {"key", "label", "letter", "other_names"})
+    measured = dict.fromkeys(MEASURED)
+    if method.general:  # others are for a scene of their own, and measured there by the tests
+        values = (
+            order,
+            measure.linear_limit(method.phases),
+            measure.is_symplectic(method.phases),
+            measure.is_reversible(method.phases),
+            measure.evaluations(method.phases)[0],
+        )
+        measured = dict(zip(MEASURED, values, strict=True))
+    return claims | measured
+
+
+def _by_family(rows: list[Row]) -> Iterator[Any]:
     """Yield the methods, those of a family below its name; your own come last."""
-    if len(methods) <= MOST_METHODS:
-        yield from methods
+    if len(rows) <= MOST_METHODS:
+        yield from rows
         return
-    left = {method["key"]: method for method in methods}
+    left = {row["key"]: row for row in rows}
     for family, members in FAMILIES.items():
-        found = [left.pop(each.key) for each in members if each.key in left]
-        yield from [family, *found]
+        yield family
+        yield from (left.pop(each.key) for each in members if each.key in left)
     yield from ["your own", *left.values()] if left else ()
 
 
-def _known(method: dict[str, Any], name: str) -> Any:
+def _known(row: Row, name: str) -> Any:
     """Return a property as measured, or as claimed where it is not measured."""
-    measured = method[f"measured_{name}"]
-    return method[name] if measured is None else measured
+    measured = row[f"measured_{name}"]
+    return row[name] if measured is None else measured
 
 
-def _limit(method: dict[str, Any]) -> str | None:
-    z = _known(method, "linear_limit")
+def _limit(row: Row) -> str | None:
+    z = _known(row, "linear_limit")
     if z is None:
         return None
     if z == math.inf:
@@ -111,46 +126,7 @@ def _limit(method: dict[str, Any]) -> str | None:
     return f"{z:.3f}" if z else "none"
 
 
-def _about(method: dict[str, Any]) -> str:
-    names = ", ".join((method["label"], *method["other_names"]))
-    return "\n".join(
-        [
-            "",
-            f"{names} ({method['letter']})",
-            *filter(None, (method["formula"], method["reference"])),
-        ]
-    )
-
-
-def _measured(cast: Cast) -> list[dict[str, Any]]:
-    """Return the methods with the order of their errors on the default scene, and more."""
-    from engine.accuracy.study import orders
-
-    general = tuple(method for method in cast if method.general)
-    measured_orders = dict(orders(DEFAULT_SCENE.with_cast(general), math.inf))
-    return [_claims(method) | _properties(method, measured_orders.get(method)) for method in cast]
-
-
-def _claims(method: Method) -> dict[str, Any]:
-    """Return what is claimed; of a user's own method nothing is."""
-    from engine.methods.own import OwnMethod
-
-    claims = fields_of(method, *CLAIMS)
-    if isinstance(method, OwnMethod):
-        claims |= dict.fromkeys(set(CLAIMS) - {"key", "label", "letter", "other_names"})
-    return claims
-
-
-def _properties(method: Method, order: float | None) -> dict[str, Any]:
-    from engine.methods import measure
-
-    if not method.general:  # it is for a scene of its own, and measured there by the tests
-        return dict.fromkeys(MEASURED)
-    values = (
-        order,
-        measure.linear_limit(method.phases),
-        measure.is_symplectic(method.phases),
-        measure.is_reversible(method.phases),
-        measure.evaluations(method.phases)[0],
-    )
-    return dict(zip(MEASURED, values, strict=True))
+def _about(row: Row) -> str:
+    names = ", ".join((row["label"], *row["other_names"]))
+    more = filter(None, (row["formula"], row["reference"]))
+    return "\n".join(["", f"{names} ({row['letter']})", *more])

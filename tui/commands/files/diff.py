@@ -34,29 +34,25 @@ def run(options: argparse.Namespace) -> int:
     for recording in (a, b):
         if recording.reason:
             warn(f"{printable(str(recording.path))}: {recording.reason}; the rest is compared.")
-    _report(found).show(form_of(options))
-    return Exit.FINE if found["identical"] else Exit.CHECK_FAILED
-
-
-def _report(found: dict[str, Any]) -> Report:
     title = "{samples} samples at equal times; {only_in_a} only in A, {only_in_b} only in B"
     place = (
         "first in {field} of {method} at run {run}, t = {t:g} s, step {step_a} of A and {step_b} "
         "of B: {a!r} and {b!r}"
     )
-    done = [Column(head, itemgetter(n)) for n, head in enumerate(("done differently", "A", "B"))]
-    return Report(
+    notes: list[Any] = [place.format(**found["first"])] if found["first"] else []
+    if found["done"]:
+        heads = enumerate(("done differently", "A", "B"))
+        notes.append(Table([Column(head, itemgetter(at)) for at, head in heads], found["done"]))
+    Report(
         name="diff",
         title="identical" if found["identical"] else title.format(**found),
-        columns=[
+        columns=(
             Column("largest energy error", "method"),
             Column("A", "a", ".2e"),
             Column("B", "b", ".2e"),
-        ],
+        ),
         rows=[{"method": method, **errors} for method, errors in found["errors"].items()],
+        notes=notes,
         fields=found,
-        notes=[
-            *([place.format(**found["first"])] if found["first"] else []),
-            *([Table(done, found["done"])] if found["done"] else []),
-        ],
-    )
+    ).show(form_of(options))
+    return Exit.FINE if found["identical"] else Exit.CHECK_FAILED

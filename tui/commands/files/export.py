@@ -19,8 +19,6 @@ from tui.words.numbers import file_size
 if TYPE_CHECKING:
     from recordings.recording import Recording
 
-ROWS_AT_ONCE = 100_000  # of Parquet
-
 EXAMPLES = """\
 examples:
   pendu-tui export latest -o latest.csv
@@ -33,29 +31,27 @@ Rows = Iterator[tuple[object, ...]]
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_recording(parser)
-    parser.add_argument(
-        "--format", choices=("csv", "parquet"), default="csv", help="output format (%(default)s)"
-    )
-    add_file(
-        parser, "-o", "--output", metavar="OUT", type=Path, help="write to OUT instead of stdout"
-    )
-    parser.add_argument("--force", action="store_true", help="overwrite OUT")
+    add = parser.add_argument
+    form = "output format (%(default)s)"
+    add("--format", choices=("csv", "parquet"), default="csv", help=form)
+    where = "write to OUT instead of stdout"
+    add_file(parser, "-o", "--output", metavar="OUT", type=Path, help=where)
+    add("--force", action="store_true", help="overwrite OUT")
 
 
 def run(options: argparse.Namespace) -> int:
     from recordings.recording import Recording
 
-    if options.format == "parquet" and options.output is None:
-        raise UserError("Parquet is no text: name a file with -o.")
     path = resolve(options.file)
     with Recording.open(path) as recording, progress(printable(path.name)) as show:
         columns = columns_of({run.scene.model: None for run in recording.runs})
         rows = _rows(recording, show)
         if options.format == "parquet":
-            _write_parquet(options.output, options.force, columns, rows)
+            _write_parquet(options, columns, rows)
         else:
             with text_file(options.output, options.force) as out:
-                write_csv(out, columns, map(_with_nan, rows))
+                # readers take an empty column for text
+                write_csv(out, columns, (["NaN" if x is None else x for x in row] for row in rows))
         if recording.reason:
             warn(f"{printable(str(path))}: {recording.reason}; the rest is exported.")
     if options.output:
@@ -89,12 +85,9 @@ def _rows(recording: "Recording", show: Callable[[int, int], None]) -> Rows:
             show(count, recording.samples)
 
 
-def _with_nan(row: tuple[object, ...]) -> Iterator[object]:
-    """Yield the row with NaN for what is missing: readers take an empty column for text."""
-    return ("NaN" if value is None else value for value in row)
-
-
-def _write_parquet(path: Path, force: bool, columns: tuple[str, ...], rows: Rows) -> None:
+def _write_parquet(options: argparse.Namespace, columns: tuple[str, ...], rows: Rows) -> None:
+    if options.output is None:
+        raise UserError("Parquet is no text: name a file with -o.")
     try:
         import pyarrow
         from pyarrow.parquet import ParquetWriter
@@ -104,7 +97,10 @@ def _write_parquet(path: Path, force: bool, columns: tuple[str, ...], rows: Rows
 
     types = {"run": pyarrow.int64(), "step": pyarrow.int64(), "method": pyarrow.string()}
     schema = pyarrow.schema([(name, types.get(name, pyarrow.float64())) for name in columns])
-    with whole_file(path, force) as part, ParquetWriter(part, schema) as writer:
-        while some := list(islice(rows, ROWS_AT_ONCE)):
+    with (
+        whole_file(options.output, options.force) as part,
+        ParquetWriter(part, schema) as writer,
+    ):
+        while some := list(islice(rows, 100_000)):
             values = dict(zip(columns, zip(*some, strict=True), strict=True))
             writer.write_table(pyarrow.table(values, schema))

@@ -1,7 +1,6 @@
 """List the recordings, show what is in one, recover a damaged one, or delete old ones."""
 
 import argparse
-import sys
 import time
 from contextlib import suppress
 from pathlib import Path
@@ -11,7 +10,7 @@ from recordings.errors import RecordingError, printable
 from tui.cli.errors import Exit, UserError
 from tui.cli.files import check_free
 from tui.cli.options import add_file, add_recording, count, resolve
-from tui.cli.output import progress
+from tui.cli.output import fields_of, progress
 from tui.cli.report import Column, Report, Table, add_report_options, form_of
 from tui.words.numbers import counted, file_size, seconds
 
@@ -29,28 +28,6 @@ examples:
   pendu-tui recordings prune --keep 20 --yes
 """
 
-
-def add_options(parser: argparse.ArgumentParser) -> None:
-    verbs = {"list": _list, "show": _show, "recover": _recover, "prune": _prune}
-    parser.add_argument(
-        "verb",
-        metavar="|".join(verbs),
-        nargs="?",
-        choices=list(verbs),
-        default="list",
-        help="what to do (%(default)s)",
-    )
-    add_recording(parser, nargs="?", help="of show and recover: a file, latest, or a name")
-    add_report_options(parser)
-    parser.set_defaults(verbs=verbs)
-    group = parser.add_argument_group("recover")
-    add_file(group, "-o", "--output", metavar="OUT", type=Path, help="the file to write")
-    group.add_argument("--force", action="store_true", help="overwrite OUT")
-    group = parser.add_argument_group("prune")
-    group.add_argument("--keep", metavar="N", type=count, help="keep the N newest")
-    group.add_argument("--yes", action="store_true", help="delete without asking")
-
-
 OPTIONS = {
     "file": ("show", "recover"),
     "output": ("recover",),
@@ -61,15 +38,30 @@ OPTIONS = {
 """Option -> the verbs that it belongs to."""
 
 
+def add_options(parser: argparse.ArgumentParser) -> None:
+    verbs = ["list", "show", "recover", "prune"]
+    names = "|".join(verbs)
+    what = "what to do (%(default)s)"
+    parser.add_argument("verb", metavar=names, nargs="?", choices=verbs, default="list", help=what)
+    add_recording(parser, nargs="?", help="of show and recover: a file, latest, or a name")
+    add_report_options(parser)
+    group = parser.add_argument_group("recover")
+    add_file(group, "-o", "--output", metavar="OUT", type=Path, help="the file to write")
+    group.add_argument("--force", action="store_true", help="overwrite OUT")
+    group = parser.add_argument_group("prune")
+    group.add_argument("--keep", metavar="N", type=count, help="keep the N newest")
+    group.add_argument("--yes", action="store_true", help="delete the others, which are listed")
+
+
 def run(options: argparse.Namespace) -> int:
     for name, verbs in OPTIONS.items():
         if getattr(options, name) and options.verb not in verbs:
             option = "a file" if name == "file" else f"--{name}"
             raise UserError(f"{option} belongs to pendu-tui recordings {' or '.join(verbs)}.")
-    if options.verb in ("show", "recover") and options.file is None:
+    if options.verb in OPTIONS["file"] and options.file is None:
         raise UserError(f"name a recording: pendu-tui recordings {options.verb} FILE.")
-    report = options.verbs[options.verb](options)
-    report.show(form_of(options))
+    reports = {"list": _list, "show": _show, "recover": _recover, "prune": _prune}
+    reports[options.verb](options).show(form_of(options))
     return Exit.FINE
 
 
@@ -77,31 +69,34 @@ def _list(options: argparse.Namespace) -> Report:
     from recordings import library
 
     rows = [_facts(item) for item in library.listing()]
-    folder = printable(str(library.folder()))
-    being_made = [
+    folder = library.folder()
+    none = f"No recordings in {printable(str(folder))} yet; start pendu-tui to make one."
+    notes = [
         f"recording now: {printable(str(path.with_suffix('')))}"
         for path in library.leftovers(being_made=True)
     ]
-    unfinished = [
+    notes += [
         f"unfinished: {printable(str(path))}; will be recovered the next time the lab starts"
         for path in library.leftovers()
     ]
+
+    def finished(row: dict[str, Any]) -> str:
+        return time.strftime("%Y-%m-%d %H:%M", time.localtime(row["modified"]))
+
     columns = (
         Column("recording, newest first", "file"),
-        Column(
-            "finished", lambda row: time.strftime("%Y-%m-%d %H:%M", time.localtime(row["modified"]))
-        ),
+        Column("finished", finished),
         Column("scenes", lambda row: row["reason"] or ", ".join(row["scenes"])),
         Column("length", lambda row: row["seconds"] and seconds(row["seconds"]), right=True),
         Column("size", lambda row: file_size(row["bytes"]), right=True),
     )
     return Report(
         name="recordings",
-        title="" if rows else f"No recordings in {folder} yet; start pendu-tui to make one.",
+        title="" if rows else none,
         columns=columns if rows else (),
         rows=rows,
-        fields={"folder": str(library.folder()), "recordings": rows},
-        notes=being_made + unfinished,
+        fields={"folder": str(folder), "recordings": rows},
+        notes=notes,
     )
 
 
@@ -112,13 +107,10 @@ def _facts(item: "Item") -> dict[str, Any]:
     try:
         with Recording.open(item.path) as recording:
             scenes = list(dict.fromkeys(run.scene.name for run in recording.runs))
-            return facts | {
-                "seconds": recording.length,
-                "scenes": scenes,
-                "reason": recording.reason,
-            }
+            facts |= {"seconds": recording.length, "scenes": scenes, "reason": recording.reason}
     except RecordingError as error:
-        return facts | {"seconds": None, "scenes": [], "reason": str(error)}
+        facts |= {"seconds": None, "scenes": [], "reason": str(error)}
+    return facts
 
 
 def _show(options: argparse.Namespace) -> Report:
@@ -135,14 +127,11 @@ def _show(options: argparse.Namespace) -> Report:
 def _contents(recording: "Recording") -> Report:
     runs = [
         {"run": run.number, "scene": run.scene.fields(), "steps": run.steps, "time": run.t}
-        | {
-            "seconds": run.end - run.begin,
-            "inputs": run.inputs,
-            "numerics": run.arithmetic.numerics,
-        }
+        | {"seconds": run.end - run.begin, "inputs": run.inputs}
+        | {"numerics": run.arithmetic.numerics}
         for run in recording.runs
     ]
-    cast = dict.fromkeys(method.key for run in recording.runs for method in run.scene.cast)
+    cast = list(dict.fromkeys(method.key for run in recording.runs for method in run.scene.cast))
     health = recording.reason or "complete"
     facts = {
         "file": str(recording.path),
@@ -151,29 +140,22 @@ def _contents(recording: "Recording") -> Report:
         "size": f"{file_size(recording.bytes)}, {counted(recording.samples, 'sample')}",
         "methods": ", ".join(cast),
     }
-    more = len(runs) - MAX_RUNS_SHOWN
-    names = ("complete", "damaged", "reason", "samples", "bytes")
+    notes: list[Any] = [Table(RUN_COLUMNS, runs[:MAX_RUNS_SHOWN])]
+    if len(runs) > MAX_RUNS_SHOWN:
+        notes.append(f"... and {len(runs) - MAX_RUNS_SHOWN} more runs; --json lists all.")
+    fields = {"file": facts["file"], "runs": runs, "seconds": recording.length, "methods": cast}
     return Report(
         name="recordings-show",
         columns=(Column("", "name"), Column("", "value")),
         rows=[{"name": name, "value": value} for name, value in facts.items()],
-        fields={
-            "file": str(recording.path),
-            "runs": runs,
-            "seconds": recording.length,
-            "methods": list(cast),
-            **{name: getattr(recording, name) for name in names},
-        },
-        notes=[
-            Table(RUN_COLUMNS, runs[:MAX_RUNS_SHOWN]),
-            *([f"... and {more} more runs; --json lists all."] if more > 0 else []),
-        ],
+        fields=fields | fields_of(recording, "complete", "damaged", "reason", "samples", "bytes"),
+        notes=notes,
     )
 
 
 def _number_of_scene(head: str) -> Column:
     name = head.partition(" ")[0]
-    return Column(head, lambda run: f"{run['scene'][name]:g}", right=True)
+    return Column(head, lambda run: run["scene"][name], "g")
 
 
 RUN_COLUMNS = (
@@ -211,14 +193,14 @@ def _prune(options: argparse.Namespace) -> Report:
 
     if options.keep is None:
         raise UserError("specify how many to keep: --keep 20 for the newest 20.")
-    doomed = library.listing()[options.keep :]
-    if doomed and not options.yes and not _confirmed(doomed):
-        doomed = []
-    deleted = list(filter(delete, doomed))
+    old = library.listing()[options.keep :]
+    deleted = list(filter(delete, old)) if options.yes else []
     freed = file_size(sum(item.bytes for item in deleted))
     notes = [f"deleted {counted(len(deleted), 'recording')}, {freed}"]
-    if len(deleted) < len(doomed):
-        notes.append(f"{len(doomed) - len(deleted)} more could not be deleted (in use?)")
+    if options.yes and len(deleted) < len(old):
+        notes.append(f"{len(old) - len(deleted)} more could not be deleted (in use?)")
+    elif old and not options.yes:
+        notes += [*(printable(str(item.path)) for item in old), "Add --yes to delete these."]
     fields = {"deleted": [str(item.path) for item in deleted]}
     return Report(name="recordings-prune", fields=fields, notes=notes)
 
@@ -232,13 +214,3 @@ def delete(item: "Item") -> bool:
             item.path.unlink()
             item.path.with_name(item.path.name + library.MARKS).unlink(missing_ok=True)
     return not item.path.exists()
-
-
-def _confirmed(doomed: "list[Item]") -> bool:
-    if not sys.stdin.isatty():
-        raise UserError("not a terminal, cannot ask: add --yes to delete.")
-    for item in doomed:
-        print(printable(str(item.path)), file=sys.stderr)
-    question = f"Delete these {counted(len(doomed), 'recording')}? [y/N] "
-    print(question, end="", file=sys.stderr, flush=True)
-    return sys.stdin.readline().strip().lower() in ("y", "yes")

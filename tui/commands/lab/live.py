@@ -28,22 +28,13 @@ examples:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_scene_options(parser)
-    parser.add_argument(
-        "--speed", metavar="X", type=positive, help="multiple of real time (default: the scene's)"
-    )
-    parser.add_argument(
-        "--equal-cost",
-        action="store_true",
-        help="all methods need as many force evaluations: the cheaper take smaller steps",
-    )
+    speed = "multiple of real time (default: the scene's)"
+    parser.add_argument("--speed", metavar="X", type=positive, help=speed)
+    equal = "all methods need as many force evaluations: the cheaper take smaller steps"
+    parser.add_argument("--equal-cost", action="store_true", help=equal)
     recording = parser.add_mutually_exclusive_group()
-    add_file(
-        recording,
-        "--record",
-        metavar="FILE",
-        type=Path,
-        help="record to FILE instead of the data folder",
-    )
+    record = "record to FILE instead of the data folder"
+    add_file(recording, "--record", metavar="FILE", type=Path, help=record)
     recording.add_argument("--no-record", action="store_true", help="do not record")
     ghost = "lay a recording under the lab, dimmed; without --scene the lab starts as it did"
     add_recording(parser, "--ghost", help=ghost, metavar="FILE|latest|NAME")
@@ -66,11 +57,9 @@ def lab_of(scene: Scene, options: argparse.Namespace) -> "Live":
 def run(options: argparse.Namespace) -> int:
     from tui.screens import launch
 
-    ghost = None
-    if options.ghost is not None:
-        ghost = launch.open_ghost(resolve(options.ghost))
-    scene = scene_of(options, None if ghost is None else ghost.scene, lecture=True)
-    if ghost is not None and ghost.scene.model != scene.model:
+    ghost = launch.open_ghost(resolve(options.ghost)) if options.ghost else None
+    scene = scene_of(options, ghost.scene if ghost else None, lecture=True)
+    if ghost and ghost.scene.model != scene.model:
         raise UserError(
             f"--ghost: the recording is of the model {ghost.scene.model}, the scene of "
             f"{scene.model}; leave out --scene, or choose one of that model."

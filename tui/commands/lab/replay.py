@@ -20,22 +20,15 @@ examples:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     add_recording(parser, metavar="FILE|latest|NAME", help="a file, latest, or a bundled recording")
-    parser.add_argument(
-        "--start-at",
-        metavar="S",
-        type=number,
-        default=0.0,
-        help="start S seconds into the recording (%(default)g)",
-    )
+    add = parser.add_argument
+    start = "start S seconds into the recording (%(default)g)"
+    add("--start-at", metavar="S", type=number, default=0.0, help=start)
     add_cast_options(parser, "all of the recording's")
-    parser.add_argument(
-        "--speed", metavar="X", type=positive, default=1.0, help="playback speed (%(default)g)"
-    )
-    parser.add_argument("--loop", action="store_true", help="loop")
-    parser.add_argument("--paused", action="store_true", help="start paused")
-    parser.add_argument(
-        "--no-record", action="store_true", help="do not record when continuing live"
-    )
+    speed = "playback speed (%(default)g)"
+    add("--speed", metavar="X", type=positive, default=1.0, help=speed)
+    add("--loop", action="store_true", help="loop")
+    add("--paused", action="store_true", help="start paused")
+    add("--no-record", action="store_true", help="do not record when continuing live")
     add_terminal_options(parser)
 
 

@@ -16,25 +16,25 @@ from tui.terminal.options import LARGEST
 
 
 class BoundedDriver(WebDriver):
-    """Textual's driver for a browser, which may have any size."""
+    """Textual's driver for a browser, which may ask for any size."""
 
     def on_meta(self, packet_type: str, payload: dict[str, Any]) -> None:
         if packet_type == "resize":
-            columns, rows = bounded(payload["width"], payload["height"])
-            payload.update(width=columns, height=rows)
+            payload.update(bounded(payload))
         super().on_meta(packet_type, payload)
 
 
-def bounded(columns: float, rows: float) -> tuple[int, int]:
+def bounded(size: Any) -> dict[str, int]:
     """Return a size within reason."""
-    return int(min(max(columns, 1), LARGEST[0])), int(min(max(rows, 1), LARGEST[1]))
+    sides = zip(("width", "height"), LARGEST, strict=True)
+    return {side: int(min(max(float(size[side]), 1), largest)) for side, largest in sides}
 
 
 def main() -> None:
     """Show a lab of the scene, look and folder of recordings that a file holds."""
     scene, terminal, folder = pickle.loads(Path(sys.argv[1]).read_bytes())
-    columns, rows = bounded(int(os.environ["COLUMNS"]), int(os.environ["ROWS"]))
-    os.environ.update(COLUMNS=str(columns), ROWS=str(rows))
+    size = bounded({"width": os.environ["COLUMNS"], "height": os.environ["ROWS"]})
+    os.environ.update(COLUMNS=str(size["width"]), ROWS=str(size["height"]))
     live = Live(scene)
     app = PenduApp(live_screen(live, folder and library.new_path(folder)), terminal=terminal)
     app.driver_class = BoundedDriver

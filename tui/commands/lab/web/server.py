@@ -19,8 +19,6 @@ from textual_serve.server import Server
 from tui.cli.files import ENDING
 
 CONNECTIONS_PER_LAB = 10  # browsers open six
-MAX_IDLE_TIME = 10.0  # s without a whole request
-MAX_STOP_TIME = 1.0  # s to wait for labs at the end
 POLICY = "default-src 'self' 'unsafe-inline' data: ws: wss:; frame-ancestors 'none'"
 
 
@@ -43,7 +41,7 @@ class LabServer(Server):  # type: ignore[misc]
         app = await self._make_app()
         app.middlewares.append(self.check)
         app.on_response_prepare.append(add_policy)
-        runner = web.AppRunner(app, keepalive_timeout=MAX_IDLE_TIME, shutdown_timeout=MAX_STOP_TIME)
+        runner = web.AppRunner(app, keepalive_timeout=10.0, shutdown_timeout=1.0)  # s
         await runner.setup()
 
         def connect() -> Any:
@@ -113,6 +111,13 @@ def is_ours(authority: str, host: str) -> bool:
         return name in ("localhost", host) or bool(ipaddress.ip_address(name))
     except ValueError:
         return False
+
+
+def is_local(host: str) -> bool:
+    """Return whether only this computer can reach the address."""
+    with suppress(ValueError):
+        return ipaddress.ip_address(host).is_loopback
+    return host == "localhost"
 
 
 async def add_policy(request: web.Request, response: web.StreamResponse) -> None:
