@@ -2,13 +2,12 @@
 
 import argparse
 import difflib
-import re
 import string
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from engine.methods import FAMILIES, METHODS, Cast, Method, matching, simplified
+from engine.methods import METHODS, Cast, Method, matching, simplified
 from engine.scenes import MOST_METHODS
 from tui.cli.errors import Exit, UserError
 from tui.cli.options import Suggestions, add_file
@@ -17,8 +16,6 @@ if TYPE_CHECKING:
     from engine.methods.own import OwnMethod
 
 MAX_SECONDS = 10.0  # to load and measure a method; a fiftieth of it is typical
-MAX_NAME = 30  # characters of a method's key
-
 KEYS = [method.key for method in METHODS]
 
 
@@ -37,7 +34,7 @@ def add_cast_options(parser: argparse._ActionsContainer, default: str = "the sce
     add_file(
         parser,
         "--method",
-        metavar="FILE.py:FUNCTION[,letter=m]",
+        metavar="FILE.py:FUNCTION",
         action="append",
         default=[],
         help="add your own method: a generator function (force, phase, h), see "
@@ -57,13 +54,20 @@ def cast_of(
     given, are advised. Raises UserError and OwnMethodError.
     """
     own = own_methods(options)
-    cast = default if options.methods is None else _named(options.methods, (*METHODS, *own), model)
-    cast = (*cast, *(method for method in own if method not in cast))
+    cast = list(default)
+    if options.methods is not None:
+        cast = []
+        for name in options.methods.split(","):
+            method = find(name.strip(), (*METHODS, *own), model=model)
+            if method in cast:
+                raise UserError(f"--methods: {method.key} is there twice; name each method once.")
+            cast.append(method)
+    cast += [method for method in own if method not in cast]
     if most is not None and len(cast) > most:
         raise UserError(
             f"{len(cast)} methods are too many; name those to show, at most {most}, with --methods."
         )
-    return cast
+    return tuple(cast)
 
 
 def own_methods(options: argparse.Namespace) -> tuple["OwnMethod", ...]:
@@ -75,16 +79,6 @@ def own_methods(options: argparse.Namespace) -> tuple["OwnMethod", ...]:
     for text in options.method:
         own.append(own_method_at(text, own))
     return tuple(own)
-
-
-def _named(text: str, methods: Sequence[Method], model: str | None) -> Cast:
-    cast: list[Method] = []
-    for name in text.split(","):
-        method = find(name.strip(), methods, model=model)
-        if method in cast:
-            raise UserError(f"--methods: {method.key} is there twice; name each method once.")
-        cast.append(method)
-    return tuple(cast)
 
 
 def find(
@@ -104,63 +98,39 @@ def find(
     suited = [method for method in methods if model is None or model in method.models]
     known = {simplified(each): method.key for method in suited for each in method.names}
     near = difflib.get_close_matches(simplified(name), known, n=1)
-    advice = f": did you mean {known[near[0]]}?" if near else f": choose from {_listed(suited)}."
+    advice = f": choose from {', '.join(method.key for method in suited)}."
+    if near:
+        advice = f": did you mean {known[near[0]]}?"
     raise UserError(f"{option}: there is no method {name!r}{advice}")
 
 
-def _listed(methods: Sequence[Method]) -> str:
-    """Return the keys of methods by family."""
-    families = {
-        family: [method.key for method in members if method in methods]
-        for family, members in FAMILIES.items()
-    }
-    families["your own"] = [method.key for method in methods if method not in METHODS]
-    return "; ".join(f"{family}: {', '.join(keys)}" for family, keys in families.items() if keys)
-
-
 def own_method_at(text: str, others: Sequence[Method]) -> "OwnMethod":
-    """Return the method of FILE.py:FUNCTION[,letter=m]."""
-    if text.endswith(".py"):
-        text += f":{Path(text).stem}"  # or an error that lists the functions
-    match = re.fullmatch(r"(?P<file>[^,]+):(?P<key>[^,:]+)(,letter=(?P<letter>[^,]*))?", text)
-    if match is None:
-        raise UserError(f"--method: {text!r} is not FILE.py:FUNCTION or FILE.py:FUNCTION,letter=m.")
-    file = match["file"]
-    key = match["key"]
-    letter = match["letter"]
-    if not (key.isidentifier() and key.isascii() and len(key) <= MAX_NAME):
-        raise UserError(
-            f"--method: {key!r} cannot be a method's name; use a function's with at most "
-            f"{MAX_NAME} ASCII letters."
-        )
-    taken = {method.letter: method for method in (*METHODS, *others)}
-    if key in {method.key for method in taken.values()}:
-        raise UserError(
-            f"--method: there is a method {key} already; give your function another name."
-        )
-    if letter is None:
-        letter = next(
-            each
-            for each in (*key.lower(), *key.upper(), *string.ascii_uppercase)
-            if each.isalpha() and each not in taken
-        )
-    if not re.fullmatch(r"[A-Za-z0-9]", letter):
-        raise UserError(f"--method: {letter!r} is not a letter; use for example letter=m.")
-    if letter in taken:
-        raise UserError(f"--method: {letter} is the letter of {taken[letter].key}; choose another.")
-    return _loaded(Path(file), key, letter)
-
-
-def _loaded(path: Path, key: str, letter: str) -> "OwnMethod":
+    """Return the method of FILE.py:FUNCTION, with a letter that no other has."""
     from engine.methods.examine import load
     from engine.methods.own import LONGEST_SOURCE
     from tui.cli.time_limit import limited
 
+    path, _, key = text.rpartition(":")
+    if not path:
+        raise UserError(f"--method: {text!r} is not FILE.py:FUNCTION.")
+    if not (key.isidentifier() and key.isascii() and len(key) <= 30):
+        raise UserError(
+            f"--method: {key!r} cannot be a method's name; use a function's with at most 30 ASCII "
+            "letters."
+        )
+    taken = (*METHODS, *others)
+    if key in [method.key for method in taken]:
+        raise UserError(
+            f"--method: there is a method {key} already; give your function another name."
+        )
+    letters = {method.letter for method in taken}
+    wishes = (*key.lower(), *key.upper(), *string.ascii_uppercase)
+    letter = next(each for each in wishes if each.isalpha() and each not in letters)
     try:
-        with path.open(encoding="utf-8-sig") as file:
+        with Path(path).open(encoding="utf-8-sig") as file:
             source = file.read(LONGEST_SOURCE + 1)
     except (OSError, ValueError) as error:
         why = error.strerror if isinstance(error, OSError) else "it is not text in UTF-8"
         raise UserError(f"--method: {path} cannot be read: {why}.", Exit.INPUT_UNREADABLE) from None
     with limited("a few hundred steps", MAX_SECONDS):
-        return load(source, key, letter, str(path))
+        return load(source, key, letter, path)

@@ -6,7 +6,6 @@ Imports only what the command needs.
 import io
 import os
 import sys
-import threading
 from argparse import ArgumentParser, RawDescriptionHelpFormatter
 from collections.abc import Sequence
 from importlib import import_module
@@ -14,7 +13,6 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 from tui.cli.errors import Exit, UserError, explained
-from tui.cli.files import repeat_swallowed_interrupts
 from tui.cli.install import hidden_package
 
 if TYPE_CHECKING:
@@ -82,19 +80,9 @@ examples:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return the exit code.  Nothing but a bug leaves a traceback."""
-    code = _main(arguments)
-    others = set(threading.enumerate()) - {threading.main_thread()}
-    if arguments is None and not all(thread.daemon for thread in others):
-        os._exit(code)  # the interpreter would wait for a thread that a user's method started
-    return code
-
-
-def _main(arguments: Sequence[str] | None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without θ shows a ?, not a traceback
-    if arguments is None:
-        repeat_swallowed_interrupts()
     if why := hidden_package():
         print(f"pendu-tui: {why}", file=sys.stderr)
         return Exit.USAGE
@@ -129,22 +117,27 @@ def _dispatch(arguments: list[str]) -> int:
             commands = "\n".join(f"  {name:<12}{about}" for name, about in COMMANDS.items())
             print(USAGE.format(commands=commands), end="")
             return Exit.FINE
-        case ["help", name, *_]:
-            return _run([name, "--help"])
         case ["--version", *_]:
             from importlib.metadata import version
 
             print(f"pendu-tui {version('pendu-tui')}")
             return Exit.FINE
-        case ["--print-completion", *_]:
-            return _parsed(completion_parser(), arguments)
-    return _run(arguments)
+        case ["help", name, *_]:
+            arguments = [name, "--help"]
+    try:
+        if arguments and arguments[0].startswith("--print-completion"):
+            completion_parser().parse_args(arguments)
+        name, arguments = split(arguments)
+        parser, command = command_of(name)
+        options = parser.parse_args(arguments)
+    except SystemExit:  # --help or --print-completion, printed
+        return Exit.FINE
+    if not getattr(options, "method", None):
+        return int(command.run(options))
+    from tui.cli.time_limit import limited_steps
 
-
-def _run(arguments: list[str]) -> int:
-    name, arguments = split(arguments)
-    parser, command = command_of(name)
-    return _parsed(parser, arguments, command)
+    with limited_steps():
+        return int(command.run(options))
 
 
 def split(arguments: list[str]) -> tuple[str, list[str]]:
@@ -162,27 +155,6 @@ def split(arguments: list[str]) -> tuple[str, list[str]]:
     from engine.scenes import SCENES
 
     return ("live", arguments) if first in SCENES else (first, [])
-
-
-def _parsed(parser: "Parser", arguments: list[str], command: ModuleType | None = None) -> int:
-    """Parse the arguments and run the command with them."""
-    try:
-        options = parser.parse_args(arguments)
-    except SystemExit:  # --help or --print-completion, printed
-        return Exit.FINE
-    except UserError as error:
-        raise parser.unknown_option(arguments) or error from None
-    if command is None:
-        return Exit.FINE
-    late = getattr(options, "scene", None)
-    if late in COMMANDS:  # after its options, which made it live
-        raise UserError(f"put the command first: pendu-tui {late}.")
-    if not getattr(options, "method", None):
-        return int(command.run(options))
-    from tui.cli.time_limit import limited_calls, limited_steps
-
-    with limited_calls(), limited_steps():
-        return int(command.run(options))
 
 
 def command_of(name: str) -> tuple["Parser", ModuleType]:

@@ -18,10 +18,7 @@ class Exit(IntEnum):
 
 
 class UserError(Exception):
-    """An error that the user can fix.
-
-    Its text is one sentence: what is wrong, why, and what to do.
-    """
+    """An error that the user can fix: one sentence, what is wrong, why, and what to do."""
 
     def __init__(self, message: str, code: Exit = Exit.USAGE) -> None:
         super().__init__(message)
@@ -41,23 +38,22 @@ def explained(error: BaseException) -> UserError:
 
     match error:
         case SceneError() | OwnMethodError():
-            return UserError(str(error), Exit.USAGE)
+            return UserError(str(error))
         case RecordingError():
             return UserError(str(error), Exit.INPUT_UNREADABLE)
         case MemoryError():
-            return UserError(
-                "not enough memory; use less of it, or smaller input.", Exit.INPUT_UNREADABLE
-            )
+            why = "not enough memory; use less of it, or smaller input."
+            return UserError(why, Exit.INPUT_UNREADABLE)
         case OSError():  # recordings.errors.DiskError among them
-            return UserError(f"{error.filename or 'output'}: {_why(error)}.", Exit.DISK)
+            why = (error.strerror or str(error)) + ADVICE.get(error.errno or 0, "")
+            return UserError(f"{error.filename or 'output'}: {why}.", Exit.DISK)
     raise error
 
 
-def _why(error: OSError) -> str:
-    advice = {
-        errno.ENOSPC: "; free some space or write elsewhere",
-        errno.EACCES: "; choose a writable location",
-        errno.EROFS: "; choose a writable location",
-        errno.ENOENT: "; create the folder first",
-    }
-    return (error.strerror or str(error)) + advice.get(error.errno or 0, "")
+ADVICE = {
+    errno.ENOSPC: "; free some space or write elsewhere",
+    errno.EACCES: "; choose a writable location",
+    errno.EROFS: "; choose a writable location",
+    errno.ENOENT: "; create the folder first",
+}
+"""What to do about errors of the disk."""

@@ -5,7 +5,6 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
-from threading import Timer, main_thread
 from types import FrameType
 from typing import TextIO
 
@@ -33,12 +32,9 @@ def text_file(path: Path | None, force: bool = False) -> Iterator[TextIO]:
     """Yield a stream to what will be the whole file `path`, or stdout where there is no path."""
     if path is None:
         yield sys.stdout
-    else:
-        with (
-            whole_file(path, force) as part,
-            part.open("w", encoding="utf-8", newline="") as stream,
-        ):
-            yield stream
+        return
+    with whole_file(path, force) as part, part.open("w", encoding="utf-8", newline="") as stream:
+        yield stream
 
 
 def check_free(path: Path, force: bool) -> None:
@@ -52,20 +48,6 @@ def check_free(path: Path, force: bool) -> None:
 def interruptible() -> AbstractContextManager[None]:
     """Let SIGTERM and SIGHUP interrupt the block as Ctrl+C does, so that it cleans up."""
     return _signals_to(signal.default_int_handler)
-
-
-def repeat_swallowed_interrupts() -> None:
-    """Send Ctrl+C again where a destructor or a callback of Numba's compiler swallowed it."""
-    report = sys.unraisablehook
-
-    def hook(swallowed: "sys.UnraisableHookArgs") -> None:
-        if issubclass(swallowed.exc_type, KeyboardInterrupt) and hasattr(signal, "pthread_kill"):
-            again = main_thread().ident, signal.SIGINT
-            Timer(0.05, signal.pthread_kill, again).start()  # s; by then the callback has returned
-        else:
-            report(swallowed)
-
-    sys.unraisablehook = hook
 
 
 @contextmanager
@@ -87,9 +69,9 @@ def stop_requests() -> Iterator[Callable[[], bool]]:
 def _signals_to(handler: Callable[[int, FrameType | None], None]) -> Iterator[None]:
     """Handle the signals that ask for an end; ignored ones, as under nohup, stay ignored."""
     heard = [number for number in ENDING if signal.getsignal(number) is not signal.SIG_IGN]
-    before = {number: signal.signal(number, handler) for number in heard}
+    before = [(number, signal.signal(number, handler)) for number in heard]
     try:
         yield
     finally:
-        for number, earlier in before.items():
+        for number, earlier in before:
             signal.signal(number, earlier)

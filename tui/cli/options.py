@@ -5,14 +5,13 @@ import difflib
 import math
 import re
 from collections.abc import Callable, Iterable, Sequence
+from itertools import takewhile
 from pathlib import Path
 from typing import Any, NoReturn
 
 from tui.cli.errors import UserError
 
 LIST = "FIRST:LAST:HOW_MANY"
-MAX_VALUES = 1_000_000  # of a list
-MAX_WORD = 200  # characters of a word that is looked up; difflib takes seconds for long ones
 
 
 class Parser(argparse.ArgumentParser):
@@ -30,27 +29,25 @@ class Parser(argparse.ArgumentParser):
 
     def parse_args(self, arguments: Sequence[str], namespace: Any = None) -> Any:  # type: ignore[override]
         """Parse the arguments; optional words, such as a SCENE, may also follow options."""
-        for argument in arguments:
-            if re.fullmatch(r"(--?[\w-]+=|-\w)--", argument):  # Python 3.11 makes a list of it
-                self.error(
-                    f"{argument.removesuffix('--').removesuffix('=')}: expected one argument"
-                )
-        has_optional = any(each.nargs == "?" and not each.option_strings for each in self._actions)
-        if has_optional and not {"-h", "--help"} & {*arguments}:  # whose text intermixing changes
+        if {"-h", "--help"} & {*arguments}:  # whose text intermixing changes
+            return super().parse_args(arguments, namespace)
+        for argument in takewhile("--".__ne__, arguments):
+            self._check(argument)
+        if any(each.nargs == "?" and not each.option_strings for each in self._actions):
             return self.parse_intermixed_args(arguments, namespace)
         return super().parse_args(arguments, namespace)
 
-    def unknown_option(self, arguments: Sequence[str]) -> UserError | None:
-        """Return the error for the first unknown option; argparse reports a missing one first."""
-        for argument in arguments:
-            name = argument.partition("=")[0] if argument.startswith("--") else argument[:2]
-            if argument == "--" or " " in name or name in self._option_string_actions:
-                continue
-            if re.match(r"--?[a-z]", name, re.IGNORECASE):
-                similar = did_you_mean(name, self._option_string_actions)
-                hint = similar or f"; {self.prog} --help shows the options."
-                return UserError(f"{self.prog.rpartition(' ')[2]} has no option {name}{hint}")
-        return None
+    def _check(self, argument: str) -> None:
+        """Raise UserError for an unknown option; argparse would report a missing one first."""
+        option = re.match(r"--[a-zA-Z][\w-]*|-[a-zA-Z]", argument)
+        if option is None:
+            return
+        if option[0] not in self._option_string_actions:
+            similar = did_you_mean(option[0], self._option_string_actions)
+            hint = similar or f"; {self.prog} --help shows the options."
+            raise UserError(f"{self.prog.rpartition(' ')[2]} has no option {option[0]}{hint}")
+        if argument[option.end() :].removeprefix("=") == "--":  # Python 3.11 makes a list of it
+            self.error(f"{option[0]}: expected one argument")
 
 
 class Suggestions(list[str]):
@@ -90,9 +87,9 @@ def resolve(name: str) -> Path:
         if path.exists() and not path.is_dir():
             return path
     items = library.listing(folder)
+    if name == "latest" and items:
+        return items[0].path
     if name == "latest":
-        if items:
-            return items[0].path
         why = f"no recordings in {printable(str(folder))} yet; start pendu-tui to make one."
         raise RecordingError(why)
     bundled = ["latest", *library.golden_names()]
@@ -101,10 +98,13 @@ def resolve(name: str) -> Path:
     raise RecordingError(f"there is no recording {printable(name)!r}{advice}")
 
 
-def _example(text: str, examples: str) -> str:
-    """Return what to write: a point for a comma, or an example."""
-    comma = re.fullmatch(r"[-+]?\d*,\d+\D*", text)
-    return f"write {text.replace(',', '.')}" if comma else f"use for example {examples}"
+def _float(bare: str, text: str, what: str, example: str) -> float:
+    """Return the number in a value of an option without its unit."""
+    try:
+        return float(bare)
+    except ValueError:
+        why = f"{text!r} is not {what}; use for example {example}"
+        raise argparse.ArgumentTypeError(why) from None
 
 
 def angle(text: str) -> float:
@@ -113,18 +113,13 @@ def angle(text: str) -> float:
     An angular velocity may end in `/s`.
     """
     bare = re.sub(r"\s*(deg|°|rad)(/s)?$", "", text)
-    multiple = re.fullmatch(r"([-+]?)([\d.]*)\*?(?:pi|π)(?:/([\d.]+))?", bare)
-    try:
-        if multiple:
-            sign, factor, divisor = multiple.groups()
-            value = float(f"{sign}{factor or 1}") * math.pi / float(divisor or 1)
-        else:
-            value = float(bare)
-    except (ValueError, ZeroDivisionError):
-        raise argparse.ArgumentTypeError(
-            f"{text!r} is not an angle; {_example(text, '2 (radians), pi/2 or 115deg')}"
-        ) from None
-    return math.radians(value) if "deg" in text or "°" in text else value
+    multiple = re.fullmatch(r"([-+]?)([\d.]*)\*?(?:pi|π)(?:/([1-9]\d{,9}))?", bare)
+    if multiple:
+        bare = f"{multiple[1]}{multiple[2] or 1}"
+    value = _float(bare, text, "an angle", "2 (radians), pi/2 or 115deg")
+    if multiple:
+        return value * math.pi / int(multiple[3] or 1)
+    return math.radians(value) if re.search("deg|°", text) else value
 
 
 def start_angle(text: str) -> float:
@@ -140,23 +135,13 @@ def seconds(text: str) -> float:
     """Return a time [s] from `2`, `2s`, `50ms`, `1min` or `1h`."""
     bare = re.sub(r"\s*(ms|s|min|h)$", "", text)
     unit = text[len(bare) :].strip()
-    try:
-        value = float(bare)
-    except ValueError:
-        raise argparse.ArgumentTypeError(
-            f"{text!r} is not a time; {_example(text, '0.05 (seconds), 50ms or 1min')}"
-        ) from None
+    value = _float(bare, text, "a time", "0.05 (seconds), 50ms or 1min")
     return value / 1000 if unit == "ms" else value * {"min": 60, "h": 3600}.get(unit, 1)
 
 
 def number(text: str) -> float:
     """Return any number, `0.05` or `5%`; the caller checks its range."""
-    try:
-        return float(re.sub("%$", "e-2", text))
-    except ValueError:
-        raise argparse.ArgumentTypeError(
-            f"{text!r} is not a number; {_example(text, '0.05 or 1e-3')}"
-        ) from None
+    return _float(re.sub("%$", "e-2", text), text, "a number", "0.05 or 1e-3")
 
 
 def values(element: Callable[[str], float]) -> Callable[[str], list[float]]:
@@ -164,11 +149,9 @@ def values(element: Callable[[str], float]) -> Callable[[str], list[float]]:
 
     def read(text: str) -> list[float]:
         match text.split(":"):
-            case [_] if re.fullmatch(r"[-+]?\d*,0\d+\D*", text):
-                element(text)  # raises: no list
             case [_]:
                 return sorted({element(part) for part in text.split(",")})
-            case [first, last, many] if 2 <= (size := count(many)) <= MAX_VALUES:
+            case [first, last, many] if 2 <= (size := count(many)) <= 1_000_000:
                 low = element(first)
                 high = element(last)
                 if low < high:
@@ -203,5 +186,5 @@ def count(text: str) -> int:
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """Return the end of a sentence about an unknown word."""
-    near = difflib.get_close_matches(word[:MAX_WORD], known, n=1)
+    near = difflib.get_close_matches(word[:200], known, n=1)  # long ones take seconds
     return f": did you mean {near[0]}?" if near else ""

@@ -82,5 +82,5 @@ def scene_arguments(scene: Scene) -> list[str]:
         arguments += ["--methods", ",".join(method.key for method in scene.cast)]
     for method in scene.cast:
         if isinstance(method, OwnMethod):
-            arguments += ["--method", f"{method.file}:{method.key},letter={method.letter}"]
+            arguments += ["--method", f"{method.file}:{method.key}"]
     return arguments

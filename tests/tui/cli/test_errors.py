@@ -51,11 +51,6 @@ def test_a_mistake_with_known_options_is_reported_by_argparse(arguments, words):
     assert pendu(*arguments).refused(2, words)
 
 
-def test_a_command_after_its_options_is_refused_with_the_right_order():
-    assert pendu("--h", "0.1", "run").refused(2, "put the command first: pendu-tui run.")
-    assert pendu("--record", "run", "--nope").refused(2, "live has no option --nope")
-
-
 @pytest.mark.parametrize("argument", ["--theta=--", "--record=--", "--scene=--"])
 def test_two_hyphens_are_no_value(argument):
     assert pendu(argument).refused(2, argument.removesuffix("=--"))

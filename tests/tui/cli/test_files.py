@@ -1,16 +1,14 @@
 """What a command writes is there whole or not at all, and nothing is overwritten but by force."""
 
-import ctypes
 import os
 import signal
-import sys
 import time
 from pathlib import Path
 
 import pytest
 
 from tests.tui.command_line import pendu
-from tui.cli.files import repeat_swallowed_interrupts, whole_file
+from tui.cli.files import whole_file
 
 WRITERS = {
     "export": ("export", "drift", "-o"),
@@ -59,21 +57,6 @@ def test_a_signal_to_end_leaves_nothing_half_written(tmp_path, number):
         end_it()
     assert list(tmp_path.iterdir()) == []
     assert signal.getsignal(number) is before
-
-
-def test_an_interrupt_that_a_callback_swallows_comes_again(monkeypatch):
-    monkeypatch.setattr(sys, "unraisablehook", sys.unraisablehook)
-    repeat_swallowed_interrupts()
-    swallowing = ctypes.CFUNCTYPE(None)(lambda: signal.raise_signal(signal.SIGINT))
-
-    def wait():
-        swallowing()
-        time.sleep(5)
-
-    began = time.monotonic()
-    with pytest.raises(KeyboardInterrupt):
-        wait()
-    assert time.monotonic() - began < 4  # s: it interrupts what is waited for
 
 
 def test_force_does_not_replace_a_folder(tmp_path):

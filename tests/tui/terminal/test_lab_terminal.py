@@ -129,16 +129,6 @@ def test_a_method_that_does_not_yield_is_told_within_4_s_and_the_keys_work(tmp_p
     assert pendu("verify", recorded, "--method", f"{tmp_path / 'mine.py'}:mine").code == 0
 
 
-def test_a_call_in_c_that_never_returns_ends_the_lab_with_a_sentence(tmp_path, library):
-    (tmp_path / "mine.py").write_text(ENDLESS.replace("pass", "sum(iter(int, 1))"))
-    with lab_with_mine(library) as session:
-        session.wait_for("REC 1 s")
-        (tmp_path / "endless").touch()
-        assert session.end(60.0) == -signal.SIGKILL
-    assert b"1049l" in session.output
-    assert b"the next lab recovers" in session.output
-
-
 BROKEN = """
 from tui.screens.live import LiveScreen
 def broken(self): raise ZeroDivisionError("in the lab")

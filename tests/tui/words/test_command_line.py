@@ -84,9 +84,7 @@ def test_a_step_changed_before_the_first_one_is_part_of_the_start_but_time_that_
 
 
 def test_a_method_of_ones_own_is_loaded_again_from_its_file(tmp_path):
-    given = options_of(
-        f"pendu-tui live --method '{own_method(tmp_path)},letter=Q' --methods mine,rk4"
-    )
+    given = options_of(f"pendu-tui live --method '{own_method(tmp_path)}' --methods mine,rk4")
     scene = scene_of(given)
     assert scene_of(options_of(command(Live(scene)))) == scene
 

@@ -20,7 +20,7 @@ EXAMPLES = """\
 examples:
   pendu-tui run --time 100
   pendu-tui run --scene crossover --time 100 --record crossover.mcap
-  pendu-tui run --time 60 --methods rk4,verlet --method mine.py:my_step,letter=m
+  pendu-tui run --time 60 --methods rk4,verlet --method mine.py:my_step
   pendu-tui run --theta 170deg --time 60 --json | jq '.methods[] | {method, verdict}'
   pendu-tui run --time 60 --fail-if 'rk4.max_energy_error > 1% or any.verdict == grows'
   pendu-tui run --theta 10deg:170deg:17 --h 0.01:0.5:50 --time 10min --workers 4 -o runs.csv
