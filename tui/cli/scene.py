@@ -8,12 +8,13 @@ import argparse
 import math
 import re
 import tomllib
+from collections import ChainMap
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import product
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from engine.methods import METHODS, Cast, Method
 from engine.models import DEFAULT_MODEL, MODELS, PARAMETERS
@@ -41,80 +42,73 @@ from tui.cli.options import (
     values,
 )
 
-READERS: dict[str, Callable[[str], float]] = {
-    "theta": start_angle,
-    "omega": angle,
-    "length": number,
-    "gravity": number,
-    **dict.fromkeys(PARAMETERS, number),
-    "h": seconds,
+NUMBERS: dict[str, tuple[Callable[[str], float], str, str]] = {
+    "theta": (
+        start_angle,
+        "RAD|DEGdeg",
+        "start angle from straight down: 2 (in rad), pi/2 or 115deg",
+    ),
+    "omega": (angle, "RAD_S", "start angular velocity: 2 (in rad/s) or 30deg (a second)"),
+    "length": (number, "M", "length in m"),
+    "gravity": (number, "M_S2", "gravity in m/s²"),
+    **{
+        name: (number, "NUMBER", f"{each.about} in {each.unit}")
+        for name, each in PARAMETERS.items()
+    },
+    "h": (seconds, "S", "step size: 0.05 (in s) or 50ms"),
 }
-"""The numbers of a scene, and how each is read, on the command line and in a file."""
+"""The numbers of a scene: what reads each, and its option's metavar and help."""
 
-_HELP = {
-    "theta": ("RAD|DEGdeg", "start angle from straight down: 2 (in rad), pi/2 or 115deg"),
-    "omega": ("RAD_S", "start angular velocity: 2 (in rad/s) or 30deg (a second)"),
-    "length": ("M", "length in m"),
-    "gravity": ("M_S2", "gravity in m/s²"),
-    "h": ("S", "step size: 0.05 (in s) or 50ms"),
-}
-
-_READERS = {**READERS, **dict.fromkeys(("seconds", "moment"), seconds), "speed": number}
-VIEWS = ("lab", "phase", "stability", "accuracy")
-EXAMPLES = {
-    "name": '"swing"',
-    "theta": '"57deg"',
-    "omega": "2.0",
-    "length": "1.0",
-    "gravity": "9.81",
-    "h": "0.05",
-    "watch": '"Verlet keeps its energy."',
-    "model": '"damped"',
-    "speed": "4",
-    "methods": '["rk4", "velocity_verlet"]',
-    "shot": "",
-    **{name: f"{parameter.default:g}" for name, parameter in PARAMETERS.items()},
-    **{name: f"{value:g}" for scene in SCENES.values() for name, value in scene.parameters.items()},
-}
-"""The fields of a scene file, each with a value."""
-SHOT_EXAMPLES = {
-    "view": '"phase"',
-    "theta": '"40deg"',
-    "quantity": '"theta_error"',
-    "log": "false",
-    "seconds": "20",
-    "line": '{quantity = "energy_error", value = 0.01, name = "1 %"}',
-    "front": '["rk4"]',
-    "ring": "true",
-    "moment": "12.5",
-    "sentence": '"Here they part."',
-}
-MAX_BYTES = 100_000
+_READERS = {name: read for name, (read, _, _) in NUMBERS.items()}
+_READERS |= {"seconds": seconds, "moment": seconds, "speed": number}
+_PARAMETERS = ChainMap(*(dict(scene.parameters) for scene in SCENES.values()))
+_EXAMPLE = """
+name = "swing"
+theta = "57deg"
+omega = 2.0
+length = 1.0
+gravity = 9.81
+h = 0.05
+watch = "Verlet keeps its energy."
+model = "damped"
+speed = 4
+methods = ["velocity_verlet", "mine.py:step"]
+shot = {view = "phase"}
+""" + "".join(f"{name} = {value:g}\n" for name, value in _PARAMETERS.items())
+_SHOT_EXAMPLE = """
+view = "phase"
+theta = "40deg"
+quantity = "theta_error"
+log = false
+seconds = 20
+line = {quantity = "energy_error", value = 0.01, name = "1 %"}
+front = ["rk4"]
+ring = true
+moment = 12.5
+sentence = "Here they part."
+"""
 
 
 def add_scene_options(parser: argparse.ArgumentParser, lists: bool = False) -> None:
     """Add the options that determine a scene, for `scene_of`; with `lists`, for `scenes_of`."""
     more = f"; a number may be a list, 0.1,0.2 or {LIST}" if lists else ""
     group = parser.add_argument_group("scene", f"options override the values of the scene{more}")
-    meaning = (
-        f"see pendu-tui scenes ({DEFAULT_SCENE.name}), or a file with the fields of scenes --json"
-    )
     names = Suggestions(SCENES)
     group.add_argument(
         "scene", metavar="SCENE", nargs="?", choices=names, help="the scene, as --scene"
     )
     group.add_argument(
-        "--scene", dest="scene_option", metavar="NAME|FILE.toml", choices=names, help=meaning
+        "--scene",
+        dest="scene_option",
+        metavar="NAME|FILE.toml",
+        choices=names,
+        help=f"see pendu-tui scenes ({DEFAULT_SCENE.name}), or a file with the fields of scenes "
+        "--json",
     )
-    parameters = {
-        each.name: ("NUMBER", f"{each.about} in {each.unit}") for each in PARAMETERS.values()
-    }
-    for name, read in READERS.items():
-        metavar, meaning = (_HELP | parameters)[name]
+    for name, (read, metavar, about) in NUMBERS.items():
         option = f"--{name.replace('_', '-')}"
-        group.add_argument(
-            option, metavar=metavar, type=values(read) if lists else read, help=meaning
-        )
+        form = values(read) if lists else read
+        group.add_argument(option, metavar=metavar, type=form, help=about)
     add_cast_options(group)
 
 
@@ -149,18 +143,18 @@ def scenes_of(
     Without a name they change the `default`.  Raises UserError for an unknown name, SceneError for
     bad numbers, if only in some of the combinations, and OwnMethodError for a bad function.
     """
-    given = {name: getattr(options, name) for name in READERS}
-    axes = {
-        name: value if isinstance(value, list) else [value]
-        for name, value in given.items()
-        if value is not None
-    }
     if options.scene and options.scene_option:
         raise UserError(
             f"there are two scenes, {options.scene} and {options.scene_option}; leave one out."
         )
     name = options.scene or options.scene_option
     scene = scene_named(name, lecture) if name else default or DEFAULT_SCENE
+    given = {each: getattr(options, each) for each in NUMBERS}
+    axes = {
+        each: value if isinstance(value, list) else [value]
+        for each, value in given.items()
+        if value is not None
+    }
     scenes = SceneList(scene.with_cast(cast_of(options, scene.cast, model=scene.model)), axes)
     scenes.corners()
     return scenes
@@ -195,26 +189,21 @@ def general_scene_of(options: argparse.Namespace) -> Scene:
     return scene
 
 
-def _read(path: Path) -> tuple[str, dict[str, Any]]:
-    """Return the text of a TOML file, and what it holds."""
-    try:
-        with path.open("rb") as file:
-            raw = file.read(MAX_BYTES + 1)
-        if len(raw) > MAX_BYTES:
-            raise UserError(
-                f"{path} is longer than {MAX_BYTES} bytes; is it a scene?", Exit.INPUT_UNREADABLE
-            )
-        text = raw.decode("utf-8-sig")
-        return text, tomllib.loads(text)
-    except OSError as error:
-        raise UserError(f"cannot read {path}: {error.strerror}.", Exit.INPUT_UNREADABLE) from None
-    except (
-        ValueError,
-        RecursionError,
-    ) as error:  # ValueError: no text, no TOML, or an integer of 5,000 digits
-        raise UserError(
-            f"{path} is not TOML: {printable(str(error), 200)}.", Exit.INPUT_UNREADABLE
-        ) from None
+class _FieldError(Exception):
+    """What is wrong with a field of a file; the names lead to it."""
+
+    def __init__(self, why: object, *names: str) -> None:
+        super().__init__(why)
+        self.names = names
+
+    def line(self, text: str, start: int) -> str:
+        """Return `, line N`: that of the last name in the text from `start` on."""
+        for name in self.names:
+            pattern = re.compile(rf"^\s*[\"'\[]*(\w+\.)*{re.escape(name)}\b", re.MULTILINE)
+            found = pattern.search(text, start)
+            if found:
+                start = found.end()
+        return f", line {text[:start].count(chr(10)) + 1}" if self.names else ""
 
 
 @cache
@@ -231,113 +220,110 @@ def read_scenes(path: Path) -> dict[str, Scene]:
     heads += [0] * len(tables)
     scenes: dict[str, Scene] = {}
     for nth, table in enumerate(tables, 1):
-        place = _Place(path, text, heads[nth - 1])
         name = f"{path.stem}-{nth}" if len(tables) > 1 else path.stem
-        scene = _scene(place, name, {**given, **table})
-        if scenes.setdefault(scene.name, scene) is not scene:
-            raise place.error(["name"], f"there are two scenes named {scene.name}.")
+        try:
+            scene = _scene({"name": name, **given, **table}, path.parent)
+            if scene.name in scenes:
+                raise _FieldError(f"there are two scenes named {scene.name}.", "name")
+        except _FieldError as error:
+            where = error.line(text, heads[nth - 1])
+            raise UserError(f"{path}{where}: {error}", Exit.INPUT_UNREADABLE) from None
+        scenes[scene.name] = scene
     return scenes
 
 
-class _Place(NamedTuple):
-    """Where a scene begins."""
-
-    path: Path
-    text: str  # of the file
-    head: int  # character
-
-    def error(self, names: Sequence[str], why: object) -> UserError:
-        """Return an error with the line of the last of nested names."""
-        at = self.head
-        for name in names:
-            pattern = re.compile(rf"^\s*[\"'\[]*(\w+\.)*{re.escape(name)}\b", re.MULTILINE)
-            found = pattern.search(self.text, at)
-            if found:
-                at = found.end()
-        where = f", line {self.text[:at].count(chr(10)) + 1}" if names else ""
-        return UserError(f"{self.path}{where}: {why}", Exit.INPUT_UNREADABLE)
+def _read(path: Path) -> tuple[str, dict[str, Any]]:
+    """Return the text of a TOML file, and what it holds."""
+    most = 100_000  # bytes
+    try:
+        with path.open("rb") as file:
+            raw = file.read(most + 1)
+        text = raw[:most].decode("utf-8-sig")
+        if len(raw) > most:
+            raise ValueError(f"it is longer than {most} bytes")
+        return text, tomllib.loads(text)
+    except OSError as error:
+        why = f"cannot read {path}: {error.strerror}."
+    except (ValueError, RecursionError) as error:  # no text, or an integer of 5,000 digits
+        why = f"{path} is not TOML: {printable(str(error), 200)}."
+    raise UserError(why, Exit.INPUT_UNREADABLE)
 
 
-def _scene(place: _Place, name: str, given: Mapping[str, Any]) -> Scene:
-    values: dict[str, Any] = {"name": name}
-    shot: dict[str, Any] = {}
-    table = given.get("shot", {})
-    if not isinstance(table, dict):
-        raise place.error(["shot"], "shot is not a table; begin it with [shot].")
-    fields = [([each], value) for each, value in given.items() if each != "shot"]
-    fields += [(["shot", each], value) for each, value in table.items()]
-    for names, value in fields:
-        try:
-            if names == ["methods"]:
-                values["cast"] = _methods(value, place.path.parent)
-            else:
-                (shot if len(names) > 1 else values)[names[-1]] = _value(names, value)
-        except UserError as error:
-            raise place.error(names, error) from None
-    model = values.get("model", DEFAULT_MODEL)
+def _scene(given: Mapping[str, Any], folder: Path) -> Scene:
+    """Return the scene of a table; its own methods lie in the folder."""
+    found = _values(given, _EXAMPLE, folder)
+    model = found.get("model", DEFAULT_MODEL)
     casts = (scene.cast for scene in SCENES.values() if scene.model == model)
     suited = tuple(method for method in METHODS if model in method.models)
-    values.setdefault("cast", next(casts, suited[:MOST_METHODS]))
-    parameters = {each: values.pop(each) for each in PARAMETERS if each in values}
+    cast = found.pop("methods", None) or next(casts, suited[:MOST_METHODS])
+    parameters = {name: found.pop(name) for name in PARAMETERS if name in found}
     try:
-        scene = Scene(parameters=parameters, shot=Shot(**shot), **values)
-        _check_shot(scene)
-        return scene
+        scene = Scene(cast=cast, parameters=parameters, **found)
     except SceneError as error:
         named = [each for each in given if re.search(rf"\b{re.escape(each)}\b", str(error))]
-        raise place.error(named[:1], error) from None
+        raise _FieldError(error, *named[:1]) from None
+    others = (each.name for each in MODELS[model].quantities())
+    keys = [method.key for method in cast]
+    for name, words, known in (
+        ("view", [scene.shot.view], ["lab", "phase", "stability", "accuracy"]),
+        ("quantity", [scene.shot.quantity], [*QUANTITIES, *others]),
+        ("front", scene.shot.front, keys),
+    ):
+        if unknown := [word for word in words if word not in known]:
+            why = f"a shot has no {unknown[0]!r}; choose from {', '.join(known)}."
+            raise _FieldError(why, "shot", name)
+    return scene
 
 
-def _check_shot(scene: Scene) -> None:
-    """Raise SceneError where the shot shows what the scene does not have."""
-    shot = scene.shot
-    quantities = (*QUANTITIES, *(each.name for each in MODELS[scene.model].quantities()))
-    checked = {shot.view: VIEWS, shot.quantity: quantities}
-    keys = tuple(method.key for method in scene.cast)
-    checked |= dict.fromkeys(shot.front, keys)
-    for value, allowed in checked.items():
-        if value not in allowed:
-            raise SceneError(f"a shot has no {value!r}; choose from {', '.join(allowed)}.")
+def _values(given: Mapping[str, Any], example: str, folder: Path, *above: str) -> dict[str, Any]:
+    """Return the values of a table's fields; `above` is the name of the table, if it has one."""
+    known = tomllib.loads(example)
+    found: dict[str, Any] = {}
+    for name, value in given.items():
+        names = (*above, name)
+        try:
+            if name not in known:
+                advice = did_you_mean(name, known) or f"; choose from {', '.join(known)}."
+                owner = above[0] if above else "scene"
+                raise UserError(f"a {owner} has no field {printable(name, 40)}{advice}")
+            found[name] = _value(name, value, type(known[name]), folder)
+        except UserError as error:
+            raise _FieldError(error, *names) from None
+        except (argparse.ArgumentTypeError, LookupError, TypeError, ValueError) as error:
+            why = str(error).partition(";")[0]
+            like = next(line for line in example.splitlines() if line.startswith(f"{name} ="))
+            raise _FieldError(f"{name}: {why}; use for example {like}.", *names) from None
+    return found
 
 
-def _value(names: Sequence[str], value: Any) -> Any:
-    """Return the value of a field, as a Scene or a Shot takes it, if it is like its example."""
-    owner, examples = (("a scene", EXAMPLES), ("a shot", SHOT_EXAMPLES))[len(names) - 1]
-    name = names[-1]
-    if name not in examples:
-        advice = did_you_mean(name, examples) or f"; choose from {', '.join(examples)}."
-        raise UserError(f"{owner} has no field {printable(name, 40)}{advice}")
-    example = examples[name]
-    like = tomllib.loads(f"x = {example}")["x"]
-    try:
-        if name in _READERS:
-            return _READERS[name](str(value))
-        if isinstance(like, dict):
+def _value(name: str, value: Any, kind: Any, folder: Path) -> Any:
+    """Return the value of a field as a Scene or a Shot takes it."""
+    if name in _READERS:
+        return _READERS[name](str(value))
+    if not isinstance(value, kind):
+        kinds = {str: "a text", bool: "true or false", list: "a list", dict: "a table"}
+        raise ValueError(f"{printable(str(value), 40)!r} is not {kinds[kind]}")
+    match name:
+        case "shot":
+            return Shot(**_values(value, _SHOT_EXAMPLE, folder, name))
+        case "line":
             return Line(value["quantity"], float(value["value"]), printable(value["name"], 40))
-    except (argparse.ArgumentTypeError, LookupError, TypeError, ValueError) as error:
-        why = str(error).partition(";")[0]
-        raise UserError(f"{name}: {why}; use for example {name} = {example}.") from None
-    if type(value) is not type(like):
-        kind = {str: "a text", bool: "true or false"}.get(type(like), "a list")
-        raise UserError(f"{name} is not {kind}; use for example {name} = {example}.")
-    if name == "model" and value not in MODELS:
-        raise UserError(f"model is not one of {', '.join(MODELS)}.")
-    if isinstance(value, list):
-        return tuple(map(str, value))
-    return printable(value, 200) if isinstance(value, str) else value
+        case "methods":
+            return _methods(value, folder)
+        case "front":
+            return tuple(map(str, value))
+        case "model" if value not in MODELS:
+            raise ValueError(f"{printable(value, 40)!r} is not one of {', '.join(MODELS)}")
+    return printable(value, 200) if kind is str else value
 
 
-def _methods(value: Any, folder: Path) -> Cast:
+def _methods(keys: Sequence[Any], folder: Path) -> Cast:
     """Return the methods of a scene file; the user's own are FILE.py:FUNCTION, in its folder."""
-    if not isinstance(value, list) or not value or not all(isinstance(key, str) for key in value):
-        raise UserError(
-            'methods is not a list of names; use for example ["velocity_verlet", "mine.py:step"].'
-        )
-    if len(set(value)) < len(value):
-        raise UserError("methods has a name twice; name each method once.")
     cast: list[Method] = []
-    for key in value:
+    for key in map(str, keys):
         is_own = ".py:" in key
         found = own_method_at(f"{folder / key}", cast) if is_own else find(key, METHODS, "methods")
+        if found in cast:
+            raise ValueError(f"{key} is there twice")
         cast.append(found)
     return tuple(cast)
