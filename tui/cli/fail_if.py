@@ -15,11 +15,11 @@ import operator
 import re
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from decimal import Decimal
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from engine.methods import USUAL_CAST, Cast, matching
+from engine.methods import USUAL_CAST, Cast
 from engine.run.judgement import VERDICTS, Progress
 from recordings.fields import EXTRA_NAMES, NUMBERS, OPTIONAL
 from tui.cli.cast import find
@@ -40,7 +40,6 @@ FIELDS = (
 Values = Mapping[str, Mapping[str, Any]]  # method key -> field -> value
 Gate = Callable[[Values], str]  # the values that trip it; empty if it passes
 
-MAX_LENGTH = 10_000  # characters of a gate
 _SIGNS: dict[type[ast.cmpop], Callable[[Any, Any], bool]] = {
     ast.Lt: operator.lt,
     ast.LtE: operator.le,
@@ -49,9 +48,6 @@ _SIGNS: dict[type[ast.cmpop], Callable[[Any, Any], bool]] = {
     ast.Eq: operator.eq,
     ast.NotEq: operator.ne,
 }
-_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", re.IGNORECASE | re.ASCII)
-_PERCENT = re.compile(r"([\d.]+)\s*%(?=\s*(?:and\b|or\b|\)|$))", re.IGNORECASE | re.ASCII)
-_EXAMPLE = "velocity_verlet.max_energy_error > 1e-2"
 
 
 def parse(text: str, fields: Sequence[str] = (), cast: Cast = USUAL_CAST) -> Gate:
@@ -61,65 +57,97 @@ def parse(text: str, fields: Sequence[str] = (), cast: Cast = USUAL_CAST) -> Gat
     under the key "".
     """
     source = " ".join(text.split())
-    if len(source) > MAX_LENGTH:
-        raise _refusal(f"it is longer than {MAX_LENGTH:,} characters.")
+    if len(source) > 10_000:
+        raise UserError("--fail-if: it is longer than 10,000 characters.")
     for verdict in VERDICTS:
         source = source.replace(verdict, verdict.replace(" ", "_"))
-    source = _PERCENT.sub(_fraction, source)
+    source = re.sub(r"([\d.])\s*%", r"\1e-2", source)
+    grammar = _Grammar(fields, cast)
+    if "#" in source:  # a comment would hide what follows
+        raise grammar.no_comparison(source)
     try:
         with warnings.catch_warnings(action="ignore"):  # of what is odd but legal, such as `1or`
             node = ast.parse(source, mode="eval").body
+        return grammar.gate(node)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        raise _no_comparison(source, fields) from None
-    if "#" in source:  # a comment would hide what follows
-        raise _no_comparison(source, fields)
+        raise grammar.no_comparison(source) from None
+
+
+@dataclass(frozen=True)
+class _Grammar:
+    """What comparisons may name."""
+
+    fields: Sequence[str]
+    cast: Cast
+
+    def gate(self, node: ast.expr) -> Gate:
+        """Return the gate of a node.  Raises UserError."""
+        match node:
+            case ast.BoolOp(op, parts):
+                return partial(_joined, [self.gate(part) for part in parts], type(op) is ast.And)
+            case ast.Compare(ast.Attribute(ast.Name(key), field), [sign], [value]) if (
+                type(sign) in _SIGNS and not self.fields
+            ):
+                names = FIELDS
+            case ast.Compare(ast.Name(field), [sign], [value]) if (
+                type(sign) in _SIGNS and self.fields
+            ):
+                key = ""
+                names = tuple(self.fields)
+            case _:
+                raise self.no_comparison(ast.unparse(node))
+        _check("field", field, (*names, "verdict"))
+        limit = _verdict(sign, value) if field == "verdict" else _number(value)
+        methods = [""]
+        if key in ("any", "all"):
+            methods = [method.key for method in self.cast]
+        elif key:
+            methods = [find(key, self.cast, "--fail-if").key]
+        found = [partial(_found, method, field, _SIGNS[type(sign)], limit) for method in methods]
+        return partial(_joined, found, key == "all")
+
+    def no_comparison(self, text: str) -> UserError:
+        form = "METHOD.FIELD"
+        example = "velocity_verlet.max_energy_error > 1e-2"
+        if self.fields:
+            form = "FIELD"
+            example = f"{self.fields[0]} > 1e-2"
+        return UserError(
+            f"--fail-if: {_quoted(text)} is not a comparison; write {form} > NUMBER, for example "
+            f"{example!r}; comparisons are joined by and, or and parentheses."
+        )
+
+
+def _verdict(sign: ast.cmpop, node: ast.expr) -> str:
+    if not isinstance(sign, ast.Eq | ast.NotEq):
+        raise UserError("--fail-if: verdicts have no order: compare them with == or !=.")
+    word = ast.unparse(node).strip("'").replace("_", " ")
+    _check("verdict", word, VERDICTS)
+    return word
+
+
+def _number(node: ast.expr) -> float:
     try:
-        return _gate(node, source, fields, cast)
-    except RecursionError:
-        raise _no_comparison(source, fields) from None
+        value = ast.literal_eval(node)
+        if type(value) in (int, float) and math.isfinite(value):
+            return float(value)
+    except (ArithmeticError, ValueError):
+        pass
+    text = _quoted(ast.unparse(node))
+    raise UserError(f"--fail-if: {text} is not a finite number; use for example 0.05 or 1e-2.")
 
 
-def _fraction(percent: re.Match[str]) -> str:
-    """Return a percentage as a fraction, in decimal digits; what is no number stays."""
-    try:
-        return str(Decimal(percent[1]).scaleb(-2))
-    except ArithmeticError:
-        return percent[0]
+def _check(what: str, name: str, names: Sequence[str]) -> None:
+    if name not in names:
+        advice = did_you_mean(name, names) or f": choose from {', '.join(names)}."
+        raise UserError(f"--fail-if: there is no {what} {_quoted(name)}{advice}")
 
 
-def _gate(node: ast.expr, source: str, fields: Sequence[str], cast: Cast) -> Gate:
-    match node:
-        case ast.BoolOp(op, parts):
-            gates = [_gate(part, source, fields, cast) for part in parts]
-            return partial(_all if isinstance(op, ast.And) else _any, gates)
-        case ast.Compare(ast.Attribute(ast.Name(key), field), [sign], [value]) if (
-            type(sign) in _SIGNS and not fields
-        ):
-            names = FIELDS
-        case ast.Compare(ast.Name(field), [sign], [value]) if type(sign) in _SIGNS and fields:
-            key = ""
-            names = tuple(fields)
-        case _:
-            raise _no_comparison(_segment(source, node), fields)
-    field = _named("field", field, (*names, "verdict"))
-    limit = _value(field, sign, value, source)
-    compare = _SIGNS[type(sign)]
-    if key in ("any", "all"):
-        gates = [partial(_found, method.key, field, compare, limit) for method in cast]
-        return partial(_all if key == "all" else _any, gates)
-    if key and not matching(key, cast) and matching(key):
-        raise UserError(f"--fail-if: {key} is not in this run; add it with --methods.")
-    method = find(key, cast, "--fail-if").key if key else ""
-    return partial(_found, method, field, compare, limit)
-
-
-def _all(gates: Sequence[Gate], values: Values) -> str:
+def _joined(gates: Sequence[Gate], joined_by_and: bool, values: Values) -> str:
     found = [gate(values) for gate in gates]
-    return ", ".join(found) if all(found) else ""
-
-
-def _any(gates: Sequence[Gate], values: Values) -> str:
-    return ", ".join(found for found in (gate(values) for gate in gates) if found)
+    if joined_by_and and not all(found):
+        return ""
+    return ", ".join(filter(None, found))
 
 
 def _found(
@@ -143,44 +171,6 @@ def _found(
     if field == "verdict" and isinstance(progress, Mapping):
         text += f": {Progress(**progress)}"
     return f"{name} is {text}"
-
-
-def _segment(source: str, node: ast.expr) -> str:
-    """Return the text of a node of a source in one line."""
-    return source.encode()[node.col_offset : node.end_col_offset].decode()
-
-
-def _value(field: str, sign: ast.cmpop, node: ast.expr, source: str) -> float | str:
-    is_text = isinstance(node, ast.Constant) and isinstance(node.value, str)
-    text = str(node.value) if is_text else _segment(source, node)  # type: ignore[attr-defined]
-    if field == "verdict":
-        if not isinstance(sign, ast.Eq | ast.NotEq):
-            raise _refusal("verdicts have no order: compare them with == or !=.")
-        return _named("verdict", text.replace("_", " "), VERDICTS)
-    if is_text or not _NUMBER.fullmatch(text) or not math.isfinite(number := float(text)):
-        raise _refusal(f"{_quoted(text)} is not a finite number; use for example 0.05 or 1e-2.")
-    return number
-
-
-def _refusal(sentence: str) -> UserError:
-    return UserError(f"--fail-if: {sentence}")
-
-
-def _no_comparison(text: str, fields: Sequence[str]) -> UserError:
-    form = "FIELD" if fields else "METHOD.FIELD"
-    example = f"{fields[0]} > 1e-2" if fields else _EXAMPLE
-    return _refusal(
-        f"{_quoted(text)} is not a comparison; write {form} > NUMBER, for example {example!r}; "
-        "comparisons are joined by and, or and parentheses."
-    )
-
-
-def _named(what: str, name: str, names: Sequence[str]) -> str:
-    if name in names:
-        return name
-    longer = next((f": did you mean {each}?" for each in names if f"_{name}" in each), "")
-    advice = did_you_mean(name, names) or longer or f": choose from {', '.join(names)}."
-    raise _refusal(f"there is no {what} {_quoted(name)}{advice}")
 
 
 def _quoted(text: str) -> str:
